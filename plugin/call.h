@@ -1,0 +1,66 @@
+#pragma once
+// The frame of every entry point: floating-point mode, objects in use, and no
+// exception past it.
+#include <memory>
+#include <vector>
+
+#include "plugin/handles.h"
+#include "plugin/objects.h"
+#include "plugin/result.h"
+#include "runtime/base/floating_point_mode.h"
+
+namespace voyager {
+
+// Marks the objects that one call uses, so that destruction waits for it.
+class Call {
+ public:
+  Call() = default;
+  ~Call() {
+    for (Object* object : in_use_) HandleTable::instance().end_call(*object);
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+  // Throws ApiError(VOY_ERROR_INVALID_HANDLE).
+  template <class T>
+  std::shared_ptr<T> use(typename T::Handle handle) {
+    in_use_.reserve(in_use_.size() + 1);
+    std::shared_ptr<Object> object = HandleTable::instance().begin_call(handle, T::kKind);
+    in_use_.push_back(object.get());
+    return std::static_pointer_cast<T>(std::move(object));
+  }
+
+  // To the log of the device whose objects the call uses, if any.
+  void log_error(const char* message) const {
+    if (in_use_.empty()) return;
+    Object* first = in_use_.front();
+    Object* device = first->parent() ? first->parent().get() : first;
+    static_cast<DeviceObject*>(device)->log.write(VOY_LOG_ERROR, message);
+  }
+
+ private:
+  std::vector<Object*> in_use_;
+};
+
+// body(Call&) -> VoyResult.
+template <class Body>
+VoyResult guarded(const char* function, const Body& body) noexcept {
+  const FloatingPointMode mode;
+  Call call;
+  try {
+    return body(call);
+  } catch (...) {
+    const VoyResult result = translate_exception(function);
+    call.log_error(last_message());
+    return result;
+  }
+}
+
+// For the calls that destroy; NULL succeeds.
+template <class T>
+std::vector<std::shared_ptr<Object>> removed(typename T::Handle handle) {
+  if (handle == nullptr) return {};
+  return HandleTable::instance().remove(handle, T::kKind);
+}
+
+}  // namespace voyager

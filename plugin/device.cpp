@@ -1,0 +1,127 @@
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+
+#include "plugin/call.h"
+#include "plugin/structs.h"
+#include "runtime/cpu/cpu_backend.h"
+#include "runtime/reference/reference_backend.h"
+
+using namespace voyager;
+
+namespace {
+
+constexpr uint32_t kMaxWorkerThreads = 1024;
+
+std::string version_text(uint32_t version) {
+  return std::to_string(version >> 22) + "." + std::to_string((version >> 12) & 0x3ff) + "." +
+         std::to_string(version & 0xfff);
+}
+
+void check_version(uint32_t host) {
+  const bool same_major = host >> 22 == VOY_API_VERSION >> 22;
+  if (!same_major || ((host >> 12) & 0x3ff) > ((VOY_API_VERSION >> 12) & 0x3ff))
+    throw ApiError(VOY_ERROR_INCOMPATIBLE_VERSION,
+                   "desc.apiVersion: found " + version_text(host) +
+                       ", expected the same major version and at most the minor version of " +
+                       version_text(VOY_API_VERSION));
+}
+
+// The backend that will run; throws where this machine lacks it.
+VoyBackend choose(const VoyBackend& wanted) {
+  check_enum(wanted, VOY_BACKEND_REFERENCE, "backend");
+  if (wanted == VOY_BACKEND_CUDA)
+    throw ApiError(VOY_ERROR_NO_DEVICE, "backend CUDA: this build has no CUDA backend");
+  return wanted == VOY_BACKEND_AUTO ? VOY_BACKEND_CPU : wanted;
+}
+
+// CPUs have the UUID zero (VoyCapabilities.deviceUuid).
+void check_uuid(const uint8_t* uuid) {
+  if (uuid != nullptr && std::any_of(uuid, uuid + 16, [](uint8_t byte) { return byte != 0; }))
+    throw ApiError(VOY_ERROR_NO_DEVICE,
+                   "desc.deviceUuid: found a UUID that no device of this backend has, "
+                   "expected NULL or the sixteen zeros of a CPU");
+}
+
+void check_allocator(const VoyAllocator* allocator) {
+  if (allocator == nullptr) return;
+  check_structure(allocator, VOY_STRUCTURE_TYPE_ALLOCATOR, "VoyAllocator");
+  if (allocator->allocate == nullptr || allocator->release == nullptr)
+    refuse("desc.allocator: found NULL, expected both allocate and release");
+}
+
+// oneTBB starts no more threads than there are processors unless it is told to.
+std::unique_ptr<tbb::global_control> permit_threads(uint32_t wanted) {
+  using tbb::global_control;
+  if (static_cast<int64_t>(wanted) <= tbb::info::default_concurrency()) return nullptr;
+  return std::make_unique<global_control>(global_control::max_allowed_parallelism, wanted);
+}
+
+}  // namespace
+
+voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend chosen)
+    : Object(kKind),
+      log{desc.log, desc.logUser, number(desc.logLevel)},
+      memory(std::pmr::new_delete_resource()),
+      budget(desc.memoryBudget),
+      more_threads(permit_threads(desc.workerThreads)),
+      workers(desc.workerThreads),
+      backend_kind(chosen),
+      backend(chosen == VOY_BACKEND_REFERENCE ? create_reference_backend() : create_cpu_backend()) {
+  if (desc.allocator != nullptr) memory = &host_memory.emplace(*desc.allocator);
+}
+
+VoyResult voyQueryBackend(VoyBackend backend) {
+  return guarded("voyQueryBackend", [&](Call&) {
+    choose(backend);
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device) {
+  return guarded("voyCreateDevice", [&](Call&) {
+    check_structure(desc, VOY_STRUCTURE_TYPE_DEVICE_DESC, "VoyDeviceDesc");
+    check_pointer(device, "device");
+    check_version(desc->apiVersion);
+    const VoyBackend chosen = choose(desc->backend);
+    check_uuid(desc->deviceUuid);
+    check_count(desc->workerThreads, 0, kMaxWorkerThreads, "desc.workerThreads");
+    check_enum(desc->logLevel, VOY_LOG_INFO, "desc.logLevel");
+    check_allocator(desc->allocator);
+    const auto object = std::make_shared<DeviceObject>(*desc, chosen);
+    *device = static_cast<VoyDevice>(HandleTable::instance().insert(object));
+    object->log.write(VOY_LOG_INFO, ("voyCreateDevice: " + object->backend->device_name()).c_str());
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyDestroyDevice(VoyDevice device) {
+  return guarded("voyDestroyDevice", [&](Call&) {
+    removed<DeviceObject>(device);
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
+  return guarded("voyGetCapabilities", [&](Call& call) {
+    const auto object = call.use<DeviceObject>(device);
+    check_structure(capabilities, VOY_STRUCTURE_TYPE_CAPABILITIES, "VoyCapabilities");
+    VoyCapabilities found = VOY_CAPABILITIES_INIT;
+    found.backend = object->backend_kind;
+    found.workerThreads = static_cast<uint32_t>(object->workers.count());
+    object->backend->device_name().copy(found.deviceName, sizeof found.deviceName - 1);
+    found.maxInstances = 1;
+    found.maxEyes = 1;
+    found.maxWidth = found.maxHeight = kMaxImageSide;
+    found.searches = 1u << VOY_SEARCH_AUTO | 1u << VOY_SEARCH_EXHAUSTIVE;
+    found.exponentials = 1u << VOY_EXPONENTIAL_AUTO | 1u << VOY_EXPONENTIAL_EXACT;
+    if (object->backend_kind == VOY_BACKEND_CPU)
+      found.exponentials |= 1u << VOY_EXPONENTIAL_EX2 | 1u << VOY_EXPONENTIAL_LUT;
+    found.targetKinds = 1u << VOY_TARGET_KIND_HOST_MEMORY;
+    found.colorFormats = 1u << VOY_COLOR_FORMAT_NONE | 1u << VOY_COLOR_FORMAT_RGBA8_UNORM |
+                         1u << VOY_COLOR_FORMAT_RGBA32F;
+    *capabilities = found;
+    return VOY_SUCCESS;
+  });
+}

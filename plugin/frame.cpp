@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <iterator>
+
+#include "plugin/call.h"
+#include "plugin/claim.h"
+#include "plugin/frame_input.h"
+#include "plugin/structs.h"
+
+using namespace voyager;
+
+namespace {
+
+static_assert(int{VOY_STAGE_COUNT} == int{kStageCount});
+
+void check_size(const Image& image, const ViewObject& view) {
+  if (image.width > view.max_width || image.height > view.max_height)
+    refuse("frame.eyes[0].target: found " + std::to_string(image.width) + " x " +
+           std::to_string(image.height) + " pixels, expected at most the view's " +
+           std::to_string(view.max_width) + " x " + std::to_string(view.max_height));
+}
+
+void fill(VoyFrameStats& out, const FrameStats& in) {
+  out.frameIndex = in.frame_index;
+  out.search = in.searched ? VOY_SEARCH_EXHAUSTIVE : VOY_SEARCH_AUTO;
+  out.tauStar = in.tau_star;
+  for (int i = 0; i < 3; ++i) out.cutCentre[i] = in.cut_centre[i];
+  out.nodesTotal = in.nodes_total;
+  out.nodesTested = in.nodes_tested;
+  out.subtreesVisited = in.subtrees_visited;
+  out.chunksRead = in.chunks_read;
+  out.bytesRead = in.bytes_read;
+  out.cutSize = in.cut_size;
+  out.entered = in.entered;
+  out.left = in.left;
+  out.splats = in.splats;
+  out.pairsBefore = in.pairs_before;
+  out.pairsAfter = in.pairs_after;
+  std::copy(std::begin(in.milliseconds), std::end(in.milliseconds), out.milliseconds);
+  out.millisecondsTotal = in.total_milliseconds;
+}
+
+}  // namespace
+
+VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
+  return guarded("voyRenderFrame", [&](Call& call) {
+    const auto object = call.use<ViewObject>(view);
+    check_structure(frame, VOY_STRUCTURE_TYPE_FRAME, "VoyFrame");
+    check_count(frame->eyeCount, 1, 1, "frame.eyeCount");
+    check_pointer(frame->eyes, "frame.eyes");
+    const VoyFrameEye& eye = frame->eyes[0];
+    const auto target = call.use<TargetObject>(eye.target);
+    if (target->parent() != object->parent())
+      refuse("frame.eyes[0].target: found a target of another device, expected the view's");
+    check_size(target->image, *object);
+    FrameInput input = frame_input(*frame, eye, target->image);
+
+    const auto view_lock = claim(*object);
+    const auto target_lock = claim_object(*target, "frame.eyes[0].target");
+    input.tau = object->tau;
+    object->view->render(input, target->image);
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyGetFrameStats(VoyView view, VoyFrameStats* stats) {
+  return guarded("voyGetFrameStats", [&](Call& call) {
+    const auto object = call.use<ViewObject>(view);
+    check_structure(stats, VOY_STRUCTURE_TYPE_FRAME_STATS, "VoyFrameStats");
+    const auto frame = claim(*object);
+    check_has_frame(*object);
+    VoyFrameStats found = {};
+    found.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    fill(found, object->view->stats());
+    *stats = found;
+    return VOY_SUCCESS;
+  });
+}

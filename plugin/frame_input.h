@@ -1,0 +1,13 @@
+#pragma once
+#include "runtime/frame/backend.h"
+#include "voyager/voyager.h"
+
+namespace voyager {
+
+// The pure part of voyRenderFrame: what the host says about the frame, checked
+// and in the runtime's terms; tau is the view's and left to the caller. Throws
+// ApiError naming the field, what was found and what was expected. `image` gives
+// the camera its size.
+FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Image& image);
+
+}  // namespace voyager

@@ -1,0 +1,489 @@
+/* Voyager: city-scale 3D Gaussian scenes in an engine's frame loop.
+ *
+ * The C ABI, C99. docs/abi.md explains the life of a frame; docs/conventions.md
+ * has axes, units and colour space. In short: metres, seconds, radians nowhere
+ * (a frustum is four tangents), poses as in OpenXR (x right, y up, -z forward),
+ * colours are display-referred code values, premultiplied.
+ *
+ * Every struct starts with `type` and `next`. `type` must be the struct's own
+ * enumerant and `next` NULL or a struct that the call knows: anything else is
+ * VOY_ERROR_INVALID_STRUCTURE, so that a request is never ignored silently.
+ * The VOY_..._INIT macros fill `type` and the defaults.
+ *
+ * Every call returns a VoyResult: 0 is success, positive a qualified success,
+ * negative an error whose text voyGetLastErrorMessage has. On error, outputs
+ * are untouched unless the function says otherwise. No call aborts or throws.
+ *
+ * Handles are checked: NULL, stale and wrong-kind handles give
+ * VOY_ERROR_INVALID_HANDLE. Destroying a parent destroys its children, whose
+ * handles are then stale (as in OpenXR).
+ *
+ * Thread-safety: any call may come from any thread. Calls on different objects
+ * run concurrently. A view renders one frame at a time: a call on a view that
+ * is busy in another thread returns VOY_ERROR_BUSY and changes nothing.
+ * Destruction waits for calls in flight on that object; a callback may therefore
+ * not destroy an object of its own device. */
+#ifndef VOYAGER_VOYAGER_H_
+#define VOYAGER_VOYAGER_H_
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define VOY_API __attribute__((visibility("default")))
+#else
+#define VOY_API
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The API version this header describes: major << 22 | minor << 12 | patch.
+ * A library serves every host built against the same major version and a minor
+ * version up to its own. */
+#define VOY_MAKE_VERSION(major, minor, patch) \
+  ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
+#define VOY_API_VERSION VOY_MAKE_VERSION(0, 1, 0)
+
+typedef enum VoyResult {
+  VOY_SUCCESS = 0,
+  VOY_INCOMPLETE = 1, /* the array was too short: it was filled, and count says how many there are */
+  VOY_ERROR_INVALID_ARGUMENT = -1,
+  VOY_ERROR_INVALID_HANDLE = -2,
+  VOY_ERROR_INVALID_STRUCTURE = -3, /* wrong type, or a next that the call does not know */
+  VOY_ERROR_INCOMPATIBLE_VERSION = -4,
+  VOY_ERROR_UNSUPPORTED = -5, /* a mode that this build or backend lacks; the message names it */
+  VOY_ERROR_OUT_OF_HOST_MEMORY = -6,
+  VOY_ERROR_OVER_BUDGET = -7,
+  VOY_ERROR_FILE_NOT_FOUND = -8,
+  VOY_ERROR_IO = -9,
+  VOY_ERROR_REFUSED_INPUT = -10, /* a malformed file: the message has place, found, expected */
+  VOY_ERROR_DAMAGED_CHUNK = -11, /* a chunk that this frame needs is damaged; nothing was drawn */
+  VOY_ERROR_NO_DEVICE = -12,
+  VOY_ERROR_BUSY = -13,
+  VOY_ERROR_SCENE_DESTROYED = -14, /* the scene that the view draws is gone; destroy the view */
+  VOY_ERROR_INTERNAL = -15,        /* a bug of ours: please report the message */
+  VOY_RESULT_MAX_ENUM = 0x7fffffff
+} VoyResult;
+
+typedef enum VoyStructureType {
+  VOY_STRUCTURE_TYPE_DEVICE_DESC = 1,
+  VOY_STRUCTURE_TYPE_CAPABILITIES = 2,
+  VOY_STRUCTURE_TYPE_SCENE_DESC = 3,
+  VOY_STRUCTURE_TYPE_BYTE_SOURCE = 4,
+  VOY_STRUCTURE_TYPE_SCENE_INFO = 5,
+  VOY_STRUCTURE_TYPE_SCENE_NOTE = 6,
+  VOY_STRUCTURE_TYPE_VIEW_DESC = 7,
+  VOY_STRUCTURE_TYPE_TARGET_DESC = 8,
+  VOY_STRUCTURE_TYPE_FRAME = 9,
+  VOY_STRUCTURE_TYPE_FRAME_STATS = 10,
+  VOY_STRUCTURE_TYPE_ALLOCATOR = 11,
+  VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
+} VoyStructureType;
+
+typedef struct VoyDevice_T* VoyDevice;
+typedef struct VoyScene_T* VoyScene;
+typedef struct VoyView_T* VoyView;
+typedef struct VoyTarget_T* VoyTarget;
+
+/* ------------------------------------------------------------------ library */
+
+/* The library's version, as VOY_MAKE_VERSION packs it. */
+VOY_API uint32_t voyGetVersion(void);
+
+/* The enumerant's name, "VOY_ERROR_..."; never NULL. Static storage. */
+VOY_API const char* voyResultString(VoyResult result);
+
+/* What was wrong with this thread's last call that failed, and what would be
+ * right. Never NULL; "" before any failure. Valid until this thread's next call. */
+VOY_API const char* voyGetLastErrorMessage(void);
+
+/* ------------------------------------------------------------------- device */
+
+typedef enum VoyBackend {
+  VOY_BACKEND_AUTO = 0, /* the fastest that this machine has */
+  VOY_BACKEND_CPU = 1,
+  VOY_BACKEND_CUDA = 2,
+  VOY_BACKEND_REFERENCE = 3, /* float64, slow: the judge of the others */
+  VOY_BACKEND_MAX_ENUM = 0x7fffffff
+} VoyBackend;
+
+typedef enum VoyLogLevel {
+  VOY_LOG_ERROR = 0,
+  VOY_LOG_WARNING = 1,
+  VOY_LOG_INFO = 2,
+  VOY_LOG_LEVEL_MAX_ENUM = 0x7fffffff
+} VoyLogLevel;
+
+/* Called on the thread of the call that logs, never from a thread of ours.
+ * The message is valid during the call. Must not call back into this device. */
+typedef void (*VoyLogFunction)(void* user, VoyLogLevel level, const char* message);
+
+/* Scene data, cut state and frame buffers are allocated here; small fixed-size
+ * bookkeeping is not. Called from any thread, several at once, worker threads
+ * included. allocate returns `size` bytes aligned to `alignment` (a power of
+ * two), or NULL, which the call in progress reports as OUT_OF_HOST_MEMORY.
+ * release gets the size and alignment of the allocation. Both must stay callable
+ * until the device is destroyed, or, where the host forgets that, until the library
+ * is unloaded, which destroys what is left. */
+typedef struct VoyAllocator {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_ALLOCATOR */
+  const void* next;
+  void* user;
+  void* (*allocate)(void* user, size_t size, size_t alignment);
+  void (*release)(void* user, void* memory, size_t size, size_t alignment);
+} VoyAllocator;
+
+typedef struct VoyDeviceDesc {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_DEVICE_DESC */
+  const void* next;
+  uint32_t apiVersion; /* VOY_API_VERSION of the header that the host was built with */
+  VoyBackend backend;
+  const uint8_t* deviceUuid;     /* 16 bytes as VkPhysicalDeviceIDProperties has them (a CPU's are 0), or NULL for any */
+  uint64_t memoryBudget;         /* bytes that scene data of this device may occupy; 0 is no limit */
+  uint32_t workerThreads;        /* 1 to 1024; 0 is one a processor */
+  VoyLogLevel logLevel;          /* the most verbose level wanted */
+  VoyLogFunction log;            /* or NULL */
+  void* logUser;
+  const VoyAllocator* allocator; /* or NULL for malloc; the struct is copied */
+} VoyDeviceDesc;
+#define VOY_DEVICE_DESC_INIT                                                                     \
+  {                                                                                              \
+    VOY_STRUCTURE_TYPE_DEVICE_DESC, NULL, VOY_API_VERSION, VOY_BACKEND_AUTO, NULL, 0, 0,         \
+        VOY_LOG_WARNING, NULL, NULL, NULL                                                        \
+  }
+
+/* VOY_SUCCESS if voyCreateDevice can make this backend here; else VOY_ERROR_NO_DEVICE
+ * and the message says why. */
+VOY_API VoyResult voyQueryBackend(VoyBackend backend);
+
+/* Errors: INCOMPATIBLE_VERSION, NO_DEVICE (no such backend or UUID), INVALID_ARGUMENT. */
+VOY_API VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device);
+
+/* Destroys its scenes, views and targets with it. NULL is a no-op that succeeds,
+ * here and in every destroy call. */
+VOY_API VoyResult voyDestroyDevice(VoyDevice device);
+
+/* Bit masks: 1 << enumerant. */
+typedef struct VoyCapabilities {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_CAPABILITIES */
+  void* next;
+  VoyBackend backend; /* the one that AUTO chose */
+  uint32_t workerThreads;
+  char deviceName[256]; /* UTF-8, terminated */
+  uint8_t deviceUuid[16]; /* zero for a CPU */
+  uint32_t maxInstances;
+  uint32_t maxEyes;
+  uint32_t maxWidth, maxHeight; /* pixels */
+  uint32_t searches;     /* of VoySearch */
+  uint32_t exponentials; /* of VoyExponential */
+  uint32_t targetKinds;  /* of VoyTargetKind */
+  uint32_t colorFormats; /* of VoyColorFormat */
+} VoyCapabilities;
+#define VOY_CAPABILITIES_INIT \
+  { VOY_STRUCTURE_TYPE_CAPABILITIES, NULL, VOY_BACKEND_AUTO, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+VOY_API VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities);
+
+/* -------------------------------------------------------------------- scene */
+
+/* Bytes that the host supplies: a pak file, an asset bundle, memory.
+ * read fills `size` bytes from `offset` (in range) and returns VOY_SUCCESS, or
+ * an error, which the call in progress reports as VOY_ERROR_IO. It may be called
+ * from several threads at once, and only during voyOpenScene. */
+typedef struct VoyByteSource {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_BYTE_SOURCE */
+  const void* next;
+  const char* name; /* what messages call it; copied; may be NULL */
+  uint64_t size;    /* bytes */
+  void* user;
+  VoyResult (*read)(void* user, uint64_t offset, uint64_t size, void* into);
+} VoyByteSource;
+#define VOY_BYTE_SOURCE_INIT \
+  { VOY_STRUCTURE_TYPE_BYTE_SOURCE, NULL, NULL, 0, NULL, NULL }
+
+/* Exactly one of path and source. The format is told from the bytes: .voy (with
+ * its tree), or a flat scene (.ply, .spz), which draws every Gaussian. */
+typedef struct VoySceneDesc {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_DESC */
+  const void* next;
+  const char* path; /* UTF-8; copied */
+  const VoyByteSource* source; /* the struct is copied; user must live until voyOpenScene returns */
+} VoySceneDesc;
+#define VOY_SCENE_DESC_INIT \
+  { VOY_STRUCTURE_TYPE_SCENE_DESC, NULL, NULL, NULL }
+
+/* Errors: FILE_NOT_FOUND, IO, REFUSED_INPUT, OVER_BUDGET, OUT_OF_HOST_MEMORY.
+ * A damaged chunk of a .voy does not fail the opening: frames that need it do. */
+VOY_API VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* scene);
+
+/* Waits for frames that draw it, and frees its memory. Every call on a view of it
+ * then returns VOY_ERROR_SCENE_DESTROYED, but for voyDestroyView. */
+VOY_API VoyResult voyDestroyScene(VoyScene scene);
+
+typedef enum VoySceneStorage {
+  VOY_SCENE_STORAGE_FLAT = 0, /* no tree */
+  VOY_SCENE_STORAGE_LOSSLESS = 1,
+  VOY_SCENE_STORAGE_COMPACT = 2,
+  VOY_SCENE_STORAGE_MAX_ENUM = 0x7fffffff
+} VoySceneStorage;
+
+typedef struct VoySceneInfo {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_INFO */
+  void* next;
+  uint64_t gaussianCount; /* the scene's own: the leaves of a tree */
+  uint64_t nodeCount;     /* 0 for a flat scene */
+  uint32_t treeDepth;     /* levels; 0 for a flat scene */
+  uint32_t chunkCount;
+  uint32_t damagedChunkCount;
+  uint32_t shDegree; /* 0-3 */
+  VoySceneStorage storage;
+  uint32_t antialiased; /* 1: the input says it was trained with the antialiased low-pass */
+  double origin[3];     /* world position of the scene-local zero, metres */
+  double boundsMin[3];  /* world metres: means ± 3·max(s) */
+  double boundsMax[3];
+  uint64_t residentBytes; /* of scene data, in the device's memory */
+  uint64_t droppedCount;  /* Gaussians left out at import because they were impossible */
+  uint64_t repairedCount; /* values mended at import */
+  double positionError;   /* compact storage: largest error of a mean, metres; else 0 */
+} VoySceneInfo;
+#define VOY_SCENE_INFO_INIT                                                                     \
+  {                                                                                             \
+    VOY_STRUCTURE_TYPE_SCENE_INFO, NULL, 0, 0, 0, 0, 0, 0, VOY_SCENE_STORAGE_FLAT, 0, {0, 0, 0}, \
+        {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0                                                        \
+  }
+
+VOY_API VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info);
+
+typedef enum VoySceneNoteKind {
+  VOY_SCENE_NOTE_OMITTED = 0,  /* what this scene does not need and so does not pay for */
+  VOY_SCENE_NOTE_REPAIRED = 1, /* values mended at import */
+  VOY_SCENE_NOTE_DROPPED = 2,  /* Gaussians left out at import */
+  VOY_SCENE_NOTE_DAMAGED = 3,  /* chunks that cannot be read */
+  VOY_SCENE_NOTE_KIND_MAX_ENUM = 0x7fffffff
+} VoySceneNoteKind;
+
+typedef struct VoySceneNote {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_NOTE */
+  void* next;
+  VoySceneNoteKind kind;
+  uint32_t reserved;
+  uint64_t count; /* values, Gaussians or chunks; 0 for OMITTED */
+  uint64_t bytes; /* saved, for OMITTED; else 0 */
+  char what[64];  /* UTF-8, terminated */
+  char why[192];
+} VoySceneNote;
+
+/* capacity 0: only *count is set. Otherwise up to capacity notes are written
+ * (their type and next are set by the call), *count is how many there are, and the
+ * result is VOY_INCOMPLETE if that is more. */
+VOY_API VoyResult voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNote* notes,
+                                   uint32_t* count);
+
+/* ------------------------------------------------------------------- target */
+
+typedef enum VoyTargetKind {
+  VOY_TARGET_KIND_HOST_MEMORY = 0,
+  VOY_TARGET_KIND_MAX_ENUM = 0x7fffffff
+} VoyTargetKind;
+
+typedef enum VoyColorFormat {
+  VOY_COLOR_FORMAT_NONE = 0,       /* depth only */
+  VOY_COLOR_FORMAT_RGBA8_UNORM = 1, /* code values, rounded to nearest, clamped to [0, 1] */
+  VOY_COLOR_FORMAT_RGBA32F = 2,     /* before clamping */
+  VOY_COLOR_FORMAT_MAX_ENUM = 0x7fffffff
+} VoyColorFormat;
+
+/* An image that frames are written to. rgb is premultiplied colour + T·background,
+ * a is 1 - T (T: transmittance). Rows run top to bottom.
+ * Depth is binary32 view-space z in metres of the first splat after which
+ * T <= 0.5, +inf where there is none.
+ * The memory is the host's: it must stay valid until the target is destroyed, is
+ * written only during voyRenderFrame, and only within width x height. */
+typedef struct VoyTargetDesc {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_TARGET_DESC */
+  const void* next;
+  VoyTargetKind kind;
+  VoyColorFormat colorFormat;
+  uint32_t width, height; /* pixels, 1 to VoyCapabilities.maxWidth/maxHeight */
+  void* color;            /* NULL exactly where colorFormat is NONE; aligned to 4 bytes */
+  uint64_t colorRowPitch; /* bytes, a multiple of 4; 0 is tightly packed */
+  float* depth;           /* or NULL */
+  uint64_t depthRowPitch; /* bytes, a multiple of 4; 0 is tightly packed */
+} VoyTargetDesc;
+#define VOY_TARGET_DESC_INIT                                                                \
+  {                                                                                         \
+    VOY_STRUCTURE_TYPE_TARGET_DESC, NULL, VOY_TARGET_KIND_HOST_MEMORY,                      \
+        VOY_COLOR_FORMAT_RGBA8_UNORM, 0, 0, NULL, 0, NULL, 0                                \
+  }
+
+VOY_API VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget* target);
+VOY_API VoyResult voyDestroyTarget(VoyTarget target);
+
+/* --------------------------------------------------------------------- view */
+
+typedef enum VoyLod {
+  VOY_LOD_CUT = 0,        /* the level-of-detail cut at tau; a flat scene has none and draws every Gaussian */
+  VOY_LOD_ALL_LEAVES = 1, /* every leaf, no search, no interpolation */
+  VOY_LOD_MAX_ENUM = 0x7fffffff
+} VoyLod;
+
+typedef enum VoySearch {
+  VOY_SEARCH_AUTO = 0, /* the best that the backend has; all searches give the same cut */
+  VOY_SEARCH_EXHAUSTIVE = 1,
+  VOY_SEARCH_MAX_ENUM = 0x7fffffff
+} VoySearch;
+
+typedef enum VoyExponential {
+  VOY_EXPONENTIAL_AUTO = 0,  /* exact */
+  VOY_EXPONENTIAL_EXACT = 1, /* within 2 ulp */
+  VOY_EXPONENTIAL_EX2 = 2,   /* base 2, log2(e) folded into the conic */
+  VOY_EXPONENTIAL_LUT = 3,   /* table of lutSize + 1 entries, nearest */
+  VOY_EXPONENTIAL_MAX_ENUM = 0x7fffffff
+} VoyExponential;
+
+typedef enum VoyAlphaFilter {
+  VOY_ALPHA_FILTER_ON = 0,
+  VOY_ALPHA_FILTER_OFF = 1, /* the same image to the bit, slower: for measurements */
+  VOY_ALPHA_FILTER_MAX_ENUM = 0x7fffffff
+} VoyAlphaFilter;
+
+/* A view draws scene instances and keeps their cuts between frames. */
+typedef struct VoyViewDesc {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_VIEW_DESC */
+  const void* next;
+  uint32_t instanceCount;  /* 1 in this version; more are VOY_ERROR_UNSUPPORTED */
+  const VoyScene* scenes;  /* one an instance, of the same device; copied */
+  uint32_t eyeCount;       /* 1 in this version */
+  uint32_t maxWidth, maxHeight; /* pixels: no target of a frame may be larger */
+  VoyLod lod;
+  double tau; /* granularity in pixels, finite, >= 0 */
+  VoySearch search;
+  VoyAlphaFilter alphaFilter;
+  VoyExponential exponential;
+  uint32_t lutSize; /* intervals, 1 to 4096; 0 is 32 */
+  uint32_t reserved; /* 0 */
+} VoyViewDesc;
+#define VOY_VIEW_DESC_INIT                                                                       \
+  {                                                                                              \
+    VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_CUT, 3.0, VOY_SEARCH_AUTO,     \
+        VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, 0                                          \
+  }
+
+VOY_API VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
+VOY_API VoyResult voyDestroyView(VoyView view);
+
+/* From the next frame on. tau in pixels, finite, >= 0. */
+VOY_API VoyResult voySetViewTau(VoyView view, double tau);
+
+/* -------------------------------------------------------------------- frame */
+
+/* As XrPosef, in double: position in metres, orientation (x, y, z, w) takes the
+ * object's axes (x right, y up, -z forward) to the parent's. The orientation is
+ * normalised by the call; zero or non-finite is refused. */
+typedef struct VoyPose {
+  double position[3];
+  double orientation[4];
+} VoyPose;
+
+/* Tangents of the half-angles: right and up positive to the right of and above
+ * the view axis, left and down normally negative. left < right, down < up, by
+ * 1e-6 at least; each between -1e4 and 1e4. */
+typedef struct VoyFrustum {
+  double left, right, up, down;
+} VoyFrustum;
+
+/* From angles in radians as XrFovf has them, each inside ±π/2. */
+VOY_API VoyResult voyFovFromAngles(double left, double right, double up, double down,
+                                   VoyFrustum* frustum);
+
+/* From pinhole intrinsics in pixels: pixel centres at +0.5, cx and cy measured
+ * from the top left corner. */
+VOY_API VoyResult voyFovFromIntrinsics(double fx, double fy, double cx, double cy, double width,
+                                       double height, VoyFrustum* frustum);
+
+typedef struct VoyFrameEye {
+  VoyPose pose; /* in the world */
+  VoyFrustum frustum;
+  VoyTarget target; /* of the view's device; its size is the image's */
+} VoyFrameEye;
+
+/* Where an instance stands: scene axes to world. */
+typedef struct VoyInstancePose {
+  VoyPose pose;
+  double scale; /* uniform, > 0 */
+} VoyInstancePose;
+
+typedef struct VoyFrame {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME */
+  const void* next;
+  uint32_t eyeCount; /* the view's */
+  const VoyFrameEye* eyes;
+  const VoyInstancePose* instances; /* one an instance, or NULL: all at the identity (the only pose in this version) */
+  double nearZ; /* metres, > 0: splats with z <= nearZ are not drawn; 0.2 by default */
+  float background[3]; /* code values behind everything, finite */
+  uint32_t reserved; /* 0 */
+} VoyFrame;
+#define VOY_FRAME_INIT \
+  { VOY_STRUCTURE_TYPE_FRAME, NULL, 0, NULL, NULL, 0.2, {0, 0, 0}, 0 }
+
+/* Renders into the targets and returns when they are written. On error no target
+ * is changed. Errors: INVALID_ARGUMENT (values out of range), SCENE_DESTROYED,
+ * DAMAGED_CHUNK, OUT_OF_HOST_MEMORY, BUSY. */
+VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
+
+/* The last frame's cut: node ids of the first instance in ascending order.
+ * capacity 0: only *count is set. Otherwise up to capacity ids are written, *count
+ * is the size of the cut, and the result is VOY_INCOMPLETE if that is more.
+ * VOY_ERROR_UNSUPPORTED where the view draws no cut (flat scene, ALL_LEAVES),
+ * VOY_ERROR_INVALID_ARGUMENT before any frame. */
+VOY_API VoyResult voyGetViewCut(VoyView view, uint32_t capacity, uint32_t* nodes, uint32_t* count);
+
+typedef enum VoyStage {
+  VOY_STAGE_SEARCH = 0,
+  VOY_STAGE_PROJECT = 1,
+  VOY_STAGE_SORT = 2,
+  VOY_STAGE_BIN = 3,
+  VOY_STAGE_RASTERIZE = 4,
+  VOY_STAGE_RESOLVE = 5,
+  VOY_STAGE_COUNT = 6,
+  VOY_STAGE_MAX_ENUM = 0x7fffffff
+} VoyStage;
+
+typedef struct VoyFrameStats {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STATS */
+  void* next;
+  uint64_t frameIndex; /* of the view, from 0 */
+  VoySearch search;    /* the one that ran; AUTO where none did */
+  float tauStar;       /* the target size as used (METHOD §3) */
+  float cutCentre[3];  /* scene-local, as used */
+  uint32_t reserved;
+  uint64_t nodesTotal;
+  uint64_t nodesTested; /* evaluations of the predicate */
+  uint64_t subtreesVisited;
+  uint64_t chunksRead;  /* by the search */
+  uint64_t bytesRead;
+  uint64_t cutSize;     /* nodes, or Gaussians where there is no cut */
+  uint64_t entered, left; /* nodes, against the view's last frame */
+  uint64_t splats;        /* that reach the image */
+  uint64_t pairsBefore;   /* (tile, splat) pairs of the bounding boxes */
+  uint64_t pairsAfter;    /* of the ellipses at the α threshold */
+  uint64_t bytesStreamed, bytesNeeded;
+  uint64_t missing;       /* cut nodes that stood in for missing ones */
+  double milliseconds[VOY_STAGE_COUNT];
+  double millisecondsTotal;
+} VoyFrameStats;
+
+/* Of the view's last successful frame; VOY_ERROR_INVALID_ARGUMENT before any.
+ * type must be set; the rest is written. */
+VOY_API VoyResult voyGetFrameStats(VoyView view, VoyFrameStats* stats);
+
+/* "search", "project", ...; NULL for no stage. Static storage. */
+VOY_API const char* voyStageName(VoyStage stage);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

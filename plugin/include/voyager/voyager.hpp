@@ -1,0 +1,138 @@
+// voy::Device, Scene, Target and View: owners of the C ABI's handles, in C++17.
+// Header-only: every call goes to voyager.h, and no C++ type crosses the
+// library's boundary. Each object destroys its handle; like the handles, an
+// object may outlive its parent and is then of no use. An object is as
+// thread-safe as its handle, but for being moved from or destroyed.
+#ifndef VOYAGER_VOYAGER_HPP_
+#define VOYAGER_VOYAGER_HPP_
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "voyager/voyager.h"
+
+namespace voy {
+
+// Thrown where a call returns an error: what() is the library's message.
+class Error : public std::runtime_error {
+ public:
+  Error(VoyResult result, const char* message)
+      : std::runtime_error(std::string(voyResultString(result)) + ": " + message),
+        result_(result) {}
+  VoyResult result() const { return result_; }
+
+ private:
+  VoyResult result_;
+};
+
+// Passes a success on; throws Error for an error.
+inline VoyResult check(VoyResult result) {
+  if (result < 0) throw Error(result, voyGetLastErrorMessage());
+  return result;
+}
+
+// One handle, move-only.
+template <class T, VoyResult (*destroy)(T)>
+class Handle {
+ public:
+  Handle() = default;
+  explicit Handle(T handle) : handle_(handle) {}
+  Handle(Handle&& other) noexcept : handle_(std::exchange(other.handle_, nullptr)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~Handle() { destroy(handle_); }
+  T get() const { return handle_; }
+  explicit operator bool() const { return handle_ != nullptr; }
+
+ private:
+  T handle_ = nullptr;
+};
+
+class Scene : public Handle<VoyScene, voyDestroyScene> {
+ public:
+  using Handle::Handle;
+
+  VoySceneInfo info() const {
+    VoySceneInfo info = VOY_SCENE_INFO_INIT;
+    check(voyGetSceneInfo(get(), &info));
+    return info;
+  }
+  std::vector<VoySceneNote> notes() const {
+    uint32_t count = 0;
+    check(voyGetSceneNotes(get(), 0, nullptr, &count));
+    std::vector<VoySceneNote> notes(count);
+    check(voyGetSceneNotes(get(), count, notes.data(), &count));
+    return notes;
+  }
+};
+
+class Target : public Handle<VoyTarget, voyDestroyTarget> {
+ public:
+  using Handle::Handle;
+};
+
+class View : public Handle<VoyView, voyDestroyView> {
+ public:
+  using Handle::Handle;
+
+  void set_tau(double pixels) { check(voySetViewTau(get(), pixels)); }
+  void render(const VoyFrame& frame) { check(voyRenderFrame(get(), &frame)); }
+  // Node ids of the last frame's cut, ascending.
+  std::vector<uint32_t> cut() const {
+    uint32_t count = 0;
+    check(voyGetViewCut(get(), 0, nullptr, &count));
+    std::vector<uint32_t> nodes(count);
+    check(voyGetViewCut(get(), count, nodes.data(), &count));
+    return nodes;
+  }
+  VoyFrameStats stats() const {
+    VoyFrameStats stats = {};
+    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    check(voyGetFrameStats(get(), &stats));
+    return stats;
+  }
+};
+
+class Device : public Handle<VoyDevice, voyDestroyDevice> {
+ public:
+  using Handle::Handle;
+
+  static Device create(const VoyDeviceDesc& desc = VOY_DEVICE_DESC_INIT) {
+    VoyDevice device = nullptr;
+    check(voyCreateDevice(&desc, &device));
+    return Device(device);
+  }
+  VoyCapabilities capabilities() const {
+    VoyCapabilities capabilities = VOY_CAPABILITIES_INIT;
+    check(voyGetCapabilities(get(), &capabilities));
+    return capabilities;
+  }
+  Scene open_scene(const std::string& path) const {
+    VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+    desc.path = path.c_str();
+    return open_scene(desc);
+  }
+  Scene open_scene(const VoySceneDesc& desc) const {
+    VoyScene scene = nullptr;
+    check(voyOpenScene(get(), &desc, &scene));
+    return Scene(scene);
+  }
+  Target create_target(const VoyTargetDesc& desc) const {
+    VoyTarget target = nullptr;
+    check(voyCreateTarget(get(), &desc, &target));
+    return Target(target);
+  }
+  View create_view(const VoyViewDesc& desc) const {
+    VoyView view = nullptr;
+    check(voyCreateView(get(), &desc, &view));
+    return View(view);
+  }
+};
+
+}  // namespace voy
+
+#endif

@@ -1,0 +1,118 @@
+// Entry points that need no object.
+#include <cmath>
+
+#include "plugin/call.h"
+#include "plugin/structs.h"
+
+using namespace voyager;
+
+namespace {
+
+// A host may use every API version up to the library's, so the header may not
+// be ahead of the project.
+static_assert(VOY_API_VERSION <= VOY_MAKE_VERSION(VOYAGER_VERSION_MAJOR, VOYAGER_VERSION_MINOR,
+                                                  VOYAGER_VERSION_PATCH));
+
+constexpr double kHalfPi = 1.57079632679489661923;
+
+double angle_tangent(double radians, const char* name) {
+  if (!(std::fabs(radians) < kHalfPi))
+    refuse(std::string(name) + ": found " + std::to_string(radians) +
+           " radians, expected an angle between -pi/2 and pi/2");
+  return std::tan(radians);
+}
+
+void check_finite(double value, const char* name) {
+  if (!std::isfinite(value))
+    refuse(std::string(name) + ": found " + std::to_string(value) + ", expected a finite number");
+}
+
+void check_positive(double value, const char* name) {
+  check_finite(value, name);
+  if (value <= 0)
+    refuse(std::string(name) + ": found " + std::to_string(value) + ", expected more than 0");
+}
+
+}  // namespace
+
+uint32_t voyGetVersion(void) {
+  return VOY_MAKE_VERSION(VOYAGER_VERSION_MAJOR, VOYAGER_VERSION_MINOR, VOYAGER_VERSION_PATCH);
+}
+
+const char* voyResultString(VoyResult result) {
+  switch (number(result)) {
+#define VOYAGER_NAME(enumerant) \
+  case enumerant:               \
+    return #enumerant
+    VOYAGER_NAME(VOY_SUCCESS);
+    VOYAGER_NAME(VOY_INCOMPLETE);
+    VOYAGER_NAME(VOY_ERROR_INVALID_ARGUMENT);
+    VOYAGER_NAME(VOY_ERROR_INVALID_HANDLE);
+    VOYAGER_NAME(VOY_ERROR_INVALID_STRUCTURE);
+    VOYAGER_NAME(VOY_ERROR_INCOMPATIBLE_VERSION);
+    VOYAGER_NAME(VOY_ERROR_UNSUPPORTED);
+    VOYAGER_NAME(VOY_ERROR_OUT_OF_HOST_MEMORY);
+    VOYAGER_NAME(VOY_ERROR_OVER_BUDGET);
+    VOYAGER_NAME(VOY_ERROR_FILE_NOT_FOUND);
+    VOYAGER_NAME(VOY_ERROR_IO);
+    VOYAGER_NAME(VOY_ERROR_REFUSED_INPUT);
+    VOYAGER_NAME(VOY_ERROR_DAMAGED_CHUNK);
+    VOYAGER_NAME(VOY_ERROR_NO_DEVICE);
+    VOYAGER_NAME(VOY_ERROR_BUSY);
+    VOYAGER_NAME(VOY_ERROR_SCENE_DESTROYED);
+    VOYAGER_NAME(VOY_ERROR_INTERNAL);
+#undef VOYAGER_NAME
+    default:
+      return "unknown VoyResult";
+  }
+}
+
+const char* voyGetLastErrorMessage(void) {
+  return last_message();
+}
+
+const char* voyStageName(VoyStage stage) {
+  switch (number(stage)) {
+    case VOY_STAGE_SEARCH:
+      return "search";
+    case VOY_STAGE_PROJECT:
+      return "project";
+    case VOY_STAGE_SORT:
+      return "sort";
+    case VOY_STAGE_BIN:
+      return "bin";
+    case VOY_STAGE_RASTERIZE:
+      return "rasterize";
+    case VOY_STAGE_RESOLVE:
+      return "resolve";
+    default:
+      return nullptr;
+  }
+}
+
+VoyResult voyFovFromAngles(double left, double right, double up, double down, VoyFrustum* frustum) {
+  return guarded("voyFovFromAngles", [&](Call&) {
+    check_pointer(frustum, "frustum");
+    const VoyFrustum tangents = {angle_tangent(left, "left"), angle_tangent(right, "right"),
+                                 angle_tangent(up, "up"), angle_tangent(down, "down")};
+    if (left >= right) refuse("left: found an angle that is not less than right");
+    if (down >= up) refuse("down: found an angle that is not less than up");
+    *frustum = tangents;
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyFovFromIntrinsics(double fx, double fy, double cx, double cy, double width,
+                               double height, VoyFrustum* frustum) {
+  return guarded("voyFovFromIntrinsics", [&](Call&) {
+    check_pointer(frustum, "frustum");
+    check_positive(fx, "fx");
+    check_positive(fy, "fy");
+    check_finite(cx, "cx");
+    check_finite(cy, "cy");
+    check_positive(width, "width");
+    check_positive(height, "height");
+    *frustum = {-cx / fx, (width - cx) / fx, cy / fy, (cy - height) / fy};
+    return VOY_SUCCESS;
+  });
+}

@@ -1,0 +1,66 @@
+#include "plugin/memory.h"
+
+#include <cstdio>
+#include <new>
+
+#include "runtime/base/error.h"
+
+namespace voyager {
+
+void* HostMemory::do_allocate(size_t size, size_t alignment) {
+  void* memory = nullptr;
+  try {
+    memory = allocator_.allocate(allocator_.user, size, alignment);
+  } catch (...) {
+    throw std::bad_alloc();
+  }
+  if (memory == nullptr) throw std::bad_alloc();
+  if (reinterpret_cast<uintptr_t>(memory) % alignment != 0) {
+    do_deallocate(memory, size, alignment);
+    throw Error(ErrorCode::invalid_argument,
+                "VoyAllocator.allocate: found memory that is not aligned to the " +
+                    std::to_string(alignment) + " bytes asked for");
+  }
+  return memory;
+}
+
+void HostMemory::do_deallocate(void* memory, size_t size, size_t alignment) {
+  try {
+    allocator_.release(allocator_.user, memory, size, alignment);
+  } catch (...) {
+    // Called from destructors: there is nobody to tell.
+  }
+}
+
+void Budget::take(uint64_t bytes) {
+  uint64_t used = used_.load(std::memory_order_relaxed);
+  do {
+    if (limit_ == 0 || (used <= limit_ && bytes <= limit_ - used)) continue;
+    char message[160];
+    std::snprintf(message, sizeof message,
+                  "scene data needs at least %.3f MB, the memory budget allows %.3f MB",
+                  (static_cast<double>(used) + static_cast<double>(bytes)) / 1e6,
+                  static_cast<double>(limit_) / 1e6);
+    throw Error(ErrorCode::over_budget, message);
+  } while (!used_.compare_exchange_weak(used, used + bytes, std::memory_order_relaxed));
+}
+
+void* SceneMemory::do_allocate(size_t size, size_t alignment) {
+  budget_.take(size);
+  try {
+    void* memory = upstream_->allocate(size, alignment);
+    used_.fetch_add(size, std::memory_order_relaxed);
+    return memory;
+  } catch (...) {
+    budget_.give_back(size);
+    throw;
+  }
+}
+
+void SceneMemory::do_deallocate(void* memory, size_t size, size_t alignment) {
+  upstream_->deallocate(memory, size, alignment);
+  used_.fetch_sub(size, std::memory_order_relaxed);
+  budget_.give_back(size);
+}
+
+}  // namespace voyager

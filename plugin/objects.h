@@ -1,0 +1,91 @@
+#pragma once
+// What stands behind each handle.
+#include <tbb/global_control.h>
+
+#include <memory>
+#include <memory_resource>
+#include <mutex>
+#include <optional>
+
+#include "plugin/handles.h"
+#include "plugin/memory.h"
+#include "runtime/base/workers.h"
+#include "runtime/frame/backend.h"
+#include "runtime/frame/scene.h"
+#include "runtime/frame/view.h"
+#include "voyager/voyager.h"
+
+namespace voyager {
+
+// The host's log. Used on the thread of the call only.
+struct Log {
+  VoyLogFunction function = nullptr;
+  void* user = nullptr;
+  int32_t level = VOY_LOG_WARNING;
+
+  void write(VoyLogLevel message_level, const char* message) const noexcept {
+    if (function == nullptr || static_cast<int32_t>(message_level) > level) return;
+    try {
+      function(user, message_level, message);
+    } catch (...) {
+      // A log that throws does not fail the call.
+    }
+  }
+};
+
+struct DeviceObject final : Object {
+  using Handle = VoyDevice;
+  static constexpr Kind kKind = Kind::device;
+  DeviceObject(const VoyDeviceDesc& desc, VoyBackend chosen);
+
+  Log log;
+  std::optional<HostMemory> host_memory;
+  std::pmr::memory_resource* memory;                  // views and frames
+  Budget budget;                                      // scene data
+  std::unique_ptr<tbb::global_control> more_threads;  // NULL where the processors suffice
+  Workers workers;
+  VoyBackend backend_kind;
+  std::unique_ptr<Backend> backend;
+};
+
+struct Child : Object {
+  Child(Kind kind, std::shared_ptr<DeviceObject> device) : Object(kind, std::move(device)) {}
+  DeviceObject& device() const { return static_cast<DeviceObject&>(*parent()); }
+};
+
+struct SceneObject final : Child {
+  using Handle = VoyScene;
+  static constexpr Kind kKind = Kind::scene;
+  explicit SceneObject(std::shared_ptr<DeviceObject> owner)
+      : Child(kKind, std::move(owner)), memory(device().memory, device().budget) {}
+
+  SceneMemory memory;
+  std::shared_ptr<const Scene> scene;  // lives in `memory`, so is declared after it
+};
+
+struct ViewObject final : Child {
+  using Handle = VoyView;
+  static constexpr Kind kKind = Kind::view;
+  ViewObject(std::shared_ptr<DeviceObject> owner, std::shared_ptr<SceneObject> drawn)
+      : Child(kKind, std::move(owner)), scene(std::move(drawn)) {}
+
+  uint32_t max_width = 0, max_height = 0;
+  std::mutex busy;  // guards what follows
+  double tau = 0;
+  // Both NULL once the scene was destroyed. The view reads the scene's memory,
+  // so is declared after it.
+  std::shared_ptr<SceneObject> scene;
+  std::unique_ptr<View> view;
+};
+
+struct TargetObject final : Child {
+  using Handle = VoyTarget;
+  static constexpr Kind kKind = Kind::target;
+  TargetObject(std::shared_ptr<DeviceObject> owner, const Image& pixels)
+      : Child(kKind, std::move(owner)), image(pixels) {}
+
+  Image image;
+  std::mutex busy;  // held while a frame writes the host's memory
+};
+
+}  // namespace voyager

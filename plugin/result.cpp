@@ -1,0 +1,71 @@
+#include "plugin/result.h"
+
+#include <cstdio>
+#include <new>
+
+#include "runtime/base/error.h"
+
+namespace voyager {
+namespace {
+
+// Plain memory: a thread_local with a destructor would keep the library mapped
+// after dlclose for as long as the thread lives.
+thread_local char message[2048];
+
+VoyResult result_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::invalid_argument:
+      return VOY_ERROR_INVALID_ARGUMENT;
+    case ErrorCode::unsupported:
+      return VOY_ERROR_UNSUPPORTED;
+    case ErrorCode::file_not_found:
+      return VOY_ERROR_FILE_NOT_FOUND;
+    case ErrorCode::io:
+      return VOY_ERROR_IO;
+    case ErrorCode::refused_input:
+      return VOY_ERROR_REFUSED_INPUT;
+    case ErrorCode::damaged_chunk:
+      return VOY_ERROR_DAMAGED_CHUNK;
+    case ErrorCode::over_budget:
+      return VOY_ERROR_OVER_BUDGET;
+    case ErrorCode::no_device:
+      return VOY_ERROR_NO_DEVICE;
+    case ErrorCode::internal:
+      break;
+  }
+  return VOY_ERROR_INTERNAL;
+}
+
+VoyResult record(const char* function, VoyResult result, const char* what) {
+  std::snprintf(message, sizeof message, "%s: %s", function, what);
+  return result;
+}
+
+}  // namespace
+
+VoyResult translate_exception(const char* function) noexcept {
+  try {
+    throw;
+  } catch (const ApiError& error) {
+    return record(function, error.result(), error.what());
+  } catch (const Error& error) {
+    return record(function, result_of(error.code()), error.what());
+  } catch (const std::bad_alloc&) {
+    return record(function, VOY_ERROR_OUT_OF_HOST_MEMORY,
+                  "the allocator has no more memory; the call was undone");
+  } catch (const std::exception& error) {
+    return record(function, VOY_ERROR_INTERNAL, error.what());
+  } catch (...) {
+    return record(function, VOY_ERROR_INTERNAL, "an exception of an unknown type");
+  }
+}
+
+const char* last_message() noexcept {
+  return message;
+}
+
+void refuse(const std::string& what) {
+  throw ApiError(VOY_ERROR_INVALID_ARGUMENT, what);
+}
+
+}  // namespace voyager

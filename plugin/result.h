@@ -1,0 +1,31 @@
+#pragma once
+// How failures leave the library: a VoyResult and this thread's message.
+#include <stdexcept>
+#include <string>
+
+#include "voyager/voyager.h"
+
+namespace voyager {
+
+// A failure that only the ABI knows (handles, structures, versions); what the
+// runtime refuses is a voyager::Error.
+class ApiError : public std::runtime_error {
+ public:
+  ApiError(VoyResult result, const std::string& message)
+      : std::runtime_error(message), result_(result) {}
+  VoyResult result() const { return result_; }
+
+ private:
+  VoyResult result_;
+};
+
+// Call inside a catch block: the result for the exception in flight, whose
+// text, after "function: ", becomes this thread's last message.
+VoyResult translate_exception(const char* function) noexcept;
+
+// Never NULL; valid until this thread's next failure.
+const char* last_message() noexcept;
+
+[[noreturn]] void refuse(const std::string& message);  // VOY_ERROR_INVALID_ARGUMENT
+
+}  // namespace voyager

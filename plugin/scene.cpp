@@ -1,0 +1,151 @@
+#include <algorithm>
+
+#include "plugin/byte_source.h"
+#include "plugin/call.h"
+#include "plugin/structs.h"
+
+using namespace voyager;
+
+namespace {
+
+std::shared_ptr<const ByteSource> open_source(const VoySceneDesc& desc) {
+  if ((desc.path == nullptr) == (desc.source == nullptr))
+    refuse(std::string("desc: found ") + (desc.path ? "both" : "neither") +
+           " of path and source, expected exactly one");
+  if (desc.path != nullptr) return open_file_source(desc.path);
+  check_structure(desc.source, VOY_STRUCTURE_TYPE_BYTE_SOURCE, "VoyByteSource");
+  if (desc.source->read == nullptr) refuse("desc.source.read: found NULL, expected a function");
+  return std::make_shared<HostSource>(*desc.source);
+}
+
+VoySceneStorage storage_of(Storage storage) {
+  switch (storage) {
+    case Storage::lossless:
+      return VOY_SCENE_STORAGE_LOSSLESS;
+    case Storage::compact:
+      return VOY_SCENE_STORAGE_COMPACT;
+    case Storage::flat:
+      break;
+  }
+  return VOY_SCENE_STORAGE_FLAT;
+}
+
+VoySceneNoteKind kind_of(SceneNote::Kind kind) {
+  switch (kind) {
+    case SceneNote::Kind::repaired:
+      return VOY_SCENE_NOTE_REPAIRED;
+    case SceneNote::Kind::dropped:
+      return VOY_SCENE_NOTE_DROPPED;
+    case SceneNote::Kind::damaged:
+      return VOY_SCENE_NOTE_DAMAGED;
+    case SceneNote::Kind::omitted:
+      break;
+  }
+  return VOY_SCENE_NOTE_OMITTED;
+}
+
+VoySceneNote note_of(const SceneNote& note) {
+  VoySceneNote out = {VOY_STRUCTURE_TYPE_SCENE_NOTE,
+                      nullptr,
+                      kind_of(note.kind),
+                      0,
+                      note.count,
+                      note.bytes,
+                      {},
+                      {}};
+  note.what.copy(out.what, sizeof out.what - 1);
+  note.why.copy(out.why, sizeof out.why - 1);
+  return out;
+}
+
+uint32_t damaged_chunks(const Scene& scene) {
+  return static_cast<uint32_t>(scene.damaged.size());
+}
+
+void log_opening(const Log& log, const Scene& scene) {
+  log.write(VOY_LOG_INFO,
+            ("voyOpenScene: " + scene.name + ": " + std::to_string(scene.gaussians.size()) +
+             " Gaussians, " + std::to_string(scene.tree.size()) + " of them nodes of a tree")
+                .c_str());
+  for (const SceneNote& note : scene.notes)
+    if (note.kind != SceneNote::Kind::omitted)
+      log.write(VOY_LOG_WARNING,
+                ("voyOpenScene: " + scene.name + ": " + note.what + ": " + note.why).c_str());
+}
+
+VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
+  VoySceneInfo info = VOY_SCENE_INFO_INIT;
+  info.gaussianCount = scene.leaf_count;
+  info.nodeCount = scene.tree.size();
+  info.treeDepth = scene.tree_depth;
+  info.chunkCount = scene.chunk_count;
+  info.damagedChunkCount = damaged_chunks(scene);
+  info.shDegree = static_cast<uint32_t>(scene.sh_degree);
+  info.storage = storage_of(scene.storage);
+  info.antialiased = scene.antialiased ? 1 : 0;
+  for (int i = 0; i < 3; ++i) {
+    info.origin[i] = scene.origin[i];
+    info.boundsMin[i] = scene.origin[i] + static_cast<double>(scene.bounds_min[i]);
+    info.boundsMax[i] = scene.origin[i] + static_cast<double>(scene.bounds_max[i]);
+  }
+  info.residentBytes = resident_bytes;
+  info.droppedCount = scene.import.dropped();
+  info.repairedCount = scene.import.repaired();
+  info.positionError = scene.position_error;
+  return info;
+}
+
+}  // namespace
+
+VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* scene) {
+  return guarded("voyOpenScene", [&](Call& call) {
+    const auto owner = call.use<DeviceObject>(device);
+    check_structure(desc, VOY_STRUCTURE_TYPE_SCENE_DESC, "VoySceneDesc");
+    check_pointer(scene, "scene");
+    const auto object = std::make_shared<SceneObject>(owner);
+    object->scene = load_scene(open_source(*desc), &object->memory, owner->workers);
+    log_opening(owner->log, *object->scene);
+    *scene = static_cast<VoyScene>(HandleTable::instance().insert(object));
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyDestroyScene(VoyScene scene) {
+  return guarded("voyDestroyScene", [&](Call&) {
+    for (const auto& object : removed<SceneObject>(scene)) {
+      // No call holds the scene now, so no view of it can appear any more.
+      for (const auto& child : HandleTable::instance().children(*object->parent(), Kind::view)) {
+        auto& view = static_cast<ViewObject&>(*child);
+        const std::lock_guard frame(view.busy);
+        if (view.scene != object) continue;
+        view.view.reset();
+        view.scene.reset();
+      }
+    }
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info) {
+  return guarded("voyGetSceneInfo", [&](Call& call) {
+    const auto object = call.use<SceneObject>(scene);
+    check_structure(info, VOY_STRUCTURE_TYPE_SCENE_INFO, "VoySceneInfo");
+    *info = info_of(*object->scene, object->memory.used());
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNote* notes,
+                           uint32_t* count) {
+  return guarded("voyGetSceneNotes", [&](Call& call) {
+    const auto object = call.use<SceneObject>(scene);
+    check_pointer(count, "count");
+    if (capacity > 0) check_pointer(notes, "notes");
+    const std::vector<SceneNote>& found = object->scene->notes;
+    const size_t written = std::min<size_t>(capacity, found.size());
+    std::transform(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(written), notes,
+                   note_of);
+    *count = static_cast<uint32_t>(found.size());
+    return capacity > 0 && written < found.size() ? VOY_INCOMPLETE : VOY_SUCCESS;
+  });
+}

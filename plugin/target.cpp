@@ -1,0 +1,83 @@
+#include <string>
+
+#include "plugin/call.h"
+#include "plugin/structs.h"
+
+using namespace voyager;
+
+namespace {
+
+constexpr VoyColorFormat kLastFormat = VOY_COLOR_FORMAT_RGBA32F;
+
+struct Plane {
+  const char* name;
+  const void* memory;
+  uint64_t pitch;
+  uint64_t pixel_bytes;
+};
+
+// The pitch in bytes, 0 replaced; throws where the plane could not lie in memory.
+size_t checked_pitch(const Plane& plane, uint32_t width, uint32_t height) {
+  const std::string name = plane.name;
+  const uintptr_t address = reinterpret_cast<uintptr_t>(plane.memory);
+  if (address % 4 != 0) refuse(name + ": found an address that is not aligned to 4 bytes");
+  const uint64_t packed = width * plane.pixel_bytes;
+  const uint64_t pitch = plane.pitch == 0 ? packed : plane.pitch;
+  if (pitch < packed || pitch % 4 != 0)
+    refuse(name + "RowPitch: found " + std::to_string(pitch) + ", expected a multiple of 4 of " +
+           std::to_string(packed) + " at least, or 0");
+  if (pitch > (UINTPTR_MAX - address) / height)
+    refuse(name + "RowPitch: found " + std::to_string(pitch) + ", which times the height of " +
+           std::to_string(height) + " goes beyond the address space");
+  return pitch;
+}
+
+Image checked_image(const VoyTargetDesc& desc) {
+  check_enum(desc.kind, VOY_TARGET_KIND_HOST_MEMORY, "desc.kind");
+  check_enum(desc.colorFormat, kLastFormat, "desc.colorFormat");
+  check_count(desc.width, 1, kMaxImageSide, "desc.width");
+  check_count(desc.height, 1, kMaxImageSide, "desc.height");
+  const bool has_color = desc.colorFormat != VOY_COLOR_FORMAT_NONE;
+  if (has_color != (desc.color != nullptr))
+    refuse(has_color ? "desc.color: found NULL, expected memory for colorFormat"
+                     : "desc.color: found a pointer, expected NULL for VOY_COLOR_FORMAT_NONE");
+  if (!has_color && desc.depth == nullptr)
+    refuse("desc: found neither color nor depth, expected at least one");
+
+  Image image;
+  image.width = desc.width;
+  image.height = desc.height;
+  if (has_color) {
+    const bool rgba8 = desc.colorFormat == VOY_COLOR_FORMAT_RGBA8_UNORM;
+    image.format = rgba8 ? ColorFormat::rgba8 : ColorFormat::rgba32f;
+    image.color = desc.color;
+    image.color_pitch = checked_pitch(
+        {"desc.color", desc.color, desc.colorRowPitch, rgba8 ? 4u : 16u}, desc.width, desc.height);
+  }
+  if (desc.depth != nullptr) {
+    image.depth = desc.depth;
+    image.depth_pitch =
+        checked_pitch({"desc.depth", desc.depth, desc.depthRowPitch, 4u}, desc.width, desc.height);
+  }
+  return image;
+}
+
+}  // namespace
+
+VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget* target) {
+  return guarded("voyCreateTarget", [&](Call& call) {
+    const auto owner = call.use<DeviceObject>(device);
+    check_structure(desc, VOY_STRUCTURE_TYPE_TARGET_DESC, "VoyTargetDesc");
+    check_pointer(target, "target");
+    const auto object = std::make_shared<TargetObject>(owner, checked_image(*desc));
+    *target = static_cast<VoyTarget>(HandleTable::instance().insert(object));
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyDestroyTarget(VoyTarget target) {
+  return guarded("voyDestroyTarget", [&](Call&) {
+    removed<TargetObject>(target);
+    return VOY_SUCCESS;
+  });
+}

@@ -1,0 +1,102 @@
+#include <algorithm>
+
+#include "plugin/call.h"
+#include "plugin/claim.h"
+#include "plugin/structs.h"
+
+using namespace voyager;
+
+namespace {
+
+constexpr uint32_t kDefaultLutSize = 32, kMaxLutSize = 4096;
+
+// Counts come first: the arrays of a count that is refused are never read.
+void check_counts(const VoyViewDesc& desc) {
+  check_count(desc.instanceCount, 1, UINT32_MAX, "desc.instanceCount");
+  if (desc.instanceCount > 1)
+    throw ApiError(VOY_ERROR_UNSUPPORTED, "desc.instanceCount: found " +
+                                              std::to_string(desc.instanceCount) +
+                                              ", this version draws 1 instance in a view");
+  check_count(desc.eyeCount, 1, UINT32_MAX, "desc.eyeCount");
+  if (desc.eyeCount > 1)
+    throw ApiError(VOY_ERROR_UNSUPPORTED, "desc.eyeCount: found " + std::to_string(desc.eyeCount) +
+                                              ", this version draws 1 eye in a view");
+  check_pointer(desc.scenes, "desc.scenes");
+  check_count(desc.maxWidth, 1, kMaxImageSide, "desc.maxWidth");
+  check_count(desc.maxHeight, 1, kMaxImageSide, "desc.maxHeight");
+}
+
+PipelineDesc checked_choices(const VoyViewDesc& desc) {
+  check_tau(desc.tau);
+  check_enum(desc.lod, VOY_LOD_ALL_LEAVES, "desc.lod");
+  check_enum(desc.search, VOY_SEARCH_EXHAUSTIVE, "desc.search");
+  check_enum(desc.alphaFilter, VOY_ALPHA_FILTER_OFF, "desc.alphaFilter");
+  check_enum(desc.exponential, VOY_EXPONENTIAL_LUT, "desc.exponential");
+  check_count(desc.lutSize, 0, kMaxLutSize, "desc.lutSize");
+  check_count(desc.reserved, 0, 0, "desc.reserved");
+  PipelineDesc choices;
+  choices.lod = desc.lod == VOY_LOD_CUT ? Lod::cut : Lod::all_leaves;
+  choices.alpha_filter = desc.alphaFilter == VOY_ALPHA_FILTER_ON;
+  choices.lut_size = desc.lutSize == 0 ? kDefaultLutSize : desc.lutSize;
+  if (desc.exponential == VOY_EXPONENTIAL_EX2) choices.exponential = Exponential::ex2;
+  if (desc.exponential == VOY_EXPONENTIAL_LUT) choices.exponential = Exponential::lut;
+  return choices;
+}
+
+}  // namespace
+
+VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view) {
+  return guarded("voyCreateView", [&](Call& call) {
+    const auto owner = call.use<DeviceObject>(device);
+    check_structure(desc, VOY_STRUCTURE_TYPE_VIEW_DESC, "VoyViewDesc");
+    check_pointer(view, "view");
+    check_counts(*desc);
+    const PipelineDesc choices = checked_choices(*desc);
+    const auto scene = call.use<SceneObject>(desc->scenes[0]);
+    if (scene->parent() != owner)
+      refuse("desc.scenes[0]: found a scene of another device, expected one of this device");
+    const auto object = std::make_shared<ViewObject>(owner, scene);
+    object->max_width = desc->maxWidth;
+    object->max_height = desc->maxHeight;
+    object->tau = desc->tau;
+    object->view = std::make_unique<View>(scene->scene, *owner->backend, choices, owner->memory,
+                                          owner->workers);
+    *view = static_cast<VoyView>(HandleTable::instance().insert(object));
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyDestroyView(VoyView view) {
+  return guarded("voyDestroyView", [&](Call&) {
+    removed<ViewObject>(view);
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voySetViewTau(VoyView view, double tau) {
+  return guarded("voySetViewTau", [&](Call& call) {
+    const auto object = call.use<ViewObject>(view);
+    check_tau(tau);
+    const auto frame = claim(*object);
+    object->tau = tau;
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyGetViewCut(VoyView view, uint32_t capacity, uint32_t* nodes, uint32_t* count) {
+  return guarded("voyGetViewCut", [&](Call& call) {
+    const auto object = call.use<ViewObject>(view);
+    check_pointer(count, "count");
+    if (capacity > 0) check_pointer(nodes, "nodes");
+    const auto frame = claim(*object);
+    if (!object->view->draws_cut())
+      throw ApiError(VOY_ERROR_UNSUPPORTED,
+                     "view: found one that draws every leaf, expected one that draws a cut");
+    check_has_frame(*object);
+    const auto& cut = object->view->cut();
+    const size_t written = std::min<size_t>(capacity, cut.size());
+    std::copy_n(cut.begin(), written, nodes);
+    *count = static_cast<uint32_t>(cut.size());
+    return capacity > 0 && written < cut.size() ? VOY_INCOMPLETE : VOY_SUCCESS;
+  });
+}

@@ -1,0 +1,30 @@
+#pragma once
+// The one error type below the C ABI. The plugin's facade translates it to a
+// VoyResult; nothing else may cross that boundary.
+#include <stdexcept>
+#include <string>
+
+namespace voyager {
+
+enum class ErrorCode {
+  invalid_argument,  // the caller's mistake
+  unsupported,       // a mode or format that this build or backend lacks
+  file_not_found,
+  io,             // the machine: read, write, disk full
+  refused_input,  // a malformed file: message names file, place, found, expected
+  damaged_chunk,  // a chunk that this frame needs failed its checksum or decoding
+  over_budget,
+  no_device,
+  internal,
+};
+
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  ErrorCode code() const { return code_; }
+
+ private:
+  ErrorCode code_;
+};
+
+}  // namespace voyager

@@ -1,0 +1,171 @@
+#include "runtime/base/file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "runtime/base/error.h"
+
+namespace voyager {
+namespace {
+
+[[noreturn]] void fail(const std::string& name, const std::string& doing,
+                       ErrorCode code = ErrorCode::io) {
+  throw Error(code, name + ": " + doing + ": " + std::strerror(errno));
+}
+
+void check_range(const std::string& name, uint64_t size, uint64_t offset, size_t count) {
+  if (offset > size || count > size - offset)
+    throw Error(ErrorCode::refused_input, name + ": offset " + std::to_string(offset) + ": found " +
+                                              std::to_string(size - std::min(offset, size)) +
+                                              " bytes, expected " + std::to_string(count));
+}
+
+class FileSource final : public ByteSource {
+ public:
+  explicit FileSource(const std::string& path) : name_(path) {
+    fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd_ < 0) fail(path, "open", errno == ENOENT ? ErrorCode::file_not_found : ErrorCode::io);
+    struct stat info = {};
+    const bool regular = ::fstat(fd_, &info) == 0 && S_ISREG(info.st_mode);
+    if (!regular) {
+      ::close(fd_);
+      throw Error(ErrorCode::io,
+                  path + ": found something that is not a regular file, expected a file");
+    }
+    size_ = static_cast<uint64_t>(info.st_size);
+  }
+  ~FileSource() override { ::close(fd_); }
+  FileSource(const FileSource&) = delete;
+  FileSource& operator=(const FileSource&) = delete;
+
+  const std::string& name() const override { return name_; }
+  uint64_t size() const override { return size_; }
+  void read(uint64_t offset, std::span<std::byte> into) const override {
+    check_range(name_, size_, offset, into.size());
+    while (!into.empty()) {
+      const ssize_t got = ::pread(fd_, into.data(), into.size(), static_cast<off_t>(offset));
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail(name_, "read");
+      if (got == 0)
+        throw Error(ErrorCode::io,
+                    name_ + ": offset " + std::to_string(offset) +
+                        ": found the end of the file, which was truncated while open");
+      offset += static_cast<uint64_t>(got);
+      into = into.subspan(static_cast<size_t>(got));
+    }
+  }
+
+ private:
+  std::string name_;
+  int fd_ = -1;
+  uint64_t size_ = 0;
+};
+
+class SourceReader final : public ByteReader {
+ public:
+  explicit SourceReader(const ByteSource& source) : source_(source) {}
+  const std::string& name() const override { return source_.name(); }
+  size_t read(std::span<std::byte> into) override {
+    const size_t count =
+        static_cast<size_t>(std::min<uint64_t>(into.size(), source_.size() - offset_));
+    source_.read(offset_, into.first(count));
+    offset_ += count;
+    return count;
+  }
+  std::optional<uint64_t> remaining() const override { return source_.size() - offset_; }
+  uint64_t offset() const override { return offset_; }
+
+ private:
+  const ByteSource& source_;
+  uint64_t offset_ = 0;
+};
+
+class StdinReader final : public ByteReader {
+ public:
+  const std::string& name() const override { return name_; }
+  size_t read(std::span<std::byte> into) override {
+    size_t count = 0;
+    while (count < into.size()) {
+      const ssize_t got = ::read(STDIN_FILENO, into.data() + count, into.size() - count);
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail(name_, "read");
+      if (got == 0) break;
+      count += static_cast<size_t>(got);
+    }
+    offset_ += count;
+    return count;
+  }
+  std::optional<uint64_t> remaining() const override { return std::nullopt; }
+  uint64_t offset() const override { return offset_; }
+
+ private:
+  std::string name_ = "standard input";
+  uint64_t offset_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteSource> open_file_source(const std::string& path) {
+  return std::make_unique<FileSource>(path);
+}
+
+MemorySource::MemorySource(std::string name, std::span<const std::byte> bytes)
+    : name_(std::move(name)), bytes_(bytes) {}
+
+void MemorySource::read(uint64_t offset, std::span<std::byte> into) const {
+  check_range(name_, bytes_.size(), offset, into.size());
+  if (!into.empty()) std::memcpy(into.data(), bytes_.data() + offset, into.size());
+}
+
+std::unique_ptr<ByteReader> read_source(const ByteSource& source) {
+  return std::make_unique<SourceReader>(source);
+}
+
+std::unique_ptr<ByteReader> read_stdin() {
+  return std::make_unique<StdinReader>();
+}
+
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".XXXXXX") {
+  fd_ = ::mkostemp(temporary_.data(), O_CLOEXEC);
+  if (fd_ < 0) {
+    temporary_ = path_;
+    fail(path_, "create");
+  }
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  ::fchmod(fd_, 0666 & ~mask);
+}
+
+AtomicFile::~AtomicFile() {
+  if (fd_ < 0) return;
+  ::close(fd_);
+  ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  write_at(position_, bytes);
+  position_ += bytes.size();
+}
+
+void AtomicFile::write_at(uint64_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t put = ::pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (put < 0 && errno == EINTR) continue;
+    if (put < 0) fail(path_, "write");
+    offset += static_cast<uint64_t>(put);
+    bytes = bytes.subspan(static_cast<size_t>(put));
+  }
+}
+
+void AtomicFile::commit() {
+  if (::fsync(fd_) != 0 || ::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "finish");
+  ::close(fd_);
+  fd_ = -1;
+}
+
+}  // namespace voyager

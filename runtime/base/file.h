@@ -1,0 +1,77 @@
+#pragma once
+// Byte input and output. A ByteSource is random access (a file, memory, the
+// host's callback); a ByteReader is a forward-only stream (a pipe, or a window
+// on a source); an AtomicFile appears under its name only when complete.
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace voyager {
+
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  // What error messages call it: a path, or the host's name for it.
+  virtual const std::string& name() const = 0;
+  virtual uint64_t size() const = 0;
+  // Fills all of `into` from `offset`, or throws Error(io). Safe to call from
+  // several threads at once.
+  virtual void read(uint64_t offset, std::span<std::byte> into) const = 0;
+};
+
+// Throws Error(file_not_found) or Error(io).
+std::unique_ptr<ByteSource> open_file_source(const std::string& path);
+
+class MemorySource final : public ByteSource {
+ public:
+  // The bytes are not copied and must outlive the source.
+  MemorySource(std::string name, std::span<const std::byte> bytes);
+  const std::string& name() const override { return name_; }
+  uint64_t size() const override { return bytes_.size(); }
+  void read(uint64_t offset, std::span<std::byte> into) const override;
+
+ private:
+  std::string name_;
+  std::span<const std::byte> bytes_;
+};
+
+class ByteReader {
+ public:
+  virtual ~ByteReader() = default;
+  virtual const std::string& name() const = 0;
+  // Reads up to into.size() bytes; fewer only at the end. Throws Error(io).
+  virtual size_t read(std::span<std::byte> into) = 0;
+  // Bytes that are left, where that is known (not for a pipe).
+  virtual std::optional<uint64_t> remaining() const = 0;
+  // Bytes delivered so far: the offset that messages name.
+  virtual uint64_t offset() const = 0;
+};
+
+// The source must outlive the reader.
+std::unique_ptr<ByteReader> read_source(const ByteSource& source);
+std::unique_ptr<ByteReader> read_stdin();
+
+// Writes to a temporary name beside `path`; commit() flushes and renames.
+// Destroyed without commit, it removes the temporary and leaves `path` alone.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::string path);  // throws Error(io)
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::span<const std::byte> bytes);                      // append
+  void write_at(uint64_t offset, std::span<const std::byte> bytes);  // overwrite, position kept
+  uint64_t position() const { return position_; }
+  void commit();
+
+ private:
+  std::string path_, temporary_;
+  int fd_ = -1;
+  uint64_t position_ = 0;
+};
+
+}  // namespace voyager

@@ -1,0 +1,159 @@
+#include "runtime/cpu/cpu_backend.h"
+
+#include <numeric>
+
+#include "runtime/cpu/bin.h"
+#include "runtime/cpu/rasterize.h"
+#include "runtime/frame/depth_order.h"
+#include "runtime/frame/draw_list.h"
+#include "runtime/frame/resolve.h"
+#include "runtime/math/alpha_lut.h"
+
+namespace voyager {
+namespace {
+
+using namespace cpu;
+
+constexpr size_t kProjectBlock = 4096;
+
+class CpuPipeline final : public Pipeline {
+ public:
+  CpuPipeline(std::shared_ptr<const Scene> scene, const PipelineDesc& desc,
+              std::pmr::memory_resource* memory, Workers& workers)
+      : scene_(std::move(scene)),
+        desc_(desc),
+        workers_(workers),
+        draws_(scene_, desc.lod, memory),
+        lut_(memory),
+        splats_(memory),
+        visible_(memory),
+        keys_(memory),
+        order_(memory),
+        bins_(memory),
+        pixels_(memory),
+        depth_(memory) {
+    if (desc.exponential != Exponential::lut) return;
+    lut_.resize(desc.lut_size + 1);
+    fill_alpha_lut(desc.lut_size, lut_.data());
+  }
+
+  void search(const FrameInput& frame) override { draws_.update(frame, workers_); }
+  void project(const FrameInput& frame) override;
+  void sort(const FrameInput& frame) override;
+  void bin(const FrameInput& frame) override;
+  void rasterize(const FrameInput& frame) override;
+  void resolve(const FrameInput& frame, const Image& image) override {
+    resolve_image(
+        frame, image, workers_, [&](size_t i) -> const Pixel& { return pixels_[i]; },
+        [&](size_t i) { return depth_[i]; });
+  }
+
+  void collect(FrameStats& stats) const override {
+    draws_.collect(stats);
+    stats.splats = order_.size();
+    stats.pairs_before = bins_.pairs_before();
+    stats.pairs_after = bins_.pairs_after();
+  }
+  const std::pmr::vector<uint32_t>& cut() const override { return draws_.cut(); }
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  PipelineDesc desc_;
+  Workers& workers_;
+  DrawList draws_;
+  std::pmr::vector<float> lut_;
+  std::pmr::vector<Splat> splats_;      // of item i's block, from the block's first place on
+  std::pmr::vector<uint32_t> visible_;  // splats of each block
+  std::pmr::vector<uint64_t> keys_;
+  std::pmr::vector<uint32_t> order_;  // splats by depth
+  TileBins bins_;
+  std::pmr::vector<Pixel> pixels_;
+  std::pmr::vector<float> depth_;
+};
+
+ProjectParams project_params(const Scene& scene, const Camera& camera, Exponential exponential) {
+  ProjectParams params;
+  params.arrays = gaussian_arrays(scene);
+  params.origin = scene.origin;
+  params.eye = camera.eye;
+  params.view = view_projection<float>(camera.world_to_view, camera.fx, camera.fy, camera.cx,
+                                       camera.cy, camera.width, camera.height);
+  params.near_z = static_cast<float>(camera.near_z);
+  params.width = static_cast<float>(camera.width);
+  params.height = static_cast<float>(camera.height);
+  params.log_scale = exponential == Exponential::ex2 ? 1.44269504088896341f : 1.0f;
+  params.half = 0.5f * params.log_scale;
+  return params;
+}
+
+void CpuPipeline::project(const FrameInput& frame) {
+  const auto& items = draws_.items();
+  const ProjectParams params = project_params(*scene_, frame.camera, desc_.exponential);
+  if (splats_.size() < items.size()) splats_.resize(items.size());
+  visible_.assign((items.size() + kProjectBlock - 1) / kProjectBlock, 0);
+  workers_.for_blocks(items.size(), kProjectBlock, [&](size_t begin, size_t end) {
+    size_t out = begin;
+    for (size_t i = begin; i < end; ++i) out += voyager::project(params, items[i], splats_[out]);
+    visible_[begin / kProjectBlock] = static_cast<uint32_t>(out - begin);
+  });
+}
+
+void CpuPipeline::sort(const FrameInput&) {
+  keys_.clear();
+  for (size_t block = 0; block < visible_.size(); ++block)
+    for (size_t i = 0; i < visible_[block]; ++i) {
+      const auto index = static_cast<uint32_t>(block * kProjectBlock + i);
+      keys_.push_back(depth_key(splats_[index].depth, index));
+    }
+  sort_by_depth(keys_, workers_);
+  order_.resize(keys_.size());
+  for (size_t i = 0; i < keys_.size(); ++i) order_[i] = depth_key_index(keys_[i]);
+}
+
+void CpuPipeline::bin(const FrameInput& frame) {
+  bins_.build(splats_.data(), order_, tile_grid(frame.camera.width, frame.camera.height),
+              desc_.alpha_filter, workers_);
+}
+
+void CpuPipeline::rasterize(const FrameInput& frame) {
+  const size_t count = size_t{frame.camera.width} * frame.camera.height;
+  if (pixels_.size() < count) pixels_.resize(count);
+  if (frame.depth_wanted && depth_.size() < count) depth_.resize(count);
+  const RasterParams params{splats_.data(),
+                            lut_.data(),
+                            static_cast<float>(desc_.lut_size) / kLutRange,
+                            frame.camera.width,
+                            frame.camera.height,
+                            pixels_.data(),
+                            frame.depth_wanted ? depth_.data() : nullptr};
+  const RasterizeTile run =
+      pick_rasterizer(desc_.exponential, desc_.alpha_filter, frame.depth_wanted);
+  const TileGrid grid = tile_grid(frame.camera.width, frame.camera.height);
+  const auto columns = static_cast<uint32_t>(grid.columns);
+  workers_.for_blocks(size_t{columns} * static_cast<size_t>(grid.rows), 1,
+                      [&](size_t index, size_t) {
+                        const auto tile = static_cast<uint32_t>(index);
+                        run(params, {tile % columns, tile / columns, bins_.tile(index)});
+                      });
+}
+
+class CpuBackend final : public Backend {
+ public:
+  std::string device_name() const override {
+    return std::string("CPU (") + rasterizers().back().name + ")";
+  }
+  std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
+                                            const PipelineDesc& desc,
+                                            std::pmr::memory_resource* memory,
+                                            Workers& workers) override {
+    return std::make_unique<CpuPipeline>(std::move(scene), desc, memory, workers);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> create_cpu_backend() {
+  return std::make_unique<CpuBackend>();
+}
+
+}  // namespace voyager

@@ -1,0 +1,2 @@
+#define VOYAGER_ISA avx2
+#include "runtime/cpu/rasterize_kernel.h"

@@ -1,0 +1,2 @@
+#define VOYAGER_ISA avx512
+#include "runtime/cpu/rasterize_kernel.h"

@@ -1,0 +1,2 @@
+#define VOYAGER_ISA generic
+#include "runtime/cpu/rasterize_kernel.h"

@@ -1,0 +1,149 @@
+// METHOD §6–8 for one tile. Included by rasterize_*.cpp only, each of which is
+// compiled for one instruction set and names its own VOYAGER_ISA namespace.
+// Loops over a row's pixels are plain arrays of kTile, which the compiler turns
+// into SIMD; every operation is explicit, so each width rounds alike.
+#include <algorithm>
+#include <limits>
+
+#include "runtime/cpu/rasterize.h"
+#include "runtime/math/alpha_lut.h"
+
+namespace voyager::cpu::VOYAGER_ISA {
+namespace {
+
+constexpr float kAlive = -std::numeric_limits<float>::infinity();
+constexpr float kEnded = 1.0f;  // above any ρ
+
+struct alignas(64) Row {
+  float r[kTile], g[kTile], b[kTile], transmittance[kTile], depth[kTile];
+  float floor[kTile];  // a pixel takes splats while ρ ≥ floor
+};
+
+template <Exponential E>
+inline float splat_alpha(const RasterParams& params, const Splat& s, float rho) {
+  if constexpr (E == Exponential::lut) {
+    const float alpha = params.lut[alpha_lut_index(rho + s.log_opacity, params.lut_scale)];
+    return alpha < kAlphaMax ? alpha : kAlphaMax;
+  } else {
+    const float e = E == Exponential::ex2 ? exp2_negative(rho) : exp_negative(rho);
+    const float alpha = s.opacity * e;
+    return alpha < kAlphaMax ? alpha : kAlphaMax;
+  }
+}
+
+// Blends one splat into one row. Returns true if a pixel ended.
+template <Exponential E, bool kFilter, bool kDepth, bool kSiblings>
+inline bool blend_row(const RasterParams& params, const Splat& s, const float* dx, float dy,
+                      Row& row) {
+  float rho[kTile];
+  int32_t hit[kTile];
+  int32_t hits = 0;
+  for (int i = 0; i < kTile; ++i) {
+    const float p = dx[i] * s.conic.p_x;
+    const float q = std::fma(-s.conic.skew, dx[i], dy) * s.conic.q_y;
+    rho[i] = -std::fma(q, q, p * p);
+    hit[i] = (rho[i] >= s.rho_min) & (rho[i] >= row.floor[i]);
+    hits |= hit[i];
+  }
+  if (kFilter && hits == 0) return false;
+
+  int32_t ended = 0;
+  for (int i = 0; i < kTile; ++i) {
+    float alpha = splat_alpha<E>(params, s, rho[i]);
+    if constexpr (kSiblings) alpha = sibling_alpha(alpha, s.t, s.inverse_k);
+    const float before = row.transmittance[i];
+    const float after = std::fma(-alpha, before, before);
+    const int32_t ends = hit[i] & (after < kTransmittanceEnd);
+    const int32_t blends = hit[i] & (ends ^ 1);
+    const float weight = blends ? alpha * before : 0.0f;
+    row.r[i] = std::fma(weight, s.colour.x, row.r[i]);
+    row.g[i] = std::fma(weight, s.colour.y, row.g[i]);
+    row.b[i] = std::fma(weight, s.colour.z, row.b[i]);
+    row.transmittance[i] = blends ? after : before;
+    row.floor[i] = ends ? kEnded : row.floor[i];
+    if constexpr (kDepth)
+      row.depth[i] = (blends & (before > 0.5f) & (after <= 0.5f)) ? s.depth : row.depth[i];
+    ended |= ends;
+  }
+  return ended != 0;
+}
+
+inline bool all_ended(const Row& row, int columns) {
+  for (int i = 0; i < columns; ++i)
+    if (row.floor[i] != kEnded) return false;
+  return true;
+}
+
+// The rows of the tile that the support's box reaches.
+inline TileRange splat_rows(const Splat& s, float y0, int rows) {
+  const float first = std::floor(s.y - s.half_height - y0 - 1.0f),
+              last = std::ceil(s.y + s.half_height - y0 + 1.0f);
+  return {first > 0.0f ? static_cast<int32_t>(first) : 0,
+          last < static_cast<float>(rows) ? static_cast<int32_t>(last) : rows};
+}
+
+template <Exponential E, bool kFilter, bool kDepth>
+void rasterize_tile(const RasterParams& params, const Tile& tile) {
+  const uint32_t x0 = tile.column * kTile, y0 = tile.row * kTile;
+  const int columns = static_cast<int>(std::min<uint32_t>(kTile, params.width - x0));
+  const int rows = static_cast<int>(std::min<uint32_t>(kTile, params.height - y0));
+  Row image[kTile];
+  for (Row& row : image)
+    for (int i = 0; i < kTile; ++i) {
+      row.r[i] = row.g[i] = row.b[i] = 0.0f;
+      row.transmittance[i] = 1.0f;
+      row.depth[i] = std::numeric_limits<float>::infinity();
+      row.floor[i] = i < columns ? kAlive : kEnded;
+    }
+
+  uint32_t open_rows = (1u << rows) - 1u;
+  for (const uint32_t index : tile.splats) {
+    const Splat& s = params.splats[index];
+    float dx[kTile];
+    for (int i = 0; i < kTile; ++i)
+      dx[i] = (static_cast<float>(x0) + static_cast<float>(i) + 0.5f) - s.x;
+    const TileRange reach =
+        kFilter ? splat_rows(s, static_cast<float>(y0), rows) : TileRange{0, rows};
+    for (int y = reach.begin; y < reach.end; ++y) {
+      if (!(open_rows >> y & 1u)) continue;
+      const float dy = (static_cast<float>(y0) + static_cast<float>(y) + 0.5f) - s.y;
+      const bool ended = s.t == 1.0f
+                             ? blend_row<E, kFilter, kDepth, false>(params, s, dx, dy, image[y])
+                             : blend_row<E, kFilter, kDepth, true>(params, s, dx, dy, image[y]);
+      if (ended && all_ended(image[y], columns)) open_rows &= ~(1u << y);
+    }
+    if (open_rows == 0) break;
+  }
+
+  for (int y = 0; y < rows; ++y) {
+    const size_t first = (y0 + static_cast<size_t>(y)) * params.width + x0;
+    for (int i = 0; i < columns; ++i)
+      params.pixels[first + static_cast<size_t>(i)] = {image[y].r[i], image[y].g[i], image[y].b[i],
+                                                       image[y].transmittance[i]};
+    if constexpr (kDepth)
+      for (int i = 0; i < columns; ++i)
+        params.depth[first + static_cast<size_t>(i)] = image[y].depth[i];
+  }
+}
+
+template <Exponential E>
+RasterizeTile pick_for(bool filter, bool depth) {
+  if (filter) return depth ? rasterize_tile<E, true, true> : rasterize_tile<E, true, false>;
+  return depth ? rasterize_tile<E, false, true> : rasterize_tile<E, false, false>;
+}
+
+}  // namespace
+
+RasterizeTile pick(Exponential exponential, bool filter, bool depth) {
+  switch (exponential) {
+    case Exponential::ex2:
+      return pick_for<Exponential::ex2>(filter, depth);
+    case Exponential::lut:
+      return pick_for<Exponential::lut>(filter, depth);
+    case Exponential::exact:
+      break;
+  }
+  return pick_for<Exponential::exact>(filter, depth);
+}
+
+}  // namespace voyager::cpu::VOYAGER_ISA

@@ -1,0 +1,78 @@
+#include "runtime/format/export_ply.h"
+
+#include <algorithm>
+
+#include "runtime/base/error.h"
+#include "runtime/scene/export/writer.h"
+
+namespace voyager {
+namespace {
+
+GaussianCloud room_for_leaves(const SceneFileInfo& info) {
+  GaussianCloud cloud;
+  const size_t n = info.leaf_count;
+  cloud.sh_degree = info.sh_degree;
+  cloud.antialiased = info.antialiased;
+  cloud.origin = info.quality == Quality::lossless ? info.source_origin : info.origin;
+  cloud.report = info.import;
+  cloud.position.resize(3 * n);
+  cloud.log_scale.resize(3 * n);
+  cloud.rotation.resize(4 * n);
+  cloud.opacity.resize(n);
+  cloud.sh.resize(n * static_cast<size_t>(cloud.coefficients()) * 3);
+  return cloud;
+}
+
+void put_leaf(const Chunk& chunk, size_t node, GaussianCloud& cloud) {
+  const size_t i = chunk.source_index[node], floats = static_cast<size_t>(cloud.coefficients()) * 3;
+  const GaussianWords& w = chunk.words[node];
+  const float* position =
+      chunk.position_words.empty() ? &w.mean.x : &chunk.position_words[3 * node];
+  std::copy_n(position, 3, &cloud.position[3 * i]);
+  std::copy_n(&w.log_scale.x, 3, &cloud.log_scale[3 * i]);
+  std::copy_n(&w.rotation.w, 4, &cloud.rotation[4 * i]);
+  cloud.opacity[i] = w.opacity;
+  std::copy_n(&chunk.sh[node * floats], floats, &cloud.sh[i * floats]);
+}
+
+}  // namespace
+
+GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
+  GaussianCloud cloud = room_for_leaves(scene.info());
+  std::vector<bool> there(cloud.size());
+  size_t leaves = 0;
+  for (uint32_t index = 0; index < scene.chunks().size(); ++index) {
+    report(progress, "reading", index, scene.chunks().size());
+    const Chunk chunk = scene.read_chunk(index);
+    for (size_t node = 0; node < chunk.records.size(); ++node) {
+      if (chunk.records[node].child_count != 0) continue;
+      const uint32_t i = chunk.source_index[node];
+      if (there[i])
+        throw Error(ErrorCode::refused_input, scene.name() + ": chunk " + std::to_string(index) +
+                                                  ": found source index " + std::to_string(i) +
+                                                  " a second time, expected each once");
+      there[i] = true;
+      ++leaves;
+      put_leaf(chunk, node, cloud);
+    }
+  }
+  if (leaves != cloud.size())
+    throw Error(ErrorCode::refused_input, scene.name() + ": found " + std::to_string(leaves) +
+                                              " leaves, expected " + std::to_string(cloud.size()));
+  return cloud;
+}
+
+void export_ply(const SceneFile& scene, const std::string& path, const Progress& progress) {
+  const GaussianCloud cloud = read_leaves(scene, progress);
+  const bool moved = cloud.origin != std::array<double, 3>{0, 0, 0};
+  AtomicFile file(path);
+  const std::unique_ptr<ByteSink> sink = sink_to(file);
+  const std::unique_ptr<GaussianWriter> writer =
+      write_ply(*sink, cloud.size(), cloud.sh_degree, moved);
+  writer->append(cloud);
+  writer->finish();
+  file.commit();
+  report(progress, "exporting", cloud.size(), cloud.size());
+}
+
+}  // namespace voyager

@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+
+#include "runtime/base/progress.h"
+#include "runtime/format/reader.h"
+
+namespace voyager {
+
+// The leaves in the input's order, with the input's own words where the file
+// is lossless (compact: restored words, scene-local). Its origin is the one of
+// those positions. Holds the whole cloud. Throws Error(damaged_chunk), and
+// Error(refused_input) where a leaf is missing or there twice.
+GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress = {});
+
+// read_leaves() as an INRIA .ply; positions are doubles in world coordinates
+// where their origin is not zero. Throws also Error(io).
+void export_ply(const SceneFile& scene, const std::string& path, const Progress& progress = {});
+
+}  // namespace voyager

@@ -1,0 +1,101 @@
+#pragma once
+// Compact storage, one value at a time. Each pair states the largest error of
+// a round trip; docs/voy-format.md repeats them and tests/unit/quantise_test.cpp
+// holds the code to them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "runtime/format/half.h"
+#include "runtime/math/gaussian.h"
+#include "runtime/scene/sanitise.h"
+
+namespace voyager {
+
+// Position along one axis of a chunk's own frame: 24 bits over [min, max].
+inline constexpr double kPositionSteps = 16777215.0;
+
+// Error: step / 2, and the rounding of the result to binary32.
+inline uint32_t quantise_position(float x, double min, double step) {
+  if (step == 0) return 0;
+  return static_cast<uint32_t>(std::clamp(std::nearbyint((x - min) / step), 0.0, kPositionSteps));
+}
+inline float restore_position(uint32_t q, double min, double step) {
+  return static_cast<float>(min + q * step);
+}
+
+// Log scale: steps of 1/512 from -21. Error 1/1024 (a factor of 1.001 in scale)
+// within [-21, 106.99]; sanitised leaves lie inside, merged ones are clamped.
+inline uint16_t quantise_log_scale(float log_scale) {
+  return static_cast<uint16_t>(
+      std::clamp(std::nearbyint((log_scale + 21.0) * 512.0), 0.0, 65535.0));
+}
+inline float restore_log_scale(uint16_t q) {
+  return static_cast<float>(q / 512.0 - 21.0);
+}
+
+// Rotation: the three smaller components of the unit quaternion whose largest
+// is positive, 15 bits each in order (w, x, y, z) without the largest; the top
+// bits of the first two words name it. Error: an angle of 1.6e-4 rad.
+inline constexpr double kRotationSteps = 16383.0;
+inline constexpr double kRotationRange = 0.70710678118654752;  // a smaller component's bound
+
+inline std::array<uint16_t, 3> quantise_rotation(const Quatf& rotation) {
+  const Quatd q = normalise(Quatd{rotation.w, rotation.x, rotation.y, rotation.z});
+  const double component[4] = {q.w, q.x, q.y, q.z};
+  int largest = 0;
+  for (int i = 1; i < 4; ++i)
+    if (std::fabs(component[i]) > std::fabs(component[largest])) largest = i;
+  const double sign = component[largest] < 0 ? -1.0 : 1.0;
+  std::array<uint16_t, 3> out{};
+  for (int i = 0, k = 0; i < 4; ++i) {
+    if (i == largest) continue;
+    const double step = std::nearbyint(sign * component[i] / kRotationRange * kRotationSteps);
+    out[static_cast<size_t>(k++)] =
+        static_cast<uint16_t>(std::clamp(step, -kRotationSteps, kRotationSteps) + kRotationSteps);
+  }
+  out[0] = static_cast<uint16_t>(out[0] | (largest & 1) << 15);
+  out[1] = static_cast<uint16_t>(out[1] | (largest >> 1) << 15);
+  return out;
+}
+
+inline Quatf restore_rotation(const std::array<uint16_t, 3>& words) {
+  const int largest = (words[0] >> 15) | (words[1] >> 15) << 1;
+  double component[4], squares = 0;
+  for (int i = 0, k = 0; i < 4; ++i) {
+    if (i == largest) continue;
+    component[i] = ((words[static_cast<size_t>(k++)] & 0x7fff) - kRotationSteps) / kRotationSteps *
+                   kRotationRange;
+    squares += component[i] * component[i];
+  }
+  component[largest] = std::sqrt(std::max(0.0, 1.0 - squares));
+  return {static_cast<float>(component[0]), static_cast<float>(component[1]),
+          static_cast<float>(component[2]), static_cast<float>(component[3])};
+}
+
+// A leaf's opacity: 65535 steps of its sigmoid. Error: half a step (7.7e-6) of
+// opacity. The ends are ±kMaxLogit.
+inline uint16_t quantise_leaf_opacity(float logit_word) {
+  const double opacity = 1.0 / (1.0 + std::exp(-static_cast<double>(logit_word)));
+  return static_cast<uint16_t>(std::nearbyint(opacity * 65535.0));
+}
+inline float restore_leaf_opacity(uint16_t q) {
+  if (q == 0) return -kMaxLogit;
+  if (q == 65535) return kMaxLogit;
+  return static_cast<float>(std::log(q / (65535.0 - q)));
+}
+
+// SH bands 1 to 3: signed steps of the chunk's largest coefficient of the band.
+// Error: scale / (2 * steps).
+inline constexpr std::array<int, 3> kShSteps = {127, 31, 31};
+
+inline int8_t quantise_sh(float coefficient, float scale, int steps) {
+  if (scale == 0) return 0;
+  return static_cast<int8_t>(std::nearbyint(static_cast<double>(coefficient) / scale * steps));
+}
+inline float restore_sh(int8_t q, float scale, int steps) {
+  return static_cast<float>(static_cast<double>(q) / steps * scale);
+}
+
+}  // namespace voyager

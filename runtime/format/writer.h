@@ -1,0 +1,15 @@
+#pragma once
+#include <string>
+
+#include "runtime/base/progress.h"
+#include "runtime/base/workers.h"
+#include "runtime/format/layout.h"
+#include "runtime/lod/baked_scene.h"
+
+namespace voyager {
+
+// Writes under a temporary name, then renames. Throws Error(io).
+void write_scene_file(const BakedScene& baked, const std::string& path, Quality quality,
+                      Workers& workers, const Progress& progress = {});
+
+}  // namespace voyager

@@ -1,0 +1,28 @@
+#include "runtime/frame/load.h"
+
+namespace voyager {
+
+void add_notes(Scene& scene) {
+  using Kind = SceneNote::Kind;
+  const auto note = [&](Kind kind, uint64_t count, const char* what, const char* why) {
+    if (count != 0) scene.notes.push_back({kind, count, 0, what, why});
+  };
+  const ImportReport& r = scene.import;
+  note(Kind::dropped, r.dropped_position, "Gaussians", "position not finite, or 1e18 m and beyond");
+  note(Kind::dropped, r.dropped_scale, "Gaussians", "scale not a number or infinite");
+  note(Kind::dropped, r.dropped_opacity, "Gaussians", "opacity not a number");
+  note(Kind::repaired, r.repaired_scale, "scales", "outside 1e-9 m to 1e6 m: clamped");
+  note(Kind::repaired, r.repaired_rotation, "rotations",
+       "zero or not finite: replaced by the identity");
+  note(Kind::repaired, r.repaired_opacity, "opacities", "infinite logit: clamped");
+  note(Kind::repaired, r.repaired_sh, "SH coefficients", "not finite: set to 0");
+  if (scene.sh_degree < kMaxShDegree) {
+    const auto missing =
+        static_cast<uint64_t>(sh_coefficients(kMaxShDegree) - scene.coefficients());
+    scene.notes.push_back({Kind::omitted, 1, scene.gaussians.size() * missing * 3 * sizeof(float),
+                           "SH bands above degree " + std::to_string(scene.sh_degree),
+                           "the input has none; bytes are against degree 3"});
+  }
+}
+
+}  // namespace voyager

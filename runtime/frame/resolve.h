@@ -1,0 +1,49 @@
+#pragma once
+// The last stage: what was blended, over the background, in the host's format.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "runtime/base/workers.h"
+#include "runtime/frame/backend.h"
+
+namespace voyager {
+
+inline uint8_t to_code(float value) {
+  const float clamped = value > 0.0f ? (value < 1.0f ? value : 1.0f) : 0.0f;
+  return static_cast<uint8_t>(clamped * 255.0f + 0.5f);
+}
+
+// pixel(i) gives the i-th pixel's premultiplied r, g, b and its transmittance
+// as members; depth(i) its depth. Any type that converts to float.
+template <class PixelAt, class DepthAt>
+void resolve_image(const FrameInput& frame, const Image& image, Workers& workers,
+                   const PixelAt& pixel, const DepthAt& depth) {
+  const auto row = [&](size_t y) {
+    for (size_t x = 0; x < image.width; ++x) {
+      const size_t i = y * image.width + x;
+      const auto& p = pixel(i);
+      const float rgba[4] = {static_cast<float>(p.r + p.transmittance * frame.background.x),
+                             static_cast<float>(p.g + p.transmittance * frame.background.y),
+                             static_cast<float>(p.b + p.transmittance * frame.background.z),
+                             static_cast<float>(1 - p.transmittance)};
+      if (image.format == ColorFormat::rgba8) {
+        uint8_t* out = static_cast<uint8_t*>(image.color) + y * image.color_pitch + 4 * x;
+        for (int channel = 0; channel < 4; ++channel) out[channel] = to_code(rgba[channel]);
+      } else if (image.format == ColorFormat::rgba32f) {
+        auto* out =
+            reinterpret_cast<float*>(static_cast<uint8_t*>(image.color) + y * image.color_pitch) +
+            4 * x;
+        std::copy_n(rgba, 4, out);
+      }
+      if (image.depth != nullptr)
+        reinterpret_cast<float*>(reinterpret_cast<uint8_t*>(image.depth) +
+                                 y * image.depth_pitch)[x] = static_cast<float>(depth(i));
+    }
+  };
+  workers.for_blocks(image.height, 16, [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end; ++y) row(y);
+  });
+}
+
+}  // namespace voyager

@@ -1,0 +1,69 @@
+#pragma once
+// A scene as backends draw it: activated Gaussians, and the tree if it has one.
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <memory_resource>
+#include <string>
+#include <vector>
+
+#include "runtime/base/file.h"
+#include "runtime/base/workers.h"
+#include "runtime/lod/tree.h"
+#include "runtime/math/gaussian.h"
+#include "runtime/scene/gaussian_cloud.h"
+
+namespace voyager {
+
+enum class Storage { flat, lossless, compact };
+
+// What a scene reports about itself: left out, mended, dropped, damaged.
+struct SceneNote {
+  enum class Kind { omitted, repaired, dropped, damaged } kind;
+  uint64_t count;
+  uint64_t bytes;
+  std::string what, why;
+};
+
+// Nodes whose chunk could not be read: [first, first + count).
+struct DamagedNodes {
+  uint32_t first, count;
+  std::string message;  // names file, chunk, offset, found, expected
+};
+
+struct Scene {
+  explicit Scene(std::pmr::memory_resource* memory)
+      : gaussians(memory), sh(memory), tree(memory), axis_code(memory), leaves(memory) {}
+
+  bool flat() const { return tree.size() == 0; }
+  int coefficients() const { return sh_coefficients(sh_degree); }
+  const float* sh_of(uint32_t i) const {
+    return sh.data() + size_t{i} * 3 * static_cast<size_t>(coefficients());
+  }
+
+  std::string name;
+  Storage storage = Storage::flat;
+  int sh_degree = 0;
+  bool antialiased = false;
+  uint32_t tree_depth = 0, chunk_count = 0;
+  uint64_t leaf_count = 0;
+  Vec3d origin{0, 0, 0};                           // world position of the scene-local zero
+  Vec3f bounds_min{0, 0, 0}, bounds_max{0, 0, 0};  // scene-local, means ± 3·max(s)
+  double position_error = 0;
+  ImportReport import;
+
+  std::pmr::vector<Gaussian> gaussians;  // by node id; a flat scene's by index
+  std::pmr::vector<float> sh;            // coefficients() * 3 each
+  LodTree tree;                          // empty for a flat scene
+  std::pmr::vector<uint8_t> axis_code;   // by node id
+  std::pmr::vector<uint32_t> leaves;     // node ids of the leaves in the input's order; flat: empty
+  std::vector<DamagedNodes> damaged;     // by first
+  std::vector<SceneNote> notes;
+};
+
+// Opens .voy, .ply or .spz, told by its bytes. Throws Error; std::bad_alloc
+// where `memory` refuses.
+std::shared_ptr<const Scene> load_scene(std::shared_ptr<const ByteSource> source,
+                                        std::pmr::memory_resource* memory, Workers& workers);
+
+}  // namespace voyager

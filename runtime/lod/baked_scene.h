@@ -1,0 +1,40 @@
+#pragma once
+// The result of a bake in memory, before it is written: leaves in the input's
+// order, merged Gaussians beside them, and the tree over both.
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "runtime/lod/tree.h"
+#include "runtime/scene/gaussian_cloud.h"
+
+namespace voyager {
+
+struct BakedScene {
+  GaussianCloud leaves;  // the input's words, the input's order
+  GaussianCloud merged;  // opacity linear, positions scene-local (its origin is `origin`)
+  std::array<double, 3> origin{0, 0, 0};  // of the scene: 0, or a multiple of 1024 m (METHOD §2)
+  LodTree tree;
+  // Per node: index into `leaves` for a leaf, into `merged` otherwise.
+  std::pmr::vector<uint32_t> gaussian;
+  // Per node: how its stored axes turn to its parent's (runtime/math/axes.h).
+  // Merged Gaussians are stored turned already: 0.
+  std::pmr::vector<uint8_t> axis_code;
+};
+
+// A Gaussian's mean in a scene's local metres: the one rounding to binary32 is here.
+inline Vec3f local_mean(const GaussianCloud& cloud, size_t i, const std::array<double, 3>& origin) {
+  const float* p = &cloud.position[3 * i];
+  return {static_cast<float>((double{p[0]} + cloud.origin[0]) - origin[0]),
+          static_cast<float>((double{p[1]} + cloud.origin[1]) - origin[1]),
+          static_cast<float>((double{p[2]} + cloud.origin[2]) - origin[2])};
+}
+
+// Words of a leaf with its mean in the scene's local metres.
+inline GaussianWords leaf_words(const BakedScene& baked, size_t i) {
+  GaussianWords words = baked.leaves.words(i);
+  words.mean = local_mean(baked.leaves, i, baked.origin);
+  return words;
+}
+
+}  // namespace voyager

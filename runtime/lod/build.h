@@ -1,0 +1,31 @@
+#pragma once
+#include "runtime/base/progress.h"
+#include "runtime/base/workers.h"
+#include "runtime/lod/baked_scene.h"
+
+namespace voyager {
+
+// Children of an interior node: a kd split by the median of the means along
+// the longest side of their bounds, twice. Four children halve the extent of
+// a surface, which is the octave that a child blends over (METHOD §4).
+inline constexpr uint32_t kChildren = 4;
+
+// Builds the tree over a sanitised cloud, which it takes over. Deterministic:
+// the same cloud gives the same tree whatever the number of threads. An empty
+// cloud gives an empty tree, a single Gaussian a single leaf. All
+// of the result comes from the cloud's memory resource. O(n log n) time.
+// Throws Error(refused_input) for coordinates that METHOD §3 excludes, scales
+// beyond kMaxLogScale, and more Gaussians than 32-bit node ids can name.
+BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& progress = {});
+
+// The scene's origin for bounds in world metres: 0, or a multiple of 1024 m
+// where they reach beyond ±16 km; each axis on its own.
+std::array<double, 3> scene_origin(const Vec3d& bounds_min, const Vec3d& bounds_max);
+
+// The same for a cloud, by the bounds of the middle 96 % of its means on each
+// axis (of an even sample): a stray Gaussian far out must not take the
+// precision of all others away. What build_tree() uses; a scene drawn without
+// a tree uses it too, so that both have the same local coordinates.
+std::array<double, 3> scene_origin(const GaussianCloud& cloud);
+
+}  // namespace voyager

@@ -1,0 +1,21 @@
+#pragma once
+#include "runtime/lod/baked_scene.h"
+#include "runtime/lod/merge.h"
+
+namespace voyager {
+
+struct Box {
+  Vec3f least, most;
+};
+
+// mean ± 3·max(s), each end rounded once to binary32.
+Box leaf_box(const Gaussian& gaussian);
+
+// The Gaussian of a node as it is drawn, with its SH: what its parent is merged from.
+MergeInput node_gaussian(uint32_t node, const BakedScene& baked);
+
+// Fills a node's box and extent, and an interior node's Gaussian, from its
+// children, which are done. Nodes of one level may be done at once.
+void summarise(uint32_t node, BakedScene& baked);
+
+}  // namespace voyager

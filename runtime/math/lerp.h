@@ -1,0 +1,41 @@
+#pragma once
+// METHOD §4: how much of a cut node is itself and how much its parent, and the
+// interpolated Gaussian. T is float in the backends, double in the reference.
+#include <cmath>
+
+#include "runtime/math/gaussian.h"
+
+namespace voyager {
+
+// t in [0, 1]; 1 is the node itself. Root: pass has_parent = false.
+template <class T>
+VOYAGER_HD T interpolation_weight(bool has_parent, T parent_size, T size, T target) {
+  if (!has_parent || parent_size > T(2) * target) return T(1);
+  const T half = parent_size / T(2);
+  const T start = half > size ? half : size;
+  if (parent_size <= start) return T(1);
+  const T over = target - start > T(0) ? target - start : T(0);
+  const T t = T(1) - over / (parent_size - start);
+  return t > T(0) ? t : T(0);
+}
+
+template <class T>
+VOYAGER_HD T lerp(T parent, T node, T t) {
+  return parent + t * (node - parent);
+}
+
+template <class T>
+VOYAGER_HD Vec3<T> lerp(const Vec3<T>& parent, const Vec3<T>& node, T t) {
+  return {lerp(parent.x, node.x, t), lerp(parent.y, node.y, t), lerp(parent.z, node.z, t)};
+}
+
+// The parent's sign is flipped where the quaternions point apart.
+template <class T>
+VOYAGER_HD Quat<T> lerp(const Quat<T>& parent, const Quat<T>& node, T t) {
+  const T d = ((parent.w * node.w + parent.x * node.x) + parent.y * node.y) + parent.z * node.z;
+  const T sign = d < T(0) ? T(-1) : T(1);
+  return normalise(Quat<T>{lerp(sign * parent.w, node.w, t), lerp(sign * parent.x, node.x, t),
+                           lerp(sign * parent.y, node.y, t), lerp(sign * parent.z, node.z, t)});
+}
+
+}  // namespace voyager

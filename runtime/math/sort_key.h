@@ -1,0 +1,19 @@
+#pragma once
+// METHOD §6: the depth that orders splats is part of the contract, because
+// coplanar splats would otherwise sort by rounding noise.
+#include "runtime/math/vec.h"
+
+namespace voyager {
+
+// mean: binary32, scene-local; origin: the scene's; eye: world; forward: the view axis in binary32.
+VOYAGER_HD Vec3f camera_relative(const Vec3f& mean, const Vec3d& origin, const Vec3d& eye) {
+  return {static_cast<float>((static_cast<double>(mean.x) + origin.x) - eye.x),
+          static_cast<float>((static_cast<double>(mean.y) + origin.y) - eye.y),
+          static_cast<float>((static_cast<double>(mean.z) + origin.z) - eye.z)};
+}
+
+VOYAGER_HD float view_depth(const Vec3f& d, const Vec3f& forward) {
+  return (d.x * forward.x + d.y * forward.y) + d.z * forward.z;
+}
+
+}  // namespace voyager

@@ -1,0 +1,57 @@
+#include "runtime/reference/project.h"
+
+#include <cmath>
+
+#include "runtime/frame/draw_list.h"
+#include "runtime/math/alpha.h"
+#include "runtime/math/sort_key.h"
+
+namespace voyager::reference {
+namespace {
+
+Vec3f to_float(const Vec3d& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+}  // namespace
+
+std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& item) {
+  const GaussianArrays arrays = gaussian_arrays(scene);
+  const Vec3f mean = interpolated_mean(arrays, item);
+  const Vec3f key = camera_relative(mean, scene.origin, camera.eye);
+  const float depth = view_depth(key, to_float(camera.world_to_view.row[2]));
+  if (!(depth > static_cast<float>(camera.near_z))) return std::nullopt;
+
+  const Shape<double> shape = interpolated_shape<double>(arrays, item);
+  const double rho = rho_min(std::log(shape.opacity));
+  if (!(rho <= 0)) return std::nullopt;
+
+  const Vec3d d{double{mean.x} + scene.origin.x - camera.eye.x,
+                double{mean.y} + scene.origin.y - camera.eye.y,
+                double{mean.z} + scene.origin.z - camera.eye.z};
+  const Vec3d view = camera.world_to_view * d;
+  const ViewProjection<double> v =
+      view_projection<double>(camera.world_to_view, camera.fx, camera.fy, camera.cx, camera.cy,
+                              camera.width, camera.height);
+  const ImageCovariance<double> c =
+      image_covariance(image_jacobian(v, view), shape.rotation, shape.scale);
+  Splat s;
+  s.x = camera.fx * view.x / view.z + camera.cx;
+  s.y = camera.fy * view.y / view.z + camera.cy;
+  s.conic = conic(c, 0.5);
+  const double radius = std::sqrt(-2 * rho) * (1 + 1e-9);
+  s.half_width = radius * std::sqrt(c.xx) + 1e-6;
+  s.half_height = radius * std::sqrt(c.yy) + 1e-6;
+  s.rho_min = rho;
+  s.opacity = shape.opacity;
+  s.colour = interpolated_colour(arrays, item, (1 / std::sqrt(dot(d, d))) * d);
+  s.t = item.t;
+  s.inverse_k = item.inverse_k;
+  s.depth = depth;
+  if (s.x + s.half_width < 0 || s.x - s.half_width > camera.width || s.y + s.half_height < 0 ||
+      s.y - s.half_height > camera.height)
+    return std::nullopt;
+  return s;
+}
+
+}  // namespace voyager::reference

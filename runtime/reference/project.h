@@ -1,0 +1,24 @@
+#pragma once
+// METHOD §5 in float64. The order of splats, the near plane and the
+// interpolated mean are binary32 by contract (§6).
+#include <optional>
+
+#include "runtime/frame/backend.h"
+#include "runtime/math/projection.h"
+#include "runtime/stages/interpolate.h"
+
+namespace voyager::reference {
+
+struct Splat {
+  double x, y;  // centre, pixels
+  Conic<double> conic;
+  double half_width, half_height;  // of the support, pixels, with slack
+  double rho_min, opacity;
+  Vec3d colour;
+  double t, inverse_k;
+  float depth;
+};
+
+std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& item);
+
+}  // namespace voyager::reference

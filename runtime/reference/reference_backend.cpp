@@ -1,0 +1,153 @@
+#include "runtime/reference/reference_backend.h"
+
+#include <cmath>
+#include <limits>
+
+#include "runtime/base/error.h"
+#include "runtime/frame/depth_order.h"
+#include "runtime/frame/draw_list.h"
+#include "runtime/frame/resolve.h"
+#include "runtime/reference/project.h"
+
+namespace voyager {
+namespace {
+
+using reference::Splat;
+
+constexpr size_t kBandRows = 8;
+constexpr size_t kBlock = 4096;
+
+struct Pixel {
+  double r = 0, g = 0, b = 0, transmittance = 1;
+  double depth = std::numeric_limits<double>::infinity();
+  bool ended = false;
+};
+
+// METHOD §6 at one pixel.
+void blend(const Splat& s, double x, double y, Pixel& pixel) {
+  if (pixel.ended) return;
+  const double dx = x + 0.5 - s.x, dy = y + 0.5 - s.y;
+  const double p = dx * s.conic.p_x, q = (dy - s.conic.skew * dx) * s.conic.q_y;
+  const double rho = -(p * p + q * q);
+  if (!(rho >= s.rho_min)) return;
+  double alpha = std::fmin(double{kAlphaMax}, s.opacity * std::exp(rho));
+  if (s.t < 1) alpha = sibling_alpha(alpha, s.t, s.inverse_k);
+  const double after = pixel.transmittance * (1 - alpha);
+  if (after < double{kTransmittanceEnd}) {
+    pixel.ended = true;
+    return;
+  }
+  const double weight = alpha * pixel.transmittance;
+  pixel.r += weight * s.colour.x;
+  pixel.g += weight * s.colour.y;
+  pixel.b += weight * s.colour.z;
+  if (pixel.transmittance > 0.5 && after <= 0.5) pixel.depth = s.depth;
+  pixel.transmittance = after;
+}
+
+class ReferencePipeline final : public Pipeline {
+ public:
+  ReferencePipeline(std::shared_ptr<const Scene> scene, const PipelineDesc& desc,
+                    std::pmr::memory_resource* memory, Workers& workers)
+      : scene_(std::move(scene)),
+        alpha_filter_(desc.alpha_filter),
+        workers_(workers),
+        draws_(scene_, desc.lod, memory),
+        splats_(memory),
+        visible_(memory),
+        keys_(memory),
+        pixels_(memory) {}
+
+  void search(const FrameInput& frame) override { draws_.update(frame, workers_); }
+
+  void project(const FrameInput& frame) override {
+    const auto& items = draws_.items();
+    splats_.resize(items.size());
+    visible_.assign(items.size(), 0);
+    workers_.for_blocks(items.size(), kBlock, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        if (const auto splat = reference::project(*scene_, frame.camera, items[i])) {
+          splats_[i] = *splat;
+          visible_[i] = 1;
+        }
+    });
+  }
+
+  void sort(const FrameInput&) override {
+    keys_.clear();
+    for (size_t i = 0; i < splats_.size(); ++i)
+      if (visible_[i]) keys_.push_back(depth_key(splats_[i].depth, static_cast<uint32_t>(i)));
+    sort_by_depth(keys_, workers_);
+  }
+
+  void bin(const FrameInput&) override {}
+
+  void rasterize(const FrameInput& frame) override {
+    const size_t width = frame.camera.width;
+    pixels_.assign(width * frame.camera.height, Pixel{});
+    workers_.for_blocks(frame.camera.height, kBandRows, [&](size_t begin, size_t end) {
+      for (const uint64_t key : keys_) {
+        const Splat& s = splats_[depth_key_index(key)];
+        const auto rows =
+            alpha_filter_ ? covered(s.y, s.half_height, begin, end) : std::pair(begin, end);
+        const auto columns =
+            alpha_filter_ ? covered(s.x, s.half_width, 0, width) : std::pair(size_t{0}, width);
+        for (size_t y = rows.first; y < rows.second; ++y)
+          for (size_t x = columns.first; x < columns.second; ++x)
+            blend(s, static_cast<double>(x), static_cast<double>(y), pixels_[y * width + x]);
+      }
+    });
+  }
+
+  void resolve(const FrameInput& frame, const Image& image) override {
+    resolve_image(
+        frame, image, workers_, [&](size_t i) -> const Pixel& { return pixels_[i]; },
+        [&](size_t i) { return pixels_[i].depth; });
+  }
+
+  void collect(FrameStats& stats) const override {
+    draws_.collect(stats);
+    stats.splats = keys_.size();
+  }
+  const std::pmr::vector<uint32_t>& cut() const override { return draws_.cut(); }
+
+ private:
+  // The pixels of [low, high) whose centres the support's box reaches.
+  static std::pair<size_t, size_t> covered(double centre, double reach, size_t low, size_t high) {
+    const double first = std::ceil(centre - reach - 0.5), last = std::floor(centre + reach - 0.5);
+    const double from = std::fmax(first, static_cast<double>(low));
+    const double to = std::fmin(last + 1, static_cast<double>(high));
+    return from < to ? std::pair(static_cast<size_t>(from), static_cast<size_t>(to))
+                     : std::pair(low, low);
+  }
+
+  std::shared_ptr<const Scene> scene_;
+  bool alpha_filter_;
+  Workers& workers_;
+  DrawList draws_;
+  std::pmr::vector<Splat> splats_;
+  std::pmr::vector<uint8_t> visible_;
+  std::pmr::vector<uint64_t> keys_;
+  std::pmr::vector<Pixel> pixels_;
+};
+
+class ReferenceBackend final : public Backend {
+ public:
+  std::string device_name() const override { return "float64 reference"; }
+  std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
+                                            const PipelineDesc& desc,
+                                            std::pmr::memory_resource* memory,
+                                            Workers& workers) override {
+    if (desc.exponential != Exponential::exact)
+      throw Error(ErrorCode::unsupported, "exponential: the reference backend has exact only");
+    return std::make_unique<ReferencePipeline>(std::move(scene), desc, memory, workers);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> create_reference_backend() {
+  return std::make_unique<ReferenceBackend>();
+}
+
+}  // namespace voyager

@@ -1,0 +1,131 @@
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "runtime/scene/export/batch_check.h"
+#include "runtime/scene/export/spool.h"
+#include "runtime/scene/export/spz_quantise.h"
+#include "runtime/scene/export/writer.h"
+
+namespace voyager {
+namespace {
+
+constexpr int kMostFractionalBits = 12;
+constexpr double kMostSteps = (1 << 23) - 1;
+constexpr size_t kBlockGaussians = 4096;
+using Bytes = std::vector<std::byte>;
+
+int fractional_bits(float largest_coordinate) {
+  int bits = kMostFractionalBits;
+  while (bits > 0 && static_cast<double>(largest_coordinate) * (1 << bits) > kMostSteps) --bits;
+  return bits;
+}
+
+void put(Bytes& bytes, uint64_t value, int count) {
+  for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
+}
+
+class SpzWriter final : public GaussianWriter {
+ public:
+  SpzWriter(ByteSink& sink, uint64_t count, int sh_degree, float largest_coordinate)
+      : sink_(sink),
+        check_(count, sh_degree),
+        count_(count),
+        sh_degree_(sh_degree),
+        bits_(fractional_bits(largest_coordinate)),
+        streams_(sh_degree > 0 ? spz::kAttributes : spz::kSh) {
+    check_sh_degree(sh_degree);
+    if (count > std::numeric_limits<uint32_t>::max())
+      throw Error(ErrorCode::invalid_argument, ".spz: found " + std::to_string(count) +
+                                                   " Gaussians, expected at most 4294967295");
+    for (int i = 0; i < streams_; ++i) spools_.emplace_back(uncompressed_size(i));
+  }
+
+  void append(const GaussianCloud& batch) override {
+    const uint64_t first = check_.written();
+    check_.accept(batch);
+    antialiased_ = antialiased_ || batch.antialiased;
+    for (size_t begin = 0; begin < batch.size(); begin += kBlockGaussians) {
+      const size_t end = std::min(batch.size(), begin + kBlockGaussians);
+      for (size_t i = begin; i < end; ++i) put_gaussian(batch, i, first + i);
+      for (int i = 0; i < streams_; ++i) {
+        spools_[static_cast<size_t>(i)].write(blocks_[i]);
+        blocks_[i].clear();
+      }
+    }
+  }
+
+  void finish() override {
+    check_.finish();
+    for (Spool& spool : spools_) spool.close();
+    sink_.write(header());
+    for (Spool& spool : spools_) spool.copy_to(sink_);
+  }
+
+ private:
+  uint64_t uncompressed_size(int stream) const {
+    return count_ * spz::width(static_cast<spz::Attribute>(stream), 4, sh_degree_);
+  }
+
+  void put_gaussian(const GaussianCloud& cloud, size_t i, uint64_t index) {
+    for (size_t k = 0; k < 3; ++k) put_position(cloud, i, k, index);
+    put(blocks_[spz::kAlphas], spz::quantise_alpha(cloud.opacity[i]), 1);
+    const size_t coefficients = static_cast<size_t>(cloud.coefficients());
+    const float* sh = &cloud.sh[i * coefficients * 3];
+    for (size_t k = 0; k < 3; ++k) {
+      put(blocks_[spz::kColours], spz::quantise_colour(sh[k]), 1);
+      put(blocks_[spz::kScales], spz::quantise_scale(cloud.log_scale[3 * i + k]), 1);
+    }
+    put(blocks_[spz::kRotations], spz::quantise_rotation(cloud.words(i).rotation), 4);
+    for (size_t k = 1; k < coefficients; ++k)
+      for (size_t channel = 0; channel < 3; ++channel)
+        put(blocks_[spz::kSh], spz::quantise_sh(sh[3 * k + channel], k), 1);
+  }
+
+  void put_position(const GaussianCloud& cloud, size_t i, size_t axis, uint64_t index) {
+    const double world = cloud.origin[axis] + static_cast<double>(cloud.position[3 * i + axis]);
+    const double steps = std::round((axis == 0 ? world : -world) * (1 << bits_));
+    if (!(std::fabs(steps) <= kMostSteps))
+      throw Error(ErrorCode::invalid_argument,
+                  ".spz: Gaussian " + std::to_string(index) + ", coordinate " + "xyz"[axis] +
+                      ": found " + std::to_string(world) + " m, expected at most " +
+                      std::to_string(kMostSteps / (1 << bits_)) + " m either way");
+    put(blocks_[spz::kPositions], static_cast<uint64_t>(static_cast<int64_t>(steps)), 3);
+  }
+
+  Bytes header() const {
+    Bytes bytes;
+    put(bytes, spz::kMagic, 4);
+    put(bytes, 4, 4);
+    put(bytes, count_, 4);
+    put(bytes, static_cast<uint64_t>(sh_degree_), 1);
+    put(bytes, static_cast<uint64_t>(bits_), 1);
+    put(bytes, antialiased_ ? spz::kFlagAntialiased : 0, 1);
+    put(bytes, static_cast<uint64_t>(streams_), 1);
+    put(bytes, spz::kStreamsHeaderBytes, 4);
+    bytes.resize(spz::kStreamsHeaderBytes);
+    for (int i = 0; i < streams_; ++i) {
+      put(bytes, spools_[static_cast<size_t>(i)].compressed_size(), 8);
+      put(bytes, uncompressed_size(i), 8);
+    }
+    return bytes;
+  }
+
+  ByteSink& sink_;
+  BatchCheck check_;
+  uint64_t count_;
+  int sh_degree_, bits_, streams_;
+  bool antialiased_ = false;
+  std::vector<Spool> spools_;
+  Bytes blocks_[spz::kAttributes];
+};
+
+}  // namespace
+
+std::unique_ptr<GaussianWriter> write_spz(ByteSink& sink, uint64_t count, int sh_degree,
+                                          float largest_coordinate) {
+  return std::make_unique<SpzWriter>(sink, count, sh_degree, largest_coordinate);
+}
+
+}  // namespace voyager

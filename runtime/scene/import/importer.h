@@ -1,0 +1,46 @@
+#pragma once
+// The room for formats. A format is one file here with one entry in the table
+// of importer.cpp.
+#include <memory>
+#include <memory_resource>
+#include <span>
+#include <string>
+
+#include "runtime/base/file.h"
+#include "runtime/base/progress.h"
+#include "runtime/scene/gaussian_cloud.h"
+
+namespace voyager {
+
+struct ImportOptions {
+  std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+  Progress progress;  // stage "reading"
+};
+
+// Reads a flat scene from the stream, in whichever known format its first
+// bytes say it is, and sanitises it. Throws Error(refused_input) naming file,
+// offset or field, what was found and what was expected; allocates only as
+// bytes arrive (or as the known length of the source allows).
+GaussianCloud import_gaussians(ByteReader& reader, const ImportOptions& options = {});
+
+// True if the first bytes (kFormatBytes of them, or all that there are) are
+// those of a format that import_gaussians reads.
+inline constexpr size_t kFormatBytes = 4;
+bool is_importable(std::span<const std::byte> first_bytes);
+
+// The formats; `reader` stands at the format's first byte. Both deliver words
+// as the file has them, not yet sanitised. A file must end where its header
+// says: bytes after that mean that header and body disagree, and are refused.
+//
+// .ply: any property order and scalar type, little- or big-endian; other
+// elements are skipped. With double x, y, z the first finite vertex chooses the
+// cloud's origin: per axis 0 within 16 km, else the nearest multiple of 1024 m. A list property in
+// or before the vertex element, the ASCII encoding, and a count of f_rest_* other than 0, 9, 24 or
+// 45 are refused.
+GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options);
+// .spz versions 1 to 4, gzipped or (a raw v1-v3) not; SH degree 0 to 3.
+// Extensions are skipped; unknown flags, which may change the layout, and
+// non-zero reserved bytes are refused.
+GaussianCloud import_spz(ByteReader& reader, const ImportOptions& options);
+
+}  // namespace voyager

@@ -1,0 +1,116 @@
+#include "runtime/scene/import/spz_decode.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "runtime/scene/sanitise.h"
+
+namespace voyager::spz {
+namespace {
+
+int byte(const std::byte* at) {
+  return std::to_integer<int>(*at);
+}
+
+float half_to_float(uint32_t half) {
+  const uint32_t sign = (half & 0x8000u) << 16, exponent = half >> 10 & 31u,
+                 mantissa = half & 1023u;
+  if (exponent == 0) {
+    const float magnitude = std::ldexp(static_cast<float>(mantissa), -24);
+    return sign ? -magnitude : magnitude;
+  }
+  const uint32_t biased = exponent == 31 ? 255u : exponent + 112u;
+  return std::bit_cast<float>(sign | biased << 23 | mantissa << 13);
+}
+
+void decode_position(const Header& header, const std::byte* code, float* position) {
+  for (int axis = 0; axis < 3; ++axis, code += header.version == 1 ? 2 : 3) {
+    if (header.version == 1) {
+      const float half = half_to_float(static_cast<uint32_t>(byte(code) | byte(code + 1) << 8));
+      position[axis] = axis == 0 ? half : 0.0f - half;
+    } else {
+      const int bits = byte(code) | byte(code + 1) << 8 | byte(code + 2) << 16;
+      const int fixed = bits >= 1 << 23 ? bits - (1 << 24) : bits;
+      position[axis] =
+          std::ldexp(static_cast<float>(axis == 0 ? fixed : -fixed), -header.fractional_bits);
+    }
+  }
+}
+
+// 0 and 255 stand for logits beyond what a byte can say, not for infinity.
+float decode_alpha(int code) {
+  if (code == 0) return -kMaxLogit;
+  if (code == 255) return kMaxLogit;
+  return static_cast<float>(std::log(code / (255.0 - code)));
+}
+
+// x, y, z in bytes; w is what is left of a unit quaternion.
+void decode_rotation_bytes(const std::byte* code, float* wxyz) {
+  float squared = 0.0f;
+  for (int i = 0; i < 3; ++i) {
+    const float v = static_cast<float>(byte(code + i)) / 127.5f - 1.0f;
+    squared += v * v;
+    wxyz[1 + i] = i == 0 ? v : -v;
+  }
+  wxyz[0] = std::sqrt(std::max(0.0f, 1.0f - squared));
+}
+
+void decode_rotation_smallest_three(const std::byte* code, float* wxyz) {
+  uint32_t bits = 0;
+  for (int i = 3; i >= 0; --i) bits = bits << 8 | static_cast<uint32_t>(byte(code + i));
+  const int largest = static_cast<int>(bits >> 30);
+  float q[4] = {}, squared = 0.0f;  // x, y, z, w
+  for (int i = 3; i >= 0; --i) {
+    if (i == largest) continue;
+    const float magnitude = static_cast<float>(bits & 511u) / kRotationSteps * kSqrtHalf;
+    q[i] = bits & 512u ? -magnitude : magnitude;
+    squared += magnitude * magnitude;
+    bits >>= 10;
+  }
+  q[largest] = std::sqrt(std::max(0.0f, 1.0f - squared));
+  wxyz[0] = q[3];
+  wxyz[1] = q[0];
+  wxyz[2] = -q[1];
+  wxyz[3] = -q[2];
+}
+
+void decode_gaussian(const Header& header, Attribute attribute, const std::byte* code, size_t i,
+                     GaussianCloud& cloud) {
+  const size_t coefficients = static_cast<size_t>(cloud.coefficients());
+  switch (attribute) {
+    case kPositions:
+      return decode_position(header, code, &cloud.position[3 * i]);
+    case kAlphas:
+      cloud.opacity[i] = decode_alpha(byte(code));
+      return;
+    case kColours:
+      for (size_t k = 0; k < 3; ++k)
+        cloud.sh[i * coefficients * 3 + k] =
+            (static_cast<float>(byte(code + k)) / 255.0f - 0.5f) / kColourScale;
+      return;
+    case kScales:
+      for (size_t k = 0; k < 3; ++k)
+        cloud.log_scale[3 * i + k] = static_cast<float>(byte(code + k)) / 16.0f - 10.0f;
+      return;
+    case kRotations:
+      return header.version < 3 ? decode_rotation_bytes(code, &cloud.rotation[4 * i])
+                                : decode_rotation_smallest_three(code, &cloud.rotation[4 * i]);
+    default:
+      for (size_t k = 1; k < coefficients; ++k)
+        for (size_t channel = 0; channel < 3; ++channel, ++code)
+          cloud.sh[(i * coefficients + k) * 3 + channel] =
+              static_cast<float>((byte(code) - 128) * kShSign[k]) / 128.0f;
+  }
+}
+
+}  // namespace
+
+void decode(const Header& header, Attribute attribute, std::span<const std::byte> codes,
+            size_t first, GaussianCloud& cloud) {
+  const size_t step = header.bytes_of(attribute);
+  for (size_t i = 0; i < codes.size() / step; ++i)
+    decode_gaussian(header, attribute, codes.data() + i * step, first + i, cloud);
+}
+
+}  // namespace voyager::spz

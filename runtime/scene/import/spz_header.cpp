@@ -1,0 +1,102 @@
+#include "runtime/scene/import/spz_header.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "runtime/scene/import/refuse.h"
+
+namespace voyager::spz {
+namespace {
+
+constexpr int kMaxFractionalBits = 24;
+
+template <size_t count>
+std::array<std::byte, count> read_bytes(ByteReader& reader, const char* what) {
+  std::array<std::byte, count> bytes;
+  const size_t got = reader.read(bytes);
+  if (got != count)
+    refuse(reader.name(), reader.offset(), what, std::to_string(got) + " bytes",
+           std::to_string(count) + " bytes");
+  return bytes;
+}
+
+uint64_t integer(const std::byte* bytes, int count) {
+  uint64_t value = 0;
+  for (int i = count - 1; i >= 0; --i) value = value << 8 | std::to_integer<uint64_t>(bytes[i]);
+  return value;
+}
+
+std::string hex(uint64_t value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "0x%llx", static_cast<unsigned long long>(value));
+  return text;
+}
+
+uint64_t in_range(const std::string& file, uint64_t offset, const char* field, uint64_t value,
+                  uint64_t low, uint64_t high) {
+  if (value < low || value > high)
+    refuse(file, offset, field, std::to_string(value),
+           low == high ? std::to_string(low) : std::to_string(low) + " to " + std::to_string(high));
+  return value;
+}
+
+}  // namespace
+
+Header read_header(ByteReader& plain, uint32_t newest_version) {
+  const uint64_t at = plain.offset();
+  const auto bytes = read_bytes<kHeaderBytes>(plain, "header");
+  const std::string& file = plain.name();
+  const auto field = [&](const char* name, size_t offset, uint64_t low, uint64_t high) {
+    return static_cast<uint8_t>(
+        in_range(file, at + offset, name, integer(&bytes[offset], 1), low, high));
+  };
+  const uint64_t magic = integer(&bytes[0], 4);
+  if (magic != kMagic) refuse(file, at, "magic", hex(magic), hex(kMagic) + " (NGSP)");
+  Header header;
+  header.version = static_cast<uint32_t>(
+      in_range(file, at + 4, "version", integer(&bytes[4], 4), 1, newest_version));
+  header.count = static_cast<uint32_t>(integer(&bytes[8], 4));
+  header.sh_degree = field("SH degree", 12, 0, kMaxShDegree);
+  header.fractional_bits = field("fractional bits", 13, 0, kMaxFractionalBits);
+  const uint8_t flags = field("flags", 14, 0, kFlagAntialiased | kFlagExtensions);
+  header.antialiased = (flags & kFlagAntialiased) != 0;
+  header.has_extensions = (flags & kFlagExtensions) != 0;
+  header.last =
+      header.version < 4 ? field("reserved byte", 15, 0, 0) : field("streams", 15, 0, 255);
+  return header;
+}
+
+std::array<uint64_t, kAttributes> read_stream_table(PeekReader& input, const Header& header) {
+  const std::string& file = input.name();
+  const uint64_t at = input.offset(), start = at - kHeaderBytes;
+  const uint64_t streams = static_cast<uint64_t>(header.attributes());
+  in_range(file, at - 1, "streams", header.last, streams, streams);
+  const auto rest = read_bytes<kStreamsHeaderBytes - kHeaderBytes>(input, "header");
+  const uint64_t table = integer(&rest[0], 4);
+  const uint64_t furthest = header.has_extensions ? UINT32_MAX : kStreamsHeaderBytes;
+  in_range(file, at, "offset of the stream table", table, kStreamsHeaderBytes, furthest);
+  for (size_t i = 4; i < rest.size(); ++i)
+    in_range(file, at + i, "reserved byte", integer(&rest[i], 1), 0, 0);
+  const uint64_t gap = table - kStreamsHeaderBytes, skipped = input.skip(gap);
+  in_range(file, input.offset(), "bytes before the stream table", skipped, gap, gap);
+
+  std::array<uint64_t, kAttributes> compressed = {};
+  uint64_t expected_end = start + table + streams * kTableEntryBytes;
+  for (size_t i = 0; i < streams; ++i) {
+    const uint64_t entry_at = input.offset();
+    const auto entry = read_bytes<kTableEntryBytes>(input, "stream table");
+    const std::string name = kAttributeName[i];
+    const uint64_t size = header.count * uint64_t{header.bytes_of(static_cast<Attribute>(i))};
+    in_range(file, entry_at + 8, (name + ": uncompressed size").c_str(), integer(&entry[8], 8),
+             size, size);
+    compressed[i] = integer(&entry[0], 8);
+    if (__builtin_add_overflow(expected_end, compressed[i], &expected_end))
+      refuse(file, entry_at, name + ": compressed size", std::to_string(compressed[i]), "less");
+  }
+  if (const auto left = input.remaining(); left && input.offset() + *left != expected_end)
+    refuse(file, input.offset(), "streams", std::to_string(*left) + " bytes",
+           std::to_string(expected_end - input.offset()) + " bytes, as the stream table says");
+  return compressed;
+}
+
+}  // namespace voyager::spz

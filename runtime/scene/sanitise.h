@@ -1,0 +1,18 @@
+#pragma once
+// NaN, infinity and impossible values are handled here, where they enter.
+#include "runtime/scene/gaussian_cloud.h"
+
+namespace voyager {
+
+inline constexpr float kMaxLogit = 88.0f;  // sigmoid is 1 to the last bit, and exp(88) is finite
+inline constexpr float kMinLogScale = -20.7232658f;  // ln 1e-9 m
+inline constexpr float kMaxLogScale = 13.8155106f;   // ln 1e6 m
+inline constexpr float kMaxCoordinate = 1e18f;       // METHOD §3
+
+// Mends or drops each Gaussian in place (order kept, arrays compacted) and
+// counts into cloud.report; sets report.read to the size before. Each counter
+// counts Gaussians, not values; a dropped one is counted once, for the first
+// reason in the order position, scale, opacity. What is sound keeps its bits.
+void sanitise(GaussianCloud& cloud);
+
+}  // namespace voyager

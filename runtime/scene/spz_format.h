@@ -1,0 +1,47 @@
+#pragma once
+// What the .spz reader and writer agree on. SPZ axes are right-up-back, INRIA's
+// right-down-front: half a turn about x, the same in both directions.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "runtime/math/sh.h"
+
+namespace voyager::spz {
+
+inline constexpr uint32_t kMagic = 0x5053474e;  // "NGSP"
+inline constexpr uint8_t kFlagAntialiased = 1, kFlagExtensions = 2;
+inline constexpr size_t kHeaderBytes = 16;         // v1-v3
+inline constexpr size_t kStreamsHeaderBytes = 32;  // v4
+inline constexpr size_t kTableEntryBytes = 16;     // compressed size, uncompressed size
+
+enum Attribute { kPositions, kAlphas, kColours, kScales, kRotations, kSh, kAttributes };
+inline constexpr std::array<const char*, kAttributes> kAttributeName = {
+    "positions", "alphas", "colours", "scales", "rotations", "sh"};
+
+// Bytes a Gaussian.
+constexpr size_t width(Attribute attribute, uint32_t version, int sh_degree) {
+  switch (attribute) {
+    case kPositions:
+      return version == 1 ? 6 : 9;
+    case kAlphas:
+      return 1;
+    case kRotations:
+      return version < 3 ? 3 : 4;
+    case kSh:
+      return static_cast<size_t>(sh_coefficients(sh_degree) - 1) * 3;
+    default:
+      return 3;
+  }
+}
+
+// Sign that SH coefficient k takes when y and z are mirrored: that of
+// basis k at (x, -y, -z) over basis k at (x, y, z).
+inline constexpr std::array<int, 16> kShSign = {1, -1, -1, 1,  -1, 1, 1,  -1,
+                                                1, -1, 1,  -1, -1, 1, -1, 1};
+
+inline constexpr float kColourScale = 0.15f;
+inline constexpr float kSqrtHalf = 0.70710678f;
+inline constexpr int kRotationSteps = 511;  // of sqrt(1/2), in nine bits
+
+}  // namespace voyager::spz

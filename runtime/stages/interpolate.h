@@ -1,0 +1,97 @@
+#pragma once
+// METHOD §4 as a stage: which Gaussian a cut node draws, and how much of its parent.
+#include "runtime/lod/tree.h"
+#include "runtime/math/axes.h"
+#include "runtime/math/lerp.h"
+#include "runtime/math/sh.h"
+
+namespace voyager {
+
+// One Gaussian to draw. t = 1: its stored values, untouched, and no parent is read.
+struct DrawItem {
+  uint32_t gaussian;
+  uint32_t parent;
+  float t;
+  float inverse_k;  // 1 / number of siblings, itself included
+};
+
+struct WeightParams {
+  const NodeRecord* records;
+  const uint32_t* parent;
+  const float* sizes;  // screen_size of each node
+  float target_size;   // τ*
+};
+
+VOYAGER_HD DrawItem weigh(const WeightParams& params, uint32_t node) {
+  const uint32_t parent = params.parent[node];
+  const bool has_parent = parent != kNoNode;
+  const float t = interpolation_weight(has_parent, has_parent ? params.sizes[parent] : 0.0f,
+                                       params.sizes[node], params.target_size);
+  if (t == 1.0f) return {node, kNoNode, 1.0f, 1.0f};
+  return {node, parent, t, 1.0f / static_cast<float>(params.records[parent].child_count)};
+}
+
+// What a stage reads of the scene.
+struct GaussianArrays {
+  const Gaussian* gaussians;
+  const float* sh;           // [k][rgb] a Gaussian
+  const uint8_t* axis_code;  // of a tree; a flat scene has none
+  int sh_degree;
+};
+
+// The mean in binary32 is what orders splats (METHOD §6): the same in every backend.
+VOYAGER_HD Vec3f interpolated_mean(const GaussianArrays& arrays, const DrawItem& item) {
+  const Vec3f& mean = arrays.gaussians[item.gaussian].mean;
+  return item.t == 1.0f ? mean : lerp(arrays.gaussians[item.parent].mean, mean, item.t);
+}
+
+template <class T>
+struct Shape {
+  Vec3<T> scale;
+  Quat<T> rotation;
+  T opacity, log_opacity;
+};
+
+template <class T>
+VOYAGER_HD Shape<T> stored_shape(const Gaussian& g) {
+  return {{T(g.scale.x), T(g.scale.y), T(g.scale.z)},
+          {T(g.rotation.w), T(g.rotation.x), T(g.rotation.y), T(g.rotation.z)},
+          T(g.opacity),
+          T(g.log_opacity)};
+}
+
+template <class T>
+VOYAGER_HD Shape<T> interpolated_shape(const GaussianArrays& arrays, const DrawItem& item) {
+  Shape<T> shape = stored_shape<T>(arrays.gaussians[item.gaussian]);
+  if (item.t == 1.0f) return shape;
+  const Shape<T> parent = stored_shape<T>(arrays.gaussians[item.parent]);
+  const int code = arrays.axis_code[item.gaussian];
+  if (code != 0) {
+    shape.scale = turn_scale(shape.scale, code);
+    shape.rotation = shape.rotation * cube_rotation<T>(code);
+  }
+  const T t = T(item.t);
+  shape.scale = lerp(parent.scale, shape.scale, t);
+  shape.rotation = lerp(parent.rotation, shape.rotation, t);
+  shape.opacity = lerp(parent.opacity, shape.opacity, t);
+  shape.log_opacity = std::log(shape.opacity);
+  return shape;
+}
+
+// direction: unit, from the camera to the interpolated mean, world axes.
+template <class T>
+VOYAGER_HD Vec3<T> interpolated_colour(const GaussianArrays& arrays, const DrawItem& item,
+                                       const Vec3<T>& direction) {
+  const size_t stride = 3 * static_cast<size_t>(sh_coefficients(arrays.sh_degree));
+  const float* own = arrays.sh + item.gaussian * stride;
+  if (item.t == 1.0f)
+    return sh_colour(arrays.sh_degree, direction,
+                     [&](int k, int channel) { return T(own[3 * k + channel]); });
+  const float* parent = arrays.sh + item.parent * stride;
+  const T t = T(item.t);
+  return sh_colour(arrays.sh_degree, direction, [&](int k, int channel) {
+    return lerp(T(parent[3 * k + channel]), T(own[3 * k + channel]), t);
+  });
+}
+
+}  // namespace voyager

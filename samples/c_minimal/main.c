@@ -1,0 +1,166 @@
+/* The smallest host: loads the plugin, opens a scene, renders one frame from
+ * outside its bounds, and writes a PNG.
+ *
+ *   c_minimal SCENE.voy|.ply|.spz OUT.png [path of libvoyager.so]
+ *
+ * Exit status: 0 done, 1 bad usage, 2 the scene was refused, 4 anything else. */
+#include <dlfcn.h>
+#include <math.h>
+#include <png.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <voyager/voyager.h>
+
+enum { kWidth = 960, kHeight = 540 };
+
+/* The entry points that this host uses, found by name at run time. */
+static VoyResult (*create_device)(const VoyDeviceDesc*, VoyDevice*);
+static VoyResult (*destroy_device)(VoyDevice);
+static VoyResult (*open_scene)(VoyDevice, const VoySceneDesc*, VoyScene*);
+static VoyResult (*get_scene_info)(VoyScene, VoySceneInfo*);
+static VoyResult (*create_view)(VoyDevice, const VoyViewDesc*, VoyView*);
+static VoyResult (*create_target)(VoyDevice, const VoyTargetDesc*, VoyTarget*);
+static VoyResult (*render_frame)(VoyView, const VoyFrame*);
+static const char* (*last_error)(void);
+
+static int find(void* library, const char* name, void* function) {
+  void* symbol = dlsym(library, name);
+  if (!symbol) fprintf(stderr, "c_minimal: %s\n", dlerror());
+  memcpy(function, &symbol, sizeof symbol); /* POSIX: a function fits in a void* */
+  return symbol != NULL;
+}
+
+static void* load(const char* path) {
+  void* library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+  if (!library) {
+    fprintf(stderr, "c_minimal: %s\n", dlerror());
+    return NULL;
+  }
+  if (find(library, "voyCreateDevice", &create_device) &&
+      find(library, "voyDestroyDevice", &destroy_device) &&
+      find(library, "voyOpenScene", &open_scene) &&
+      find(library, "voyGetSceneInfo", &get_scene_info) &&
+      find(library, "voyCreateView", &create_view) &&
+      find(library, "voyCreateTarget", &create_target) &&
+      find(library, "voyRenderFrame", &render_frame) &&
+      find(library, "voyGetLastErrorMessage", &last_error))
+    return library;
+  dlclose(library);
+  return NULL;
+}
+
+/* Prints what a call that failed says was wrong. */
+static int succeeded(VoyResult result) {
+  if (result < 0) fprintf(stderr, "c_minimal: %s\n", last_error());
+  return result >= 0;
+}
+
+/* Looks at the centre of the bounds from behind and above. Captured scenes have
+ * y down and z forward; poses are OpenXR's, whose camera looks along -z with y
+ * up: half a turn about x takes one to the other, less the downward tilt. */
+static VoyFrameEye frame_bounds(const VoySceneInfo* info, VoyTarget target) {
+  const double half_turn = 3.14159265358979323846, tilt = 0.5;
+  VoyFrameEye eye;
+  double centre[3], squared = 0, distance;
+  int i;
+  for (i = 0; i < 3; ++i) {
+    const double side = info->boundsMax[i] - info->boundsMin[i];
+    centre[i] = info->boundsMin[i] + side / 2;
+    squared += side * side;
+  }
+  distance = 0.4 * sqrt(squared);
+  eye.pose.position[0] = centre[0];
+  eye.pose.position[1] = centre[1] - distance * sin(tilt);
+  eye.pose.position[2] = centre[2] - distance * cos(tilt);
+  eye.pose.orientation[0] = sin((half_turn - tilt) / 2);
+  eye.pose.orientation[1] = 0;
+  eye.pose.orientation[2] = 0;
+  eye.pose.orientation[3] = cos((half_turn - tilt) / 2);
+  eye.frustum.right = 0.6;
+  eye.frustum.left = -eye.frustum.right;
+  eye.frustum.up = eye.frustum.right * kHeight / kWidth;
+  eye.frustum.down = -eye.frustum.up;
+  eye.target = target;
+  return eye;
+}
+
+/* Everything between the device and the pixels. Returns the exit status. What it
+ * makes belongs to the device, and goes with it. */
+static int render(VoyDevice device, const char* path, unsigned char* pixels) {
+  VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
+  VoySceneInfo info = VOY_SCENE_INFO_INIT;
+  VoyTargetDesc target_desc = VOY_TARGET_DESC_INIT;
+  VoyViewDesc view_desc = VOY_VIEW_DESC_INIT;
+  VoyFrame frame = VOY_FRAME_INIT;
+  VoyFrameEye eye;
+  VoyScene scene;
+  VoyTarget target;
+  VoyView view;
+
+  /* The scene: the file is read, checked and decoded here. */
+  scene_desc.path = path;
+  if (!succeeded(open_scene(device, &scene_desc, &scene))) return 2;
+  if (!succeeded(get_scene_info(scene, &info))) return 4;
+  printf("%s: %llu Gaussians\n", path, (unsigned long long)info.gaussianCount);
+
+  /* The target: our own memory, written during render_frame only. */
+  target_desc.width = kWidth;
+  target_desc.height = kHeight;
+  target_desc.color = pixels;
+  if (!succeeded(create_target(device, &target_desc, &target))) return 4;
+
+  /* The view: what to draw, how finely; it keeps its cut from frame to frame. */
+  view_desc.instanceCount = 1;
+  view_desc.scenes = &scene;
+  view_desc.maxWidth = kWidth;
+  view_desc.maxHeight = kHeight;
+  if (!succeeded(create_view(device, &view_desc, &view))) return 4;
+
+  /* The frame: a pose, a frustum and a target for each eye. A host does this in
+   * its loop; here is one. */
+  eye = frame_bounds(&info, target);
+  frame.eyeCount = 1;
+  frame.eyes = &eye;
+  return succeeded(render_frame(view, &frame)) ? 0 : 4;
+}
+
+static int write_png(const char* path, const unsigned char* pixels) {
+  png_image image;
+  memset(&image, 0, sizeof image);
+  image.version = PNG_IMAGE_VERSION;
+  image.width = kWidth;
+  image.height = kHeight;
+  image.format = PNG_FORMAT_RGBA;
+  if (png_image_write_to_file(&image, path, 0, pixels, 0, NULL)) return 0;
+  fprintf(stderr, "c_minimal: %s: %s\n", path, image.message);
+  return 4;
+}
+
+int main(int argc, char** argv) {
+  VoyDeviceDesc device_desc = VOY_DEVICE_DESC_INIT;
+  VoyDevice device;
+  unsigned char* pixels;
+  void* library;
+  size_t i;
+  int status = 4;
+  if (argc < 3 || argc > 4) {
+    fprintf(stderr, "usage: c_minimal SCENE.voy|.ply|.spz OUT.png [path of libvoyager.so]\n");
+    return 1;
+  }
+  library = load(argc == 4 ? argv[3] : VOYAGER_LIBRARY);
+  if (!library) return 4;
+
+  /* The device: a backend, here the fastest that the machine has. */
+  pixels = malloc((size_t)kWidth * kHeight * 4);
+  if (pixels && succeeded(create_device(&device_desc, &device))) {
+    status = render(device, argv[1], pixels);
+    destroy_device(device);
+  }
+  /* The background is opaque, so the picture is: alpha says how much of it is scene. */
+  for (i = 0; status == 0 && i < (size_t)kWidth * kHeight; ++i) pixels[4 * i + 3] = 255;
+  if (status == 0) status = write_png(argv[2], pixels);
+  free(pixels);
+  dlclose(library);
+  return status;
+}

@@ -1,0 +1,57 @@
+// The shared library as the dynamic linker sees it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "elf.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Binary, ExportsExactlyTheBaseline) {
+  std::ifstream file(VOYAGER_SOURCE_DIR "/tests/abi/exports.txt");
+  std::vector<std::string> baseline;
+  for (std::string line; std::getline(file, line);) baseline.push_back(line);
+  std::vector<std::string> found = ElfFile(VOYAGER_LIBRARY).exports();
+  std::sort(found.begin(), found.end());
+  EXPECT_EQ(found, baseline);
+}
+
+TEST(Binary, SonameHasMajorAndMinor) {
+  std::ifstream file(VOYAGER_SOURCE_DIR "/VERSION");
+  std::string version;
+  std::getline(file, version);
+  const std::string expected = "libvoyager.so." + version.substr(0, version.rfind('.'));
+  EXPECT_EQ(ElfFile(VOYAGER_LIBRARY).soname(), std::vector<std::string>{expected});
+}
+
+void expect_needs_none(const std::string& path, const std::vector<std::string>& forbidden) {
+  const std::vector<std::string> needed = ElfFile(path).needed();
+  EXPECT_FALSE(needed.empty()) << path;
+  for (const std::string& library : needed)
+    for (const std::string& name : forbidden)
+      EXPECT_NE(library.rfind(name, 0), 0u) << path << " needs " << library;
+}
+
+TEST(Binary, LibraryNeedsNoDriverAndNoLoader) {
+  expect_needs_none(VOYAGER_LIBRARY, {"libcuda", "libcudart", "libvulkan", "libopenxr"});
+}
+
+// A host that linked the library, or a part of it, would not show that dlopen is enough.
+TEST(Binary, HostsNeedNoneOfOurLibraries) {
+  int hosts = 0;
+  for (const auto& entry : fs::directory_iterator(VOYAGER_BIN_DIR)) {
+    const std::string name = entry.path().filename().string();
+    const bool headless = name.rfind("headless_", 0) == 0 && name.find('[') == std::string::npos;
+    const bool sample = fs::is_directory(fs::path(VOYAGER_SOURCE_DIR) / "samples" / name);
+    if (!headless && !sample) continue;
+    expect_needs_none(entry.path().string(), {"libvoyager", "libtbb", "libcuda", "libcudart"});
+    ++hosts;
+  }
+  EXPECT_GE(hosts, 3);
+}
+
+}  // namespace

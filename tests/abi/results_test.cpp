@@ -1,0 +1,87 @@
+// Numbers that hosts have compiled in, and the names that go with them.
+#include <gtest/gtest.h>
+#include <voyager/voyager.h>
+
+#include <fstream>
+#include <string>
+
+namespace {
+
+struct Pinned {
+  int number;
+  VoyResult result;
+  const char* name;
+};
+#define VOYAGER_PIN(number, result) \
+  Pinned {                          \
+    number, result, #result         \
+  }
+
+TEST(Results, NumbersAndNamesArePinned) {
+  const Pinned all[] = {VOYAGER_PIN(0, VOY_SUCCESS),
+                        VOYAGER_PIN(1, VOY_INCOMPLETE),
+                        VOYAGER_PIN(-1, VOY_ERROR_INVALID_ARGUMENT),
+                        VOYAGER_PIN(-2, VOY_ERROR_INVALID_HANDLE),
+                        VOYAGER_PIN(-3, VOY_ERROR_INVALID_STRUCTURE),
+                        VOYAGER_PIN(-4, VOY_ERROR_INCOMPATIBLE_VERSION),
+                        VOYAGER_PIN(-5, VOY_ERROR_UNSUPPORTED),
+                        VOYAGER_PIN(-6, VOY_ERROR_OUT_OF_HOST_MEMORY),
+                        VOYAGER_PIN(-7, VOY_ERROR_OVER_BUDGET),
+                        VOYAGER_PIN(-8, VOY_ERROR_FILE_NOT_FOUND),
+                        VOYAGER_PIN(-9, VOY_ERROR_IO),
+                        VOYAGER_PIN(-10, VOY_ERROR_REFUSED_INPUT),
+                        VOYAGER_PIN(-11, VOY_ERROR_DAMAGED_CHUNK),
+                        VOYAGER_PIN(-12, VOY_ERROR_NO_DEVICE),
+                        VOYAGER_PIN(-13, VOY_ERROR_BUSY),
+                        VOYAGER_PIN(-14, VOY_ERROR_SCENE_DESTROYED),
+                        VOYAGER_PIN(-15, VOY_ERROR_INTERNAL)};
+  for (const Pinned& pinned : all) {
+    EXPECT_EQ(int{pinned.result}, pinned.number);
+    EXPECT_STREQ(voyResultString(pinned.result), pinned.name);
+  }
+  // None that the list above lacks: the header's next number has no name.
+  EXPECT_STREQ(voyResultString(static_cast<VoyResult>(-16)), "unknown VoyResult");
+  EXPECT_STREQ(voyResultString(static_cast<VoyResult>(2)), "unknown VoyResult");
+}
+
+TEST(Results, StructureTypesArePinned) {
+  const VoyStructureType all[] = {VOY_STRUCTURE_TYPE_DEVICE_DESC, VOY_STRUCTURE_TYPE_CAPABILITIES,
+                                  VOY_STRUCTURE_TYPE_SCENE_DESC,  VOY_STRUCTURE_TYPE_BYTE_SOURCE,
+                                  VOY_STRUCTURE_TYPE_SCENE_INFO,  VOY_STRUCTURE_TYPE_SCENE_NOTE,
+                                  VOY_STRUCTURE_TYPE_VIEW_DESC,   VOY_STRUCTURE_TYPE_TARGET_DESC,
+                                  VOY_STRUCTURE_TYPE_FRAME,       VOY_STRUCTURE_TYPE_FRAME_STATS,
+                                  VOY_STRUCTURE_TYPE_ALLOCATOR};
+  int number = 0;
+  for (const VoyStructureType type : all) EXPECT_EQ(int{type}, ++number);
+}
+
+TEST(Results, ChoicesArePinned) {
+  EXPECT_EQ(int{VOY_BACKEND_REFERENCE}, 3);
+  EXPECT_EQ(int{VOY_LOG_INFO}, 2);
+  EXPECT_EQ(int{VOY_SCENE_STORAGE_COMPACT}, 2);
+  EXPECT_EQ(int{VOY_SCENE_NOTE_DAMAGED}, 3);
+  EXPECT_EQ(int{VOY_COLOR_FORMAT_RGBA32F}, 2);
+  EXPECT_EQ(int{VOY_LOD_ALL_LEAVES}, 1);
+  EXPECT_EQ(int{VOY_SEARCH_EXHAUSTIVE}, 1);
+  EXPECT_EQ(int{VOY_EXPONENTIAL_LUT}, 3);
+  EXPECT_EQ(int{VOY_ALPHA_FILTER_OFF}, 1);
+  EXPECT_EQ(int{VOY_STAGE_COUNT}, 6);
+}
+
+TEST(Results, StageNames) {
+  const char* names[] = {"search", "project", "sort", "bin", "rasterize", "resolve"};
+  for (int i = 0; i < VOY_STAGE_COUNT; ++i)
+    EXPECT_STREQ(voyStageName(static_cast<VoyStage>(i)), names[i]);
+  EXPECT_EQ(voyStageName(VOY_STAGE_COUNT), nullptr);
+  EXPECT_EQ(voyStageName(static_cast<VoyStage>(-1)), nullptr);
+}
+
+TEST(Results, VersionIsTheVersionFiles) {
+  std::ifstream file(VOYAGER_SOURCE_DIR "/VERSION");
+  uint32_t major = 0, minor = 0, patch = 0;
+  char dot = 0;
+  ASSERT_TRUE(file >> major >> dot >> minor >> dot >> patch);
+  EXPECT_EQ(voyGetVersion(), VOY_MAKE_VERSION(major, minor, patch));
+}
+
+}  // namespace

@@ -1,0 +1,238 @@
+// The command line's contract, as a user meets it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "runtime/format/reader.h"
+#include "tests/command_line/program.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A small city, baked once for all tests.
+class CommandLine : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    ASSERT_EQ(
+        run("voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("city.ply")).exit_code,
+        0);
+    ASSERT_EQ(run("voyager bake " + file("city.ply") + " -o " + file("city.voy") +
+                  " --quality lossless --verify")
+                  .exit_code,
+              0);
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  static std::string file(const std::string& name) { return folder_->file(name); }
+  static std::string render(const std::string& scene, const std::string& rest) {
+    return "voyager render " + file(scene) + " --cameras " + file("city.cameras.json") +
+           " --size 96x54 " + rest;
+  }
+  // The refusal names what it should, on one line, with the exit code.
+  static void expect_refusal(const std::string& command, int exit_code, const std::string& names) {
+    const Outcome result = run(command);
+    EXPECT_EQ(result.exit_code, exit_code) << command << "\n" << result.output;
+    EXPECT_NE(result.output.find(names), std::string::npos) << command << "\n" << result.output;
+    EXPECT_LE(std::count(result.output.begin(), result.output.end(), '\n'), 1) << result.output;
+  }
+
+  static TempFolder* folder_;
+};
+TempFolder* CommandLine::folder_ = nullptr;
+
+TEST_F(CommandLine, SynthGivesTheSameBytesForTheSameArguments) {
+  ASSERT_EQ(
+      run("voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("again.ply")).exit_code,
+      0);
+  EXPECT_TRUE(file_bytes(file("city.ply")) == file_bytes(file("again.ply")));
+  EXPECT_TRUE(file_bytes(file("city.cameras.json")) == file_bytes(file("again.cameras.json")));
+  ASSERT_EQ(run("voyager synth city --gaussians 10000 --sh-degree 1 -o - 2>/dev/null >" +
+                file("piped.ply"))
+                .exit_code,
+            0);
+  EXPECT_TRUE(file_bytes(file("city.ply")) == file_bytes(file("piped.ply")));
+}
+
+TEST_F(CommandLine, BakeReadsStandardInput) {
+  ASSERT_EQ(
+      run("voyager bake - -o " + file("piped.voy") + " --quality lossless <" + file("city.ply"))
+          .exit_code,
+      0);
+  EXPECT_TRUE(file_bytes(file("city.voy")) == file_bytes(file("piped.voy")));
+}
+
+TEST_F(CommandLine, ExportedLeavesEqualTheInputToTheBit) {
+  ASSERT_EQ(run("voyager export " + file("city.voy") + " -o " + file("leaves.ply")).exit_code, 0);
+  EXPECT_TRUE(file_bytes(file("city.ply")) == file_bytes(file("leaves.ply")));
+}
+
+TEST_F(CommandLine, AllLeavesEqualTheFlatSceneToTheBitOnEachBackend) {
+  for (const std::string backend : {"cpu", "reference"}) {
+    const std::string rest = "--lod off --backend " + backend + " -o ";
+    ASSERT_EQ(run(render("city.voy", rest + file("leaves.pfm"))).exit_code, 0);
+    ASSERT_EQ(run(render("city.ply", rest + file("flat.pfm"))).exit_code, 0);
+    EXPECT_TRUE(file_bytes(file("leaves.pfm")) == file_bytes(file("flat.pfm"))) << backend;
+  }
+}
+
+TEST_F(CommandLine, FilterOffGivesTheSameImage) {
+  for (const std::string exponential : {"exact", "ex2", "lut"}) {
+    ASSERT_EQ(run(render("city.voy", "--exp " + exponential + " -o " + file("on.pfm"))).exit_code,
+              0);
+    ASSERT_EQ(
+        run(render("city.voy", "--exp " + exponential + " --filter off -o " + file("off.pfm")))
+            .exit_code,
+        0);
+    EXPECT_TRUE(file_bytes(file("on.pfm")) == file_bytes(file("off.pfm"))) << exponential;
+  }
+}
+
+TEST_F(CommandLine, AWalkWritesAFileAFrame) {
+  const Outcome result = run(
+      render("city.voy", "--all -o " + file("walk") + " --depth " + file("walk_depth") +
+                             " --dump-cut " + file("walk_cut") + " --stats " + file("walk.json")));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_TRUE(fs::exists(file("walk/0000.png")));
+  EXPECT_TRUE(fs::exists(file("walk/0119.png")));
+  EXPECT_TRUE(fs::exists(file("walk_depth/0119.pfm")));
+  EXPECT_TRUE(fs::exists(file("walk_cut/0119.txt")));
+
+  const auto stats = nlohmann::json::parse(file_bytes(file("walk.json")));
+  ASSERT_EQ(stats["frames"].size(), 120u);
+  for (size_t i = 1; i < 120; ++i) {
+    const auto &before = stats["frames"][i - 1], &frame = stats["frames"][i];
+    EXPECT_EQ(frame["search"], "exhaustive");
+    EXPECT_EQ(frame["nodes_tested"], frame["nodes_total"]);
+    // Nodes that entered and left account for the change of the cut.
+    EXPECT_EQ(before["cut"].get<int64_t>() + frame["entered"].get<int64_t>() -
+                  frame["left"].get<int64_t>(),
+              frame["cut"].get<int64_t>());
+    EXPECT_LE(frame["pairs_after"].get<int64_t>(), frame["pairs_before"].get<int64_t>());
+  }
+  EXPECT_EQ(stats["frames"][0]["tau_star"].get<std::string>().substr(0, 2), "0x");
+}
+
+TEST_F(CommandLine, BackendsDumpTheSameCut) {
+  for (const std::string tau : {"0", "3", "15"}) {
+    ASSERT_EQ(run(render("city.voy", "--tau " + tau + " --dump-cut " + file("cpu.txt") + " -o " +
+                                         file("a.png")))
+                  .exit_code,
+              0);
+    ASSERT_EQ(run(render("city.voy", "--tau " + tau + " --backend reference --dump-cut " +
+                                         file("reference.txt") + " -o " + file("b.png")))
+                  .exit_code,
+              0);
+    EXPECT_TRUE(file_bytes(file("cpu.txt")) == file_bytes(file("reference.txt"))) << tau;
+    EXPECT_FALSE(file_bytes(file("cpu.txt")).empty());
+  }
+}
+
+TEST_F(CommandLine, CompactIsSmallAndCutsAlike) {
+  ASSERT_EQ(run("voyager bake " + file("city.ply") + " -o " + file("compact.voy")).exit_code, 0);
+  ASSERT_EQ(run(render("city.voy", "--dump-cut " + file("lossless.txt") + " -o " + file("a.png")))
+                .exit_code,
+            0);
+  ASSERT_EQ(run(render("compact.voy", "--dump-cut " + file("compact.txt") + " -o " + file("b.png")))
+                .exit_code,
+            0);
+  EXPECT_TRUE(file_bytes(file("lossless.txt")) == file_bytes(file("compact.txt")));
+}
+
+TEST_F(CommandLine, AnInterpolatedCutIsASceneOfItsOwn) {
+  ASSERT_EQ(run("voyager export " + file("city.voy") + " -o " + file("cut.ply") + " --cut-camera " +
+                file("city.cameras.json") + " --camera 3 --size 96x54 --tau 3")
+                .exit_code,
+            0);
+  const Outcome info = run("voyager info " + file("cut.ply") + " --json");
+  ASSERT_EQ(info.exit_code, 0) << info.output;
+  ASSERT_EQ(run(render("city.voy", "--camera 3 --stats " + file("s.json") + " -o " + file("a.png")))
+                .exit_code,
+            0);
+  const auto stats = nlohmann::json::parse(file_bytes(file("s.json")));
+  EXPECT_EQ(nlohmann::json::parse(info.output)["gaussians"], stats["frames"][0]["cut"]);
+}
+
+TEST_F(CommandLine, BadUsageIsNamedAndExitsWithOne) {
+  expect_refusal("voyager", 1, "command");
+  expect_refusal("voyager fly", 1, "fly");
+  expect_refusal(render("city.voy", "--stereo -o a.png"), 1, "--stereo");
+  expect_refusal(render("city.voy", "--search temporal -o a.png"), 1, "temporal");
+  expect_refusal(render("city.voy", "--exp half2 -o a.png"), 1, "half2");
+  expect_refusal(render("city.voy", "--tau -1 -o a.png"), 1, "-1");
+  expect_refusal(render("city.voy", "--tau nan -o a.png"), 1, "nan");
+  expect_refusal(render("city.voy", "--camera 120 -o a.png"), 1, "119");
+  expect_refusal(render("city.voy", "-o a.jpg"), 1, "a.jpg");
+  expect_refusal(render("city.ply", "--dump-cut c.txt -o " + file("x.png")), 1, "--dump-cut");
+  expect_refusal(render("city.voy", "--backend reference --exp lut -o " + file("x.png")), 1,
+                 "exact");
+  expect_refusal("voyager render " + file("city.voy") + " --cameras " + file("city.cameras.json") +
+                     " --size 0x5 -o a.png",
+                 1, "0x5");
+  expect_refusal("voyager synth city --gaussians 5 -o " + file("x.ply"), 1, "5");
+  EXPECT_FALSE(fs::exists(file("x.png")));
+}
+
+TEST_F(CommandLine, RefusedInputIsNamedAndExitsWithTwo) {
+  const std::string ply = file_bytes(file("city.ply"));
+  write_bytes(file("short.ply"), ply.substr(0, ply.size() / 2));
+  expect_refusal(
+      "voyager bake " + file("short.ply") + " -o " + file("never.voy") + " 2>" + file("log"), 2,
+      "");
+  EXPECT_NE(file_bytes(file("log")).find("short.ply"), std::string::npos);
+  EXPECT_FALSE(fs::exists(file("never.voy")));
+  expect_refusal("voyager info " + file("absent.voy"), 2, "absent.voy");
+  expect_refusal("voyager info " + file("city.cameras.json"), 2, "city.cameras.json");
+
+  write_bytes(file("bad.json"), R"([{"width": 10, "height": 10, "fx": 0, "fy": 1}])");
+  expect_refusal("voyager render " + file("city.voy") + " --cameras " + file("bad.json") + " -o " +
+                     file("x.png"),
+                 2, "fx");
+  write_bytes(file("bad.json"), "[{\"width\": 10,");
+  expect_refusal("voyager render " + file("city.voy") + " --cameras " + file("bad.json") + " -o " +
+                     file("x.png"),
+                 2, "bad.json");
+}
+
+TEST_F(CommandLine, ADamagedChunkThatTheFrameNeedsExitsWithThreeAndWritesNothing) {
+  const SceneFile scene(open_file_source(file("city.voy")));
+  std::string bytes = file_bytes(file("city.voy"));
+  bytes[scene.chunks().back().offset + 100] ^= 1;  // the finest nodes
+  write_bytes(file("damaged.voy"), bytes);
+
+  expect_refusal(render("damaged.voy", "--lod off -o " + file("needs.png")), 3, "damaged.voy");
+  EXPECT_FALSE(fs::exists(file("needs.png")));
+
+  // A cut that stops above the damage is drawn as if nothing had happened.
+  ASSERT_EQ(run(render("damaged.voy", "--camera 80 --tau 200 -o " + file("coarse.pfm"))).exit_code,
+            0);
+  ASSERT_EQ(run(render("city.voy", "--camera 80 --tau 200 -o " + file("whole.pfm"))).exit_code, 0);
+  EXPECT_TRUE(file_bytes(file("coarse.pfm")) == file_bytes(file("whole.pfm")));
+}
+
+TEST_F(CommandLine, AnOutputThatCannotBeWrittenExitsWithFour) {
+  expect_refusal(render("city.voy", "-o " + file("no/such/folder.png")), 4, "no/such/folder.png");
+}
+
+TEST_F(CommandLine, HelpHasAnExampleOfEachCommand) {
+  for (const std::string command : {"synth", "bake", "export", "info", "render"}) {
+    const Outcome help = run("voyager " + command + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_NE(help.output.find("Example: voyager " + command), std::string::npos) << help.output;
+  }
+}
+
+TEST_F(CommandLine, TheSampleRendersAStill) {
+  const Outcome result = run("c_minimal " + file("city.voy") + " " + file("still.png"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_EQ(file_bytes(file("still.png")).substr(1, 3), "PNG");
+  EXPECT_NE(run("c_minimal " + file("absent.voy") + " " + file("none.png")).exit_code, 0);
+  EXPECT_FALSE(fs::exists(file("none.png")));
+}
+
+}  // namespace
+}  // namespace voyager::test

@@ -1,0 +1,42 @@
+#pragma once
+// Runs a built program and keeps what it said.
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+namespace voyager::test {
+
+struct Outcome {
+  int exit_code;
+  std::string output;  // both streams
+};
+
+inline Outcome run(const std::string& command_line) {
+  const std::string command = "( " + std::string(VOYAGER_BIN_DIR) + "/" + command_line + " ) 2>&1";
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  Outcome result{-1, ""};
+  if (pipe == nullptr) return result;
+  std::array<char, 4096> buffer;
+  for (size_t got = 0; (got = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
+    result.output.append(buffer.data(), got);
+  const int status = ::pclose(pipe);
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+inline std::string file_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return bytes.str();
+}
+
+inline void write_bytes(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+}  // namespace voyager::test

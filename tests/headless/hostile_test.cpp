@@ -1,0 +1,420 @@
+// Arguments that no sane host passes: an error with a message, no crash, and
+// everything still works afterwards. Sanitizer builds watch for the rest.
+#include <cfloat>
+#include <limits>
+
+#include "host.h"
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+
+class Hostile : public ::testing::Test {
+ protected:
+  ~Hostile() override { EXPECT_EQ(host.render(), VOY_SUCCESS) << voy.message(); }
+  void expect_refused(VoyResult found, VoyResult expected, const char* part) {
+    EXPECT_EQ(found, expected) << voy.message();
+    EXPECT_NE(voy.message().find(part), std::string::npos) << voy.message();
+  }
+  void expect_invalid(VoyResult found, const char* part) {
+    expect_refused(found, VOY_ERROR_INVALID_ARGUMENT, part);
+  }
+  VoyResult create_view(const VoyViewDesc& desc) {
+    VoyView made = nullptr;
+    const VoyResult result = voy.CreateView(host.device, &desc, &made);
+    EXPECT_EQ(result == VOY_SUCCESS, made != nullptr);
+    EXPECT_EQ(voy.DestroyView(made), VOY_SUCCESS);
+    return result;
+  }
+  VoyResult create_target(const VoyTargetDesc& desc) {
+    VoyTarget made = nullptr;
+    const VoyResult result = voy.CreateTarget(host.device, &desc, &made);
+    EXPECT_EQ(result == VOY_SUCCESS, made != nullptr);
+    EXPECT_EQ(voy.DestroyTarget(made), VOY_SUCCESS);
+    return result;
+  }
+  VoyResult create_device(const VoyDeviceDesc& desc) {
+    VoyDevice made = nullptr;
+    const VoyResult result = voy.CreateDevice(&desc, &made);
+    EXPECT_EQ(voy.DestroyDevice(made), VOY_SUCCESS);
+    return result;
+  }
+
+  Library voy;
+  Host host{voy};
+};
+
+template <class Enum>
+Enum bad_enum(int value) {
+  Enum bad;
+  std::memcpy(&bad, &value, sizeof bad);
+  return bad;
+}
+
+TEST_F(Hostile, NullEverywhere) {
+  VoyDevice device = nullptr;
+  VoyScene scene = nullptr;
+  VoyView view = nullptr;
+  VoyTarget target = nullptr;
+  uint32_t count = 0;
+  VoyCapabilities capabilities = VOY_CAPABILITIES_INIT;
+  const VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  expect_invalid(voy.CreateDevice(nullptr, &device), "VoyDeviceDesc");
+  expect_invalid(voy.CreateDevice(&desc, nullptr), "device");
+  expect_invalid(voy.OpenScene(host.device, nullptr, &scene), "VoySceneDesc");
+  expect_invalid(voy.CreateView(host.device, nullptr, &view), "VoyViewDesc");
+  expect_invalid(voy.CreateTarget(host.device, nullptr, &target), "VoyTargetDesc");
+  expect_invalid(voy.RenderFrame(host.view, nullptr), "VoyFrame");
+  expect_invalid(voy.GetCapabilities(host.device, nullptr), "VoyCapabilities");
+  expect_invalid(voy.GetSceneInfo(host.scene, nullptr), "VoySceneInfo");
+  expect_invalid(voy.GetSceneNotes(host.scene, 4, nullptr, &count), "notes");
+  expect_invalid(voy.GetSceneNotes(host.scene, 0, nullptr, nullptr), "count");
+  expect_invalid(voy.GetViewCut(host.view, 0, nullptr, nullptr), "count");
+  expect_invalid(voy.GetFrameStats(host.view, nullptr), "VoyFrameStats");
+  expect_invalid(voy.FovFromAngles(-1, 1, 1, -1, nullptr), "frustum");
+  expect_invalid(voy.FovFromIntrinsics(1, 1, 1, 1, 1, 1, nullptr), "frustum");
+  for (const VoyResult result :
+       {voy.GetCapabilities(nullptr, &capabilities), voy.GetSceneInfo(nullptr, nullptr),
+        voy.RenderFrame(nullptr, nullptr), voy.SetViewTau(nullptr, 1),
+        voy.OpenScene(nullptr, nullptr, nullptr), voy.CreateView(nullptr, nullptr, nullptr)})
+    expect_refused(result, VOY_ERROR_INVALID_HANDLE, "found NULL");
+  EXPECT_EQ(voy.DestroyDevice(nullptr), VOY_SUCCESS);
+  EXPECT_EQ(voy.DestroyScene(nullptr), VOY_SUCCESS);
+  EXPECT_EQ(voy.DestroyView(nullptr), VOY_SUCCESS);
+  EXPECT_EQ(voy.DestroyTarget(nullptr), VOY_SUCCESS);
+}
+
+TEST_F(Hostile, WrongStructureTypesAndUnknownChains) {
+  VoyDevice device = nullptr;
+  for (const int type : {0, 2, -1, 12, INT32_MAX, INT32_MIN}) {
+    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+    desc.type = bad_enum<VoyStructureType>(type);
+    expect_refused(voy.CreateDevice(&desc, &device), VOY_ERROR_INVALID_STRUCTURE, "expected 1");
+  }
+  VoyDeviceDesc chained = VOY_DEVICE_DESC_INIT;
+  chained.next = &chained;
+  expect_refused(voy.CreateDevice(&chained, &device), VOY_ERROR_INVALID_STRUCTURE, "next");
+  EXPECT_EQ(device, nullptr);
+
+  VoySceneInfo info = VOY_SCENE_INFO_INIT;
+  info.type = VOY_STRUCTURE_TYPE_FRAME;
+  EXPECT_EQ(voy.GetSceneInfo(host.scene, &info), VOY_ERROR_INVALID_STRUCTURE);
+  info.type = VOY_STRUCTURE_TYPE_SCENE_INFO;
+  info.next = &info;
+  EXPECT_EQ(voy.GetSceneInfo(host.scene, &info), VOY_ERROR_INVALID_STRUCTURE);
+  VoyCapabilities capabilities = {};
+  EXPECT_EQ(voy.GetCapabilities(host.device, &capabilities), VOY_ERROR_INVALID_STRUCTURE);
+  VoyFrameStats stats = {};
+  EXPECT_EQ(voy.GetFrameStats(host.view, &stats), VOY_ERROR_INVALID_STRUCTURE);
+  VoyViewDesc view = host.view_desc();
+  view.next = &view;
+  EXPECT_EQ(create_view(view), VOY_ERROR_INVALID_STRUCTURE);
+  VoyTargetDesc target = host.target_desc();
+  target.type = VOY_STRUCTURE_TYPE_VIEW_DESC;
+  EXPECT_EQ(create_target(target), VOY_ERROR_INVALID_STRUCTURE);
+  const VoyFrameEye eye = host.eye();
+  VoyFrame frame = Host::frame(eye);
+  frame.next = &eye;
+  EXPECT_EQ(voy.RenderFrame(host.view, &frame), VOY_ERROR_INVALID_STRUCTURE);
+  VoyAllocator allocator = {};
+  VoyDeviceDesc with_allocator = VOY_DEVICE_DESC_INIT;
+  with_allocator.allocator = &allocator;
+  EXPECT_EQ(create_device(with_allocator), VOY_ERROR_INVALID_STRUCTURE);
+  allocator.type = VOY_STRUCTURE_TYPE_ALLOCATOR;
+  EXPECT_EQ(create_device(with_allocator), VOY_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_F(Hostile, GarbageStaleAndWrongKindHandlesAreToldApart) {
+  int something = 0;
+  for (void* garbage : {static_cast<void*>(&something), reinterpret_cast<void*>(1),
+                        reinterpret_cast<void*>(UINTPTR_MAX), reinterpret_cast<void*>(0x5),
+                        reinterpret_cast<void*>(0x0000000100ffff05)})
+    expect_refused(voy.DestroyScene(static_cast<VoyScene>(garbage)), VOY_ERROR_INVALID_HANDLE,
+                   "no handle of this library");
+  const auto as_scene = static_cast<VoyScene>(static_cast<void*>(host.view));
+  expect_refused(voy.DestroyScene(as_scene), VOY_ERROR_INVALID_HANDLE, "found a view handle");
+  const auto as_view = static_cast<VoyView>(static_cast<void*>(host.target));
+  EXPECT_EQ(voy.SetViewTau(as_view, 1), VOY_ERROR_INVALID_HANDLE);
+  // Every single-bit change of a handle is another handle or none.
+  for (int bit = 0; bit < 64; ++bit) {
+    const auto changed = reinterpret_cast<uintptr_t>(host.view) ^ (uintptr_t{1} << bit);
+    EXPECT_EQ(voy.SetViewTau(reinterpret_cast<VoyView>(changed), 1), VOY_ERROR_INVALID_HANDLE);
+  }
+  VoyViewDesc desc = host.view_desc();
+  VoyView view = nullptr, again = nullptr;
+  ASSERT_EQ(voy.CreateView(host.device, &desc, &view), VOY_SUCCESS);
+  ASSERT_EQ(voy.DestroyView(view), VOY_SUCCESS);
+  expect_refused(voy.SetViewTau(view, 1), VOY_ERROR_INVALID_HANDLE, "destroyed");
+  EXPECT_EQ(voy.DestroyView(view), VOY_ERROR_INVALID_HANDLE);
+  ASSERT_EQ(voy.CreateView(host.device, &desc, &again), VOY_SUCCESS);
+  EXPECT_NE(view, again);
+  EXPECT_EQ(voy.SetViewTau(view, 1), VOY_ERROR_INVALID_HANDLE);
+  EXPECT_EQ(voy.DestroyView(again), VOY_SUCCESS);
+}
+
+TEST_F(Hostile, ChildrenDoNotOutliveTheirParents) {
+  Host other(voy);
+  ASSERT_EQ(other.render(), VOY_SUCCESS);
+  ASSERT_EQ(voy.DestroyScene(other.scene), VOY_SUCCESS);
+  VoyFrameStats stats = {};
+  stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+  expect_refused(other.render(), VOY_ERROR_SCENE_DESTROYED, "scene was destroyed");
+  EXPECT_EQ(voy.GetFrameStats(other.view, &stats), VOY_ERROR_SCENE_DESTROYED);
+  EXPECT_EQ(voy.SetViewTau(other.view, 1), VOY_ERROR_SCENE_DESTROYED);
+  const VoyViewDesc desc = other.view_desc();
+  VoyView view = nullptr;
+  EXPECT_EQ(voy.CreateView(other.device, &desc, &view), VOY_ERROR_INVALID_HANDLE);
+  EXPECT_EQ(voy.DestroyView(other.view), VOY_SUCCESS);
+
+  ASSERT_EQ(voy.DestroyDevice(other.device), VOY_SUCCESS);
+  EXPECT_EQ(voy.DestroyTarget(other.target), VOY_ERROR_INVALID_HANDLE);
+  EXPECT_EQ(voy.DestroyDevice(other.device), VOY_ERROR_INVALID_HANDLE);
+  other.device = nullptr;
+}
+
+TEST_F(Hostile, ObjectsOfAnotherDevice) {
+  Host other(voy);
+  VoyFrameEye eye = host.eye();
+  eye.target = other.target;
+  expect_invalid(host.render(eye), "another device");
+  VoyViewDesc desc = host.view_desc();
+  desc.scenes = &other.scene;
+  expect_invalid(create_view(desc), "another device");
+}
+
+TEST_F(Hostile, DeviceChoices) {
+  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  for (const uint32_t version :
+       {0xffffffffu, VOY_MAKE_VERSION(0, 2, 0), VOY_MAKE_VERSION(1, 0, 0)}) {
+    desc.apiVersion = version;
+    expect_refused(create_device(desc), VOY_ERROR_INCOMPATIBLE_VERSION, "0.1.0");
+  }
+  desc.apiVersion = VOY_MAKE_VERSION(0, 1, 7);
+  EXPECT_EQ(create_device(desc), VOY_SUCCESS);
+  desc.backend = VOY_BACKEND_CUDA;
+  expect_refused(create_device(desc), VOY_ERROR_NO_DEVICE, "no CUDA backend");
+  EXPECT_EQ(voy.QueryBackend(VOY_BACKEND_CUDA), VOY_ERROR_NO_DEVICE);
+  for (const int backend : {-1, 4, INT32_MAX, INT32_MIN}) {
+    desc.backend = bad_enum<VoyBackend>(backend);
+    expect_invalid(create_device(desc), "backend");
+    expect_invalid(voy.QueryBackend(bad_enum<VoyBackend>(backend)), "backend");
+  }
+  desc = VOY_DEVICE_DESC_INIT;
+  uint8_t uuid[16] = {};
+  desc.deviceUuid = uuid;
+  EXPECT_EQ(create_device(desc), VOY_SUCCESS);
+  uuid[15] = 1;
+  expect_refused(create_device(desc), VOY_ERROR_NO_DEVICE, "deviceUuid");
+  desc = VOY_DEVICE_DESC_INIT;
+  desc.workerThreads = UINT32_MAX;
+  expect_invalid(create_device(desc), "workerThreads");
+  desc.workerThreads = 0;
+  desc.logLevel = bad_enum<VoyLogLevel>(3);
+  expect_invalid(create_device(desc), "logLevel");
+}
+
+TEST_F(Hostile, ViewSizesAndChoices) {
+  const auto with = [&](auto&& change) {
+    VoyViewDesc desc = host.view_desc();
+    change(desc);
+    return create_view(desc);
+  };
+  EXPECT_EQ(with([](VoyViewDesc&) {}), VOY_SUCCESS) << voy.message();
+  expect_invalid(with([](VoyViewDesc& d) { d.instanceCount = 0; }), "instanceCount");
+  expect_invalid(with([](VoyViewDesc& d) { d.scenes = nullptr; }), "scenes");
+  for (const uint32_t count : {2u, UINT32_MAX}) {
+    expect_refused(with([&](VoyViewDesc& d) { d.instanceCount = count, d.scenes = nullptr; }),
+                   VOY_ERROR_UNSUPPORTED, "instanceCount");
+    expect_refused(with([&](VoyViewDesc& d) { d.eyeCount = count; }), VOY_ERROR_UNSUPPORTED,
+                   "eyeCount");
+  }
+  expect_invalid(with([](VoyViewDesc& d) { d.eyeCount = 0; }), "eyeCount");
+  for (const uint32_t size : {0u, 16385u, UINT32_MAX}) {
+    expect_invalid(with([&](VoyViewDesc& d) { d.maxWidth = size; }), "maxWidth");
+    expect_invalid(with([&](VoyViewDesc& d) { d.maxHeight = size; }), "maxHeight");
+  }
+  for (const double tau : {kNan, kInf, -kInf, -1e-9}) {
+    expect_invalid(with([&](VoyViewDesc& d) { d.tau = tau; }), "tau");
+    expect_invalid(voy.SetViewTau(host.view, tau), "tau");
+  }
+  for (const int choice : {-1, 9, INT32_MAX}) {
+    expect_invalid(with([&](VoyViewDesc& d) { d.lod = bad_enum<VoyLod>(choice); }), "lod");
+    expect_invalid(with([&](VoyViewDesc& d) { d.search = bad_enum<VoySearch>(choice); }), "search");
+    expect_invalid(with([&](VoyViewDesc& d) { d.alphaFilter = bad_enum<VoyAlphaFilter>(choice); }),
+                   "alphaFilter");
+    expect_invalid(with([&](VoyViewDesc& d) { d.exponential = bad_enum<VoyExponential>(choice); }),
+                   "exponential");
+  }
+  expect_invalid(with([](VoyViewDesc& d) { d.lutSize = 4097; }), "lutSize");
+  expect_invalid(with([](VoyViewDesc& d) { d.reserved = 1; }), "reserved");
+}
+
+TEST_F(Hostile, TargetSizesAndPitches) {
+  const auto with = [&](auto&& change) {
+    VoyTargetDesc desc = host.target_desc();
+    change(desc);
+    return create_target(desc);
+  };
+  const auto misaligned = [](auto* pointer) {
+    return reinterpret_cast<decltype(pointer)>(reinterpret_cast<uintptr_t>(pointer) + 1);
+  };
+  EXPECT_EQ(with([](VoyTargetDesc&) {}), VOY_SUCCESS) << voy.message();
+  for (const uint32_t size : {0u, 16385u, UINT32_MAX}) {
+    expect_invalid(with([&](VoyTargetDesc& d) { d.width = size; }), "width");
+    expect_invalid(with([&](VoyTargetDesc& d) { d.height = size; }), "height");
+  }
+  const uint64_t packed = uint64_t{16} * Host::kWidth;
+  for (const uint64_t pitch : {uint64_t{1}, packed - 4, packed + 1, UINT64_MAX, UINT64_MAX - 3,
+                               UINT64_MAX / Host::kHeight - 3}) {
+    expect_invalid(with([&](VoyTargetDesc& d) { d.colorRowPitch = pitch; }), "colorRowPitch");
+    if (pitch > packed || pitch == 1)
+      expect_invalid(with([&](VoyTargetDesc& d) { d.depthRowPitch = pitch; }), "depthRowPitch");
+  }
+  expect_invalid(with([](VoyTargetDesc& d) { d.color = nullptr; }), "color");
+  expect_invalid(with([](VoyTargetDesc& d) { d.colorFormat = VOY_COLOR_FORMAT_NONE; }), "color");
+  expect_invalid(with([](VoyTargetDesc& d) {
+                   d.colorFormat = VOY_COLOR_FORMAT_NONE;
+                   d.color = nullptr;
+                   d.depth = nullptr;
+                 }),
+                 "neither");
+  expect_invalid(with([&](VoyTargetDesc& d) { d.color = misaligned(static_cast<char*>(d.color)); }),
+                 "aligned");
+  expect_invalid(with([&](VoyTargetDesc& d) { d.depth = misaligned(d.depth); }), "aligned");
+  for (const int choice : {-1, 3, INT32_MAX})
+    expect_invalid(
+        with([&](VoyTargetDesc& d) { d.colorFormat = bad_enum<VoyColorFormat>(choice); }),
+        "colorFormat");
+  expect_invalid(with([](VoyTargetDesc& d) { d.kind = bad_enum<VoyTargetKind>(1); }), "kind");
+}
+
+TEST_F(Hostile, PosesAndFrusta) {
+  const std::vector<float> before = host.pixels;
+  const auto with = [&](auto&& change) {
+    VoyFrameEye eye = host.eye();
+    change(eye);
+    return host.render(eye);
+  };
+  for (const double bad : {kNan, kInf, -kInf, 1e18, -DBL_MAX})
+    for (int i = 0; i < 3; ++i)
+      expect_invalid(with([&](VoyFrameEye& e) { e.pose.position[i] = bad; }), "position");
+  for (const double bad : {kNan, kInf, -kInf})
+    for (int i = 0; i < 4; ++i)
+      expect_invalid(with([&](VoyFrameEye& e) { e.pose.orientation[i] = bad; }), "orientation");
+  expect_invalid(with([](VoyFrameEye& e) { e.pose.orientation[3] = 0; }), "orientation");
+  for (const double bad : {kNan, kInf, 1e5})
+    for (double VoyFrustum::*side :
+         {&VoyFrustum::left, &VoyFrustum::right, &VoyFrustum::up, &VoyFrustum::down})
+      expect_invalid(with([&](VoyFrameEye& e) { e.frustum.*side = bad; }), "frustum");
+  expect_invalid(with([](VoyFrameEye& e) { std::swap(e.frustum.left, e.frustum.right); }), "left");
+  expect_invalid(with([](VoyFrameEye& e) { std::swap(e.frustum.up, e.frustum.down); }), "down");
+  expect_invalid(with([](VoyFrameEye& e) { e.frustum.left = e.frustum.right; }), "left");
+  EXPECT_EQ(host.pixels, before) << "a refused frame wrote to the target";
+  // Any length will do, down to the smallest and up to the largest.
+  ASSERT_EQ(host.render(), VOY_SUCCESS);
+  const std::vector<float> image = host.pixels;
+  for (const double length : {5e-324, 1e-200, 7.0, DBL_MAX}) {
+    ASSERT_EQ(with([&](VoyFrameEye& e) { e.pose.orientation[3] = length; }), VOY_SUCCESS);
+    EXPECT_EQ(host.pixels, image) << length;
+  }
+}
+
+TEST_F(Hostile, Frames) {
+  const VoyFrameEye eye = host.eye();
+  const auto with = [&](auto&& change) {
+    VoyFrame frame = Host::frame(eye);
+    change(frame);
+    return voy.RenderFrame(host.view, &frame);
+  };
+  for (const uint32_t count : {0u, 2u, UINT32_MAX})
+    expect_invalid(with([&](VoyFrame& f) { f.eyeCount = count; }), "eyeCount");
+  expect_invalid(with([](VoyFrame& f) { f.eyes = nullptr; }), "eyes");
+  for (const double z : {0.0, -1.0, kNan, kInf})
+    expect_invalid(with([&](VoyFrame& f) { f.nearZ = z; }), "nearZ");
+  for (const double value : {kNan, kInf})
+    for (int i = 0; i < 3; ++i)
+      expect_invalid(with([&](VoyFrame& f) { f.background[i] = static_cast<float>(value); }),
+                     "background");
+  expect_invalid(with([](VoyFrame& f) { f.reserved = 1; }), "reserved");
+
+  VoyInstancePose instance = {{{0, 0, 0}, {0, 0, 0, -2}}, 1};
+  const auto with_instance = [&] { return with([&](VoyFrame& f) { f.instances = &instance; }); };
+  EXPECT_EQ(with_instance(), VOY_SUCCESS) << voy.message();
+  for (const double scale : {0.0, -1.0, kNan, kInf}) {
+    instance.scale = scale;
+    expect_invalid(with_instance(), "scale");
+  }
+  instance.scale = 2;
+  expect_refused(with_instance(), VOY_ERROR_UNSUPPORTED, "instances[0]");
+  instance.scale = 1;
+  instance.pose.position[1] = 1e-300;
+  expect_refused(with_instance(), VOY_ERROR_UNSUPPORTED, "instances[0]");
+}
+
+TEST_F(Hostile, TargetLargerThanTheView) {
+  VoyViewDesc desc = host.view_desc();
+  desc.maxWidth = Host::kWidth - 1;
+  VoyView small = nullptr;
+  ASSERT_EQ(voy.CreateView(host.device, &desc, &small), VOY_SUCCESS);
+  const VoyFrameEye eye = host.eye();
+  const VoyFrame frame = Host::frame(eye);
+  expect_invalid(voy.RenderFrame(small, &frame), "95 x 64");
+}
+
+TEST_F(Hostile, QueriesBeforeAnyFrameAndWithoutACut) {
+  VoyFrameStats stats = {};
+  stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+  expect_invalid(voy.GetFrameStats(host.view, &stats), "no frame");
+  uint32_t count = 77;
+  expect_refused(voy.GetViewCut(host.view, 0, nullptr, &count), VOY_ERROR_UNSUPPORTED, "cut");
+  EXPECT_EQ(count, 77u);
+  VoySceneNote note = {};
+  ASSERT_EQ(voy.GetSceneNotes(host.scene, 0, nullptr, &count), VOY_SUCCESS);
+  ASSERT_GT(count, 1u);
+  EXPECT_EQ(voy.GetSceneNotes(host.scene, 1, &note, &count), VOY_INCOMPLETE);
+  EXPECT_EQ(note.type, VOY_STRUCTURE_TYPE_SCENE_NOTE);
+  EXPECT_NE(note.what[0], '\0');
+}
+
+TEST_F(Hostile, FovHelpers) {
+  VoyFrustum f = {1, 2, 3, 4};
+  for (const double bad : {kNan, kInf, 1.5707963267948968, -3.0}) {
+    expect_invalid(voy.FovFromAngles(bad, 1, 1, -1, &f), "left");
+    expect_invalid(voy.FovFromIntrinsics(kNan, 1, 1, 1, 1, 1, &f), "fx");
+  }
+  expect_invalid(voy.FovFromAngles(1, 1, 1, -1, &f), "left");
+  expect_invalid(voy.FovFromIntrinsics(1, 0, 1, 1, 1, 1, &f), "fy");
+  EXPECT_EQ(f.left, 1) << "a refused call wrote its output";
+  ASSERT_EQ(voy.FovFromIntrinsics(500, 400, 320, 250, 640, 480, &f), VOY_SUCCESS);
+  EXPECT_EQ(f.left, -0.64);
+  EXPECT_EQ(f.right, 0.64);
+  EXPECT_EQ(f.up, 0.625);
+  EXPECT_EQ(f.down, -0.575);
+  ASSERT_EQ(voy.FovFromAngles(-0.5, 0.6, 0.7, -0.8, &f), VOY_SUCCESS);
+  EXPECT_EQ(f.right, std::tan(0.6));
+}
+
+TEST_F(Hostile, EmptyAndNonsenseScenes) {
+  VoyScene scene = nullptr;
+  VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+  const auto open = [&] { return voy.OpenScene(host.device, &desc, &scene); };
+  expect_invalid(open(), "neither");
+  VoyByteSource source = host.bytes.source();
+  desc.source = &source;
+  desc.path = "x";
+  expect_invalid(open(), "both");
+  desc.path = nullptr;
+  source.read = nullptr;
+  expect_invalid(open(), "read");
+  desc.source = nullptr;
+  for (const char* path : {"", "/nonexistent/scene.voy"}) {
+    desc.path = path;
+    EXPECT_EQ(open(), VOY_ERROR_FILE_NOT_FOUND) << voy.message();
+  }
+  desc.path = "/";
+  EXPECT_EQ(open(), VOY_ERROR_IO) << voy.message();
+  EXPECT_EQ(scene, nullptr);
+}
+
+}  // namespace

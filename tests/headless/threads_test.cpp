@@ -1,0 +1,175 @@
+// Hosts with threads, and hosts that change the floating-point mode.
+#include <cfenv>
+#include <thread>
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#endif
+
+#include "host.h"
+
+namespace {
+
+TEST(Threads, AViewIsBusyOrAnswers) {
+  const Library voy;
+  Host host(voy, VOY_DEVICE_DESC_INIT, 1000);
+  std::atomic<int> drawn{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (int i = 0; i < 50; ++i) {
+        const VoyResult result = host.render();
+        EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_BUSY) << voy.message();
+        drawn += result == VOY_SUCCESS;
+        const VoyResult set = voy.SetViewTau(host.view, 3);
+        EXPECT_TRUE(set == VOY_SUCCESS || set == VOY_ERROR_BUSY) << voy.message();
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GT(drawn, 0);
+  EXPECT_EQ(host.render(), VOY_SUCCESS);
+}
+
+TEST(Threads, ViewsOfOneSceneRenderSideBySide) {
+  const Library voy;
+  Host host(voy, VOY_DEVICE_DESC_INIT, 1000);
+  ASSERT_EQ(host.render(), VOY_SUCCESS);
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      std::vector<float> pixels(host.pixels.size());
+      VoyTargetDesc target_desc = host.target_desc();
+      target_desc.color = pixels.data();
+      target_desc.depth = nullptr;
+      const VoyViewDesc view_desc = host.view_desc();
+      VoyView view = nullptr;
+      VoyFrameEye eye = host.eye();
+      EXPECT_EQ(voy.CreateTarget(host.device, &target_desc, &eye.target), VOY_SUCCESS);
+      EXPECT_EQ(voy.CreateView(host.device, &view_desc, &view), VOY_SUCCESS);
+      const VoyFrame frame = Host::frame(eye);
+      for (int i = 0; i < 20; ++i) EXPECT_EQ(voy.RenderFrame(view, &frame), VOY_SUCCESS);
+      EXPECT_EQ(pixels, host.pixels);
+    });
+  for (std::thread& thread : threads) thread.join();
+}
+
+TEST(Threads, DestructionWaitsForCallsInFlight) {
+  const Library voy;
+  for (int round = 0; round < 20; ++round) {
+    Host host(voy, VOY_DEVICE_DESC_INIT, 500);
+    std::atomic<bool> started{false};
+    std::thread renderer([&] {
+      VoyResult result = VOY_SUCCESS;
+      while (result == VOY_SUCCESS || result == VOY_ERROR_BUSY) {
+        result = host.render();
+        started = true;
+      }
+      EXPECT_TRUE(result == VOY_ERROR_INVALID_HANDLE || result == VOY_ERROR_SCENE_DESTROYED)
+          << voy.message();
+    });
+    while (!started) std::this_thread::yield();
+    if (round % 2 == 0) {
+      EXPECT_EQ(voy.DestroyDevice(host.device), VOY_SUCCESS);
+      // The target's memory is the host's again, though the renderer still tries.
+      std::fill(host.pixels.begin(), host.pixels.end(), 0.0f);
+      host.device = nullptr;
+    } else {
+      EXPECT_EQ(voy.DestroyScene(host.scene), VOY_SUCCESS);
+    }
+    renderer.join();
+  }
+}
+
+TEST(Threads, MessagesAreEachThreadsOwn) {
+  const Library voy;
+  EXPECT_EQ(voy.message(), "");
+  EXPECT_EQ(voy.SetViewTau(nullptr, 1), VOY_ERROR_INVALID_HANDLE);
+  const std::string mine = voy.message();
+  std::thread([&] {
+    EXPECT_EQ(voy.message(), "");
+    EXPECT_NE(voy.CreateDevice(nullptr, nullptr), VOY_SUCCESS);
+    EXPECT_NE(voy.message(), mine);
+  }).join();
+  EXPECT_EQ(voy.message(), mine);
+}
+
+struct LogRecord {
+  std::thread::id thread = std::this_thread::get_id();
+  int count[3] = {};
+  static void write(void* user, VoyLogLevel level, const char* message) {
+    auto* self = static_cast<LogRecord*>(user);
+    EXPECT_EQ(std::this_thread::get_id(), self->thread);
+    EXPECT_NE(message, nullptr);
+    ++self->count[level];
+  }
+};
+
+TEST(Threads, LogFollowsItsLevelOnTheCallingThread) {
+  const Library voy;
+  for (const VoyLogLevel level : {VOY_LOG_ERROR, VOY_LOG_WARNING, VOY_LOG_INFO}) {
+    LogRecord record;
+    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+    desc.log = LogRecord::write;
+    desc.logUser = &record;
+    desc.logLevel = level;
+    {
+      Host host(voy, desc);
+      ASSERT_EQ(host.render(), VOY_SUCCESS);
+      EXPECT_EQ(record.count[VOY_LOG_ERROR], 0);
+      EXPECT_EQ(record.count[VOY_LOG_INFO] > 0, level == VOY_LOG_INFO);
+      EXPECT_NE(voy.SetViewTau(host.view, -1), VOY_SUCCESS);
+    }
+    EXPECT_EQ(record.count[VOY_LOG_ERROR], 1);
+  }
+}
+
+class HostMode {
+ public:
+  HostMode() {
+    std::fesetround(FE_TOWARDZERO);
+#if defined(__SSE2__)
+    _mm_setcsr(_mm_getcsr() | 0x8040);  // flush to zero, denormals are zero
+    set_ = mode();
+#endif
+  }
+  ~HostMode() {
+#if defined(__SSE2__)
+    EXPECT_EQ(mode(), set_) << "the call left another mode than it found";
+#endif
+    EXPECT_EQ(std::fegetround(), FE_TOWARDZERO);
+    std::fesetenv(FE_DFL_ENV);
+  }
+
+ private:
+#if defined(__SSE2__)
+  static unsigned mode() {
+    return _mm_getcsr() & ~0x3fu;
+  }
+  unsigned set_ = 0;
+#endif
+};
+
+TEST(FloatingPointMode, ImagesAreTheSameAndTheModeIsKept) {
+  const Library voy;
+  Host plain(voy, VOY_DEVICE_DESC_INIT, 2000);
+  VoyFrameEye eye = plain.eye(3, 0.2);
+  ASSERT_EQ(plain.render(eye), VOY_SUCCESS);
+  const std::vector<float> pixels = plain.pixels, depth = plain.depth;
+
+  const VoyByteSource source = plain.bytes.source();
+  VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+  desc.source = &source;
+  VoyView view = nullptr;
+  {
+    const HostMode mode;
+    EXPECT_EQ(voy.OpenScene(plain.device, &desc, &plain.scene), VOY_SUCCESS);
+    const VoyViewDesc view_desc = plain.view_desc();
+    EXPECT_EQ(voy.CreateView(plain.device, &view_desc, &view), VOY_SUCCESS);
+    const VoyFrame frame = Host::frame(eye);
+    EXPECT_EQ(voy.RenderFrame(view, &frame), VOY_SUCCESS);
+    EXPECT_LT(voy.SetViewTau(view, -1), 0);
+  }
+  EXPECT_EQ(plain.pixels, pixels);
+  EXPECT_EQ(plain.depth, depth);
+}
+
+}  // namespace

@@ -1,0 +1,124 @@
+// What every tree must satisfy, over random and degenerate clouds.
+#include <cstring>
+
+#include "runtime/lod/summarise.h"
+#include "runtime/lod/validate.h"
+#include "tests/support/tree_clouds.h"
+
+namespace voyager {
+namespace {
+
+template <class T>
+bool same_bits(const std::pmr::vector<T>& a, const std::pmr::vector<T>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+void expect_identical(const BakedScene& a, const BakedScene& b) {
+  EXPECT_TRUE(same_bits(a.tree.records, b.tree.records));
+  EXPECT_TRUE(same_bits(a.tree.first_child, b.tree.first_child));
+  EXPECT_TRUE(same_bits(a.tree.parent, b.tree.parent));
+  EXPECT_TRUE(same_bits(a.gaussian, b.gaussian));
+  EXPECT_TRUE(same_bits(a.axis_code, b.axis_code));
+  EXPECT_TRUE(same_bits(a.merged.position, b.merged.position));
+  EXPECT_TRUE(same_bits(a.merged.log_scale, b.merged.log_scale));
+  EXPECT_TRUE(same_bits(a.merged.rotation, b.merged.rotation));
+  EXPECT_TRUE(same_bits(a.merged.opacity, b.merged.opacity));
+  EXPECT_TRUE(same_bits(a.merged.sh, b.merged.sh));
+}
+
+TEST(Tree, IsSoundForEveryCloud) {
+  Workers workers(2);
+  for (test::NamedCloud& named : test::all_clouds()) {
+    const BakedScene baked = build_tree(std::move(named.cloud), workers);
+    for (const std::string& message : validate(baked))
+      ADD_FAILURE() << named.name << ": " << message;
+  }
+}
+
+TEST(Tree, EveryGaussianIsExactlyOneLeaf) {
+  Workers workers(2);
+  for (test::NamedCloud& named : test::all_clouds()) {
+    const size_t count = named.cloud.size();
+    const BakedScene baked = build_tree(std::move(named.cloud), workers);
+    std::vector<int> seen(count);
+    for (uint32_t n = 0; n < baked.tree.size(); ++n)
+      if (baked.tree.is_leaf(n)) ++seen.at(baked.gaussian[n]);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(count))
+        << named.name;
+  }
+}
+
+TEST(Tree, DoesNotDependOnThreads) {
+  for (const test::NamedCloud& named : test::all_clouds()) {
+    Workers one(1), two(2), five(5);
+    const BakedScene baked = build_tree(named.cloud, one);
+    SCOPED_TRACE(named.name);
+    expect_identical(baked, build_tree(named.cloud, two));
+    expect_identical(baked, build_tree(named.cloud, five));
+  }
+}
+
+TEST(Tree, DoesNotDependOnTheCallersFloatingPointMode) {
+  Workers workers(2);
+  const GaussianCloud cloud = test::random_cloud(1000, 12);
+  const BakedScene baked = build_tree(cloud, workers);
+  std::fenv_t saved;
+  std::fegetenv(&saved);
+  std::fesetround(FE_UPWARD);
+  const BakedScene upward = build_tree(cloud, workers);
+  std::fesetenv(&saved);
+  expect_identical(baked, upward);
+}
+
+TEST(Tree, SizeNeverGrowsFromParentToChild) {
+  Workers workers(2);
+  std::mt19937 random(3);
+  for (test::NamedCloud& named : test::all_clouds()) {
+    const BakedScene baked = build_tree(std::move(named.cloud), workers);
+    const LodTree& tree = baked.tree;
+    std::vector<Vec3f> centres = {{0, 0, 0}, {1e17f, -1e17f, 3e16f}, {-9.9e17f, 9.9e17f, 9.9e17f}};
+    for (int i = 0; i < 10; ++i) {
+      const NodeRecord& r = tree.records[random() % tree.size()];
+      const Vec3f middle = 0.5f * (r.box_min + r.box_max);
+      centres.push_back(middle);                             // inside
+      centres.push_back({r.box_max.x, middle.y, middle.z});  // on a face
+      centres.push_back(
+          {middle.x, std::nextafter(r.box_min.y, -1e30f), middle.z});  // an ulp outside
+      centres.push_back(3.0f * r.box_max - 2.0f * r.box_min);          // outside
+    }
+    for (const Vec3f& c : centres)
+      for (uint32_t n = 1; n < tree.size(); ++n)
+        ASSERT_LE(tree.screen_size(n, c), tree.screen_size(tree.parent[n], c))
+            << named.name << ", node " << n;
+  }
+}
+
+TEST(Tree, OpacityTimesSurfaceTelescopes) {
+  // The root's weight is the sum over all leaves: one rounding of an opacity a level.
+  Workers workers(2);
+  for (const size_t count : {5, 1000, 20000}) {
+    const BakedScene baked = build_tree(test::random_cloud(count, 5), workers);
+    double leaves = 0.0;
+    for (uint32_t n = 0; n < baked.tree.size(); ++n)
+      if (baked.tree.is_leaf(n)) leaves += merge_weight(node_gaussian(n, baked).gaussian);
+    EXPECT_NEAR(merge_weight(node_gaussian(0, baked).gaussian) / leaves, 1.0, 2e-6) << count;
+  }
+}
+
+TEST(Tree, MeansStayInsideTheBoxes) {
+  // A weighted mean of children lies in their hull, up to its rounding.
+  Workers workers(2);
+  const BakedScene baked = build_tree(test::random_cloud(5000, 6), workers);
+  for (uint32_t n = 0; n < baked.tree.size(); ++n) {
+    const Vec3f mean = node_gaussian(n, baked).gaussian.mean;
+    const NodeRecord& r = baked.tree.records[n];
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_GE(mean[axis], r.box_min[axis] - 1e-5f);
+      EXPECT_LE(mean[axis], r.box_max[axis] + 1e-5f);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace voyager

@@ -1,0 +1,136 @@
+#pragma once
+// Files in memory for the tests of importers and writers.
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cstring>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "runtime/base/error.h"
+#include "runtime/scene/export/writer.h"
+#include "runtime/scene/import/importer.h"
+
+namespace voyager::test {
+
+using Bytes = std::vector<std::byte>;
+
+inline Bytes bytes_of(const std::string& text) {
+  const auto view = std::as_bytes(std::span(text));
+  return Bytes(view.begin(), view.end());
+}
+
+template <class T>
+void put(Bytes& bytes, T value) {
+  const size_t at = bytes.size();
+  bytes.resize(at + sizeof value);
+  std::memcpy(bytes.data() + at, &value, sizeof value);
+}
+
+class BytesSink final : public ByteSink {
+ public:
+  void write(std::span<const std::byte> more) override {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  }
+  Bytes bytes;
+};
+
+// A stream that cannot say how long it is.
+class PipeReader final : public ByteReader {
+ public:
+  explicit PipeReader(std::span<const std::byte> bytes)
+      : source_("pipe", bytes), inner_(read_source(source_)) {}
+  const std::string& name() const override { return source_.name(); }
+  size_t read(std::span<std::byte> into) override { return inner_->read(into); }
+  std::optional<uint64_t> remaining() const override { return std::nullopt; }
+  uint64_t offset() const override { return inner_->offset(); }
+
+ private:
+  MemorySource source_;
+  std::unique_ptr<ByteReader> inner_;
+};
+
+inline GaussianCloud import_bytes(const Bytes& bytes, const ImportOptions& options = {}) {
+  const MemorySource source("sample.bin", bytes);
+  return import_gaussians(*read_source(source), options);
+}
+
+inline GaussianCloud import_piped(const Bytes& bytes, const ImportOptions& options = {}) {
+  PipeReader reader(bytes);
+  return import_gaussians(reader, options);
+}
+
+inline GaussianCloud import_file(const std::string& path) {
+  const auto source = open_file_source(path);
+  return import_gaussians(*read_source(*source));
+}
+
+// The message of the refusal, or "" where `work` succeeded or failed otherwise.
+inline std::string refusal_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.code() == ErrorCode::refused_input ? error.what() : "";
+  }
+  return "";
+}
+
+// Expects that both a source of known length and a pipe refuse the bytes, and
+// that both messages name the file, a place, and `field`.
+inline void expect_refused(const Bytes& bytes, const std::string& field, const std::string& what) {
+  const std::string known = refusal_of([&] { import_bytes(bytes); });
+  const std::string piped = refusal_of([&] { import_piped(bytes); });
+  for (const std::string& message : {known, piped})
+    for (const std::string& part :
+         {std::string("offset "), std::string("found "), std::string("expected "), field})
+      EXPECT_NE(message.find(part), std::string::npos)
+          << what << ": " << part << " in: " << message;
+  EXPECT_EQ(known.rfind("sample.bin", 0), 0u) << known;
+}
+
+inline Bytes gzip(const Bytes& plain) {
+  z_stream stream = {};
+  deflateInit2(&stream, 6, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
+  Bytes out(deflateBound(&stream, plain.size()) + 64), in = plain;
+  stream.next_in = reinterpret_cast<Bytef*>(in.data());
+  stream.avail_in = static_cast<uInt>(in.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  return out;
+}
+
+// Version 1 to 3 without gzip: `count` Gaussians whose codes run through all bytes.
+inline Bytes planar_spz(uint32_t version, uint32_t count, int sh_degree, uint8_t flags = 0) {
+  Bytes bytes;
+  put<uint32_t>(bytes, 0x5053474e);
+  put<uint32_t>(bytes, version);
+  put<uint32_t>(bytes, count);
+  for (const int field : {sh_degree, 12, int{flags}, 0})
+    put<uint8_t>(bytes, static_cast<uint8_t>(field));
+  const size_t width = (version == 1 ? 6u : 9u) + 1 + 3 + 3 + (version < 3 ? 3u : 4u) +
+                       3u * static_cast<unsigned>((sh_degree + 1) * (sh_degree + 1) - 1);
+  for (size_t i = 0; i < width * count; ++i) put<uint8_t>(bytes, static_cast<uint8_t>(i * 37 + 11));
+  return bytes;
+}
+
+inline Bytes spz_v4(const GaussianCloud& cloud) {
+  BytesSink sink;
+  const auto writer = write_spz(sink, cloud.size(), cloud.sh_degree);
+  writer->append(cloud);
+  writer->finish();
+  return sink.bytes;
+}
+
+inline Bytes ply_of(const GaussianCloud& cloud, bool double_positions = false) {
+  BytesSink sink;
+  const auto writer = write_ply(sink, cloud.size(), cloud.sh_degree, double_positions);
+  writer->append(cloud);
+  writer->finish();
+  return sink.bytes;
+}
+
+}  // namespace voyager::test

@@ -1,0 +1,72 @@
+#pragma once
+// .voy files for tests: baked from a cloud, as bytes, with a byte changed.
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "runtime/base/error.h"
+#include "runtime/format/reader.h"
+#include "runtime/format/writer.h"
+#include "runtime/lod/build.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::test {
+
+using Bytes = std::vector<std::byte>;
+
+inline Bytes file_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::vector<char> chars{std::istreambuf_iterator<char>(file),
+                                std::istreambuf_iterator<char>()};
+  const auto* first = reinterpret_cast<const std::byte*>(chars.data());
+  return Bytes(first, first + chars.size());
+}
+
+inline BakedScene bake(const GaussianCloud& cloud) {
+  Workers workers;
+  return build_tree(cloud, workers);
+}
+
+inline Bytes scene_bytes(const BakedScene& baked, Quality quality, unsigned threads = 0) {
+  const TempFolder folder;
+  Workers workers(threads);
+  write_scene_file(baked, folder.file("scene.voy"), quality, workers);
+  return file_bytes(folder.file("scene.voy"));
+}
+
+inline std::shared_ptr<const ByteSource> source_of(const Bytes& bytes) {
+  return std::make_shared<MemorySource>("test.voy", bytes);
+}
+
+// A source whose bytes are another's with the bits of one of them flipped.
+class FlippedSource final : public ByteSource {
+ public:
+  FlippedSource(const Bytes& bytes, uint64_t at, std::byte flip)
+      : bytes_(bytes), at_(at), flip_(flip) {}
+  const std::string& name() const override { return name_; }
+  uint64_t size() const override { return bytes_.size(); }
+  void read(uint64_t offset, std::span<std::byte> into) const override {
+    std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(offset), into.size(), into.begin());
+    if (at_ >= offset && at_ - offset < into.size()) into[at_ - offset] ^= flip_;
+  }
+
+ private:
+  std::string name_ = "flipped.voy";
+  const Bytes& bytes_;
+  uint64_t at_;
+  std::byte flip_;
+};
+
+// The code of the Error that `action` throws; a failure if it throws none.
+template <class Action>
+ErrorCode error_code(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.code();
+  }
+  ADD_FAILURE() << "no error was thrown";
+  return ErrorCode::internal;
+}
+
+}  // namespace voyager::test

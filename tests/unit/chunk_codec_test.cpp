@@ -1,0 +1,202 @@
+#include "runtime/format/chunk_codec.h"
+
+#include <cstring>
+#include <functional>
+#include <limits>
+
+#include "runtime/format/quantise.h"
+#include "runtime/scene/import/importer.h"
+#include "tests/support/scene_files.h"
+
+namespace voyager {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+// A root with three leaves.
+Chunk family(size_t coefficients) {
+  Chunk chunk;
+  chunk.first_child = 1;
+  for (uint32_t i = 0; i < 4; ++i) {
+    const float x = static_cast<float>(i);
+    chunk.records.push_back(
+        {{x - 1, -1, -1}, i == 0 ? 9.0f : 0.0f, {x + 1, 1, 1}, i == 0 ? 3u : 0u});
+    chunk.words.push_back({{x, 0, 0}, {-1, -2, -3}, {1, 0, 0, 0}, 0.5f});
+    chunk.axis_code.push_back(i == 0 ? 0 : 5);
+    chunk.source_index.push_back(i == 0 ? kNoNode : i - 1);
+  }
+  chunk.sh.assign(4 * coefficients * 3, 0.25f);
+  return chunk;
+}
+
+ChunkContext context_of(Quality quality, int degree = 1) {
+  ChunkContext context;
+  context.quality = quality;
+  context.sh_degree = degree;
+  context.leaf_count = 3;
+  return context;
+}
+
+Chunk round_trip(const Chunk& chunk, const ChunkContext& context) {
+  const EncodedChunk encoded = encode_chunk(chunk, context);
+  const std::string file = "test.voy";
+  const ChunkPlace place{file, 0, 4096, 0, 4, 1, 4};
+  return decode_chunk(encoded.bytes, encoded.checksum, place, context);
+}
+
+// Checksums are right in each case: the values themselves are refused.
+TEST(ChunkCodec, ImpossibleValuesAreRefusedUnderARightChecksum) {
+  const std::vector<std::function<void(Chunk&)>> faults = {
+      [](Chunk& c) { c.records[1].box_min.x = kNan; },
+      [](Chunk& c) { c.records[1].box_max.y = kInfinity; },
+      [](Chunk& c) { c.records[2].box_min.z = 2; },
+      [](Chunk& c) { c.records[0].extent = -1; },
+      [](Chunk& c) { c.records[0].extent = kInfinity; },
+      [](Chunk& c) { c.records[0].child_count = 4; },
+      [](Chunk& c) { c.records[0].child_count = 0; },
+      [](Chunk& c) { c.records[0].child_count = 0xffffffff; },
+      [](Chunk& c) { c.source_index[1] = 3; },
+      [](Chunk& c) { c.source_index[0] = 0; },
+      [](Chunk& c) { c.axis_code[1] = 24; },
+  };
+  for (const Quality quality : {Quality::lossless, Quality::compact}) {
+    ASSERT_NO_THROW(round_trip(family(4), context_of(quality)));
+    for (size_t i = 0; i < faults.size(); ++i) {
+      Chunk chunk = family(4);
+      faults[i](chunk);
+      EXPECT_EQ(test::error_code([&] { round_trip(chunk, context_of(quality)); }),
+                ErrorCode::damaged_chunk)
+          << i;
+    }
+  }
+}
+
+TEST(ChunkCodec, WordsThatAreNotFiniteAreRefused) {
+  const std::vector<std::function<void(Chunk&)>> faults = {
+      [](Chunk& c) { c.words[1].mean.x = kNan; },
+      [](Chunk& c) { c.words[1].mean.x = 2e18f; },
+      [](Chunk& c) { c.words[1].log_scale.y = kInfinity; },
+      [](Chunk& c) { c.words[1].log_scale.y = 80; },
+      [](Chunk& c) { c.words[1].rotation.z = kNan; },
+      [](Chunk& c) { c.words[1].opacity = kInfinity; },
+      [](Chunk& c) { c.words[0].opacity = -1; },
+      [](Chunk& c) { c.sh[7] = kNan; },
+  };
+  for (size_t i = 0; i < faults.size(); ++i) {
+    Chunk chunk = family(4);
+    faults[i](chunk);
+    EXPECT_EQ(test::error_code([&] { round_trip(chunk, context_of(Quality::lossless)); }),
+              ErrorCode::damaged_chunk)
+        << i;
+  }
+}
+
+TEST(ChunkCodec, AChunkOutOfPlaceIsRefused) {
+  const ChunkContext context = context_of(Quality::compact);
+  const EncodedChunk encoded = encode_chunk(family(4), context);
+  const std::string file = "test.voy";
+  for (const ChunkPlace& place :
+       {ChunkPlace{file, 0, 0, 1, 4, 1, 4}, ChunkPlace{file, 0, 0, 0, 5, 1, 4},
+        ChunkPlace{file, 0, 0, 0, 4, 2, 4}, ChunkPlace{file, 0, 0, 0, 4, 1, 5}})
+    EXPECT_EQ(
+        test::error_code([&] { decode_chunk(encoded.bytes, encoded.checksum, place, context); }),
+        ErrorCode::damaged_chunk);
+  const ChunkPlace place{file, 0, 0, 0, 4, 1, 4};
+  EXPECT_EQ(test::error_code([&] {
+              decode_chunk(encoded.bytes, encoded.checksum, place, context_of(Quality::lossless));
+            }),
+            ErrorCode::damaged_chunk);
+  EXPECT_EQ(test::error_code([&] {
+              decode_chunk(encoded.bytes, encoded.checksum, place, context_of(Quality::compact, 3));
+            }),
+            ErrorCode::damaged_chunk);
+}
+
+double angle(const Quatf& p, const Quatf& q) {
+  const Quatd a = normalise(Quatd{p.w, p.x, p.y, p.z}), b = normalise(Quatd{q.w, q.x, q.y, q.z});
+  const double s = (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z) < 0 ? -1 : 1;
+  const double chord = std::hypot(std::hypot(a.w - s * b.w, a.x - s * b.x),
+                                  std::hypot(a.y - s * b.y, a.z - s * b.z));
+  return 4 * std::asin(std::min(1.0, chord / 2));
+}
+
+double half_error(float value) {
+  return std::max(std::fabs(double{value}) * 0x1p-11, 0x1p-25);
+}
+
+// Every error that docs/voy-format.md states, against the exact chunk.
+void expect_within_bounds(const Chunk& exact, const Chunk& compact, int degree, double file_error) {
+  double step[3], largest[3] = {0, 0, 0};
+  const size_t floats = static_cast<size_t>(sh_coefficients(degree)) * 3;
+  for (int axis = 0; axis < 3; ++axis) {
+    double lo = 1e30, hi = -1e30;
+    for (const GaussianWords& w : exact.words) {
+      lo = std::min<double>(lo, w.mean[axis]);
+      hi = std::max<double>(hi, w.mean[axis]);
+    }
+    step[axis] = (hi - lo) / kPositionSteps;
+  }
+  const auto band = [](size_t k) { return k < 12 ? 0 : k < 27 ? 1 : 2; };
+  for (size_t k = 0; k < exact.sh.size(); ++k)
+    if (k % floats >= 3)
+      largest[band(k % floats)] =
+          std::max<double>(largest[band(k % floats)], std::fabs(exact.sh[k]));
+  for (size_t i = 0; i < exact.records.size(); ++i) {
+    const GaussianWords &a = exact.words[i], &b = compact.words[i];
+    const bool leaf = exact.records[i].child_count == 0;
+    double squares = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double error = double{a.mean[axis]} - b.mean[axis];
+      squares += error * error;
+      ASSERT_LE(std::fabs(error), step[axis] / 2 + std::fabs(a.mean[axis]) * 0x1p-23);
+      ASSERT_LE(std::fabs(double{std::max(a.log_scale[axis], -21.0f)} - b.log_scale[axis]),
+                1.0 / 1024);
+    }
+    ASSERT_LE(std::sqrt(squares), file_error);
+    ASSERT_LE(angle(a.rotation, b.rotation), 1.6e-4);
+    if (leaf)
+      ASSERT_LE(std::fabs(double{sigmoid(a.opacity)} - sigmoid(b.opacity)), 0.5 / 65535 + 0x1p-23);
+    else
+      ASSERT_LE(std::fabs(std::min(a.opacity, kMaxHalf) - b.opacity), half_error(a.opacity));
+    for (size_t k = 0; k < floats; ++k) {
+      const size_t at = i * floats + k;
+      const double bound =
+          k < 3 ? half_error(exact.sh[at])
+                : largest[band(k)] / (2 * kShSteps[static_cast<size_t>(band(k))]) + 1e-7;
+      ASSERT_LE(std::fabs(double{exact.sh[at]} - compact.sh[at]), bound) << k;
+    }
+  }
+}
+
+struct Sizes {
+  double lossless, compact;
+};
+
+Sizes check_compact(const GaussianCloud& cloud) {
+  const BakedScene baked = test::bake(cloud);
+  const test::Bytes lossless = test::scene_bytes(baked, Quality::lossless),
+                    compact = test::scene_bytes(baked, Quality::compact);
+  const SceneFile exact(test::source_of(lossless)), small(test::source_of(compact));
+  EXPECT_EQ(exact.info().position_error, 0);
+  for (uint32_t index = 0; index < exact.chunks().size(); ++index)
+    expect_within_bounds(exact.read_chunk(index), small.read_chunk(index), cloud.sh_degree,
+                         small.info().position_error);
+  return {static_cast<double>(lossless.size()), static_cast<double>(compact.size())};
+}
+
+TEST(ChunkCodec, CompactKeepsItsBoundsAndItsSizeOnRandomGaussians) {
+  const Sizes sizes = check_compact(test::random_cloud(20000, 11, 3));
+  EXPECT_LE(sizes.compact, 0.4 * sizes.lossless);
+  for (const int degree : {0, 1, 2}) check_compact(test::random_cloud(3000, 12, degree));
+}
+
+TEST(ChunkCodec, CompactKeepsItsBoundsAndItsSizeOnARealBlock) {
+  VOYAGER_NEEDS_SCENES(folder);
+  const auto source = open_file_source(folder + "/formats/block.ply");
+  const Sizes sizes = check_compact(import_gaussians(*read_source(*source)));
+  EXPECT_LE(sizes.compact, 0.4 * sizes.lossless);
+}
+
+}  // namespace
+}  // namespace voyager

@@ -1,0 +1,107 @@
+// The errors that docs/voy-format.md states for compact storage, value by value.
+#include "runtime/format/quantise.h"
+
+#include <cstring>
+
+#include "runtime/format/record_planes.h"
+#include "tests/support/test_support.h"
+
+namespace voyager {
+namespace {
+
+float uniform(std::mt19937& random, float lo, float hi) {
+  return lo + (hi - lo) * (static_cast<float>(random() >> 8) / 16777216.0f);
+}
+
+TEST(Quantise, EveryHalfSurvivesAndRoundingIsToTheNearest) {
+  for (uint32_t h = 0; h < 0x7c00; ++h) {
+    const auto half = static_cast<uint16_t>(h);
+    const float value = half_to_float(half);
+    ASSERT_EQ(float_to_half(value), half);
+    ASSERT_EQ(float_to_half(-value), half | 0x8000);
+    if (h + 1 == 0x7c00) break;
+    const float next = half_to_float(static_cast<uint16_t>(h + 1)), middle = (value + next) / 2;
+    ASSERT_EQ(float_to_half(std::nextafter(middle, 0.0f)), half);
+    ASSERT_EQ(float_to_half(std::nextafter(middle, 1e9f)), half + 1);
+    ASSERT_EQ(float_to_half(middle), h % 2 == 0 ? half : half + 1);
+  }
+  EXPECT_EQ(half_to_float(float_to_half(1e30f)), kMaxHalf);
+  EXPECT_EQ(half_to_float(float_to_half(-65520.0f)), -kMaxHalf);
+}
+
+TEST(Quantise, PositionWithinHalfAStep) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 100000; ++i) {
+    const double min = -13.7, max = 1203.1, step = (max - min) / kPositionSteps;
+    const float x = uniform(random, -13.7f, 1203.1f);
+    ASSERT_LE(std::fabs(restore_position(quantise_position(x, min, step), min, step) - x),
+              step / 2 + 1203.1 * 0x1p-24);
+  }
+  EXPECT_EQ(restore_position(quantise_position(5.25f, 5.25, 0), 5.25, 0), 5.25f);
+}
+
+TEST(Quantise, LogScaleWithinAThousandth) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 100000; ++i) {
+    const float s = uniform(random, kMinLogScale, kMaxLogScale);
+    ASSERT_LE(std::fabs(double{restore_log_scale(quantise_log_scale(s))} - s), 1.0 / 1024);
+  }
+  EXPECT_EQ(restore_log_scale(quantise_log_scale(-30.0f)), -21.0f);
+}
+
+TEST(Quantise, RotationWithinItsAngle) {
+  std::mt19937 random(3);
+  double worst = 0;
+  for (int i = 0; i < 200000; ++i) {
+    Quatf q{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1),
+            uniform(random, -1, 1)};
+    if (i % 5 == 0) q.x = q.w;  // ties of the largest component
+    if (i % 7 == 0) q = {q.w, 0, 0, 0};
+    const Quatd a = normalise(Quatd{q.w, q.x, q.y, q.z});
+    const Quatf r = restore_rotation(quantise_rotation(q));
+    const Quatd b = normalise(Quatd{r.w, r.x, r.y, r.z});
+    const double s = (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z) < 0 ? -1 : 1;
+    const double chord = std::hypot(std::hypot(a.w - s * b.w, a.x - s * b.x),
+                                    std::hypot(a.y - s * b.y, a.z - s * b.z));
+    worst = std::max(worst, 4 * std::asin(std::min(1.0, chord / 2)));
+  }
+  EXPECT_LE(worst, 1.6e-4);
+}
+
+TEST(Quantise, LeafOpacityWithinHalfAStep) {
+  for (float word = -90.0f; word <= 90.0f; word += 0.0037f) {
+    const float restored = restore_leaf_opacity(quantise_leaf_opacity(word));
+    ASSERT_LE(std::fabs(double{sigmoid(restored)} - sigmoid(word)), 0.5 / 65535 + 0x1p-23) << word;
+  }
+  EXPECT_EQ(restore_leaf_opacity(quantise_leaf_opacity(kMaxLogit)), kMaxLogit);
+  EXPECT_EQ(restore_leaf_opacity(quantise_leaf_opacity(-kMaxLogit)), -kMaxLogit);
+}
+
+TEST(Quantise, ShWithinHalfAStepOfItsBand) {
+  std::mt19937 random(4);
+  for (const int steps : kShSteps)
+    for (int i = 0; i < 20000; ++i) {
+      const float scale = 0.83f, c = uniform(random, -scale, scale);
+      const float error = restore_sh(quantise_sh(c, scale, steps), scale, steps) - c;
+      ASSERT_LE(std::fabs(error), scale / (2 * static_cast<float>(steps)) + 1e-7f);
+    }
+  EXPECT_EQ(restore_sh(quantise_sh(0, 0, 31), 0, 31), 0);
+}
+
+TEST(Quantise, RecordsSurviveToTheBit) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 100000; ++i) {
+    NodeRecord r{};
+    for (int axis = 0; axis < 3; ++axis) {
+      r.box_min[axis] = uniform(random, -1e4f, 1e4f);
+      r.box_max[axis] = r.box_min[axis] + uniform(random, 0, i % 2 == 0 ? 1e-3f : 1e6f);
+    }
+    r.child_count = random() % 3;
+    r.extent = uniform(random, 0, 1e3f);
+    const NodeRecord back = from_words(to_words(r));
+    ASSERT_EQ(std::memcmp(&back, &r, sizeof r), 0);
+  }
+}
+
+}  // namespace
+}  // namespace voyager

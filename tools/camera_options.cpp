@@ -1,0 +1,48 @@
+#include "tools/camera_options.h"
+
+#include <cmath>
+
+namespace voyager::tools {
+namespace {
+
+constexpr uint32_t kLargestSide = 16384;
+
+bool parse_size(const std::string& text, ImageSize& size) {
+  const size_t cross = text.find('x');
+  uint32_t width = 0, height = 0;
+  if (cross == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, cross), width) ||
+      !CLI::detail::lexical_cast(text.substr(cross + 1), height))
+    return false;
+  if (width < 1 || width > kLargestSide || height < 1 || height > kLargestSide) return false;
+  size = {width, height};
+  return true;
+}
+
+}  // namespace
+
+void add_size_option(CLI::App& command, ImageSize& size) {
+  command
+      .add_option_function<std::string>(
+          "--size",
+          [&size](const std::string& text) {
+            if (!parse_size(text, size))
+              throw CLI::ValidationError(
+                  "--size", "found " + text + ", expected WxH in pixels, each from 1 to 16384");
+          },
+          "Image size in place of each camera's own; fx, fy, cx, cy follow")
+      ->type_name("WxH");
+}
+
+void add_tau_option(CLI::App& command, double& tau) {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return {};
+    return "found " + text + ", expected a number of pixels, 0 or more";
+  };
+  command.add_option("--tau", tau, "Granularity in pixels")
+      ->type_name("PX")
+      ->check(CLI::Validator(check, ""))
+      ->capture_default_str();
+}
+
+}  // namespace voyager::tools

@@ -1,0 +1,161 @@
+#include "tools/cameras.h"
+
+#include <fmt/core.h>
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+
+#include "runtime/base/file.h"
+#include "tools/exit_code.h"
+
+namespace voyager::tools {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr uint64_t kLargestFile = uint64_t{1} << 30;
+constexpr double kLargestSide = 16384;
+
+class CameraReader {
+ public:
+  CameraReader(const std::string& file, size_t index, const Json& json)
+      : file_(file), index_(index), json_(json) {}
+
+  Camera read() const {
+    if (!json_.is_object()) refuse("", json_, "an object");
+    Camera camera;
+    camera.width = side("width");
+    camera.height = side("height");
+    camera.fx = positive("fx");
+    camera.fy = positive("fy");
+    camera.cx = json_.contains("cx") ? number("cx") : camera.width / 2.0;
+    camera.cy = json_.contains("cy") ? number("cy") : camera.height / 2.0;
+    const Eigen::Vector3d position = vector(field("position"), "position");
+    for (int i = 0; i < 3; ++i) camera.pose.position[i] = position[i];
+    set_orientation(camera.pose);
+    return camera;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& name, const Json& found,
+                           const std::string& expected) const {
+    std::string text = found.dump();
+    if (text.size() > 60) text = text.substr(0, 60) + "…";
+    throw Error(ErrorCode::refused_input,
+                fmt::format("{}: camera {}{}{}: found {}, expected {}", file_, index_,
+                            name.empty() ? "" : ": ", name, text, expected));
+  }
+
+  const Json& field(const std::string& name) const {
+    const auto found = json_.find(name);
+    if (found == json_.end())
+      throw Error(
+          ErrorCode::refused_input,
+          fmt::format("{}: camera {}: found no field {}, expected one", file_, index_, name));
+    return *found;
+  }
+
+  double number(const std::string& name) const {
+    const Json& value = field(name);
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      refuse(name, value, "a finite number");
+    return value.get<double>();
+  }
+  double positive(const std::string& name) const {
+    const double value = number(name);
+    if (!(value > 0)) refuse(name, field(name), "a number above 0");
+    return value;
+  }
+  uint32_t side(const std::string& name) const {
+    const double value = number(name);
+    if (!(value >= 1 && value <= kLargestSide) || value != std::floor(value))
+      refuse(name, field(name), fmt::format("a whole number from 1 to {}", kLargestSide));
+    return static_cast<uint32_t>(value);
+  }
+  Eigen::Vector3d vector(const Json& value, const std::string& name) const {
+    Eigen::Vector3d v = Eigen::Vector3d::Zero();
+    if (!value.is_array() || value.size() != 3) refuse(name, value, "three numbers");
+    for (size_t i = 0; i < 3; ++i) {
+      if (!value[i].is_number()) refuse(name, value, "three finite numbers");
+      v[static_cast<Eigen::Index>(i)] = value[i].get<double>();
+    }
+    if (!v.allFinite()) refuse(name, value, "three finite numbers");
+    return v;
+  }
+
+  // Camera to world, as rows; its columns are the camera's right, down and
+  // forward. Written in decimal, they are not quite orthonormal: forward is kept
+  // as it is, because it orders the splats (METHOD §6).
+  void set_orientation(VoyPose& pose) const {
+    const Json& rows = field("rotation");
+    if (!rows.is_array() || rows.size() != 3)
+      refuse("rotation", rows, "three rows of three numbers");
+    Eigen::Matrix3d m;
+    for (int i = 0; i < 3; ++i)
+      m.row(i) = vector(rows[static_cast<size_t>(i)], "rotation").transpose();
+    if (!(m * m.transpose()).isIdentity(1e-3) || m.determinant() < 0)
+      refuse("rotation", rows, "a rotation (orthonormal within 0.001, determinant +1)");
+    const Eigen::Vector3d forward = m.col(2).normalized();
+    const Eigen::Vector3d right = (m.col(0) - m.col(0).dot(forward) * forward).normalized();
+    Eigen::Matrix3d axes;  // OpenXR: x right, y up, z backward
+    axes << right, right.cross(forward), -forward;
+    const Eigen::Quaterniond q(axes);
+    pose.orientation[0] = q.x();
+    pose.orientation[1] = q.y();
+    pose.orientation[2] = q.z();
+    pose.orientation[3] = q.w();
+  }
+
+  const std::string& file_;
+  size_t index_;
+  const Json& json_;
+};
+
+}  // namespace
+
+VoyFrustum Camera::frustum() const {
+  VoyFrustum f{};
+  const VoyResult result = voyFovFromIntrinsics(fx, fy, cx, cy, width, height, &f);
+  if (result != VOY_SUCCESS) throw Error(ErrorCode::refused_input, voyGetLastErrorMessage());
+  return f;
+}
+
+Camera Camera::resized(uint32_t new_width, uint32_t new_height) const {
+  Camera c = *this;
+  const double x = static_cast<double>(new_width) / width,
+               y = static_cast<double>(new_height) / height;
+  c.fx *= x;
+  c.cx *= x;
+  c.fy *= y;
+  c.cy *= y;
+  c.width = new_width;
+  c.height = new_height;
+  return c;
+}
+
+std::vector<Camera> read_cameras(const std::string& path) {
+  const auto source = open_file_source(path);
+  if (source->size() > kLargestFile)
+    throw Error(ErrorCode::refused_input,
+                fmt::format("{}: found {} bytes, expected a cameras.json of at most {}", path,
+                            source->size(), kLargestFile));
+  std::string text(source->size(), '\0');
+  source->read(0, std::as_writable_bytes(std::span(text)));
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw Error(ErrorCode::refused_input,
+                fmt::format("{}: offset {}: found no JSON there, expected a cameras.json", path,
+                            error.byte));
+  }
+  if (!json.is_array() || json.empty())
+    throw Error(ErrorCode::refused_input,
+                fmt::format("{}: found {}, expected an array of at least one camera", path,
+                            json.type_name()));
+  std::vector<Camera> cameras;
+  for (size_t i = 0; i < json.size(); ++i) cameras.push_back(CameraReader(path, i, json[i]).read());
+  return cameras;
+}
+
+}  // namespace voyager::tools

@@ -1,0 +1,25 @@
+#pragma once
+// INRIA cameras.json (id, img_name, width, height, position, rotation, fx, fy,
+// and optionally cx, cy), turned to what voyRenderFrame takes.
+#include <string>
+#include <vector>
+
+#include "voyager/voyager.h"
+
+namespace voyager::tools {
+
+struct Camera {
+  VoyPose pose;   // OpenXR axes, in the scene's world
+  double fx, fy;  // pixels
+  double cx, cy;  // pixels, from the top left corner
+  uint32_t width, height;
+
+  VoyFrustum frustum() const;
+  // The same view in another size: fx, fy, cx, cy in proportion.
+  Camera resized(uint32_t new_width, uint32_t new_height) const;
+};
+
+// Throws Error(refused_input) naming file, camera, field, found, expected.
+std::vector<Camera> read_cameras(const std::string& path);
+
+}  // namespace voyager::tools

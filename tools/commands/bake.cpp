@@ -1,0 +1,90 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/format/reader.h"
+#include "runtime/format/writer.h"
+#include "runtime/lod/build.h"
+#include "runtime/lod/validate.h"
+#include "runtime/scene/import/importer.h"
+#include "tools/commands/commands.h"
+#include "tools/progress_bar.h"
+
+namespace voyager::tools {
+namespace {
+
+struct Arguments {
+  std::vector<std::string> inputs;
+  std::string output;
+  Quality quality = Quality::compact;
+  bool verify = false;
+};
+
+GaussianCloud read_input(const std::string& path, const Progress& progress) {
+  ImportOptions options;
+  options.progress = progress;
+  if (path == "-") return import_gaussians(*read_stdin(), options);
+  const auto source = open_file_source(path);
+  return import_gaussians(*read_source(*source), options);
+}
+
+void require_sound(const std::string& path, const std::vector<std::string>& findings) {
+  if (findings.empty()) return;
+  for (const std::string& finding : findings) fmt::print(stderr, "{}: {}\n", path, finding);
+  throw Error(ErrorCode::internal,
+              fmt::format("{}: the tree broke {} invariants", path, findings.size()));
+}
+
+// Reads back what was written, every chunk of it.
+void verify_file(const std::string& path) {
+  const SceneFile file(open_file_source(path));
+  for (uint32_t i = 0; i < file.info().chunk_count; ++i) file.read_chunk(i);
+}
+
+void bake(const Arguments& arguments) {
+  if (arguments.inputs.size() != 1)
+    throw Error(ErrorCode::unsupported, fmt::format("bake: found {} inputs, this version bakes one",
+                                                    arguments.inputs.size()));
+  const std::string& input = arguments.inputs.front();
+  const Progress progress = progress_bar();
+  const Stopwatch watch;
+  Workers workers;
+  const BakedScene baked = build_tree(read_input(input, progress), workers, progress);
+  if (arguments.verify) require_sound(input, validate(baked));
+  write_scene_file(baked, arguments.output, arguments.quality, workers, progress);
+  if (arguments.verify) verify_file(arguments.output);
+  fmt::print("{}: {} Gaussians, {} nodes, {} bytes, {:.1f} s{}\n", arguments.output,
+             baked.leaves.size(), baked.tree.size(), open_file_source(arguments.output)->size(),
+             watch.milliseconds() / 1000, arguments.verify ? ", verified" : "");
+  if (const ImportReport& report = baked.leaves.report; report.dropped() + report.repaired() > 0)
+    fmt::print("{}: {} Gaussians dropped, {} values repaired (voyager info {} tells which)\n",
+               input, report.dropped(), report.repaired(), arguments.output);
+}
+
+}  // namespace
+
+void add_bake(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("bake", "Build the level-of-detail tree of a scene and write a .voy");
+  command->add_option("input", arguments->inputs, "A .ply or .spz; - is a .ply on standard input")
+      ->required();
+  command->add_option("-o", arguments->output, "The scene.voy to write")->required();
+  command
+      ->add_option(
+          "--quality", arguments->quality,
+          "compact quantises (errors in docs/voy-format.md); lossless keeps the input's own words")
+      ->transform(CLI::CheckedTransformer(std::vector<std::pair<std::string, Quality>>{
+          {"compact", Quality::compact}, {"lossless", Quality::lossless}}))
+      ->default_str("compact");
+  command->add_flag("--verify", arguments->verify,
+                    "Check every invariant of the tree, and read the file back");
+  command->footer("Example: voyager bake city.ply -o city.voy --quality lossless --verify");
+  command->callback([arguments] { bake(*arguments); });
+}
+
+}  // namespace voyager::tools

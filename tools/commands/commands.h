@@ -1,0 +1,14 @@
+#pragma once
+// The subcommands. Each adds itself to the parser; its work runs in the
+// callback and throws voyager::Error or voy::Error.
+#include <CLI/CLI.hpp>
+
+namespace voyager::tools {
+
+void add_synth(CLI::App& app);
+void add_bake(CLI::App& app);
+void add_export(CLI::App& app);
+void add_info(CLI::App& app);
+void add_render(CLI::App& app);
+
+}  // namespace voyager::tools

@@ -1,0 +1,84 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "tools/commands/commands.h"
+#include "voyager/voyager.hpp"
+
+namespace voyager::tools {
+namespace {
+
+constexpr const char* kStorageNames[] = {"flat", "lossless", "compact"};
+constexpr const char* kNoteKinds[] = {"omitted", "repaired", "dropped", "damaged"};
+
+void print_text(const std::string& path, const VoySceneInfo& info,
+                const std::vector<VoySceneNote>& notes) {
+  fmt::print("{}: {} scene\n", path, kStorageNames[info.storage]);
+  fmt::print("  Gaussians     {}\n", info.gaussianCount);
+  if (info.storage != VOY_SCENE_STORAGE_FLAT)
+    fmt::print("  nodes         {} in {} levels, {} chunks ({} damaged)\n", info.nodeCount,
+               info.treeDepth, info.chunkCount, info.damagedChunkCount);
+  fmt::print("  SH degree     {}\n", info.shDegree);
+  fmt::print("  antialiased   {}\n", info.antialiased ? "yes" : "no");
+  fmt::print("  origin        {} {} {} m\n", info.origin[0], info.origin[1], info.origin[2]);
+  fmt::print("  bounds        {:.3f} {:.3f} {:.3f} to {:.3f} {:.3f} {:.3f} m\n", info.boundsMin[0],
+             info.boundsMin[1], info.boundsMin[2], info.boundsMax[0], info.boundsMax[1],
+             info.boundsMax[2]);
+  if (info.storage == VOY_SCENE_STORAGE_COMPACT)
+    fmt::print("  mean error    {:.3g} m at most\n", info.positionError);
+  fmt::print("  resident      {} bytes\n", info.residentBytes);
+  fmt::print("  import        {} Gaussians dropped, {} values repaired\n", info.droppedCount,
+             info.repairedCount);
+  for (const VoySceneNote& note : notes)
+    fmt::print("  {:<13} {}: {} ({})\n", kNoteKinds[note.kind], note.what, note.why,
+               note.kind == VOY_SCENE_NOTE_OMITTED ? fmt::format("{} bytes", note.bytes)
+                                                   : fmt::format("{}", note.count));
+}
+
+void print_json(const std::string& path, const VoySceneInfo& info,
+                const std::vector<VoySceneNote>& notes) {
+  nlohmann::ordered_json json = {{"file", path},
+                                 {"storage", kStorageNames[info.storage]},
+                                 {"gaussians", info.gaussianCount},
+                                 {"nodes", info.nodeCount},
+                                 {"tree_depth", info.treeDepth},
+                                 {"chunks", info.chunkCount},
+                                 {"damaged_chunks", info.damagedChunkCount},
+                                 {"sh_degree", info.shDegree},
+                                 {"antialiased", info.antialiased != 0},
+                                 {"origin", info.origin},
+                                 {"bounds_min", info.boundsMin},
+                                 {"bounds_max", info.boundsMax},
+                                 {"position_error", info.positionError},
+                                 {"resident_bytes", info.residentBytes},
+                                 {"dropped", info.droppedCount},
+                                 {"repaired", info.repairedCount},
+                                 {"notes", nlohmann::json::array()}};
+  for (const VoySceneNote& note : notes)
+    json["notes"].push_back({{"kind", kNoteKinds[note.kind]},
+                             {"what", note.what},
+                             {"why", note.why},
+                             {"count", note.count},
+                             {"bytes", note.bytes}});
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  auto path = std::make_shared<std::string>();
+  auto json = std::make_shared<bool>(false);
+  CLI::App* command =
+      app.add_subcommand("info", "What a scene holds, what was mended, and what is left out");
+  command->add_option("file", *path, "A .voy, .ply or .spz")->required();
+  command->add_flag("--json", *json, "For programs");
+  command->footer("Example: voyager info city.voy");
+  command->callback([path, json] {
+    const voy::Device device = voy::Device::create();
+    const voy::Scene scene = device.open_scene(*path);
+    (*json ? print_json : print_text)(*path, scene.info(), scene.notes());
+  });
+}
+
+}  // namespace voyager::tools

@@ -1,0 +1,163 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "runtime/base/error.h"
+#include "tools/camera_options.h"
+#include "tools/commands/commands.h"
+#include "tools/frame_files.h"
+#include "tools/progress_bar.h"
+#include "tools/renderer.h"
+
+namespace voyager::tools {
+namespace {
+
+struct Arguments {
+  std::string scene, cameras;
+  size_t camera = 0;
+  bool all = false;
+  ImageSize size;
+  RenderChoices choices;
+  OutputPaths outputs;
+};
+
+[[noreturn]] void bad_usage(const std::string& message) {
+  throw Error(ErrorCode::invalid_argument, message);
+}
+
+std::vector<Camera> choose_cameras(const Arguments& arguments) {
+  std::vector<Camera> cameras = read_cameras(arguments.cameras);
+  if (!arguments.all) {
+    if (arguments.camera >= cameras.size())
+      bad_usage(fmt::format("--camera: found {}, expected at most {} ({} has {} cameras)",
+                            arguments.camera, cameras.size() - 1, arguments.cameras,
+                            cameras.size()));
+    cameras = {cameras[arguments.camera]};
+  }
+  if (arguments.size.width != 0)
+    for (Camera& camera : cameras)
+      camera = camera.resized(arguments.size.width, arguments.size.height);
+  return cameras;
+}
+
+// Settles what the name of the output says: image format, or a folder.
+void settle_outputs(Arguments& arguments) {
+  OutputPaths& outputs = arguments.outputs;
+  outputs.walk = arguments.all;
+  outputs.floats = arguments.choices.floats;
+  arguments.choices.depth = !outputs.depth.empty();
+  const auto extension = std::filesystem::path(outputs.image).extension();
+  if (outputs.walk) {
+    if (extension == ".png" || extension == ".pfm")
+      bad_usage(fmt::format("-o: found {}, expected a folder with --all", outputs.image));
+    return;
+  }
+  if (extension != ".png" && extension != ".pfm")
+    bad_usage(fmt::format(
+        "-o: found {}, expected a name that ends in .png or .pfm, or a folder with --all",
+        outputs.image));
+  if (outputs.floats && extension == ".png") bad_usage("--float: expected -o to end in .pfm");
+  outputs.floats = arguments.choices.floats = extension == ".pfm";
+}
+
+void render(Arguments& arguments) {
+  settle_outputs(arguments);
+  const std::vector<Camera> cameras = choose_cameras(arguments);
+  uint32_t width = 0, height = 0;
+  for (const Camera& camera : cameras) {
+    width = std::max(width, camera.width);
+    height = std::max(height, camera.height);
+  }
+  Renderer renderer(arguments.scene, arguments.choices, width, height);
+  if (!arguments.outputs.cut.empty() && !renderer.draws_cut())
+    bad_usage("--dump-cut: found a scene drawn without a cut, expected a .voy with --lod on");
+  FrameFiles files(arguments.outputs);
+  const Progress progress = progress_bar();
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    renderer.render(cameras[i]);
+    files.write(i, cameras[i], renderer);
+    if (cameras.size() > 1) progress("rendering", i + 1, cameras.size());
+  }
+  files.write_stats(renderer.notes());
+  fmt::print("{}\n", arguments.outputs.image);
+}
+
+template <class T>
+void add_choice(CLI::App& command, const std::string& name, T& value,
+                std::vector<std::pair<std::string, T>> names, const std::string& description) {
+  std::string first = names.front().first;
+  command.add_option(name, value, description)
+      ->transform(CLI::CheckedTransformer(std::move(names)))
+      ->default_str(first);
+}
+
+void add_choices(CLI::App& command, RenderChoices& choices) {
+  add_choice<VoyBackend>(command, "--backend", choices.backend,
+                         {{"auto", VOY_BACKEND_AUTO},
+                          {"cpu", VOY_BACKEND_CPU},
+                          {"cuda", VOY_BACKEND_CUDA},
+                          {"reference", VOY_BACKEND_REFERENCE}},
+                         "Who renders; reference is float64, slow, and judges the others");
+  add_choice<VoyLod>(command, "--lod", choices.lod,
+                     {{"on", VOY_LOD_CUT}, {"off", VOY_LOD_ALL_LEAVES}}, "off draws every leaf");
+  add_tau_option(command, choices.tau);
+  add_choice<VoySearch>(command, "--search", choices.search,
+                        {{"exhaustive", VOY_SEARCH_EXHAUSTIVE}}, "How the cut is found");
+  add_choice<VoyAlphaFilter>(command, "--filter", choices.alpha_filter,
+                             {{"on", VOY_ALPHA_FILTER_ON}, {"off", VOY_ALPHA_FILTER_OFF}},
+                             "The α-filter; off gives the same image, slower");
+  add_choice<VoyExponential>(command, "--exp", choices.exponential,
+                             {{"exact", VOY_EXPONENTIAL_EXACT},
+                              {"ex2", VOY_EXPONENTIAL_EX2},
+                              {"lut", VOY_EXPONENTIAL_LUT}},
+                             "The exponential");
+  command.add_option("--lut-size", choices.lut_size, "Intervals of --exp lut")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  command
+      .add_option_function<std::vector<float>>(
+          "--background",
+          [&choices](const std::vector<float>& rgb) {
+            std::copy_n(rgb.begin(), 3, choices.background);
+          },
+          "Code values behind everything, each 0 to 1")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(CLI::Range(0.0f, 1.0f))
+      ->type_name("R,G,B")
+      ->default_str("0,0,0");
+}
+
+void add_outputs(CLI::App& command, OutputPaths& outputs, bool& floats) {
+  command
+      .add_option("-o", outputs.image, "out.png (8-bit), out.pfm (float), or a folder with --all")
+      ->required();
+  command.add_flag("--float", floats, "Float images (.pfm), before clamping");
+  command.add_option("--depth", outputs.depth,
+                     "Also depth, d.pfm (or a folder with --all): metres, +inf where none");
+  command.add_option("--dump-cut", outputs.cut,
+                     "Also the cut's node ids, cut.txt (or a folder with --all)");
+  command.add_option("--stats", outputs.stats, "Also counters and times, stats.json");
+}
+
+}  // namespace
+
+void add_render(CLI::App& app) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("render", "Render cameras of a scene to image files");
+  command->add_option("scene", arguments->scene, "A .voy, .ply or .spz")->required();
+  command->add_option("--cameras", arguments->cameras, "INRIA cameras.json")->required();
+  CLI::Option* one = command->add_option("--camera", arguments->camera, "Index in the file")
+                         ->capture_default_str();
+  command->add_flag("--all", arguments->all, "Every camera, as one walk")->excludes(one);
+  add_size_option(*command, arguments->size);
+  add_choices(*command, arguments->choices);
+  add_outputs(*command, arguments->outputs, arguments->choices.floats);
+  command->footer(
+      "Example: voyager render city.voy --cameras city.cameras.json --camera 0 --tau 3 -o "
+      "city.png");
+  command->callback([arguments] { render(*arguments); });
+}
+
+}  // namespace voyager::tools

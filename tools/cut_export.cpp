@@ -1,0 +1,59 @@
+#include "tools/cut_export.h"
+
+#include <algorithm>
+
+#include "runtime/base/error.h"
+#include "runtime/frame/draw_list.h"
+#include "runtime/scene/export/writer.h"
+#include "runtime/scene/sanitise.h"
+
+namespace voyager::tools {
+namespace {
+
+void append(GaussianCloud& cloud, const GaussianArrays& arrays, const DrawItem& item) {
+  const Vec3f mean = interpolated_mean(arrays, item);
+  const Shape<float> shape = interpolated_shape<float>(arrays, item);
+  for (int i = 0; i < 3; ++i) cloud.position.push_back(mean[i]);
+  for (int i = 0; i < 3; ++i) cloud.log_scale.push_back(std::log(shape.scale[i]));
+  for (const float q : {shape.rotation.w, shape.rotation.x, shape.rotation.y, shape.rotation.z})
+    cloud.rotation.push_back(q);
+  cloud.opacity.push_back(
+      std::clamp(logit(std::min(shape.opacity, 1.0f - 0x1p-24f)), -kMaxLogit, kMaxLogit));
+  const size_t stride = 3 * static_cast<size_t>(sh_coefficients(arrays.sh_degree));
+  const float* own = arrays.sh + item.gaussian * stride;
+  const float* parent = item.t == 1.0f ? own : arrays.sh + item.parent * stride;
+  for (size_t k = 0; k < stride; ++k)
+    cloud.sh.push_back(item.t == 1.0f ? own[k] : lerp(parent[k], own[k], item.t));
+}
+
+}  // namespace
+
+void export_cut(const std::string& scene_path, const Camera& camera, double tau,
+                const std::string& ply_path) {
+  Workers workers;
+  const auto scene =
+      load_scene(open_file_source(scene_path), std::pmr::get_default_resource(), workers);
+  FrameInput frame;
+  frame.camera.eye = {camera.pose.position[0], camera.pose.position[1], camera.pose.position[2]};
+  const VoyFrustum f = camera.frustum();
+  frame.camera.fx = camera.width / (f.right - f.left);
+  frame.tau = tau;
+  DrawList draws(scene, Lod::cut, std::pmr::get_default_resource());
+  draws.update(frame, workers);
+
+  GaussianCloud cloud;
+  cloud.sh_degree = scene->sh_degree;
+  for (int i = 0; i < 3; ++i) cloud.origin[static_cast<size_t>(i)] = scene->origin[i];
+  const GaussianArrays arrays = gaussian_arrays(*scene);
+  for (const DrawItem& item : draws.items()) append(cloud, arrays, item);
+
+  AtomicFile file(ply_path);
+  const auto sink = sink_to(file);
+  const bool far = scene->origin.x != 0 || scene->origin.y != 0 || scene->origin.z != 0;
+  const auto writer = write_ply(*sink, cloud.size(), cloud.sh_degree, far);
+  writer->append(cloud);
+  writer->finish();
+  file.commit();
+}
+
+}  // namespace voyager::tools

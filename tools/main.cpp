@@ -1,0 +1,57 @@
+// voyager: the command line. Rendering goes through the public C ABI; baking and
+// export use the runtime directly.
+#include <fmt/core.h>
+
+#include <csignal>
+#include <new>
+
+#include "tools/commands/commands.h"
+#include "tools/exit_code.h"
+#include "voyager/voyager.hpp"
+
+namespace {
+
+int fail(int code, const std::string& message) {
+  fmt::print(stderr, "voyager: {}\n", message);
+  return code;
+}
+
+int parse_and_run(CLI::App& app, int argc, char** argv) {
+  using namespace voyager::tools;
+  try {
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty())
+      return fail(kBadUsage, "found no command, expected one (see --help)");
+    return kSuccess;
+  } catch (const CLI::Success& request) {
+    return app.exit(request);  // --help and --version
+  } catch (const CLI::ParseError& error) {
+    return fail(kBadUsage, std::string(error.what()) + " (see --help)");
+  } catch (const voy::Error& error) {
+    return fail(exit_code(error.result()), error.what());
+  } catch (const voyager::Error& error) {
+    return fail(exit_code(error.code()), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kMachine, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(kMachine, error.what());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A closed pipe is then an error that names itself, and not a silent end.
+  std::signal(SIGPIPE, SIG_IGN);
+  CLI::App app{"Voyager: city-scale 3D Gaussian scenes, baked and rendered"};
+  app.name("voyager");
+  app.set_version_flag("--version", VOYAGER_VERSION);
+  app.require_subcommand(0, 1);
+  app.footer("voyager COMMAND --help has an example of each.");
+  voyager::tools::add_synth(app);
+  voyager::tools::add_bake(app);
+  voyager::tools::add_export(app);
+  voyager::tools::add_info(app);
+  voyager::tools::add_render(app);
+  return parse_and_run(app, argc, argv);
+}
