@@ -1,6 +1,3 @@
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-
 #include <algorithm>
 
 #include "plugin/call.h"
@@ -51,13 +48,6 @@ void check_allocator(const VoyAllocator* allocator) {
     refuse("desc.allocator: found NULL, expected both allocate and release");
 }
 
-// oneTBB starts no more threads than there are processors unless it is told to.
-std::unique_ptr<tbb::global_control> permit_threads(uint32_t wanted) {
-  using tbb::global_control;
-  if (static_cast<int64_t>(wanted) <= tbb::info::default_concurrency()) return nullptr;
-  return std::make_unique<global_control>(global_control::max_allowed_parallelism, wanted);
-}
-
 }  // namespace
 
 voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend chosen)
@@ -65,7 +55,6 @@ voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend chosen
       log{desc.log, desc.logUser, number(desc.logLevel)},
       memory(std::pmr::new_delete_resource()),
       budget(desc.memoryBudget),
-      more_threads(permit_threads(desc.workerThreads)),
       workers(desc.workerThreads),
       backend_kind(chosen),
       backend(chosen == VOY_BACKEND_REFERENCE ? create_reference_backend() : create_cpu_backend()) {

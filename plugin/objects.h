@@ -1,7 +1,5 @@
 #pragma once
 // What stands behind each handle.
-#include <tbb/global_control.h>
-
 #include <memory>
 #include <memory_resource>
 #include <mutex>
@@ -40,9 +38,8 @@ struct DeviceObject final : Object {
 
   Log log;
   std::optional<HostMemory> host_memory;
-  std::pmr::memory_resource* memory;                  // views and frames
-  Budget budget;                                      // scene data
-  std::unique_ptr<tbb::global_control> more_threads;  // NULL where the processors suffice
+  std::pmr::memory_resource* memory;  // views and frames
+  Budget budget;                      // scene data
   Workers workers;
   VoyBackend backend_kind;
   std::unique_ptr<Backend> backend;

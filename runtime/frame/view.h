@@ -25,6 +25,7 @@ class View {
   std::shared_ptr<const Scene> scene_;
   PipelineDesc desc_;
   std::unique_ptr<Pipeline> pipeline_;
+  std::pmr::memory_resource* memory_;
   std::pmr::vector<uint32_t> last_cut_;
   FrameStats stats_;
   uint64_t frames_ = 0;

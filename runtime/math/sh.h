@@ -38,6 +38,10 @@ VOYAGER_HD void sh_basis(int degree, const Vec3<T>& d, T* basis) {
   basis[15] = T(-0.5900435899266435) * x * (xx - T(3) * yy);
 }
 
+// Finite coefficients may sum to infinity, and 0 · ∞ would blend as NaN. Σ of
+// the blended weights is at most 1, so a pixel stays finite too.
+inline constexpr double kMaxColour = 3e38;
+
 // Coefficient(k, channel) is called for k in order; sums run in that order.
 template <class T, class Coefficient>
 VOYAGER_HD Vec3<T> sh_colour(int degree, const Vec3<T>& direction, const Coefficient& coefficient) {
@@ -50,6 +54,7 @@ VOYAGER_HD Vec3<T> sh_colour(int degree, const Vec3<T>& direction, const Coeffic
   for (int channel = 0; channel < 3; ++channel) {
     c[channel] += T(0.5);
     c[channel] = c[channel] > T(0) ? c[channel] : T(0);
+    c[channel] = c[channel] < T(kMaxColour) ? c[channel] : T(kMaxColour);
   }
   return c;
 }

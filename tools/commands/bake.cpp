@@ -12,6 +12,7 @@
 #include "runtime/lod/validate.h"
 #include "runtime/scene/import/importer.h"
 #include "tools/commands/commands.h"
+#include "tools/options.h"
 #include "tools/progress_bar.h"
 
 namespace voyager::tools {
@@ -74,13 +75,10 @@ void add_bake(CLI::App& app) {
   command->add_option("input", arguments->inputs, "A .ply or .spz; - is a .ply on standard input")
       ->required();
   command->add_option("-o", arguments->output, "The scene.voy to write")->required();
-  command
-      ->add_option(
-          "--quality", arguments->quality,
-          "compact quantises (errors in docs/voy-format.md); lossless keeps the input's own words")
-      ->transform(CLI::CheckedTransformer(std::vector<std::pair<std::string, Quality>>{
-          {"compact", Quality::compact}, {"lossless", Quality::lossless}}))
-      ->default_str("compact");
+  add_choice<Quality>(
+      *command, "--quality", arguments->quality,
+      {{"compact", Quality::compact}, {"lossless", Quality::lossless}},
+      "compact quantises (errors in docs/voy-format.md); lossless keeps the input's own words");
   command->add_flag("--verify", arguments->verify,
                     "Check every invariant of the tree, and read the file back");
   command->footer("Example: voyager bake city.ply -o city.voy --quality lossless --verify");

@@ -7,9 +7,9 @@
 #include "runtime/format/export_hier.h"
 #include "runtime/format/export_ply.h"
 #include "runtime/format/reader.h"
-#include "tools/camera_options.h"
 #include "tools/commands/commands.h"
 #include "tools/cut_export.h"
+#include "tools/options.h"
 #include "tools/progress_bar.h"
 
 namespace voyager::tools {

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "runtime/base/error.h"
-#include "tools/camera_options.h"
 #include "tools/commands/commands.h"
 #include "tools/frame_files.h"
+#include "tools/options.h"
 #include "tools/progress_bar.h"
 #include "tools/renderer.h"
 
@@ -83,15 +83,6 @@ void render(Arguments& arguments) {
   fmt::print("{}\n", arguments.outputs.image);
 }
 
-template <class T>
-void add_choice(CLI::App& command, const std::string& name, T& value,
-                std::vector<std::pair<std::string, T>> names, const std::string& description) {
-  std::string first = names.front().first;
-  command.add_option(name, value, description)
-      ->transform(CLI::CheckedTransformer(std::move(names)))
-      ->default_str(first);
-}
-
 void add_choices(CLI::App& command, RenderChoices& choices) {
   add_choice<VoyBackend>(command, "--backend", choices.backend,
                          {{"auto", VOY_BACKEND_AUTO},
@@ -114,6 +105,7 @@ void add_choices(CLI::App& command, RenderChoices& choices) {
                              "The exponential");
   command.add_option("--lut-size", choices.lut_size, "Intervals of --exp lut")
       ->check(CLI::Range(1, 4096))
+      ->type_name("M")
       ->capture_default_str();
   command
       .add_option_function<std::vector<float>>(

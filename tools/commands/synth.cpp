@@ -68,11 +68,13 @@ void add_synth(CLI::App& app) {
       ->check(CLI::IsMember({"city"}));
   command->add_option("--gaussians", arguments->city.gaussians, "How many Gaussians, 1e4 to 1e8")
       ->required()
-      ->check(CLI::Range(uint64_t{10000}, uint64_t{100000000}));
+      ->check(CLI::Range(uint64_t{10000}, uint64_t{100000000}))
+      ->type_name("N");
   command->add_option("--seed", arguments->city.seed, "Another seed is another city")
       ->capture_default_str();
   command->add_option("--sh-degree", arguments->city.sh_degree, "Degree of the spherical harmonics")
       ->check(CLI::Range(0, 3))
+      ->type_name("D")
       ->capture_default_str();
   command
       ->add_option("-o", arguments->output,

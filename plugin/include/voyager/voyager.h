@@ -48,7 +48,8 @@ extern "C" {
 
 typedef enum VoyResult {
   VOY_SUCCESS = 0,
-  VOY_INCOMPLETE = 1, /* the array was too short: it was filled, and count says how many there are */
+  VOY_INCOMPLETE =
+      1, /* the array was too short: it was filled, and count says how many there are */
   VOY_ERROR_INVALID_ARGUMENT = -1,
   VOY_ERROR_INVALID_HANDLE = -2,
   VOY_ERROR_INVALID_STRUCTURE = -3, /* wrong type, or a next that the call does not know */
@@ -140,18 +141,19 @@ typedef struct VoyDeviceDesc {
   const void* next;
   uint32_t apiVersion; /* VOY_API_VERSION of the header that the host was built with */
   VoyBackend backend;
-  const uint8_t* deviceUuid;     /* 16 bytes as VkPhysicalDeviceIDProperties has them (a CPU's are 0), or NULL for any */
-  uint64_t memoryBudget;         /* bytes that scene data of this device may occupy; 0 is no limit */
-  uint32_t workerThreads;        /* 1 to 1024; 0 is one a processor */
-  VoyLogLevel logLevel;          /* the most verbose level wanted */
-  VoyLogFunction log;            /* or NULL */
+  const uint8_t* deviceUuid; /* 16 bytes as VkPhysicalDeviceIDProperties has them (a CPU's are 0),
+                                or NULL for any */
+  uint64_t memoryBudget;     /* bytes that scene data of this device may occupy; 0 is no limit */
+  uint32_t workerThreads; /* 1 to 1024, no more than there are processors; 0 is one a processor */
+  VoyLogLevel logLevel;   /* the most verbose level wanted */
+  VoyLogFunction log;     /* or NULL */
   void* logUser;
   const VoyAllocator* allocator; /* or NULL for malloc; the struct is copied */
 } VoyDeviceDesc;
-#define VOY_DEVICE_DESC_INIT                                                                     \
-  {                                                                                              \
-    VOY_STRUCTURE_TYPE_DEVICE_DESC, NULL, VOY_API_VERSION, VOY_BACKEND_AUTO, NULL, 0, 0,         \
-        VOY_LOG_WARNING, NULL, NULL, NULL                                                        \
+#define VOY_DEVICE_DESC_INIT                                                             \
+  {                                                                                      \
+    VOY_STRUCTURE_TYPE_DEVICE_DESC, NULL, VOY_API_VERSION, VOY_BACKEND_AUTO, NULL, 0, 0, \
+        VOY_LOG_WARNING, NULL, NULL, NULL                                                \
   }
 
 /* VOY_SUCCESS if voyCreateDevice can make this backend here; else VOY_ERROR_NO_DEVICE
@@ -171,15 +173,15 @@ typedef struct VoyCapabilities {
   void* next;
   VoyBackend backend; /* the one that AUTO chose */
   uint32_t workerThreads;
-  char deviceName[256]; /* UTF-8, terminated */
+  char deviceName[256];   /* UTF-8, terminated */
   uint8_t deviceUuid[16]; /* zero for a CPU */
   uint32_t maxInstances;
   uint32_t maxEyes;
   uint32_t maxWidth, maxHeight; /* pixels */
-  uint32_t searches;     /* of VoySearch */
-  uint32_t exponentials; /* of VoyExponential */
-  uint32_t targetKinds;  /* of VoyTargetKind */
-  uint32_t colorFormats; /* of VoyColorFormat */
+  uint32_t searches;            /* of VoySearch */
+  uint32_t exponentials;        /* of VoyExponential */
+  uint32_t targetKinds;         /* of VoyTargetKind */
+  uint32_t colorFormats;        /* of VoyColorFormat */
 } VoyCapabilities;
 #define VOY_CAPABILITIES_INIT \
   { VOY_STRUCTURE_TYPE_CAPABILITIES, NULL, VOY_BACKEND_AUTO, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0 }
@@ -208,7 +210,7 @@ typedef struct VoyByteSource {
 typedef struct VoySceneDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_DESC */
   const void* next;
-  const char* path; /* UTF-8; copied */
+  const char* path;            /* UTF-8; copied */
   const VoyByteSource* source; /* the struct is copied; user must live until voyOpenScene returns */
 } VoySceneDesc;
 #define VOY_SCENE_DESC_INIT \
@@ -248,10 +250,10 @@ typedef struct VoySceneInfo {
   uint64_t repairedCount; /* values mended at import */
   double positionError;   /* compact storage: largest error of a mean, metres; else 0 */
 } VoySceneInfo;
-#define VOY_SCENE_INFO_INIT                                                                     \
-  {                                                                                             \
+#define VOY_SCENE_INFO_INIT                                                                      \
+  {                                                                                              \
     VOY_STRUCTURE_TYPE_SCENE_INFO, NULL, 0, 0, 0, 0, 0, 0, VOY_SCENE_STORAGE_FLAT, 0, {0, 0, 0}, \
-        {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0                                                        \
+        {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0                                                         \
   }
 
 VOY_API VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info);
@@ -289,7 +291,7 @@ typedef enum VoyTargetKind {
 } VoyTargetKind;
 
 typedef enum VoyColorFormat {
-  VOY_COLOR_FORMAT_NONE = 0,       /* depth only */
+  VOY_COLOR_FORMAT_NONE = 0,        /* depth only */
   VOY_COLOR_FORMAT_RGBA8_UNORM = 1, /* code values, rounded to nearest, clamped to [0, 1] */
   VOY_COLOR_FORMAT_RGBA32F = 2,     /* before clamping */
   VOY_COLOR_FORMAT_MAX_ENUM = 0x7fffffff
@@ -312,10 +314,10 @@ typedef struct VoyTargetDesc {
   float* depth;           /* or NULL */
   uint64_t depthRowPitch; /* bytes, a multiple of 4; 0 is tightly packed */
 } VoyTargetDesc;
-#define VOY_TARGET_DESC_INIT                                                                \
-  {                                                                                         \
-    VOY_STRUCTURE_TYPE_TARGET_DESC, NULL, VOY_TARGET_KIND_HOST_MEMORY,                      \
-        VOY_COLOR_FORMAT_RGBA8_UNORM, 0, 0, NULL, 0, NULL, 0                                \
+#define VOY_TARGET_DESC_INIT                                           \
+  {                                                                    \
+    VOY_STRUCTURE_TYPE_TARGET_DESC, NULL, VOY_TARGET_KIND_HOST_MEMORY, \
+        VOY_COLOR_FORMAT_RGBA8_UNORM, 0, 0, NULL, 0, NULL, 0           \
   }
 
 VOY_API VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget* target);
@@ -324,7 +326,8 @@ VOY_API VoyResult voyDestroyTarget(VoyTarget target);
 /* --------------------------------------------------------------------- view */
 
 typedef enum VoyLod {
-  VOY_LOD_CUT = 0,        /* the level-of-detail cut at tau; a flat scene has none and draws every Gaussian */
+  VOY_LOD_CUT =
+      0, /* the level-of-detail cut at tau; a flat scene has none and draws every Gaussian */
   VOY_LOD_ALL_LEAVES = 1, /* every leaf, no search, no interpolation */
   VOY_LOD_MAX_ENUM = 0x7fffffff
 } VoyLod;
@@ -353,22 +356,22 @@ typedef enum VoyAlphaFilter {
 typedef struct VoyViewDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VIEW_DESC */
   const void* next;
-  uint32_t instanceCount;  /* 1 in this version; more are VOY_ERROR_UNSUPPORTED */
-  const VoyScene* scenes;  /* one an instance, of the same device; copied */
-  uint32_t eyeCount;       /* 1 in this version */
+  uint32_t instanceCount;       /* 1 in this version; more are VOY_ERROR_UNSUPPORTED */
+  const VoyScene* scenes;       /* one an instance, of the same device; copied */
+  uint32_t eyeCount;            /* 1 in this version */
   uint32_t maxWidth, maxHeight; /* pixels: no target of a frame may be larger */
   VoyLod lod;
   double tau; /* granularity in pixels, finite, >= 0 */
   VoySearch search;
   VoyAlphaFilter alphaFilter;
   VoyExponential exponential;
-  uint32_t lutSize; /* intervals, 1 to 4096; 0 is 32 */
+  uint32_t lutSize;  /* intervals, 1 to 4096; 0 is 32 */
   uint32_t reserved; /* 0 */
 } VoyViewDesc;
-#define VOY_VIEW_DESC_INIT                                                                       \
-  {                                                                                              \
-    VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_CUT, 3.0, VOY_SEARCH_AUTO,     \
-        VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, 0                                          \
+#define VOY_VIEW_DESC_INIT                                                                   \
+  {                                                                                          \
+    VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_CUT, 3.0, VOY_SEARCH_AUTO, \
+        VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, 0                                      \
   }
 
 VOY_API VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
@@ -420,10 +423,11 @@ typedef struct VoyFrame {
   const void* next;
   uint32_t eyeCount; /* the view's */
   const VoyFrameEye* eyes;
-  const VoyInstancePose* instances; /* one an instance, or NULL: all at the identity (the only pose in this version) */
-  double nearZ; /* metres, > 0: splats with z <= nearZ are not drawn; 0.2 by default */
+  const VoyInstancePose*
+      instances; /* one an instance, or NULL: all at the identity (the only pose in this version) */
+  double nearZ;  /* metres, > 0: splats with z <= nearZ are not drawn; 0.2 by default */
   float background[3]; /* code values behind everything, finite */
-  uint32_t reserved; /* 0 */
+  uint32_t reserved;   /* 0 */
 } VoyFrame;
 #define VOY_FRAME_INIT \
   { VOY_STRUCTURE_TYPE_FRAME, NULL, 0, NULL, NULL, 0.2, {0, 0, 0}, 0 }
@@ -462,15 +466,15 @@ typedef struct VoyFrameStats {
   uint64_t nodesTotal;
   uint64_t nodesTested; /* evaluations of the predicate */
   uint64_t subtreesVisited;
-  uint64_t chunksRead;  /* by the search */
+  uint64_t chunksRead; /* by the search */
   uint64_t bytesRead;
-  uint64_t cutSize;     /* nodes, or Gaussians where there is no cut */
+  uint64_t cutSize;       /* nodes, or Gaussians where there is no cut */
   uint64_t entered, left; /* nodes, against the view's last frame */
   uint64_t splats;        /* that reach the image */
   uint64_t pairsBefore;   /* (tile, splat) pairs of the bounding boxes */
   uint64_t pairsAfter;    /* of the ellipses at the α threshold */
   uint64_t bytesStreamed, bytesNeeded;
-  uint64_t missing;       /* cut nodes that stood in for missing ones */
+  uint64_t missing; /* cut nodes that stood in for missing ones */
   double milliseconds[VOY_STAGE_COUNT];
   double millisecondsTotal;
 } VoyFrameStats;

@@ -1,4 +1,4 @@
-#include "tools/camera_options.h"
+#include "tools/options.h"
 
 #include <cmath>
 

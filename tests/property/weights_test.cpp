@@ -1,0 +1,161 @@
+// The draw list: the cut in order, its weights against METHOD §4 in double, and
+// what a damaged chunk does to a frame.
+#include <algorithm>
+
+#include "runtime/frame/draw_list.h"
+#include "tests/support/render_scene.h"
+#include "tests/support/scene_files.h"
+
+namespace voyager {
+namespace {
+
+using test::frame_input;
+using test::look;
+
+std::vector<FrameInput> frames() {
+  std::vector<FrameInput> all;
+  for (const double tau : {0.0, 2.0, 10.0, 30.0, 200.0})
+    for (const Vec3d& eye : {Vec3d{3, -6, -24}, Vec3d{0, 1, 0}, Vec3d{-200, 10, 5}})
+      all.push_back(frame_input(look(eye, {0.5, 0, 0}, 200, 120), tau));
+  return all;
+}
+
+double exact_size(const NodeRecord& r, const Vec3d& c) {
+  double squared = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double d = c[k] - std::clamp(c[k], double{r.box_min[k]}, double{r.box_max[k]});
+    squared += d * d;
+  }
+  return squared == 0 ? INFINITY : double{r.extent} / std::sqrt(squared);
+}
+
+TEST(Weights, FollowTheMethodInDouble) {
+  const auto scene = test::baked_scene(test::random_cloud(5000, 1, 0));
+  const LodTree& tree = scene->tree;
+  Workers workers(2);
+  DrawList draws(scene, Lod::cut, std::pmr::get_default_resource());
+  size_t between = 0;
+  for (const FrameInput& input : frames()) {
+    draws.update(input, workers);
+    ASSERT_EQ(draws.items().size(), draws.cut().size());
+    const Vec3f eye = cut_centre(input.camera.eye, scene->origin);
+    const double target = (2 * input.tau + 1) / input.camera.fx;
+    for (size_t i = 0; i < draws.items().size(); ++i) {
+      const DrawItem& item = draws.items()[i];
+      ASSERT_EQ(item.gaussian, draws.cut()[i]);
+      ASSERT_TRUE(i == 0 || draws.items()[i - 1].gaussian < item.gaussian);
+      const uint32_t parent = tree.parent[item.gaussian];
+      if (item.t == 1.0f) {
+        ASSERT_EQ(item.parent, kNoNode);
+      } else {
+        ASSERT_EQ(item.parent, parent);
+        ASSERT_EQ(item.inverse_k, 1.0f / static_cast<float>(tree.records[parent].child_count));
+        ++between;
+      }
+      if (parent == kNoNode) continue;
+      const Vec3d c{double{eye.x}, double{eye.y}, double{eye.z}};
+      const double above = exact_size(tree.records[parent], c),
+                   own = exact_size(tree.records[item.gaussian], c);
+      const double start = std::max(above / 2, own), span = above - start;
+      double t = 1;
+      if (above <= 2 * target && span > 0) t = std::clamp(1 - (target - start) / span, 0.0, 1.0);
+      ASSERT_NEAR(double{item.t}, t, span > 0 && above < INFINITY ? 1e-6 * above / span : 0)
+          << item.gaussian;
+    }
+  }
+  EXPECT_GT(between, 1000u);
+}
+
+TEST(Weights, BothBackendsDrawTheSameCut) {
+  const auto scene = test::baked_scene(test::random_cloud(5000, 2, 0));
+  const auto cpu = create_cpu_backend(), reference = create_reference_backend();
+  for (FrameInput input : frames()) {
+    input.camera.width = input.camera.height = 8;
+    const test::Frame a = test::render(*cpu, scene, {}, input),
+                      b = test::render(*reference, scene, {}, input);
+    EXPECT_EQ(a.cut, b.cut);
+    EXPECT_EQ(a.stats.cut_size, a.cut.size());
+    EXPECT_EQ(a.stats.tau_star, b.stats.tau_star);
+  }
+}
+
+TEST(Weights, AllLeavesAreDrawnInTheInputsOrder) {
+  const GaussianCloud cloud = test::random_cloud(3000, 3, 0);
+  const auto scene = test::baked_scene(cloud);
+  Workers workers(2);
+  DrawList draws(scene, Lod::all_leaves, std::pmr::get_default_resource());
+  draws.update(frames()[0], workers);
+  ASSERT_EQ(draws.items().size(), cloud.size());
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const DrawItem& item = draws.items()[i];
+    EXPECT_EQ(item.t, 1.0f);
+    EXPECT_EQ(scene->gaussians[item.gaussian].mean.x, cloud.position[3 * i]);
+  }
+}
+
+// A frame throws exactly where the cut or what is above it lies in the damage.
+bool needs(const LodTree& tree, const std::vector<uint32_t>& cut, uint32_t first, uint32_t count) {
+  for (uint32_t node : cut)
+    for (; node != kNoNode; node = tree.parent[node])
+      if (node >= first && node - first < count) return true;
+  return false;
+}
+
+TEST(Weights, DamageStopsOnlyTheFramesThatNeedIt) {
+  const test::Bytes bytes =
+      test::scene_bytes(test::bake(test::random_cloud(6000, 4, 1)), Quality::lossless);
+  Workers workers(2);
+  const auto whole = load_scene(test::source_of(bytes), std::pmr::get_default_resource(), workers);
+  const SceneFile file(test::source_of(bytes));
+  const auto cpu = create_cpu_backend();
+  size_t stopped = 0, drawn = 0;
+  std::vector<FrameInput> inputs = frames();
+  for (const double tau : {1000.0, 1e5})
+    inputs.push_back(frame_input(look({3, -6, -50}, {0, 0, 0}, 60, 40), tau));
+  for (const SceneFile::ChunkExtent& chunk : file.chunks()) {
+    const auto source =
+        std::make_shared<test::FlippedSource>(bytes, chunk.offset + chunk.bytes / 3, std::byte{4});
+    const auto damaged = load_scene(source, std::pmr::get_default_resource(), workers);
+    ASSERT_EQ(damaged->damaged.size(), 1u);
+    for (const FrameInput& input : inputs) {
+      const test::Frame expected = test::render(*cpu, whole, {}, input);
+      if (needs(whole->tree, expected.cut, chunk.first_node, chunk.node_count)) {
+        ++stopped;
+        EXPECT_EQ(test::error_code([&] { test::render(*cpu, damaged, {}, input); }),
+                  ErrorCode::damaged_chunk);
+      } else {
+        ++drawn;
+        const test::Frame found = test::render(*cpu, damaged, {}, input);
+        test::expect_same_bits(expected, found);
+        EXPECT_EQ(expected.cut, found.cut);
+      }
+    }
+    EXPECT_EQ(
+        test::error_code([&] { test::render(*cpu, damaged, {.lod = Lod::all_leaves}, inputs[0]); }),
+        ErrorCode::damaged_chunk);
+  }
+  EXPECT_GT(stopped, 20u);
+  EXPECT_GT(drawn, 5u);
+}
+
+// A view that failed once draws the next frame as if nothing had been.
+TEST(Weights, AViewSurvivesAFrameThatFailed) {
+  const test::Bytes bytes =
+      test::scene_bytes(test::bake(test::random_cloud(6000, 4, 1)), Quality::lossless);
+  Workers workers(2);
+  const SceneFile file(test::source_of(bytes));
+  const auto& last = file.chunks().back();
+  const auto scene =
+      load_scene(std::make_shared<test::FlippedSource>(bytes, last.offset + 200, std::byte{1}),
+                 std::pmr::get_default_resource(), workers);
+  const auto cpu = create_cpu_backend();
+  const FrameInput good = frame_input(look({3, -6, -50}, {0, 0, 0}, 60, 40), 1e5),
+                   bad = frame_input(look({0, 1, 0}, {1, 0, 0}, 60, 40), 0);
+  View view(scene, *cpu, {}, std::pmr::get_default_resource(), workers);
+  const test::Frame before = test::render(view, good);
+  EXPECT_THROW(test::render(view, bad), Error);
+  test::expect_same_bits(before, test::render(view, good));
+}
+
+}  // namespace
+}  // namespace voyager
