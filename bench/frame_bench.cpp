@@ -26,7 +26,8 @@ const char* setting(const char* name, const char* otherwise) {
 std::vector<Camera> bench_cameras() {
   unsigned width = 0, height = 0;
   std::sscanf(setting("VOYAGER_BENCH_SIZE", "960x540"), "%ux%u", &width, &height);
-  std::vector<Camera> cameras = read_cameras(setting("VOYAGER_BENCH_CAMERAS", "demo/city.cameras.json"));
+  std::vector<Camera> cameras =
+      read_cameras(setting("VOYAGER_BENCH_CAMERAS", "demo/city.cameras.json"));
   for (Camera& camera : cameras) camera = camera.resized(width, height);
   return cameras;
 }
@@ -36,7 +37,8 @@ void frames(benchmark::State& state, VoyLod lod, double tau) {
   RenderChoices choices;
   choices.lod = lod;
   choices.tau = tau;
-  Renderer renderer(setting("VOYAGER_BENCH_SCENE", "demo/city.voy"), choices, cameras[0].width, cameras[0].height);
+  Renderer renderer(setting("VOYAGER_BENCH_SCENE", "demo/city.voy"), choices, cameras[0].width,
+                    cameras[0].height);
   double sums[VOY_STAGE_COUNT] = {};
   VoyFrameStats stats = {};
   size_t next = 0;
@@ -57,8 +59,12 @@ void frames(benchmark::State& state, VoyLod lod, double tau) {
 
 BENCHMARK_CAPTURE(frames, tau_0, VOY_LOD_CUT, 0.0)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(frames, tau_3, VOY_LOD_CUT, 3.0)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frames, tau_15, VOY_LOD_CUT, 15.0)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frames, all_leaves, VOY_LOD_ALL_LEAVES, 0.0)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frames, tau_15, VOY_LOD_CUT, 15.0)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frames, all_leaves, VOY_LOD_ALL_LEAVES, 0.0)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace voyager::tools

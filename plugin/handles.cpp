@@ -82,7 +82,8 @@ void* HandleTable::insert(std::shared_ptr<Object> object) {
   const uint64_t value = uint64_t{slot.generation} << 32 | index << 8 |
                          static_cast<uint64_t>(object->kind()) << 4 | kMark;
   slot.object = std::move(object);
-  return reinterpret_cast<void*>(static_cast<uintptr_t>(value));
+  // An opaque number, never followed.
+  return reinterpret_cast<void*>(value);  // NOLINT(performance-no-int-to-ptr)
 }
 
 std::shared_ptr<Object> HandleTable::begin_call(const void* handle, Kind kind) {

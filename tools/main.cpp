@@ -1,8 +1,7 @@
 // voyager: the command line. Rendering goes through the public C ABI; baking and
 // export use the runtime directly.
-#include <fmt/core.h>
-
 #include <csignal>
+#include <cstdio>
 #include <new>
 
 #include "tools/commands/commands.h"
@@ -11,9 +10,15 @@
 
 namespace {
 
-int fail(int code, const std::string& message) {
-  fmt::print(stderr, "voyager: {}\n", message);
+int fail(int code, const std::string& message) noexcept {
+  std::fputs(("voyager: " + message + "\n").c_str(), stderr);
   return code;
+}
+
+// What was printed may still wait in the buffer when the disk is full.
+int finish() {
+  if (std::fflush(stdout) == 0) return voyager::tools::kSuccess;
+  return fail(voyager::tools::kMachine, "standard output: cannot be written to");
 }
 
 int parse_and_run(CLI::App& app, int argc, char** argv) {
@@ -22,7 +27,7 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
     app.parse(argc, argv);
     if (app.get_subcommands().empty())
       return fail(kBadUsage, "found no command, expected one (see --help)");
-    return kSuccess;
+    return finish();
   } catch (const CLI::Success& request) {
     return app.exit(request);  // --help and --version
   } catch (const CLI::ParseError& error) {

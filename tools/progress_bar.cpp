@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <memory>
 #include <string>
 
@@ -15,6 +16,12 @@ struct State {
   int shown = -1;  // the last step that was printed
 };
 
+// A standard error that is closed stops no work.
+template <class... T>
+void print(fmt::format_string<T...> format, T&&... values) {
+  std::fputs(fmt::format(format, std::forward<T>(values)...).c_str(), stderr);
+}
+
 void show(State& state, const char* stage, uint64_t done, uint64_t total) {
   if (state.stage != stage) {
     state.stage = stage;
@@ -26,11 +33,11 @@ void show(State& state, const char* stage, uint64_t done, uint64_t total) {
   if (step == state.shown) return;
   state.shown = step;
   if (!state.terminal) {
-    fmt::print(stderr, "{}: {:3.0f} %\n", stage, share * 100);
+    print("{}: {:3.0f} %\n", stage, share * 100);
     return;
   }
-  fmt::print(stderr, "\r{:<12} [{:<40}] {:3.0f} %{}", stage,
-             std::string(static_cast<size_t>(step), '='), share * 100, step == steps ? "\n" : "");
+  print("\r{:<12} [{:<40}] {:3.0f} %{}", stage, std::string(static_cast<size_t>(step), '='),
+        share * 100, step == steps ? "\n" : "");
 }
 
 }  // namespace

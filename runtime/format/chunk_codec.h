@@ -18,7 +18,10 @@ struct ChunkContext {
   Vec3d origin{0, 0, 0}, source_origin{0, 0, 0};
   uint32_t leaf_count = 0;
 
-  size_t coefficients() const { return static_cast<size_t>((sh_degree + 1) * (sh_degree + 1)); }
+  size_t coefficients() const {
+    const auto n = static_cast<size_t>(sh_degree) + 1;
+    return n * n;
+  }
 };
 
 struct EncodedChunk {

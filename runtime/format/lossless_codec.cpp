@@ -1,5 +1,6 @@
 #include "runtime/format/lossless_codec.h"
 
+#include <bit>
 #include <cstring>
 
 #include "runtime/format/planes.h"
@@ -28,7 +29,8 @@ void place_leaves(const ChunkContext& context, Chunk& chunk) {
     const Vec3f word = mean;
     words.insert(words.end(), {word.x, word.y, word.z});
     if (chunk.records[i].child_count == 0) mean = scene_local(word, context);
-    differ |= std::memcmp(&mean, &word, sizeof mean) != 0;
+    for (int axis = 0; axis < 3; ++axis)
+      differ |= std::bit_cast<uint32_t>(mean[axis]) != std::bit_cast<uint32_t>(word[axis]);
   }
   if (differ) chunk.position_words = std::move(words);
 }

@@ -24,7 +24,7 @@ std::string hex(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::shared_ptr<const Scene> load_scene(std::shared_ptr<const ByteSource> source,
+std::shared_ptr<const Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
                                         std::pmr::memory_resource* memory, Workers& workers) {
   std::array<std::byte, 64> buffer;
   const std::span<std::byte> first =

@@ -19,7 +19,8 @@ class View {
   bool draws_cut() const { return !scene_->flat() && desc_.lod == Lod::cut; }
   bool has_frame() const { return frames_ > 0; }
   const FrameStats& stats() const { return stats_; }
-  const std::pmr::vector<uint32_t>& cut() const { return pipeline_->cut(); }
+  // Of the last frame that was drawn, as stats() is: a frame that threw leaves both.
+  const std::pmr::vector<uint32_t>& cut() const { return last_cut_; }
 
  private:
   std::shared_ptr<const Scene> scene_;

@@ -93,5 +93,22 @@ TEST(RealScenes, SpzIsWithinItsQuantisationOfThePly) {
   }
 }
 
+TEST(RealScenes, CompactStorageIsNearTheLossless) {
+  VOYAGER_NEEDS_SCENES(folder);
+  const GaussianCloud cloud = import_all(folder + "/formats/block.ply");
+  const auto lossless = test::baked_scene(cloud);
+  const auto compact = test::baked_scene(cloud, Quality::compact);
+  const auto cpu = create_cpu_backend();
+  for (const Lod lod : {Lod::all_leaves, Lod::cut}) {
+    const FrameInput input =
+        frame_input(overview(*load(folder + "/formats/block.ply"), 480, 320), 3);
+    const test::Difference d = compare(render(*cpu, compact, {.lod = lod}, input),
+                                       render(*cpu, lossless, {.lod = lod}, input));
+    EXPECT_GE(d.psnr, 40);
+    std::printf("compact against lossless block, %s: %.1f dB, largest %.1f/255\n",
+                lod == Lod::cut ? "tau 3" : "all leaves", d.psnr, 255 * d.largest);
+  }
+}
+
 }  // namespace
 }  // namespace voyager

@@ -5,6 +5,7 @@
 #include "runtime/base/error.h"
 #include "runtime/math/alpha.h"
 #include "tests/support/render_scene.h"
+#include "tests/support/tree_clouds.h"
 
 namespace voyager {
 namespace {
@@ -247,6 +248,17 @@ TEST(ExtremeImage, EarthCentredWithMillimetreSteps) {
     EXPECT_GT(compare(a, b).psnr, 70);
     EXPECT_LE(compare(a, b).rough, 2u);
     EXPECT_GT(compare(b, render(*reference, there, {}, far)).psnr, 60);
+  }
+}
+
+// Points, lines, outliers at 9e17 m, specks, needles, invisible ones: as trees.
+TEST(ExtremeImage, DegenerateCloudsAtEveryLevelOfDetail) {
+  for (const test::NamedCloud& named : test::degenerate_clouds()) {
+    SCOPED_TRACE(named.name);
+    const auto scene = test::baked_scene(named.cloud);
+    for (const double tau : {0.0, 5.0, 1e3})
+      for (const Vec3d& eye : {Vec3d{3, -6, -24}, Vec3d{0.1, 0.2, -1.5}})
+        expect_sound(scene, frame_input(look(eye, {0, 0, 0}, 40, 30), tau), SIZE_MAX);
   }
 }
 

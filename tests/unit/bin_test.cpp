@@ -12,6 +12,12 @@ namespace {
 
 constexpr uint32_t kWidth = 150, kHeight = 101;
 
+void set_box(Splat& s) {
+  const SupportEllipse support = support_ellipse(s);
+  s.half_width = static_cast<float>(support.reach_x * 1.000001);
+  s.half_height = static_cast<float>(support.reach_y * 1.000001);
+}
+
 Splat make_splat(float x, float y, double sigma_x, double sigma_y, double correlation, float rho) {
   Splat s{};
   s.x = x, s.y = y;
@@ -23,9 +29,7 @@ Splat make_splat(float x, float y, double sigma_x, double sigma_y, double correl
                   0.5f);
   s.rho_min = rho;
   s.opacity = s.t = 1;
-  const SupportEllipse support = support_ellipse(s);
-  s.half_width = static_cast<float>(support.reach_x * 1.000001);
-  s.half_height = static_cast<float>(support.reach_y * 1.000001);
+  set_box(s);
   return s;
 }
 
@@ -43,10 +47,13 @@ Splat random_splat(std::mt19937& random) {
 }
 
 // The kernel's own arithmetic at one pixel.
-bool contributes(const Splat& s, uint32_t x, uint32_t y) {
+float rho_at(const Splat& s, uint32_t x, uint32_t y) {
   const float dx = (static_cast<float>(x) + 0.5f) - s.x, dy = (static_cast<float>(y) + 0.5f) - s.y;
   const float p = dx * s.conic.p_x, q = std::fma(-s.conic.skew, dx, dy) * s.conic.q_y;
-  return -std::fma(q, q, p * p) >= s.rho_min;
+  return -std::fma(q, q, p * p);
+}
+bool contributes(const Splat& s, uint32_t x, uint32_t y) {
+  return rho_at(s, x, y) >= s.rho_min;
 }
 
 std::set<size_t> tiles_of(const Splat& splat, bool alpha_filter, Workers& workers,
@@ -89,6 +96,33 @@ TEST(Bin, NoContributingPixelIsMissedAndTheEllipseStaysInItsBox) {
                  std::to_string(static_cast<double>(useful) / static_cast<double>(emitted)));
   RecordProperty("emitted_of_boxed",
                  std::to_string(static_cast<double>(emitted) / static_cast<double>(boxed)));
+}
+
+// ρ_min set to the largest ρ of one tile as the kernel rounds it: the real
+// ellipse then touches or just misses the tile, and only the margin saves it.
+TEST(Bin, ATileThatIsOnlyJustReachedIsNotMissed) {
+  Workers workers(1);
+  cpu::TileBins bins(std::pmr::get_default_resource());
+  std::mt19937 random(4);
+  const TileGrid grid = tile_grid(kWidth, kHeight);
+  size_t touched = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Splat splat = random_splat(random);
+    const auto column = static_cast<uint32_t>(random() % static_cast<unsigned>(grid.columns));
+    const auto row = static_cast<uint32_t>(random() % static_cast<unsigned>(grid.rows));
+    float most = -INFINITY;
+    for (uint32_t y = row * kTile; y < std::min((row + 1) * kTile, kHeight); ++y)
+      for (uint32_t x = column * kTile; x < std::min((column + 1) * kTile, kWidth); ++x)
+        most = std::max(most, rho_at(splat, x, y));
+    if (most < -20.0f || most == 0.0f) continue;
+    ++touched;
+    splat.rho_min = most;
+    set_box(splat);
+    const size_t tile = row * static_cast<size_t>(grid.columns) + column;
+    ASSERT_EQ(tiles_of(splat, true, workers, bins).count(tile), 1u) << i;
+    ASSERT_EQ(tiles_of(splat, false, workers, bins).count(tile), 1u) << i;
+  }
+  EXPECT_GT(touched, 3000u);
 }
 
 // One row is left out at a time: a rasterizer that skips rows by the splat's box
