@@ -4,11 +4,12 @@
 //   VOYAGER_BENCH_CAMERAS  its cameras.json: each iteration renders the next camera
 //   VOYAGER_BENCH_SIZE     WxH, default 960x540
 //
-// One benchmark a τ, and one without LoD. Counters are mean milliseconds a stage;
-// the time column is a frame's. Medians over repetitions:
-// --benchmark_repetitions=9 --benchmark_report_aggregates_only=true
+// One benchmark a τ, and one without LoD. The time column is the mean of a frame;
+// counters are the frames' median and p99 (ms), and means a frame of each stage
+// (ms), cut, splats and pairs. --benchmark_min_time=10 makes p99 mean something.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -32,6 +33,40 @@ std::vector<Camera> bench_cameras() {
   return cameras;
 }
 
+// Sums over the frames of a run.
+struct Totals {
+  std::vector<double> frame_ms;
+  double stage_ms[VOY_STAGE_COUNT] = {};
+  double cut = 0, splats = 0, pairs = 0;
+
+  void add(const VoyFrameStats& stats) {
+    frame_ms.push_back(stats.millisecondsTotal);
+    for (int stage = 0; stage < VOY_STAGE_COUNT; ++stage)
+      stage_ms[stage] += stats.milliseconds[stage];
+    cut += static_cast<double>(stats.cutSize);
+    splats += static_cast<double>(stats.splats);
+    pairs += static_cast<double>(stats.pairsAfter);
+  }
+
+  double quantile(double share) {
+    std::sort(frame_ms.begin(), frame_ms.end());
+    return frame_ms[static_cast<size_t>(share * static_cast<double>(frame_ms.size() - 1) + 0.5)];
+  }
+
+  void report(benchmark::State& state) {
+    const auto mean = [](double sum) {
+      return benchmark::Counter(sum, benchmark::Counter::kAvgIterations);
+    };
+    state.counters["median"] = quantile(0.5);
+    state.counters["p99"] = quantile(0.99);
+    for (int stage = 0; stage < VOY_STAGE_COUNT; ++stage)
+      state.counters[voyStageName(static_cast<VoyStage>(stage))] = mean(stage_ms[stage]);
+    state.counters["cut"] = mean(cut);
+    state.counters["splats"] = mean(splats);
+    state.counters["pairs"] = mean(pairs);
+  }
+};
+
 void frames(benchmark::State& state, VoyLod lod, double tau) {
   const std::vector<Camera> cameras = bench_cameras();
   RenderChoices choices;
@@ -39,22 +74,14 @@ void frames(benchmark::State& state, VoyLod lod, double tau) {
   choices.tau = tau;
   Renderer renderer(setting("VOYAGER_BENCH_SCENE", "demo/city.voy"), choices, cameras[0].width,
                     cameras[0].height);
-  double sums[VOY_STAGE_COUNT] = {};
-  VoyFrameStats stats = {};
-  size_t next = 0;
   renderer.render(cameras[0]);  // warm
+  Totals totals;
   for (auto _ : state) {
-    renderer.render(cameras[next++ % cameras.size()]);
-    stats = renderer.stats();
-    state.SetIterationTime(stats.millisecondsTotal / 1000);
-    for (int stage = 0; stage < VOY_STAGE_COUNT; ++stage) sums[stage] += stats.milliseconds[stage];
+    renderer.render(cameras[totals.frame_ms.size() % cameras.size()]);
+    totals.add(renderer.stats());
+    state.SetIterationTime(totals.frame_ms.back() / 1000);
   }
-  for (int stage = 0; stage < VOY_STAGE_COUNT; ++stage)
-    state.counters[voyStageName(static_cast<VoyStage>(stage))] =
-        benchmark::Counter(sums[stage], benchmark::Counter::kAvgIterations);
-  state.counters["cut"] = static_cast<double>(stats.cutSize);
-  state.counters["splats"] = static_cast<double>(stats.splats);
-  state.counters["pairs"] = static_cast<double>(stats.pairsAfter);
+  totals.report(state);
 }
 
 BENCHMARK_CAPTURE(frames, tau_0, VOY_LOD_CUT, 0.0)->UseManualTime()->Unit(benchmark::kMillisecond);
