@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
 #include "runtime/lod/validate.h"
+#include "runtime/scene/append.h"
 #include "runtime/scene/import/importer.h"
 #include "tools/commands/commands.h"
 #include "tools/options.h"
@@ -25,7 +27,7 @@ struct Arguments {
   bool verify = false;
 };
 
-GaussianCloud read_input(const std::string& path, const Progress& progress) {
+GaussianCloud read_one(const std::string& path, const Progress& progress) {
   ImportOptions options;
   options.progress = progress;
   if (path == "-") return import_gaussians(*read_stdin(), options);
@@ -33,9 +35,16 @@ GaussianCloud read_input(const std::string& path, const Progress& progress) {
   return import_gaussians(*read_source(*source), options);
 }
 
+GaussianCloud read_all(const std::vector<std::string>& paths, const Progress& progress) {
+  GaussianCloud cloud = read_one(paths.front(), progress);
+  for (size_t i = 1; i < paths.size(); ++i) append(cloud, read_one(paths[i], progress), paths[i]);
+  return cloud;
+}
+
 void require_sound(const std::string& path, const std::vector<std::string>& findings) {
   if (findings.empty()) return;
-  for (const std::string& finding : findings) fmt::print(stderr, "{}: {}\n", path, finding);
+  for (const std::string& finding : findings)
+    std::fputs((path + ": " + finding + "\n").c_str(), stderr);
   throw Error(ErrorCode::internal,
               fmt::format("{}: the tree broke {} invariants", path, findings.size()));
 }
@@ -47,23 +56,19 @@ void verify_file(const std::string& path) {
 }
 
 void bake(const Arguments& arguments) {
-  if (arguments.inputs.size() != 1)
-    throw Error(ErrorCode::unsupported, fmt::format("bake: found {} inputs, this version bakes one",
-                                                    arguments.inputs.size()));
-  const std::string& input = arguments.inputs.front();
   const Progress progress = progress_bar();
   const Stopwatch watch;
   Workers workers;
-  const BakedScene baked = build_tree(read_input(input, progress), workers, progress);
-  if (arguments.verify) require_sound(input, validate(baked));
+  const BakedScene baked = build_tree(read_all(arguments.inputs, progress), workers, progress);
+  if (arguments.verify) require_sound(arguments.output, validate(baked));
   write_scene_file(baked, arguments.output, arguments.quality, workers, progress);
   if (arguments.verify) verify_file(arguments.output);
   fmt::print("{}: {} Gaussians, {} nodes, {} bytes, {:.1f} s{}\n", arguments.output,
              baked.leaves.size(), baked.tree.size(), open_file_source(arguments.output)->size(),
              watch.milliseconds() / 1000, arguments.verify ? ", verified" : "");
   if (const ImportReport& report = baked.leaves.report; report.dropped() + report.repaired() > 0)
-    fmt::print("{}: {} Gaussians dropped, {} values repaired (voyager info {} tells which)\n",
-               input, report.dropped(), report.repaired(), arguments.output);
+    fmt::print("{} Gaussians dropped, {} values repaired (voyager info {} tells which)\n",
+               report.dropped(), report.repaired(), arguments.output);
 }
 
 }  // namespace
@@ -72,7 +77,10 @@ void add_bake(CLI::App& app) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("bake", "Build the level-of-detail tree of a scene and write a .voy");
-  command->add_option("input", arguments->inputs, "A .ply or .spz; - is a .ply on standard input")
+  command
+      ->add_option(
+          "input", arguments->inputs,
+          "One or several .ply or .spz, baked into one tree; - is a .ply on standard input")
       ->required();
   command->add_option("-o", arguments->output, "The scene.voy to write")->required();
   add_choice<Quality>(
