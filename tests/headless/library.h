@@ -8,13 +8,15 @@
 #include <fstream>
 #include <string>
 
-#define VOYAGER_ENTRY_POINTS(X)                                                              \
-  X(GetVersion)                                                                              \
-  X(ResultString)                                                                            \
-  X(GetLastErrorMessage) X(QueryBackend) X(CreateDevice) X(DestroyDevice) X(GetCapabilities) \
-      X(OpenScene) X(DestroyScene) X(GetSceneInfo) X(GetSceneNotes) X(CreateTarget)          \
-          X(DestroyTarget) X(CreateView) X(DestroyView) X(SetViewTau) X(FovFromAngles)       \
-              X(FovFromIntrinsics) X(RenderFrame) X(GetViewCut) X(GetFrameStats) X(StageName)
+// clang-format off
+#define VOYAGER_ENTRY_POINTS(X) \
+  X(GetVersion) X(ResultString) X(GetLastErrorMessage) X(QueryBackend) \
+  X(CreateDevice) X(DestroyDevice) X(GetCapabilities) X(OpenScene) \
+  X(DestroyScene) X(GetSceneInfo) X(GetSceneNotes) X(CreateTarget) \
+  X(DestroyTarget) X(CreateView) X(DestroyView) X(SetViewTau) \
+  X(FovFromAngles) X(FovFromIntrinsics) X(RenderFrame) X(GetViewCut) \
+  X(GetFrameStats) X(StageName)
+// clang-format on
 
 class Library {
  public:
