@@ -36,12 +36,14 @@ std::vector<Camera> bench_cameras() {
 // Sums over the frames of a run.
 struct Totals {
   std::vector<double> frame_ms;
-  double stage_ms[VOY_STAGE_COUNT] = {};
+  uint32_t stage_count = 0;
+  double stage_ms[VOY_MAX_STAGES] = {};
   double cut = 0, splats = 0, pairs = 0;
 
   void add(const VoyFrameStats& stats) {
     frame_ms.push_back(stats.millisecondsTotal);
-    for (int stage = 0; stage < VOY_STAGE_COUNT; ++stage)
+    stage_count = stats.stageCount;
+    for (uint32_t stage = 0; stage < stage_count; ++stage)
       stage_ms[stage] += stats.milliseconds[stage];
     cut += static_cast<double>(stats.cutSize);
     splats += static_cast<double>(stats.splats);
@@ -59,7 +61,7 @@ struct Totals {
     };
     state.counters["median"] = quantile(0.5);
     state.counters["p99"] = quantile(0.99);
-    for (int stage = 0; stage < VOY_STAGE_COUNT; ++stage)
+    for (uint32_t stage = 0; stage < stage_count; ++stage)
       state.counters[voyStageName(static_cast<VoyStage>(stage))] = mean(stage_ms[stage]);
     state.counters["cut"] = mean(cut);
     state.counters["splats"] = mean(splats);

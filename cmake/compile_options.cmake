@@ -1,6 +1,6 @@
 # One INTERFACE target carries warnings and the floating-point contract of
-# every target: no contraction (METHOD: the cut predicate and the sort key are
-# exact binary32), no fast-math anywhere.
+# every target: no contraction (METHOD §3, §6: the cut predicate and the sort key
+# are exact binary32), no fast-math anywhere.
 add_library(voyager_options INTERFACE)
 target_compile_options(voyager_options INTERFACE
   -ffp-contract=off

@@ -30,6 +30,17 @@ class Call {
     return std::static_pointer_cast<T>(std::move(object));
   }
 
+  // Makes the handle stale (HandleTable::remove); NULL is none. Whoever destroys the
+  // device waits until this call ends, so the objects must be gone by then.
+  template <class T>
+  std::vector<std::shared_ptr<Object>> remove(typename T::Handle handle) {
+    if (handle == nullptr) return {};
+    in_use_.reserve(in_use_.size() + 1);
+    auto removed = HandleTable::instance().remove(handle, T::kKind);
+    if (Object* device = removed.back()->parent().get()) in_use_.push_back(device);
+    return removed;
+  }
+
   // To the log of the device whose objects the call uses, if any.
   void log_error(const char* message) const {
     if (in_use_.empty()) return;
@@ -54,13 +65,6 @@ VoyResult guarded(const char* function, const Body& body) noexcept {
     call.log_error(last_message());
     return result;
   }
-}
-
-// For the calls that destroy; NULL succeeds.
-template <class T>
-std::vector<std::shared_ptr<Object>> removed(typename T::Handle handle) {
-  if (handle == nullptr) return {};
-  return HandleTable::instance().remove(handle, T::kKind);
 }
 
 }  // namespace voyager

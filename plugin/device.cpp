@@ -2,6 +2,7 @@
 
 #include "plugin/call.h"
 #include "plugin/structs.h"
+#include "plugin/version.h"
 #include "runtime/cpu/cpu_backend.h"
 #include "runtime/reference/reference_backend.h"
 
@@ -12,17 +13,16 @@ namespace {
 constexpr uint32_t kMaxWorkerThreads = 1024;
 
 std::string version_text(uint32_t version) {
-  return std::to_string(version >> 22) + "." + std::to_string((version >> 12) & 0x3ff) + "." +
-         std::to_string(version & 0xfff);
+  return std::to_string(major_version(version)) + "." + std::to_string(minor_version(version)) +
+         "." + std::to_string(version & 0xfff);
 }
 
 void check_version(uint32_t host) {
-  const bool same_major = host >> 22 == VOY_API_VERSION >> 22;
-  if (!same_major || ((host >> 12) & 0x3ff) > ((VOY_API_VERSION >> 12) & 0x3ff))
-    throw ApiError(VOY_ERROR_INCOMPATIBLE_VERSION,
-                   "desc.apiVersion: found " + version_text(host) +
-                       ", expected the same major version and at most the minor version of " +
-                       version_text(VOY_API_VERSION));
+  if (serves(VOY_API_VERSION, host)) return;
+  throw ApiError(VOY_ERROR_INCOMPATIBLE_VERSION,
+                 "desc.apiVersion: found " + version_text(host) +
+                     ", expected the major version of " + version_text(VOY_API_VERSION) +
+                     " and its minor version, or a lower one where the major version is not 0");
 }
 
 // The backend that will run; throws where this machine lacks it.
@@ -86,8 +86,8 @@ VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device) {
 }
 
 VoyResult voyDestroyDevice(VoyDevice device) {
-  return guarded("voyDestroyDevice", [&](Call&) {
-    removed<DeviceObject>(device);
+  return guarded("voyDestroyDevice", [&](Call& call) {
+    call.remove<DeviceObject>(device);
     return VOY_SUCCESS;
   });
 }

@@ -10,7 +10,8 @@ using namespace voyager;
 
 namespace {
 
-static_assert(int{VOY_STAGE_COUNT} == int{kStageCount});
+static_assert(int{VOY_STAGE_RESOLVE} + 1 == int{kStageCount});
+static_assert(int{kStageCount} <= VOY_MAX_STAGES);
 
 void check_size(const Image& image, const ViewObject& view) {
   if (image.width > view.max_width || image.height > view.max_height)
@@ -24,6 +25,7 @@ void fill(VoyFrameStats& out, const FrameStats& in) {
   out.search = in.searched ? VOY_SEARCH_EXHAUSTIVE : VOY_SEARCH_AUTO;
   out.tauStar = in.tau_star;
   for (int i = 0; i < 3; ++i) out.cutCentre[i] = in.cut_centre[i];
+  out.stageCount = kStageCount;
   out.nodesTotal = in.nodes_total;
   out.nodesTested = in.nodes_tested;
   out.subtreesVisited = in.subtrees_visited;
@@ -48,6 +50,7 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
     check_count(frame->eyeCount, 1, 1, "frame.eyeCount");
     check_pointer(frame->eyes, "frame.eyes");
     const VoyFrameEye& eye = frame->eyes[0];
+    check_structure(&eye, VOY_STRUCTURE_TYPE_FRAME_EYE, "frame.eyes[0]");
     const auto target = call.use<TargetObject>(eye.target);
     if (target->parent() != object->parent())
       refuse("frame.eyes[0].target: found a target of another device, expected the view's");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "plugin/frustum.h"
 #include "plugin/structs.h"
 
 namespace voyager {
@@ -11,12 +12,6 @@ namespace {
 
 // METHOD §3: below this, squared distances stay finite in binary32.
 constexpr double kMaxCoordinate = 1e18;
-// ±89.994 degrees, and a span that a float64 focal length resolves.
-constexpr double kMaxTangent = 1e4, kMinSpan = 1e-6;
-
-[[noreturn]] void refuse_number(const std::string& field, double found, const char* expected) {
-  refuse(field + ": found " + std::to_string(found) + ", expected " + expected);
-}
 
 Vec3d checked_position(const double (&p)[3], const std::string& field) {
   for (const double x : p)
@@ -36,19 +31,9 @@ Quatd checked_orientation(const double (&q)[4], const std::string& field) {
   return normalise(Quatd{q[3] / largest, q[0] / largest, q[1] / largest, q[2] / largest});
 }
 
-void check_tangents(double low, double high, const std::string& low_field,
-                    const std::string& high_field) {
-  for (const double tangent : {low, high})
-    if (!(std::fabs(tangent) <= kMaxTangent))
-      refuse_number("frustum." + (tangent == low ? low_field : high_field), tangent,
-                    "a tangent between -1e4 and 1e4");
-  if (!(high - low >= kMinSpan))
-    refuse_number("frustum." + low_field, low,
-                  ("1e-6 less than " + high_field + " at least").c_str());
-}
-
 void check_instance(const VoyInstancePose* instance) {
   if (instance == nullptr) return;
+  check_structure(instance, VOY_STRUCTURE_TYPE_INSTANCE_POSE, "frame.instances[0]");
   const Vec3d p = checked_position(instance->pose.position, "frame.instances[0].pose");
   const Quatd q = checked_orientation(instance->pose.orientation, "frame.instances[0].pose");
   if (!(instance->scale > 0) || !std::isfinite(instance->scale))
@@ -84,14 +69,15 @@ FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Imag
   }
   check_count(frame.reserved, 0, 0, "frame.reserved");
   check_instance(frame.instances);
+  check_count(eye.layer, 0, 0, "frame.eyes[0].layer");
+  check_count(eye.reserved, 0, 0, "frame.eyes[0].reserved");
 
   Camera& camera = input.camera;
   camera.eye = checked_position(eye.pose.position, "frame.eyes[0].pose");
   camera.world_to_view =
       world_to_view(checked_orientation(eye.pose.orientation, "frame.eyes[0].pose"));
   const VoyFrustum& f = eye.frustum;
-  check_tangents(f.left, f.right, "left", "right");
-  check_tangents(f.down, f.up, "down", "up");
+  check_frustum(f, "frame.eyes[0].frustum");
   camera.width = image.width;
   camera.height = image.height;
   camera.fx = image.width / (f.right - f.left);

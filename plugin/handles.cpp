@@ -115,6 +115,7 @@ std::vector<std::shared_ptr<Object>> HandleTable::remove(const void* handle, Kin
   std::vector<std::shared_ptr<Object>> taken;
   taken.reserve(slots_.size());
   const Object* removed = slots_[index].object.get();
+  if (removed->parent()) ++removed->parent()->calls_;
   for (size_t i = 0; i < slots_.size(); ++i)
     if (slots_[i].object && slots_[i].object->parent().get() == removed) taken.push_back(take(i));
   taken.push_back(take(index));

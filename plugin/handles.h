@@ -50,7 +50,9 @@ class HandleTable {
   void end_call(Object& object) noexcept;
 
   // Makes the handle stale, a device's children's too, and waits until no call
-  // is in flight on any of them. The caller drops the last reference.
+  // is in flight on any of them. The handle's own object is the last of the result,
+  // and the caller drops the last reference. For a child this begins a call on its
+  // device, which the caller ends after that: destructors call the host's allocator.
   std::vector<std::shared_ptr<Object>> remove(const void* handle, Kind kind);
 
   std::vector<std::shared_ptr<Object>> children(const Object& device, Kind kind);

@@ -2,14 +2,14 @@
 #include <cmath>
 
 #include "plugin/call.h"
+#include "plugin/frustum.h"
 #include "plugin/structs.h"
 
 using namespace voyager;
 
 namespace {
 
-// A host may use every API version up to the library's, so the header may not
-// be ahead of the project.
+// The header may not be ahead of the project.
 static_assert(VOY_API_VERSION <= VOY_MAKE_VERSION(VOYAGER_VERSION_MAJOR, VOYAGER_VERSION_MINOR,
                                                   VOYAGER_VERSION_PATCH));
 
@@ -17,20 +17,17 @@ constexpr double kHalfPi = 1.57079632679489661923;
 
 double angle_tangent(double radians, const char* name) {
   if (!(std::fabs(radians) < kHalfPi))
-    refuse(std::string(name) + ": found " + std::to_string(radians) +
-           " radians, expected an angle between -pi/2 and pi/2");
+    refuse_number(name, radians, "an angle between -pi/2 and pi/2, in radians");
   return std::tan(radians);
 }
 
 void check_finite(double value, const char* name) {
-  if (!std::isfinite(value))
-    refuse(std::string(name) + ": found " + std::to_string(value) + ", expected a finite number");
+  if (!std::isfinite(value)) refuse_number(name, value, "a finite number");
 }
 
 void check_positive(double value, const char* name) {
   check_finite(value, name);
-  if (value <= 0)
-    refuse(std::string(name) + ": found " + std::to_string(value) + ", expected more than 0");
+  if (value <= 0) refuse_number(name, value, "more than 0");
 }
 
 }  // namespace
@@ -95,8 +92,7 @@ VoyResult voyFovFromAngles(double left, double right, double up, double down, Vo
     check_pointer(frustum, "frustum");
     const VoyFrustum tangents = {angle_tangent(left, "left"), angle_tangent(right, "right"),
                                  angle_tangent(up, "up"), angle_tangent(down, "down")};
-    if (left >= right) refuse("left: found an angle that is not less than right");
-    if (down >= up) refuse("down: found an angle that is not less than up");
+    check_frustum(tangents, "frustum");
     *frustum = tangents;
     return VOY_SUCCESS;
   });
@@ -112,7 +108,9 @@ VoyResult voyFovFromIntrinsics(double fx, double fy, double cx, double cy, doubl
     check_finite(cy, "cy");
     check_positive(width, "width");
     check_positive(height, "height");
-    *frustum = {-cx / fx, (width - cx) / fx, cy / fy, (cy - height) / fy};
+    const VoyFrustum tangents = {-cx / fx, (width - cx) / fx, cy / fy, (cy - height) / fy};
+    check_frustum(tangents, "frustum");
+    *frustum = tangents;
     return VOY_SUCCESS;
   });
 }

@@ -111,8 +111,8 @@ VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* sce
 }
 
 VoyResult voyDestroyScene(VoyScene scene) {
-  return guarded("voyDestroyScene", [&](Call&) {
-    for (const auto& object : removed<SceneObject>(scene)) {
+  return guarded("voyDestroyScene", [&](Call& call) {
+    for (const auto& object : call.remove<SceneObject>(scene)) {
       // No call holds the scene now, so no view of it can appear any more.
       for (const auto& child : HandleTable::instance().children(*object->parent(), Kind::view)) {
         auto& view = static_cast<ViewObject&>(*child);

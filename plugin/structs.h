@@ -3,6 +3,7 @@
 // out of range as its enum, which would be undefined.
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <string>
 
@@ -51,9 +52,15 @@ inline void check_count(uint64_t found, uint64_t least, uint64_t most, const cha
            std::to_string(least) + " to " + std::to_string(most));
 }
 
+[[noreturn]] inline void refuse_number(const std::string& field, double found,
+                                       const std::string& expected) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", found);
+  refuse(field + ": found " + text + ", expected " + expected);
+}
+
 inline void check_tau(double tau) {
-  if (!std::isfinite(tau) || tau < 0)
-    refuse("tau: found " + std::to_string(tau) + ", expected a finite number of pixels, >= 0");
+  if (!std::isfinite(tau) || tau < 0) refuse_number("tau", tau, "a finite number of pixels, >= 0");
 }
 
 }  // namespace voyager

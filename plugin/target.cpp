@@ -76,8 +76,8 @@ VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget
 }
 
 VoyResult voyDestroyTarget(VoyTarget target) {
-  return guarded("voyDestroyTarget", [&](Call&) {
-    removed<TargetObject>(target);
+  return guarded("voyDestroyTarget", [&](Call& call) {
+    call.remove<TargetObject>(target);
     return VOY_SUCCESS;
   });
 }

@@ -67,8 +67,8 @@ VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view
 }
 
 VoyResult voyDestroyView(VoyView view) {
-  return guarded("voyDestroyView", [&](Call&) {
-    removed<ViewObject>(view);
+  return guarded("voyDestroyView", [&](Call& call) {
+    call.remove<ViewObject>(view);
     return VOY_SUCCESS;
   });
 }
@@ -83,9 +83,11 @@ VoyResult voySetViewTau(VoyView view, double tau) {
   });
 }
 
-VoyResult voyGetViewCut(VoyView view, uint32_t capacity, uint32_t* nodes, uint32_t* count) {
+VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint32_t* nodes,
+                        uint32_t* count) {
   return guarded("voyGetViewCut", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
+    check_count(instance, 0, 0, "instance");
     check_pointer(count, "count");
     if (capacity > 0) check_pointer(nodes, "nodes");
     const auto frame = claim(*object);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/base/file.h"
+#include "runtime/math/screen_size.h"
 #include "tools/exit_code.h"
 
 namespace voyager::tools {
@@ -14,7 +15,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr uint64_t kLargestFile = uint64_t{1} << 30;
-constexpr double kLargestSide = 16384;
 
 class CameraReader {
  public:
@@ -31,15 +31,20 @@ class CameraReader {
     camera.cx = json_.contains("cx") ? number("cx") : camera.width / 2.0;
     camera.cy = json_.contains("cy") ? number("cy") : camera.height / 2.0;
     const Eigen::Vector3d position = vector(field("position"), "position");
+    if (!(position.cwiseAbs().maxCoeff() < double{kMaxCoordinate}))
+      refuse("position", field("position"), "metres below 1e18 in magnitude");
     for (int i = 0; i < 3; ++i) camera.pose.position[i] = position[i];
     set_orientation(camera.pose);
+    check_frustum(camera);
     return camera;
   }
 
  private:
   [[noreturn]] void refuse(const std::string& name, const Json& found,
                            const std::string& expected) const {
-    std::string text = found.dump();
+    std::string text = found.is_structured()
+                           ? fmt::format("an {} of {}", found.type_name(), found.size())
+                           : found.dump();
     if (text.size() > 60) text = text.substr(0, 60) + "…";
     throw Error(ErrorCode::refused_input,
                 fmt::format("{}: camera {}{}{}: found {}, expected {}", file_, index_,
@@ -53,6 +58,15 @@ class CameraReader {
           ErrorCode::refused_input,
           fmt::format("{}: camera {}: found no field {}, expected one", file_, index_, name));
     return *found;
+  }
+
+  void check_frustum(const Camera& camera) const {
+    try {
+      camera.frustum();
+    } catch (const Error& error) {
+      throw Error(ErrorCode::refused_input,
+                  fmt::format("{}: camera {}: fx, fy, cx, cy: {}", file_, index_, error.what()));
+    }
   }
 
   double number(const std::string& name) const {
@@ -148,6 +162,9 @@ std::vector<Camera> read_cameras(const std::string& path) {
     throw Error(ErrorCode::refused_input,
                 fmt::format("{}: offset {}: found no JSON there, expected a cameras.json", path,
                             error.byte));
+  } catch (const Json::exception& error) {
+    throw Error(ErrorCode::refused_input,
+                fmt::format("{}: found {}, expected a cameras.json", path, error.what()));
   }
   if (!json.is_array() || json.empty())
     throw Error(ErrorCode::refused_input,

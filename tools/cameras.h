@@ -8,6 +8,8 @@
 
 namespace voyager::tools {
 
+inline constexpr uint32_t kLargestSide = 16384;  // pixels
+
 struct Camera {
   VoyPose pose;   // OpenXR axes, in the scene's world
   double fx, fy;  // pixels

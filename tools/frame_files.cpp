@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <bit>
-#include <filesystem>
 
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
@@ -20,22 +19,13 @@ void write_text(const std::string& path, const std::string& text) {
   file.commit();
 }
 
-void create_folder(const std::string& path) {
-  if (path.empty()) return;
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (!std::filesystem::is_directory(path))
-    throw Error(ErrorCode::io, fmt::format("{}: found something else, expected a folder ({})", path,
-                                           error.message()));
-}
-
 std::string binary32_hex(float value) {
   return fmt::format("0x{:08x}", std::bit_cast<uint32_t>(value));
 }
 
 Json to_json(const VoyFrameStats& s) {
   Json ms;
-  for (int stage = 0; stage < VOY_STAGE_COUNT; ++stage)
+  for (uint32_t stage = 0; stage < s.stageCount; ++stage)
     ms[voyStageName(static_cast<VoyStage>(stage))] = s.milliseconds[stage];
   ms["total"] = s.millisecondsTotal;
   return {
@@ -62,43 +52,49 @@ Json to_json(const VoyFrameStats& s) {
 
 }  // namespace
 
-FrameFiles::FrameFiles(OutputPaths paths) : paths_(std::move(paths)) {
-  if (!paths_.walk) return;
-  create_folder(paths_.image);
-  create_folder(paths_.depth);
-  create_folder(paths_.cut);
+FrameFiles::Output FrameFiles::open(const std::string& path, bool walk) {
+  if (path.empty() || !walk) return {path, nullptr};
+  return {"", std::make_unique<OutputFolder>(path)};
 }
 
-std::string FrameFiles::place(const std::string& path, size_t index, const char* extension) const {
-  return paths_.walk
-             ? (std::filesystem::path(path) / fmt::format("{:04}{}", index, extension)).string()
-             : path;
+FrameFiles::FrameFiles(OutputPaths paths)
+    : floats_(paths.floats),
+      stats_(std::move(paths.stats)),
+      image_(open(paths.image, paths.walk)),
+      depth_(open(paths.depth, paths.walk)),
+      cut_(open(paths.cut, paths.walk)) {}
+
+std::string FrameFiles::Output::place(size_t index, const char* extension) const {
+  return folder ? folder->place(fmt::format("{:04}{}", index, extension)) : file;
 }
 
 void FrameFiles::write(size_t index, const Camera& camera, const Renderer& renderer) {
-  if (paths_.floats)
-    write_pfm_rgb(place(paths_.image, index, ".pfm"), camera.width, camera.height,
-                  renderer.rgba32f());
+  const uint32_t width = camera.width, height = camera.height;
+  if (floats_)
+    write_pfm_rgb(image_.place(index, ".pfm"), width, height, renderer.rgba32f());
   else
-    write_png(place(paths_.image, index, ".png"), camera.width, camera.height, renderer.rgba8());
-  if (!paths_.depth.empty())
-    write_pfm_grey(place(paths_.depth, index, ".pfm"), camera.width, camera.height,
-                   renderer.depth());
-  if (!paths_.cut.empty()) {
+    write_png(image_.place(index, ".png"), width, height, renderer.rgba8());
+  if (depth_.wanted()) write_pfm_grey(depth_.place(index, ".pfm"), width, height, renderer.depth());
+  if (cut_.wanted()) {
     std::string text;
     for (const uint32_t node : renderer.cut()) text += fmt::format("{}\n", node);
-    write_text(place(paths_.cut, index, ".txt"), text);
+    write_text(cut_.place(index, ".txt"), text);
   }
-  if (!paths_.stats.empty()) frames_.push_back(to_json(renderer.stats()));
+  if (!stats_.empty()) frames_.push_back(to_json(renderer.stats()));
 }
 
-void FrameFiles::write_stats(const std::vector<VoySceneNote>& notes) {
-  if (paths_.stats.empty()) return;
+void FrameFiles::finish(const std::vector<VoySceneNote>& notes) {
+  for (const Output* output : {&image_, &depth_, &cut_})
+    if (output->folder) output->folder->commit();
+  if (!stats_.empty()) write_stats(notes);
+}
+
+void FrameFiles::write_stats(const std::vector<VoySceneNote>& notes) const {
   Json omitted = Json::array();
   for (const VoySceneNote& note : notes)
     if (note.kind == VOY_SCENE_NOTE_OMITTED)
       omitted.push_back({{"what", note.what}, {"why", note.why}, {"bytes", note.bytes}});
-  write_text(paths_.stats, Json{{"frames", frames_}, {"omitted", omitted}}.dump(2) + "\n");
+  write_text(stats_, Json{{"frames", frames_}, {"omitted", omitted}}.dump(2) + "\n");
 }
 
 }  // namespace voyager::tools

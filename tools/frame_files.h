@@ -1,9 +1,11 @@
 #pragma once
 // Where the results of each frame go (the contract in docs/command-line.md).
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tools/output_folder.h"
 #include "tools/renderer.h"
 
 namespace voyager::tools {
@@ -19,16 +21,27 @@ struct OutputPaths {
 
 class FrameFiles {
  public:
-  explicit FrameFiles(OutputPaths paths);  // creates the folders of a walk
+  explicit FrameFiles(OutputPaths paths);
 
   // Writes camera `index`'s image, depth and cut, and keeps its statistics.
   void write(size_t index, const Camera& camera, const Renderer& renderer);
-  void write_stats(const std::vector<VoySceneNote>& notes);
+  // Puts a walk's files in their places, and writes the statistics.
+  void finish(const std::vector<VoySceneNote>& notes);
 
  private:
-  std::string place(const std::string& path, size_t index, const char* extension) const;
+  // One of the outputs: a file, or a folder of a walk.
+  struct Output {
+    std::string file;
+    std::unique_ptr<OutputFolder> folder;
+    bool wanted() const { return !file.empty() || folder; }
+    std::string place(size_t index, const char* extension) const;
+  };
+  static Output open(const std::string& path, bool walk);
+  void write_stats(const std::vector<VoySceneNote>& notes) const;
 
-  OutputPaths paths_;
+  bool floats_;
+  std::string stats_;
+  Output image_, depth_, cut_;
   nlohmann::ordered_json frames_ = nlohmann::json::array();
 };
 

@@ -21,6 +21,14 @@ int finish() {
   return fail(voyager::tools::kMachine, "standard output: cannot be written to");
 }
 
+// The first argument that no command took; an option's name rather than its value.
+std::string unexpected(const CLI::App& app) {
+  const std::vector<std::string> rest = app.remaining(true);
+  for (const std::string& argument : rest)
+    if (argument.starts_with('-')) return argument;
+  return rest.empty() ? "an argument" : rest.front();
+}
+
 int parse_and_run(CLI::App& app, int argc, char** argv) {
   using namespace voyager::tools;
   try {
@@ -30,6 +38,8 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
     return finish();
   } catch (const CLI::Success& request) {
     return app.exit(request);  // --help and --version
+  } catch (const CLI::ExtrasError&) {
+    return fail(kBadUsage, unexpected(app) + ": not an option of this version (see --help)");
   } catch (const CLI::ParseError& error) {
     return fail(kBadUsage, std::string(error.what()) + " (see --help)");
   } catch (const voy::Error& error) {
@@ -45,9 +55,10 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  // A closed pipe is then an error that names itself, and not a silent end.
+int main(int argc, char** argv) try {
+  // A closed pipe and a file too large are then errors that name themselves.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{"Voyager: city-scale 3D Gaussian scenes, baked and rendered"};
   app.name("voyager");
   app.set_version_flag("--version", VOYAGER_VERSION);
@@ -59,4 +70,6 @@ int main(int argc, char** argv) {
   voyager::tools::add_info(app);
   voyager::tools::add_render(app);
   return parse_and_run(app, argc, argv);
+} catch (...) {
+  return voyager::tools::kMachine;  // no memory even for the message
 }

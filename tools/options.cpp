@@ -2,10 +2,10 @@
 
 #include <cmath>
 
+#include "tools/cameras.h"
+
 namespace voyager::tools {
 namespace {
-
-constexpr uint32_t kLargestSide = 16384;
 
 bool parse_size(const std::string& text, ImageSize& size) {
   const size_t cross = text.find('x');

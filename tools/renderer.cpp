@@ -62,7 +62,10 @@ voy::Target Renderer::create_target(const Camera& camera) {
 
 void Renderer::render(const Camera& camera) {
   const voy::Target target = create_target(camera);
-  const VoyFrameEye eye = {camera.pose, camera.frustum(), target.get()};
+  VoyFrameEye eye = VOY_FRAME_EYE_INIT;
+  eye.pose = camera.pose;
+  eye.frustum = camera.frustum();
+  eye.target = target.get();
   VoyFrame frame = VOY_FRAME_INIT;
   frame.eyeCount = 1;
   frame.eyes = &eye;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 
@@ -16,6 +17,16 @@ namespace {
 [[noreturn]] void fail(const std::string& name, const std::string& doing,
                        ErrorCode code = ErrorCode::io) {
   throw Error(code, name + ": " + doing + ": " + std::strerror(errno));
+}
+
+// A name beside `path` that no other thread or process uses.
+std::string unused_name(const std::string& path) {
+  static std::atomic<unsigned> count{0};
+  std::string name;
+  do {
+    name = path + ".partial-" + std::to_string(::getpid()) + "-" + std::to_string(count++);
+  } while (::access(name.c_str(), F_OK) == 0);
+  return name;
 }
 
 void check_range(const std::string& name, uint64_t size, uint64_t offset, size_t count) {
@@ -34,7 +45,7 @@ class FileSource final : public ByteSource {
     const bool regular = ::fstat(fd_, &info) == 0 && S_ISREG(info.st_mode);
     if (!regular) {
       ::close(fd_);
-      throw Error(ErrorCode::io,
+      throw Error(ErrorCode::refused_input,
                   path + ": found something that is not a regular file, expected a file");
     }
     size_ = static_cast<uint64_t>(info.st_size);
@@ -130,21 +141,27 @@ std::unique_ptr<ByteReader> read_stdin() {
   return std::make_unique<StdinReader>();
 }
 
-AtomicFile::AtomicFile(std::string path) : path_(std::move(path)), temporary_(path_ + ".XXXXXX") {
-  fd_ = ::mkostemp(temporary_.data(), O_CLOEXEC);
-  if (fd_ < 0) {
-    temporary_ = path_;
-    fail(path_, "create");
-  }
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  ::fchmod(fd_, 0666 & ~mask);
+// A file without a name until commit(), so that nothing is left however the
+// process ends; on file systems that have none, a file beside the target.
+AtomicFile::AtomicFile(std::string path) : path_(std::move(path)) {
+  struct stat info = {};
+  if (::stat(path_.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
+    throw Error(ErrorCode::io, path_ +
+                                   ": found something that is not a regular file, expected a "
+                                   "file or a free name");
+  const size_t slash = path_.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path_.substr(0, slash + 1);
+  fd_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+  if (fd_ >= 0) return;
+  temporary_ = unused_name(path_);
+  fd_ = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, 0666);
+  if (fd_ < 0) fail(path_, "create");
 }
 
 AtomicFile::~AtomicFile() {
   if (fd_ < 0) return;
   ::close(fd_);
-  ::unlink(temporary_.c_str());
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
@@ -163,7 +180,16 @@ void AtomicFile::write_at(uint64_t offset, std::span<const std::byte> bytes) {
 }
 
 void AtomicFile::commit() {
-  if (::fsync(fd_) != 0 || ::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "finish");
+  if (::fsync(fd_) != 0) fail(path_, "finish");
+  if (temporary_.empty()) {
+    const std::string unnamed = "/proc/self/fd/" + std::to_string(fd_);
+    temporary_ = unused_name(path_);
+    if (::linkat(AT_FDCWD, unnamed.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+      temporary_.clear();
+      fail(path_, "finish");
+    }
+  }
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "finish");
   ::close(fd_);
   fd_ = -1;
 }

@@ -54,8 +54,9 @@ class ByteReader {
 std::unique_ptr<ByteReader> read_source(const ByteSource& source);
 std::unique_ptr<ByteReader> read_stdin();
 
-// Writes to a temporary name beside `path`; commit() flushes and renames.
-// Destroyed without commit, it removes the temporary and leaves `path` alone.
+// Has no name until commit(), which flushes and then takes `path` in one step;
+// destroyed without commit, or killed, it leaves `path` alone and nothing behind.
+// Writes may come from one thread at a time. All throw Error(io).
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);  // throws Error(io)
@@ -69,7 +70,8 @@ class AtomicFile {
   void commit();
 
  private:
-  std::string path_, temporary_;
+  std::string path_;
+  std::string temporary_;  // the name that it has on the way, if any
   int fd_ = -1;
   uint64_t position_ = 0;
 };

@@ -19,8 +19,8 @@ void check_field(const ChunkPlace& place, const char* field, uint64_t found, uin
 bool sound_frame(const ChunkHeader& header) {
   // Written so that a NaN fails.
   for (int axis = 0; axis < 3; ++axis)
-    if (!(std::fabs(header.position_min[axis]) < 1e18) ||
-        !(header.position_step[axis] >= 0 && header.position_step[axis] < 1e18))
+    if (!(std::fabs(header.position_min[axis]) < double{kMaxCoordinate}) ||
+        !(header.position_step[axis] >= 0 && header.position_step[axis] < double{kMaxCoordinate}))
       return false;
   for (const float scale : header.sh_scale)
     if (!(scale >= 0 && scale <= std::numeric_limits<float>::max())) return false;

@@ -42,7 +42,7 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
   std::vector<bool> there(cloud.size());
   size_t leaves = 0;
   for (uint32_t index = 0; index < scene.chunks().size(); ++index) {
-    report(progress, "reading", index, scene.chunks().size());
+    report(progress, "exporting", index, scene.chunks().size());
     const Chunk chunk = scene.read_chunk(index);
     for (size_t node = 0; node < chunk.records.size(); ++node) {
       if (chunk.records[node].child_count != 0) continue;

@@ -70,15 +70,17 @@ void check_counts(const FileHeader& h, const Check& check) {
 
 void check_places(const FileHeader& h, const Check& check) {
   for (int axis = 0; axis < 3; ++axis) {
-    check.that(std::fabs(h.origin[axis]) < 1e18 && std::fabs(h.source_origin[axis]) < 1e18,
+    check.that(std::fabs(h.origin[axis]) < double{kMaxCoordinate} &&
+                   std::fabs(h.source_origin[axis]) < double{kMaxCoordinate},
                offsetof(FileHeader, origin), "an origin out of range", "finite, below 1e18");
     check.that(h.bounds_min[axis] > -kMaxCoordinate && h.bounds_min[axis] <= h.bounds_max[axis] &&
                    h.bounds_max[axis] < kMaxCoordinate,
                offsetof(FileHeader, bounds_min), "bounds out of range",
                "finite, ordered, below 1e18");
   }
-  check.that(h.position_error >= 0 && h.position_error < 1e18, offsetof(FileHeader, position_error),
-             "a position error out of range", "finite, not negative");
+  check.that(h.position_error >= 0 && h.position_error < double{kMaxCoordinate},
+             offsetof(FileHeader, position_error), "a position error out of range",
+             "finite, not negative");
 }
 
 SceneFileInfo to_info(const FileHeader& h) {

@@ -35,7 +35,7 @@ struct Scene {
   explicit Scene(std::pmr::memory_resource* memory)
       : gaussians(memory), sh(memory), tree(memory), axis_code(memory), leaves(memory) {}
 
-  bool flat() const { return tree.size() == 0; }
+  bool flat() const { return storage == Storage::flat; }
   int coefficients() const { return sh_coefficients(sh_degree); }
   const float* sh_of(uint32_t i) const {
     return sh.data() + size_t{i} * 3 * static_cast<size_t>(coefficients());

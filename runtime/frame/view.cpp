@@ -34,7 +34,7 @@ View::View(std::shared_ptr<const Scene> scene, Backend& backend, const PipelineD
     : scene_(std::move(scene)),
       desc_(desc),
       pipeline_(backend.create_pipeline(scene_, desc, memory, workers)),
-      memory_(memory),
+      cut_(memory),
       last_cut_(memory) {}
 
 void View::render(const FrameInput& frame, const Image& image) {
@@ -48,7 +48,7 @@ void View::render(const FrameInput& frame, const Image& image) {
   pipeline_->bin(frame), lap(kBin);
   pipeline_->rasterize(frame), lap(kRasterize);
   // Whatever may fail comes before the host's image is touched.
-  std::pmr::vector<uint32_t> cut(pipeline_->cut(), memory_);
+  cut_ = pipeline_->cut();
   pipeline_->resolve(frame, image), lap(kResolve);
   stats.total_milliseconds = total.milliseconds();
 
@@ -58,9 +58,9 @@ void View::render(const FrameInput& frame, const Image& image) {
   stats.tau_star = target_size(frame.tau, frame.camera.fx);
   stats.cut_centre = cut_centre(frame.camera.eye, scene_->origin);
   pipeline_->collect(stats);
-  stats.entered = count_missing(cut, last_cut_);
-  stats.left = count_missing(last_cut_, cut);
-  last_cut_.swap(cut);
+  stats.entered = count_missing(cut_, last_cut_);
+  stats.left = count_missing(last_cut_, cut_);
+  last_cut_.swap(cut_);
   stats_ = stats;
 }
 

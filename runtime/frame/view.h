@@ -26,8 +26,8 @@ class View {
   std::shared_ptr<const Scene> scene_;
   PipelineDesc desc_;
   std::unique_ptr<Pipeline> pipeline_;
-  std::pmr::memory_resource* memory_;
-  std::pmr::vector<uint32_t> last_cut_;
+  std::pmr::vector<uint32_t> cut_;       // of the frame in progress
+  std::pmr::vector<uint32_t> last_cut_;  // of the last frame that succeeded
   FrameStats stats_;
   uint64_t frames_ = 0;
 };

@@ -6,8 +6,6 @@
 namespace voyager {
 namespace {
 
-constexpr double kReach = 16000.0;  // metres; binary32 steps by a millimetre there
-constexpr double kStep = 1024.0;    // metres; exact to subtract from any coordinate nearby
 constexpr size_t kSample = 1024;
 
 }  // namespace
@@ -16,8 +14,9 @@ std::array<double, 3> scene_origin(const Vec3d& bounds_min, const Vec3d& bounds_
   std::array<double, 3> origin{0, 0, 0};
   for (int axis = 0; axis < 3; ++axis) {
     const double least = bounds_min[axis], most = bounds_max[axis];
-    if (std::max(std::fabs(least), std::fabs(most)) > kReach)
-      origin[static_cast<size_t>(axis)] = kStep * std::round((0.5 * least + 0.5 * most) / kStep);
+    if (std::max(std::fabs(least), std::fabs(most)) > kOriginReach)
+      origin[static_cast<size_t>(axis)] =
+          kOriginStep * std::round((0.5 * least + 0.5 * most) / kOriginStep);
   }
   return origin;
 }

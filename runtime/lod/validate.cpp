@@ -8,8 +8,6 @@
 namespace voyager {
 namespace {
 
-constexpr float kBeyond = 1e18f;  // METHOD §3: magnitudes stay below
-
 std::string name_of(size_t node, const char* what) {
   return "node " + std::to_string(node) + ", " + what;
 }
@@ -25,7 +23,8 @@ std::string text(const Vec3f& v) {
 }
 
 bool inside(const Vec3f& v) {
-  return std::fabs(v.x) < kBeyond && std::fabs(v.y) < kBeyond && std::fabs(v.z) < kBeyond;
+  return std::fabs(v.x) < kMaxCoordinate && std::fabs(v.y) < kMaxCoordinate &&
+         std::fabs(v.z) < kMaxCoordinate;
 }
 
 bool at_most(const Vec3f& a, const Vec3f& b) {

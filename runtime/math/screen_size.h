@@ -9,6 +9,9 @@
 
 namespace voyager {
 
+// Coordinates stay below this magnitude, metres: squared distances then stay finite.
+inline constexpr float kMaxCoordinate = 1e18f;
+
 // (2τ + 1) / f_x, in double, rounded once. τ and f_x in pixels.
 VOYAGER_HD float target_size(double tau, double focal_x) {
   return static_cast<float>((2.0 * tau + 1.0) / focal_x);

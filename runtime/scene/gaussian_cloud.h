@@ -12,6 +12,11 @@
 
 namespace voyager {
 
+// METHOD §2: an origin is zero where coordinates stay within the reach, in which
+// binary32 steps by a millimetre; else a multiple of the step, which is exact to
+// subtract from any coordinate nearby. Metres.
+inline constexpr double kOriginReach = 16000.0, kOriginStep = 1024.0;
+
 // What was mended or dropped where it entered, and how often.
 struct ImportReport {
   uint64_t read = 0;               // Gaussians in the input

@@ -1,5 +1,6 @@
 #pragma once
 // NaN, infinity and impossible values are handled here, where they enter.
+#include "runtime/math/screen_size.h"
 #include "runtime/scene/gaussian_cloud.h"
 
 namespace voyager {
@@ -7,7 +8,6 @@ namespace voyager {
 inline constexpr float kMaxLogit = 88.0f;  // sigmoid is 1 to the last bit, and exp(88) is finite
 inline constexpr float kMinLogScale = -20.7232658f;  // ln 1e-9 m
 inline constexpr float kMaxLogScale = 13.8155106f;   // ln 1e6 m
-inline constexpr float kMaxCoordinate = 1e18f;       // METHOD §3
 
 // Mends or drops each Gaussian in place (order kept, arrays compacted) and
 // counts into cloud.report; sets report.read to the size before. Each counter

@@ -7,7 +7,7 @@
 
 namespace voyager {
 
-inline constexpr int kTile = 16;  // pixels a side: METHOD's tile, 256 pixels, one CUDA block
+inline constexpr int kTile = 16;  // pixels a side; a row is one AVX-512 register of binary32
 
 struct TileGrid {
   int32_t columns, rows;

@@ -61,7 +61,7 @@ static int succeeded(VoyResult result) {
  * up: half a turn about x takes one to the other, less the downward tilt. */
 static VoyFrameEye frame_bounds(const VoySceneInfo* info, VoyTarget target) {
   const double half_turn = 3.14159265358979323846, tilt = 0.5;
-  VoyFrameEye eye;
+  VoyFrameEye eye = VOY_FRAME_EYE_INIT;
   double centre[3], squared = 0, distance;
   int i;
   for (i = 0; i < 3; ++i) {

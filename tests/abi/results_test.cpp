@@ -45,12 +45,13 @@ TEST(Results, NumbersAndNamesArePinned) {
 }
 
 TEST(Results, StructureTypesArePinned) {
-  const VoyStructureType all[] = {VOY_STRUCTURE_TYPE_DEVICE_DESC, VOY_STRUCTURE_TYPE_CAPABILITIES,
-                                  VOY_STRUCTURE_TYPE_SCENE_DESC,  VOY_STRUCTURE_TYPE_BYTE_SOURCE,
-                                  VOY_STRUCTURE_TYPE_SCENE_INFO,  VOY_STRUCTURE_TYPE_SCENE_NOTE,
-                                  VOY_STRUCTURE_TYPE_VIEW_DESC,   VOY_STRUCTURE_TYPE_TARGET_DESC,
-                                  VOY_STRUCTURE_TYPE_FRAME,       VOY_STRUCTURE_TYPE_FRAME_STATS,
-                                  VOY_STRUCTURE_TYPE_ALLOCATOR};
+  const VoyStructureType all[] = {VOY_STRUCTURE_TYPE_DEVICE_DESC,  VOY_STRUCTURE_TYPE_CAPABILITIES,
+                                  VOY_STRUCTURE_TYPE_SCENE_DESC,   VOY_STRUCTURE_TYPE_BYTE_SOURCE,
+                                  VOY_STRUCTURE_TYPE_SCENE_INFO,   VOY_STRUCTURE_TYPE_SCENE_NOTE,
+                                  VOY_STRUCTURE_TYPE_VIEW_DESC,    VOY_STRUCTURE_TYPE_TARGET_DESC,
+                                  VOY_STRUCTURE_TYPE_FRAME,        VOY_STRUCTURE_TYPE_FRAME_STATS,
+                                  VOY_STRUCTURE_TYPE_ALLOCATOR,    VOY_STRUCTURE_TYPE_FRAME_EYE,
+                                  VOY_STRUCTURE_TYPE_INSTANCE_POSE};
   int number = 0;
   for (const VoyStructureType type : all) EXPECT_EQ(int{type}, ++number);
 }
@@ -65,14 +66,14 @@ TEST(Results, ChoicesArePinned) {
   EXPECT_EQ(int{VOY_SEARCH_EXHAUSTIVE}, 1);
   EXPECT_EQ(int{VOY_EXPONENTIAL_LUT}, 3);
   EXPECT_EQ(int{VOY_ALPHA_FILTER_OFF}, 1);
-  EXPECT_EQ(int{VOY_STAGE_COUNT}, 6);
+  EXPECT_EQ(int{VOY_STAGE_RESOLVE}, 5);
+  EXPECT_EQ(VOY_MAX_STAGES, 16);
 }
 
 TEST(Results, StageNames) {
   const char* names[] = {"search", "project", "sort", "bin", "rasterize", "resolve"};
-  for (int i = 0; i < VOY_STAGE_COUNT; ++i)
-    EXPECT_STREQ(voyStageName(static_cast<VoyStage>(i)), names[i]);
-  EXPECT_EQ(voyStageName(VOY_STAGE_COUNT), nullptr);
+  for (int i = 0; i < 6; ++i) EXPECT_STREQ(voyStageName(static_cast<VoyStage>(i)), names[i]);
+  EXPECT_EQ(voyStageName(static_cast<VoyStage>(6)), nullptr);
   EXPECT_EQ(voyStageName(static_cast<VoyStage>(-1)), nullptr);
 }
 

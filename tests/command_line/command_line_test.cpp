@@ -214,6 +214,79 @@ TEST_F(CommandLine, ADamagedChunkThatTheFrameNeedsExitsWithThreeAndWritesNothing
   EXPECT_TRUE(file_bytes(file("coarse.pfm")) == file_bytes(file("whole.pfm")));
 }
 
+TEST_F(CommandLine, AWalkThatMeetsDamageLeavesNothing) {
+  const SceneFile scene(open_file_source(file("city.voy")));
+  std::string bytes = file_bytes(file("city.voy"));
+  bytes[scene.chunks().back().offset + 100] ^= 1;
+  write_bytes(file("damaged.voy"), bytes);
+  const Outcome walk = run(render(
+      "damaged.voy", "--all --tau 0 -o " + file("no_walk") + " --depth " + file("no_depth")));
+  EXPECT_EQ(walk.exit_code, 3) << walk.output;
+  EXPECT_FALSE(fs::exists(file("no_walk")));
+  EXPECT_FALSE(fs::exists(file("no_depth")));
+}
+
+TEST_F(CommandLine, NoOutputIsAnInputOrAnotherOutput) {
+  const std::string ply = file_bytes(file("city.ply")),
+                    cameras = file_bytes(file("city.cameras.json"));
+  expect_refusal("voyager bake " + file("city.ply") + " -o " + file("city.ply"), 1, ".voy");
+  expect_refusal("voyager bake " + file("city.voy") + " -o " + file("city.voy"), 1, "an input");
+  expect_refusal("voyager export " + file("city.voy") + " -o " + file("city.voy"), 1, "an input");
+  expect_refusal(
+      render("city.voy", "-o " + file("a.png") + " --stats " + file("city.cameras.json")), 1,
+      "an input");
+  expect_refusal(render("city.voy", "-o " + file("z.pfm") + " --depth " + file("./z.pfm")), 1,
+                 "another output");
+  expect_refusal(render("city.voy", "-o " + file("z.png") + " --depth " + file("z2.png")), 1,
+                 ".pfm");
+  EXPECT_TRUE(ply == file_bytes(file("city.ply")));
+  EXPECT_TRUE(cameras == file_bytes(file("city.cameras.json")));
+}
+
+TEST_F(CommandLine, AKilledCommandLeavesNoPartialFile) {
+  fs::create_directory(file("killed"));
+  run("voyager synth city --gaussians 100000000 -o " + file("killed/big.ply") +
+      " & sleep 0.3; kill -TERM $!; wait $!");
+  EXPECT_TRUE(fs::is_empty(file("killed")));
+  const Outcome full = run("voyager synth city --gaussians 100000 -o " + file("killed/big.ply"));
+  EXPECT_EQ(full.exit_code, 0) << full.output;
+}
+
+TEST_F(CommandLine, CamerasOutOfRangeAreRefusedWithFileCameraAndField) {
+  const std::string rest = R"(, "height": 9, "rotation": [[1,0,0],[0,1,0],[0,0,1]], "fy": 9)";
+  const auto camera = [&](const std::string& fields) {
+    write_bytes(file("bad.json"), "[{" + fields + rest + "}]");
+    return "voyager render " + file("city.voy") + " --cameras " + file("bad.json") + " -o " +
+           file("x.png");
+  };
+  expect_refusal(camera(R"("width": 9, "fx": 9, "position": [1e19, 0, 0])"), 2,
+                 "camera 0: position");
+  expect_refusal(camera(R"("width": 9, "fx": 1e-300, "position": [0, 0, 0])"), 2, "camera 0: fx");
+  expect_refusal(camera(R"("width": 9, "fx": 9, "cx": 1e300, "position": [0, 0, 0])"), 2,
+                 "camera 0: fx");
+  expect_refusal(camera(R"("width": 9, "fx": 1e999, "position": [0, 0, 0])"), 2, "bad.json");
+  const std::string deep = std::string(150000, '[') + std::string(150000, ']');
+  expect_refusal(camera("\"width\": " + deep), 2, "width: found an array");
+  EXPECT_FALSE(fs::exists(file("x.png")));
+}
+
+TEST_F(CommandLine, AnEmptySceneBakesRendersAndHasAnEmptyCut) {
+  const std::string ply = file_bytes(file("city.ply"));
+  const size_t header = ply.find("end_header\n") + 11;
+  std::string empty = ply.substr(0, header);
+  empty.replace(empty.find("vertex 10000"), 12, "vertex 0");
+  write_bytes(file("empty.ply"), empty);
+  ASSERT_EQ(
+      run("voyager bake " + file("empty.ply") + " -o " + file("empty.voy") + " --verify").exit_code,
+      0);
+  const Outcome drawn =
+      run(render("empty.voy", "--background 1,0,0 --dump-cut " + file("empty.txt") + " -o " +
+                                  file("empty.pfm")));
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.output;
+  EXPECT_TRUE(fs::exists(file("empty.txt")));
+  EXPECT_TRUE(file_bytes(file("empty.txt")).empty());
+}
+
 TEST_F(CommandLine, AnOutputThatCannotBeWrittenExitsWithFour) {
   expect_refusal(render("city.voy", "-o " + file("no/such/folder.png")), 4, "no/such/folder.png");
 }

@@ -21,7 +21,7 @@ TEST_F(Hostile, NullEverywhere) {
   expect_invalid(voy.GetSceneInfo(host.scene, nullptr), "VoySceneInfo");
   expect_invalid(voy.GetSceneNotes(host.scene, 4, nullptr, &count), "notes");
   expect_invalid(voy.GetSceneNotes(host.scene, 0, nullptr, nullptr), "count");
-  expect_invalid(voy.GetViewCut(host.view, 0, nullptr, nullptr), "count");
+  expect_invalid(voy.GetViewCut(host.view, 0, 0, nullptr, nullptr), "count");
   expect_invalid(voy.GetFrameStats(host.view, nullptr), "VoyFrameStats");
   expect_invalid(voy.FovFromAngles(-1, 1, 1, -1, nullptr), "frustum");
   expect_invalid(voy.FovFromIntrinsics(1, 1, 1, 1, 1, 1, nullptr), "frustum");
@@ -38,7 +38,7 @@ TEST_F(Hostile, NullEverywhere) {
 
 TEST_F(Hostile, WrongStructureTypesAndUnknownChains) {
   VoyDevice device = nullptr;
-  for (const int type : {0, 2, -1, 12, INT32_MAX, INT32_MIN}) {
+  for (const int type : {0, 2, -1, 14, INT32_MAX, INT32_MIN}) {
     VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
     desc.type = bad_enum<VoyStructureType>(type);
     expect_refused(voy.CreateDevice(&desc, &device), VOY_ERROR_INVALID_STRUCTURE, "expected 1");
@@ -74,6 +74,26 @@ TEST_F(Hostile, WrongStructureTypesAndUnknownChains) {
   EXPECT_EQ(create_device(with_allocator), VOY_ERROR_INVALID_STRUCTURE);
   allocator.type = VOY_STRUCTURE_TYPE_ALLOCATOR;
   EXPECT_EQ(create_device(with_allocator), VOY_ERROR_INVALID_ARGUMENT);
+}
+
+TEST_F(Hostile, ElementsOfArraysAreStructuresToo) {
+  VoyFrameEye eye = host.eye();
+  VoyInstancePose instance = VOY_INSTANCE_POSE_INIT;
+  VoyFrame frame = Host::frame(eye);
+  frame.instances = &instance;
+  const auto expect_wrong = [&](const char* part) {
+    expect_refused(voy.RenderFrame(host.view, &frame), VOY_ERROR_INVALID_STRUCTURE, part);
+  };
+  EXPECT_EQ(voy.RenderFrame(host.view, &frame), VOY_SUCCESS) << voy.message();
+  eye.next = &eye;
+  expect_wrong("frame.eyes[0].next");
+  eye = {};
+  expect_wrong("frame.eyes[0].type: found 0, expected 12");
+  eye = host.eye();
+  instance.next = &instance;
+  expect_wrong("frame.instances[0].next");
+  instance = {};
+  expect_wrong("frame.instances[0].type: found 0, expected 13");
 }
 
 TEST_F(Hostile, GarbageStaleAndWrongKindHandlesAreToldApart) {

@@ -46,7 +46,7 @@ struct Host {
   }
   // Looks along -z at the scene from x, 12 m before it, turned by yaw.
   VoyFrameEye eye(double x = 0, double yaw = 0) {
-    VoyFrameEye eye = {};
+    VoyFrameEye eye = VOY_FRAME_EYE_INIT;
     eye.pose.position[0] = x;
     eye.pose.position[2] = 12;
     eye.pose.orientation[1] = std::sin(yaw / 2);

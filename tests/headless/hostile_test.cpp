@@ -8,8 +8,8 @@ namespace {
 
 TEST_F(Hostile, DeviceChoices) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  for (const uint32_t version :
-       {0xffffffffu, VOY_MAKE_VERSION(0, 2, 0), VOY_MAKE_VERSION(1, 0, 0)}) {
+  for (const uint32_t version : {0xffffffffu, VOY_MAKE_VERSION(0, 0, 0), VOY_MAKE_VERSION(0, 2, 0),
+                                 VOY_MAKE_VERSION(1, 0, 0), VOY_MAKE_VERSION(1, 1, 0)}) {
     desc.apiVersion = version;
     expect_refused(create_device(desc), VOY_ERROR_INCOMPATIBLE_VERSION, "0.1.0");
   }
@@ -133,6 +133,8 @@ TEST_F(Hostile, PosesAndFrusta) {
   expect_invalid(with([](VoyFrameEye& e) { std::swap(e.frustum.left, e.frustum.right); }), "left");
   expect_invalid(with([](VoyFrameEye& e) { std::swap(e.frustum.up, e.frustum.down); }), "down");
   expect_invalid(with([](VoyFrameEye& e) { e.frustum.left = e.frustum.right; }), "left");
+  expect_invalid(with([](VoyFrameEye& e) { e.layer = 1; }), "frame.eyes[0].layer");
+  expect_invalid(with([](VoyFrameEye& e) { e.reserved = 1; }), "frame.eyes[0].reserved");
   EXPECT_EQ(host.pixels, before) << "a refused frame wrote to the target";
   // Any length will do, down to the smallest and up to the largest.
   ASSERT_EQ(host.render(), VOY_SUCCESS);
@@ -161,7 +163,8 @@ TEST_F(Hostile, Frames) {
                      "background");
   expect_invalid(with([](VoyFrame& f) { f.reserved = 1; }), "reserved");
 
-  VoyInstancePose instance = {{{0, 0, 0}, {0, 0, 0, -2}}, 1};
+  VoyInstancePose instance = VOY_INSTANCE_POSE_INIT;
+  instance.pose.orientation[3] = -2;
   const auto with_instance = [&] { return with([&](VoyFrame& f) { f.instances = &instance; }); };
   EXPECT_EQ(with_instance(), VOY_SUCCESS) << voy.message();
   for (const double scale : {0.0, -1.0, kNan, kInf}) {
@@ -190,7 +193,9 @@ TEST_F(Hostile, QueriesBeforeAnyFrameAndWithoutACut) {
   stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
   expect_invalid(voy.GetFrameStats(host.view, &stats), "no frame");
   uint32_t count = 77;
-  expect_refused(voy.GetViewCut(host.view, 0, nullptr, &count), VOY_ERROR_UNSUPPORTED, "cut");
+  expect_refused(voy.GetViewCut(host.view, 0, 0, nullptr, &count), VOY_ERROR_UNSUPPORTED, "cut");
+  expect_invalid(voy.GetViewCut(host.view, 1, 0, nullptr, &count), "instance");
+  expect_invalid(voy.GetViewCut(host.view, UINT32_MAX, 0, nullptr, &count), "instance");
   EXPECT_EQ(count, 77u);
   VoySceneNote note = {};
   ASSERT_EQ(voy.GetSceneNotes(host.scene, 0, nullptr, &count), VOY_SUCCESS);
@@ -198,6 +203,21 @@ TEST_F(Hostile, QueriesBeforeAnyFrameAndWithoutACut) {
   EXPECT_EQ(voy.GetSceneNotes(host.scene, 1, &note, &count), VOY_INCOMPLETE);
   EXPECT_EQ(note.type, VOY_STRUCTURE_TYPE_SCENE_NOTE);
   EXPECT_NE(note.what[0], '\0');
+}
+
+TEST_F(Hostile, WhatASceneDoesNotNeedHasNoCount) {
+  uint32_t count = 0;
+  ASSERT_EQ(voy.GetSceneNotes(host.scene, 0, nullptr, &count), VOY_SUCCESS);
+  std::vector<VoySceneNote> notes(count);
+  ASSERT_EQ(voy.GetSceneNotes(host.scene, count, notes.data(), &count), VOY_SUCCESS);
+  int omitted = 0;
+  for (const VoySceneNote& note : notes) {
+    if (note.kind != VOY_SCENE_NOTE_OMITTED) continue;
+    EXPECT_EQ(note.count, 0u) << note.what;
+    EXPECT_GT(note.bytes, 0u) << note.what;
+    ++omitted;
+  }
+  EXPECT_EQ(omitted, 2) << "the tree, and the SH bands above degree 1";
 }
 
 TEST_F(Hostile, FovHelpers) {
@@ -208,6 +228,13 @@ TEST_F(Hostile, FovHelpers) {
   }
   expect_invalid(voy.FovFromAngles(1, 1, 1, -1, &f), "left");
   expect_invalid(voy.FovFromIntrinsics(1, 0, 1, 1, 1, 1, &f), "fy");
+  // In range one by one, but no frustum together.
+  expect_invalid(voy.FovFromAngles(-1.5707963267948963, 1, 1, -1, &f), "frustum.left");
+  expect_invalid(voy.FovFromAngles(0.5, 0.5 + 1e-9, 1, -1, &f), "frustum.left");
+  expect_invalid(voy.FovFromIntrinsics(1e-300, 1, 1e300, 0, 1, 1, &f), "frustum.left");
+  expect_invalid(voy.FovFromIntrinsics(1, 1, 0, 0, 1, 1e5, &f), "frustum.down: found -100000");
+  expect_invalid(voy.FovFromIntrinsics(1e9, 1, 0, 0, 1, 1, &f), "frustum.left");
+  expect_invalid(voy.FovFromIntrinsics(-DBL_MAX, 1, 0, 0, 1, 1, &f), "found -1.797693135e+308");
   EXPECT_EQ(f.left, 1) << "a refused call wrote its output";
   ASSERT_EQ(voy.FovFromIntrinsics(500, 400, 320, 250, 640, 480, &f), VOY_SUCCESS);
   EXPECT_EQ(f.left, -0.64);
@@ -236,7 +263,7 @@ TEST_F(Hostile, EmptyAndNonsenseScenes) {
     EXPECT_EQ(open(), VOY_ERROR_FILE_NOT_FOUND) << voy.message();
   }
   desc.path = "/";
-  EXPECT_EQ(open(), VOY_ERROR_IO) << voy.message();
+  EXPECT_EQ(open(), VOY_ERROR_REFUSED_INPUT) << voy.message();
   EXPECT_EQ(scene, nullptr);
 }
 

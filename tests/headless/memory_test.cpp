@@ -45,7 +45,7 @@ VoyResult whole_run(const Library& voy, VoyDevice device, BytesHost& bytes,
   target_desc.width = target_desc.height = 32;
   target_desc.colorFormat = VOY_COLOR_FORMAT_RGBA32F;
   target_desc.color = pixels.data();
-  VoyFrameEye eye = {};
+  VoyFrameEye eye = VOY_FRAME_EYE_INIT;
   eye.pose.position[2] = 12;
   eye.pose.orientation[3] = 1;
   eye.frustum = {-0.6, 0.6, 0.6, -0.6};

@@ -1,5 +1,7 @@
 // Hosts with threads, and hosts that change the floating-point mode.
 #include <cfenv>
+#include <chrono>
+#include <cstdlib>
 #include <thread>
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -77,6 +79,56 @@ TEST(Threads, DestructionWaitsForCallsInFlight) {
     }
     renderer.join();
   }
+}
+
+// Whose release takes its time once told to, so that a destruction can be met halfway.
+struct SlowRelease {
+  std::atomic<bool> slow{false}, entered{false}, device_gone{false};
+  std::atomic<int> late{0};
+
+  static void* allocate(void*, size_t size, size_t alignment) {
+    return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  }
+  static void release(void* user, void* memory, size_t, size_t) {
+    auto* self = static_cast<SlowRelease*>(user);
+    if (self->slow) {
+      self->entered = true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    self->late += self->device_gone;
+    std::free(memory);
+  }
+};
+
+// `destroy` runs in another thread while the device is destroyed in this one.
+template <class Destroy>
+void expect_no_release_after_the_device(const Destroy& destroy) {
+  const Library voy;
+  SlowRelease memory;
+  const VoyAllocator allocator = {VOY_STRUCTURE_TYPE_ALLOCATOR, nullptr, &memory,
+                                  SlowRelease::allocate, SlowRelease::release};
+  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  desc.allocator = &allocator;
+  Host host(voy, desc);
+  ASSERT_EQ(host.render(), VOY_SUCCESS);
+  memory.slow = true;
+  std::thread child([&] { EXPECT_EQ(destroy(voy, host), VOY_SUCCESS) << voy.message(); });
+  while (!memory.entered) std::this_thread::yield();
+  EXPECT_EQ(voy.DestroyDevice(host.device), VOY_SUCCESS);
+  memory.device_gone = true;
+  child.join();
+  EXPECT_EQ(memory.late, 0) << "releases after voyDestroyDevice returned";
+  host.device = nullptr;
+}
+
+TEST(Threads, DestroyingADeviceWaitsForTheDestructionOfItsScene) {
+  expect_no_release_after_the_device(
+      [](const Library& voy, Host& host) { return voy.DestroyScene(host.scene); });
+}
+
+TEST(Threads, DestroyingADeviceWaitsForTheDestructionOfItsView) {
+  expect_no_release_after_the_device(
+      [](const Library& voy, Host& host) { return voy.DestroyView(host.view); });
 }
 
 TEST(Threads, MessagesAreEachThreadsOwn) {

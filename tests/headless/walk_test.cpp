@@ -36,6 +36,10 @@ size_t walk() {
   EXPECT_EQ(voy.GetFrameStats(host.view, &stats), VOY_SUCCESS);
   EXPECT_EQ(stats.frameIndex, 299u);
   EXPECT_GT(stats.splats, 0u);
+  for (uint32_t i = 0; i < VOY_MAX_STAGES; ++i) {
+    EXPECT_EQ(voy.StageName(static_cast<VoyStage>(i)) != nullptr, i < stats.stageCount) << i;
+    EXPECT_TRUE(i < stats.stageCount || stats.milliseconds[i] == 0) << i;
+  }
   return sum;
 }
 

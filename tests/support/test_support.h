@@ -31,7 +31,7 @@ class TempFolder {
   std::filesystem::path path_;
 };
 
-// The folder of real scenes: VOYAGER_SCENES, or ../shared/scenes beside the checkout; "" if absent.
+// The folder that VOYAGER_SCENES names, else ../shared/scenes beside the checkout; "" if absent.
 inline std::string scenes_folder() {
   const char* named = std::getenv("VOYAGER_SCENES");
   const std::filesystem::path folder =

@@ -1,7 +1,9 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,7 @@
 #include "runtime/scene/import/importer.h"
 #include "tools/commands/commands.h"
 #include "tools/options.h"
+#include "tools/output_paths.h"
 #include "tools/progress_bar.h"
 
 namespace voyager::tools {
@@ -44,30 +47,38 @@ GaussianCloud read_all(const std::vector<std::string>& paths, const Progress& pr
 void require_sound(const std::string& path, const std::vector<std::string>& findings) {
   if (findings.empty()) return;
   for (const std::string& finding : findings)
-    std::fputs((path + ": " + finding + "\n").c_str(), stderr);
+    std::fputs(fmt::format("{}: {}\n", path, finding).c_str(), stderr);
   throw Error(ErrorCode::internal,
               fmt::format("{}: the tree broke {} invariants", path, findings.size()));
 }
 
-// Reads back what was written, every chunk of it.
-void verify_file(const std::string& path) {
+// Reads back what was written: every chunk is whole, and its nodes are the tree's.
+void verify_file(const std::string& path, const LodTree& tree) {
   const SceneFile file(open_file_source(path));
-  for (uint32_t i = 0; i < file.info().chunk_count; ++i) file.read_chunk(i);
+  for (uint32_t i = 0; i < file.info().chunk_count; ++i) {
+    const Chunk chunk = file.read_chunk(i);
+    const auto written = std::span(tree.records).subspan(chunk.first_node, chunk.records.size());
+    if (!std::ranges::equal(std::as_bytes(std::span(chunk.records)), std::as_bytes(written)))
+      throw Error(ErrorCode::io,
+                  fmt::format("{}: chunk {}: found other nodes than were written", path, i));
+  }
 }
 
 void bake(const Arguments& arguments) {
+  require_extension("-o", arguments.output, {".voy"});
+  require_distinct({arguments.output}, arguments.inputs);
   const Progress progress = progress_bar();
   const Stopwatch watch;
   Workers workers;
   const BakedScene baked = build_tree(read_all(arguments.inputs, progress), workers, progress);
   if (arguments.verify) require_sound(arguments.output, validate(baked));
   write_scene_file(baked, arguments.output, arguments.quality, workers, progress);
-  if (arguments.verify) verify_file(arguments.output);
+  if (arguments.verify) verify_file(arguments.output, baked.tree);
   fmt::print("{}: {} Gaussians, {} nodes, {} bytes, {:.1f} s{}\n", arguments.output,
              baked.leaves.size(), baked.tree.size(), open_file_source(arguments.output)->size(),
              watch.milliseconds() / 1000, arguments.verify ? ", verified" : "");
   if (const ImportReport& report = baked.leaves.report; report.dropped() + report.repaired() > 0)
-    fmt::print("{} Gaussians dropped, {} values repaired (voyager info {} tells which)\n",
+    fmt::print("{} Gaussians dropped, {} repaired (voyager info {} tells which)\n",
                report.dropped(), report.repaired(), arguments.output);
 }
 

@@ -10,6 +10,7 @@
 #include "tools/commands/commands.h"
 #include "tools/cut_export.h"
 #include "tools/options.h"
+#include "tools/output_paths.h"
 #include "tools/progress_bar.h"
 
 namespace voyager::tools {
@@ -35,19 +36,15 @@ Camera choose_camera(const Arguments& arguments) {
 }
 
 void export_scene(const Arguments& arguments) {
-  const auto extension = std::filesystem::path(arguments.output).extension();
+  require_distinct({arguments.output}, {arguments.scene, arguments.cameras});
   if (!arguments.cameras.empty()) {
-    if (extension != ".ply")
-      throw Error(ErrorCode::invalid_argument, "--cut-camera: expected -o to end in .ply");
+    require_extension("-o with --cut-camera", arguments.output, {".ply"});
     export_cut(arguments.scene, choose_camera(arguments), arguments.tau, arguments.output);
-  } else if (extension == ".hier") {
-    export_hier(SceneFile(open_file_source(arguments.scene)), arguments.output, progress_bar());
-  } else if (extension == ".ply") {
-    export_ply(SceneFile(open_file_source(arguments.scene)), arguments.output, progress_bar());
   } else {
-    throw Error(
-        ErrorCode::invalid_argument,
-        fmt::format("-o: found {}, expected a name that ends in .hier or .ply", arguments.output));
+    require_extension("-o", arguments.output, {".hier", ".ply"});
+    const SceneFile scene(open_file_source(arguments.scene));
+    const bool tree = std::filesystem::path(arguments.output).extension() == ".hier";
+    (tree ? export_hier : export_ply)(scene, arguments.output, progress_bar());
   }
   fmt::print("{}\n", arguments.output);
 }
@@ -69,6 +66,7 @@ void add_export(CLI::App& app) {
                           "cameras.json: write one camera's interpolated cut to out.ply instead");
   command->add_option("--camera", arguments->camera, "Index of the camera in it")
       ->needs(cameras)
+      ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   add_size_option(*command, arguments->size);
   add_tau_option(*command, arguments->tau);

@@ -7,6 +7,7 @@
 #include "tools/commands/commands.h"
 #include "tools/frame_files.h"
 #include "tools/options.h"
+#include "tools/output_paths.h"
 #include "tools/progress_bar.h"
 #include "tools/renderer.h"
 
@@ -41,24 +42,32 @@ std::vector<Camera> choose_cameras(const Arguments& arguments) {
   return cameras;
 }
 
-// Settles what the name of the output says: image format, or a folder.
+void refuse_file_name(const std::string& option, const std::string& path) {
+  const auto extension = std::filesystem::path(path).extension();
+  if (extension == ".png" || extension == ".pfm" || extension == ".txt")
+    bad_usage(fmt::format("{}: found {}, expected a folder with --all", option, path));
+}
+
+// Settles what the names of the outputs say: image format, or folders.
 void settle_outputs(Arguments& arguments) {
   OutputPaths& outputs = arguments.outputs;
+  require_distinct({outputs.image, outputs.depth, outputs.cut, outputs.stats},
+                   {arguments.scene, arguments.cameras});
   outputs.walk = arguments.all;
-  outputs.floats = arguments.choices.floats;
   arguments.choices.depth = !outputs.depth.empty();
-  const auto extension = std::filesystem::path(outputs.image).extension();
   if (outputs.walk) {
-    if (extension == ".png" || extension == ".pfm")
-      bad_usage(fmt::format("-o: found {}, expected a folder with --all", outputs.image));
-    return;
+    refuse_file_name("-o", outputs.image);
+    refuse_file_name("--depth", outputs.depth);
+    refuse_file_name("--dump-cut", outputs.cut);
+  } else {
+    const bool floats = arguments.choices.floats;
+    require_extension(
+        floats ? "-o with --float" : "-o", outputs.image,
+        floats ? std::vector<std::string>{".pfm"} : std::vector<std::string>{".png", ".pfm"});
+    if (!outputs.depth.empty()) require_extension("--depth", outputs.depth, {".pfm"});
+    arguments.choices.floats = std::filesystem::path(outputs.image).extension() == ".pfm";
   }
-  if (extension != ".png" && extension != ".pfm")
-    bad_usage(fmt::format(
-        "-o: found {}, expected a name that ends in .png or .pfm, or a folder with --all",
-        outputs.image));
-  if (outputs.floats && extension == ".png") bad_usage("--float: expected -o to end in .pfm");
-  outputs.floats = arguments.choices.floats = extension == ".pfm";
+  outputs.floats = arguments.choices.floats;
 }
 
 void render(Arguments& arguments) {
@@ -79,7 +88,7 @@ void render(Arguments& arguments) {
     files.write(i, cameras[i], renderer);
     if (cameras.size() > 1) progress("rendering", i + 1, cameras.size());
   }
-  files.write_stats(renderer.notes());
+  files.finish(renderer.notes());
   fmt::print("{}\n", arguments.outputs.image);
 }
 

@@ -5,10 +5,11 @@
  * (a frustum is four tangents), poses as in OpenXR (x right, y up, -z forward),
  * colours are display-referred code values, premultiplied.
  *
- * Every struct starts with `type` and `next`. `type` must be the struct's own
- * enumerant and `next` NULL or a struct that the call knows: anything else is
- * VOY_ERROR_INVALID_STRUCTURE, so that a request is never ignored silently.
- * The VOY_..._INIT macros fill `type` and the defaults.
+ * Every struct starts with `type` and `next`, but for VoyPose and VoyFrustum, which
+ * are plain values inside others, as XrPosef and XrFovf are, and never change.
+ * `type` must be the struct's own enumerant and `next` NULL or a struct that the
+ * call knows: anything else is VOY_ERROR_INVALID_STRUCTURE, so that a request is
+ * never ignored silently. The VOY_..._INIT macros fill `type` and the defaults.
  *
  * Every call returns a VoyResult: 0 is success, positive a qualified success,
  * negative an error whose text voyGetLastErrorMessage has. On error, outputs
@@ -40,8 +41,9 @@ extern "C" {
 #endif
 
 /* The API version this header describes: major << 22 | minor << 12 | patch.
- * A library serves every host built against the same major version and a minor
- * version up to its own. */
+ * While the major version is 0, a library serves the hosts that were built against
+ * the same minor version, and no others. From 1 on, it serves those of the same
+ * major version and a minor version up to its own. The patch version never matters. */
 #define VOY_MAKE_VERSION(major, minor, patch) \
   ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
 #define VOY_API_VERSION VOY_MAKE_VERSION(0, 1, 0)
@@ -80,6 +82,8 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_FRAME = 9,
   VOY_STRUCTURE_TYPE_FRAME_STATS = 10,
   VOY_STRUCTURE_TYPE_ALLOCATOR = 11,
+  VOY_STRUCTURE_TYPE_FRAME_EYE = 12,
+  VOY_STRUCTURE_TYPE_INSTANCE_POSE = 13,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -193,7 +197,9 @@ VOY_API VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabili
 /* Bytes that the host supplies: a pak file, an asset bundle, memory.
  * read fills `size` bytes from `offset` (in range) and returns VOY_SUCCESS, or
  * an error, which the call in progress reports as VOY_ERROR_IO. It may be called
- * from several threads at once, and only during voyOpenScene. */
+ * from any thread, several at once, from voyOpenScene until voyDestroyScene (or
+ * voyDestroyDevice) returns: read, user and the bytes must stay valid that long.
+ * Where voyOpenScene fails, until it returns. */
 typedef struct VoyByteSource {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_BYTE_SOURCE */
   const void* next;
@@ -211,7 +217,7 @@ typedef struct VoySceneDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_DESC */
   const void* next;
   const char* path;            /* UTF-8; copied */
-  const VoyByteSource* source; /* the struct is copied; user must live until voyOpenScene returns */
+  const VoyByteSource* source; /* the struct is copied; its user must live as long as the scene */
 } VoySceneDesc;
 #define VOY_SCENE_DESC_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_DESC, NULL, NULL, NULL }
@@ -247,7 +253,8 @@ typedef struct VoySceneInfo {
   double boundsMax[3];
   uint64_t residentBytes; /* of scene data, in the device's memory */
   uint64_t droppedCount;  /* Gaussians left out at import because they were impossible */
-  uint64_t repairedCount; /* values mended at import */
+  uint64_t repairedCount; /* Gaussians mended at import, one for each attribute (scale,
+                             rotation, opacity, SH) that was */
   double positionError;   /* compact storage: largest error of a mean, metres; else 0 */
 } VoySceneInfo;
 #define VOY_SCENE_INFO_INIT                                                                      \
@@ -260,7 +267,7 @@ VOY_API VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info);
 
 typedef enum VoySceneNoteKind {
   VOY_SCENE_NOTE_OMITTED = 0,  /* what this scene does not need and so does not pay for */
-  VOY_SCENE_NOTE_REPAIRED = 1, /* values mended at import */
+  VOY_SCENE_NOTE_REPAIRED = 1, /* Gaussians of which one attribute was mended at import */
   VOY_SCENE_NOTE_DROPPED = 2,  /* Gaussians left out at import */
   VOY_SCENE_NOTE_DAMAGED = 3,  /* chunks that cannot be read */
   VOY_SCENE_NOTE_KIND_MAX_ENUM = 0x7fffffff
@@ -271,13 +278,15 @@ typedef struct VoySceneNote {
   void* next;
   VoySceneNoteKind kind;
   uint32_t reserved;
-  uint64_t count; /* values, Gaussians or chunks; 0 for OMITTED */
+  uint64_t count; /* Gaussians (REPAIRED, DROPPED) or chunks (DAMAGED); 0 for OMITTED */
   uint64_t bytes; /* saved, for OMITTED; else 0 */
   char what[64];  /* UTF-8, terminated */
   char why[192];
 } VoySceneNote;
 
-/* capacity 0: only *count is set. Otherwise up to capacity notes are written
+/* What was left out, mended, dropped or damaged: a note for each kind and cause, so a
+ * Gaussian of which two attributes were mended counts in two of them.
+ * capacity 0: only *count is set. Otherwise up to capacity notes are written
  * (their type and next are set by the call), *count is how many there are, and the
  * result is VOY_INCOMPLETE if that is more. */
 VOY_API VoyResult voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNote* notes,
@@ -397,26 +406,41 @@ typedef struct VoyFrustum {
   double left, right, up, down;
 } VoyFrustum;
 
-/* From angles in radians as XrFovf has them, each inside ±π/2. */
+/* From angles in radians as XrFovf has them, each inside ±π/2. INVALID_ARGUMENT where
+ * the tangents are not those of a VoyFrustum. */
 VOY_API VoyResult voyFovFromAngles(double left, double right, double up, double down,
                                    VoyFrustum* frustum);
 
 /* From pinhole intrinsics in pixels: pixel centres at +0.5, cx and cy measured
- * from the top left corner. */
+ * from the top left corner. INVALID_ARGUMENT where the tangents are not those of a
+ * VoyFrustum. */
 VOY_API VoyResult voyFovFromIntrinsics(double fx, double fy, double cx, double cy, double width,
                                        double height, VoyFrustum* frustum);
 
+/* Element of an array, so this size is for good: what is added later goes through next. */
 typedef struct VoyFrameEye {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_EYE */
+  const void* next;
   VoyPose pose; /* in the world */
   VoyFrustum frustum;
-  VoyTarget target; /* of the view's device; its size is the image's */
+  VoyTarget target;  /* of the view's device; its size is the image's */
+  uint32_t layer;    /* of the target's array; 0 in this version */
+  uint32_t reserved; /* 0 */
 } VoyFrameEye;
+/* At the origin, looking along -z; frustum and target are the host's to set. */
+#define VOY_FRAME_EYE_INIT \
+  { VOY_STRUCTURE_TYPE_FRAME_EYE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, {0, 0, 0, 0}, NULL, 0, 0 }
 
-/* Where an instance stands: scene axes to world. */
+/* Where an instance stands: scene axes to world. Element of an array, as VoyFrameEye is. */
 typedef struct VoyInstancePose {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_INSTANCE_POSE */
+  const void* next;
   VoyPose pose;
   double scale; /* uniform, > 0 */
 } VoyInstancePose;
+/* The identity. */
+#define VOY_INSTANCE_POSE_INIT \
+  { VOY_STRUCTURE_TYPE_INSTANCE_POSE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, 1 }
 
 typedef struct VoyFrame {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME */
@@ -437,12 +461,14 @@ typedef struct VoyFrame {
  * DAMAGED_CHUNK, OUT_OF_HOST_MEMORY, BUSY. */
 VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
 
-/* The last frame's cut: node ids of the first instance in ascending order.
+/* The last frame's cut of one instance (its index; 0 in this version): node ids in
+ * ascending order.
  * capacity 0: only *count is set. Otherwise up to capacity ids are written, *count
  * is the size of the cut, and the result is VOY_INCOMPLETE if that is more.
  * VOY_ERROR_UNSUPPORTED where the view draws no cut (flat scene, ALL_LEAVES),
- * VOY_ERROR_INVALID_ARGUMENT before any frame. */
-VOY_API VoyResult voyGetViewCut(VoyView view, uint32_t capacity, uint32_t* nodes, uint32_t* count);
+ * VOY_ERROR_INVALID_ARGUMENT before any frame, or for an instance that there is not. */
+VOY_API VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint32_t* nodes,
+                                uint32_t* count);
 
 typedef enum VoyStage {
   VOY_STAGE_SEARCH = 0,
@@ -451,18 +477,20 @@ typedef enum VoyStage {
   VOY_STAGE_BIN = 3,
   VOY_STAGE_RASTERIZE = 4,
   VOY_STAGE_RESOLVE = 5,
-  VOY_STAGE_COUNT = 6,
   VOY_STAGE_MAX_ENUM = 0x7fffffff
 } VoyStage;
+
+/* Room for stages in VoyFrameStats, for good; how many there are is its stageCount. */
+#define VOY_MAX_STAGES 16
 
 typedef struct VoyFrameStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STATS */
   void* next;
   uint64_t frameIndex; /* of the view, from 0 */
   VoySearch search;    /* the one that ran; AUTO where none did */
-  float tauStar;       /* the target size as used (METHOD §3) */
-  float cutCentre[3];  /* scene-local, as used */
-  uint32_t reserved;
+  float tauStar;       /* instance 0's: the target size as used (METHOD §3) */
+  float cutCentre[3];  /* instance 0's: scene-local, as used */
+  uint32_t stageCount; /* of this library: the entries of milliseconds that are in use */
   uint64_t nodesTotal;
   uint64_t nodesTested; /* evaluations of the predicate */
   uint64_t subtreesVisited;
@@ -474,8 +502,8 @@ typedef struct VoyFrameStats {
   uint64_t pairsBefore;   /* (tile, splat) pairs of the bounding boxes */
   uint64_t pairsAfter;    /* of the ellipses at the α threshold */
   uint64_t bytesStreamed, bytesNeeded;
-  uint64_t missing; /* cut nodes that stood in for missing ones */
-  double milliseconds[VOY_STAGE_COUNT];
+  uint64_t missing;                    /* cut nodes that stood in for missing ones */
+  double milliseconds[VOY_MAX_STAGES]; /* by VoyStage; 0 from stageCount on */
   double millisecondsTotal;
 } VoyFrameStats;
 
@@ -483,7 +511,7 @@ typedef struct VoyFrameStats {
  * type must be set; the rest is written. */
 VOY_API VoyResult voyGetFrameStats(VoyView view, VoyFrameStats* stats);
 
-/* "search", "project", ...; NULL for no stage. Static storage. */
+/* "search", "project", ...; NULL for no stage, and so from stageCount on. Static storage. */
 VOY_API const char* voyStageName(VoyStage stage);
 
 #ifdef __cplusplus

@@ -81,12 +81,12 @@ class View : public Handle<VoyView, voyDestroyView> {
 
   void set_tau(double pixels) { check(voySetViewTau(get(), pixels)); }
   void render(const VoyFrame& frame) { check(voyRenderFrame(get(), &frame)); }
-  // Node ids of the last frame's cut, ascending.
-  std::vector<uint32_t> cut() const {
+  // Node ids of the instance's cut in the last frame, ascending.
+  std::vector<uint32_t> cut(uint32_t instance = 0) const {
     uint32_t count = 0;
-    check(voyGetViewCut(get(), 0, nullptr, &count));
+    check(voyGetViewCut(get(), instance, 0, nullptr, &count));
     std::vector<uint32_t> nodes(count);
-    check(voyGetViewCut(get(), count, nodes.data(), &count));
+    check(voyGetViewCut(get(), instance, count, nodes.data(), &count));
     return nodes;
   }
   VoyFrameStats stats() const {

@@ -18,8 +18,6 @@ using ply::Type;
 
 constexpr size_t kBlockBytes = 256 * 1024;  // stays in cache while it is taken apart by columns
 
-constexpr double kOriginStep = 1024.0, kOriginFrom = 16000.0;  // metres
-
 // One property of the rows and where its words go.
 struct Column {
   const Property* property;
@@ -200,7 +198,7 @@ class PlyImport {
       if (!std::all_of(world, world + 3, [](double v) { return std::fabs(v) < kMaxCoordinate; }))
         continue;
       for (size_t axis = 0; axis < 3; ++axis)
-        if (std::fabs(world[axis]) > kOriginFrom)
+        if (std::fabs(world[axis]) > kOriginReach)
           cloud_.origin[axis] = std::round(world[axis] / kOriginStep) * kOriginStep;
       break;
     }
