@@ -69,11 +69,8 @@ struct Totals {
   }
 };
 
-void frames(benchmark::State& state, VoyLod lod, double tau) {
+void render_frames(benchmark::State& state, const RenderChoices& choices) {
   const std::vector<Camera> cameras = bench_cameras();
-  RenderChoices choices;
-  choices.lod = lod;
-  choices.tau = tau;
   Renderer renderer(setting("VOYAGER_BENCH_SCENE", "demo/city.voy"), choices, cameras[0].width,
                     cameras[0].height);
   renderer.render(cameras[0]);  // warm
@@ -84,6 +81,17 @@ void frames(benchmark::State& state, VoyLod lod, double tau) {
     state.SetIterationTime(totals.frame_ms.back() / 1000);
   }
   totals.report(state);
+}
+
+void frames(benchmark::State& state, VoyLod lod, double tau) {
+  RenderChoices choices;
+  choices.lod = lod;
+  choices.tau = tau;
+  try {
+    render_frames(state, choices);
+  } catch (const std::exception& error) {
+    state.SkipWithError(error.what());
+  }
 }
 
 BENCHMARK_CAPTURE(frames, tau_0, VOY_LOD_CUT, 0.0)->UseManualTime()->Unit(benchmark::kMillisecond);

@@ -39,7 +39,7 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& request) {
     return app.exit(request);  // --help and --version
   } catch (const CLI::ExtrasError&) {
-    return fail(kBadUsage, unexpected(app) + ": not an option of this version (see --help)");
+    return fail(kBadUsage, unexpected(app) + ": not part of this version (see --help)");
   } catch (const CLI::ParseError& error) {
     return fail(kBadUsage, std::string(error.what()) + " (see --help)");
   } catch (const voy::Error& error) {

@@ -22,25 +22,26 @@ struct TileRange {
   int32_t begin, end;
 };
 
-// The tiles [begin, end) of `count` whose pixel centres lie within `reach` of `centre`.
-VOYAGER_HD TileRange tiles_within(double centre, double reach_low, double reach_high,
-                                  int32_t count) {
-  const double first = std::ceil(centre - reach_low - 0.5),
-               last = std::floor(centre + reach_high - 0.5);
-  if (!(last >= 0.0) || !(first < static_cast<double>(count) * kTile) || last < first)
-    return {0, 0};
-  const int32_t begin = first <= 0.0 ? 0 : static_cast<int32_t>(first) / kTile;
-  const double end = std::floor(last / kTile) + 1.0;
-  return {begin, end > count ? count : static_cast<int32_t>(end)};
+// The tiles, of `count` in a row, with a pixel centre between `low` and `high`.
+VOYAGER_HD TileRange tiles_within(double low, double high, int32_t count) {
+  const double last_pixel = static_cast<double>(count) * kTile - 1.0;
+  low -= 0.5;
+  high -= 0.5;
+  if (!(high >= 0.0) || !(low <= last_pixel)) return {0, 0};
+  // Cut to the image first: casts then round as floor does, without its cost.
+  int32_t first = low > 0.0 ? static_cast<int32_t>(low) : 0;
+  first += static_cast<double>(first) < low;
+  const int32_t last = static_cast<int32_t>(high < last_pixel ? high : last_pixel);
+  return last < first ? TileRange{0, 0} : TileRange{first / kTile, last / kTile + 1};
 }
 
 VOYAGER_HD TileRange box_columns(const Splat& s, const TileGrid& grid) {
-  const double reach = static_cast<double>(s.half_width);
-  return tiles_within(static_cast<double>(s.x), reach, reach, grid.columns);
+  const double x = static_cast<double>(s.x), reach = static_cast<double>(s.half_width);
+  return tiles_within(x - reach, x + reach, grid.columns);
 }
 VOYAGER_HD TileRange box_rows(const Splat& s, const TileGrid& grid) {
-  const double reach = static_cast<double>(s.half_height);
-  return tiles_within(static_cast<double>(s.y), reach, reach, grid.rows);
+  const double y = static_cast<double>(s.y), reach = static_cast<double>(s.half_height);
+  return tiles_within(y - reach, y + reach, grid.rows);
 }
 
 namespace detail {
@@ -64,7 +65,7 @@ VOYAGER_HD TileRange strip_columns(const SupportEllipse& e, double y_first, doub
   const double right = detail::right_edge(e, detail::clamp(e.top, low, high));
   const double left = detail::right_edge(e, detail::clamp(e.top, -high, -low));
   const double slack = 1e-9 * e.reach_x + 1e-9;  // of this arithmetic itself
-  return tiles_within(e.x, left + slack, right + slack, grid.columns);
+  return tiles_within(e.x - left - slack, e.x + right + slack, grid.columns);
 }
 
 }  // namespace voyager

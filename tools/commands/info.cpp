@@ -28,7 +28,7 @@ void print_text(const std::string& path, const VoySceneInfo& info,
   if (info.storage == VOY_SCENE_STORAGE_COMPACT)
     fmt::print("  mean error    {:.3g} m at most\n", info.positionError);
   fmt::print("  resident      {} bytes\n", info.residentBytes);
-  fmt::print("  import        {} Gaussians dropped, {} values repaired\n", info.droppedCount,
+  fmt::print("  import        {} Gaussians dropped, {} repaired\n", info.droppedCount,
              info.repairedCount);
   for (const VoySceneNote& note : notes)
     fmt::print("  {:<13} {}: {} ({})\n", kNoteKinds[note.kind], note.what, note.why,
