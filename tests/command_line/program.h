@@ -16,7 +16,9 @@ struct Outcome {
 };
 
 inline Outcome run(const std::string& command_line) {
-  const std::string command = "( " + std::string(VOYAGER_BIN_DIR) + "/" + command_line + " ) 2>&1";
+  // AddressSanitizer's dlopen does not look where the program's RUNPATH says.
+  const std::string libraries = "LD_LIBRARY_PATH=" VOYAGER_BIN_DIR "/../lib ";
+  const std::string command = "( " + libraries + VOYAGER_BIN_DIR + "/" + command_line + " ) 2>&1";
   std::FILE* pipe = ::popen(command.c_str(), "r");
   Outcome result{-1, ""};
   if (pipe == nullptr) return result;
