@@ -54,8 +54,9 @@ class ByteReader {
 std::unique_ptr<ByteReader> read_source(const ByteSource& source);
 std::unique_ptr<ByteReader> read_stdin();
 
-// Has no name until commit(), which flushes and then takes `path` in one step;
-// destroyed without commit, or killed, it leaves `path` alone and nothing behind.
+// Has no name until commit(), which flushes and then takes `path` in one step.
+// Destroyed without commit, or killed, it leaves `path` alone, and nothing behind
+// but on file systems without unnamed files, where a kill leaves path.partial-*.
 // Writes may come from one thread at a time. All throw Error(io).
 class AtomicFile {
  public:

@@ -8,7 +8,7 @@
 
 namespace voyager {
 
-// Writes under a temporary name, then renames. Throws Error(io).
+// The file appears whole or not at all (AtomicFile). Throws Error(io).
 void write_scene_file(const BakedScene& baked, const std::string& path, Quality quality,
                       Workers& workers, const Progress& progress = {});
 
