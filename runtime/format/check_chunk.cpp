@@ -1,5 +1,6 @@
 #include "runtime/format/check_chunk.h"
 
+#include <bit>
 #include <cmath>
 
 #include "runtime/math/axes.h"
@@ -20,6 +21,16 @@ bool sound_box(const NodeRecord& r) {
   return true;
 }
 
+void check_records(const Chunk& chunk, const ChunkLocation& location) {
+  for (size_t i = 0; i < chunk.records.size(); ++i) {
+    const NodeRecord& r = chunk.records[i];
+    const char* wrong = !sound_box(r)      ? "a box that is not finite and ordered"
+                        : !(r.extent >= 0) ? "an extent that is negative or not a number"
+                                           : nullptr;
+    if (wrong) location.damaged("record " + std::to_string(i) + " with " + wrong, "a sound record");
+  }
+}
+
 bool below(const Vec3f& v, float bound) {
   return std::fabs(v.x) < bound && std::fabs(v.y) < bound && std::fabs(v.z) < bound;
 }
@@ -28,14 +39,19 @@ bool finite(const Quatf& q) {
   return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
 }
 
-// What is wrong with node i, or nothing.
+// Without an early end, so that it runs several at a time.
+bool finite(const float* values, size_t count) {
+  constexpr uint32_t kExponent = 0x7f800000;
+  uint32_t bad = 0;
+  for (size_t i = 0; i < count; ++i)
+    bad |= (std::bit_cast<uint32_t>(values[i]) & kExponent) == kExponent ? 1u : 0u;
+  return bad == 0;
+}
+
+// What is wrong with owned node i, or nothing.
 const char* fault(const Chunk& chunk, size_t i, const ChunkContext& context) {
-  const NodeRecord& r = chunk.records[i];
   const GaussianWords& w = chunk.words[i];
-  const bool leaf = r.child_count == 0;
-  if (!sound_box(r)) return "a box that is not finite and ordered";
-  if (!(r.extent >= 0 && std::isfinite(r.extent)))
-    return "an extent that is negative or not finite";
+  const bool leaf = chunk.is_leaf(i);
   if (leaf ? chunk.source_index[i] >= context.leaf_count : chunk.source_index[i] != kNoNode)
     return "a source index that does not fit the node";
   if (chunk.axis_code[i] >= kAxisCodes) return "an axis code over 23";
@@ -44,26 +60,57 @@ const char* fault(const Chunk& chunk, size_t i, const ChunkContext& context) {
   if (!finite(w.rotation)) return "a rotation that is not finite";
   if (!std::isfinite(w.opacity) || (!leaf && w.opacity < 0)) return "an opacity out of range";
   const size_t floats = context.coefficients() * 3;
-  for (size_t k = i * floats; k < (i + 1) * floats; ++k)
-    if (!std::isfinite(chunk.sh[k])) return "an SH coefficient that is not finite";
+  if (!finite(chunk.sh.data() + i * floats, floats)) return "an SH coefficient that is not finite";
   return nullptr;
+}
+
+// `first` is of the subtree's records.
+void list_nodes(const Subtree& subtree, const SubtreeCursor& cursor, size_t first, Chunk& chunk) {
+  for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
+    if (subtree.repeats(slot)) continue;
+    chunk.node.push_back(subtree.node(slot));
+    chunk.record.push_back(static_cast<uint32_t>(first + slot));
+    chunk.first_child.push_back(cursor.first_children()[slot]);
+  }
 }
 
 }  // namespace
 
-void check_chunk(const Chunk& chunk, const ChunkPlace& place, const ChunkContext& context) {
-  uint64_t child = place.first_child;
-  for (size_t i = 0; i < chunk.records.size(); ++i) {
-    const uint64_t node = uint64_t{place.first_node} + i;
-    const char* wrong = fault(chunk, i, context);
-    if (!wrong && chunk.records[i].child_count != 0 && child <= node)
-      wrong = "a child that comes before its parent";
-    if (wrong) place.damaged("node " + std::to_string(node) + " with " + wrong, "a sound node");
-    child += chunk.records[i].child_count;
+void link_subtrees(std::span<const uint8_t> child_counts,
+                   std::span<const uint8_t> grandchild_counts, const ChunkLocation& location,
+                   const ChunkContext& context, Chunk& chunk) {
+  check_records(chunk, location);
+  SubtreeCursor cursor(context.tiers);
+  const ChunkEntry& entry = location.entry;
+  if (!cursor.move_to(entry.first_subtree, entry.place))
+    location.damaged("a first subtree where none can be", "one that follows the chunk before");
+  size_t record = 0;
+  for (size_t i = 0; i < child_counts.size(); ++i) {
+    const size_t count = size_t{1} + child_counts[i] + grandchild_counts[i];
+    Subtree subtree{};
+    const char* wrong = count > chunk.records.size() - record
+                            ? "more nodes than there are records"
+                            : cursor.take(child_counts[i], grandchild_counts[i],
+                                          chunk.records.data() + record, subtree);
+    if (wrong)
+      location.damaged("subtree " + std::to_string(entry.first_subtree + i) + " with " + wrong,
+                       "a sound subtree");
+    list_nodes(subtree, cursor, record, chunk);
+    chunk.subtrees.push_back(subtree);
+    record += count;
   }
-  if (child != place.next_first_child)
-    place.damaged("children up to node " + std::to_string(child),
-                  std::to_string(place.next_first_child));
+  if (record != chunk.records.size() || chunk.node.size() != entry.node_count ||
+      cursor.place() != location.next)
+    location.damaged("subtrees that end at record " + std::to_string(record) + " and node " +
+                         std::to_string(cursor.place().next[0]),
+                     "record " + std::to_string(chunk.records.size()) + " and node " +
+                         std::to_string(location.next.next[0]));
+}
+
+void check_words(const Chunk& chunk, const ChunkLocation& location, const ChunkContext& context) {
+  for (size_t i = 0; i < chunk.node.size(); ++i)
+    if (const char* wrong = fault(chunk, i, context))
+      location.damaged("node " + std::to_string(chunk.node[i]) + " with " + wrong, "a sound node");
 }
 
 }  // namespace voyager

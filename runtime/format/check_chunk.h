@@ -3,9 +3,17 @@
 
 namespace voyager {
 
-// The values of a decoded chunk: boxes, extents, child counts, leaves, axis
-// codes and words in the ranges that everything downstream relies on. Throws
-// Error(damaged_chunk) naming the first node that is wrong.
-void check_chunk(const Chunk& chunk, const ChunkPlace& place, const ChunkContext& context);
+// The subtrees of a chunk whose records are decoded, from a byte of child count and
+// one of grandchild count each. Fills subtrees, node, record and first_child. Throws
+// Error(damaged_chunk) naming the first record or subtree that is wrong, or where
+// they end elsewhere than at the next chunk.
+void link_subtrees(std::span<const uint8_t> child_counts,
+                   std::span<const uint8_t> grandchild_counts, const ChunkLocation& location,
+                   const ChunkContext& context, Chunk& chunk);
+
+// The Gaussians of a decoded chunk: sources, axis codes and words in the ranges that
+// everything downstream relies on. Throws Error(damaged_chunk) naming the first
+// node that is wrong.
+void check_words(const Chunk& chunk, const ChunkLocation& location, const ChunkContext& context);
 
 }  // namespace voyager

@@ -1,25 +1,37 @@
 #pragma once
-// One chunk in memory: contiguous nodes of the breadth-first order, with the
-// words of their Gaussians (compact storage: dequantised to the same words).
+// One chunk in memory: contiguous subtrees with the records of their nodes, and the
+// words of the Gaussians of the nodes that they own (compact storage: dequantised to
+// the same words). A repeated node has a record, but its Gaussian is with its owner.
 #include <cstdint>
 #include <vector>
 
-#include "runtime/lod/tree.h"
+#include "runtime/lod/subtrees.h"
 #include "runtime/math/gaussian.h"
 
 namespace voyager {
 
 struct Chunk {
-  uint32_t first_node = 0;
-  uint32_t first_child = 0;  // id of the first child of the chunk's first interior node
+  uint32_t first_subtree = 0;
+  std::vector<Subtree> subtrees;
+
+  // By subtree, then by slot.
   std::vector<NodeRecord> records;
-  std::vector<GaussianWords> words;  // scene-local means; leaf opacity is a logit, merged linear
-  std::vector<float> sh;             // coefficients * 3 a node, [k][rgb]
+
+  // Of the owned nodes, in the order of their records.
+  std::vector<uint32_t> node;
+  std::vector<uint32_t> record;       // its index in records
+  std::vector<uint32_t> first_child;  // meaningless for a leaf
+  std::vector<GaussianWords> words;   // scene-local means; leaf opacity is a logit, merged linear
+  std::vector<float> sh;              // coefficients * 3 a node, [k][rgb]
   std::vector<uint8_t> axis_code;
   std::vector<uint32_t> source_index;  // leaf: its index in the input; interior: kNoNode
   // Lossless storage: the input's own position words of leaves (world = cloud
   // origin + word), three a node; empty where they equal words.mean.
   std::vector<float> position_words;
+
+  // i counts owned nodes.
+  const NodeRecord& record_of(size_t i) const { return records[record[i]]; }
+  bool is_leaf(size_t i) const { return record_of(i).child_count == 0; }
 };
 
 }  // namespace voyager

@@ -11,61 +11,64 @@
 namespace voyager {
 namespace {
 
-void check_field(const ChunkPlace& place, const char* field, uint64_t found, uint64_t expected) {
+void check_field(const ChunkLocation& location, const char* field, uint64_t found,
+                 uint64_t expected) {
   if (found != expected)
-    place.damaged(std::string(field) + " " + std::to_string(found), std::to_string(expected));
+    location.damaged(std::string(field) + " " + std::to_string(found), std::to_string(expected));
 }
 
-bool sound_frame(const ChunkHeader& header) {
+bool sound_scales(const ChunkHeader& header) {
   // Written so that a NaN fails.
   for (int axis = 0; axis < 3; ++axis)
-    if (!(std::fabs(header.position_min[axis]) < double{kMaxCoordinate}) ||
-        !(header.position_step[axis] >= 0 && header.position_step[axis] < double{kMaxCoordinate}))
+    if (!(header.position_step[axis] >= 0 && header.position_step[axis] < double{kMaxCoordinate}))
       return false;
   for (const float scale : header.sh_scale)
     if (!(scale >= 0 && scale <= std::numeric_limits<float>::max())) return false;
   return true;
 }
 
-ChunkHeader checked_header(std::span<const std::byte> bytes, const ChunkPlace& place,
+ChunkHeader checked_header(std::span<const std::byte> bytes, const ChunkLocation& location,
                            const ChunkContext& context) {
+  const ChunkEntry& entry = location.entry;
+  const uint64_t alignment = chunk_align(context.quality);
   ChunkHeader header;
-  check_field(place, "stored length", bytes.size(),
-              align_to_chunk(std::max(bytes.size(), sizeof header)));
+  check_field(location, "stored length", bytes.size(),
+              align_up(std::max(bytes.size(), sizeof header), alignment));
   std::memcpy(&header, bytes.data(), sizeof header);
-  check_field(place, "tag", header.tag, kChunkTag);
-  check_field(place, "first node", header.first_node, place.first_node);
-  check_field(place, "node count", header.node_count, place.node_count);
-  check_field(place, "first child", header.first_child, place.first_child);
-  check_field(place, "quality", header.quality, static_cast<uint32_t>(context.quality));
-  check_field(place, "SH degree", header.sh_degree, static_cast<uint64_t>(context.sh_degree));
-  check_field(place, "reserved field", header.reserved | header.reserved2, 0);
-  check_field(place, "stored length", bytes.size(),
-              align_to_chunk(sizeof header + uint64_t{header.payload_bytes}));
+  check_field(location, "tag", header.tag, kChunkTag);
+  check_field(location, "first subtree", header.first_subtree, entry.first_subtree);
+  check_field(location, "subtree count", header.subtree_count, entry.subtree_count);
+  check_field(location, "node count", header.node_count, entry.node_count);
+  check_field(location, "record count", header.record_count, entry.record_count);
+  check_field(location, "quality", header.quality, static_cast<uint32_t>(context.quality));
+  check_field(location, "SH degree", header.sh_degree, static_cast<uint64_t>(context.sh_degree));
+  check_field(location, "stored length", bytes.size(),
+              align_up(sizeof header + uint64_t{header.payload_bytes}, alignment));
   if (context.quality == Quality::lossless)
-    check_field(place, "payload length", header.payload_bytes,
-                lossless_payload_bytes(place.node_count, context.coefficients()));
-  if (!sound_frame(header))
-    place.damaged("a position frame or SH scale out of range", "finite values");
+    check_field(location, "payload length", header.payload_bytes,
+                lossless_payload_bytes(entry, context.coefficients()));
+  if (!sound_scales(header))
+    location.damaged("a position step or SH scale out of range", "finite values");
   return header;
 }
 
 }  // namespace
 
-void ChunkPlace::damaged(const std::string& found, const std::string& expected) const {
+void ChunkLocation::damaged(const std::string& found, const std::string& expected) const {
   throw Error(ErrorCode::damaged_chunk, file + ": chunk " + std::to_string(index) + " at offset " +
-                                            std::to_string(offset) + ": found " + found +
+                                            std::to_string(entry.offset) + ": found " + found +
                                             ", expected " + expected);
 }
 
 EncodedChunk encode_chunk(const Chunk& chunk, const ChunkContext& context) {
   ChunkHeader header{};
   header.tag = kChunkTag;
-  header.first_node = chunk.first_node;
-  header.node_count = static_cast<uint32_t>(chunk.records.size());
-  header.first_child = chunk.first_child;
-  header.quality = static_cast<uint32_t>(context.quality);
-  header.sh_degree = static_cast<uint32_t>(context.sh_degree);
+  header.first_subtree = chunk.first_subtree;
+  header.subtree_count = static_cast<uint32_t>(chunk.subtrees.size());
+  header.node_count = static_cast<uint32_t>(chunk.words.size());
+  header.record_count = static_cast<uint32_t>(chunk.records.size());
+  header.quality = static_cast<uint16_t>(context.quality);
+  header.sh_degree = static_cast<uint16_t>(context.sh_degree);
   EncodedChunk out;
   out.bytes.resize(sizeof header);
   if (context.quality == Quality::compact)
@@ -74,24 +77,23 @@ EncodedChunk encode_chunk(const Chunk& chunk, const ChunkContext& context) {
     encode_lossless(chunk, out.bytes);
   header.payload_bytes = static_cast<uint32_t>(out.bytes.size() - sizeof header);
   std::memcpy(out.bytes.data(), &header, sizeof header);
-  out.bytes.resize(align_to_chunk(out.bytes.size()));
+  out.bytes.resize(align_up(out.bytes.size(), chunk_align(context.quality)));
   out.checksum = checksum(out.bytes);
   return out;
 }
 
-Chunk decode_chunk(std::span<const std::byte> bytes, uint64_t expected_checksum,
-                   const ChunkPlace& place, const ChunkContext& context) {
-  check_field(place, "checksum", checksum(bytes), expected_checksum);
-  const ChunkHeader header = checked_header(bytes, place, context);
+Chunk decode_chunk(std::span<const std::byte> bytes, const ChunkLocation& location,
+                   const ChunkContext& context) {
+  check_field(location, "checksum", checksum(bytes), location.entry.checksum);
+  const ChunkHeader header = checked_header(bytes, location, context);
   const std::span<const std::byte> payload = bytes.subspan(sizeof header, header.payload_bytes);
   Chunk chunk;
-  chunk.first_node = header.first_node;
-  chunk.first_child = header.first_child;
+  chunk.first_subtree = header.first_subtree;
   if (context.quality == Quality::compact)
-    decode_compact(payload, header, place, context, chunk);
+    decode_compact(payload, header, location, context, chunk);
   else
-    decode_lossless(payload, place.node_count, context, chunk);
-  check_chunk(chunk, place, context);
+    decode_lossless(payload, location, context, chunk);
+  check_words(chunk, location, context);
   return chunk;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "runtime/base/error.h"
 #include "runtime/math/axes.h"
@@ -39,10 +40,25 @@ struct Layout {
 };
 
 template <class T>
-void write_values(AtomicFile& file, uint64_t start, uint64_t first, const std::vector<T>& values,
+void write_values(AtomicFile& file, uint64_t start, uint64_t first, std::span<const T> values,
                   size_t values_each) {
-  file.write_at(start + first * values_each * sizeof(T), std::as_bytes(std::span(values)));
+  file.write_at(start + first * values_each * sizeof(T), std::as_bytes(values));
 }
+
+// What a chunk owns, by node id.
+struct Nodes {
+  explicit Nodes(size_t count)
+      : positions(count),
+        log_scales(count),
+        rotations(count),
+        opacities(count),
+        sh(count * kShFloats, 0.0f),
+        boxes(count) {}
+  std::vector<Vec3f> positions, log_scales;
+  std::vector<Quatf> rotations;
+  std::vector<float> opacities, sh;
+  std::vector<HierBox> boxes;
+};
 
 // Other tools interpolate component by component and know no axis codes.
 GaussianWords turned(const GaussianWords& words, int axis_code, bool leaf) {
@@ -54,39 +70,73 @@ GaussianWords turned(const GaussianWords& words, int axis_code, bool leaf) {
   return out;
 }
 
-void write_gaussians(AtomicFile& file, const Layout& layout, const Chunk& chunk) {
-  const size_t n = chunk.records.size(), floats = chunk.sh.size() / n;
-  std::vector<Vec3f> positions(n), log_scales(n);
-  std::vector<Quatf> rotations(n);
-  std::vector<float> opacities(n), sh(n * kShFloats, 0.0f);
-  for (size_t i = 0; i < n; ++i) {
-    const GaussianWords g =
-        turned(chunk.words[i], chunk.axis_code[i], chunk.records[i].child_count == 0);
-    positions[i] = g.mean;
-    log_scales[i] = g.log_scale;
-    rotations[i] = g.rotation;
-    opacities[i] = g.opacity;
-    std::copy_n(&chunk.sh[i * floats], floats, &sh[i * kShFloats]);
-  }
-  write_values(file, layout.positions, chunk.first_node, positions, 1);
-  write_values(file, layout.rotations, chunk.first_node, rotations, 1);
-  write_values(file, layout.log_scales, chunk.first_node, log_scales, 1);
-  write_values(file, layout.opacities, chunk.first_node, opacities, 1);
-  write_values(file, layout.sh, chunk.first_node, sh, kShFloats);
+// Places of the owned nodes in the chunk, by node id.
+std::vector<size_t> by_id(const Chunk& chunk) {
+  std::vector<size_t> order(chunk.node.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](size_t a, size_t b) { return chunk.node[a] < chunk.node[b]; });
+  return order;
 }
 
-void write_boxes(AtomicFile& file, const Layout& layout, const Chunk& chunk) {
-  std::vector<HierBox> boxes;
-  boxes.reserve(chunk.records.size());
-  for (const NodeRecord& r : chunk.records)
-    boxes.push_back({r.box_min, r.extent, r.box_max, r.extent});
-  write_values(file, layout.boxes, chunk.first_node, boxes, 1);
+Nodes gather(const Chunk& chunk) {
+  const size_t n = chunk.node.size(), floats = chunk.sh.size() / n;
+  const std::vector<size_t> order = by_id(chunk);
+  Nodes nodes(n);
+  for (size_t to = 0; to < n; ++to) {
+    const size_t i = order[to];
+    const GaussianWords g = turned(chunk.words[i], chunk.axis_code[i], chunk.is_leaf(i));
+    const NodeRecord& r = chunk.record_of(i);
+    nodes.positions[to] = g.mean;
+    nodes.log_scales[to] = g.log_scale;
+    nodes.rotations[to] = g.rotation;
+    nodes.opacities[to] = g.opacity;
+    std::copy_n(&chunk.sh[i * floats], floats, &nodes.sh[to * kShFloats]);
+    nodes.boxes[to] = {r.box_min, r.extent, r.box_max, r.extent};
+  }
+  return nodes;
+}
+
+// `ranges` are the ids of `nodes`.
+void write_chunk(AtomicFile& file, const Layout& layout, const std::vector<NodeRange>& ranges,
+                 const Nodes& nodes) {
+  size_t from = 0;
+  for (const NodeRange& range : ranges) {
+    const auto write = [&](uint64_t start, const auto& values, size_t values_each) {
+      write_values(file, start, range.first,
+                   std::span(values).subspan(from * values_each, range.count * values_each),
+                   values_each);
+    };
+    write(layout.positions, nodes.positions, 1);
+    write(layout.rotations, nodes.rotations, 1);
+    write(layout.log_scales, nodes.log_scales, 1);
+    write(layout.opacities, nodes.opacities, 1);
+    write(layout.sh, nodes.sh, kShFloats);
+    write(layout.boxes, nodes.boxes, 1);
+    from += range.count;
+  }
 }
 
 struct Links {
   std::vector<uint32_t> first_child, child_count;
   std::vector<int32_t> depth;  // 0 for a leaf
 };
+
+// A node that chunks after its own repeat has the same children in each.
+void check_repeats(const Chunk& chunk, uint32_t index, const Links& links,
+                   const std::string& scene) {
+  size_t record = 0;
+  for (const Subtree& subtree : chunk.subtrees)
+    for (uint32_t slot = 0; slot < subtree.node_count(); ++slot, ++record) {
+      const uint32_t node = subtree.node(slot);
+      if (chunk.records[record].child_count == links.child_count[node]) continue;
+      throw Error(ErrorCode::refused_input,
+                  scene + ": chunk " + std::to_string(index) + ": found node " +
+                      std::to_string(node) + " repeated with " +
+                      std::to_string(chunk.records[record].child_count) + " children, expected " +
+                      std::to_string(links.child_count[node]));
+    }
+}
 
 // Children come after their parent, so that one pass backwards sees them first.
 void set_depths(Links& links) {
@@ -113,7 +163,7 @@ void write_nodes(AtomicFile& file, const Layout& layout, const Links& links) {
                        children == 0 ? 0 : static_cast<int32_t>(links.first_child[n]),
                        static_cast<int32_t>(children)});
     }
-    write_values(file, layout.nodes, begin, nodes, 1);
+    write_values(file, layout.nodes, begin, std::span<const HierNode>(nodes), 1);
   }
 }
 
@@ -129,19 +179,17 @@ void export_hier(const SceneFile& scene, const std::string& path, const Progress
   file.write_at(0, std::as_bytes(std::span(&count, 1)));
   file.write_at(layout.node_count, std::as_bytes(std::span(&count, 1)));
   Links links;
-  links.first_child.reserve(count);
-  links.child_count.reserve(count);
+  links.first_child.resize(count);
+  links.child_count.resize(count);
   for (uint32_t index = 0; index < scene.chunks().size(); ++index) {
     report(progress, "exporting", index, scene.chunks().size());
     const Chunk chunk = scene.read_chunk(index);
-    write_gaussians(file, layout, chunk);
-    write_boxes(file, layout, chunk);
-    uint32_t child = chunk.first_child;
-    for (const NodeRecord& r : chunk.records) {
-      links.first_child.push_back(child);
-      links.child_count.push_back(r.child_count);
-      child += r.child_count;
+    write_chunk(file, layout, scene.nodes_of(index), gather(chunk));
+    for (size_t i = 0; i < chunk.node.size(); ++i) {
+      links.first_child[chunk.node[i]] = chunk.first_child[i];
+      links.child_count[chunk.node[i]] = chunk.record_of(i).child_count;
     }
+    check_repeats(chunk, index, links, scene.name());
   }
   set_depths(links);
   write_nodes(file, layout, links);

@@ -44,8 +44,8 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
   for (uint32_t index = 0; index < scene.chunks().size(); ++index) {
     report(progress, "exporting", index, scene.chunks().size());
     const Chunk chunk = scene.read_chunk(index);
-    for (size_t node = 0; node < chunk.records.size(); ++node) {
-      if (chunk.records[node].child_count != 0) continue;
+    for (size_t node = 0; node < chunk.node.size(); ++node) {
+      if (!chunk.is_leaf(node)) continue;
       const uint32_t i = chunk.source_index[node];
       if (there[i])
         throw Error(ErrorCode::refused_input, scene.name() + ": chunk " + std::to_string(index) +

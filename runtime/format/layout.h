@@ -5,24 +5,27 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/lod/subtree_cursor.h"
+
 namespace voyager {
 
 static_assert(std::endian::native == std::endian::little);
 
 enum class Quality : uint32_t { lossless = 1, compact = 2 };
 
-// Nodes a chunk, the last may hold fewer. Readers refuse more: it bounds the
-// memory that one chunk may ask for.
-inline constexpr uint32_t kChunkNodes = 1024;
-inline constexpr uint64_t kChunkAlign = 4096;  // bytes
+// Where chunks start. Those of a lossless file are for mapping and start on a page;
+// compact ones are a page or two long, and pages would make a file up to half as long again.
+inline constexpr uint64_t chunk_align(Quality quality) {
+  return quality == Quality::lossless ? 4096 : 64;  // bytes
+}
 
 // Line ends in both habits, so that a transfer in text mode is seen at once.
 inline constexpr unsigned char kSceneMagic[8] = {0x89, 'V', 'O', 'Y', '\r', '\n', 0x1a, '\n'};
-inline constexpr uint32_t kSceneVersion = 1;
+inline constexpr uint32_t kSceneVersion = 2;
 inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kChunkTag = 0x4b484356;  // "VCHK"
 
-enum class SectionKind : uint32_t { chunk_directory = 1 };
+enum class SectionKind : uint32_t { chunk_directory = 1, tiers = 2 };
 
 struct Section {
   uint32_t kind;
@@ -57,47 +60,46 @@ struct FileHeader {
   uint64_t repaired_opacity;
   uint64_t dropped_opacity;
   uint64_t repaired_sh;
+  uint32_t subtree_count;
+  uint32_t chunk_bytes;  // of search records, at most
+  uint32_t first_tier_levels;
   uint32_t section_count;
-  uint32_t reserved;  // 0
   Section directory;
+  Section tiers;
   uint64_t checksum;  // XXH3-64 of the header's bytes before this field
 };
-static_assert(sizeof(FileHeader) == 240 && offsetof(FileHeader, checksum) == 232);
+static_assert(sizeof(FileHeader) == 280 && offsetof(FileHeader, checksum) == 272);
 
 struct ChunkEntry {
-  uint64_t offset;  // in the file, a multiple of kChunkAlign
-  uint32_t bytes;   // stored, padding included: a multiple of kChunkAlign
-  uint32_t first_node;
-  uint32_t node_count;
-  uint32_t first_child;
+  uint64_t offset;    // in the file, a multiple of chunk_align()
   uint64_t checksum;  // XXH3-64 of the stored bytes
+  uint32_t bytes;     // stored, padding included: a multiple of chunk_align()
+  uint32_t first_subtree;
+  uint32_t subtree_count;
+  uint32_t node_count;    // that its subtrees own
+  uint32_t record_count;  // repeated ones included
+  SubtreePlace place;     // of its first subtree
+  EntryHull hull;
 };
-static_assert(sizeof(ChunkEntry) == 32);
+static_assert(sizeof(ChunkEntry) == 88);
 
 struct ChunkHeader {
   uint32_t tag;
-  uint32_t first_node;
+  uint32_t first_subtree;
+  uint32_t subtree_count;
   uint32_t node_count;
-  uint32_t first_child;
-  uint32_t quality;
-  uint32_t sh_degree;
+  uint32_t record_count;
+  uint16_t quality;
+  uint16_t sh_degree;
   uint32_t payload_bytes;  // after this header, before the padding
-  uint32_t reserved;       // 0
   // Compact storage; zeros in a lossless chunk.
-  double position_min[3];
+  float sh_scale[3];  // largest |coefficient| of bands 1, 2, 3
   double position_step[3];
-  float sh_scale[3];   // largest |coefficient| of bands 1, 2, 3
-  uint32_t reserved2;  // 0
 };
-static_assert(sizeof(ChunkHeader) == 96);
+static_assert(sizeof(ChunkHeader) == 64);
 
-inline constexpr uint64_t align_to_chunk(uint64_t bytes) {
-  return (bytes + kChunkAlign - 1) / kChunkAlign * kChunkAlign;
-}
-
-// The directory follows the header and is padded to where the first chunk starts.
-inline constexpr uint64_t chunks_start(uint64_t chunk_count) {
-  return align_to_chunk(sizeof(FileHeader) + chunk_count * sizeof(ChunkEntry));
+inline constexpr uint64_t align_up(uint64_t bytes, uint64_t alignment) {
+  return (bytes + alignment - 1) / alignment * alignment;
 }
 
 }  // namespace voyager

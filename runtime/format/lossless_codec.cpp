@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstring>
 
+#include "runtime/format/check_chunk.h"
 #include "runtime/format/planes.h"
 
 namespace voyager {
@@ -28,24 +29,52 @@ void place_leaves(const ChunkContext& context, Chunk& chunk) {
     Vec3f& mean = chunk.words[i].mean;
     const Vec3f word = mean;
     words.insert(words.end(), {word.x, word.y, word.z});
-    if (chunk.records[i].child_count == 0) mean = scene_local(word, context);
+    if (chunk.is_leaf(i)) mean = scene_local(word, context);
     for (int axis = 0; axis < 3; ++axis)
       differ |= std::bit_cast<uint32_t>(mean[axis]) != std::bit_cast<uint32_t>(word[axis]);
   }
   if (differ) chunk.position_words = std::move(words);
 }
 
+// A byte of child count and one of grandchild count a subtree, and zeros up to
+// where words can be mapped.
+size_t table_bytes(size_t subtrees) {
+  return align_up(2 * subtrees, sizeof(float));
+}
+
+void put_table(const Chunk& chunk, PlaneWriter& planes) {
+  std::vector<uint8_t> table;
+  table.reserve(table_bytes(chunk.subtrees.size()));
+  for (const Subtree& subtree : chunk.subtrees) table.push_back(subtree.child_count);
+  for (const Subtree& subtree : chunk.subtrees) table.push_back(subtree.grandchild_count);
+  table.resize(table_bytes(chunk.subtrees.size()));
+  planes.put(table.data(), table.size());
+}
+
+void take_table(PlaneReader& planes, const ChunkLocation& location, const ChunkContext& context,
+                Chunk& chunk) {
+  const size_t count = location.entry.subtree_count;
+  std::vector<uint8_t> table(table_bytes(count));
+  planes.take(table.data(), table.size());
+  for (size_t i = 2 * count; i < table.size(); ++i)
+    if (table[i] != 0) location.damaged("a subtree table with more than its counts", "zeros");
+  const std::span<const uint8_t> counts(table);
+  link_subtrees(counts.first(count), counts.subspan(count, count), location, context, chunk);
+}
+
 }  // namespace
 
-size_t lossless_payload_bytes(size_t nodes, size_t coefficients) {
-  const size_t node = sizeof(NodeRecord) + sizeof(GaussianWords) +
-                      coefficients * 3 * sizeof(float) + sizeof(uint32_t) + sizeof(uint8_t);
-  return nodes * node;
+uint64_t lossless_payload_bytes(const ChunkEntry& entry, size_t coefficients) {
+  const size_t node =
+      sizeof(GaussianWords) + coefficients * 3 * sizeof(float) + sizeof(uint32_t) + sizeof(uint8_t);
+  return entry.record_count * sizeof(NodeRecord) + table_bytes(entry.subtree_count) +
+         entry.node_count * node;
 }
 
 void encode_lossless(const Chunk& chunk, std::vector<std::byte>& out) {
   PlaneWriter planes(out);
   planes.put(chunk.records.data(), chunk.records.size());
+  put_table(chunk, planes);
   if (chunk.position_words.empty())
     for (const GaussianWords& w : chunk.words) planes.put(&w.mean, 1);
   else
@@ -58,11 +87,13 @@ void encode_lossless(const Chunk& chunk, std::vector<std::byte>& out) {
   planes.put(chunk.axis_code.data(), chunk.axis_code.size());
 }
 
-void decode_lossless(std::span<const std::byte> payload, size_t nodes, const ChunkContext& context,
-                     Chunk& chunk) {
+void decode_lossless(std::span<const std::byte> payload, const ChunkLocation& location,
+                     const ChunkContext& context, Chunk& chunk) {
+  const size_t nodes = location.entry.node_count;
   PlaneReader planes(payload);
-  chunk.records.resize(nodes);
-  planes.take(chunk.records.data(), nodes);
+  chunk.records.resize(location.entry.record_count);
+  planes.take(chunk.records.data(), chunk.records.size());
+  take_table(planes, location, context, chunk);
   chunk.words.resize(nodes);
   for (GaussianWords& w : chunk.words) planes.take(&w.mean, 1);
   for (GaussianWords& w : chunk.words) planes.take(&w.log_scale, 1);

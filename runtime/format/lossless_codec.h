@@ -4,11 +4,12 @@
 
 namespace voyager {
 
-size_t lossless_payload_bytes(size_t nodes, size_t coefficients);
+// Of a chunk with the counts of `entry`.
+uint64_t lossless_payload_bytes(const ChunkEntry& entry, size_t coefficients);
 void encode_lossless(const Chunk& chunk, std::vector<std::byte>& out);
-// payload.size() is lossless_payload_bytes(); chunk.records and the other
-// arrays are filled, values unchecked.
-void decode_lossless(std::span<const std::byte> payload, size_t nodes, const ChunkContext& context,
-                     Chunk& chunk);
+// payload.size() is lossless_payload_bytes(). Fills the chunk: subtrees are checked
+// (Error(damaged_chunk)), words are not.
+void decode_lossless(std::span<const std::byte> payload, const ChunkLocation& location,
+                     const ChunkContext& context, Chunk& chunk);
 
 }  // namespace voyager

@@ -7,22 +7,26 @@
 #include <cmath>
 #include <cstdint>
 
+#include "runtime/format/fold.h"
 #include "runtime/format/half.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager {
 
-// Position along one axis of a chunk's own frame: 24 bits over [min, max].
-inline constexpr double kPositionSteps = 16777215.0;
+// Position along an axis: folded steps from the centre of the node's box, 24 bits.
+inline constexpr double kPositionSteps = 8388607.0;
 
-// Error: step / 2, and the rounding of the result to binary32.
-inline uint32_t quantise_position(float x, double min, double step) {
+// Error within kPositionSteps of the centre: step / 2, and the rounding of the result
+// to binary32.
+inline uint32_t quantise_position(float x, double centre, double step) {
   if (step == 0) return 0;
-  return static_cast<uint32_t>(std::clamp(std::nearbyint((x - min) / step), 0.0, kPositionSteps));
+  const double steps =
+      std::clamp(std::nearbyint((x - centre) / step), -kPositionSteps, kPositionSteps);
+  return fold(static_cast<uint32_t>(static_cast<int32_t>(steps)));
 }
-inline float restore_position(uint32_t q, double min, double step) {
-  return static_cast<float>(min + q * step);
+inline float restore_position(uint32_t q, double centre, double step) {
+  return static_cast<float>(centre + static_cast<int32_t>(unfold(q)) * step);
 }
 
 // Log scale: steps of 1/512 from -21. Error 1/1024 (a factor of 1.001 in scale)

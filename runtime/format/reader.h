@@ -19,7 +19,10 @@ struct SceneFileInfo {
   uint32_t node_count;
   uint32_t leaf_count;
   uint32_t chunk_count;
-  uint32_t depth;                       // levels of the tree
+  uint32_t depth;  // levels of the tree
+  uint32_t subtree_count;
+  uint32_t chunk_bytes;  // of search records, at most
+  uint32_t first_tier_levels;
   std::array<double, 3> origin;         // of the scene (METHOD §2)
   std::array<double, 3> source_origin;  // of the input's position words
   Vec3f bounds_min, bounds_max;         // the root's box, scene-local
@@ -27,7 +30,7 @@ struct SceneFileInfo {
   ImportReport import;
 };
 
-// A .voy file. The header, section table and chunk directory are checked at
+// A .voy file. The header, the tiers and the chunk directory are checked at
 // open (magic, version, lengths, XXH3, ranges); a chunk when it is read.
 class SceneFile {
  public:
@@ -38,14 +41,11 @@ class SceneFile {
   const SceneFileInfo& info() const { return info_; }
   const std::string& name() const { return source_->name(); }
 
-  struct ChunkExtent {
-    uint64_t offset;  // in the file
-    uint32_t bytes;   // stored
-    uint32_t first_node, node_count;
-    uint32_t first_child;  // id of the first child of the chunk's first interior node
-    uint64_t checksum;
-  };
-  const std::vector<ChunkExtent>& chunks() const { return chunks_; }
+  const std::vector<ChunkEntry>& chunks() const { return chunks_; }
+  // Valid as long as the file.
+  Tiers tiers() const;
+  // The nodes that a chunk owns, ascending and disjoint; reads nothing.
+  std::vector<NodeRange> nodes_of(uint32_t index) const;
 
   // Reads, checks and decodes one chunk. Throws Error(damaged_chunk) naming
   // file, chunk, offset, found, expected. Thread-safe.
@@ -54,9 +54,12 @@ class SceneFile {
   static bool is_scene_file(std::span<const std::byte> first_bytes);
 
  private:
+  SubtreePlace place_after(uint32_t index) const;
+
   std::shared_ptr<const ByteSource> source_;
   SceneFileInfo info_{};
-  std::vector<ChunkExtent> chunks_;
+  std::vector<uint32_t> level_begin_, tier_begin_;
+  std::vector<ChunkEntry> chunks_;
 };
 
 }  // namespace voyager

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "runtime/format/fold.h"
 #include "runtime/lod/tree.h"
 
 namespace voyager {
@@ -14,14 +15,6 @@ namespace voyager {
 struct RecordWords {
   uint32_t word[8];
 };
-
-// Small differences of either sign become small numbers.
-inline uint32_t fold(uint32_t difference) {
-  return (difference << 1) ^ (difference >> 31 ? 0xffffffffu : 0u);
-}
-inline uint32_t unfold(uint32_t folded) {
-  return (folded >> 1) ^ (folded & 1 ? 0xffffffffu : 0u);
-}
 
 inline uint32_t float_bits(float value) {
   return std::bit_cast<uint32_t>(value);

@@ -8,8 +8,9 @@
 
 namespace voyager {
 
-// The file appears whole or not at all (AtomicFile). Throws Error(io).
-void write_scene_file(const BakedScene& baked, const std::string& path, Quality quality,
-                      Workers& workers, const Progress& progress = {});
+// `partition` is of the scene's tree. The file appears whole or not at all
+// (AtomicFile). Throws Error(io).
+void write_scene_file(const BakedScene& baked, const Partition& partition, const std::string& path,
+                      Quality quality, Workers& workers, const Progress& progress = {});
 
 }  // namespace voyager

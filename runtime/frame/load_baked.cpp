@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
+#include <limits>
 
 #include "runtime/base/error.h"
 #include "runtime/frame/load.h"
@@ -37,60 +40,157 @@ void make_room(const SceneFileInfo& info, Scene& scene) {
   scene.leaves.resize(info.leaf_count, kNoNode);
 }
 
+// All of the partition but the subtrees, which are in the chunks.
+void set_partition(const SceneFile& file, Scene& scene) {
+  Partition& partition = scene.partition;
+  const Tiers tiers = file.tiers();
+  partition.first_tier_levels = tiers.first_tier_levels;
+  partition.chunk_bytes = file.info().chunk_bytes;
+  partition.level_begin.assign(tiers.level_begin.begin(), tiers.level_begin.end());
+  partition.tier_begin.assign(tiers.tier_begin.begin(), tiers.tier_begin.end());
+  partition.subtrees.assign(file.info().subtree_count, kLostSubtree);
+  if (file.chunks().empty()) return;
+  for (const ChunkEntry& entry : file.chunks()) {
+    partition.chunk_begin.push_back(entry.first_subtree);
+    partition.chunk_hull.push_back(entry.hull);
+  }
+  partition.chunk_begin.push_back(file.info().subtree_count);
+}
+
 // False if another node has claimed the same place in the input.
 bool place_leaf(Scene& scene, uint32_t source_index, uint32_t node) {
   return std::atomic_ref<uint32_t>(scene.leaves[source_index])
              .exchange(node, std::memory_order_relaxed) == kNoNode;
 }
 
-// Chunks write apart from each other: a node has one chunk, and one parent.
-bool store_chunk(const Chunk& chunk, Scene& scene) {
-  bool leaves_once = true;
-  uint32_t child = chunk.first_child;
-  for (size_t i = 0; i < chunk.records.size(); ++i) {
-    const auto node = static_cast<uint32_t>(chunk.first_node + i);
-    const uint32_t children = chunk.records[i].child_count;
-    scene.tree.records[node] = chunk.records[i];
-    scene.axis_code[node] = chunk.axis_code[i];
-    set_gaussian(scene, node, chunk.words[i], children == 0);
-    if (children == 0) leaves_once &= place_leaf(scene, chunk.source_index[i], node);
-    if (children == 0) continue;
-    scene.tree.first_child[node] = child;
-    std::fill_n(scene.tree.parent.begin() + child, children, node);
-    child += children;
+// What loading leaves to check when all chunks are there.
+struct ChunkFindings {
+  std::string damage;
+  std::vector<std::pair<uint32_t, NodeRecord>> repeated;  // node ids with their records
+};
+
+// The parents of the nodes that a subtree owns.
+void store_parents(const Subtree& subtree, const NodeRecord* records, Scene& scene) {
+  auto& parent = scene.tree.parent;
+  for (uint32_t i = subtree.repeats_child ? 1 : 0; i < subtree.child_count; ++i)
+    parent[subtree.first_child + i] = subtree.root;
+  uint32_t grandchild = subtree.first_grandchild, left = subtree.grandchild_count;
+  for (uint32_t i = 0; i < subtree.child_count && left != 0; ++i) {
+    // An only child may be one of several runs.
+    const uint32_t own =
+        subtree.child_count == 1 ? left : std::min(left, records[1 + i].child_count);
+    std::fill_n(parent.begin() + grandchild, own, subtree.first_child + i);
+    grandchild += own;
+    left -= own;
   }
-  std::copy(chunk.sh.begin(), chunk.sh.end(),
-            scene.sh.begin() +
-                static_cast<std::ptrdiff_t>(size_t{chunk.first_node} *
-                                            static_cast<size_t>(scene.coefficients()) * 3));
-  return leaves_once;
 }
 
-// A Gaussian that draws nothing, should anything draw it.
-void store_damaged(const SceneFile::ChunkExtent& extent, Scene& scene) {
-  for (uint32_t i = 0; i < extent.node_count; ++i)
-    set_gaussian(scene, extent.first_node + i, {{0, 0, 0}, {0, 0, 0}, {1, 0, 0, 0}, 0.0f}, false);
+// Whether a slot is of the last level of its tier: its children are roots.
+bool is_bottom(const Subtree& subtree, uint32_t slot, uint32_t tier_levels) {
+  const uint32_t level = slot == 0 ? 0 : slot <= subtree.child_count ? 1 : 2;
+  return level + 1 == tier_levels;
 }
 
-void read_chunks(const SceneFile& file, Workers& workers, Scene& scene) {
-  std::vector<std::string> damage(file.chunks().size());
+// Chunks write apart from each other: a node is owned by one chunk, and its parent
+// is set by that chunk or, for a root, by the one that owns the parent.
+void store_subtrees(const Chunk& chunk, Scene& scene, ChunkFindings& findings) {
+  size_t record = 0, owned = 0;
+  for (size_t i = 0; i < chunk.subtrees.size(); ++i) {
+    const Subtree& subtree = chunk.subtrees[i];
+    scene.partition.subtrees[chunk.first_subtree + i] = subtree;
+    store_parents(subtree, chunk.records.data() + record, scene);
+    const uint32_t levels = subtree.root == 0 ? scene.partition.first_tier_levels : kTierLevels;
+    for (uint32_t slot = 0; slot < subtree.node_count(); ++slot, ++record) {
+      if (subtree.repeats(slot)) {
+        findings.repeated.emplace_back(subtree.node(slot), chunk.records[record]);
+        continue;
+      }
+      const uint32_t children = chunk.records[record].child_count;
+      const uint32_t first_child = chunk.first_child[owned++];
+      if (children != 0 && is_bottom(subtree, slot, levels))
+        std::fill_n(scene.tree.parent.begin() + first_child, children, subtree.node(slot));
+    }
+  }
+}
+
+void store_nodes(const Chunk& chunk, Scene& scene) {
+  const size_t floats = static_cast<size_t>(scene.coefficients()) * 3;
+  for (size_t i = 0; i < chunk.node.size(); ++i) {
+    const uint32_t node = chunk.node[i];
+    scene.tree.records[node] = chunk.record_of(i);
+    scene.axis_code[node] = chunk.axis_code[i];
+    set_gaussian(scene, node, chunk.words[i], chunk.is_leaf(i));
+    if (!chunk.is_leaf(i)) scene.tree.first_child[node] = chunk.first_child[i];
+    std::copy_n(chunk.sh.data() + i * floats, floats, scene.sh.data() + node * floats);
+  }
+}
+
+bool store_leaves(const Chunk& chunk, Scene& scene) {
+  bool once = true;
+  for (size_t i = 0; i < chunk.node.size(); ++i)
+    if (chunk.is_leaf(i)) once &= place_leaf(scene, chunk.source_index[i], chunk.node[i]);
+  return once;
+}
+
+// Gaussians that draw nothing, should anything draw them.
+void store_damaged(const std::vector<NodeRange>& ranges, Scene& scene) {
+  for (const NodeRange& range : ranges)
+    for (uint32_t i = 0; i < range.count; ++i)
+      set_gaussian(scene, range.first + i, {{0, 0, 0}, {0, 0, 0}, {1, 0, 0, 0}, 0.0f}, false);
+}
+
+void report_damage(const SceneFile& file, const std::vector<ChunkFindings>& findings,
+                   Scene& scene) {
+  for (uint32_t index = 0; index < findings.size(); ++index) {
+    const std::string& damage = findings[index].damage;
+    if (damage.empty()) continue;
+    const ChunkEntry& entry = file.chunks()[index];
+    const uint32_t first_root = entry.place.next[0] - (entry.place.listed_children != 0 ? 1 : 0);
+    scene.damaged_chunks.push_back(
+        {index, entry.first_subtree, entry.subtree_count, first_root, damage});
+    for (const NodeRange& range : file.nodes_of(index))
+      scene.damaged.push_back({range.first, range.count, damage});
+    scene.notes.push_back(
+        {SceneNote::Kind::damaged, entry.node_count, entry.bytes, "nodes of a chunk", damage});
+  }
+  std::sort(scene.damaged.begin(), scene.damaged.end(),
+            [](const DamagedNodes& a, const DamagedNodes& b) { return a.first < b.first; });
+}
+
+std::vector<ChunkFindings> read_chunks(const SceneFile& file, Workers& workers, Scene& scene) {
+  std::vector<ChunkFindings> findings(file.chunks().size());
   std::atomic<bool> leaves_once{true};
-  workers.for_blocks(file.chunks().size(), 1, [&](size_t index, size_t) {
-    try {
-      if (!store_chunk(file.read_chunk(static_cast<uint32_t>(index)), scene)) leaves_once = false;
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::damaged_chunk) throw;
-      damage[index] = error.what();
-      store_damaged(file.chunks()[index], scene);
+  workers.for_blocks(findings.size(), 8, [&](size_t begin, size_t end) {
+    for (size_t index = begin; index < end; ++index) {
+      try {
+        const Chunk chunk = file.read_chunk(static_cast<uint32_t>(index));
+        store_nodes(chunk, scene);
+        store_subtrees(chunk, scene, findings[index]);
+        if (!store_leaves(chunk, scene)) leaves_once = false;
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::damaged_chunk) throw;
+        findings[index].damage = error.what();
+        store_damaged(file.nodes_of(static_cast<uint32_t>(index)), scene);
+      }
     }
   });
   if (!leaves_once) refuse(scene, "two leaves with one source index", "each once");
-  for (size_t index = 0; index < damage.size(); ++index) {
-    if (damage[index].empty()) continue;
-    const SceneFile::ChunkExtent& extent = file.chunks()[index];
-    scene.damaged.push_back({extent.first_node, extent.node_count, damage[index]});
-    scene.notes.push_back({SceneNote::Kind::damaged, extent.node_count, extent.bytes,
-                           "nodes of a chunk", damage[index]});
+  report_damage(file, findings, scene);
+  return findings;
+}
+
+// A lost chunk may hold children of a node that another owns: a search must find that
+// it needs them. A parent that is named already is never named anew, so that ranges
+// which overlap, as an unsound file may claim, cost no more than sound ones.
+void name_parents_of_lost_nodes(Scene& scene) {
+  if (scene.damaged.empty()) return;
+  LodTree& tree = scene.tree;
+  for (uint32_t node = 0; node < tree.size(); ++node) {
+    const uint32_t first = tree.first_child[node], count = tree.records[node].child_count;
+    for (uint32_t child = first; child - first < count; ++child) {
+      if (tree.parent[child] == kNoNode) tree.parent[child] = node;
+      if (tree.parent[child] != node) break;
+    }
   }
 }
 
@@ -119,7 +219,7 @@ void check_nesting(const Scene& scene, Workers& workers) {
       const uint32_t parent = tree.parent[n];
       if (parent == kNoNode || inside(tree.records[n], tree.records[parent])) continue;
       const auto node = static_cast<uint32_t>(n);
-      if (is_damaged(scene, node)) continue;
+      if (is_damaged(scene, node) || is_damaged(scene, parent)) continue;
       uint32_t least = first_wrong.load();
       while (node < least && !first_wrong.compare_exchange_weak(least, node)) {
       }
@@ -133,13 +233,43 @@ void check_nesting(const Scene& scene, Workers& workers) {
            "nested boxes, extents that never grow downwards");
 }
 
-// The last node of a breadth-first order is one of the deepest.
-uint32_t depth_of(const LodTree& tree) {
-  uint32_t depth = 0;
-  for (uint32_t node = static_cast<uint32_t>(tree.size()) - 1; node != kNoNode;
-       node = tree.parent[node])
-    ++depth;
-  return depth;
+// To the bit.
+bool same(const NodeRecord& a, const NodeRecord& b) {
+  using Words = std::array<uint32_t, sizeof(NodeRecord) / sizeof(uint32_t)>;
+  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
+}
+
+// A repeated record is compared in its owner's stead.
+void check_repeats(const Scene& scene, const std::vector<ChunkFindings>& findings) {
+  for (size_t index = 0; index < findings.size(); ++index)
+    for (const auto& [node, record] : findings[index].repeated)
+      if (!same(record, scene.tree.records[node]) && !is_damaged(scene, node))
+        refuse(scene,
+               "chunk " + std::to_string(index) + " repeating node " + std::to_string(node) +
+                   " with another record",
+               "the node's own");
+}
+
+bool covers(const EntryHull& hull, const LodTree& tree, uint32_t parent) {
+  if (parent == kNoNode) return hull.extent == std::numeric_limits<float>::infinity();
+  return inside(tree.records[parent], {hull.box_min, hull.extent, hull.box_max, 0});
+}
+
+// A hull that is too small would let a search skip nodes of the cut.
+void check_hulls(const Scene& scene) {
+  const Partition& partition = scene.partition;
+  for (size_t chunk = 0; chunk < partition.chunk_count(); ++chunk)
+    for (uint32_t i = partition.chunk_begin[chunk]; i < partition.chunk_begin[chunk + 1]; ++i) {
+      const Subtree& subtree = partition.subtrees[i];
+      if (subtree.root == kNoNode) continue;
+      const uint32_t node = subtree.first_owned(), parent = scene.tree.parent[node];
+      if (covers(partition.chunk_hull[chunk], scene.tree, parent)) continue;
+      if (node != 0 && (parent == kNoNode || is_damaged(scene, parent))) continue;
+      refuse(scene,
+             "an entry hull of chunk " + std::to_string(chunk) + " without the parent of node " +
+                 std::to_string(node),
+             "a hull over the entry parents");
+    }
 }
 
 // What only the whole file can show.
@@ -151,10 +281,6 @@ void check_totals(const Scene& scene) {
                                           [](const NodeRecord& r) { return r.child_count == 0; }));
   if (leaves != scene.leaf_count)
     refuse(scene, std::to_string(leaves) + " leaves", std::to_string(scene.leaf_count));
-  const uint32_t depth = depth_of(scene.tree);
-  if (depth != scene.tree_depth)
-    refuse(scene, "a tree of " + std::to_string(depth) + " levels",
-           std::to_string(scene.tree_depth));
   const NodeRecord& root = scene.tree.records[0];
   for (int axis = 0; axis < 3; ++axis)
     if (root.box_min[axis] != scene.bounds_min[axis] ||
@@ -162,14 +288,27 @@ void check_totals(const Scene& scene) {
       refuse(scene, "bounds that are not the root's box", "the same");
 }
 
+void add_search(Scene& scene, Workers& workers) {
+  std::vector<SubtreeRange> missing;
+  for (const DamagedChunk& d : scene.damaged_chunks)
+    missing.push_back({d.first_subtree, d.first_subtree + d.subtree_count, d.first_root});
+  scene.search = make_search_tree(scene.tree, scene.partition, missing, workers,
+                                  scene.tree.records.get_allocator().resource());
+}
+
 }  // namespace
 
 void load_baked(const SceneFile& file, Workers& workers, Scene& scene) {
   set_info(file.info(), scene);
   make_room(file.info(), scene);
-  read_chunks(file, workers, scene);
+  set_partition(file, scene);
+  const std::vector<ChunkFindings> findings = read_chunks(file, workers, scene);
+  name_parents_of_lost_nodes(scene);
+  check_repeats(scene, findings);
   check_nesting(scene, workers);
+  check_hulls(scene);
   if (scene.damaged.empty() && scene.tree.size() != 0) check_totals(scene);
+  add_search(scene, workers);
   add_notes(scene);
 }
 

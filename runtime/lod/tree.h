@@ -9,10 +9,10 @@
 //   - a leaf has no children, and its box covers mean ± 3·max(s), both ends
 //     computed in binary32 from the activated Gaussian;
 //   - a node's box contains its children's boxes;
-//   - extent is finite, ≥ 0, and never grows from parent to child (box nesting
+//   - extent is ≥ 0, may be +inf, and never grows from parent to child (box nesting
 //     and this make size(child) ≤ size(parent) in binary32);
 //     the compatible choice, used by build.h: the box's longest side, 0 for a leaf;
-//   - everything is binary32 in scene-local metres and finite, below 1e18.
+//   - everything is binary32 in scene-local metres; coordinates are finite, below 1e18.
 #include <cstdint>
 #include <memory_resource>
 #include <vector>

@@ -39,8 +39,7 @@ void check_record(const LodTree& tree, size_t n, Findings& findings) {
   else if (!at_most(r.box_min, r.box_max))
     findings.add(name_of(n, "box"), text(r.box_min) + " to " + text(r.box_max),
                  "a least corner at most the other");
-  if (!(r.extent >= 0.0f && r.extent < INFINITY))
-    findings.add(name_of(n, "extent"), text(r.extent), "a finite value of at least 0");
+  if (!(r.extent >= 0.0f)) findings.add(name_of(n, "extent"), text(r.extent), "at least 0");
 }
 
 void check_child(const LodTree& tree, size_t n, size_t child, Findings& findings) {

@@ -32,7 +32,9 @@ inline std::shared_ptr<const Scene> baked_scene(const GaussianCloud& cloud,
                                                 Quality quality = Quality::lossless) {
   Workers workers;
   const TempFolder folder;
-  write_scene_file(build_tree(cloud, workers), folder.file("scene.voy"), quality, workers);
+  const BakedScene baked = build_tree(cloud, workers);
+  write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), folder.file("scene.voy"),
+                   quality, workers);
   return load_scene(open_file_source(folder.file("scene.voy")), std::pmr::get_default_resource(),
                     workers);
 }

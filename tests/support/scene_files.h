@@ -8,11 +8,10 @@
 #include "runtime/format/reader.h"
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
+#include "tests/support/sealed.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
-
-using Bytes = std::vector<std::byte>;
 
 inline Bytes file_bytes(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -27,10 +26,12 @@ inline BakedScene bake(const GaussianCloud& cloud) {
   return build_tree(cloud, workers);
 }
 
-inline Bytes scene_bytes(const BakedScene& baked, Quality quality, unsigned threads = 0) {
+inline Bytes scene_bytes(const BakedScene& baked, Quality quality, unsigned threads = 0,
+                         uint32_t chunk_bytes = kDefaultChunkBytes) {
   const TempFolder folder;
   Workers workers(threads);
-  write_scene_file(baked, folder.file("scene.voy"), quality, workers);
+  write_scene_file(baked, partition_tree(baked.tree, chunk_bytes), folder.file("scene.voy"),
+                   quality, workers);
   return file_bytes(folder.file("scene.voy"));
 }
 
@@ -56,6 +57,30 @@ class FlippedSource final : public ByteSource {
   uint64_t at_;
   std::byte flip_;
 };
+
+// Random Gaussians over a tree: what the format needs of a scene, not what merging makes.
+inline BakedScene baked_of(LodTree tree) {
+  BakedScene baked;
+  std::vector<uint32_t> leaves;
+  const auto nodes = static_cast<uint32_t>(tree.size());
+  uint32_t merged = 0;
+  for (uint32_t n = 0; n < nodes; ++n) {
+    if (tree.is_leaf(n)) leaves.push_back(n);
+    baked.gaussian.push_back(tree.is_leaf(n) ? static_cast<uint32_t>(leaves.size()) - 1 : merged++);
+  }
+  baked.leaves = random_cloud(leaves.size(), 1, 0);
+  baked.merged = random_cloud(merged, 2, 0);
+  for (float& opacity : baked.merged.opacity) opacity = std::fabs(opacity);
+  baked.axis_code.resize(nodes);
+  baked.tree = std::move(tree);
+  return baked;
+}
+
+inline bool holds(const std::vector<NodeRange>& ranges, uint32_t node) {
+  for (const NodeRange& range : ranges)
+    if (node >= range.first && node - range.first < range.count) return true;
+  return false;
+}
 
 // The code of the Error that `action` throws; a failure if it throws none.
 template <class Action>

@@ -1,9 +1,13 @@
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "runtime/base/checksum.h"
 #include "runtime/frame/scene.h"
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/import/importer.h"
+#include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
 namespace voyager {
@@ -84,26 +88,183 @@ TEST(LoadScene, ADamagedChunkIsReportedAndTheRestIsThere) {
   const Bytes bytes = test::scene_bytes(baked, Quality::lossless);
   const SceneFile file(test::source_of(bytes));
   ASSERT_GE(file.chunks().size(), 3u);
-  const SceneFile::ChunkExtent& bad = file.chunks()[1];
+  const ChunkEntry& bad = file.chunks()[1];
   const auto scene =
       load(std::make_shared<test::FlippedSource>(bytes, bad.offset + 200, std::byte{1}));
-  ASSERT_EQ(scene->damaged.size(), 1u);
-  EXPECT_EQ(scene->damaged[0].first, bad.first_node);
-  EXPECT_EQ(scene->damaged[0].count, bad.node_count);
-  EXPECT_NE(scene->damaged[0].message.find("chunk 1"), std::string::npos);
-  const auto in_bad = [&](uint32_t n) {
-    return n >= bad.first_node && n - bad.first_node < bad.node_count;
-  };
+  ASSERT_EQ(scene->damaged_chunks.size(), 1u);
+  EXPECT_EQ(scene->damaged_chunks[0].chunk, 1u);
+  EXPECT_NE(scene->damaged_chunks[0].message.find("chunk 1"), std::string::npos);
+  const std::vector<NodeRange> lost = file.nodes_of(1);
+  ASSERT_EQ(scene->damaged.size(), lost.size());
+  for (size_t i = 0; i < lost.size(); ++i) {
+    EXPECT_EQ(scene->damaged[i].first, lost[i].first);
+    EXPECT_EQ(scene->damaged[i].count, lost[i].count);
+    EXPECT_EQ(scene->damaged[i].message, scene->damaged_chunks[0].message);
+  }
   for (uint32_t n = 0; n < baked.tree.size(); ++n) {
     const uint32_t parent = baked.tree.parent[n];
-    ASSERT_EQ(scene->tree.parent[n], parent == kNoNode || in_bad(parent) ? kNoNode : parent);
-    if (in_bad(n)) {
+    const uint32_t found = scene->tree.parent[n];
+    ASSERT_TRUE(found == parent || (found == kNoNode && test::holds(lost, parent))) << n;
+    if (test::holds(lost, n)) {
       ASSERT_EQ(scene->gaussians[n].opacity, 0.0f);
       ASSERT_EQ(scene->tree.records[n].child_count, 0u);
     }
     if (baked.tree.is_leaf(n)) {
-      ASSERT_EQ(scene->leaves[baked.gaussian[n]], in_bad(n) ? kNoNode : n);
+      ASSERT_EQ(scene->leaves[baked.gaussian[n]], test::holds(lost, n) ? kNoNode : n);
     }
+  }
+}
+
+void expect_same_partition(const Partition& a, const Partition& b) {
+  EXPECT_EQ(a.first_tier_levels, b.first_tier_levels);
+  EXPECT_EQ(a.chunk_bytes, b.chunk_bytes);
+  EXPECT_EQ(a.level_begin, b.level_begin);
+  EXPECT_EQ(a.tier_begin, b.tier_begin);
+  EXPECT_EQ(a.chunk_begin, b.chunk_begin);
+  ASSERT_EQ(a.chunk_hull.size(), b.chunk_hull.size());
+  EXPECT_TRUE(a.chunk_hull.empty() || std::memcmp(a.chunk_hull.data(), b.chunk_hull.data(),
+                                                  a.chunk_hull.size() * sizeof(EntryHull)) == 0);
+  ASSERT_EQ(a.subtrees.size(), b.subtrees.size());
+  EXPECT_TRUE(a.subtrees == b.subtrees);
+}
+
+TEST(LoadScene, ThePartitionAndTheTreeComeBackForTreesOfEveryShape) {
+  for (const test::TreeShape shape : test::kTreeShapes)
+    for (const test::Extents extents : {test::Extents::longest_side, test::Extents::any}) {
+      const BakedScene baked = test::baked_of(test::random_tree(shape, 4000, 8, extents));
+      for (const uint32_t chunk_bytes : {kMinChunkBytes, kDefaultChunkBytes, 65536u}) {
+        const Partition partition = partition_tree(baked.tree, chunk_bytes);
+        for (const Quality quality : {Quality::lossless, Quality::compact}) {
+          const auto scene = load(test::scene_bytes(baked, quality, 0, chunk_bytes));
+          expect_same_partition(scene->partition, partition);
+          EXPECT_EQ(scene->tree.parent, baked.tree.parent) << test::name_of(shape);
+          ASSERT_EQ(std::memcmp(scene->tree.records.data(), baked.tree.records.data(),
+                                baked.tree.size() * sizeof(NodeRecord)),
+                    0);
+        }
+      }
+    }
+}
+
+// Whatever chunk is lost, the subtrees of all others keep their indices, and what is
+// lost is told.
+TEST(LoadScene, EachChunkOfTreesOfEveryShapeCanBeLost) {
+  for (const test::TreeShape shape : test::kTreeShapes) {
+    const BakedScene baked = test::baked_of(test::random_tree(shape, 600, 9));
+    const Partition partition = partition_tree(baked.tree, kMinChunkBytes);
+    const Bytes bytes = test::scene_bytes(baked, Quality::lossless, 0, kMinChunkBytes);
+    const SceneFile file(test::source_of(bytes));
+    for (uint32_t index = 0; index < file.chunks().size(); ++index) {
+      const ChunkEntry& entry = file.chunks()[index];
+      const auto scene =
+          load(std::make_shared<test::FlippedSource>(bytes, entry.offset + 70, std::byte{2}));
+      ASSERT_EQ(scene->damaged_chunks.size(), 1u);
+      const DamagedChunk& lost = scene->damaged_chunks[0];
+      ASSERT_EQ(lost.first_root, partition.subtrees[lost.first_subtree].root);
+      std::vector<bool> gone(baked.tree.size());
+      for (uint32_t i = 0; i < partition.subtrees.size(); ++i) {
+        const Subtree& subtree = partition.subtrees[i];
+        const bool in_lost = i >= lost.first_subtree && i - lost.first_subtree < lost.subtree_count;
+        ASSERT_TRUE(scene->partition.subtrees[i] == (in_lost ? kLostSubtree : subtree));
+        for (uint32_t slot = 0; slot < subtree.node_count(); ++slot)
+          if (in_lost && !subtree.repeats(slot)) gone[subtree.node(slot)] = true;
+      }
+      for (uint32_t n = 1; n < baked.tree.size(); ++n) {
+        const uint32_t found = scene->tree.parent[n], parent = baked.tree.parent[n];
+        ASSERT_TRUE(found == parent || (found == kNoNode && gone[parent]));
+      }
+      for (size_t i = 0; i < scene->damaged.size(); ++i) {
+        const DamagedNodes& d = scene->damaged[i];
+        ASSERT_GT(d.count, 0u);
+        ASSERT_TRUE(i == 0 || d.first >= scene->damaged[i - 1].first + scene->damaged[i - 1].count);
+        for (uint32_t n = d.first; n < d.first + d.count; ++n) {
+          ASSERT_TRUE(gone[n]);
+          gone[n] = false;
+        }
+      }
+      ASSERT_EQ(std::count(gone.begin(), gone.end(), true), 0);
+    }
+  }
+}
+
+// Every word of the levels, the tiers and the directory changed under right
+// checksums: refused, or a chunk is found damaged. Hulls apart: they may be larger.
+TEST(LoadScene, ADirectoryThatIsNotOfTheTreeIsFound) {
+  const Bytes sound = test::scene_bytes(
+      test::baked_of(test::random_tree(test::TreeShape::mixture, 700, 7)), Quality::lossless);
+  FileHeader header;
+  std::memcpy(&header, sound.data(), sizeof header);
+  EXPECT_TRUE(load(test::sealed(sound))->damaged_chunks.empty());
+  const auto expect_found = [&](uint64_t at, uint32_t change) {
+    Bytes bytes = sound;
+    uint32_t word = 0;
+    std::memcpy(&word, bytes.data() + at, sizeof word);
+    word += change;
+    std::memcpy(bytes.data() + at, &word, sizeof word);
+    try {
+      EXPECT_FALSE(load(test::sealed(bytes))->damaged_chunks.empty())
+          << "word at " << at << " + " << change;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::refused_input);
+    }
+  };
+  for (uint64_t at = header.tiers.offset; at < header.directory.offset; at += 4)
+    for (const uint32_t change : {1u, 0xffffffffu, 0x80000000u}) expect_found(at, change);
+  for (uint32_t chunk = 0; chunk < header.chunk_count; ++chunk)
+    for (uint64_t word = 0; word < offsetof(ChunkEntry, hull); word += 4) {
+      if (word / 8 == offsetof(ChunkEntry, checksum) / 8) continue;
+      for (const uint32_t change : {1u, 0xffffffffu, 0x40000000u})
+        expect_found(header.directory.offset + chunk * sizeof(ChunkEntry) + word, change);
+    }
+}
+
+template <class Edit>
+Bytes edited_entry(Bytes bytes, uint32_t chunk, const Edit& edit) {
+  FileHeader header;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  ChunkEntry entry;
+  const uint64_t at = header.directory.offset + chunk * sizeof entry;
+  std::memcpy(&entry, bytes.data() + at, sizeof entry);
+  edit(entry);
+  std::memcpy(bytes.data() + at, &entry, sizeof entry);
+  return test::sealed(bytes);
+}
+
+TEST(LoadScene, AnEntryHullThatLeavesOutAParentIsRefused) {
+  const Bytes sound =
+      test::scene_bytes(test::bake(test::random_cloud(3000, 12, 0)), Quality::lossless);
+  const std::vector<std::function<void(ChunkEntry&)>> faults = {
+      [](ChunkEntry& e) { e.hull.extent = std::nextafter(e.hull.extent, 0.0f); },
+      [](ChunkEntry& e) { e.hull.box_min.x = std::nextafter(e.hull.box_min.x, 1e9f); },
+      [](ChunkEntry& e) { e.hull.box_max.z = std::nextafter(e.hull.box_max.z, -1e9f); },
+      [](ChunkEntry& e) { e.hull.extent = std::nanf(""); },
+      [](ChunkEntry& e) { e.hull.box_min.y = -2e18f; },
+  };
+  for (const uint32_t chunk : {3u, 20u})
+    for (const auto& fault : faults)
+      EXPECT_EQ(test::error_code([&] { load(edited_entry(sound, chunk, fault)); }),
+                ErrorCode::refused_input);
+  // Nothing is above the tree's root: its chunk is always entered.
+  EXPECT_EQ(test::error_code([&] { load(edited_entry(sound, 0, faults[0])); }),
+            ErrorCode::refused_input);
+  const auto larger = [](ChunkEntry& e) {
+    e.hull.extent *= 2;
+    e.hull.box_max.x += 1;
+  };
+  EXPECT_NO_THROW(load(edited_entry(sound, 3, larger)));
+}
+
+// A star's chunks repeat its root.
+TEST(LoadScene, ARepeatedRecordThatIsNotItsOwnersIsRefused) {
+  const BakedScene baked = test::baked_of(test::random_tree(test::TreeShape::star, 500, 10));
+  const Bytes sound = test::scene_bytes(baked, Quality::lossless);
+  const SceneFile file(test::source_of(sound));
+  ASSERT_GE(file.chunks().size(), 3u);
+  const uint64_t record = file.chunks()[1].offset + sizeof(ChunkHeader);
+  for (const uint64_t word : {0u, 3u, 6u, 7u}) {
+    Bytes bytes = sound;
+    bytes[record + 4 * word] ^= std::byte{1};
+    EXPECT_EQ(test::error_code([&] { load(test::sealed(bytes)); }), ErrorCode::refused_input);
   }
 }
 

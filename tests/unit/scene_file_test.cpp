@@ -1,5 +1,6 @@
 #include <cstring>
 
+#include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
 namespace voyager {
@@ -11,12 +12,12 @@ bool same_bits(const void* a, const void* b, size_t bytes) {
   return std::memcmp(a, b, bytes) == 0;
 }
 
-// Calls visit(chunk, index in the chunk, node id) for every node of the file.
+// Calls visit(chunk, place among the chunk's owned nodes, node id) for every node of the file.
 template <class Visit>
 void for_nodes(const SceneFile& file, const Visit& visit) {
   for (uint32_t index = 0; index < file.chunks().size(); ++index) {
     const Chunk chunk = file.read_chunk(index);
-    for (uint32_t i = 0; i < chunk.records.size(); ++i) visit(chunk, i, chunk.first_node + i);
+    for (uint32_t i = 0; i < chunk.node.size(); ++i) visit(chunk, i, chunk.node[i]);
   }
 }
 
@@ -34,7 +35,7 @@ TEST(SceneFile, LosslessGivesBackEveryWord) {
       const GaussianCloud& cloud = leaf ? baked.leaves : baked.merged;
       const GaussianWords words = cloud.words(baked.gaussian[node]);
       ASSERT_TRUE(same_bits(&chunk.words[i], &words, sizeof words)) << node;
-      ASSERT_TRUE(same_bits(&chunk.records[i], &baked.tree.records[node], sizeof(NodeRecord)));
+      ASSERT_TRUE(same_bits(&chunk.record_of(i), &baked.tree.records[node], sizeof(NodeRecord)));
       ASSERT_TRUE(same_bits(&chunk.sh[i * floats], &cloud.sh[baked.gaussian[node] * floats],
                             floats * sizeof(float)));
       ASSERT_EQ(chunk.axis_code[i], baked.axis_code[node]);
@@ -67,7 +68,7 @@ TEST(SceneFile, CutsAreTheSameInBothQualities) {
   const SceneFile file(test::source_of(bytes));
   EXPECT_TRUE(same_bits(&file.info().bounds_min, &baked.tree.records[0].box_min, sizeof(Vec3f)));
   for_nodes(file, [&](const Chunk& chunk, size_t i, uint32_t node) {
-    ASSERT_TRUE(same_bits(&chunk.records[i], &baked.tree.records[node], sizeof(NodeRecord)));
+    ASSERT_TRUE(same_bits(&chunk.record_of(i), &baked.tree.records[node], sizeof(NodeRecord)));
   });
 }
 
@@ -161,6 +162,54 @@ TEST(SceneFile, RefusalsNameFilePlaceFoundAndExpected) {
     const std::string message = error.what();
     for (const char* part : {"flipped.voy", "chunk 0", "offset 4096", "found checksum", "expected"})
       EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
+
+TEST(SceneFile, AnotherVersionIsRefusedAndSaysToBakeAgain) {
+  Bytes bytes = test::scene_bytes(test::bake(test::random_cloud(10, 5)), Quality::lossless);
+  const uint32_t version = 1;
+  std::memcpy(bytes.data() + offsetof(FileHeader, version), &version, sizeof version);
+  try {
+    const SceneFile file(test::source_of(bytes));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::refused_input);
+    const std::string message = error.what();
+    for (const char* part : {"test.voy", "offset 8", "version 1", "2: bake the scene again"})
+      EXPECT_NE(message.find(part), std::string::npos) << message;
+  }
+}
+
+// Subtrees, nodes and bytes of every chunk of trees of every shape, against the tree.
+TEST(SceneFile, ChunksAreRunsOfSubtreesWithinTheirBytes) {
+  for (const test::TreeShape shape : test::kTreeShapes) {
+    const BakedScene baked = test::baked_of(test::random_tree(shape, 3000, 6));
+    for (const uint32_t chunk_bytes : {kMinChunkBytes, kDefaultChunkBytes, kMaxChunkBytes}) {
+      const Bytes bytes = test::scene_bytes(baked, Quality::lossless, 0, chunk_bytes);
+      const SceneFile file(test::source_of(bytes));
+      const Partition partition = partition_tree(baked.tree, chunk_bytes);
+      ASSERT_EQ(file.chunks().size(), partition.chunk_count());
+      std::vector<uint32_t> seen;
+      for (uint32_t index = 0; index < file.chunks().size(); ++index) {
+        const Chunk chunk = file.read_chunk(index);
+        ASSERT_TRUE(same_bits(chunk.subtrees.data(), &partition.subtrees[chunk.first_subtree],
+                              chunk.subtrees.size() * sizeof(Subtree)));
+        ASSERT_LE(chunk.records.size() * sizeof(NodeRecord), chunk_bytes);
+        std::vector<uint32_t> held(chunk.node), told;
+        std::sort(held.begin(), held.end());
+        for (const NodeRange& range : file.nodes_of(index))
+          for (uint32_t i = 0; i < range.count; ++i) told.push_back(range.first + i);
+        ASSERT_EQ(held, told) << test::name_of(shape);
+        seen.insert(seen.end(), held.begin(), held.end());
+        for (size_t i = 0; i < chunk.node.size(); ++i) {
+          if (chunk.is_leaf(i)) continue;
+          ASSERT_EQ(chunk.first_child[i], baked.tree.first_child[chunk.node[i]]);
+        }
+      }
+      std::sort(seen.begin(), seen.end());
+      ASSERT_EQ(seen.size(), baked.tree.size());
+      for (uint32_t n = 0; n < seen.size(); ++n) ASSERT_EQ(seen[n], n);
+    }
   }
 }
 

@@ -41,6 +41,28 @@ TEST(ScreenSize, NearZeroAndFarAway) {
             0.0f);
 }
 
+// Each operation rounded, in METHOD's order: written so that no compiler may fuse it, and on its
+// own, because sharing its products with screen_size would keep those from being fused.
+__attribute__((noinline)) float stepwise_from_origin(const Vec3f& c, float extent) {
+  volatile float x = c.x * c.x, y = c.y * c.y, z = c.z * c.z;
+  volatile float sum = x + y;
+  volatile float squared = sum + z;
+  return extent / std::sqrt(squared);
+}
+
+TEST(ScreenSize, RoundsEachOperation) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> uniform(-100, 100);
+  size_t fused_differs = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const Vec3f c{uniform(random), uniform(random), uniform(random)};
+    const float expected = stepwise_from_origin(c, 2);
+    ASSERT_EQ(screen_size(c, {0, 0, 0}, {0, 0, 0}, 2), expected);
+    fused_differs += 2 / std::sqrt(std::fma(c.z, c.z, std::fma(c.y, c.y, c.x * c.x))) != expected;
+  }
+  EXPECT_GT(fused_differs, 1000u);  // or the test could not tell
+}
+
 TEST(ScreenSize, NeverGrowsFromParentToChild) {
   std::mt19937 random(1);
   const auto uniform = [&](float lo, float hi) {

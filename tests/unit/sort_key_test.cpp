@@ -27,8 +27,9 @@ TEST(SortKey, SubtractsBeforeItRounds) {
   }
 }
 
-// Each product and sum rounded, in this order: written so that no compiler may fuse it.
-float stepwise(const Vec3f& d, const Vec3f& f) {
+// Each product and sum rounded, in this order: written so that no compiler may fuse it, and on
+// its own, because sharing its products with view_depth would keep those from being fused.
+__attribute__((noinline)) float stepwise(const Vec3f& d, const Vec3f& f) {
   volatile float x = d.x * f.x, y = d.y * f.y, z = d.z * f.z;
   volatile float sum = x + y;
   return sum + z;

@@ -1,0 +1,75 @@
+#include "runtime/format/read_header.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "runtime/base/checksum.h"
+#include "runtime/scene/gaussian_cloud.h"
+
+namespace voyager {
+namespace {
+
+void check_counts(const FileHeader& h, const Check& check) {
+  check.at_most(offsetof(FileHeader, flags), "flags", h.flags, kFlagAntialiased);
+  check.that(h.quality == 1 || h.quality == 2, offsetof(FileHeader, quality), "an unknown quality",
+             "1 or 2");
+  check.at_most(offsetof(FileHeader, sh_degree), "SH degree", h.sh_degree, kMaxShDegree);
+  check.at_most(offsetof(FileHeader, node_count), "node count", h.node_count, kNoNode - 1);
+  check.at_most(offsetof(FileHeader, leaf_count), "leaf count", h.leaf_count, h.node_count);
+  check.at_most(offsetof(FileHeader, depth), "depth", h.depth, h.node_count);
+  check.at_most(offsetof(FileHeader, subtree_count), "subtree count", h.subtree_count,
+                h.node_count);
+  check.at_most(offsetof(FileHeader, chunk_count), "chunk count", h.chunk_count, h.subtree_count);
+  for (const uint32_t count :
+       {h.leaf_count, h.depth, h.subtree_count, h.chunk_count, h.first_tier_levels})
+    check.that((count == 0) == (h.node_count == 0), offsetof(FileHeader, node_count),
+               "counts of which only some are 0", "all or none");
+  check.that(h.chunk_bytes >= kMinChunkBytes && h.chunk_bytes <= kMaxChunkBytes,
+             offsetof(FileHeader, chunk_bytes), "chunk bytes out of range", "1024 to 1048576");
+  check.at_most(offsetof(FileHeader, first_tier_levels), "levels of the first tier",
+                h.first_tier_levels, kTierLevels);
+}
+
+void check_ranges(const FileHeader& h, const Check& check) {
+  for (int axis = 0; axis < 3; ++axis) {
+    check.that(std::fabs(h.origin[axis]) < double{kMaxCoordinate} &&
+                   std::fabs(h.source_origin[axis]) < double{kMaxCoordinate},
+               offsetof(FileHeader, origin), "an origin out of range", "finite, below 1e18");
+    check.that(h.bounds_min[axis] > -kMaxCoordinate && h.bounds_min[axis] <= h.bounds_max[axis] &&
+                   h.bounds_max[axis] < kMaxCoordinate,
+               offsetof(FileHeader, bounds_min), "bounds out of range",
+               "finite, ordered, below 1e18");
+  }
+  check.that(h.position_error >= 0 && h.position_error < double{kMaxCoordinate},
+             offsetof(FileHeader, position_error), "a position error out of range",
+             "finite, not negative");
+}
+
+}  // namespace
+
+bool has_scene_magic(std::span<const std::byte> first_bytes) {
+  return first_bytes.size() >= sizeof kSceneMagic &&
+         std::memcmp(first_bytes.data(), kSceneMagic, sizeof kSceneMagic) == 0;
+}
+
+FileHeader read_header(const ByteSource& source, const Check& check) {
+  FileHeader h;
+  if (source.size() < sizeof h)
+    check.refuse(0, std::to_string(source.size()) + " bytes",
+                 "a header of " + std::to_string(sizeof h));
+  std::byte bytes[sizeof h];
+  source.read(0, bytes);
+  check.that(has_scene_magic(bytes), 0, "another signature", "that of a .voy file");
+  std::memcpy(&h, bytes, sizeof h);
+  if (h.version != kSceneVersion)
+    check.refuse(offsetof(FileHeader, version), "version " + std::to_string(h.version),
+                 std::to_string(kSceneVersion) + ": bake the scene again");
+  check.equal(offsetof(FileHeader, file_length), "a file of length", source.size(), h.file_length);
+  check.equal(offsetof(FileHeader, checksum), "header checksum",
+              checksum(std::span(bytes).first(offsetof(FileHeader, checksum))), h.checksum);
+  check_counts(h, check);
+  check_ranges(h, check);
+  return h;
+}
+
+}  // namespace voyager

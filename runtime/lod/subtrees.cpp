@@ -1,0 +1,168 @@
+#include "runtime/lod/subtrees.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace voyager {
+namespace {
+
+std::pmr::vector<uint32_t> find_levels(const LodTree& tree, std::pmr::memory_resource* memory) {
+  std::pmr::vector<uint32_t> begin(memory);
+  if (tree.size() == 0) return begin;
+  uint32_t first = 0, end = 1;
+  while (first != end) {
+    begin.push_back(first);
+    uint32_t children = 0;
+    for (uint32_t n = first; n < end; ++n) children += tree.records[n].child_count;
+    first = end;
+    end += children;
+  }
+  begin.push_back(first);
+  return begin;
+}
+
+// Splits the nodes below one root into subtrees.
+class Splitter {
+ public:
+  // levels: of the tier that the root starts, 1 to 3.
+  Splitter(const LodTree& tree, uint32_t levels, std::pmr::vector<Subtree>& out)
+      : tree_(tree), levels_(levels), out_(out) {}
+
+  void split(uint32_t root) {
+    current_ = {root, 0, 0, 0, 0, false, false};
+    const uint32_t children = levels_ > 1 ? tree_.records[root].child_count : 0;
+    for (uint32_t i = 0; i < children; ++i) add_child(tree_.first_child[root] + i);
+    if (current_.child_count != 0 || !current_.repeats_root) out_.push_back(current_);
+  }
+
+ private:
+  uint32_t grandchildren_of(uint32_t child) const {
+    return levels_ > 2 ? tree_.records[child].child_count : 0;
+  }
+
+  void add_child(uint32_t child) {
+    const uint32_t grandchildren = grandchildren_of(child);
+    if (current_.node_count() + 1 + grandchildren > kSubtreeNodes && current_.child_count != 0)
+      close();
+    if (2 + grandchildren > kSubtreeNodes) return add_in_runs(child, grandchildren);
+    take(child, grandchildren == 0 ? 0 : tree_.first_child[child], grandchildren);
+  }
+
+  // No other child shares a subtree with a run.
+  void add_in_runs(uint32_t child, uint32_t grandchildren) {
+    constexpr uint32_t kRun = kSubtreeNodes - 2;
+    for (uint32_t done = 0; done < grandchildren; done += kRun) {
+      take(child, tree_.first_child[child] + done, std::min(kRun, grandchildren - done));
+      current_.repeats_child = done != 0;
+      close();
+    }
+  }
+
+  void take(uint32_t child, uint32_t first_grandchild, uint32_t grandchildren) {
+    if (current_.child_count++ == 0) current_.first_child = child;
+    if (current_.grandchild_count == 0) current_.first_grandchild = first_grandchild;
+    current_.grandchild_count = static_cast<uint8_t>(current_.grandchild_count + grandchildren);
+  }
+
+  void close() {
+    out_.push_back(current_);
+    current_ = {current_.root, 0, 0, 0, 0, true, false};
+  }
+
+  const LodTree& tree_;
+  uint32_t levels_;
+  std::pmr::vector<Subtree>& out_;
+  Subtree current_{};
+};
+
+// Fills the subtrees and the tiers, for a first tier of so many levels.
+void split_tiers(const LodTree& tree, uint32_t first_tier_levels, Partition& partition) {
+  const auto& levels = partition.level_begin;
+  partition.first_tier_levels = first_tier_levels;
+  partition.subtrees.clear();
+  partition.tier_begin.clear();
+  for (size_t level = 0; level + 1 < levels.size();) {
+    const uint32_t height = level == 0 ? first_tier_levels : kTierLevels;
+    partition.tier_begin.push_back(static_cast<uint32_t>(partition.subtrees.size()));
+    Splitter splitter(tree, height, partition.subtrees);
+    for (uint32_t root = levels[level]; root < levels[level + 1]; ++root) splitter.split(root);
+    level += height;
+  }
+  partition.tier_begin.push_back(static_cast<uint32_t>(partition.subtrees.size()));
+}
+
+// The first tier that leaves the fewest subtrees; of several, that of most levels.
+void split_into_fewest(const LodTree& tree, Partition& partition) {
+  uint32_t best = 0;
+  size_t fewest = 0;
+  for (uint32_t levels = 1; levels <= kTierLevels; ++levels) {
+    split_tiers(tree, levels, partition);
+    if (best != 0 && partition.subtrees.size() > fewest) continue;
+    best = levels;
+    fewest = partition.subtrees.size();
+  }
+  if (best != kTierLevels) split_tiers(tree, best, partition);
+}
+
+// The subtrees of a chunk, at least one.
+EntryHull entry_hull(const LodTree& tree, std::span<const Subtree> subtrees) {
+  EntryHull hull{};
+  bool first = true;
+  for (const Subtree& subtree : subtrees) {
+    const uint32_t parent = tree.parent[subtree.first_owned()];
+    const NodeRecord& r = tree.records[parent == kNoNode ? 0 : parent];
+    const float extent = parent == kNoNode ? std::numeric_limits<float>::infinity() : r.extent;
+    if (first) hull = {r.box_min, extent, r.box_max};
+    first = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      hull.box_min[axis] = std::min(hull.box_min[axis], r.box_min[axis]);
+      hull.box_max[axis] = std::max(hull.box_max[axis], r.box_max[axis]);
+    }
+    hull.extent = std::max(hull.extent, extent);
+  }
+  return hull;
+}
+
+// Fills the partition's chunks.
+void pack_chunks(const LodTree& tree, Partition& partition, std::pmr::memory_resource* memory) {
+  std::pmr::vector<uint32_t> sizes(memory);
+  sizes.reserve(partition.subtrees.size());
+  for (const Subtree& subtree : partition.subtrees)
+    sizes.push_back(subtree.node_count() * static_cast<uint32_t>(sizeof(NodeRecord)));
+  partition.chunk_begin = pack_runs(sizes, partition.chunk_bytes, memory);
+  const std::span<const Subtree> all = partition.subtrees;
+  for (size_t i = 0; i < partition.chunk_count(); ++i) {
+    const uint32_t begin = partition.chunk_begin[i], end = partition.chunk_begin[i + 1];
+    partition.chunk_hull.push_back(entry_hull(tree, all.subspan(begin, end - begin)));
+  }
+}
+
+}  // namespace
+
+std::pmr::vector<uint32_t> pack_runs(std::span<const uint32_t> sizes, uint32_t limit,
+                                     std::pmr::memory_resource* memory) {
+  std::pmr::vector<uint32_t> begin(memory);
+  uint64_t used = 0;
+  for (size_t i = 0; i < sizes.size(); ++i) {
+    if (i == 0 || used + sizes[i] > limit) {
+      begin.push_back(static_cast<uint32_t>(i));
+      used = 0;
+    }
+    used += sizes[i];
+  }
+  begin.push_back(static_cast<uint32_t>(sizes.size()));
+  return begin;
+}
+
+Partition partition_tree(const LodTree& tree, uint32_t chunk_bytes,
+                         std::pmr::memory_resource* memory) {
+  Partition partition(memory);
+  partition.chunk_bytes = chunk_bytes;
+  partition.level_begin = find_levels(tree, memory);
+  if (tree.size() == 0) return partition;
+  split_into_fewest(tree, partition);
+  pack_chunks(tree, partition, memory);
+  return partition;
+}
+
+}  // namespace voyager

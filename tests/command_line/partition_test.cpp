@@ -1,0 +1,64 @@
+// What a user says and is told of subtrees and chunks: bake --chunk-bytes, --verify, info.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/format/reader.h"
+#include "tests/command_line/program.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::test {
+namespace {
+
+nlohmann::json info_of(const std::string& path) {
+  const Outcome info = run("voyager info " + path + " --json");
+  EXPECT_EQ(info.exit_code, 0) << info.output;
+  return nlohmann::json::parse(info.output);
+}
+
+TEST(CommandLinePartition, ChunkBytesAreKeptInTheFileAndToldByInfo) {
+  const TempFolder folder;
+  const std::string city = folder.file("city.ply"), scene = folder.file("city.voy");
+  ASSERT_EQ(run("voyager synth city --gaussians 10000 -o " + city).exit_code, 0);
+  const std::string bake = "voyager bake " + city + " -o " + scene;
+  size_t chunks_before = 0;
+  for (const std::string bytes : {"", "1024", "65536"}) {
+    const Outcome baked =
+        run(bake + " --verify" + (bytes.empty() ? "" : " --chunk-bytes " + bytes));
+    ASSERT_EQ(baked.exit_code, 0) << baked.output;
+    EXPECT_NE(baked.output.find(", verified"), std::string::npos) << baked.output;
+    const auto info = info_of(scene);
+    const SceneFile file(open_file_source(scene));
+    EXPECT_EQ(info["chunk_bytes"],
+              bytes.empty() ? kDefaultChunkBytes : static_cast<uint32_t>(std::stoul(bytes)));
+    EXPECT_EQ(info["chunks"], file.chunks().size());
+    EXPECT_EQ(info["subtrees"], file.info().subtree_count);
+    EXPECT_EQ(info["tiers"], file.tiers().tier_count());
+    EXPECT_EQ(info["damaged_chunks"], 0);
+    EXPECT_NE(file.chunks().size(), chunks_before);
+    chunks_before = file.chunks().size();
+  }
+  const Outcome text = run("voyager info " + scene);
+  EXPECT_NE(text.output.find("chunks of up to 65536 bytes"), std::string::npos) << text.output;
+  EXPECT_EQ(info_of(city)["subtrees"], 0);
+
+  for (const std::string bytes : {"0", "1023", "1048577", "-1", "many", "1024.5"}) {
+    const Outcome refused = run(bake + " --chunk-bytes " + bytes);
+    EXPECT_EQ(refused.exit_code, 1) << bytes;
+    EXPECT_NE(refused.output.find("--chunk-bytes"), std::string::npos) << refused.output;
+  }
+}
+
+TEST(CommandLinePartition, AFileOfVersionOneIsRefusedAndSaysToBakeAgain) {
+  const TempFolder folder;
+  std::string bytes = file_bytes(VOYAGER_SOURCE_DIR "/tests/fuzz/corpus/voy/version1.voy");
+  ASSERT_FALSE(bytes.empty());
+  write_bytes(folder.file("old.voy"), bytes);
+  const Outcome info = run("voyager info " + folder.file("old.voy"));
+  EXPECT_EQ(info.exit_code, 2) << info.output;
+  for (const char* part : {"old.voy", "version 1", "bake the scene again"})
+    EXPECT_NE(info.output.find(part), std::string::npos) << info.output;
+}
+
+}  // namespace
+}  // namespace voyager::test
