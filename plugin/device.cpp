@@ -103,7 +103,9 @@ VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
     found.maxInstances = 1;
     found.maxEyes = 1;
     found.maxWidth = found.maxHeight = kMaxImageSide;
-    found.searches = 1u << VOY_SEARCH_AUTO | 1u << VOY_SEARCH_EXHAUSTIVE;
+    found.searches = 1u << VOY_SEARCH_AUTO | 1u << VOY_SEARCH_EXHAUSTIVE |
+                     1u << VOY_SEARCH_STREAMING | 1u << VOY_SEARCH_TEMPORAL |
+                     1u << VOY_SEARCH_TEMPORAL_VISIT;
     found.exponentials = 1u << VOY_EXPONENTIAL_AUTO | 1u << VOY_EXPONENTIAL_EXACT;
     if (object->backend_kind == VOY_BACKEND_CPU)
       found.exponentials |= 1u << VOY_EXPONENTIAL_EX2 | 1u << VOY_EXPONENTIAL_LUT;

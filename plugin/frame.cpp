@@ -20,9 +20,24 @@ void check_size(const Image& image, const ViewObject& view) {
            std::to_string(view.max_width) + " x " + std::to_string(view.max_height));
 }
 
+VoySearch search_of(const FrameStats& stats) {
+  if (!stats.searched) return VOY_SEARCH_AUTO;
+  switch (stats.search) {
+    case Search::exhaustive:
+      return VOY_SEARCH_EXHAUSTIVE;
+    case Search::streaming:
+      return VOY_SEARCH_STREAMING;
+    case Search::temporal:
+      return VOY_SEARCH_TEMPORAL;
+    case Search::temporal_visit:
+      break;
+  }
+  return VOY_SEARCH_TEMPORAL_VISIT;
+}
+
 void fill(VoyFrameStats& out, const FrameStats& in) {
   out.frameIndex = in.frame_index;
-  out.search = in.searched ? VOY_SEARCH_EXHAUSTIVE : VOY_SEARCH_AUTO;
+  out.search = search_of(in);
   out.tauStar = in.tau_star;
   for (int i = 0; i < 3; ++i) out.cutCentre[i] = in.cut_centre[i];
   out.stageCount = kStageCount;

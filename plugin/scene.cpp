@@ -59,7 +59,7 @@ VoySceneNote note_of(const SceneNote& note) {
 }
 
 uint32_t damaged_chunks(const Scene& scene) {
-  return static_cast<uint32_t>(scene.damaged.size());
+  return static_cast<uint32_t>(scene.damaged_chunks.size());
 }
 
 void log_opening(const Log& log, const Scene& scene) {

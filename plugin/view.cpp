@@ -26,16 +26,30 @@ void check_counts(const VoyViewDesc& desc) {
   check_count(desc.maxHeight, 1, kMaxImageSide, "desc.maxHeight");
 }
 
+Search search_of(VoySearch search) {
+  switch (search) {
+    case VOY_SEARCH_EXHAUSTIVE:
+      return Search::exhaustive;
+    case VOY_SEARCH_STREAMING:
+      return Search::streaming;
+    case VOY_SEARCH_TEMPORAL_VISIT:
+      return Search::temporal_visit;
+    default:
+      return Search::temporal;
+  }
+}
+
 PipelineDesc checked_choices(const VoyViewDesc& desc) {
   check_tau(desc.tau);
   check_enum(desc.lod, VOY_LOD_ALL_LEAVES, "desc.lod");
-  check_enum(desc.search, VOY_SEARCH_EXHAUSTIVE, "desc.search");
+  check_enum(desc.search, VOY_SEARCH_TEMPORAL_VISIT, "desc.search");
   check_enum(desc.alphaFilter, VOY_ALPHA_FILTER_OFF, "desc.alphaFilter");
   check_enum(desc.exponential, VOY_EXPONENTIAL_LUT, "desc.exponential");
   check_count(desc.lutSize, 0, kMaxLutSize, "desc.lutSize");
   check_count(desc.reserved, 0, 0, "desc.reserved");
   PipelineDesc choices;
   choices.lod = desc.lod == VOY_LOD_CUT ? Lod::cut : Lod::all_leaves;
+  choices.search = search_of(desc.search);
   choices.alpha_filter = desc.alphaFilter == VOY_ALPHA_FILTER_ON;
   choices.lut_size = desc.lutSize == 0 ? kDefaultLutSize : desc.lutSize;
   if (desc.exponential == VOY_EXPONENTIAL_EX2) choices.exponential = Exponential::ex2;

@@ -23,13 +23,27 @@ std::string binary32_hex(float value) {
   return fmt::format("0x{:08x}", std::bit_cast<uint32_t>(value));
 }
 
+const char* name_of(VoySearch search) {
+  switch (search) {
+    case VOY_SEARCH_EXHAUSTIVE:
+      return "exhaustive";
+    case VOY_SEARCH_STREAMING:
+      return "streaming";
+    case VOY_SEARCH_TEMPORAL:
+    case VOY_SEARCH_TEMPORAL_VISIT:
+      return "temporal";
+    default:
+      return "none";
+  }
+}
+
 Json to_json(const VoyFrameStats& s) {
   Json ms;
   for (uint32_t stage = 0; stage < s.stageCount; ++stage)
     ms[voyStageName(static_cast<VoyStage>(stage))] = s.milliseconds[stage];
   ms["total"] = s.millisecondsTotal;
   return {
-      {"search", s.search == VOY_SEARCH_EXHAUSTIVE ? "exhaustive" : "none"},
+      {"search", name_of(s.search)},
       {"nodes_total", s.nodesTotal},
       {"nodes_tested", s.nodesTested},
       {"subtrees_visited", s.subtreesVisited},

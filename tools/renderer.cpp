@@ -20,7 +20,8 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
   desc.maxHeight = max_height;
   desc.lod = choices.lod;
   desc.tau = choices.tau;
-  desc.search = choices.search;
+  desc.search = choices.search == VOY_SEARCH_TEMPORAL && !choices.slack ? VOY_SEARCH_TEMPORAL_VISIT
+                                                                        : choices.search;
   desc.alphaFilter = choices.alpha_filter;
   desc.exponential = choices.exponential;
   desc.lutSize = choices.lut_size;

@@ -12,7 +12,8 @@ struct RenderChoices {
   VoyBackend backend = VOY_BACKEND_AUTO;
   VoyLod lod = VOY_LOD_CUT;
   double tau = 3;
-  VoySearch search = VOY_SEARCH_AUTO;
+  VoySearch search = VOY_SEARCH_TEMPORAL;
+  bool slack = true;  // off: VOY_SEARCH_TEMPORAL visits all of the last cut
   VoyAlphaFilter alpha_filter = VOY_ALPHA_FILTER_ON;
   VoyExponential exponential = VOY_EXPONENTIAL_AUTO;
   uint32_t lut_size = 32;

@@ -23,7 +23,7 @@ class CpuPipeline final : public Pipeline {
       : scene_(std::move(scene)),
         desc_(desc),
         workers_(workers),
-        draws_(scene_, desc.lod, memory),
+        draws_(scene_, desc.lod, desc.search, memory),
         lut_(memory),
         splats_(memory),
         visible_(memory),
@@ -147,6 +147,12 @@ class CpuBackend final : public Backend {
                                             std::pmr::memory_resource* memory,
                                             Workers& workers) override {
     return std::make_unique<CpuPipeline>(std::move(scene), desc, memory, workers);
+  }
+  std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
+                                             const SearchDesc& desc,
+                                             std::pmr::memory_resource* memory,
+                                             Workers& workers) override {
+    return create_host_search(std::move(scene), desc, memory, workers);
   }
 };
 

@@ -9,6 +9,7 @@
 
 #include "runtime/base/workers.h"
 #include "runtime/frame/scene.h"
+#include "runtime/frame/scene_search.h"
 #include "runtime/math/vec.h"
 
 namespace voyager {
@@ -19,6 +20,7 @@ enum class Exponential { exact, ex2, lut };
 // Resolved once, at view creation.
 struct PipelineDesc {
   Lod lod = Lod::cut;
+  Search search = Search::temporal;
   bool alpha_filter = true;
   Exponential exponential = Exponential::exact;
   uint32_t lut_size = 32;
@@ -57,6 +59,8 @@ enum Stage { kSearch, kProject, kSort, kBin, kRasterize, kResolve, kStageCount }
 struct FrameStats {
   uint64_t frame_index = 0;
   bool searched = false;
+  Search search = Search::exhaustive;  // the one that ran, where one did
+  bool changes_counted = false;        // entered and left are the search's own
   float tau_star = 0;
   Vec3f cut_centre{0, 0, 0};
   uint64_t nodes_total = 0, nodes_tested = 0, subtrees_visited = 0, chunks_read = 0, bytes_read = 0;
@@ -89,6 +93,11 @@ class Backend {
                                                     const PipelineDesc& desc,
                                                     std::pmr::memory_resource* memory,
                                                     Workers& workers) = 0;
+  // The scene has a tree. Throws Error(unsupported) where the backend has no such search.
+  virtual std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
+                                                     const SearchDesc& desc,
+                                                     std::pmr::memory_resource* memory,
+                                                     Workers& workers) = 0;
 };
 
 inline constexpr uint32_t kMaxImageSide =

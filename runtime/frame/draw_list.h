@@ -2,37 +2,37 @@
 // What a frame draws, in the order of ids: the cut with its weights, or every
 // leaf. Shared by the backends that run on the host.
 #include <memory_resource>
+#include <optional>
 #include <vector>
 
 #include "runtime/base/workers.h"
 #include "runtime/frame/backend.h"
-#include "runtime/select/cut.h"
-#include "runtime/stages/interpolate.h"
+#include "runtime/frame/host_search.h"
 
 namespace voyager {
 
 class DrawList {
  public:
-  DrawList(std::shared_ptr<const Scene> scene, Lod lod, std::pmr::memory_resource* memory);
+  DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
+           std::pmr::memory_resource* memory);
 
-  // Throws Error(damaged_chunk) where the frame needs a node that is not there.
+  // Throws Error(damaged_chunk) where the frame needs a node that is not there. After
+  // a call that threw, the next is right all the same.
   void update(const FrameInput& frame, Workers& workers);
 
   // Index in items() is the tie-breaker of the sort: node ids ascend in a cut,
   // input indices where every leaf is drawn.
-  const std::pmr::vector<DrawItem>& items() const { return items_; }
-  const std::pmr::vector<uint32_t>& cut() const { return search_.cut(); }
+  const std::pmr::vector<DrawItem>& items() const { return search_ ? search_->items() : leaves_; }
+  const std::pmr::vector<uint32_t>& cut() const { return search_ ? search_->cut() : no_cut_; }
   void collect(FrameStats& stats) const;
 
  private:
   void list_leaves();
-  [[noreturn]] void refuse_damaged(uint32_t node) const;
 
   std::shared_ptr<const Scene> scene_;
-  Lod lod_;
-  std::vector<MissingNodes> missing_;
-  ExhaustiveSearch search_;
-  std::pmr::vector<DrawItem> items_;
+  std::optional<HostSearch> search_;  // none where every leaf is drawn
+  std::pmr::vector<uint32_t> no_cut_;
+  std::pmr::vector<DrawItem> leaves_;
   bool leaves_missing_ = false;
 };
 

@@ -9,9 +9,9 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/workers.h"
-#include "runtime/lod/tree.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/scene/gaussian_cloud.h"
+#include "runtime/select/search_tree.h"
 
 namespace voyager {
 
@@ -25,7 +25,20 @@ struct SceneNote {
   std::string what, why;
 };
 
-// Nodes whose chunk could not be read: [first, first + count).
+// A chunk that could not be read. Its subtrees are in the partition as kLostSubtree,
+// so that the indices of all others hold.
+struct DamagedChunk {
+  uint32_t chunk;
+  uint32_t first_subtree, subtree_count;
+  uint32_t first_root;  // of the first subtree, which may repeat it
+  std::string message;  // names file, chunk, offset, found, expected
+};
+
+// One node, of no id: nothing that a search may follow.
+inline constexpr Subtree kLostSubtree{kNoNode, 0, 0, 0, 0, false, false};
+
+// Nodes whose chunk could not be read: [first, first + count). A chunk has up to three
+// such ranges a tier.
 struct DamagedNodes {
   uint32_t first, count;
   std::string message;  // names file, chunk, offset, found, expected
@@ -33,7 +46,13 @@ struct DamagedNodes {
 
 struct Scene {
   explicit Scene(std::pmr::memory_resource* memory)
-      : gaussians(memory), sh(memory), tree(memory), axis_code(memory), leaves(memory) {}
+      : gaussians(memory),
+        sh(memory),
+        tree(memory),
+        search(memory),
+        axis_code(memory),
+        leaves(memory),
+        partition(memory) {}
 
   bool flat() const { return storage == Storage::flat; }
   int coefficients() const { return sh_coefficients(sh_degree); }
@@ -55,9 +74,12 @@ struct Scene {
   std::pmr::vector<Gaussian> gaussians;  // by node id; a flat scene's by index
   std::pmr::vector<float> sh;            // coefficients() * 3 each
   LodTree tree;                          // empty for a flat scene
+  SearchTree search;                     // of the tree; empty for a flat scene
   std::pmr::vector<uint8_t> axis_code;   // by node id
   std::pmr::vector<uint32_t> leaves;     // node ids of the leaves in the input's order; flat: empty
-  std::vector<DamagedNodes> damaged;     // by first
+  Partition partition;                   // of the tree; empty for a flat scene
+  std::vector<DamagedNodes> damaged;     // by first, disjoint
+  std::vector<DamagedChunk> damaged_chunks;  // by chunk
   std::vector<SceneNote> notes;
 };
 

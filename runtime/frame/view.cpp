@@ -39,6 +39,8 @@ View::View(std::shared_ptr<const Scene> scene, Backend& backend, const PipelineD
 
 void View::render(const FrameInput& frame, const Image& image) {
   check_camera(frame.camera, *scene_);
+  const bool follows = follows_;  // the search's last run was the last frame's
+  follows_ = false;
   FrameStats stats;
   Stopwatch total, stage;
   const auto lap = [&](Stage s) { stats.milliseconds[s] = stage.lap(); };
@@ -58,10 +60,13 @@ void View::render(const FrameInput& frame, const Image& image) {
   stats.tau_star = target_size(frame.tau, frame.camera.fx);
   stats.cut_centre = cut_centre(frame.camera.eye, scene_->origin);
   pipeline_->collect(stats);
-  stats.entered = count_missing(cut_, last_cut_);
-  stats.left = count_missing(last_cut_, cut_);
+  if (!stats.changes_counted || !follows) {
+    stats.entered = count_missing(cut_, last_cut_);
+    stats.left = count_missing(last_cut_, cut_);
+  }
   last_cut_.swap(cut_);
   stats_ = stats;
+  follows_ = true;
 }
 
 }  // namespace voyager

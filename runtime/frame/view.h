@@ -30,6 +30,7 @@ class View {
   std::pmr::vector<uint32_t> last_cut_;  // of the last frame that succeeded
   FrameStats stats_;
   uint64_t frames_ = 0;
+  bool follows_ = true;  // no frame has failed since the last that succeeded
 };
 
 }  // namespace voyager

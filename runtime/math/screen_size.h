@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/math/exact.h"
 #include "runtime/math/vec.h"
 
 namespace voyager {
@@ -27,14 +28,23 @@ VOYAGER_HD float clamp_to_box(float c, float lo, float hi) {
   return c < lo ? lo : (c > hi ? hi : c);
 }
 
+// Squared distance from c to the box: 0 inside and on it.
+VOYAGER_HD float squared_distance(const Vec3f& c, const Vec3f& box_min, const Vec3f& box_max) {
+  const float dx = subtract_rn(c.x, clamp_to_box(c.x, box_min.x, box_max.x));
+  const float dy = subtract_rn(c.y, clamp_to_box(c.y, box_min.y, box_max.y));
+  const float dz = subtract_rn(c.z, clamp_to_box(c.z, box_min.z, box_max.z));
+  return add_rn(add_rn(multiply_rn(dx, dx), multiply_rn(dy, dy)), multiply_rn(dz, dz));
+}
+
+// extent / √squared, +∞ for 0.
+VOYAGER_HD float size_at(float squared, float extent) {
+  if (squared == 0.0f) return std::numeric_limits<float>::infinity();
+  return divide_rn(extent, sqrt_rn(squared));
+}
+
 VOYAGER_HD float screen_size(const Vec3f& c, const Vec3f& box_min, const Vec3f& box_max,
                              float extent) {
-  const float dx = c.x - clamp_to_box(c.x, box_min.x, box_max.x);
-  const float dy = c.y - clamp_to_box(c.y, box_min.y, box_max.y);
-  const float dz = c.z - clamp_to_box(c.z, box_min.z, box_max.z);
-  const float squared = (dx * dx + dy * dy) + dz * dz;
-  if (squared == 0.0f) return std::numeric_limits<float>::infinity();
-  return extent / std::sqrt(squared);
+  return size_at(squared_distance(c, box_min, box_max), extent);
 }
 
 }  // namespace voyager

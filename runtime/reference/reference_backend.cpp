@@ -52,7 +52,7 @@ class ReferencePipeline final : public Pipeline {
       : scene_(std::move(scene)),
         alpha_filter_(desc.alpha_filter),
         workers_(workers),
-        draws_(scene_, desc.lod, memory),
+        draws_(scene_, desc.lod, desc.search, memory),
         splats_(memory),
         visible_(memory),
         keys_(memory),
@@ -141,6 +141,12 @@ class ReferenceBackend final : public Backend {
     if (desc.exponential != Exponential::exact)
       throw Error(ErrorCode::unsupported, "exponential: the reference backend has exact only");
     return std::make_unique<ReferencePipeline>(std::move(scene), desc, memory, workers);
+  }
+  std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
+                                             const SearchDesc& desc,
+                                             std::pmr::memory_resource* memory,
+                                             Workers& workers) override {
+    return create_host_search(std::move(scene), desc, memory, workers);
   }
 };
 

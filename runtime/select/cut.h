@@ -15,6 +15,11 @@ namespace voyager {
 struct CutQuery {
   Vec3f centre;       // scene-local metres, finite, below 1e18
   float target_size;  // τ* = target_size(τ, f_x) of runtime/math/screen_size.h; > 0, +inf allowed
+
+  bool operator==(const CutQuery& other) const {
+    return centre.x == other.centre.x && centre.y == other.centre.y &&
+           centre.z == other.centre.z && target_size == other.target_size;
+  }
 };
 
 // Nodes [first, first + count) whose chunk is not resident: their records are

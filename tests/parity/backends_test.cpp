@@ -90,7 +90,7 @@ TEST(Backends, ExponentialsHaveTheErrorsStatedForThem) {
 std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const FrameInput& input,
                              float log_scale) {
   Workers workers(1);
-  DrawList draws(scene, Lod::cut, std::pmr::get_default_resource());
+  DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
   draws.update(input, workers);
   const Camera& c = input.camera;
   const ProjectParams params{

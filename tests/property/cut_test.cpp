@@ -11,12 +11,16 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// METHOD §3, word by word.
-float size_of(const LodTree& tree, uint32_t n, const Vec3f& c) {
+// METHOD §3, word by word, so that no compiler may fuse a product with a sum.
+__attribute__((noinline)) float size_of(const LodTree& tree, uint32_t n, const Vec3f& c) {
   const NodeRecord& r = tree.records[n];
-  float d[3];
-  for (int i = 0; i < 3; ++i) d[i] = c[i] - std::min(std::max(c[i], r.box_min[i]), r.box_max[i]);
-  const float squared = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
+  volatile float product[3];
+  for (int i = 0; i < 3; ++i) {
+    const float d = c[i] - std::min(std::max(c[i], r.box_min[i]), r.box_max[i]);
+    product[i] = d * d;
+  }
+  volatile float xy = product[0] + product[1];
+  const float squared = xy + product[2];
   return squared == 0.0f || r.extent == kInfinity ? kInfinity : r.extent / std::sqrt(squared);
 }
 

@@ -33,7 +33,7 @@ TEST(Weights, FollowTheMethodInDouble) {
   const auto scene = test::baked_scene(test::random_cloud(5000, 1, 0));
   const LodTree& tree = scene->tree;
   Workers workers(2);
-  DrawList draws(scene, Lod::cut, std::pmr::get_default_resource());
+  DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
   size_t between = 0;
   for (const FrameInput& input : frames()) {
     draws.update(input, workers);
@@ -83,7 +83,7 @@ TEST(Weights, AllLeavesAreDrawnInTheInputsOrder) {
   const GaussianCloud cloud = test::random_cloud(3000, 3, 0);
   const auto scene = test::baked_scene(cloud);
   Workers workers(2);
-  DrawList draws(scene, Lod::all_leaves, std::pmr::get_default_resource());
+  DrawList draws(scene, Lod::all_leaves, Search::temporal, std::pmr::get_default_resource());
   draws.update(frames()[0], workers);
   ASSERT_EQ(draws.items().size(), cloud.size());
   for (size_t i = 0; i < cloud.size(); ++i) {
@@ -94,16 +94,17 @@ TEST(Weights, AllLeavesAreDrawnInTheInputsOrder) {
 }
 
 // A frame throws exactly where the cut or what is above it lies in the damage.
-bool needs(const LodTree& tree, const std::vector<uint32_t>& cut, uint32_t first, uint32_t count) {
+bool needs(const LodTree& tree, const std::vector<uint32_t>& cut,
+           const std::vector<NodeRange>& damage) {
   for (uint32_t node : cut)
     for (; node != kNoNode; node = tree.parent[node])
-      if (node >= first && node - first < count) return true;
+      if (test::holds(damage, node)) return true;
   return false;
 }
 
 TEST(Weights, DamageStopsOnlyTheFramesThatNeedIt) {
   const test::Bytes bytes =
-      test::scene_bytes(test::bake(test::random_cloud(6000, 4, 1)), Quality::lossless);
+      test::scene_bytes(test::bake(test::random_cloud(6000, 4, 1)), Quality::lossless, 0, 32768);
   Workers workers(2);
   const auto whole = load_scene(test::source_of(bytes), std::pmr::get_default_resource(), workers);
   const SceneFile file(test::source_of(bytes));
@@ -112,14 +113,15 @@ TEST(Weights, DamageStopsOnlyTheFramesThatNeedIt) {
   std::vector<FrameInput> inputs = frames();
   for (const double tau : {1000.0, 1e5})
     inputs.push_back(frame_input(look({3, -6, -50}, {0, 0, 0}, 60, 40), tau));
-  for (const SceneFile::ChunkExtent& chunk : file.chunks()) {
+  for (uint32_t index = 0; index < file.chunks().size(); ++index) {
+    const ChunkEntry& chunk = file.chunks()[index];
     const auto source =
         std::make_shared<test::FlippedSource>(bytes, chunk.offset + chunk.bytes / 3, std::byte{4});
     const auto damaged = load_scene(source, std::pmr::get_default_resource(), workers);
-    ASSERT_EQ(damaged->damaged.size(), 1u);
+    ASSERT_EQ(damaged->damaged_chunks.size(), 1u);
     for (const FrameInput& input : inputs) {
       const test::Frame expected = test::render(*cpu, whole, {}, input);
-      if (needs(whole->tree, expected.cut, chunk.first_node, chunk.node_count)) {
+      if (needs(whole->tree, expected.cut, file.nodes_of(index))) {
         ++stopped;
         EXPECT_EQ(test::error_code([&] { test::render(*cpu, damaged, {}, input); }),
                   ErrorCode::damaged_chunk);
@@ -130,7 +132,7 @@ TEST(Weights, DamageStopsOnlyTheFramesThatNeedIt) {
         EXPECT_EQ(expected.cut, found.cut);
       }
     }
-    const Chunk lost = file.read_chunk(static_cast<uint32_t>(&chunk - file.chunks().data()));
+    const Chunk lost = file.read_chunk(index);
     const bool leaves = std::any_of(lost.records.begin(), lost.records.end(),
                                     [](const NodeRecord& r) { return r.child_count == 0; });
     const auto draw_leaves = [&] {
@@ -144,6 +146,44 @@ TEST(Weights, DamageStopsOnlyTheFramesThatNeedIt) {
   }
   EXPECT_GT(stopped, 20u);
   EXPECT_GT(drawn, 5u);
+}
+
+constexpr Search kSearches[] = {Search::exhaustive, Search::streaming, Search::temporal,
+                                Search::temporal_visit};
+
+// The searches that keep their cut count what entered and left; the view does it for
+// the others, from the lists.
+TEST(Weights, EverySearchDrawsAndCountsTheSame) {
+  const auto scene = test::baked_scene(test::random_cloud(5000, 5, 0));
+  const auto cpu = create_cpu_backend();
+  Workers workers(2);
+  std::vector<std::unique_ptr<View>> views;
+  for (const Search search : kSearches)
+    views.push_back(std::make_unique<View>(scene, *cpu, PipelineDesc{.search = search},
+                                           std::pmr::get_default_resource(), workers));
+  uint64_t entered = 0;
+  for (int frame = 0; frame < 30; ++frame) {
+    const Vec3d eye{3 + 0.05 * frame, -6, -24};
+    const FrameInput input = frame_input(look(eye, {0.5, 0, 0}, 60, 40), frame < 20 ? 10 : 30);
+    const test::Frame expected = test::render(*views[0], input);
+    EXPECT_EQ(expected.stats.search, Search::exhaustive);
+    for (size_t k = 1; k < views.size(); ++k) {
+      const test::Frame found = test::render(*views[k], input);
+      test::expect_same_bits(expected, found);
+      ASSERT_EQ(expected.cut, found.cut);
+      ASSERT_EQ(expected.stats.entered, found.stats.entered) << frame;
+      ASSERT_EQ(expected.stats.left, found.stats.left) << frame;
+      EXPECT_LE(found.stats.nodes_tested, expected.stats.nodes_tested);
+      if (frame == 0 || kSearches[k] == Search::streaming) {
+        EXPECT_EQ(found.stats.search, Search::streaming);
+      }
+      if (frame == 1) {
+        EXPECT_EQ(found.stats.search, kSearches[k]);
+      }
+    }
+    entered += expected.stats.entered;
+  }
+  EXPECT_GT(entered, 500u);
 }
 
 // After a frame that failed a view still has its last cut and statistics, and
@@ -160,13 +200,46 @@ TEST(Weights, AViewSurvivesAFrameThatFailed) {
   const auto cpu = create_cpu_backend();
   const FrameInput good = frame_input(look({3, -6, -50}, {0, 0, 0}, 60, 40), 1e5),
                    bad = frame_input(look({0, 1, 0}, {1, 0, 0}, 60, 40), 0);
-  View view(scene, *cpu, {}, std::pmr::get_default_resource(), workers);
-  const test::Frame before = test::render(view, good);
-  EXPECT_THROW(test::render(view, bad), Error);
-  EXPECT_TRUE(
-      std::equal(view.cut().begin(), view.cut().end(), before.cut.begin(), before.cut.end()));
-  EXPECT_EQ(view.stats().cut_size, before.cut.size());
-  test::expect_same_bits(before, test::render(view, good));
+  for (const Search search : kSearches) {
+    View view(scene, *cpu, {.search = search}, std::pmr::get_default_resource(), workers);
+    const test::Frame before = test::render(view, good);
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      EXPECT_EQ(test::error_code([&] { test::render(view, bad); }), ErrorCode::damaged_chunk);
+      EXPECT_TRUE(
+          std::equal(view.cut().begin(), view.cut().end(), before.cut.begin(), before.cut.end()));
+      EXPECT_EQ(view.stats().cut_size, before.cut.size());
+    }
+    const test::Frame after = test::render(view, good);
+    test::expect_same_bits(before, after);
+    EXPECT_EQ(after.stats.entered, 0u);
+    EXPECT_EQ(after.stats.left, 0u);
+  }
+}
+
+// A search by itself, as measurements run it.
+TEST(Weights, ASceneSearchGivesTheCutAndItsWeights) {
+  const auto scene = test::baked_scene(test::random_cloud(5000, 6, 0));
+  Workers workers(2);
+  const auto cpu = create_cpu_backend(), reference = create_reference_backend();
+  const CutQuery query{{3, -6, -24}, 0.05f};
+  std::vector<uint32_t> expected_cut, cut;
+  std::vector<float> expected_weights, weights;
+  cpu->create_search(scene, {Search::exhaustive}, std::pmr::get_default_resource(), workers)
+      ->read(cut, weights);
+  EXPECT_TRUE(cut.empty()) << "before any run";
+  for (const auto* backend : {&cpu, &reference})
+    for (const Search kind : kSearches)
+      for (const bool wanted : {true, false}) {
+        const auto search = (*backend)->create_search(scene, {kind, wanted},
+                                                      std::pmr::get_default_resource(), workers);
+        search->run(query);
+        search->read(cut, weights);
+        if (expected_cut.empty()) expected_cut = cut, expected_weights = weights;
+        ASSERT_EQ(cut, expected_cut);
+        ASSERT_EQ(weights, wanted ? expected_weights : std::vector<float>());
+        EXPECT_GT(search->stats().nodes_tested, 0u);
+        EXPECT_GE(search->times().search, 0.0);
+      }
 }
 
 }  // namespace

@@ -103,7 +103,12 @@ void add_choices(CLI::App& command, RenderChoices& choices) {
                      {{"on", VOY_LOD_CUT}, {"off", VOY_LOD_ALL_LEAVES}}, "off draws every leaf");
   add_tau_option(command, choices.tau);
   add_choice<VoySearch>(command, "--search", choices.search,
-                        {{"exhaustive", VOY_SEARCH_EXHAUSTIVE}}, "How the cut is found");
+                        {{"temporal", VOY_SEARCH_TEMPORAL},
+                         {"streaming", VOY_SEARCH_STREAMING},
+                         {"exhaustive", VOY_SEARCH_EXHAUSTIVE}},
+                        "How the cut is found; all find the same");
+  add_choice<bool>(command, "--slack", choices.slack, {{"on", true}, {"off", false}},
+                   "off: the temporal search visits all of the last cut, for measurements");
   add_choice<VoyAlphaFilter>(command, "--filter", choices.alpha_filter,
                              {{"on", VOY_ALPHA_FILTER_ON}, {"off", VOY_ALPHA_FILTER_OFF}},
                              "The α-filter; off gives the same image, slower");

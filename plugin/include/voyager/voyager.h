@@ -341,9 +341,15 @@ typedef enum VoyLod {
   VOY_LOD_MAX_ENUM = 0x7fffffff
 } VoyLod;
 
+/* How the cut is found. All searches give the same cut, to the bit; what differs is
+ * what they read. */
 typedef enum VoySearch {
-  VOY_SEARCH_AUTO = 0, /* the best that the backend has; all searches give the same cut */
-  VOY_SEARCH_EXHAUSTIVE = 1,
+  VOY_SEARCH_AUTO = 0,           /* TEMPORAL */
+  VOY_SEARCH_EXHAUSTIVE = 1,     /* every node: the baseline */
+  VOY_SEARCH_STREAMING = 2,      /* chunk by chunk from the top, skipping what the cut is above */
+  VOY_SEARCH_TEMPORAL = 3,       /* from the view's last cut, only what may have changed since;
+                                    streaming for a view's first frame and where that is cheaper */
+  VOY_SEARCH_TEMPORAL_VISIT = 4, /* the same, but visits all of the last cut: for measurements */
   VOY_SEARCH_MAX_ENUM = 0x7fffffff
 } VoySearch;
 
@@ -487,15 +493,15 @@ typedef struct VoyFrameStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STATS */
   void* next;
   uint64_t frameIndex; /* of the view, from 0 */
-  VoySearch search;    /* the one that ran; AUTO where none did */
-  float tauStar;       /* instance 0's: the target size as used (METHOD §3) */
+  VoySearch search; /* the one that ran, STREAMING where TEMPORAL fell back; AUTO where none did */
+  float tauStar;    /* instance 0's: the target size as used (METHOD §3) */
   float cutCentre[3];  /* instance 0's: scene-local, as used */
   uint32_t stageCount; /* of this library: the entries of milliseconds that are in use */
   uint64_t nodesTotal;
   uint64_t nodesTested; /* evaluations of the predicate */
   uint64_t subtreesVisited;
-  uint64_t chunksRead; /* by the search */
-  uint64_t bytesRead;
+  uint64_t chunksRead;    /* by the search: that hold a subtree it visited; EXHAUSTIVE: 0 */
+  uint64_t bytesRead;     /* by the search, of its records, tables and kept state */
   uint64_t cutSize;       /* nodes, or Gaussians where there is no cut */
   uint64_t entered, left; /* nodes, against the view's last frame */
   uint64_t splats;        /* that reach the image */

@@ -1,0 +1,111 @@
+#include "runtime/frame/host_search.h"
+
+#include <utility>
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/frame/weigh_cut.h"
+
+namespace voyager {
+
+HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
+                       std::pmr::memory_resource* memory)
+    : scene_(std::move(scene)), desc_(desc), items_(memory) {
+  if (desc.kind != Search::exhaustive) {
+    partitioned_.emplace(scene_->search, memory);
+    return;
+  }
+  exhaustive_.emplace(memory);
+  for (const DamagedNodes& d : scene_->damaged) missing_.push_back({d.first, d.count});
+}
+
+void HostSearch::run(const CutQuery& query, Workers& workers) {
+  Stopwatch watch;
+  const std::optional<CutQuery> weighed = std::exchange(weighed_, std::nullopt);
+  find(query, workers);
+  times_.search = watch.lap();
+  // A view that stands still has its weights.
+  const bool stands = weighed == query && partitioned_ &&
+                      partitioned_->stats().entered + partitioned_->stats().left == 0;
+  if (desc_.weights && !stands) weigh(query, workers);
+  weighed_ = query;
+  times_.weights = watch.lap();
+}
+
+void HostSearch::find(const CutQuery& query, Workers& workers) {
+  if (partitioned_)
+    partitioned_->run(query, desc_.kind, workers);
+  else
+    exhaustive_->run(scene_->tree, missing_, query, workers);
+  if ((partitioned_ ? partitioned_->needed_missing() : exhaustive_->needed_missing()) != kNoNode)
+    refuse_damaged();
+}
+
+void HostSearch::weigh(const CutQuery& query, Workers& workers) {
+  items_.resize(cut().size());
+  if (partitioned_)
+    return weigh_cut(scene_->tree, scene_->search, *partitioned_, query, items_, workers);
+  const WeightParams weights{scene_->tree.records.data(), scene_->tree.parent.data(),
+                             exhaustive_->sizes().data(), query.target_size};
+  workers.for_blocks(items_.size(), 16384, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) items_[i] = voyager::weigh(weights, cut()[i]);
+  });
+}
+
+void HostSearch::refuse_damaged() const {
+  if (partitioned_) {
+    const uint32_t subtree = partitioned_->needed_missing_subtree();
+    for (const DamagedChunk& d : scene_->damaged_chunks)
+      if (subtree >= d.first_subtree && subtree - d.first_subtree < d.subtree_count)
+        throw Error(ErrorCode::damaged_chunk, d.message);
+    throw Error(ErrorCode::internal,
+                "subtree " + std::to_string(subtree) + ": missing, but in no damaged chunk");
+  }
+  const uint32_t node = exhaustive_->needed_missing();
+  for (const DamagedNodes& d : scene_->damaged)
+    if (node >= d.first && node - d.first < d.count)
+      throw Error(ErrorCode::damaged_chunk, d.message);
+  throw Error(ErrorCode::internal,
+              "node " + std::to_string(node) + ": missing, but in no damaged chunk");
+}
+
+SearchStats HostSearch::stats() const {
+  if (partitioned_) return partitioned_->stats();
+  SearchStats stats;
+  stats.nodes_tested = exhaustive_->nodes_tested();
+  stats.bytes_read = stats.nodes_tested * sizeof(NodeRecord);
+  return stats;
+}
+
+namespace {
+
+class SearchOfHost final : public SceneSearch {
+ public:
+  SearchOfHost(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
+               std::pmr::memory_resource* memory, Workers& workers)
+      : search_(std::move(scene), desc, memory), workers_(workers) {}
+
+  void run(const CutQuery& query) override { search_.run(query, workers_); }
+  SearchTimes times() override { return search_.times(); }
+  SearchStats stats() override { return search_.stats(); }
+  void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
+    cut.assign(search_.cut().begin(), search_.cut().end());
+    weights.clear();
+    for (const DrawItem& item : search_.items()) weights.push_back(item.t);
+  }
+
+ private:
+  HostSearch search_;
+  Workers& workers_;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneSearch> create_host_search(std::shared_ptr<const Scene> scene,
+                                                const SearchDesc& desc,
+                                                std::pmr::memory_resource* memory,
+                                                Workers& workers) {
+  return std::make_unique<SearchOfHost>(std::move(scene), desc, memory, workers);
+}
+
+}  // namespace voyager

@@ -1,0 +1,57 @@
+#pragma once
+// The cut of a scene and its weights, found on the host.
+#include <memory>
+#include <memory_resource>
+#include <optional>
+#include <vector>
+
+#include "runtime/frame/scene.h"
+#include "runtime/frame/scene_search.h"
+#include "runtime/select/partitioned.h"
+#include "runtime/stages/interpolate.h"
+
+namespace voyager {
+
+// Not thread-safe. Scratch, from the given resource, is that of the search that it
+// runs, and 16 bytes a node of the largest cut.
+class HostSearch {
+ public:
+  HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
+             std::pmr::memory_resource* memory);
+
+  // Throws Error(damaged_chunk) where the cut needs a node that is not there, and
+  // std::bad_alloc; the next run is right all the same.
+  void run(const CutQuery& query, Workers& workers);
+
+  // Of the last run. Ascending; items()[i] draws cut()[i], where weights are wanted.
+  const std::pmr::vector<uint32_t>& cut() const {
+    return partitioned_ ? partitioned_->cut() : exhaustive_->cut();
+  }
+  const std::pmr::vector<DrawItem>& items() const { return items_; }
+  const SearchTimes& times() const { return times_; }
+  // An exhaustive search keeps nothing to count what entered and left: 0.
+  SearchStats stats() const;
+  bool counts_changes() const { return partitioned_.has_value(); }
+
+ private:
+  void find(const CutQuery& query, Workers& workers);
+  void weigh(const CutQuery& query, Workers& workers);
+  [[noreturn]] void refuse_damaged() const;
+
+  std::shared_ptr<const Scene> scene_;
+  SearchDesc desc_;
+  std::vector<MissingNodes> missing_;
+  std::optional<ExhaustiveSearch> exhaustive_;
+  std::optional<PartitionedSearch> partitioned_;
+  std::pmr::vector<DrawItem> items_;
+  std::optional<CutQuery> weighed_;  // what items_ are of
+  SearchTimes times_;
+};
+
+// HostSearch as a SceneSearch: what the backends of the host give out.
+std::unique_ptr<SceneSearch> create_host_search(std::shared_ptr<const Scene> scene,
+                                                const SearchDesc& desc,
+                                                std::pmr::memory_resource* memory,
+                                                Workers& workers);
+
+}  // namespace voyager

@@ -1,0 +1,155 @@
+#include "runtime/frame/weigh_cut.h"
+
+#include <bit>
+
+#include "runtime/select/set_bits.h"
+
+namespace voyager {
+namespace {
+
+constexpr size_t kBlocksTask = 4;
+
+// The children of one node, or those of them that a subtree holds.
+struct Family {
+  uint32_t parent;  // node
+  float size;       // the parent's
+  bool saturated;   // t = 1, whatever the child's own size
+  float leaf_t;     // of a child whose own size is 0
+  float inverse_k;
+};
+
+class BlockWeights {
+ public:
+  BlockWeights(const LodTree& tree, const SearchTree& search_tree, const CutQuery& query)
+      : tree_(tree), search_tree_(search_tree), query_(query) {}
+
+  void weigh(const PartitionedSearch& search, const PartitionedSearch::Block& block,
+             DrawItem* items) {
+    for (uint32_t level = 0; level < 3; ++level) {
+      if (block.size[level] == 0) continue;
+      DrawItem* out = items + block.at[level];
+      end_ = out + block.size[level];
+      for (uint32_t s = block.first; s < block.last; ++s) {
+        const uint32_t cut = search.cut_slots(s);
+        if (cut == 0) continue;
+        const SearchSubtree& subtree = search_tree_.subtrees[s];
+        const uint32_t slots = cut & subtree.level_slots(level);
+        if (slots != 0) out = weigh_level(s, level, slots, out);
+      }
+    }
+  }
+
+ private:
+  DrawItem* weigh_level(uint32_t s, uint32_t level, uint32_t slots, DrawItem* out) {
+    const SearchSubtree& subtree = search_tree_.subtrees[s];
+    if (level == 0) return weigh_root(subtree, out);
+    const bool split = is_split(s);
+    if (level == 1)
+      return weigh_slots(subtree, family(subtree.first_record, subtree.root, split), slots, out);
+    // Each child's own, in the order of the children.
+    uint32_t record = subtree.first_record + (subtree.interior & 1);
+    for (uint32_t left = subtree.interior & subtree.level_slots(1); left != 0;
+         left &= left - 1, ++record) {
+      const uint32_t own = search_tree_.records[record].children & slots;
+      if (own == 0) continue;
+      const uint32_t child = subtree.node(static_cast<uint32_t>(std::countr_zero(left)));
+      out = weigh_slots(subtree, family(record, child, split), own, out);
+    }
+    return out;
+  }
+
+  DrawItem* weigh_root(const SearchSubtree& subtree, DrawItem* out) {
+    if (subtree.entry == kNoRecord) {
+      *out = whole(subtree.root);
+      return out + 1;
+    }
+    // The roots of neighbours often hang from one parent.
+    if (subtree.entry != entry_) {
+      entry_ = subtree.entry;
+      entry_family_ = family(entry_, tree_.parent[subtree.root], true);
+    }
+    return weigh_slots(subtree, entry_family_, 1, out);
+  }
+
+  // Whether the root may have children in other subtrees, too.
+  bool is_split(uint32_t s) const {
+    const auto& subtrees = search_tree_.subtrees;
+    return (s > 0 && subtrees[s - 1].root == subtrees[s].root) ||
+           (s + 1 < subtrees.size() && subtrees[s + 1].root == subtrees[s].root);
+  }
+
+  // split: the record's slots may not be all of the children.
+  Family family(uint32_t record, uint32_t parent, bool split) const {
+    const SearchRecord& r = search_tree_.records[record];
+    const float size = size_of(r), target = query_.target_size;
+    if (size > 2.0f * target) return {parent, size, true, 1.0f, 1.0f};
+    const uint32_t children = split ? tree_.records[parent].child_count : count_bits(r.children);
+    return {parent, size, false, interpolation_weight(true, size, 0.0f, target),
+            1.0f / static_cast<float>(children)};
+  }
+
+  // Of SearchRecord or NodeRecord.
+  template <class Record>
+  float size_of(const Record& r) const {
+    return screen_size(query_.centre, r.box_min, r.box_max, r.extent);
+  }
+
+  float own_size(const SearchSubtree& subtree, uint32_t slot) const {
+    if ((subtree.interior >> slot & 1) == 0) return leaf_size(tree_.records[subtree.node(slot)]);
+    const uint32_t below = subtree.interior & ((1u << slot) - 1);
+    return size_of(search_tree_.records[subtree.first_record + count_bits(below)]);
+  }
+
+  float leaf_size(const NodeRecord& r) const { return r.extent == 0.0f ? 0.0f : size_of(r); }
+  bool leaves_have_extent() const { return search_tree_.leaves_have_extent; }
+
+  // slots: of one level, not 0.
+  DrawItem* weigh_slots(const SearchSubtree& subtree, const Family& f, uint32_t slots,
+                        DrawItem* out) const {
+    const auto first = static_cast<uint32_t>(std::countr_zero(slots));
+    const uint32_t node = subtree.node(first);
+    const DrawItem item =
+        f.leaf_t == 1.0f ? whole(0) : DrawItem{0, f.parent, f.leaf_t, f.inverse_k};
+    DrawItem* const after = put_set_bits<4>(slots >> first, out, end_, [&](uint32_t place) {
+      return DrawItem{node + place, item.parent, item.t, item.inverse_k};
+    });
+    const uint32_t own = leaves_have_extent() ? slots : slots & subtree.interior;
+    if (!f.saturated && own != 0) weigh_own(subtree, f, slots, own, out);
+    return after;
+  }
+
+  // Those of `slots` that have a size of their own.
+  void weigh_own(const SearchSubtree& subtree, const Family& f, uint32_t slots, uint32_t own,
+                 DrawItem* items) const {
+    for (; own != 0; own &= own - 1) {
+      const auto slot = static_cast<uint32_t>(std::countr_zero(own));
+      const float t =
+          interpolation_weight(true, f.size, own_size(subtree, slot), query_.target_size);
+      const uint32_t node = subtree.node(slot);
+      items[count_bits(slots & ((1u << slot) - 1))] =
+          t == 1.0f ? whole(node) : DrawItem{node, f.parent, t, f.inverse_k};
+    }
+  }
+
+  static DrawItem whole(uint32_t node) { return {node, kNoNode, 1.0f, 1.0f}; }
+
+  const LodTree& tree_;
+  const SearchTree& search_tree_;
+  const CutQuery query_;
+  const DrawItem* end_ = nullptr;  // of the piece in progress
+  uint32_t entry_ = kNoRecord;
+  Family entry_family_{};
+};
+
+}  // namespace
+
+void weigh_cut(const LodTree& tree, const SearchTree& search_tree, const PartitionedSearch& search,
+               const CutQuery& query, std::span<DrawItem> items, Workers& workers) {
+  const auto blocks = search.blocks();
+  workers.for_blocks(blocks.size(), kBlocksTask, [&](size_t begin, size_t end) {
+    BlockWeights weights(tree, search_tree, query);
+    for (size_t b = begin; b < end; ++b) weights.weigh(search, blocks[b], items.data());
+  });
+}
+
+}  // namespace voyager

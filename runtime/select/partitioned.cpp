@@ -1,0 +1,153 @@
+#include "runtime/select/partitioned.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "runtime/select/partitioned_blocks.h"
+
+namespace voyager {
+
+PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_resource* memory)
+    : tree_(tree),
+      watch_(memory),
+      refined_(memory),
+      cut_slots_(memory),
+      last_cut_slots_(memory),
+      work_(memory),
+      signalled_(memory),
+      signals_(memory),
+      blocks_(memory),
+      tier_block_(memory),
+      touched_(memory),
+      chunk_stamp_(memory),
+      cut_(memory) {
+  const size_t count = tree.subtrees.size();
+  watch_.resize(count);
+  refined_.resize(count);
+  cut_slots_.resize(count);
+  last_cut_slots_.resize(count);
+  work_.resize(count);
+  signalled_.resize(count);
+  for (uint32_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier) {
+    tier_block_.push_back(static_cast<uint32_t>(blocks_.size()));
+    const uint32_t end = tree.tier_begin[tier + 1];
+    for (uint32_t s = tree.tier_begin[tier]; s < end; s += kBlockSubtrees)
+      blocks_.push_back({s, std::min(end, s + kBlockSubtrees), tier, 0, {}, {}});
+  }
+  touched_.resize(blocks_.size());
+  signals_.resize(std::max(blocks_.size(), count / kRoundSubtrees + 1));
+  chunk_stamp_.resize(tree.chunk_count());
+}
+
+void PartitionedSearch::run(const CutQuery& query, Search kind, Workers& workers) {
+  assert(kind != Search::exhaustive);
+  stats_ = {};
+  stats_.ran = kind;
+  if (known_ && query == query_ && kind == Search::temporal) return;
+  begin(query);
+  if (continues_ && kind != Search::streaming)
+    repair(kind, workers);
+  else
+    stream(workers);
+  finish(workers);
+}
+
+void PartitionedSearch::begin(const CutQuery& query) {
+  continues_ = known_;
+  known_ = false;
+  if (!continues_) references_.clear();
+  query_ = query;
+  references_.begin_frame(query);
+  sight_ = make_sight(query);
+  total_ = {};
+  if (++stamp_ == 0) {
+    std::fill(chunk_stamp_.begin(), chunk_stamp_.end(), 0);
+    stamp_ = 1;
+  }
+}
+
+void PartitionedSearch::finish(Workers& workers) {
+  workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t first, size_t last) {
+    Tally tally;
+    for (size_t b = first; b < last; ++b)
+      if (touched_[b] != 0) settle(b, tally);
+    count(tally);
+  });
+  if (!continues_ || total_.entered + total_.left != 0) list_cut(workers);
+  stats_.nodes_tested = total_.tested;
+  stats_.subtrees_visited = total_.visited;
+  stats_.chunks_read = total_.chunks;
+  stats_.bytes_read = total_.bytes;
+  stats_.entered = total_.entered;
+  stats_.left = total_.left;
+  needed_missing_ = total_.needed_missing;
+  known_ = needed_missing_ == kNoNode;
+}
+
+void PartitionedSearch::count(const Tally& tally) {
+  const std::lock_guard lock(total_mutex_);
+  total_.tested += tally.tested;
+  total_.visited += tally.visited;
+  total_.chunks += tally.chunks;
+  total_.bytes += tally.bytes;
+  total_.entered += tally.entered;
+  total_.left += tally.left;
+  total_.needed_missing = std::min(total_.needed_missing, tally.needed_missing);
+  total_.first_opened = std::min(total_.first_opened, tally.first_opened);
+  total_.last_opened = std::max(total_.last_opened, tally.last_opened);
+}
+
+size_t PartitionedSearch::block_of(uint32_t subtree) const {
+  const auto& begin = tree_.tier_begin;
+  const auto tier =
+      static_cast<size_t>(std::upper_bound(begin.begin(), begin.end(), subtree) - begin.begin()) -
+      1;
+  return tier_block_[tier] + (subtree - begin[tier]) / kBlockSubtrees;
+}
+
+// By tasks that share a block.
+void PartitionedSearch::touch(size_t block) {
+  std::atomic_ref<uint8_t>(touched_[block]).store(1, std::memory_order_relaxed);
+}
+
+// chunk: of a subtree before this one, by the same task.
+void PartitionedSearch::read_chunk_of(uint32_t subtree, uint32_t& chunk, Tally& tally) {
+  if (chunk == kNoChunk) {
+    const auto after =
+        std::upper_bound(tree_.chunks.begin(), tree_.chunks.end(), subtree,
+                         [](uint32_t s, const SearchChunk& c) { return s < c.first_subtree; });
+    chunk = static_cast<uint32_t>(after - tree_.chunks.begin()) - 1;
+  } else if (tree_.chunks[chunk + 1].first_subtree > subtree) {
+    return;
+  }
+  while (tree_.chunks[chunk + 1].first_subtree <= subtree) ++chunk;
+  tally.chunks += mark_read(chunk);
+}
+
+// True for the first of a run.
+bool PartitionedSearch::mark_read(uint32_t chunk) {
+  return std::atomic_ref<uint32_t>(chunk_stamp_[chunk])
+             .exchange(stamp_, std::memory_order_relaxed) != stamp_;
+}
+
+// Visits an open subtree. Gives the slots whose verdict is not what it was.
+uint32_t PartitionedSearch::look(uint32_t subtree, Tally& tally) {
+  const SearchSubtree& s = tree_.subtrees[subtree];
+  const Visit found = visit(tree_, s, sight_);
+  ++tally.visited;
+  tally.tested += found.tested;
+  tally.bytes += sizeof s + found.tested * sizeof(SearchRecord) + 2 * sizeof(uint32_t);
+  const uint32_t before = refined_[subtree];
+  refined_[subtree] = found.refined;
+  cut_slots_[subtree] = found.cut;
+  watch_[subtree] = make_watch(found.slack, found.extent, references_.current());
+  return (before ^ found.refined) & s.interior;
+}
+
+void PartitionedSearch::close(uint32_t subtree) {
+  refined_[subtree] = 0;
+  cut_slots_[subtree] = 0;
+  watch_[subtree] = kNever;
+}
+
+}  // namespace voyager

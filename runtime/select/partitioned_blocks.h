@@ -1,0 +1,25 @@
+#pragma once
+// How the partitioned searches split their work. No result depends on these.
+#include <cmath>
+#include <cstdint>
+
+#include "runtime/select/search_tree.h"
+#include "runtime/select/watch.h"
+
+namespace voyager {
+
+inline constexpr uint32_t kBlockSubtrees = 512;  // 10 KiB of kept state
+inline constexpr size_t kBlocksTask = 4;         // blocks: tiers may be small
+inline constexpr size_t kRoundSubtrees = 256;    // of those just opened
+inline constexpr size_t kChunksTask = 64;
+
+// Temporal streams instead where more of the open subtrees are due. A visit costs the
+// same in both; streaming adds a third for hulls and marks, repairing what it opens and
+// closes. Measured on the district and a city of 1e6 (bench/NOTES.md): even from three
+// quarters to nine tenths, and streaming up to 2.6 times as fast beyond.
+inline constexpr double kStreamingShare = 0.85;
+
+inline constexpr uint32_t kNoChunk = 0xffffffffu;
+inline constexpr Watch kNever{INFINITY, 0};  // of a subtree that is closed
+
+}  // namespace voyager

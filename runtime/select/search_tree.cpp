@@ -1,0 +1,213 @@
+#include "runtime/select/search_tree.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <limits>
+
+#include "runtime/select/set_bits.h"
+
+namespace voyager {
+namespace {
+
+constexpr size_t kBlock = 1024;  // subtrees
+
+uint32_t slot_bits(uint32_t first, uint32_t count) {
+  return ((1u << count) - 1u) << first;
+}
+
+class Builder {
+ public:
+  Builder(const LodTree& tree, const Partition& partition, std::span<const SubtreeRange> missing,
+          SearchTree& out)
+      : tree_(tree), partition_(partition), missing_(missing), out_(out) {}
+
+  void build(Workers& workers) {
+    const size_t count = partition_.subtrees.size();
+    out_.subtrees.resize(count);
+    out_.tier_begin.assign(partition_.tier_begin.begin(), partition_.tier_begin.end());
+    workers.for_blocks(count, kBlock, [&](size_t begin, size_t end) {
+      for (size_t s = begin; s < end; ++s) describe(static_cast<uint32_t>(s));
+    });
+    out_.leaves_have_extent = leaves_have_extent_;
+    for (const SubtreeRange& range : missing_) describe_missing(range);
+    number_records();
+    workers.for_blocks(count, kBlock, [&](size_t begin, size_t end) {
+      for (size_t s = begin; s < end; ++s) fill_records(static_cast<uint32_t>(s));
+    });
+    for (size_t tier = 0; tier + 1 < out_.tier_begin.size(); ++tier) link(tier);
+    out_.opens.back() = static_cast<uint32_t>(count);
+    set_chunks(workers);
+  }
+
+ private:
+  uint32_t levels_of(uint32_t s) const {
+    return s < out_.tier_begin[1] ? partition_.first_tier_levels : 3;
+  }
+
+  void describe(uint32_t s) {
+    const Subtree& from = partition_.subtrees[s];
+    SearchSubtree& to = out_.subtrees[s];
+    to = {from.root, from.first_child, from.first_grandchild, from.child_count, 0, 0, 0, kNoRecord};
+    if (is_missing(s)) return;
+    const uint32_t nodes = from.node_count();
+    to.owned = slot_bits(0, nodes);
+    if (from.repeats_root) to.owned &= ~1u;
+    if (from.repeats_child) to.owned &= ~2u;
+    bool extent = false;
+    for (uint32_t slot = 0; slot < nodes; ++slot) {
+      const NodeRecord& r = tree_.records[from.node(slot)];
+      if (r.child_count != 0)
+        to.interior |= 1u << slot;
+      else
+        extent |= r.extent != 0.0f;
+    }
+    if (extent) leaves_have_extent_.store(true, std::memory_order_relaxed);
+  }
+
+  // missing_ is ascending and disjoint.
+  bool is_missing(uint32_t s) const {
+    const auto after = std::upper_bound(
+        missing_.begin(), missing_.end(), s,
+        [](uint32_t subtree, const SubtreeRange& range) { return subtree < range.first; });
+    return after != missing_.begin() && s < std::prev(after)->last;
+  }
+
+  // Every node of a level of roots has a subtree, so the roots of a range ascend by
+  // one at a time. Where some have several, which is not known, and need not be:
+  // a frame that reaches any of a root's subtrees needs the chunk.
+  void describe_missing(const SubtreeRange& range) {
+    uint32_t root = range.first_root;
+    for (uint32_t s = range.first; s < range.last; ++s) {
+      const auto tier =
+          static_cast<size_t>(std::upper_bound(out_.tier_begin.begin(), out_.tier_begin.end(), s) -
+                              out_.tier_begin.begin() - 1);
+      if (s == out_.tier_begin[tier]) root = first_root(tier);
+      out_.subtrees[s] = {root, 0, 0, 0, 0, 0, 0, kNoRecord};
+      root = std::min(root + 1, last_root(range, tier));
+    }
+  }
+
+  size_t level_of(size_t tier) const {
+    return tier == 0 ? 0 : partition_.first_tier_levels + 3 * (tier - 1);
+  }
+  uint32_t first_root(size_t tier) const { return partition_.level_begin[level_of(tier)]; }
+
+  uint32_t last_root(const SubtreeRange& range, size_t tier) const {
+    if (range.last >= out_.tier_begin[tier + 1])
+      return partition_.level_begin[level_of(tier) + 1] - 1;
+    for (const SubtreeRange& next : missing_)
+      if (next.first == range.last) return next.first_root;
+    const Subtree& next = partition_.subtrees[range.last];
+    return next.repeats_root ? next.root : next.root - 1;
+  }
+
+  // A missing subtree has a record, too: what hangs below it is opened by that one,
+  // which is to say never.
+  void number_records() {
+    uint32_t records = 0;
+    for (SearchSubtree& subtree : out_.subtrees) {
+      subtree.first_record = records;
+      records += subtree.missing() ? 1 : count_bits(subtree.interior);
+    }
+    out_.records.resize(records);
+    out_.opens.resize(size_t{records} + 1);
+  }
+
+  void fill_records(uint32_t s) {
+    const SearchSubtree& subtree = out_.subtrees[s];
+    const uint32_t levels = levels_of(s);
+    const bool child_in_runs = subtree.child_count == 1;
+    const uint32_t nodes = subtree.missing() ? 0 : partition_.subtrees[s].node_count();
+    uint32_t record = subtree.first_record, grandchild = 1 + subtree.child_count;
+    for (uint32_t slot = 0; slot < nodes; ++slot) {
+      const NodeRecord& from = tree_.records[subtree.node(slot)];
+      if (from.child_count == 0) continue;
+      uint32_t children = 0;
+      if (slot == 0 && levels > 1) children = slot_bits(1, subtree.child_count);
+      if (slot > 0 && slot <= subtree.child_count && levels > 2) {
+        const uint32_t count = child_in_runs ? nodes - 2 : from.child_count;
+        children = slot_bits(grandchild, count);
+        grandchild += count;
+      }
+      out_.records[record++] = {from.box_min, from.extent, from.box_max, children};
+    }
+  }
+
+  // The roots of the next tier, in order, are the children of this tier's lowest
+  // nodes, in order.
+  void link(size_t tier) {
+    const bool last = tier + 2 == out_.tier_begin.size();
+    const uint32_t end = last ? out_.tier_begin[tier + 1] : out_.tier_begin[tier + 2];
+    uint32_t next = out_.tier_begin[tier + 1];
+    for (uint32_t s = out_.tier_begin[tier]; s < out_.tier_begin[tier + 1]; ++s) {
+      const SearchSubtree& subtree = out_.subtrees[s];
+      uint32_t record = subtree.first_record;
+      if (subtree.missing()) out_.opens[record] = next;
+      for (uint32_t left = subtree.interior; left != 0; left &= left - 1, ++record) {
+        const auto slot = static_cast<uint32_t>(std::countr_zero(left));
+        const bool lowest = slot_is_lowest(s, slot);
+        const uint32_t node = subtree.node(slot);
+        const uint32_t first = tree_.first_child[node];
+        while (lowest && next < end && out_.subtrees[next].root < first) ++next;
+        out_.opens[record] = next;
+        if (!lowest) continue;
+        const uint32_t after = first + tree_.records[node].child_count;
+        for (; next < end && out_.subtrees[next].root < after; ++next)
+          out_.subtrees[next].entry = record;
+      }
+    }
+  }
+
+  bool slot_is_lowest(uint32_t s, uint32_t slot) const {
+    const uint32_t level = slot == 0 ? 0 : slot <= out_.subtrees[s].child_count ? 1 : 2;
+    return level + 1 == levels_of(s);
+  }
+
+  void set_chunks(Workers& workers) {
+    const size_t count = partition_.chunk_count();
+    out_.chunks.resize(count + 1);
+    workers.for_blocks(count, kBlock, [&](size_t begin, size_t end) {
+      for (size_t chunk = begin; chunk < end; ++chunk) out_.chunks[chunk] = hull_of(chunk);
+    });
+    out_.chunks[count] = {{0, 0, 0}, 0, {0, 0, 0}, partition_.chunk_begin[count]};
+  }
+
+  SearchChunk hull_of(size_t chunk) const {
+    constexpr float kMost = std::numeric_limits<float>::max();
+    const uint32_t first = partition_.chunk_begin[chunk], last = partition_.chunk_begin[chunk + 1];
+    // Subtrees of the tree's root hang from nothing, and are always reached.
+    if (first < out_.tier_begin[1])
+      return {{-kMost, -kMost, -kMost}, kMost, {kMost, kMost, kMost}, first};
+    // Far from everything, and of size 0, where nothing can be reached.
+    SearchChunk hull{{kMost, kMost, kMost}, 0, {-kMost, -kMost, -kMost}, first};
+    for (uint32_t s = first; s < last; ++s) {
+      if (out_.subtrees[s].entry == kNoRecord) continue;
+      const SearchRecord& r = out_.records[out_.subtrees[s].entry];
+      hull.extent = std::max(hull.extent, r.extent);
+      for (int axis = 0; axis < 3; ++axis) {
+        hull.hull_min[axis] = std::min(hull.hull_min[axis], r.box_min[axis]);
+        hull.hull_max[axis] = std::max(hull.hull_max[axis], r.box_max[axis]);
+      }
+    }
+    return hull;
+  }
+
+  const LodTree& tree_;
+  const Partition& partition_;
+  std::span<const SubtreeRange> missing_;
+  SearchTree& out_;
+  std::atomic<bool> leaves_have_extent_{false};
+};
+
+}  // namespace
+
+SearchTree make_search_tree(const LodTree& tree, const Partition& partition,
+                            std::span<const SubtreeRange> missing, Workers& workers,
+                            std::pmr::memory_resource* memory) {
+  SearchTree out(memory);
+  if (!partition.subtrees.empty()) Builder(tree, partition, missing, out).build(workers);
+  return out;
+}
+
+}  // namespace voyager

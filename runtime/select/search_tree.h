@@ -1,0 +1,94 @@
+#pragma once
+// The tree as the partitioned searches read it: subtree by subtree, and only what
+// the cut depends on. A leaf is in the cut exactly where its parent is refined
+// (sizes never grow from parent to child), so a leaf is a bit and has no record.
+//
+// Plain arrays: the same bytes serve the CPU and the device.
+#include <cstdint>
+#include <memory_resource>
+#include <span>
+#include <vector>
+
+#include "runtime/base/workers.h"
+#include "runtime/lod/subtrees.h"
+
+namespace voyager {
+
+inline constexpr uint32_t kNoRecord = 0xffffffffu;
+
+// An interior node in its subtree.
+struct SearchRecord {
+  Vec3f box_min;
+  float extent;
+  Vec3f box_max;
+  uint32_t children;  // the slots of its children; 0 on the lowest level of a tier
+};
+static_assert(sizeof(SearchRecord) == 32);
+
+// Slots are those of Subtree. Record first_record + k is that of the k-th slot in `interior`.
+struct SearchSubtree {
+  uint32_t root, first_child, first_grandchild;  // node ids
+  uint32_t child_count;                          // slots 1 to child_count are children
+  uint32_t first_record;
+  uint32_t interior;  // slots of interior nodes
+  uint32_t owned;     // slots that are not repeated; 0 where the subtree's chunk is damaged
+  uint32_t entry;     // record of the root's parent; kNoRecord at the tree's root
+
+  VOYAGER_HD bool missing() const { return owned == 0; }
+  VOYAGER_HD uint32_t node(uint32_t slot) const {
+    if (slot == 0) return root;
+    return slot <= child_count ? first_child + (slot - 1)
+                               : first_grandchild + (slot - 1 - child_count);
+  }
+  // 0: the root's slot, 1: children's, 2: grandchildren's, used or not.
+  VOYAGER_HD uint32_t level_slots(uint32_t level) const {
+    const uint32_t upper = (2u << child_count) - 1u;
+    return level == 0 ? 1u : level == 1 ? upper & ~1u : ~upper & 0x7fffffffu;
+  }
+};
+static_assert(sizeof(SearchSubtree) == 32);
+
+// Hull of the records that the roots of a chunk hang from: no root can be reached
+// where even the hull's size is under τ*, because every operation of size() is
+// monotone. Those of chunks with subtrees of the tree's root are never under it.
+struct SearchChunk {
+  Vec3f hull_min;
+  float extent;
+  Vec3f hull_max;
+  uint32_t first_subtree;
+};
+static_assert(sizeof(SearchChunk) == 32);
+
+struct SearchTree {
+  explicit SearchTree(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
+      : subtrees(memory), records(memory), opens(memory), chunks(memory), tier_begin(memory) {}
+
+  size_t chunk_count() const { return chunks.empty() ? 0 : chunks.size() - 1; }
+  uint64_t bytes() const {
+    return subtrees.size() * sizeof(SearchSubtree) + records.size() * sizeof(SearchRecord) +
+           opens.size() * sizeof(uint32_t) + chunks.size() * sizeof(SearchChunk);
+  }
+
+  std::pmr::vector<SearchSubtree> subtrees;
+  std::pmr::vector<SearchRecord> records;
+  // Subtrees [opens[r], opens[r + 1]) have children of record r as their roots.
+  std::pmr::vector<uint32_t> opens;
+  std::pmr::vector<SearchChunk> chunks;   // and one with the end as its first subtree
+  std::pmr::vector<uint32_t> tier_begin;  // first subtree of each tier, and the end
+  bool leaves_have_extent = false;        // else a leaf's size is 0 wherever its weight matters
+};
+
+// Subtrees [first, last), whose chunk is damaged.
+struct SubtreeRange {
+  uint32_t first, last;
+  uint32_t first_root;  // of subtree `first`, which may repeat it
+};
+
+// Tree and partition are sound where no chunk is damaged. missing: ascending and
+// disjoint; nothing of those subtrees but their number is read from the partition.
+// Throws only std::bad_alloc.
+SearchTree make_search_tree(const LodTree& tree, const Partition& partition,
+                            std::span<const SubtreeRange> missing, Workers& workers,
+                            std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+
+}  // namespace voyager

@@ -1,0 +1,62 @@
+// What a run has changed, and the list of the cut.
+
+#include "runtime/select/partitioned.h"
+#include "runtime/select/partitioned_blocks.h"
+#include "runtime/select/set_bits.h"
+
+namespace voyager {
+
+// Counts again a block where something was visited or closed.
+void PartitionedSearch::settle(size_t index, Tally& tally) {
+  Block& block = blocks_[index];
+  touched_[index] = 0;
+  block.open = 0;
+  block.size = {};
+  for (uint32_t s = block.first; s < block.last; ++s) {
+    const uint32_t now = cut_slots_[s], before = last_cut_slots_[s];
+    block.open += refined_[s] != 0;
+    if (now != before) {
+      tally.entered += count_bits(now & ~before);
+      tally.left += count_bits(before & ~now);
+      last_cut_slots_[s] = now;
+    }
+    if (now == 0) continue;
+    for (uint32_t level = 0; level < 3; ++level)
+      block.size[level] += count_bits(now & tree_.subtrees[s].level_slots(level));
+  }
+  tally.bytes += (block.last - block.first) * 3 * sizeof(uint32_t);
+}
+
+void PartitionedSearch::list_cut(Workers& workers) {
+  uint32_t at = 0;
+  for (size_t first = 0, last = 0; first < blocks_.size(); first = last) {
+    while (last < blocks_.size() && blocks_[last].tier == blocks_[first].tier) ++last;
+    for (uint32_t level = 0; level < 3; ++level)
+      for (size_t b = first; b < last; ++b) {
+        blocks_[b].at[level] = at;
+        at += blocks_[b].size[level];
+      }
+  }
+  cut_.resize(at);
+  workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
+    for (size_t b = begin; b < end; ++b) list_block(blocks_[b]);
+  });
+}
+
+void PartitionedSearch::list_block(const Block& block) {
+  for (uint32_t level = 0; level < 3; ++level) {
+    if (block.size[level] == 0) continue;
+    uint32_t* out = cut_.data() + block.at[level];
+    const uint32_t* const end = out + block.size[level];
+    for (uint32_t s = block.first; s < block.last; ++s) {
+      if (cut_slots_[s] == 0) continue;
+      const SearchSubtree& subtree = tree_.subtrees[s];
+      const uint32_t first_slot = level == 0 ? 0 : level == 1 ? 1 : 1 + subtree.child_count;
+      const uint32_t node = subtree.node(first_slot);
+      out = put_set_bits<8>((cut_slots_[s] & subtree.level_slots(level)) >> first_slot, out, end,
+                            [node](uint32_t place) { return node + place; });
+    }
+  }
+}
+
+}  // namespace voyager

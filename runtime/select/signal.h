@@ -1,0 +1,27 @@
+#pragma once
+// What a visit tells the subtrees below.
+
+#include "runtime/select/search_tree.h"
+#include "runtime/select/set_bits.h"
+
+namespace voyager {
+
+// opened(first, last) and closed(first, last) for the subtrees below each slot of
+// `flipped`, in ascending order, by what the slot now is in `refined`.
+template <class Opened, class Closed>
+void signal_below(const SearchTree& tree, uint32_t subtree, uint32_t flipped, uint32_t refined,
+                  const Opened& opened, const Closed& closed) {
+  const SearchSubtree& s = tree.subtrees[subtree];
+  for (; flipped != 0; flipped &= flipped - 1) {
+    const uint32_t slot = flipped & (~flipped + 1);
+    const uint32_t record = s.first_record + count_bits(s.interior & (slot - 1));
+    const uint32_t first = tree.opens[record], last = tree.opens[record + 1];
+    if (first == last) continue;
+    if ((refined & slot) != 0)
+      opened(first, last);
+    else
+      closed(first, last);
+  }
+}
+
+}  // namespace voyager

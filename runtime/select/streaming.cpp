@@ -1,0 +1,93 @@
+// Chunk by chunk from the top. A tier's open subtrees are known before it is read:
+// the tier above has marked them.
+#include <algorithm>
+
+#include "runtime/select/partitioned.h"
+#include "runtime/select/partitioned_blocks.h"
+#include "runtime/select/signal.h"
+
+namespace voyager {
+
+void PartitionedSearch::stream(Workers& workers) {
+  stats_.ran = Search::streaming;
+  start_over(workers);
+  if (blocks_.empty()) return;
+  uint32_t first = 0, last = tree_.tier_begin[1];
+  Tally root;
+  for (uint32_t s = first; s < last; ++s) open(s, root);
+  count(root);
+  while (first < last) {
+    total_.first_opened = kNoNode;
+    total_.last_opened = 0;
+    stream_tier(first, last, workers);
+    first = total_.first_opened;
+    last = total_.last_opened + 1;
+  }
+}
+
+// Closes everything; last_cut_slots_ stays, to be compared with.
+void PartitionedSearch::start_over(Workers& workers) {
+  workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
+    for (size_t b = begin; b < end; ++b) {
+      Block& block = blocks_[b];
+      if (continues_ && block.open == 0) continue;
+      touched_[b] = 1;
+      for (uint32_t s = block.first; s < block.last; ++s) {
+        close(s);
+        if (!continues_) last_cut_slots_[s] = 0;
+      }
+    }
+  });
+}
+
+void PartitionedSearch::open(uint32_t subtree, Tally& tally) {
+  tally.first_opened = std::min(tally.first_opened, subtree);
+  tally.last_opened = std::max(tally.last_opened, subtree);
+  if (tree_.subtrees[subtree].missing())
+    tally.needed_missing = std::min(tally.needed_missing, subtree);
+  else
+    refined_[subtree] = kOpen;
+}
+
+// Subtrees [first, last) of one tier.
+void PartitionedSearch::stream_tier(uint32_t first, uint32_t last, Workers& workers) {
+  const auto chunk_of = [&](uint32_t subtree) {
+    const auto after =
+        std::upper_bound(tree_.chunks.begin(), tree_.chunks.end(), subtree,
+                         [](uint32_t s, const SearchChunk& c) { return s < c.first_subtree; });
+    return static_cast<uint32_t>(after - tree_.chunks.begin()) - 1;
+  };
+  const uint32_t first_chunk = chunk_of(first), chunks = chunk_of(last - 1) + 1 - first_chunk;
+  workers.for_blocks(chunks, kChunksTask, [&](size_t begin, size_t end) {
+    Tally tally;
+    for (size_t i = begin; i < end; ++i)
+      stream_chunk(first_chunk + static_cast<uint32_t>(i), first, last, tally);
+    count(tally);
+  });
+}
+
+void PartitionedSearch::stream_chunk(uint32_t chunk, uint32_t first, uint32_t last, Tally& tally) {
+  const SearchChunk& c = tree_.chunks[chunk];
+  tally.bytes += sizeof c;
+  if (!(screen_size(sight_.centre, c.hull_min, c.hull_max, c.extent) >= sight_.target_size)) return;
+  first = std::max(first, c.first_subtree);
+  last = std::min(last, tree_.chunks[chunk + 1].first_subtree);
+  tally.bytes += (last - first) * sizeof refined_[0];
+  bool read = false;
+  for (uint32_t s = first; s < last; ++s) {
+    if (refined_[s] != kOpen) continue;
+    read = true;
+    const uint32_t refined = look(s, tally);
+    signal_below(
+        tree_, s, refined, refined,
+        [&](uint32_t from, uint32_t to) {
+          for (uint32_t below = from; below < to; ++below) open(below, tally);
+        },
+        [](uint32_t, uint32_t) {});
+  }
+  if (!read) return;
+  tally.chunks += mark_read(chunk);
+  for (size_t b = block_of(first); b <= block_of(last - 1); ++b) touch(b);
+}
+
+}  // namespace voyager

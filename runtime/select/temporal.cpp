@@ -1,0 +1,157 @@
+// From the last cut: what may have changed is visited, then what that opens.
+#include <algorithm>
+#include <numeric>
+
+#include "runtime/select/partitioned.h"
+#include "runtime/select/partitioned_blocks.h"
+#include "runtime/select/signal.h"
+
+namespace voyager {
+
+void PartitionedSearch::repair(Search kind, Workers& workers) {
+  const uint64_t due = list_due(kind, workers);
+  if (kind == Search::temporal && streaming_is_cheaper(due)) return stream(workers);
+  visit_due(workers);
+  close_signalled(workers);
+  visit_opened(workers);
+}
+
+// Each block's, in work_ from the block's first place on.
+uint64_t PartitionedSearch::list_due(Search kind, Workers& workers) {
+  const Travel* travel = references_.travel().data();
+  const bool all = kind == Search::temporal_visit;
+  workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
+    Tally tally;
+    for (size_t b = begin; b < end; ++b) {
+      const Block& block = blocks_[b];
+      uint32_t out = block.first;
+      if (block.open != 0) {
+        tally.bytes += (block.last - block.first) * sizeof(Watch);
+        for (uint32_t s = block.first; s < block.last; ++s)
+          if (all ? refined_[s] != 0 : due(watch_[s], travel) && !renew(s)) work_[out++] = s;
+      }
+      signals_[b] = {block.first, out - block.first, 0, 0};
+    }
+    count(tally);
+  });
+  uint64_t listed = 0;
+  for (size_t b = 0; b < blocks_.size(); ++b) listed += signals_[b].visits;
+  return listed;
+}
+
+// A subtree whose reference is forgotten in this frame keeps what slack is left.
+bool PartitionedSearch::renew(uint32_t subtree) {
+  Watch& watch = watch_[subtree];
+  if (watch_reference(watch) != references_.current()) return false;
+  const float slack = slack_left(watch, references_.retired());
+  if (!(slack > 0.0f)) return false;
+  watch.slack = slack;
+  return true;
+}
+
+bool PartitionedSearch::streaming_is_cheaper(uint64_t due) const {
+  uint64_t open = 0;
+  for (const Block& block : blocks_) open += block.open;
+  return static_cast<double>(due) > kStreamingShare * static_cast<double>(open);
+}
+
+// What hangs below consecutive subtrees is consecutive too.
+uint32_t PartitionedSearch::first_below(uint32_t subtree) const {
+  return subtree == tree_.subtrees.size() ? tree_.opens.back()
+                                          : tree_.opens[tree_.subtrees[subtree].first_record];
+}
+
+void PartitionedSearch::visit_due(Workers& workers) {
+  workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
+    Tally tally;
+    uint32_t chunk = kNoChunk;
+    for (size_t b = begin; b < end; ++b) {
+      const Block& block = blocks_[b];
+      Signals& signals = signals_[b];
+      if (signals.visits == 0) continue;
+      touch(b);
+      uint32_t opened = first_below(block.first), closed = first_below(block.last);
+      signals = {opened, signals.visits, 0, 0};
+      for (uint32_t i = 0; i < signals.visits; ++i) {
+        const uint32_t s = work_[block.first + i];
+        read_chunk_of(s, chunk, tally);
+        const uint32_t flipped = look(s, tally);
+        signal_below(
+            tree_, s, flipped, refined_[s],
+            [&](uint32_t from, uint32_t to) {
+              std::iota(&signalled_[opened], &signalled_[opened] + (to - from), from);
+              opened += to - from;
+            },
+            [&](uint32_t from, uint32_t to) {
+              closed -= to - from;
+              std::iota(&signalled_[closed], &signalled_[closed] + (to - from), from);
+            });
+      }
+      signals.opened = opened - signals.first;
+      signals.closed = first_below(block.last) - closed;
+    }
+    count(tally);
+  });
+}
+
+// A subtree whose parent's verdict fell. Those below it need no word: their parents'
+// verdicts fell as well, so they were due themselves and told their own.
+void PartitionedSearch::close_signalled(Workers& workers) {
+  workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
+    for (size_t b = begin; b < end; ++b) {
+      const uint32_t last = first_below(blocks_[b].last);
+      for (uint32_t i = last - signals_[b].closed; i < last; ++i) {
+        close(signalled_[i]);
+        touch(block_of(signalled_[i]));
+      }
+    }
+  });
+}
+
+void PartitionedSearch::visit_opened(Workers& workers) {
+  for (uint32_t count = gather_opened(blocks_.size()); count != 0;) {
+    workers.for_blocks(count, kRoundSubtrees,
+                       [&](size_t begin, size_t end) { visit_round(begin, end); });
+    count = gather_opened((count + kRoundSubtrees - 1) / kRoundSubtrees);
+  }
+}
+
+// Subtrees work_[begin, end), which were closed.
+void PartitionedSearch::visit_round(size_t begin, size_t end) {
+  Tally tally;
+  uint32_t chunk = kNoChunk;
+  const uint32_t first = first_below(work_[begin]);
+  uint32_t opened = first;
+  for (size_t i = begin; i < end; ++i) {
+    const uint32_t s = work_[i];
+    if (tree_.subtrees[s].missing()) {
+      tally.needed_missing = std::min(tally.needed_missing, s);
+      continue;
+    }
+    touch(block_of(s));
+    read_chunk_of(s, chunk, tally);
+    const uint32_t flipped = look(s, tally);
+    signal_below(
+        tree_, s, flipped, refined_[s],
+        [&](uint32_t from, uint32_t to) {
+          std::iota(&signalled_[opened], &signalled_[opened] + (to - from), from);
+          opened += to - from;
+        },
+        [](uint32_t, uint32_t) {});
+  }
+  signals_[begin / kRoundSubtrees] = {first, 0, opened - first, 0};
+  count(tally);
+}
+
+// To the front of work_, ascending.
+uint32_t PartitionedSearch::gather_opened(size_t lists) {
+  uint32_t gathered = 0;
+  for (size_t i = 0; i < lists; ++i) {
+    const auto from = signalled_.begin() + static_cast<std::ptrdiff_t>(signals_[i].first);
+    std::copy_n(from, signals_[i].opened, work_.begin() + gathered);
+    gathered += signals_[i].opened;
+  }
+  return gathered;
+}
+
+}  // namespace voyager
