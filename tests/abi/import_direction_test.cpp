@@ -72,6 +72,17 @@ TEST(ImportDirection, PluginIncludesNothingAboveIt) {
   expect_no_include("plugin", {"tools/", "samples/", "tests/", "bench/", "cuda"});
 }
 
+// A module: it knows the runtime, and nothing that loads it.
+TEST(ImportDirection, CudaImportsTheRuntimeOnly) {
+  expect_no_include("cuda", {"plugin/", "voyager/", "tools/", "samples/", "tests/", "bench/",
+                             "runtime/cpu/", "runtime/reference/"});
+}
+
+TEST(ImportDirection, OnlyTheModuleIncludesCuda) {
+  for (const char* folder : {"tools", "samples", "bench"})
+    expect_no_include(folder, {"cuda/", "cuda", "cub/"});
+}
+
 // A host has voyager/*.h, and so do our examples of hosts.
 TEST(ImportDirection, HostsIncludeOnlyThePublicHeaders) {
   for (const char* folder : {"samples", "tests/headless"}) {

@@ -1,0 +1,37 @@
+# Finds nvcc in CUDACXX, PATH, CUDA_PATH and /usr/local/cuda. Without it the CUDA
+# backend is left out, and a line says so.
+set(VOYAGER_CUDA OFF)
+if(CMAKE_CROSSCOMPILING OR VOYAGER_SANITIZE)
+  message(STATUS "CUDA backend: left out (cross-compiling, or a sanitizer build)")
+  return()
+endif()
+find_program(VOYAGER_NVCC nvcc HINTS $ENV{CUDACXX} ENV CUDA_PATH PATHS /usr/local/cuda PATH_SUFFIXES bin)
+if(DEFINED ENV{CUDACXX})
+  set(VOYAGER_NVCC $ENV{CUDACXX})
+endif()
+if(NOT VOYAGER_NVCC)
+  message(STATUS "CUDA backend: left out (no nvcc in CUDACXX, PATH, CUDA_PATH, /usr/local/cuda)")
+  return()
+endif()
+set(CMAKE_CUDA_COMPILER ${VOYAGER_NVCC})
+# Orin and Hopper as machine code, PTX for what is between and beyond.
+if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
+  set(CMAKE_CUDA_ARCHITECTURES 80-virtual 87-real 90-real 90-virtual)
+endif()
+enable_language(CUDA)
+# Where the host compiler looks by itself: naming such a folder again would change the
+# order in which headers are found.
+list(APPEND CMAKE_CUDA_IMPLICIT_INCLUDE_DIRECTORIES ${CMAKE_CXX_IMPLICIT_INCLUDE_DIRECTORIES})
+if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
+  # CMake before 3.26 does not know that nvcc has C++20.
+  set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
+  set(CMAKE_CUDA20_EXTENSION_COMPILE_OPTION "-std=c++20")
+endif()
+set(CMAKE_CUDA_STANDARD 20)
+find_package(CUDAToolkit REQUIRED)
+if(CUDAToolkit_VERSION VERSION_LESS 12.2)
+  message(STATUS "CUDA backend: left out (CUDA ${CUDAToolkit_VERSION}, 12.2 is the oldest that serves)")
+  return()
+endif()
+set(VOYAGER_CUDA ON)
+message(STATUS "CUDA backend: with CUDA ${CUDAToolkit_VERSION} (${VOYAGER_NVCC})")

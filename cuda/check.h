@@ -1,0 +1,11 @@
+#pragma once
+// The one place where CUDA's errors become ours.
+#include <cuda_runtime_api.h>
+
+namespace voyager::cuda {
+
+// Throws Error: over_budget for want of device memory, no_device where there is no
+// usable device, else internal; the message has `what` and CUDA's own words.
+void check(cudaError_t status, const char* what);
+
+}  // namespace voyager::cuda

@@ -1,0 +1,107 @@
+#pragma once
+// What a view keeps of its cut between frames, on the device; direct-indexed by
+// subtree, so that no result depends on the order in which warps come by.
+#include "cuda/buffer.h"
+#include "cuda/device_tree.h"
+#include "runtime/lod/subtrees.h"
+#include "runtime/select/visit.h"
+#include "runtime/select/watch.h"
+
+namespace voyager::cuda {
+
+inline constexpr uint32_t kBlockSubtrees = 1024;
+inline constexpr uint32_t kLevels = 3;  // of a tier
+
+// Places for a segment of so many nodes: one in eight to spare.
+VOYAGER_HD uint32_t segment_room(uint32_t size) {
+  constexpr uint32_t kAlign = 32;
+  return size == 0 ? 0 : (size + size / 8 + 2 * kAlign - 1) / kAlign * kAlign;
+}
+
+// Consecutive subtrees of one tier. Their cut nodes are in the cut list in three
+// segments, one a level; segments lie in the order of node ids (tier, level, block).
+struct Block {
+  uint32_t first, last;            // subtrees
+  uint32_t first_segment, stride;  // the segment of level l is first_segment + l * stride
+};
+
+// Blocks [first_block, first_block + blocks) are those of the subtrees from `begin` on.
+struct Tier {
+  uint32_t begin, first_block, blocks;
+};
+
+// The cut nodes of a block's level. `room` is more than `size`, so that a frame
+// rewrites only the segments that changed: the rest of it holds kNoNode.
+struct Segment {
+  uint32_t size, first, room;
+};
+
+// The records that a cut node's weight depends on; kNoRecord for a leaf's own, and for
+// the parent of the tree's root.
+struct CutOrigin {
+  uint32_t own, parent;
+};
+
+// Of one frame. The kernels add up work[0]; search_place moves it to work[1], where
+// search_emit and the host find it, and clears it for the next frame.
+struct FrameCounters {
+  unsigned long long nodes_tested, subtrees_visited, chunks_read, bytes_read;
+  unsigned long long entered, left;
+  uint32_t cut_size, list_size;  // nodes, and places in the list; kept from frame to frame
+  uint32_t streamed;             // 1: by streaming
+  uint32_t missing_next;         // ~(least missing node that became open); 0 for none
+  uint32_t due_count;            // entries of due[]
+  uint32_t dirty_count;          // entries of dirty[]
+  uint32_t open_blocks_changed;  // 1: a block has its first open subtree, or no more
+  uint32_t next_chunks;          // streaming's ticket
+  uint32_t signal_head, signal_tail, signals_done;
+};
+
+// As kernels take it.
+struct StateView {
+  Watch* watch;
+  uint32_t* refined;  // bits of slots, and kOpen
+  uint32_t* cut;      // bits of slots
+  const Block* blocks;
+  const Tier* tiers;
+  uint32_t block_count, tier_count;
+  Segment* segments;
+  uint32_t* open_counts;  // by block: open subtrees
+  uint32_t* open_blocks;  // those that had any when the list was last made
+  uint32_t* open_block_count;
+  uint32_t* dirty_flags;  // by block: in dirty[]
+  uint32_t* dirty;        // blocks with nodes that entered or left
+  uint32_t* due;          // subtrees to visit
+  uint32_t* signals;      // to open or close a subtree; kNoSignal where not written yet
+  FrameCounters* work;
+  uint32_t* nodes;    // the cut list: ascending, with kNoNode in between
+  CutOrigin* origin;  // of each place
+  float* weights;     // of each place
+};
+
+inline constexpr uint32_t kNoSignal = 0xffffffffu;
+inline constexpr uint32_t kClose = 0x80000000u;  // beside the subtree; else it is to be opened
+
+class CutState {
+ public:
+  // leaves: of the whole tree, no cut has more nodes. All memory is taken here.
+  CutState(const SearchTree& tree, size_t leaves, bool weights);
+
+  StateView view() const;
+  size_t bytes() const;
+
+ private:
+  Buffer<Watch> watch_;
+  Buffer<uint32_t> refined_, cut_;
+  Buffer<Block> blocks_;
+  Buffer<Tier> tiers_;
+  Buffer<Segment> segments_;
+  Buffer<uint32_t> open_counts_, open_blocks_, open_block_count_, dirty_flags_, dirty_;
+  Buffer<uint32_t> due_, signals_;
+  Buffer<FrameCounters> counters_;
+  Buffer<uint32_t> nodes_;
+  Buffer<CutOrigin> origin_;
+  Buffer<float> weights_;
+};
+
+}  // namespace voyager::cuda

@@ -1,0 +1,33 @@
+#pragma once
+// The device that a backend works on: all of it, or a part of its multiprocessors.
+#include <string>
+
+namespace voyager::cuda {
+
+class Device {
+ public:
+  // multiprocessors: 0 for all, else at most so many, through a green context (CUDA
+  // 12.5); the hardware grants multiples of its granularity, never fewer than asked for.
+  // Throws Error(no_device), Error(unsupported).
+  Device(int ordinal, unsigned multiprocessors);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  // What this thread calls from now on goes to this device. Cheap.
+  void use() const;
+
+  const std::string& name() const { return name_; }
+  unsigned multiprocessors() const { return multiprocessors_; }
+
+ private:
+  void make_green_context(unsigned multiprocessors);
+
+  int ordinal_;
+  std::string name_;
+  unsigned multiprocessors_ = 0;
+  void* green_ = nullptr;    // CUgreenCtx
+  void* context_ = nullptr;  // its CUcontext; null for the whole device
+};
+
+}  // namespace voyager::cuda

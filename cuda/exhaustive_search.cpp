@@ -1,0 +1,80 @@
+#include "cuda/search.h"
+
+namespace voyager::cuda {
+namespace {
+
+class ExhaustiveSearch final : public SceneSearch {
+ public:
+  ExhaustiveSearch(std::shared_ptr<const Device> device, const Scene& scene, bool weights)
+      : device_(std::move(device)),
+        records_(upload(std::span<const NodeRecord>(scene.tree.records))),
+        parent_(upload(std::span<const uint32_t>(scene.tree.parent))),
+        tree_{records_.data(), parent_.data(), static_cast<uint32_t>(scene.tree.size())},
+        scratch_(exhaustive_scratch_bytes(tree_)),
+        nodes_(scene.tree.size()),
+        weights_(weights ? scene.tree.size() : 0),
+        count_(1) {
+    fill(count_, 0);
+  }
+
+  void run(const CutQuery& query) override {
+    device_->use();
+    const Sight sight = make_sight(query);
+    timer_.begin();
+    if (tree_.size != 0)
+      launch_exhaustive(tree_, sight, scratch_.data(), scratch_.bytes(), nodes_.data(),
+                        count_.data(), timer_.stream());
+    timer_.middle();
+    if (tree_.size != 0 && weights_.size() != 0)
+      launch_weights(tree_, sight, nodes_.data(), count_.data(), weights_.data(),
+                     device_->multiprocessors(), timer_.stream());
+    timer_.end();
+  }
+  SearchTimes times() override {
+    device_->use();
+    return timer_.times();
+  }
+  SearchStats stats() override {
+    SearchStats stats;
+    stats.nodes_tested = tree_.size;
+    stats.bytes_read = tree_.size * (sizeof(NodeRecord) + sizeof(uint32_t));
+    return stats;
+  }
+  void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
+    device_->use();
+    timer_.wait();
+    uint32_t size = 0;
+    check(cudaMemcpy(&size, count_.data(), sizeof size, cudaMemcpyDeviceToHost), "cut");
+    cut.resize(size);
+    weights.resize(weights_.size() == 0 ? 0 : size);
+    if (size == 0) return;
+    check(cudaMemcpy(cut.data(), nodes_.data(), size * sizeof(uint32_t), cudaMemcpyDeviceToHost),
+          "cut");
+    if (!weights.empty())
+      check(
+          cudaMemcpy(weights.data(), weights_.data(), size * sizeof(float), cudaMemcpyDeviceToHost),
+          "weights");
+  }
+
+ private:
+  std::shared_ptr<const Device> device_;
+  Buffer<NodeRecord> records_;
+  Buffer<uint32_t> parent_;
+  ExhaustiveTree tree_;
+  Buffer<char> scratch_;
+  Buffer<uint32_t> nodes_;
+  Buffer<float> weights_;
+  Buffer<uint32_t> count_;
+  FrameTimer timer_;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
+                                                      std::shared_ptr<const Scene> scene,
+                                                      bool weights) {
+  device->use();
+  return std::make_unique<ExhaustiveSearch>(std::move(device), *scene, weights);
+}
+
+}  // namespace voyager::cuda

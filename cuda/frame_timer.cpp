@@ -1,0 +1,40 @@
+#include "cuda/head_start.h"
+#include "cuda/search.h"
+
+namespace voyager::cuda {
+
+FrameTimer::FrameTimer() {
+  check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "stream");
+  for (cudaEvent_t& event : events_) check(cudaEventCreate(&event), "event");
+}
+
+FrameTimer::~FrameTimer() {
+  if (stream_ != nullptr) cudaStreamSynchronize(stream_);
+  for (cudaEvent_t event : events_)
+    if (event != nullptr) cudaEventDestroy(event);
+  if (stream_ != nullptr) cudaStreamDestroy(stream_);
+}
+
+void FrameTimer::begin() {
+  give_head_start(stream_);
+  check(cudaEventRecord(events_[0], stream_), "event");
+}
+void FrameTimer::middle() {
+  check(cudaEventRecord(events_[1], stream_), "event");
+}
+void FrameTimer::end() {
+  check(cudaEventRecord(events_[2], stream_), "event");
+}
+void FrameTimer::wait() const {
+  check(cudaStreamSynchronize(stream_), "a frame's search");
+}
+
+SearchTimes FrameTimer::times() const {
+  wait();
+  float search = 0, weights = 0;
+  check(cudaEventElapsedTime(&search, events_[0], events_[1]), "time");
+  check(cudaEventElapsedTime(&weights, events_[1], events_[2]), "time");
+  return {search, weights};
+}
+
+}  // namespace voyager::cuda

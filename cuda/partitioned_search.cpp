@@ -1,0 +1,139 @@
+#include "cuda/search.h"
+
+#include <algorithm>
+
+namespace voyager::cuda {
+namespace {
+
+// Streaming takes over where more than one in so many subtrees has run out of slack:
+// between where it begins to pay on a whole H200 (one in six) and on 16 of its
+// multiprocessors (one in three). bench/NOTES.md has the measurement.
+constexpr uint32_t kStreamingShare = 4;
+
+size_t count_leaves(const LodTree& tree) {
+  return static_cast<size_t>(std::count_if(tree.records.begin(), tree.records.end(),
+                                           [](const NodeRecord& r) { return r.child_count == 0; }));
+}
+
+class PartitionedSearch final : public SceneSearch {
+ public:
+  PartitionedSearch(std::shared_ptr<const Device> device, std::shared_ptr<const DeviceTree> tree,
+                    std::shared_ptr<const Scene> scene, Search kind, bool weights)
+      : device_(std::move(device)),
+        tree_(std::move(tree)),
+        scene_(std::move(scene)),
+        kind_(kind),
+        weights_(weights),
+        state_(scene_->search, count_leaves(scene_->tree), weights) {}
+
+  void run(const CutQuery& query) override;
+  SearchTimes times() override {
+    device_->use();
+    return timer_.times();
+  }
+  SearchStats stats() override;
+  void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override;
+
+ private:
+  FrameCounters counters();
+
+  std::shared_ptr<const Device> device_;
+  std::shared_ptr<const DeviceTree> tree_;
+  std::shared_ptr<const Scene> scene_;
+  Search kind_;
+  bool weights_;
+  CutState state_;
+  References references_;
+  FrameTimer timer_;
+  bool started_ = false;
+};
+
+void PartitionedSearch::run(const CutQuery& query) {
+  device_->use();
+  references_.begin_frame(query);
+  const SearchFrame frame{tree_->view(),
+                          state_.view(),
+                          make_sight(query),
+                          references_.current(),
+                          device_->multiprocessors(),
+                          timer_.stream()};
+  timer_.begin();
+  if (frame.tree.subtree_count != 0) {
+    if (kind_ == Search::streaming || !started_) {
+      launch_streaming(frame);
+    } else if (kind_ == Search::temporal_visit) {
+      launch_temporal_visit(frame);
+    } else {
+      Travels travels;
+      std::copy(references_.travel().begin(), references_.travel().end(), travels.of);
+      travels.retired = references_.retired();
+      launch_temporal(frame, travels, frame.tree.subtree_count / kStreamingShare);
+    }
+    launch_emit(frame, weights_);
+  }
+  timer_.middle();
+  if (frame.tree.subtree_count != 0 && weights_) launch_weigh(frame);
+  timer_.end();
+  started_ = true;
+}
+
+FrameCounters PartitionedSearch::counters() {
+  device_->use();
+  timer_.wait();
+  FrameCounters counters;
+  check(cudaMemcpy(&counters, state_.view().work + 1, sizeof counters, cudaMemcpyDeviceToHost),
+        "counters");
+  return counters;
+}
+
+SearchStats PartitionedSearch::stats() {
+  const FrameCounters c = counters();
+  SearchStats stats;
+  stats.ran = c.streamed != 0 ? Search::streaming : kind_;
+  stats.nodes_tested = c.nodes_tested;
+  stats.subtrees_visited = c.subtrees_visited;
+  stats.chunks_read = c.chunks_read;
+  stats.bytes_read = c.bytes_read;
+  stats.entered = c.entered;
+  stats.left = c.left;
+  return stats;
+}
+
+void PartitionedSearch::read(std::vector<uint32_t>& cut, std::vector<float>& weights) {
+  const size_t places = counters().list_size;
+  const StateView state = state_.view();
+  cut.resize(places);
+  weights.resize(weights_ ? places : 0);
+  if (places != 0)
+    check(cudaMemcpy(cut.data(), state.nodes, places * sizeof(uint32_t), cudaMemcpyDeviceToHost),
+          "cut");
+  if (!weights.empty())
+    check(cudaMemcpy(weights.data(), state.weights, places * sizeof(float), cudaMemcpyDeviceToHost),
+          "weights");
+  size_t used = 0;
+  for (size_t i = 0; i < places; ++i) {
+    if (cut[i] == kNoNode) continue;
+    cut[used] = cut[i];
+    if (weights_) weights[used] = weights[i];
+    ++used;
+  }
+  cut.resize(used);
+  weights.resize(weights_ ? used : 0);
+}
+
+}  // namespace
+
+std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene) {
+  return std::make_shared<DeviceTree>(scene.search, scene.tree);
+}
+
+std::unique_ptr<SceneSearch> create_partitioned_search(std::shared_ptr<const Device> device,
+                                                       std::shared_ptr<const DeviceTree> tree,
+                                                       std::shared_ptr<const Scene> scene,
+                                                       Search kind, bool weights) {
+  device->use();
+  return std::make_unique<PartitionedSearch>(std::move(device), std::move(tree), std::move(scene),
+                                             kind, weights);
+}
+
+}  // namespace voyager::cuda

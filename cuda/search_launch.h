@@ -1,0 +1,51 @@
+#pragma once
+// The kernels of a search, launched on a stream. None waits for the host.
+#include <cuda_runtime_api.h>
+
+#include "cuda/cut_state.h"
+#include "runtime/select/cut.h"
+
+namespace voyager::cuda {
+
+// What a frame's kernels share.
+struct SearchFrame {
+  TreeView tree;
+  StateView state;
+  Sight sight;
+  uint32_t reference;  // of this frame, for what is visited in it
+  unsigned multiprocessors;
+  cudaStream_t stream;
+};
+
+// From References.
+struct Travels {
+  Travel of[kReferences];
+  Travel retired;
+};
+
+// cut_temporal.cu. Visits the open subtrees whose slack has run out; where those are more
+// than max_due, streams in their stead, which is decided on the device.
+void launch_temporal(const SearchFrame& frame, const Travels& travels, uint32_t max_due);
+// Visits all open subtrees.
+void launch_temporal_visit(const SearchFrame& frame);
+// cut_streaming.cu
+void launch_streaming(const SearchFrame& frame);
+// cut_emit.cu: the cut list, ascending; with what weights need, and the weights.
+void launch_emit(const SearchFrame& frame, bool weights);
+void launch_weigh(const SearchFrame& frame);
+
+// cut_exhaustive.cu. Into nodes[] (room for every node) and *count; scratch as
+// exhaustive_scratch_bytes() says.
+struct ExhaustiveTree {
+  const NodeRecord* records;
+  const uint32_t* parent;
+  uint32_t size;
+};
+size_t exhaustive_scratch_bytes(const ExhaustiveTree& tree);
+void launch_exhaustive(const ExhaustiveTree& tree, const Sight& sight, void* scratch,
+                       size_t scratch_bytes, uint32_t* nodes, uint32_t* count, cudaStream_t stream);
+void launch_weights(const ExhaustiveTree& tree, const Sight& sight, const uint32_t* nodes,
+                    const uint32_t* count, float* weights, unsigned multiprocessors,
+                    cudaStream_t stream);
+
+}  // namespace voyager::cuda

@@ -1,0 +1,26 @@
+#pragma once
+// Tests that need a CUDA device.
+#include <cuda_runtime_api.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "cuda/device.h"
+
+namespace voyager::test {
+
+class DeviceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    int devices = 0;
+    const cudaError_t status = cudaGetDeviceCount(&devices);
+    if (status != cudaSuccess || devices == 0)
+      GTEST_SKIP() << "no CUDA device: " << cudaGetErrorString(status);
+  }
+
+  static std::shared_ptr<const cuda::Device> device(unsigned multiprocessors = 0) {
+    return std::make_shared<cuda::Device>(0, multiprocessors);
+  }
+};
+
+}  // namespace voyager::test

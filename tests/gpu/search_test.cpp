@@ -1,0 +1,253 @@
+// The searches on the device against the exhaustive search on the host: the same node
+// ids and the same weights, to the bit, whatever the camera does.
+#include <cstdlib>
+#include <cstring>
+
+#include "cuda/search.h"
+#include "runtime/base/error.h"
+#include "runtime/math/lerp.h"
+#include "tests/gpu/device_test.h"
+#include "tests/support/random_trees.h"
+
+namespace voyager::test {
+namespace {
+
+constexpr Search kSearches[] = {Search::exhaustive, Search::streaming, Search::temporal,
+                                Search::temporal_visit};
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+std::shared_ptr<Scene> scene_of(LodTree tree, uint32_t chunk_bytes = kDefaultChunkBytes) {
+  Workers workers;
+  auto scene = std::make_shared<Scene>(std::pmr::get_default_resource());
+  scene->storage = Storage::lossless;
+  scene->tree = std::move(tree);
+  scene->partition = partition_tree(scene->tree, chunk_bytes);
+  scene->search = make_search_tree(scene->tree, scene->partition, {}, workers);
+  return scene;
+}
+
+struct Result {
+  std::vector<uint32_t> cut;
+  std::vector<float> weights;
+};
+
+bool same(const Result& a, const Result& b) {
+  return a.cut == b.cut && a.weights.size() == b.weights.size() &&
+         (a.weights.empty() ||
+          std::memcmp(a.weights.data(), b.weights.data(), a.weights.size() * sizeof(float)) == 0);
+}
+
+class Oracle {
+ public:
+  explicit Oracle(const Scene& scene) : scene_(scene) {}
+
+  Result at(const CutQuery& query) {
+    search_.run(scene_.tree, {}, query, workers_);
+    Result result;
+    result.cut.assign(search_.cut().begin(), search_.cut().end());
+    for (const uint32_t n : result.cut) {
+      const uint32_t p = scene_.tree.parent[n];
+      result.weights.push_back(interpolation_weight(p != kNoNode,
+                                                    p == kNoNode ? 0.0f : search_.sizes()[p],
+                                                    search_.sizes()[n], query.target_size));
+    }
+    return result;
+  }
+
+ private:
+  const Scene& scene_;
+  ExhaustiveSearch search_;
+  Workers workers_;
+};
+
+class SearchTest : public DeviceTest {
+ protected:
+  static std::unique_ptr<SceneSearch> create(const std::shared_ptr<Scene>& scene, Search kind,
+                                             unsigned multiprocessors = 0) {
+    const auto on = device(multiprocessors);
+    if (kind == Search::exhaustive) return cuda::create_exhaustive_search(on, scene, true);
+    return cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true);
+  }
+
+  static Result run(SceneSearch& search, const CutQuery& query) {
+    Result result;
+    search.run(query);
+    search.read(result.cut, result.weights);
+    return result;
+  }
+
+  // Every search over the whole path, against the oracle.
+  static void expect_equal(const std::shared_ptr<Scene>& scene, const std::vector<CutQuery>& path,
+                           const std::string& name) {
+    std::vector<std::unique_ptr<SceneSearch>> searches;
+    for (const Search kind : kSearches) searches.push_back(create(scene, kind));
+    Oracle oracle(*scene);
+    for (size_t i = 0; i < path.size(); ++i) {
+      const Result expected = oracle.at(path[i]);
+      for (size_t k = 0; k < searches.size(); ++k) {
+        const Result found = run(*searches[k], path[i]);
+        ASSERT_EQ(found.cut.size(), expected.cut.size())
+            << name << ", frame " << i << ", search " << k;
+        ASSERT_TRUE(same(found, expected)) << name << ", frame " << i << ", search " << k;
+      }
+    }
+  }
+};
+
+Vec3f anywhere(std::mt19937& random, float reach) {
+  return {reach * (2 * unit(random) - 1), reach * (2 * unit(random) - 1),
+          reach * (2 * unit(random) - 1)};
+}
+
+// Inside, on faces, an ulp beside them, far away; every kind of target size.
+std::vector<CutQuery> jumps(const LodTree& tree, std::mt19937& random, int count) {
+  std::vector<CutQuery> path;
+  const float targets[] = {1e-30f, 1e-4f, 0.003f, 0.02f, 0.3f, 5.0f, kInfinity};
+  for (int i = 0; i < count; ++i) {
+    const NodeRecord& r = tree.records[random() % tree.size()];
+    const Vec3f middle = 0.5f * (r.box_min + r.box_max);
+    const Vec3f centres[] = {middle,
+                             {r.box_min.x, middle.y, middle.z},
+                             {middle.x, std::nextafter(r.box_max.y, 1e30f), middle.z},
+                             anywhere(random, 150.0f),
+                             anywhere(random, 1e4f),
+                             anywhere(random, 1e17f)};
+    const Vec3f c = centres[random() % 6];
+    const float size = tree.screen_size(static_cast<uint32_t>(random() % tree.size()), c);
+    const float target = random() % 3 == 0 && size > 0 ? size : targets[random() % 7];
+    path.push_back({c, target});
+  }
+  return path;
+}
+
+// Steps of very different lengths, τ* changing a little in every frame.
+std::vector<CutQuery> walk(std::mt19937& random, int count, float target) {
+  std::vector<CutQuery> path;
+  Vec3f c = anywhere(random, 60.0f);
+  float step = 0.02f;
+  for (int i = 0; i < count; ++i) {
+    if (i % 40 == 0) step = std::pow(10.0f, -7.0f + 8.0f * unit(random));
+    if (i % 97 == 96) c = anywhere(random, 100.0f);
+    c = c + step * anywhere(random, 1.0f);
+    path.push_back({c, target * (1.0f + 0.02f * unit(random))});
+  }
+  return path;
+}
+
+TEST_F(SearchTest, EqualTheHostsOnTreesOfEveryShapeAfterEveryJump) {
+  std::mt19937 random(1);
+  for (const TreeShape shape : kTreeShapes)
+    for (const uint32_t nodes : {1u, 2u, 5u, 40u, 3000u, 60000u})
+      for (const Extents extents : {Extents::longest_side, Extents::any}) {
+        const auto scene = scene_of(random_tree(shape, nodes, 7 + nodes, extents),
+                                    nodes % 2 ? kMinChunkBytes : kDefaultChunkBytes);
+        expect_equal(scene, jumps(scene->tree, random, nodes > 10000 ? 12 : 20),
+                     name_of(shape) + " of " + std::to_string(nodes));
+      }
+}
+
+TEST_F(SearchTest, EqualTheHostsAlongWalksThatOutlastTheReferences) {
+  std::mt19937 random(2);
+  for (const TreeShape shape : {TreeShape::four_way, TreeShape::mixture, TreeShape::binary}) {
+    const auto scene = scene_of(random_tree(shape, 100000, 11));
+    for (const float target : {0.004f, 0.05f, 0.5f})
+      expect_equal(scene, walk(random, 700, target), name_of(shape));
+  }
+}
+
+TEST_F(SearchTest, EqualTheHostsOnAMillionNodes) {
+  std::mt19937 random(3);
+  for (const TreeShape shape :
+       {TreeShape::four_way, TreeShape::mixture, TreeShape::star, TreeShape::star_of_stars}) {
+    const auto scene = scene_of(random_tree(shape, 1000000, 5));
+    std::vector<CutQuery> path = walk(random, 60, 0.01f);
+    for (const CutQuery& q : jumps(scene->tree, random, 20)) path.push_back(q);
+    expect_equal(scene, path, name_of(shape));
+  }
+}
+
+TEST_F(SearchTest, ASweepOfGranularityThereAndBackGivesTheSameCuts) {
+  const auto scene = scene_of(random_tree(TreeShape::four_way, 200000, 3));
+  std::vector<CutQuery> path;
+  for (int i = 0; i < 120; ++i) {
+    const int k = i < 60 ? i : 119 - i;
+    path.push_back({{10, -2, 30}, 1e-4f * std::pow(1.2f, static_cast<float>(k))});
+  }
+  expect_equal(scene, path, "sweep");
+}
+
+TEST_F(SearchTest, NothingIsVisitedAndNothingDriftsWhileTheViewerStands) {
+  const auto scene = scene_of(random_tree(TreeShape::four_way, 200000, 4));
+  const auto search = create(scene, Search::temporal);
+  const CutQuery query{{3, -2, 5}, 0.01f};
+  const Result first = run(*search, query);
+  ASSERT_FALSE(first.cut.empty());
+  // Each run waits for 50 µs first, so that 1e5 of them take seconds.
+  for (int i = 0; i < 100000; ++i) search->run(query);
+  EXPECT_TRUE(same(run(*search, query), first));
+  EXPECT_EQ(search->stats().nodes_tested, 0u);
+  EXPECT_EQ(search->stats().entered + search->stats().left, 0u);
+}
+
+TEST_F(SearchTest, ViewsOfOneSceneAreIndependent) {
+  const auto scene = scene_of(random_tree(TreeShape::four_way, 50000, 6));
+  const auto here = create(scene, Search::temporal), there = create(scene, Search::temporal);
+  Oracle oracle(*scene);
+  std::mt19937 random(6);
+  const auto a = walk(random, 100, 0.02f), b = walk(random, 100, 0.1f);
+  for (size_t i = 0; i < a.size(); ++i) {
+    here->run(a[i]);
+    there->run(b[i]);
+    Result found;
+    here->read(found.cut, found.weights);
+    ASSERT_TRUE(same(found, oracle.at(a[i]))) << i;
+    there->read(found.cut, found.weights);
+    ASSERT_TRUE(same(found, oracle.at(b[i]))) << i;
+  }
+}
+
+TEST_F(SearchTest, CountsWhatEntersAndLeaves) {
+  const auto scene = scene_of(random_tree(TreeShape::four_way, 50000, 8));
+  std::mt19937 random(8);
+  for (const Search kind : {Search::streaming, Search::temporal, Search::temporal_visit}) {
+    const auto search = create(scene, kind);
+    std::vector<uint32_t> before;
+    for (const CutQuery& query : walk(random, 60, 0.03f)) {
+      const Result now = run(*search, query);
+      std::vector<uint32_t> difference;
+      std::set_difference(now.cut.begin(), now.cut.end(), before.begin(), before.end(),
+                          std::back_inserter(difference));
+      EXPECT_EQ(search->stats().entered, difference.size());
+      difference.clear();
+      std::set_difference(before.begin(), before.end(), now.cut.begin(), now.cut.end(),
+                          std::back_inserter(difference));
+      EXPECT_EQ(search->stats().left, difference.size());
+      before = now.cut;
+    }
+  }
+}
+
+TEST_F(SearchTest, APartOfTheMultiprocessorsGivesTheSame) {
+  const auto scene = scene_of(random_tree(TreeShape::four_way, 50000, 9));
+  Oracle oracle(*scene);
+  std::mt19937 random(9);
+  for (const Search kind : kSearches) {
+    std::unique_ptr<SceneSearch> search;
+    try {
+      search = create(scene, kind, 16);
+    } catch (const Error& error) {
+      GTEST_SKIP() << error.what();
+    }
+    for (const CutQuery& query : walk(random, 30, 0.02f))
+      ASSERT_TRUE(same(run(*search, query), oracle.at(query)));
+  }
+}
+
+TEST_F(SearchTest, AnEmptyTreeHasAnEmptyCut) {
+  const auto scene = scene_of(LodTree());
+  for (const Search kind : kSearches)
+    EXPECT_TRUE(run(*create(scene, kind), {{0, 0, 0}, 1.0f}).cut.empty());
+}
+
+}  // namespace
+}  // namespace voyager::test
