@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs every test: format, the release build, static
-# analysis, and the sanitizer build. What CI runs. Safe to run again.
+# analysis, the sanitizer build, and aarch64 under qemu-user. What CI runs. Safe
+# to run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh
@@ -22,4 +23,15 @@ step "asan: build and test under AddressSanitizer and UndefinedBehaviorSanitizer
 cmake --preset asan -DVOYAGER_WERROR=ON
 cmake --build --preset asan
 ctest --preset asan -j "$(nproc)"
+
+if [ "$(uname -m)" = aarch64 ]; then
+  step "aarch64: this machine is one, and the steps above were it"
+else
+  step "aarch64: cross-compile, test under qemu-user, compare cuts and bakes"
+  scripts/setup_aarch64.sh
+  cmake --preset aarch64 -DVOYAGER_WERROR=ON
+  cmake --build --preset aarch64
+  ctest --preset aarch64 -j "$(nproc)"
+  scripts/check_aarch64.sh build/release build/aarch64
+fi
 step "done"
