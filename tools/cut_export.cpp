@@ -38,7 +38,7 @@ void export_cut(const std::string& scene_path, const Camera& camera, double tau,
   const VoyFrustum f = camera.frustum();
   frame.camera.fx = camera.width / (f.right - f.left);
   frame.tau = tau;
-  DrawList draws(scene, Lod::cut, std::pmr::get_default_resource());
+  DrawList draws(scene, Lod::cut, Search::exhaustive, std::pmr::get_default_resource());
   draws.update(frame, workers);
 
   GaussianCloud cloud;

@@ -69,6 +69,7 @@ int main(int argc, char** argv) try {
   voyager::tools::add_export(app);
   voyager::tools::add_info(app);
   voyager::tools::add_render(app);
+  voyager::tools::add_bench(app);
   return parse_and_run(app, argc, argv);
 } catch (...) {
   return voyager::tools::kMachine;  // no memory even for the message

@@ -27,6 +27,7 @@ struct Arguments {
   std::vector<std::string> inputs;
   std::string output;
   Quality quality = Quality::compact;
+  uint32_t chunk_bytes = kDefaultChunkBytes;
   bool verify = false;
 };
 
@@ -52,13 +53,24 @@ void require_sound(const std::string& path, const std::vector<std::string>& find
               fmt::format("{}: the tree broke {} invariants", path, findings.size()));
 }
 
-// Reads back what was written: every chunk is whole, and its nodes are the tree's.
-void verify_file(const std::string& path, const LodTree& tree) {
+template <class A, class B>
+bool same_bytes(const A& a, const B& b) {
+  return std::ranges::equal(std::as_bytes(std::span(a)), std::as_bytes(std::span(b)));
+}
+
+// Reads back what was written: every chunk is whole, and its subtrees and their nodes
+// are those of the partition and the tree.
+void verify_file(const std::string& path, const LodTree& tree, const Partition& partition) {
   const SceneFile file(open_file_source(path));
   for (uint32_t i = 0; i < file.info().chunk_count; ++i) {
     const Chunk chunk = file.read_chunk(i);
-    const auto written = std::span(tree.records).subspan(chunk.first_node, chunk.records.size());
-    if (!std::ranges::equal(std::as_bytes(std::span(chunk.records)), std::as_bytes(written)))
+    const auto written =
+        std::span(partition.subtrees).subspan(chunk.first_subtree, chunk.subtrees.size());
+    std::vector<NodeRecord> records;
+    for (const Subtree& subtree : written)
+      for (uint32_t slot = 0; slot < subtree.node_count(); ++slot)
+        records.push_back(tree.records[subtree.node(slot)]);
+    if (!same_bytes(chunk.subtrees, written) || !same_bytes(chunk.records, records))
       throw Error(ErrorCode::io,
                   fmt::format("{}: chunk {}: found other nodes than were written", path, i));
   }
@@ -72,10 +84,13 @@ void bake(const Arguments& arguments) {
   Workers workers;
   const BakedScene baked = build_tree(read_all(arguments.inputs, progress), workers, progress);
   if (arguments.verify) require_sound(arguments.output, validate(baked));
-  write_scene_file(baked, arguments.output, arguments.quality, workers, progress);
-  if (arguments.verify) verify_file(arguments.output, baked.tree);
-  fmt::print("{}: {} Gaussians, {} nodes, {} bytes, {:.1f} s{}\n", arguments.output,
-             baked.leaves.size(), baked.tree.size(), open_file_source(arguments.output)->size(),
+  const Partition partition = partition_tree(baked.tree, arguments.chunk_bytes);
+  if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
+  write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
+  if (arguments.verify) verify_file(arguments.output, baked.tree, partition);
+  fmt::print("{}: {} Gaussians, {} nodes, {} subtrees, {} chunks, {} bytes, {:.1f} s{}\n",
+             arguments.output, baked.leaves.size(), baked.tree.size(), partition.subtrees.size(),
+             partition.chunk_count(), open_file_source(arguments.output)->size(),
              watch.milliseconds() / 1000, arguments.verify ? ", verified" : "");
   if (const ImportReport& report = baked.leaves.report; report.dropped() + report.repaired() > 0)
     fmt::print("{} Gaussians dropped, {} repaired (voyager info {} tells which)\n",
@@ -98,8 +113,14 @@ void add_bake(CLI::App& app) {
       *command, "--quality", arguments->quality,
       {{"compact", Quality::compact}, {"lossless", Quality::lossless}},
       "compact quantises (errors in docs/voy-format.md); lossless keeps the input's own words");
+  command
+      ->add_option("--chunk-bytes", arguments->chunk_bytes,
+                   "Bytes of search records a chunk, at most; the default is a warp's part of "
+                   "sm_87's shared memory at full residency")
+      ->check(CLI::Range(kMinChunkBytes, kMaxChunkBytes))
+      ->capture_default_str();
   command->add_flag("--verify", arguments->verify,
-                    "Check every invariant of the tree, and read the file back");
+                    "Check every invariant of the tree and its partition, and read the file back");
   command->footer("Example: voyager bake city.ply -o city.voy --quality lossless --verify");
   command->callback([arguments] { bake(*arguments); });
 }

@@ -10,5 +10,6 @@ void add_bake(CLI::App& app);
 void add_export(CLI::App& app);
 void add_info(CLI::App& app);
 void add_render(CLI::App& app);
+void add_bench(CLI::App& app);
 
 }  // namespace voyager::tools

@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "runtime/format/reader.h"
 #include "tools/commands/commands.h"
 #include "voyager/voyager.hpp"
 
@@ -12,13 +13,27 @@ namespace {
 constexpr const char* kStorageNames[] = {"flat", "lossless", "compact"};
 constexpr const char* kNoteKinds[] = {"omitted", "repaired", "dropped", "damaged"};
 
-void print_text(const std::string& path, const VoySceneInfo& info,
+// What only the file says: how the tree is cut up. Zeros for a flat scene.
+struct Partitioning {
+  uint32_t subtrees = 0, tiers = 0, chunk_bytes = 0;
+};
+
+Partitioning partitioning(const std::string& path, const VoySceneInfo& info) {
+  if (info.storage == VOY_SCENE_STORAGE_FLAT) return {};
+  const SceneFile file(open_file_source(path));
+  return {file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes};
+}
+
+void print_text(const std::string& path, const VoySceneInfo& info, const Partitioning& partition,
                 const std::vector<VoySceneNote>& notes) {
   fmt::print("{}: {} scene\n", path, kStorageNames[info.storage]);
   fmt::print("  Gaussians     {}\n", info.gaussianCount);
   if (info.storage != VOY_SCENE_STORAGE_FLAT)
     fmt::print("  nodes         {} in {} levels, {} chunks ({} damaged)\n", info.nodeCount,
                info.treeDepth, info.chunkCount, info.damagedChunkCount);
+  if (info.storage != VOY_SCENE_STORAGE_FLAT)
+    fmt::print("  subtrees      {} in {} tiers, chunks of up to {} bytes of search records\n",
+               partition.subtrees, partition.tiers, partition.chunk_bytes);
   fmt::print("  SH degree     {}\n", info.shDegree);
   fmt::print("  antialiased   {}\n", info.antialiased ? "yes" : "no");
   fmt::print("  origin        {} {} {} m\n", info.origin[0], info.origin[1], info.origin[2]);
@@ -36,7 +51,7 @@ void print_text(const std::string& path, const VoySceneInfo& info,
                                                    : fmt::format("{}", note.count));
 }
 
-void print_json(const std::string& path, const VoySceneInfo& info,
+void print_json(const std::string& path, const VoySceneInfo& info, const Partitioning& partition,
                 const std::vector<VoySceneNote>& notes) {
   nlohmann::ordered_json json = {{"file", path},
                                  {"storage", kStorageNames[info.storage]},
@@ -45,6 +60,9 @@ void print_json(const std::string& path, const VoySceneInfo& info,
                                  {"tree_depth", info.treeDepth},
                                  {"chunks", info.chunkCount},
                                  {"damaged_chunks", info.damagedChunkCount},
+                                 {"subtrees", partition.subtrees},
+                                 {"tiers", partition.tiers},
+                                 {"chunk_bytes", partition.chunk_bytes},
                                  {"sh_degree", info.shDegree},
                                  {"antialiased", info.antialiased != 0},
                                  {"origin", info.origin},
@@ -77,7 +95,8 @@ void add_info(CLI::App& app) {
   command->callback([path, json] {
     const voy::Device device = voy::Device::create();
     const voy::Scene scene = device.open_scene(*path);
-    (*json ? print_json : print_text)(*path, scene.info(), scene.notes());
+    const VoySceneInfo info = scene.info();
+    (*json ? print_json : print_text)(*path, info, partitioning(*path, info), scene.notes());
   });
 }
 
