@@ -17,8 +17,8 @@ struct CutQuery {
   float target_size;  // τ* = target_size(τ, f_x) of runtime/math/screen_size.h; > 0, +inf allowed
 
   bool operator==(const CutQuery& other) const {
-    return centre.x == other.centre.x && centre.y == other.centre.y &&
-           centre.z == other.centre.z && target_size == other.target_size;
+    return centre.x == other.centre.x && centre.y == other.centre.y && centre.z == other.centre.z &&
+           target_size == other.target_size;
   }
 };
 
