@@ -1,103 +1,13 @@
-// From the state of a view to its cut list: node ids, ascending, and weights (METHOD §4).
+// From the state of a view to its cut list: node ids, ascending.
 #include <algorithm>
 #include <cub/block/block_scan.cuh>
 
 #include "cuda/cut_visit.cuh"
 #include "cuda/grid.h"
 #include "cuda/search_launch.h"
-#include "runtime/math/lerp.h"
 
 namespace voyager::cuda {
 namespace {
-
-// ------------------------------------------------------------ places in the list
-
-constexpr unsigned kScanThreads = 1024, kScanItems = 4;
-constexpr unsigned kScanTile = kScanThreads * kScanItems;
-using BlockScan = cub::BlockScan<uint32_t, kScanThreads, cub::BLOCK_SCAN_WARP_SCANS>;
-
-// One thread block; returns the sum. out(i, item, sum of those before).
-template <class In, class Out>
-__device__ uint32_t scan(uint32_t count, BlockScan::TempStorage& storage, const In& in,
-                         const Out& out) {
-  uint32_t before = 0;
-  for (uint32_t tile = 0; tile < count; tile += kScanTile) {
-    uint32_t items[kScanItems], sums[kScanItems], total;
-    const uint32_t first = tile + threadIdx.x * kScanItems;
-    for (unsigned k = 0; k < kScanItems; ++k) items[k] = first + k < count ? in(first + k) : 0;
-    BlockScan(storage).ExclusiveSum(items, sums, total);
-    __syncthreads();
-    for (unsigned k = 0; k < kScanItems; ++k)
-      if (first + k < count) out(first + k, items[k], before + sums[k]);
-    before += total;
-  }
-  return before;
-}
-
-__device__ bool outgrown(const StateView& state, const Block& block) {
-  bool any = false;
-  for (uint32_t level = 0; level < kLevels; ++level) {
-    const Segment& segment = state.segments[block.first_segment + level * block.stride];
-    any |= segment.size > segment.room;
-  }
-  return any;
-}
-
-// New places for all segments, with new room; every block with an open subtree is to
-// be written. Rare: one in eight of a segment's nodes must be new.
-__device__ uint32_t move_segments(const StateView& state, BlockScan::TempStorage& storage) {
-  return scan(
-      kLevels * state.block_count, storage,
-      [&](uint32_t i) { return segment_room(state.segments[i].size); },
-      [&](uint32_t i, uint32_t room, uint32_t before) {
-        state.segments[i].first = before;
-        state.segments[i].room = room;
-      });
-}
-
-// `list`: of blocks, those that are open.
-__device__ uint32_t list_open(const StateView& state, BlockScan::TempStorage& storage,
-                              uint32_t* list) {
-  return scan(
-      state.block_count, storage, [&](uint32_t b) { return state.open_counts[b] != 0 ? 1u : 0u; },
-      [&](uint32_t b, uint32_t is_open, uint32_t before) {
-        if (is_open != 0) list[before] = b;
-      });
-}
-
-// Where each block's nodes go, which blocks are to be written, which are open, and the
-// frame's counters.
-__global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
-  __shared__ BlockScan::TempStorage storage;
-  FrameCounters* work = state.work;
-  uint32_t dirty = work[0].dirty_count, list_size = work[1].list_size;
-  const bool open_changed = work[0].open_blocks_changed != 0;
-  bool outgrew = false;
-  for (uint32_t i = threadIdx.x; i < dirty; i += kScanThreads) {
-    const uint32_t b = state.dirty[i];
-    state.dirty_flags[b] = 0;
-    outgrew |= outgrown(state, state.blocks[b]);
-  }
-  if (__syncthreads_or(outgrew)) {
-    list_size = move_segments(state, storage);
-    dirty = list_open(state, storage, state.dirty);
-  }
-  if (open_changed) {
-    const uint32_t open = list_open(state, storage, state.open_blocks);
-    if (threadIdx.x == 0) *state.open_block_count = open;
-  }
-  __syncthreads();
-  if (threadIdx.x == 0) {
-    const uint32_t before = work[1].cut_size;
-    work[1] = work[0];
-    work[1].cut_size = static_cast<uint32_t>(before + work[0].entered - work[0].left);
-    work[1].list_size = list_size;
-    work[1].dirty_count = dirty;
-    work[0] = FrameCounters{};
-  }
-}
-
-// ----------------------------------------------------------------------- the list
 
 constexpr unsigned kEmitThreads = 1024;
 constexpr unsigned kItems = kBlockSubtrees / kEmitThreads;
@@ -225,56 +135,14 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
   }
 }
 
-// -------------------------------------------------------------------- the weights
-
-__device__ float record_size(const TreeView& tree, uint32_t record, const Sight& sight) {
-  const SearchRecord r = load_record(tree.records + record);
-  return screen_size(sight.centre, r.box_min, r.box_max, r.extent);
-}
-
-__device__ float own_size(const TreeView& tree, uint32_t record, uint32_t node,
-                          const Sight& sight) {
-  if (record != kNoRecord) return record_size(tree, record, sight);
-  if (tree.leaves == nullptr) return 0.0f;
-  const NodeRecord& leaf = tree.leaves[node];
-  return screen_size(sight.centre, leaf.box_min, leaf.box_max, leaf.extent);
-}
-
-constexpr unsigned kWeightThreads = 256;
-
-// A place a thread: siblings are neighbours, and share their parent's record.
-__global__ void __launch_bounds__(kWeightThreads)
-    search_weigh(TreeView tree, StateView state, Sight sight) {
-  const uint32_t places = state.work[1].list_size;
-  const uint32_t threads = gridDim.x * kWeightThreads;
-  for (uint32_t i = blockIdx.x * kWeightThreads + threadIdx.x; i < places; i += threads) {
-    const uint32_t node = state.nodes[i];
-    if (node == kNoNode) continue;
-    const CutOrigin origin = state.origin[i];
-    const bool has_parent = origin.parent != kNoRecord;
-    const float parent = has_parent ? record_size(tree, origin.parent, sight) : 0.0f;
-    state.weights[i] = interpolation_weight(
-        has_parent, parent, own_size(tree, origin.own, node, sight), sight.target_size);
-  }
-}
-
 }  // namespace
 
 void launch_emit(const SearchFrame& f, bool weights) {
-  search_place<<<1, kScanThreads, 0, f.stream>>>(f.state);
-  check(cudaGetLastError(), "search_place");
   const auto kernel = weights ? search_emit<true> : search_emit<false>;
   static const unsigned resident = resident_blocks(search_emit<true>, kEmitThreads, 1);
   kernel<<<std::min(f.state.block_count, f.multiprocessors * resident), kEmitThreads, 0,
            f.stream>>>(f.tree, f.state);
   check(cudaGetLastError(), "search_emit");
-}
-
-void launch_weigh(const SearchFrame& f) {
-  static const unsigned resident = resident_blocks(search_weigh, kWeightThreads, 1);
-  search_weigh<<<f.multiprocessors * resident, kWeightThreads, 0, f.stream>>>(f.tree, f.state,
-                                                                              f.sight);
-  check(cudaGetLastError(), "search_weigh");
 }
 
 }  // namespace voyager::cuda

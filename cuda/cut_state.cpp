@@ -81,14 +81,4 @@ StateView CutState::view() const {
           weights_.data()};
 }
 
-size_t CutState::bytes() const {
-  size_t bytes = watch_.bytes() + blocks_.bytes() + tiers_.bytes() + segments_.bytes() +
-                 counters_.bytes() + origin_.bytes() + weights_.bytes();
-  for (const Buffer<uint32_t>* part :
-       {&refined_, &cut_, &open_counts_, &open_blocks_, &open_block_count_, &dirty_flags_, &dirty_,
-        &due_, &signals_, &nodes_})
-    bytes += part->bytes();
-  return bytes;
-}
-
 }  // namespace voyager::cuda

@@ -49,7 +49,6 @@ struct FrameCounters {
   unsigned long long entered, left;
   uint32_t cut_size, list_size;  // nodes, and places in the list; kept from frame to frame
   uint32_t streamed;             // 1: by streaming
-  uint32_t missing_next;         // ~(least missing node that became open); 0 for none
   uint32_t due_count;            // entries of due[]
   uint32_t dirty_count;          // entries of dirty[]
   uint32_t open_blocks_changed;  // 1: a block has its first open subtree, or no more
@@ -88,7 +87,6 @@ class CutState {
   CutState(const SearchTree& tree, size_t leaves, bool weights);
 
   StateView view() const;
-  size_t bytes() const;
 
  private:
   Buffer<Watch> watch_;

@@ -48,8 +48,8 @@ __device__ inline void read_subtrees(const TreeView& tree, const StateView& stat
     const uint32_t subtree = subtree_of(ticket, there ? base + group_in_warp() : base);
     const Known known = load_known(state, subtree);
     const SearchSubtree s = load_subtree(tree, subtree);
-    // Without an entry in a sound chunk: the tree's root, or one that hangs from a missing chunk.
-    bool open = there && (s.entry != kNoRecord || s.root == 0);
+    // Without an entry: the tree's root.
+    bool open = there;
     if (open && s.entry != kNoRecord) {
       open = judge(load_record(tree.records + s.entry), sight).refined;
       if (lane_in_group() == 0) ++tally.tested;

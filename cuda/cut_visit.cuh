@@ -83,7 +83,7 @@ struct Tally {
   uint32_t tested = 0, visited = 0, hulls = 0, chunks = 0, entered = 0, left = 0;
 
   __device__ void flush(FrameCounters* counters) const {
-    add(&counters->nodes_tested, tested);
+    add(&counters->nodes_tested, tested + hulls);
     add(&counters->subtrees_visited, visited);
     add(&counters->chunks_read, chunks);
     add(&counters->bytes_read,
@@ -155,10 +155,6 @@ __device__ inline void count_change(const StateView& state, uint32_t subtree, ui
   }
 }
 
-__device__ inline void note_missing(const StateView& state, uint32_t node) {
-  if (lane_in_group() == 0) atomicMax(&state.work->missing_next, ~node);
-}
-
 // What was known of a subtree: loaded early, so that it is there when it is needed.
 struct Known {
   uint32_t refined = 0, cut = 0;
@@ -167,22 +163,21 @@ __device__ inline Known load_known(const StateView& state, uint32_t subtree) {
   return {state.refined[subtree], state.cut[subtree]};
 }
 
-// An open subtree takes its new verdicts. A missing one is open without any, and is
-// due in every frame that needs it.
+// An open subtree takes its new verdicts.
 __device__ inline void settle(const StateView& state, const SearchSubtree& s, uint32_t subtree,
                               const Known& known, const Visit& v, uint32_t reference, bool active,
                               Tally& tally) {
+  __syncwarp();  // `known` was read by all lanes before one writes
   if (!active) return;
   const bool was_open = (known.refined & kOpen) != 0;
   if (lane_in_group() == 0) {
-    state.watch[subtree] = make_watch(s.missing() ? 0.0f : v.slack, v.extent, reference);
+    state.watch[subtree] = make_watch(v.slack, v.extent, reference);
     if (v.refined != known.refined) state.refined[subtree] = v.refined;
     if (v.cut != known.cut) state.cut[subtree] = v.cut;
     ++tally.visited;
   }
   if (v.cut != known.cut || !was_open)
     count_change(state, subtree, s.child_count, known.cut, v.cut, was_open ? 0 : 1, tally);
-  if (s.missing()) note_missing(state, s.root);
 }
 
 // Also for one that is closed. Called by whole groups.

@@ -102,4 +102,12 @@ void Device::use() const {
 }
 #endif
 
+void Device::use_quietly() const noexcept {
+  try {
+    use();
+  } catch (const Error&) {
+    return;
+  }
+}
+
 }  // namespace voyager::cuda

@@ -6,8 +6,8 @@ namespace voyager::cuda {
 
 class Device {
  public:
-  // multiprocessors: 0 for all, else at most so many, through a green context (CUDA
-  // 12.5); the hardware grants multiples of its granularity, never fewer than asked for.
+  // multiprocessors: 0 for all, else at least so many, through a green context (CUDA
+  // 12.5): the hardware grants them in groups.
   // Throws Error(no_device), Error(unsupported).
   Device(int ordinal, unsigned multiprocessors);
   ~Device();
@@ -16,6 +16,8 @@ class Device {
 
   // What this thread calls from now on goes to this device. Cheap.
   void use() const;
+  // For destructors: what fails has failed before.
+  void use_quietly() const noexcept;
 
   const std::string& name() const { return name_; }
   unsigned multiprocessors() const { return multiprocessors_; }

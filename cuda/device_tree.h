@@ -36,10 +36,6 @@ class DeviceTree {
             static_cast<uint32_t>(subtrees_.size()),
             static_cast<uint32_t>(chunks_.size() == 0 ? 0 : chunks_.size() - 1)};
   }
-  size_t bytes() const {
-    return subtrees_.bytes() + records_.bytes() + opens_.bytes() + chunks_.bytes() +
-           leaves_.bytes();
-  }
 
  private:
   Buffer<SearchSubtree> subtrees_;

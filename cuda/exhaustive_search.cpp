@@ -1,4 +1,6 @@
+#include "cuda/frame_timer.h"
 #include "cuda/search.h"
+#include "cuda/search_launch.h"
 
 namespace voyager::cuda {
 namespace {
@@ -16,6 +18,9 @@ class ExhaustiveSearch final : public SceneSearch {
         count_(1) {
     fill(count_, 0);
   }
+
+  // What it frees belongs to the device's context.
+  ~ExhaustiveSearch() override { device_->use_quietly(); }
 
   void run(const CutQuery& query) override {
     device_->use();

@@ -1,14 +1,25 @@
+#include "cuda/frame_timer.h"
+
+#include "cuda/check.h"
 #include "cuda/head_start.h"
-#include "cuda/search.h"
 
 namespace voyager::cuda {
 
 FrameTimer::FrameTimer() {
-  check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "stream");
-  for (cudaEvent_t& event : events_) check(cudaEventCreate(&event), "event");
+  try {
+    check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "stream");
+    for (cudaEvent_t& event : events_) check(cudaEventCreate(&event), "event");
+  } catch (...) {
+    release();
+    throw;
+  }
 }
 
 FrameTimer::~FrameTimer() {
+  release();
+}
+
+void FrameTimer::release() {
   if (stream_ != nullptr) cudaStreamSynchronize(stream_);
   for (cudaEvent_t event : events_)
     if (event != nullptr) cudaEventDestroy(event);

@@ -28,6 +28,9 @@ class CudaBackend final : public Backend {
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                              const SearchDesc& desc, std::pmr::memory_resource*,
                                              Workers&) override {
+    if (!scene->damaged_chunks.empty())
+      throw Error(ErrorCode::damaged_chunk, scene->damaged_chunks.front().message +
+                                                " (CUDA searches whole scenes in this version)");
     if (desc.kind == Search::exhaustive)
       return create_exhaustive_search(device_, std::move(scene), desc.weights);
     device_->use();

@@ -1,6 +1,11 @@
-#include "cuda/search.h"
-
 #include <algorithm>
+#include <utility>
+
+#include "cuda/cut_state.h"
+#include "cuda/frame_timer.h"
+#include "cuda/search.h"
+#include "cuda/search_launch.h"
+#include "runtime/select/references.h"
 
 namespace voyager::cuda {
 namespace {
@@ -25,6 +30,9 @@ class PartitionedSearch final : public SceneSearch {
         kind_(kind),
         weights_(weights),
         state_(scene_->search, count_leaves(scene_->tree), weights) {}
+
+  // What it frees belongs to the device's context.
+  ~PartitionedSearch() override { device_->use_quietly(); }
 
   void run(const CutQuery& query) override;
   SearchTimes times() override {
@@ -57,9 +65,10 @@ void PartitionedSearch::run(const CutQuery& query) {
                           references_.current(),
                           device_->multiprocessors(),
                           timer_.stream()};
+  const bool from_nothing = !std::exchange(started_, false);  // should a launch fail, too
   timer_.begin();
   if (frame.tree.subtree_count != 0) {
-    if (kind_ == Search::streaming || !started_) {
+    if (kind_ == Search::streaming || from_nothing) {
       launch_streaming(frame);
     } else if (kind_ == Search::temporal_visit) {
       launch_temporal_visit(frame);
@@ -69,6 +78,7 @@ void PartitionedSearch::run(const CutQuery& query) {
       travels.retired = references_.retired();
       launch_temporal(frame, travels, frame.tree.subtree_count / kStreamingShare);
     }
+    launch_place(frame);
     launch_emit(frame, weights_);
   }
   timer_.middle();

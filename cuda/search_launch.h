@@ -30,8 +30,10 @@ void launch_temporal(const SearchFrame& frame, const Travels& travels, uint32_t 
 void launch_temporal_visit(const SearchFrame& frame);
 // cut_streaming.cu
 void launch_streaming(const SearchFrame& frame);
-// cut_emit.cu: the cut list, ascending; with what weights need, and the weights.
+// cut_place.cu, cut_emit.cu: the cut list, ascending, and for weights what they depend on.
+void launch_place(const SearchFrame& frame);
 void launch_emit(const SearchFrame& frame, bool weights);
+// weights.cu
 void launch_weigh(const SearchFrame& frame);
 
 // cut_exhaustive.cu. Into nodes[] (room for every node) and *count; scratch as

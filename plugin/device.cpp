@@ -29,7 +29,8 @@ void check_version(uint32_t host) {
 VoyBackend choose(const VoyBackend& wanted) {
   check_enum(wanted, VOY_BACKEND_REFERENCE, "backend");
   if (wanted == VOY_BACKEND_CUDA)
-    throw ApiError(VOY_ERROR_NO_DEVICE, "backend CUDA: this build has no CUDA backend");
+    throw ApiError(VOY_ERROR_NO_DEVICE,
+                   "backend CUDA: found a request to draw, this version only searches with CUDA");
   return wanted == VOY_BACKEND_AUTO ? VOY_BACKEND_CPU : wanted;
 }
 

@@ -16,7 +16,7 @@ struct BackendModuleOptions {
 };
 
 // What a module exports as voyager_backend_module. The two sides share C++ types, so
-// they must come from one build: stamp says which.
+// they must come from one build; stamp (version, compiler, a size) tells most others.
 struct BackendModule {
   const char* stamp;
   // Null on failure, with *code and a terminated message of at most `size` bytes.

@@ -16,7 +16,7 @@ enum class Search {
 struct SearchStats {
   Search ran =
       Search::exhaustive;     // a temporal search starts with, and may fall back to, streaming
-  uint64_t nodes_tested = 0;  // evaluations of the predicate
+  uint64_t nodes_tested = 0;  // evaluations of the predicate, those of hulls included
   uint64_t subtrees_visited = 0;
   uint64_t chunks_read = 0;        // that hold a visited subtree; exhaustive: 0
   uint64_t bytes_read = 0;         // of search records, subtree tables, chunk hulls and kept state

@@ -69,6 +69,7 @@ void PartitionedSearch::stream_tier(uint32_t first, uint32_t last, Workers& work
 void PartitionedSearch::stream_chunk(uint32_t chunk, uint32_t first, uint32_t last, Tally& tally) {
   const SearchChunk& c = tree_.chunks[chunk];
   tally.bytes += sizeof c;
+  ++tally.tested;
   if (!(screen_size(sight_.centre, c.hull_min, c.hull_max, c.extent) >= sight_.target_size)) return;
   first = std::max(first, c.first_subtree);
   last = std::min(last, tree_.chunks[chunk + 1].first_subtree);

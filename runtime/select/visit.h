@@ -23,7 +23,7 @@ inline Sight make_sight(const CutQuery& query) {
           static_cast<float>(inverse_target_size(query.target_size))};
 }
 
-// Error bounds of slack(), derived in docs/lod-selection.md.
+// Error bounds of the slack, derived in docs/lod-selection.md.
 inline constexpr float kSlackRounding = 0x1p-18f;  // of distance + reach
 inline constexpr float kSlackFloor = 1e-18f;       // metres: squares below it underflow
 
