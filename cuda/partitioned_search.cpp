@@ -13,7 +13,7 @@ namespace {
 // Streaming takes over where more than one in so many subtrees has run out of slack:
 // between where it begins to pay on a whole H200 (one in six) and on 16 of its
 // multiprocessors (one in three). bench/NOTES.md has the measurement.
-constexpr uint32_t kStreamingShare = 4;
+constexpr uint32_t kSubtreesADue = 4;
 
 size_t count_leaves(const LodTree& tree) {
   return static_cast<size_t>(std::count_if(tree.records.begin(), tree.records.end(),
@@ -76,7 +76,7 @@ void PartitionedSearch::run(const CutQuery& query) {
       Travels travels;
       std::copy(references_.travel().begin(), references_.travel().end(), travels.of);
       travels.retired = references_.retired();
-      launch_temporal(frame, travels, frame.tree.subtree_count / kStreamingShare);
+      launch_temporal(frame, travels, frame.tree.subtree_count / kSubtreesADue);
     }
     launch_place(frame);
     launch_emit(frame, weights_);

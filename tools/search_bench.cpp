@@ -105,6 +105,9 @@ nlohmann::ordered_json time_search(Backend& backend, const std::shared_ptr<const
           {"bytes_read", totals.bytes / frames},
           {"entered", totals.entered / frames},
           {"left", totals.left / frames},
+          {"changed_share", cut.empty() ? 0.0
+                                        : (totals.entered + totals.left) / 2 / frames /
+                                              static_cast<double>(cut.size())},
           {"streamed_frames", totals.streamed},
           {"last_cut", cut.size()}};
 }

@@ -96,8 +96,10 @@ class Builder {
   uint32_t last_root(const SubtreeRange& range, size_t tier) const {
     if (range.last >= out_.tier_begin[tier + 1])
       return partition_.level_begin[level_of(tier) + 1] - 1;
-    for (const SubtreeRange& next : missing_)
-      if (next.first == range.last) return next.first_root;
+    const auto after = std::lower_bound(
+        missing_.begin(), missing_.end(), range.last,
+        [](const SubtreeRange& other, uint32_t subtree) { return other.first < subtree; });
+    if (after != missing_.end() && after->first == range.last) return after->first_root;
     const Subtree& next = partition_.subtrees[range.last];
     return next.repeats_root ? next.root : next.root - 1;
   }

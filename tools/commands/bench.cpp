@@ -100,6 +100,7 @@ Json bench_search(const Arguments& arguments, Backend& backend,
 void bench(const Arguments& arguments) {
   require_extension("--json", arguments.json, {".json"});
   require_distinct({arguments.json}, {arguments.scene, arguments.cameras});
+  AtomicFile file(arguments.json);  // refused before the work, not after it
   Workers workers;
   const auto scene =
       load_scene(open_file_source(arguments.scene), std::pmr::get_default_resource(), workers);
@@ -112,7 +113,7 @@ void bench(const Arguments& arguments) {
                  {"cameras", arguments.cameras},
                  {"version", VOYAGER_VERSION},
                  {"device", backend->device_name()},
-                 {"multiprocessors", arguments.multiprocessors},
+                 {"multiprocessors_asked", arguments.multiprocessors},
                  {"tau", arguments.tau},
                  {"leaves", scene->leaf_count},
                  {"nodes", scene->tree.size()},
@@ -120,7 +121,6 @@ void bench(const Arguments& arguments) {
                  {"chunks", scene->search.chunk_count()},
                  {"search_bytes", scene->search.bytes()}};
   report["searches"] = bench_search(arguments, *backend, scene, workers);
-  AtomicFile file(arguments.json);
   const std::string text = report.dump(2) + "\n";
   file.write(std::as_bytes(std::span(text)));
   file.commit();
