@@ -44,7 +44,7 @@ __global__ void __launch_bounds__(kThreads)
     if (threadIdx.x == 0) found_count = 0;
     __syncthreads();
     const Block block = state.blocks[state.open_blocks[i]];
-    bool gone[kRounds];  // what was known of it, so that it is to be visited
+    bool gone[kRounds];  // its verdicts are no longer certain, so it is to be visited
 #pragma unroll
     for (unsigned k = 0; k < kRounds; ++k) {
       const uint32_t subtree = block.first + k * kThreads + threadIdx.x;

@@ -2,12 +2,11 @@
 
 #include <bit>
 
+#include "runtime/select/partitioned_blocks.h"
 #include "runtime/select/set_bits.h"
 
 namespace voyager {
 namespace {
-
-constexpr size_t kBlocksTask = 4;
 
 // The children of one node, or those of them that a subtree holds.
 struct Family {

@@ -236,7 +236,8 @@ TEST_F(SearchTest, APartOfTheMultiprocessorsGivesTheSame) {
     try {
       search = create(scene, kind, 16);
     } catch (const Error& error) {
-      GTEST_SKIP() << error.what();
+      if (error.code() != ErrorCode::unsupported) throw;
+      GTEST_SKIP() << error.what();  // a driver without green contexts
     }
     for (const CutQuery& query : walk(random, 30, 0.02f))
       ASSERT_TRUE(same(run(*search, query), oracle.at(query)));
