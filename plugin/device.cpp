@@ -1,10 +1,9 @@
 #include <algorithm>
 
+#include "plugin/backend_choice.h"
 #include "plugin/call.h"
 #include "plugin/structs.h"
 #include "plugin/version.h"
-#include "runtime/cpu/cpu_backend.h"
-#include "runtime/reference/reference_backend.h"
 
 using namespace voyager;
 
@@ -25,21 +24,8 @@ void check_version(uint32_t host) {
                      " and its minor version, or a lower one where the major version is not 0");
 }
 
-// The backend that will run; throws where this machine lacks it.
-VoyBackend choose(const VoyBackend& wanted) {
+void check_backend(const VoyBackend& wanted) {
   check_enum(wanted, VOY_BACKEND_REFERENCE, "backend");
-  if (wanted == VOY_BACKEND_CUDA)
-    throw ApiError(VOY_ERROR_NO_DEVICE,
-                   "backend CUDA: found a request to draw, this version only searches with CUDA");
-  return wanted == VOY_BACKEND_AUTO ? VOY_BACKEND_CPU : wanted;
-}
-
-// CPUs have the UUID zero (VoyCapabilities.deviceUuid).
-void check_uuid(const uint8_t* uuid) {
-  if (uuid != nullptr && std::any_of(uuid, uuid + 16, [](uint8_t byte) { return byte != 0; }))
-    throw ApiError(VOY_ERROR_NO_DEVICE,
-                   "desc.deviceUuid: found a UUID that no device of this backend has, "
-                   "expected NULL or the sixteen zeros of a CPU");
 }
 
 void check_allocator(const VoyAllocator* allocator) {
@@ -49,22 +35,46 @@ void check_allocator(const VoyAllocator* allocator) {
     refuse("desc.allocator: found NULL, expected both allocate and release");
 }
 
+// A bit for each enumerant from 0 to last.
+template <class Enum>
+constexpr uint32_t bits_up_to(Enum last) {
+  return (2u << last) - 1;
+}
+
+uint32_t exponentials_of(VoyBackend backend) {
+  return bits_up_to(backend == VOY_BACKEND_REFERENCE ? VOY_EXPONENTIAL_EXACT : VOY_EXPONENTIAL_LUT);
+}
+
+uint32_t splattings_of(VoyBackend backend) {
+  return bits_up_to(backend == VOY_BACKEND_CUDA ? VOY_SPLATTING_3DGS : VOY_SPLATTING_OURS);
+}
+
+void log_creation(const DeviceObject& device, const std::string& cuda_left_out) {
+  const auto write = [&](const std::string& what) {
+    device.log.write(VOY_LOG_INFO, ("voyCreateDevice: " + what).c_str());
+  };
+  if (!cuda_left_out.empty()) write("CUDA is left out: " + cuda_left_out);
+  write(device.backend->device_name());
+}
+
 }  // namespace
 
-voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend chosen)
+voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend kind,
+                                    std::unique_ptr<Backend> chosen)
     : Object(kKind),
       log{desc.log, desc.logUser, number(desc.logLevel)},
       memory(std::pmr::new_delete_resource()),
       budget(desc.memoryBudget),
       workers(desc.workerThreads),
-      backend_kind(chosen),
-      backend(chosen == VOY_BACKEND_REFERENCE ? create_reference_backend() : create_cpu_backend()) {
+      backend_kind(kind),
+      backend(std::move(chosen)) {
   if (desc.allocator != nullptr) memory = &host_memory.emplace(*desc.allocator);
 }
 
 VoyResult voyQueryBackend(VoyBackend backend) {
   return guarded("voyQueryBackend", [&](Call&) {
-    choose(backend);
+    check_backend(backend);
+    if (backend != VOY_BACKEND_AUTO) choose_backend(backend, nullptr);
     return VOY_SUCCESS;
   });
 }
@@ -74,14 +84,15 @@ VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device) {
     check_structure(desc, VOY_STRUCTURE_TYPE_DEVICE_DESC, "VoyDeviceDesc");
     check_pointer(device, "device");
     check_version(desc->apiVersion);
-    const VoyBackend chosen = choose(desc->backend);
-    check_uuid(desc->deviceUuid);
+    check_backend(desc->backend);
     check_count(desc->workerThreads, 0, kMaxWorkerThreads, "desc.workerThreads");
     check_enum(desc->logLevel, VOY_LOG_INFO, "desc.logLevel");
     check_allocator(desc->allocator);
-    const auto object = std::make_shared<DeviceObject>(*desc, chosen);
+    BackendChoice choice = choose_backend(desc->backend, desc->deviceUuid);
+    const auto object =
+        std::make_shared<DeviceObject>(*desc, choice.kind, std::move(choice.backend));
     *device = static_cast<VoyDevice>(HandleTable::instance().insert(object));
-    object->log.write(VOY_LOG_INFO, ("voyCreateDevice: " + object->backend->device_name()).c_str());
+    log_creation(*object, choice.cuda_left_out);
     return VOY_SUCCESS;
   });
 }
@@ -101,18 +112,16 @@ VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
     found.backend = object->backend_kind;
     found.workerThreads = static_cast<uint32_t>(object->workers.count());
     object->backend->device_name().copy(found.deviceName, sizeof found.deviceName - 1);
+    const auto uuid = object->backend->device_uuid();
+    std::copy(uuid.begin(), uuid.end(), found.deviceUuid);
     found.maxInstances = 1;
     found.maxEyes = 1;
     found.maxWidth = found.maxHeight = kMaxImageSide;
-    found.searches = 1u << VOY_SEARCH_AUTO | 1u << VOY_SEARCH_EXHAUSTIVE |
-                     1u << VOY_SEARCH_STREAMING | 1u << VOY_SEARCH_TEMPORAL |
-                     1u << VOY_SEARCH_TEMPORAL_VISIT;
-    found.exponentials = 1u << VOY_EXPONENTIAL_AUTO | 1u << VOY_EXPONENTIAL_EXACT;
-    if (object->backend_kind == VOY_BACKEND_CPU)
-      found.exponentials |= 1u << VOY_EXPONENTIAL_EX2 | 1u << VOY_EXPONENTIAL_LUT;
-    found.targetKinds = 1u << VOY_TARGET_KIND_HOST_MEMORY;
-    found.colorFormats = 1u << VOY_COLOR_FORMAT_NONE | 1u << VOY_COLOR_FORMAT_RGBA8_UNORM |
-                         1u << VOY_COLOR_FORMAT_RGBA32F;
+    found.searches = bits_up_to(VOY_SEARCH_TEMPORAL_VISIT);
+    found.exponentials = exponentials_of(object->backend_kind);
+    found.splattings = splattings_of(object->backend_kind);
+    found.targetKinds = bits_up_to(VOY_TARGET_KIND_HOST_MEMORY);
+    found.colorFormats = bits_up_to(VOY_COLOR_FORMAT_RGBA16F);
     *capabilities = found;
     return VOY_SUCCESS;
   });

@@ -52,6 +52,7 @@ void fill(VoyFrameStats& out, const FrameStats& in) {
   out.splats = in.splats;
   out.pairsBefore = in.pairs_before;
   out.pairsAfter = in.pairs_after;
+  out.pairsDropped = in.pairs_dropped;
   std::copy(std::begin(in.milliseconds), std::end(in.milliseconds), out.milliseconds);
   out.millisecondsTotal = in.total_milliseconds;
 }

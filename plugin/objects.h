@@ -34,7 +34,7 @@ struct Log {
 struct DeviceObject final : Object {
   using Handle = VoyDevice;
   static constexpr Kind kKind = Kind::device;
-  DeviceObject(const VoyDeviceDesc& desc, VoyBackend chosen);
+  DeviceObject(const VoyDeviceDesc& desc, VoyBackend kind, std::unique_ptr<Backend> chosen);
 
   Log log;
   std::optional<HostMemory> host_memory;

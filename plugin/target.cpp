@@ -7,7 +7,18 @@ using namespace voyager;
 
 namespace {
 
-constexpr VoyColorFormat kLastFormat = VOY_COLOR_FORMAT_RGBA32F;
+ColorFormat format_of(VoyColorFormat format) {
+  switch (format) {
+    case VOY_COLOR_FORMAT_RGBA8_UNORM:
+      return ColorFormat::rgba8;
+    case VOY_COLOR_FORMAT_RGBA32F:
+      return ColorFormat::rgba32f;
+    case VOY_COLOR_FORMAT_RGBA16F:
+      return ColorFormat::rgba16f;
+    default:
+      return ColorFormat::none;
+  }
+}
 
 struct Plane {
   const char* name;
@@ -34,7 +45,7 @@ size_t checked_pitch(const Plane& plane, uint32_t width, uint32_t height) {
 
 Image checked_image(const VoyTargetDesc& desc) {
   check_enum(desc.kind, VOY_TARGET_KIND_HOST_MEMORY, "desc.kind");
-  check_enum(desc.colorFormat, kLastFormat, "desc.colorFormat");
+  check_enum(desc.colorFormat, VOY_COLOR_FORMAT_RGBA16F, "desc.colorFormat");
   check_count(desc.width, 1, kMaxImageSide, "desc.width");
   check_count(desc.height, 1, kMaxImageSide, "desc.height");
   const bool has_color = desc.colorFormat != VOY_COLOR_FORMAT_NONE;
@@ -48,11 +59,11 @@ Image checked_image(const VoyTargetDesc& desc) {
   image.width = desc.width;
   image.height = desc.height;
   if (has_color) {
-    const bool rgba8 = desc.colorFormat == VOY_COLOR_FORMAT_RGBA8_UNORM;
-    image.format = rgba8 ? ColorFormat::rgba8 : ColorFormat::rgba32f;
+    image.format = format_of(desc.colorFormat);
     image.color = desc.color;
-    image.color_pitch = checked_pitch(
-        {"desc.color", desc.color, desc.colorRowPitch, rgba8 ? 4u : 16u}, desc.width, desc.height);
+    image.color_pitch =
+        checked_pitch({"desc.color", desc.color, desc.colorRowPitch, pixel_bytes(image.format)},
+                      desc.width, desc.height);
   }
   if (desc.depth != nullptr) {
     image.depth = desc.depth;

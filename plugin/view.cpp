@@ -39,21 +39,34 @@ Search search_of(VoySearch search) {
   }
 }
 
-PipelineDesc checked_choices(const VoyViewDesc& desc) {
+Exponential exponential_of(VoyExponential exponential, VoyBackend backend) {
+  switch (exponential) {
+    case VOY_EXPONENTIAL_EXACT:
+      return Exponential::exact;
+    case VOY_EXPONENTIAL_EX2:
+      return Exponential::ex2;
+    case VOY_EXPONENTIAL_LUT:
+      return Exponential::lut;
+    default:
+      return backend == VOY_BACKEND_CUDA ? Exponential::ex2 : Exponential::exact;
+  }
+}
+
+PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   check_tau(desc.tau);
   check_enum(desc.lod, VOY_LOD_ALL_LEAVES, "desc.lod");
   check_enum(desc.search, VOY_SEARCH_TEMPORAL_VISIT, "desc.search");
   check_enum(desc.alphaFilter, VOY_ALPHA_FILTER_OFF, "desc.alphaFilter");
   check_enum(desc.exponential, VOY_EXPONENTIAL_LUT, "desc.exponential");
   check_count(desc.lutSize, 0, kMaxLutSize, "desc.lutSize");
-  check_count(desc.reserved, 0, 0, "desc.reserved");
+  check_enum(desc.splatting, VOY_SPLATTING_3DGS, "desc.splatting");
   PipelineDesc choices;
   choices.lod = desc.lod == VOY_LOD_CUT ? Lod::cut : Lod::all_leaves;
   choices.search = search_of(desc.search);
   choices.alpha_filter = desc.alphaFilter == VOY_ALPHA_FILTER_ON;
   choices.lut_size = desc.lutSize == 0 ? kDefaultLutSize : desc.lutSize;
-  if (desc.exponential == VOY_EXPONENTIAL_EX2) choices.exponential = Exponential::ex2;
-  if (desc.exponential == VOY_EXPONENTIAL_LUT) choices.exponential = Exponential::lut;
+  choices.exponential = exponential_of(desc.exponential, backend);
+  if (desc.splatting == VOY_SPLATTING_3DGS) choices.splatting = Splatting::baseline_3dgs;
   return choices;
 }
 
@@ -65,7 +78,7 @@ VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view
     check_structure(desc, VOY_STRUCTURE_TYPE_VIEW_DESC, "VoyViewDesc");
     check_pointer(view, "view");
     check_counts(*desc);
-    const PipelineDesc choices = checked_choices(*desc);
+    const PipelineDesc choices = checked_choices(*desc, owner->backend_kind);
     const auto scene = call.use<SceneObject>(desc->scenes[0]);
     if (scene->parent() != owner)
       refuse("desc.scenes[0]: found a scene of another device, expected one of this device");

@@ -16,9 +16,7 @@ void for_tiles(const Splat& splat, const TileGrid& grid, bool alpha_filter, uint
   const bool whole = !alpha_filter || *boxed == 1;
   const SupportEllipse ellipse = whole ? SupportEllipse{} : support_ellipse(splat);
   for (int32_t row = rows.begin; row < rows.end; ++row) {
-    const double first = row * kTile + 0.5;
-    const TileRange columns =
-        whole ? box : strip_columns(ellipse, first, first + (kTile - 1), grid);
+    const TileRange columns = whole ? box : strip_columns(ellipse, row, grid);
     for (int32_t column = columns.begin; column < columns.end; ++column)
       visit(static_cast<size_t>(row) * static_cast<size_t>(grid.columns) +
             static_cast<size_t>(column));

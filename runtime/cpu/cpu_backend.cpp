@@ -2,10 +2,13 @@
 
 #include <numeric>
 
+#include "runtime/base/error.h"
 #include "runtime/cpu/bin.h"
 #include "runtime/cpu/rasterize.h"
 #include "runtime/frame/depth_order.h"
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/host_pipeline.h"
+#include "runtime/frame/project_params.h"
 #include "runtime/frame/resolve.h"
 #include "runtime/math/alpha_lut.h"
 
@@ -16,7 +19,7 @@ using namespace cpu;
 
 constexpr size_t kProjectBlock = 4096;
 
-class CpuPipeline final : public Pipeline {
+class CpuPipeline final : public HostPipeline {
  public:
   CpuPipeline(std::shared_ptr<const Scene> scene, const PipelineDesc& desc,
               std::pmr::memory_resource* memory, Workers& workers)
@@ -42,7 +45,7 @@ class CpuPipeline final : public Pipeline {
   void sort(const FrameInput& frame) override;
   void bin(const FrameInput& frame) override;
   void rasterize(const FrameInput& frame) override;
-  void resolve(const FrameInput& frame, const Image& image) override {
+  void write(const FrameInput& frame, const Image& image) override {
     resolve_image(
         frame, image, workers_, [&](size_t i) -> const Pixel& { return pixels_[i]; },
         [&](size_t i) { return depth_[i]; });
@@ -54,7 +57,8 @@ class CpuPipeline final : public Pipeline {
     stats.pairs_before = bins_.pairs_before();
     stats.pairs_after = bins_.pairs_after();
   }
-  const std::pmr::vector<uint32_t>& cut() const override { return draws_.cut(); }
+  void read_cut(std::pmr::vector<uint32_t>& cut) const override { cut = draws_.cut(); }
+  bool cut_is_near() const override { return true; }
 
  private:
   std::shared_ptr<const Scene> scene_;
@@ -71,29 +75,16 @@ class CpuPipeline final : public Pipeline {
   std::pmr::vector<float> depth_;
 };
 
-ProjectParams project_params(const Scene& scene, const Camera& camera, Exponential exponential) {
-  ProjectParams params;
-  params.arrays = gaussian_arrays(scene);
-  params.origin = scene.origin;
-  params.eye = camera.eye;
-  params.view = view_projection<float>(camera.world_to_view, camera.fx, camera.fy, camera.cx,
-                                       camera.cy, camera.width, camera.height);
-  params.near_z = static_cast<float>(camera.near_z);
-  params.width = static_cast<float>(camera.width);
-  params.height = static_cast<float>(camera.height);
-  params.log_scale = exponential == Exponential::ex2 ? 1.44269504088896341f : 1.0f;
-  params.half = 0.5f * params.log_scale;
-  return params;
-}
-
 void CpuPipeline::project(const FrameInput& frame) {
   const auto& items = draws_.items();
   const ProjectParams params = project_params(*scene_, frame.camera, desc_.exponential);
+  const GaussianArrays arrays = gaussian_arrays(*scene_);
   if (splats_.size() < items.size()) splats_.resize(items.size());
   visible_.assign((items.size() + kProjectBlock - 1) / kProjectBlock, 0);
   workers_.for_blocks(items.size(), kProjectBlock, [&](size_t begin, size_t end) {
     size_t out = begin;
-    for (size_t i = begin; i < end; ++i) out += voyager::project(params, items[i], splats_[out]);
+    for (size_t i = begin; i < end; ++i)
+      out += voyager::project(params, arrays, items[i], splats_[out]);
     visible_[begin / kProjectBlock] = static_cast<uint32_t>(out - begin);
   });
 }
@@ -146,6 +137,9 @@ class CpuBackend final : public Backend {
                                             const PipelineDesc& desc,
                                             std::pmr::memory_resource* memory,
                                             Workers& workers) override {
+    if (desc.splatting != Splatting::ours)
+      throw Error(ErrorCode::unsupported,
+                  "splatting: found 3dgs, the CPU backend has ours only (CUDA has both)");
     return std::make_unique<CpuPipeline>(std::move(scene), desc, memory, workers);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,

@@ -8,8 +8,8 @@
 #include <cstdint>
 
 #include "runtime/format/fold.h"
-#include "runtime/format/half.h"
 #include "runtime/math/gaussian.h"
+#include "runtime/math/half.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager {

@@ -1,7 +1,8 @@
 #pragma once
 // The boundary behind which backends live: Backend makes one Pipeline for each
-// view, and frame/view.cpp runs its stages in order. A backend's pipeline holds
-// the view's state (the last cut, scratch that is kept between frames).
+// view, which holds the view's state (the last cut, scratch that is kept between frames)
+// and runs the stages of a frame in order.
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <memory_resource>
@@ -16,6 +17,9 @@ namespace voyager {
 
 enum class Lod { cut, all_leaves };
 enum class Exponential { exact, ex2, lut };
+// baseline_3dgs: as 3DGS does it, the baseline of measurements (METHOD §4, §7: boxes of
+// 3σ, α' tested against α*).
+enum class Splatting { ours, baseline_3dgs };
 
 // Resolved once, at view creation.
 struct PipelineDesc {
@@ -24,6 +28,8 @@ struct PipelineDesc {
   bool alpha_filter = true;
   Exponential exponential = Exponential::exact;
   uint32_t lut_size = 32;
+  Splatting splatting = Splatting::ours;
+  bool count_pixels = false;  // fill FrameStats::pixels_..., at a cost; for measurements
 };
 
 // One eye's camera. View space: x right, y down, z forward (METHOD §5).
@@ -36,8 +42,24 @@ struct Camera {
   double near_z = 0.2;  // metres
 };
 
-enum class ColorFormat { none, rgba8, rgba32f };
+enum class ColorFormat { none, rgba8, rgba16f, rgba32f };
 
+constexpr size_t pixel_bytes(ColorFormat format) {
+  switch (format) {
+    case ColorFormat::none:
+      return 0;
+    case ColorFormat::rgba8:
+      return 4;
+    case ColorFormat::rgba16f:
+      return 8;
+    case ColorFormat::rgba32f:
+      break;
+  }
+  return 16;
+}
+
+// Where color is null but format is not none, the frame is drawn and handed to nobody:
+// for measurements.
 struct Image {
   ColorFormat format = ColorFormat::none;
   uint32_t width = 0, height = 0;
@@ -66,6 +88,12 @@ struct FrameStats {
   uint64_t nodes_total = 0, nodes_tested = 0, subtrees_visited = 0, chunks_read = 0, bytes_read = 0;
   uint64_t cut_size = 0, entered = 0, left = 0;
   uint64_t splats = 0, pairs_before = 0, pairs_after = 0;
+  uint64_t pairs_dropped = 0;  // for which a device's buffers had no room; 0 in a whole image
+  // (pixel, splat) pairs: whose ρ was found, and that were blended.
+  uint64_t pixels_evaluated = 0, pixels_blended = 0;
+  // What each stage has to move through a device's memory, from its layouts and the counters
+  // above; 0 on a host.
+  uint64_t bytes[kStageCount] = {};
   double milliseconds[kStageCount] = {};
   double total_milliseconds = 0;
 };
@@ -73,22 +101,30 @@ struct FrameStats {
 class Pipeline {
  public:
   virtual ~Pipeline() = default;
-  virtual void search(const FrameInput& frame) = 0;   // and interpolation weights
-  virtual void project(const FrameInput& frame) = 0;  // and the α-filter's culling
-  virtual void sort(const FrameInput& frame) = 0;     // splats by depth
-  virtual void bin(const FrameInput& frame) = 0;      // splats to tiles, in that order
-  virtual void rasterize(const FrameInput& frame) = 0;
-  virtual void resolve(const FrameInput& frame, const Image& image) = 0;  // to the host's image
-  // Counters of the frame just run.
-  virtual void collect(FrameStats& stats) const = 0;
-  // The last cut, ascending; empty where the view draws none.
-  virtual const std::pmr::vector<uint32_t>& cut() const = 0;
+  // Runs the stages but for the last and sets what it knows of stats. Reads the image's
+  // size and format; only resolve() writes to it, after all else that may fail.
+  virtual void draw(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
+  virtual void resolve(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
+  // Of the last frame, ascending; none where the view draws no cut.
+  virtual void read_cut(std::pmr::vector<uint32_t>& cut) const = 0;
+  // Reading the cut is a copy in memory, and waits for no device.
+  virtual bool cut_is_near() const = 0;
+};
+
+// What a device could do at best. Zero where unknown.
+struct DeviceRates {
+  double lane_instructions = 0;  // a second
+  double bytes = 0;              // of its memory, a second
 };
 
 class Backend {
  public:
   virtual ~Backend() = default;
   virtual std::string device_name() const = 0;
+  // As VkPhysicalDeviceIDProperties has it; zero for a CPU.
+  virtual std::array<uint8_t, 16> device_uuid() const { return {}; }
+  virtual DeviceRates rates() const { return {}; }
+  // Throws Error(unsupported) for a choice that the backend lacks.
   virtual std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
                                                     const PipelineDesc& desc,
                                                     std::pmr::memory_resource* memory,

@@ -11,8 +11,9 @@
 namespace voyager {
 
 struct BackendModuleOptions {
-  int device = 0;                // the driver's number
-  unsigned multiprocessors = 0;  // 0: all, else a part of them
+  int device = 0;                 // the driver's number
+  unsigned multiprocessors = 0;   // 0: all, else a part of them
+  const uint8_t* uuid = nullptr;  // 16 bytes: the device that has it, instead of `device`
 };
 
 // What a module exports as voyager_backend_module. The two sides share C++ types, so

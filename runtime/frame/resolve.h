@@ -6,6 +6,7 @@
 
 #include "runtime/base/workers.h"
 #include "runtime/frame/backend.h"
+#include "runtime/math/half.h"
 
 namespace voyager {
 
@@ -14,11 +15,30 @@ inline uint8_t to_code(float value) {
   return static_cast<uint8_t>(clamped * 255.0f + 0.5f);
 }
 
+// Pixel x of a row that begins at `row`.
+inline void store_color(ColorFormat format, const float (&rgba)[4], uint8_t* row, size_t x) {
+  uint8_t* out = row + pixel_bytes(format) * x;
+  switch (format) {
+    case ColorFormat::none:
+      break;
+    case ColorFormat::rgba8:
+      std::transform(rgba, rgba + 4, out, to_code);
+      break;
+    case ColorFormat::rgba16f:
+      std::transform(rgba, rgba + 4, reinterpret_cast<uint16_t*>(out), float_to_half);
+      break;
+    case ColorFormat::rgba32f:
+      std::copy_n(rgba, 4, reinterpret_cast<float*>(out));
+      break;
+  }
+}
+
 // pixel(i) gives the i-th pixel's premultiplied r, g, b and its transmittance
 // as members; depth(i) its depth. Any type that converts to float.
 template <class PixelAt, class DepthAt>
 void resolve_image(const FrameInput& frame, const Image& image, Workers& workers,
                    const PixelAt& pixel, const DepthAt& depth) {
+  auto* const color = static_cast<uint8_t*>(image.color);
   const auto row = [&](size_t y) {
     for (size_t x = 0; x < image.width; ++x) {
       const size_t i = y * image.width + x;
@@ -27,15 +47,7 @@ void resolve_image(const FrameInput& frame, const Image& image, Workers& workers
                              static_cast<float>(p.g + p.transmittance * frame.background.y),
                              static_cast<float>(p.b + p.transmittance * frame.background.z),
                              static_cast<float>(1 - p.transmittance)};
-      if (image.format == ColorFormat::rgba8) {
-        uint8_t* out = static_cast<uint8_t*>(image.color) + y * image.color_pitch + 4 * x;
-        for (int channel = 0; channel < 4; ++channel) out[channel] = to_code(rgba[channel]);
-      } else if (image.format == ColorFormat::rgba32f) {
-        auto* out =
-            reinterpret_cast<float*>(static_cast<uint8_t*>(image.color) + y * image.color_pitch) +
-            4 * x;
-        std::copy_n(rgba, 4, out);
-      }
+      if (color != nullptr) store_color(image.format, rgba, color + y * image.color_pitch, x);
       if (image.depth != nullptr)
         reinterpret_cast<float*>(reinterpret_cast<uint8_t*>(image.depth) +
                                  y * image.depth_pitch)[x] = static_cast<float>(depth(i));

@@ -1,6 +1,5 @@
 #include "runtime/frame/view.h"
 
-#include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/scene/sanitise.h"
 
@@ -37,36 +36,47 @@ View::View(std::shared_ptr<const Scene> scene, Backend& backend, const PipelineD
       cut_(memory),
       last_cut_(memory) {}
 
+// A search that does not count what entered and left has its cuts compared. A cut that
+// is far is only read for that.
+bool View::read_changes(bool follows, FrameStats& stats) {
+  const bool counted = stats.changes_counted && follows;
+  if (counted && !pipeline_->cut_is_near()) return false;
+  pipeline_->read_cut(cut_);
+  if (!counted) {
+    stats.entered = count_missing(cut_, last_cut_);
+    stats.left = count_missing(last_cut_, cut_);
+  }
+  return true;
+}
+
 void View::render(const FrameInput& frame, const Image& image) {
   check_camera(frame.camera, *scene_);
   const bool follows = follows_;  // the search's last run was the last frame's
   follows_ = false;
   FrameStats stats;
-  Stopwatch total, stage;
-  const auto lap = [&](Stage s) { stats.milliseconds[s] = stage.lap(); };
-  pipeline_->search(frame), lap(kSearch);
-  pipeline_->project(frame), lap(kProject);
-  pipeline_->sort(frame), lap(kSort);
-  pipeline_->bin(frame), lap(kBin);
-  pipeline_->rasterize(frame), lap(kRasterize);
-  // Whatever may fail comes before the host's image is touched.
-  cut_ = pipeline_->cut();
-  pipeline_->resolve(frame, image), lap(kResolve);
-  stats.total_milliseconds = total.milliseconds();
-
-  stats.frame_index = frames_++;
   stats.searched = draws_cut();
   stats.nodes_total = scene_->tree.size();
   stats.tau_star = target_size(frame.tau, frame.camera.fx);
   stats.cut_centre = cut_centre(frame.camera.eye, scene_->origin);
-  pipeline_->collect(stats);
-  if (!stats.changes_counted || !follows) {
-    stats.entered = count_missing(cut_, last_cut_);
-    stats.left = count_missing(last_cut_, cut_);
-  }
-  last_cut_.swap(cut_);
+  pipeline_->draw(frame, image, stats);
+  const bool read = read_changes(follows, stats);
+  pipeline_->resolve(frame, image, stats);
+  stats.frame_index = frames_++;
+  if (read) last_cut_.swap(cut_);
+  cut_read_ = read;
   stats_ = stats;
   follows_ = true;
+}
+
+const std::pmr::vector<uint32_t>& View::cut() {
+  if (cut_read_) return last_cut_;
+  if (!follows_)
+    throw Error(ErrorCode::unsupported,
+                "cut: found one on a device after a frame that failed, expected a frame that was "
+                "drawn since");
+  pipeline_->read_cut(last_cut_);
+  cut_read_ = true;
+  return last_cut_;
 }
 
 }  // namespace voyager

@@ -20,14 +20,19 @@ class View {
   bool has_frame() const { return frames_ > 0; }
   const FrameStats& stats() const { return stats_; }
   // Of the last frame that was drawn, as stats() is: a frame that threw leaves both.
-  const std::pmr::vector<uint32_t>& cut() const { return last_cut_; }
+  // Throws Error(unsupported) where the cut was on a device and a later frame threw.
+  const std::pmr::vector<uint32_t>& cut();
 
  private:
+  // Whether the frame's cut is now in cut_.
+  bool read_changes(bool follows, FrameStats& stats);
+
   std::shared_ptr<const Scene> scene_;
   PipelineDesc desc_;
   std::unique_ptr<Pipeline> pipeline_;
-  std::pmr::vector<uint32_t> cut_;       // of the frame in progress
-  std::pmr::vector<uint32_t> last_cut_;  // of the last frame that succeeded
+  std::pmr::vector<uint32_t> cut_;       // scratch
+  std::pmr::vector<uint32_t> last_cut_;  // of the last frame that succeeded, if it was read
+  bool cut_read_ = true;
   FrameStats stats_;
   uint64_t frames_ = 0;
   bool follows_ = true;  // no frame has failed since the last that succeeded

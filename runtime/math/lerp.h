@@ -3,6 +3,7 @@
 // interpolated Gaussian. T is float in the backends, double in the reference.
 #include <cmath>
 
+#include "runtime/math/exact.h"
 #include "runtime/math/gaussian.h"
 
 namespace voyager {
@@ -27,6 +28,14 @@ VOYAGER_HD T lerp(T parent, T node, T t) {
 template <class T>
 VOYAGER_HD Vec3<T> lerp(const Vec3<T>& parent, const Vec3<T>& node, T t) {
   return {lerp(parent.x, node.x, t), lerp(parent.y, node.y, t), lerp(parent.z, node.z, t)};
+}
+
+// The mean orders splats (METHOD §6), so each operation is rounded by itself.
+VOYAGER_HD float lerp_rn(float parent, float node, float t) {
+  return add_rn(parent, multiply_rn(t, subtract_rn(node, parent)));
+}
+VOYAGER_HD Vec3f lerp_rn(const Vec3f& parent, const Vec3f& node, float t) {
+  return {lerp_rn(parent.x, node.x, t), lerp_rn(parent.y, node.y, t), lerp_rn(parent.z, node.z, t)};
 }
 
 // The parent's sign is flipped where the quaternions point apart.

@@ -1,6 +1,7 @@
 #pragma once
 // METHOD §6: the depth that orders splats is part of the contract, because
 // coplanar splats would otherwise sort by rounding noise.
+#include "runtime/math/exact.h"
 #include "runtime/math/vec.h"
 
 namespace voyager {
@@ -13,7 +14,8 @@ VOYAGER_HD Vec3f camera_relative(const Vec3f& mean, const Vec3d& origin, const V
 }
 
 VOYAGER_HD float view_depth(const Vec3f& d, const Vec3f& forward) {
-  return (d.x * forward.x + d.y * forward.y) + d.z * forward.z;
+  return add_rn(add_rn(multiply_rn(d.x, forward.x), multiply_rn(d.y, forward.y)),
+                multiply_rn(d.z, forward.z));
 }
 
 }  // namespace voyager

@@ -6,6 +6,7 @@
 #include "runtime/base/error.h"
 #include "runtime/frame/depth_order.h"
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/host_pipeline.h"
 #include "runtime/frame/resolve.h"
 #include "runtime/reference/project.h"
 
@@ -45,7 +46,7 @@ void blend(const Splat& s, double x, double y, Pixel& pixel) {
   pixel.transmittance = after;
 }
 
-class ReferencePipeline final : public Pipeline {
+class ReferencePipeline final : public HostPipeline {
  public:
   ReferencePipeline(std::shared_ptr<const Scene> scene, const PipelineDesc& desc,
                     std::pmr::memory_resource* memory, Workers& workers)
@@ -99,7 +100,7 @@ class ReferencePipeline final : public Pipeline {
     });
   }
 
-  void resolve(const FrameInput& frame, const Image& image) override {
+  void write(const FrameInput& frame, const Image& image) override {
     resolve_image(
         frame, image, workers_, [&](size_t i) -> const Pixel& { return pixels_[i]; },
         [&](size_t i) { return pixels_[i].depth; });
@@ -109,7 +110,8 @@ class ReferencePipeline final : public Pipeline {
     draws_.collect(stats);
     stats.splats = keys_.size();
   }
-  const std::pmr::vector<uint32_t>& cut() const override { return draws_.cut(); }
+  void read_cut(std::pmr::vector<uint32_t>& cut) const override { cut = draws_.cut(); }
+  bool cut_is_near() const override { return true; }
 
  private:
   // The pixels of [low, high) whose centres the support's box reaches.
@@ -140,6 +142,9 @@ class ReferenceBackend final : public Backend {
                                             Workers& workers) override {
     if (desc.exponential != Exponential::exact)
       throw Error(ErrorCode::unsupported, "exponential: the reference backend has exact only");
+    if (desc.splatting != Splatting::ours)
+      throw Error(ErrorCode::unsupported,
+                  "splatting: found 3dgs, the reference backend has ours only (CUDA has both)");
     return std::make_unique<ReferencePipeline>(std::move(scene), desc, memory, workers);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,

@@ -31,18 +31,29 @@ VOYAGER_HD DrawItem weigh(const WeightParams& params, uint32_t node) {
   return {node, parent, t, 1.0f / static_cast<float>(params.records[parent].child_count)};
 }
 
-// What a stage reads of the scene.
+// What a stage reads of the scene, on the host. A device has a layout of its own with
+// the same members, which is why the functors below take any.
 struct GaussianArrays {
   const Gaussian* gaussians;
-  const float* sh;           // [k][rgb] a Gaussian
-  const uint8_t* axis_code;  // of a tree; a flat scene has none
-  int sh_degree;
+  const float* coefficients;  // [k][rgb] a Gaussian
+  const uint8_t* axis_codes;  // of a tree; a flat scene has none
+  int degree;
+
+  int sh_degree() const { return degree; }
+  const Vec3f& mean(uint32_t i) const { return gaussians[i].mean; }
+  const Gaussian& gaussian(uint32_t i) const { return gaussians[i]; }
+  int axis_code(uint32_t i) const { return axis_codes[i]; }
+  // sh(i)(k, channel)
+  auto sh(uint32_t i) const {
+    const float* own = coefficients + i * 3 * static_cast<size_t>(sh_coefficients(degree));
+    return [own](int k, int channel) { return own[3 * k + channel]; };
+  }
 };
 
-// The mean in binary32 is what orders splats (METHOD §6): the same in every backend.
-VOYAGER_HD Vec3f interpolated_mean(const GaussianArrays& arrays, const DrawItem& item) {
-  const Vec3f& mean = arrays.gaussians[item.gaussian].mean;
-  return item.t == 1.0f ? mean : lerp(arrays.gaussians[item.parent].mean, mean, item.t);
+template <class Arrays>
+VOYAGER_HD Vec3f interpolated_mean(const Arrays& arrays, const DrawItem& item) {
+  const Vec3f mean = arrays.mean(item.gaussian);
+  return item.t == 1.0f ? mean : lerp_rn(arrays.mean(item.parent), mean, item.t);
 }
 
 template <class T>
@@ -60,12 +71,12 @@ VOYAGER_HD Shape<T> stored_shape(const Gaussian& g) {
           T(g.log_opacity)};
 }
 
-template <class T>
-VOYAGER_HD Shape<T> interpolated_shape(const GaussianArrays& arrays, const DrawItem& item) {
-  Shape<T> shape = stored_shape<T>(arrays.gaussians[item.gaussian]);
+template <class T, class Arrays>
+VOYAGER_HD Shape<T> interpolated_shape(const Arrays& arrays, const DrawItem& item) {
+  Shape<T> shape = stored_shape<T>(arrays.gaussian(item.gaussian));
   if (item.t == 1.0f) return shape;
-  const Shape<T> parent = stored_shape<T>(arrays.gaussians[item.parent]);
-  const int code = arrays.axis_code[item.gaussian];
+  const Shape<T> parent = stored_shape<T>(arrays.gaussian(item.parent));
+  const int code = arrays.axis_code(item.gaussian);
   if (code != 0) {
     shape.scale = turn_scale(shape.scale, code);
     shape.rotation = shape.rotation * cube_rotation<T>(code);
@@ -79,18 +90,17 @@ VOYAGER_HD Shape<T> interpolated_shape(const GaussianArrays& arrays, const DrawI
 }
 
 // direction: unit, from the camera to the interpolated mean, world axes.
-template <class T>
-VOYAGER_HD Vec3<T> interpolated_colour(const GaussianArrays& arrays, const DrawItem& item,
+template <class T, class Arrays>
+VOYAGER_HD Vec3<T> interpolated_colour(const Arrays& arrays, const DrawItem& item,
                                        const Vec3<T>& direction) {
-  const size_t stride = 3 * static_cast<size_t>(sh_coefficients(arrays.sh_degree));
-  const float* own = arrays.sh + item.gaussian * stride;
+  const auto own = arrays.sh(item.gaussian);
   if (item.t == 1.0f)
-    return sh_colour(arrays.sh_degree, direction,
-                     [&](int k, int channel) { return T(own[3 * k + channel]); });
-  const float* parent = arrays.sh + item.parent * stride;
+    return sh_colour(arrays.sh_degree(), direction,
+                     [&](int k, int channel) { return T(own(k, channel)); });
+  const auto parent = arrays.sh(item.parent);
   const T t = T(item.t);
-  return sh_colour(arrays.sh_degree, direction, [&](int k, int channel) {
-    return lerp(T(parent[3 * k + channel]), T(own[3 * k + channel]), t);
+  return sh_colour(arrays.sh_degree(), direction, [&](int k, int channel) {
+    return lerp(T(parent(k, channel)), T(own(k, channel)), t);
   });
 }
 

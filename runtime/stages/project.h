@@ -8,7 +8,6 @@
 namespace voyager {
 
 struct ProjectParams {
-  GaussianArrays arrays;
   Vec3d origin, eye;           // the scene's; world
   ViewProjection<float> view;  // view.world_to_view.row[2] is the view axis of the sort key
   float near_z;
@@ -32,33 +31,41 @@ struct Splat {
 // How far the support of ρ as computed in binary32 can reach beyond that of the
 // real ρ, as a factor on the radius. With ε = 2⁻²⁴: dx and dy carry ε each; p
 // one more; the fma of q adds ε·(|dy| + |skew·dx|) ≤ ε·(|t| + 2|skew·dx|) before
-// it is scaled; and |dx| ≤ R/p_x on the support. The sum of squares adds 2ε.
-// 16ε covers what is proportional to R, 4ε·q_y·|skew|/p_x the needles.
-VOYAGER_HD double support_growth(const Conic<float>& c) {
-  const double epsilon = 1.0 / 16777216.0;
-  return 1.0 +
-         epsilon * (16.0 + 4.0 * static_cast<double>(c.q_y) *
-                               std::fabs(static_cast<double>(c.skew)) / static_cast<double>(c.p_x));
+// it is scaled; and |dx| ≤ R/p_x on the support. The sum of squares adds 2ε, a row
+// found from the one above it ε. 16ε covers what is proportional to R,
+// 4ε·q_y·|skew|/p_x the needles; both are doubled for the arithmetic that uses this.
+VOYAGER_HD float support_growth(const Conic<float>& c) {
+  constexpr float epsilon = 1.0f / 16777216.0f;
+  return 1.0f + epsilon * (32.0f + 8.0f * c.q_y * std::fabs(c.skew) / c.p_x);
 }
 
+// Of ρ itself, absolutely, where it is found as log α - log o (up to 3ε·|log o| + 8ε):
+// what is proportional to |log o| is in the growth.
+inline constexpr float kRhoMargin = 4e-6f;
+
 // The radius in (p, q) of the grown support.
-VOYAGER_HD double support_radius(const Splat& s) {
-  return std::sqrt(-static_cast<double>(s.rho_min)) * support_growth(s.conic);
+VOYAGER_HD float support_radius(const Conic<float>& conic, float rho_min) {
+  return std::sqrt(kRhoMargin - rho_min) * support_growth(conic);
 }
 
 // The grown support, ready to be cut into strips: dx = along·dy ± across·√(1 - (dy/reach_y)²).
+// A reach beyond 1e19 pixels overflows to infinity.
 struct SupportEllipse {
-  double x, y, reach_x, reach_y, along, across, top;  // top: dy at the right-most point
+  float x, y, reach_x, reach_y, along, across, top;  // top: dy at the right-most point
 };
 
+VOYAGER_HD SupportEllipse support_ellipse(float x, float y, const Conic<float>& conic,
+                                          float rho_min) {
+  constexpr float kOutwards = 1.000002f;
+  const float radius = kOutwards * support_radius(conic, rho_min);
+  const float width = radius / conic.p_x;  // half-width
+  const float tilt = conic.skew * width, thickness = radius / conic.q_y;
+  const float height = std::sqrt(tilt * tilt + thickness * thickness);
+  return {x,   y, width, height, width / height * (tilt / height), width * (thickness / height),
+          tilt};
+}
 VOYAGER_HD SupportEllipse support_ellipse(const Splat& s) {
-  const double radius = support_radius(s);
-  const double width = radius / static_cast<double>(s.conic.p_x);  // half-width
-  const double tilt = static_cast<double>(s.conic.skew) * width;
-  const double thickness = radius / static_cast<double>(s.conic.q_y);
-  const double height = std::sqrt(tilt * tilt + thickness * thickness);
-  return {static_cast<double>(s.x),         static_cast<double>(s.y),   width, height,
-          width * tilt / (height * height), width * thickness / height, tilt};
+  return support_ellipse(s.x, s.y, s.conic, s.rho_min);
 }
 
 namespace detail {
@@ -67,58 +74,91 @@ VOYAGER_HD bool misses(float centre, float reach, float size) {
   return centre + reach < 0.0f || centre - reach > size;
 }
 
-// A bound on the support before the covariance is known: no axis is longer
-// than the largest scale. 1.01 covers the rounding of the sums behind it.
+VOYAGER_HD float largest(const Vec3f& v) {
+  const float m = v.x > v.y ? v.x : v.y;
+  return v.z > m ? v.z : m;
+}
+
+// A bound on the support before the covariance is known: no axis is longer than the
+// largest scale. radius: of the support, in standard deviations. 1.01 covers the
+// rounding of the sums behind it.
 VOYAGER_HD bool surely_outside(const ProjectParams& params, const ImageJacobian<float>& j,
-                               const Shape<float>& shape, float rho, float x, float y) {
-  float s = shape.scale.x > shape.scale.y ? shape.scale.x : shape.scale.y;
-  s = shape.scale.z > s ? shape.scale.z : s;
-  const float radius = 1.01f * std::sqrt(-2.0f * rho);
-  const float low = static_cast<float>(kLowPass);
-  return misses(x, radius * std::sqrt(s * s * dot(j.x, j.x) + low), params.width) ||
-         misses(y, radius * std::sqrt(s * s * dot(j.y, j.y) + low), params.height);
+                               float max_scale, float radius, float x, float y) {
+  const float low = static_cast<float>(kLowPass), ss = max_scale * max_scale;
+  radius *= 1.01f;
+  return misses(x, radius * std::sqrt(ss * dot(j.x, j.x) + low), params.width) ||
+         misses(y, radius * std::sqrt(ss * dot(j.y, j.y) + low), params.height);
+}
+
+// The mean in view space; the last component is the sort key.
+VOYAGER_HD Vec3f to_view(const ProjectParams& params, const Vec3f& relative) {
+  const Mat3f& w = params.view.world_to_view;
+  return {dot(w.row[0], relative), dot(w.row[1], relative), view_depth(relative, w.row[2])};
+}
+
+VOYAGER_HD float image_x(const ProjectParams& params, const Vec3f& view) {
+  return params.view.fx * (view.x / view.z) + params.view.cx;
+}
+VOYAGER_HD float image_y(const ProjectParams& params, const Vec3f& view) {
+  return params.view.fy * (view.y / view.z) + params.view.cy;
 }
 
 }  // namespace detail
 
-// False where nothing of it can reach the image: behind the near plane, under
-// the α threshold everywhere (METHOD §7a), or outside the image.
-VOYAGER_HD bool project(const ProjectParams& params, const DrawItem& item, Splat& splat) {
-  const Vec3f d =
-      camera_relative(interpolated_mean(params.arrays, item), params.origin, params.eye);
-  const Mat3f& w = params.view.world_to_view;
-  const float depth = view_depth(d, w.row[2]);
-  if (!(depth > params.near_z)) return false;
+// Whether a Gaussian may reach the image, from its mean and bounds on its largest scale
+// and on the radius of its support (standard deviations): what fails here, project()
+// drops too.
+VOYAGER_HD bool may_reach(const ProjectParams& params, const Vec3f& mean, float max_scale,
+                          float radius) {
+  const Vec3f view = detail::to_view(params, camera_relative(mean, params.origin, params.eye));
+  if (!(view.z > params.near_z)) return false;
+  return !detail::surely_outside(params, image_jacobian(params.view, view), max_scale, radius,
+                                 detail::image_x(params, view), detail::image_y(params, view));
+}
 
-  const Shape<float> shape = interpolated_shape<float>(params.arrays, item);
+// All of the splat but its colour. False where nothing of it can reach the image: behind
+// the near plane, under the α threshold everywhere (METHOD §7a), or outside the image.
+// relative: where its mean is from the eye, in world axes.
+template <class Arrays>
+VOYAGER_HD bool project_shape(const ProjectParams& params, const Arrays& arrays,
+                              const DrawItem& item, Splat& splat, Vec3f& relative) {
+  relative = camera_relative(interpolated_mean(arrays, item), params.origin, params.eye);
+  const Vec3f view = detail::to_view(params, relative);
+  if (!(view.z > params.near_z)) return false;
+
+  const Shape<float> shape = interpolated_shape<float>(arrays, item);
   const float rho = rho_min(shape.log_opacity);
   if (!(rho <= 0.0f)) return false;
 
-  const Vec3f view{dot(w.row[0], d), dot(w.row[1], d), depth};
-  splat.x = params.view.fx * (view.x / view.z) + params.view.cx;
-  splat.y = params.view.fy * (view.y / view.z) + params.view.cy;
+  splat.x = detail::image_x(params, view);
+  splat.y = detail::image_y(params, view);
   const ImageJacobian<float> jacobian = image_jacobian(params.view, view);
-  if (detail::surely_outside(params, jacobian, shape, rho, splat.x, splat.y)) return false;
+  if (detail::surely_outside(params, jacobian, detail::largest(shape.scale),
+                             std::sqrt(2.0f * (kRhoMargin - rho)), splat.x, splat.y))
+    return false;
 
   const ImageCovariance<float> covariance = image_covariance(jacobian, shape.rotation, shape.scale);
   splat.conic = conic(covariance, params.half);
   splat.rho_min = rho * params.log_scale;
   const SupportEllipse support = support_ellipse(splat);
-  splat.half_width = static_cast<float>(support.reach_x * 1.000001);  // rounded outwards
-  splat.half_height = static_cast<float>(support.reach_y * 1.000001);
-  if (!(std::fabs(splat.x) < 1e30f) || !(std::fabs(splat.y) < 1e30f) ||
-      !(splat.half_width < 1e30f) || !(splat.half_height < 1e30f) ||
-      detail::misses(splat.x, splat.half_width, params.width) ||
-      detail::misses(splat.y, splat.half_height, params.height))
-    return false;
-
-  const float length = std::sqrt(dot(d, d));
-  splat.colour = interpolated_colour(params.arrays, item, (1.0f / length) * d);
+  splat.half_width = support.reach_x;
+  splat.half_height = support.reach_y;
   splat.opacity = shape.opacity;
   splat.log_opacity = shape.log_opacity;
-  splat.depth = depth;
+  splat.depth = view.z;
   splat.t = item.t;
   splat.inverse_k = item.inverse_k;
+  return std::fabs(splat.x) < 1e30f && std::fabs(splat.y) < 1e30f && splat.half_width < 1e19f &&
+         splat.half_height < 1e19f && !detail::misses(splat.x, splat.half_width, params.width) &&
+         !detail::misses(splat.y, splat.half_height, params.height);
+}
+
+template <class Arrays>
+VOYAGER_HD bool project(const ProjectParams& params, const Arrays& arrays, const DrawItem& item,
+                        Splat& splat) {
+  Vec3f d;
+  if (!project_shape(params, arrays, item, splat, d)) return false;
+  splat.colour = interpolated_colour(arrays, item, (1.0f / std::sqrt(dot(d, d))) * d);
   return true;
 }
 

@@ -7,6 +7,7 @@
 #include "runtime/cpu/rasterize.h"
 #include "runtime/frame/depth_order.h"
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/project_params.h"
 #include "runtime/math/alpha_lut.h"
 #include "tests/support/render_scene.h"
 
@@ -88,25 +89,16 @@ TEST(Backends, ExponentialsHaveTheErrorsStatedForThem) {
 
 // Splats of a frame as the CPU's stages make them.
 std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const FrameInput& input,
-                             float log_scale) {
+                             Exponential exponential) {
   Workers workers(1);
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
   draws.update(input, workers);
-  const Camera& c = input.camera;
-  const ProjectParams params{
-      gaussian_arrays(*scene),
-      scene->origin,
-      c.eye,
-      view_projection<float>(c.world_to_view, c.fx, c.fy, c.cx, c.cy, c.width, c.height),
-      static_cast<float>(c.near_z),
-      static_cast<float>(c.width),
-      static_cast<float>(c.height),
-      0.5f * log_scale,
-      log_scale};
+  const ProjectParams params = project_params(*scene, input.camera, exponential);
+  const GaussianArrays arrays = gaussian_arrays(*scene);
   std::vector<Splat> splats;
   Splat splat;
   for (const DrawItem& item : draws.items())
-    if (project(params, item, splat)) splats.push_back(splat);
+    if (project(params, arrays, item, splat)) splats.push_back(splat);
   std::stable_sort(splats.begin(), splats.end(),
                    [](const Splat& a, const Splat& b) { return a.depth < b.depth; });
   return splats;
@@ -150,8 +142,7 @@ TEST(Backends, InstructionSetsAgreeToTheBit) {
   for (const double tau : {0.0, 12.0})
     for (const Exponential e : {Exponential::exact, Exponential::ex2, Exponential::lut}) {
       const auto splats =
-          splats_of(scene, frame_input(look({3, -6, -24}, {0, 0, 0}, width, height), tau),
-                    e == Exponential::ex2 ? 1.44269504f : 1.0f);
+          splats_of(scene, frame_input(look({3, -6, -24}, {0, 0, 0}, width, height), tau), e);
       ASSERT_GT(splats.size(), 50u);
       std::vector<uint32_t> order(splats.size());
       for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;

@@ -49,7 +49,7 @@ bool wanted(const SearchCandidate& candidate, const Arguments& arguments) {
 }
 
 std::unique_ptr<Backend> create_backend(const Arguments& arguments) {
-  const BackendModuleOptions options{0, arguments.multiprocessors};
+  const BackendModuleOptions options{0, arguments.multiprocessors, nullptr};
   if (arguments.backend == BenchBackend::cuda) return load_backend("cuda", options);
   if (arguments.backend == BenchBackend::automatic) {
     try {

@@ -1,9 +1,9 @@
 #include "runtime/scene/import/spz_decode.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "runtime/math/half.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager::spz {
@@ -13,21 +13,10 @@ int byte(const std::byte* at) {
   return std::to_integer<int>(*at);
 }
 
-float half_to_float(uint32_t half) {
-  const uint32_t sign = (half & 0x8000u) << 16, exponent = half >> 10 & 31u,
-                 mantissa = half & 1023u;
-  if (exponent == 0) {
-    const float magnitude = std::ldexp(static_cast<float>(mantissa), -24);
-    return sign ? -magnitude : magnitude;
-  }
-  const uint32_t biased = exponent == 31 ? 255u : exponent + 112u;
-  return std::bit_cast<float>(sign | biased << 23 | mantissa << 13);
-}
-
 void decode_position(const Header& header, const std::byte* code, float* position) {
   for (int axis = 0; axis < 3; ++axis, code += header.version == 1 ? 2 : 3) {
     if (header.version == 1) {
-      const float half = half_to_float(static_cast<uint32_t>(byte(code) | byte(code + 1) << 8));
+      const float half = half_to_float(static_cast<uint16_t>(byte(code) | byte(code + 1) << 8));
       position[axis] = axis == 0 ? half : 0.0f - half;
     } else {
       const int bits = byte(code) | byte(code + 1) << 8 | byte(code + 2) << 16;

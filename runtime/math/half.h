@@ -1,15 +1,17 @@
 #pragma once
-// IEEE binary16, round to nearest even, for compact storage.
+// IEEE binary16, round to nearest even: images and compact storage.
 #include <bit>
 #include <cmath>
 #include <cstdint>
+
+#include "runtime/math/host_device.h"
 
 namespace voyager {
 
 inline constexpr float kMaxHalf = 65504.0f;
 
-// Beyond ±kMaxHalf: clamped there. The argument is not NaN.
-inline uint16_t float_to_half(float value) {
+// Always finite: what lies beyond ±kMaxHalf, infinities and NaNs too, becomes ±kMaxHalf.
+VOYAGER_HD uint16_t float_to_half(float value) {
   const uint16_t sign = std::signbit(value) ? 0x8000 : 0;
   const float magnitude = std::fmin(std::fabs(value), kMaxHalf);
   if (magnitude < 0x1p-14f)  // subnormal: a multiple of 2^-24
@@ -19,7 +21,7 @@ inline uint16_t float_to_half(float value) {
   return static_cast<uint16_t>(sign | ((bits - (112u << 23) + 0xfff + even) >> 13));
 }
 
-inline float half_to_float(uint16_t half) {
+VOYAGER_HD float half_to_float(uint16_t half) {
   const uint32_t sign = static_cast<uint32_t>(half & 0x8000) << 16, rest = half & 0x7fff;
   if (rest < 0x400) {
     const float magnitude = static_cast<float>(rest) * 0x1p-24f;
