@@ -87,6 +87,7 @@ class CutState {
   CutState(const SearchTree& tree, size_t leaves, bool weights);
 
   StateView view() const;
+  uint32_t list_room() const { return static_cast<uint32_t>(nodes_.size()); }
 
  private:
   Buffer<Watch> watch_;

@@ -3,6 +3,8 @@
 #include <cuda.h>
 #include <cuda_runtime_api.h>
 
+#include <cstring>
+
 #include "cuda/check.h"
 #include "runtime/base/error.h"
 
@@ -13,6 +15,7 @@ Device::Device(int ordinal, unsigned multiprocessors) : ordinal_(ordinal) {
   check(cudaGetDeviceProperties(&properties, ordinal), "device properties");
   check(cudaSetDevice(ordinal), "device");
   name_ = properties.name;
+  std::memcpy(uuid_.data(), properties.uuid.bytes, uuid_.size());
   multiprocessors_ = static_cast<unsigned>(properties.multiProcessorCount);
   if (multiprocessors != 0 && multiprocessors < multiprocessors_)
     make_green_context(multiprocessors);
@@ -101,6 +104,18 @@ void Device::use() const {
   check(cudaSetDevice(ordinal_), "device");
 }
 #endif
+
+DeviceRates Device::rates() const {
+  const auto attribute = [&](cudaDeviceAttr name) {
+    int value = 0;
+    check(cudaDeviceGetAttribute(&value, name, ordinal_), "device attribute");
+    return static_cast<double>(value);
+  };
+  constexpr double kLanes = 128, kHertz = 1e3;  // clocks are in kHz
+  const double memory_hertz = kHertz * attribute(cudaDevAttrMemoryClockRate);
+  return {kLanes * multiprocessors_ * kHertz * attribute(cudaDevAttrClockRate),
+          2 * memory_hertz * attribute(cudaDevAttrGlobalMemoryBusWidth) / 8};  // two a clock
+}
 
 void Device::use_quietly() const noexcept {
   try {

@@ -1,6 +1,10 @@
 #pragma once
 // The device that a backend works on: all of it, or a part of its multiprocessors.
+#include <array>
+#include <cstdint>
 #include <string>
+
+#include "runtime/frame/backend.h"
 
 namespace voyager::cuda {
 
@@ -21,12 +25,16 @@ class Device {
 
   const std::string& name() const { return name_; }
   unsigned multiprocessors() const { return multiprocessors_; }
+  const std::array<uint8_t, 16>& uuid() const { return uuid_; }
+  // From its clocks: lane-instructions of the multiprocessors in use, bytes of the whole card.
+  DeviceRates rates() const;
 
  private:
   void make_green_context(unsigned multiprocessors);
 
   int ordinal_;
   std::string name_;
+  std::array<uint8_t, 16> uuid_;
   unsigned multiprocessors_ = 0;
   void* green_ = nullptr;    // CUgreenCtx
   void* context_ = nullptr;  // its CUcontext; null for the whole device

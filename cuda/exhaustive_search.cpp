@@ -1,11 +1,10 @@
-#include "cuda/frame_timer.h"
 #include "cuda/search.h"
 #include "cuda/search_launch.h"
 
 namespace voyager::cuda {
 namespace {
 
-class ExhaustiveSearch final : public SceneSearch {
+class ExhaustiveSearch final : public CutSearch {
  public:
   ExhaustiveSearch(std::shared_ptr<const Device> device, const Scene& scene, bool weights)
       : device_(std::move(device)),
@@ -22,22 +21,24 @@ class ExhaustiveSearch final : public SceneSearch {
   // What it frees belongs to the device's context.
   ~ExhaustiveSearch() override { device_->use_quietly(); }
 
-  void run(const CutQuery& query) override {
-    device_->use();
-    const Sight sight = make_sight(query);
-    timer_.begin();
+  void find(const CutQuery& query, cudaStream_t stream) override {
     if (tree_.size != 0)
-      launch_exhaustive(tree_, sight, scratch_.data(), scratch_.bytes(), nodes_.data(),
-                        count_.data(), timer_.stream());
-    timer_.middle();
-    if (tree_.size != 0 && weights_.size() != 0)
-      launch_weights(tree_, sight, nodes_.data(), count_.data(), weights_.data(),
-                     device_->multiprocessors(), timer_.stream());
-    timer_.end();
+      launch_exhaustive(tree_, make_sight(query), scratch_.data(), scratch_.bytes(), nodes_.data(),
+                        count_.data(), stream);
   }
-  SearchTimes times() override {
-    device_->use();
-    return timer_.times();
+  void weigh(const CutQuery& query, cudaStream_t stream) override {
+    if (tree_.size != 0)
+      launch_weights(tree_, make_sight(query), nodes_.data(), count_.data(), weights_.data(),
+                     device_->multiprocessors(), stream);
+  }
+  CutList list() const override {
+    return {nodes_.data(), weights_.data(), count_.data(), tree_.size};
+  }
+  bool counts_changes() const override { return false; }
+  uint32_t cut_size() override {
+    uint32_t size = 0;
+    check(cudaMemcpy(&size, count_.data(), sizeof size, cudaMemcpyDeviceToHost), "cut");
+    return size;
   }
   SearchStats stats() override {
     SearchStats stats;
@@ -46,10 +47,7 @@ class ExhaustiveSearch final : public SceneSearch {
     return stats;
   }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
-    device_->use();
-    timer_.wait();
-    uint32_t size = 0;
-    check(cudaMemcpy(&size, count_.data(), sizeof size, cudaMemcpyDeviceToHost), "cut");
+    const uint32_t size = cut_size();
     cut.resize(size);
     weights.resize(weights_.size() == 0 ? 0 : size);
     if (size == 0) return;
@@ -70,14 +68,13 @@ class ExhaustiveSearch final : public SceneSearch {
   Buffer<uint32_t> nodes_;
   Buffer<float> weights_;
   Buffer<uint32_t> count_;
-  FrameTimer timer_;
 };
 
 }  // namespace
 
-std::unique_ptr<SceneSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
-                                                      std::shared_ptr<const Scene> scene,
-                                                      bool weights) {
+std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
+                                                    std::shared_ptr<const Scene> scene,
+                                                    bool weights) {
   device->use();
   return std::make_unique<ExhaustiveSearch>(std::move(device), *scene, weights);
 }

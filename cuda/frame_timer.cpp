@@ -1,11 +1,10 @@
 #include "cuda/frame_timer.h"
 
 #include "cuda/check.h"
-#include "cuda/head_start.h"
 
 namespace voyager::cuda {
 
-FrameTimer::FrameTimer() {
+FrameTimer::FrameTimer(size_t marks) : events_(marks, nullptr) {
   try {
     check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "stream");
     for (cudaEvent_t& event : events_) check(cudaEventCreate(&event), "event");
@@ -26,26 +25,18 @@ void FrameTimer::release() {
   if (stream_ != nullptr) cudaStreamDestroy(stream_);
 }
 
-void FrameTimer::begin() {
-  give_head_start(stream_);
-  check(cudaEventRecord(events_[0], stream_), "event");
-}
-void FrameTimer::middle() {
-  check(cudaEventRecord(events_[1], stream_), "event");
-}
-void FrameTimer::end() {
-  check(cudaEventRecord(events_[2], stream_), "event");
+void FrameTimer::mark(size_t index) {
+  check(cudaEventRecord(events_[index], stream_), "event");
 }
 void FrameTimer::wait() const {
-  check(cudaStreamSynchronize(stream_), "a frame's search");
+  check(cudaStreamSynchronize(stream_), "a frame");
 }
 
-SearchTimes FrameTimer::times() const {
+double FrameTimer::milliseconds(size_t from, size_t to) const {
   wait();
-  float search = 0, weights = 0;
-  check(cudaEventElapsedTime(&search, events_[0], events_[1]), "time");
-  check(cudaEventElapsedTime(&weights, events_[1], events_[2]), "time");
-  return {search, weights};
+  float elapsed = 0;
+  check(cudaEventElapsedTime(&elapsed, events_[from], events_[to]), "time");
+  return elapsed;
 }
 
 }  // namespace voyager::cuda

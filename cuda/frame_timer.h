@@ -1,31 +1,30 @@
 #pragma once
 #include <cuda_runtime_api.h>
 
-#include "runtime/frame/scene_search.h"
+#include <vector>
 
 namespace voyager::cuda {
 
-// A stream and the events around a frame's kernels.
+// A stream, and events between the parts of its work.
 class FrameTimer {
  public:
-  FrameTimer();
+  explicit FrameTimer(size_t marks);
   ~FrameTimer();
   FrameTimer(const FrameTimer&) = delete;
   FrameTimer& operator=(const FrameTimer&) = delete;
 
   cudaStream_t stream() const { return stream_; }
-  void begin();
-  void middle();
-  void end();
+  void mark(size_t index);
+  // Until all that was launched is done.
   void wait() const;
-  // Waits; milliseconds from begin to middle, and from middle to end.
-  SearchTimes times() const;
+  // Waits. Both marks must have been passed.
+  double milliseconds(size_t from, size_t to) const;
 
  private:
   void release();
 
   cudaStream_t stream_ = nullptr;
-  cudaEvent_t events_[3] = {};
+  std::vector<cudaEvent_t> events_;
 };
 
 }  // namespace voyager::cuda

@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "cuda/cut_state.h"
-#include "cuda/frame_timer.h"
 #include "cuda/search.h"
 #include "cuda/search_launch.h"
 #include "runtime/select/references.h"
@@ -20,7 +19,7 @@ size_t count_leaves(const LodTree& tree) {
                                            [](const NodeRecord& r) { return r.child_count == 0; }));
 }
 
-class PartitionedSearch final : public SceneSearch {
+class PartitionedSearch final : public CutSearch {
  public:
   PartitionedSearch(std::shared_ptr<const Device> device, std::shared_ptr<const DeviceTree> tree,
                     std::shared_ptr<const Scene> scene, Search kind, bool weights)
@@ -34,16 +33,17 @@ class PartitionedSearch final : public SceneSearch {
   // What it frees belongs to the device's context.
   ~PartitionedSearch() override { device_->use_quietly(); }
 
-  void run(const CutQuery& query) override;
-  SearchTimes times() override {
-    device_->use();
-    return timer_.times();
-  }
+  void find(const CutQuery& query, cudaStream_t stream) override;
+  void weigh(const CutQuery& query, cudaStream_t stream) override;
+  CutList list() const override;
   SearchStats stats() override;
+  bool counts_changes() const override { return true; }
+  uint32_t cut_size() override { return counters().cut_size; }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override;
 
  private:
-  FrameCounters counters();
+  FrameCounters counters() const;
+  SearchFrame frame(const CutQuery& query, cudaStream_t stream) const;
 
   std::shared_ptr<const Device> device_;
   std::shared_ptr<const DeviceTree> tree_;
@@ -52,44 +52,51 @@ class PartitionedSearch final : public SceneSearch {
   bool weights_;
   CutState state_;
   References references_;
-  FrameTimer timer_;
   bool started_ = false;
 };
 
-void PartitionedSearch::run(const CutQuery& query) {
-  device_->use();
+SearchFrame PartitionedSearch::frame(const CutQuery& query, cudaStream_t stream) const {
+  return {tree_->view(),
+          state_.view(),
+          make_sight(query),
+          references_.current(),
+          device_->multiprocessors(),
+          stream};
+}
+
+void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
   references_.begin_frame(query);
-  const SearchFrame frame{tree_->view(),
-                          state_.view(),
-                          make_sight(query),
-                          references_.current(),
-                          device_->multiprocessors(),
-                          timer_.stream()};
+  const SearchFrame now = frame(query, stream);
   const bool from_nothing = !std::exchange(started_, false);  // should a launch fail, too
-  timer_.begin();
-  if (frame.tree.subtree_count != 0) {
+  if (now.tree.subtree_count != 0) {
     if (kind_ == Search::streaming || from_nothing) {
-      launch_streaming(frame);
+      launch_streaming(now);
     } else if (kind_ == Search::temporal_visit) {
-      launch_temporal_visit(frame);
+      launch_temporal_visit(now);
     } else {
       Travels travels;
       std::copy(references_.travel().begin(), references_.travel().end(), travels.of);
       travels.retired = references_.retired();
-      launch_temporal(frame, travels, frame.tree.subtree_count / kSubtreesADue);
+      launch_temporal(now, travels, now.tree.subtree_count / kSubtreesADue);
     }
-    launch_place(frame);
-    launch_emit(frame, weights_);
+    launch_place(now);
+    launch_emit(now, weights_);
   }
-  timer_.middle();
-  if (frame.tree.subtree_count != 0 && weights_) launch_weigh(frame);
-  timer_.end();
   started_ = true;
 }
 
-FrameCounters PartitionedSearch::counters() {
-  device_->use();
-  timer_.wait();
+void PartitionedSearch::weigh(const CutQuery& query, cudaStream_t stream) {
+  const SearchFrame now = frame(query, stream);
+  if (now.tree.subtree_count != 0) launch_weigh(now);
+}
+
+CutList PartitionedSearch::list() const {
+  const StateView state = state_.view();
+  return {state.nodes, weights_ ? state.weights : nullptr, &state.work[1].list_size,
+          state_.list_room()};
+}
+
+FrameCounters PartitionedSearch::counters() const {
   FrameCounters counters;
   check(cudaMemcpy(&counters, state_.view().work + 1, sizeof counters, cudaMemcpyDeviceToHost),
         "counters");
@@ -137,10 +144,10 @@ std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene) {
   return std::make_shared<DeviceTree>(scene.search, scene.tree);
 }
 
-std::unique_ptr<SceneSearch> create_partitioned_search(std::shared_ptr<const Device> device,
-                                                       std::shared_ptr<const DeviceTree> tree,
-                                                       std::shared_ptr<const Scene> scene,
-                                                       Search kind, bool weights) {
+std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,
+                                                     std::shared_ptr<const DeviceTree> tree,
+                                                     std::shared_ptr<const Scene> scene,
+                                                     Search kind, bool weights) {
   device->use();
   return std::make_unique<PartitionedSearch>(std::move(device), std::move(tree), std::move(scene),
                                              kind, weights);

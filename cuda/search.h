@@ -1,6 +1,7 @@
 #pragma once
-// One view's search of one scene on the device. Frames are launched on a stream of
-// its own and nothing waits for the host, but for what says so.
+// One view's search of one scene on the device. What it launches waits for no host.
+#include <cuda_runtime_api.h>
+
 #include <memory>
 
 #include "cuda/device.h"
@@ -10,19 +11,52 @@
 
 namespace voyager::cuda {
 
+// A cut on the device: node ids, ascending. Places that hold kNoNode are none.
+struct CutList {
+  const uint32_t* nodes;
+  const float* weights;  // t by place; null where the search finds none
+  const uint32_t* size;  // places in use; on the device, as the arrays are
+  uint32_t room;         // no list has more places
+};
+
+// Keeps its cut from run to run. Not thread-safe; one stream at a time.
+class CutSearch {
+ public:
+  virtual ~CutSearch() = default;
+  virtual void find(const CutQuery& query, cudaStream_t stream) = 0;
+  // t of the cut just found; only of a search that was made for weights.
+  virtual void weigh(const CutQuery& query, cudaStream_t stream) = 0;
+  virtual CutList list() const = 0;
+
+  // Of the last run; the stream has come to its end.
+  virtual SearchStats stats() = 0;
+  virtual bool counts_changes() const = 0;
+  virtual uint32_t cut_size() = 0;
+  virtual void read(std::vector<uint32_t>& cut, std::vector<float>& weights) = 0;
+};
+
 // Arrays of a scene that searches share.
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // streaming, temporal or temporal_visit. Device memory besides the scene's arrays:
 // 24 bytes a subtree and, for the list, 4.5 bytes a leaf, with weights 18.
-std::unique_ptr<SceneSearch> create_partitioned_search(std::shared_ptr<const Device> device,
-                                                       std::shared_ptr<const DeviceTree> tree,
-                                                       std::shared_ptr<const Scene> scene,
-                                                       Search kind, bool weights);
+std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,
+                                                     std::shared_ptr<const DeviceTree> tree,
+                                                     std::shared_ptr<const Scene> scene,
+                                                     Search kind, bool weights);
 
 // Uploads every node's record and parent for itself: it is a baseline, not what a frame uses.
-std::unique_ptr<SceneSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
-                                                      std::shared_ptr<const Scene> scene,
-                                                      bool weights);
+std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
+                                                    std::shared_ptr<const Scene> scene,
+                                                    bool weights);
+
+// Runs on the host, for scenes with damaged chunks; find() throws Error(damaged_chunk)
+// where the cut needs one.
+std::unique_ptr<CutSearch> create_host_cut_search(std::shared_ptr<const Scene> scene, Search kind,
+                                                  Workers& workers);
+
+// A search by itself, on a stream of its own, with its times.
+std::unique_ptr<SceneSearch> create_timed_search(std::shared_ptr<const Device> device,
+                                                 std::unique_ptr<CutSearch> search, bool weights);
 
 }  // namespace voyager::cuda

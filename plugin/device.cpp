@@ -91,8 +91,8 @@ VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device) {
     BackendChoice choice = choose_backend(desc->backend, desc->deviceUuid);
     const auto object =
         std::make_shared<DeviceObject>(*desc, choice.kind, std::move(choice.backend));
-    *device = static_cast<VoyDevice>(HandleTable::instance().insert(object));
     log_creation(*object, choice.cuda_left_out);
+    *device = static_cast<VoyDevice>(HandleTable::instance().insert(object));
     return VOY_SUCCESS;
   });
 }

@@ -39,8 +39,8 @@ Search search_of(VoySearch search) {
   }
 }
 
-Exponential exponential_of(VoyExponential exponential, VoyBackend backend) {
-  switch (exponential) {
+Exponential exponential_of(const VoyViewDesc& desc, VoyBackend backend) {
+  switch (desc.exponential) {
     case VOY_EXPONENTIAL_EXACT:
       return Exponential::exact;
     case VOY_EXPONENTIAL_EX2:
@@ -48,7 +48,9 @@ Exponential exponential_of(VoyExponential exponential, VoyBackend backend) {
     case VOY_EXPONENTIAL_LUT:
       return Exponential::lut;
     default:
-      return backend == VOY_BACKEND_CUDA ? Exponential::ex2 : Exponential::exact;
+      return backend == VOY_BACKEND_CUDA && desc.splatting == VOY_SPLATTING_OURS
+                 ? Exponential::ex2
+                 : Exponential::exact;
   }
 }
 
@@ -65,7 +67,7 @@ PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   choices.search = search_of(desc.search);
   choices.alpha_filter = desc.alphaFilter == VOY_ALPHA_FILTER_ON;
   choices.lut_size = desc.lutSize == 0 ? kDefaultLutSize : desc.lutSize;
-  choices.exponential = exponential_of(desc.exponential, backend);
+  choices.exponential = exponential_of(desc, backend);
   if (desc.splatting == VOY_SPLATTING_3DGS) choices.splatting = Splatting::baseline_3dgs;
   return choices;
 }

@@ -19,11 +19,12 @@ void append(GaussianCloud& cloud, const GaussianArrays& arrays, const DrawItem& 
     cloud.rotation.push_back(q);
   cloud.opacity.push_back(
       std::clamp(logit(std::min(shape.opacity, 1.0f - 0x1p-24f)), -kMaxLogit, kMaxLogit));
-  const size_t stride = 3 * static_cast<size_t>(sh_coefficients(arrays.sh_degree));
-  const float* own = arrays.sh + item.gaussian * stride;
-  const float* parent = item.t == 1.0f ? own : arrays.sh + item.parent * stride;
-  for (size_t k = 0; k < stride; ++k)
-    cloud.sh.push_back(item.t == 1.0f ? own[k] : lerp(parent[k], own[k], item.t));
+  const auto own = arrays.sh(item.gaussian);
+  const auto parent = arrays.sh(item.t == 1.0f ? item.gaussian : item.parent);
+  for (int k = 0; k < sh_coefficients(arrays.sh_degree()); ++k)
+    for (int channel = 0; channel < 3; ++channel)
+      cloud.sh.push_back(item.t == 1.0f ? own(k, channel)
+                                        : lerp(parent(k, channel), own(k, channel), item.t));
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ Json to_json(const VoyFrameStats& s) {
       {"splats", s.splats},
       {"pairs_before", s.pairsBefore},
       {"pairs_after", s.pairsAfter},
+      {"pairs_dropped", s.pairsDropped},
       {"bytes_streamed", s.bytesStreamed},
       {"bytes_needed", s.bytesNeeded},
       {"missing", s.missing},
@@ -97,18 +98,20 @@ void FrameFiles::write(size_t index, const Camera& camera, const Renderer& rende
   if (!stats_.empty()) frames_.push_back(to_json(renderer.stats()));
 }
 
-void FrameFiles::finish(const std::vector<VoySceneNote>& notes) {
+void FrameFiles::finish(const Renderer& renderer) {
   for (const Output* output : {&image_, &depth_, &cut_})
     if (output->folder) output->folder->commit();
-  if (!stats_.empty()) write_stats(notes);
+  if (!stats_.empty()) write_stats(renderer);
 }
 
-void FrameFiles::write_stats(const std::vector<VoySceneNote>& notes) const {
+void FrameFiles::write_stats(const Renderer& renderer) const {
   Json omitted = Json::array();
-  for (const VoySceneNote& note : notes)
+  for (const VoySceneNote& note : renderer.notes())
     if (note.kind == VOY_SCENE_NOTE_OMITTED)
       omitted.push_back({{"what", note.what}, {"why", note.why}, {"bytes", note.bytes}});
-  write_text(stats_, Json{{"frames", frames_}, {"omitted", omitted}}.dump(2) + "\n");
+  const Json stats = {
+      {"device", renderer.device_name()}, {"frames", frames_}, {"omitted", omitted}};
+  write_text(stats_, stats.dump(2) + "\n");
 }
 
 }  // namespace voyager::tools

@@ -26,7 +26,7 @@ class FrameFiles {
   // Writes camera `index`'s image, depth and cut, and keeps its statistics.
   void write(size_t index, const Camera& camera, const Renderer& renderer);
   // Puts a walk's files in their places, and writes the statistics.
-  void finish(const std::vector<VoySceneNote>& notes);
+  void finish(const Renderer& renderer);
 
  private:
   // One of the outputs: a file, or a folder of a walk.
@@ -37,7 +37,7 @@ class FrameFiles {
     std::string place(size_t index, const char* extension) const;
   };
   static Output open(const std::string& path, bool walk);
-  void write_stats(const std::vector<VoySceneNote>& notes) const;
+  void write_stats(const Renderer& renderer) const;
 
   bool floats_;
   std::string stats_;

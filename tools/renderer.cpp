@@ -25,6 +25,7 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
   desc.alphaFilter = choices.alpha_filter;
   desc.exponential = choices.exponential;
   desc.lutSize = choices.lut_size;
+  desc.splatting = choices.splatting;
   return device.create_view(desc);
 }
 

@@ -17,6 +17,7 @@ struct RenderChoices {
   VoyAlphaFilter alpha_filter = VOY_ALPHA_FILTER_ON;
   VoyExponential exponential = VOY_EXPONENTIAL_AUTO;
   uint32_t lut_size = 32;
+  VoySplatting splatting = VOY_SPLATTING_OURS;
   float background[3] = {0, 0, 0};  // code values, 0 to 1
   bool floats = false;              // RGBA32F instead of RGBA8
   bool depth = false;
@@ -38,6 +39,7 @@ class Renderer {
   std::vector<uint32_t> cut() const { return view_.cut(); }
   VoyFrameStats stats() const { return view_.stats(); }
   std::vector<VoySceneNote> notes() const { return scene_.notes(); }
+  std::string device_name() const { return device_.capabilities().deviceName; }
 
  private:
   voy::Target create_target(const Camera& camera);

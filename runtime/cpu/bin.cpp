@@ -10,7 +10,8 @@ namespace {
 template <class Visit>
 void for_tiles(const Splat& splat, const TileGrid& grid, bool alpha_filter, uint32_t* boxed,
                const Visit& visit) {
-  const TileRange rows = box_rows(splat, grid), box = box_columns(splat, grid);
+  const TileRange rows = box_tiles(splat.y, splat.half_height, grid.rows);
+  const TileRange box = box_tiles(splat.x, splat.half_width, grid.columns);
   *boxed = static_cast<uint32_t>((rows.end - rows.begin) * (box.end - box.begin));
   if (*boxed == 0) return;
   const bool whole = !alpha_filter || *boxed == 1;

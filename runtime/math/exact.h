@@ -47,6 +47,39 @@ VOYAGER_HD float sqrt_rn(float a) {
 #endif
 }
 
+// A binary32 number whose operations are these, for formulas that must come out the same
+// wherever they are compiled.
+struct Rounded {
+  float value;
+
+  VOYAGER_HD Rounded(float v) : value(v) {}
+  VOYAGER_HD explicit operator float() const { return value; }
+};
+VOYAGER_HD Rounded operator+(Rounded a, Rounded b) {
+  return add_rn(a.value, b.value);
+}
+VOYAGER_HD Rounded operator-(Rounded a, Rounded b) {
+  return subtract_rn(a.value, b.value);
+}
+VOYAGER_HD Rounded operator*(Rounded a, Rounded b) {
+  return multiply_rn(a.value, b.value);
+}
+VOYAGER_HD Rounded operator/(Rounded a, Rounded b) {
+  return divide_rn(a.value, b.value);
+}
+VOYAGER_HD Rounded operator-(Rounded a) {
+  return -a.value;
+}
+VOYAGER_HD bool operator<(Rounded a, Rounded b) {
+  return a.value < b.value;
+}
+VOYAGER_HD bool operator>(Rounded a, Rounded b) {
+  return a.value > b.value;
+}
+VOYAGER_HD Rounded sqrt(Rounded a) {
+  return sqrt_rn(a.value);
+}
+
 // Within 2⁻²³ of the root, relatively; on a device cheaper than the rounded one.
 VOYAGER_HD float sqrt_near(float a) {
 #if defined(__CUDA_ARCH__)

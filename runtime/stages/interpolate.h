@@ -42,6 +42,7 @@ struct GaussianArrays {
   int sh_degree() const { return degree; }
   const Vec3f& mean(uint32_t i) const { return gaussians[i].mean; }
   const Gaussian& gaussian(uint32_t i) const { return gaussians[i]; }
+  float opacity(uint32_t i) const { return gaussians[i].opacity; }
   int axis_code(uint32_t i) const { return axis_codes[i]; }
   // sh(i)(k, channel)
   auto sh(uint32_t i) const {
@@ -84,7 +85,7 @@ VOYAGER_HD Shape<T> interpolated_shape(const Arrays& arrays, const DrawItem& ite
   const T t = T(item.t);
   shape.scale = lerp(parent.scale, shape.scale, t);
   shape.rotation = lerp(parent.rotation, shape.rotation, t);
-  shape.opacity = lerp(parent.opacity, shape.opacity, t);
+  shape.opacity = lerp(T(arrays.opacity(item.parent)), T(arrays.opacity(item.gaussian)), t);
   shape.log_opacity = std::log(shape.opacity);
   return shape;
 }

@@ -34,9 +34,10 @@ struct Splat {
 // it is scaled; and |dx| ≤ R/p_x on the support. The sum of squares adds 2ε, a row
 // found from the one above it ε. 16ε covers what is proportional to R,
 // 4ε·q_y·|skew|/p_x the needles; both are doubled for the arithmetic that uses this.
-VOYAGER_HD float support_growth(const Conic<float>& c) {
+VOYAGER_HD Rounded support_growth(const Conic<float>& c) {
   constexpr float epsilon = 1.0f / 16777216.0f;
-  return 1.0f + epsilon * (32.0f + 8.0f * c.q_y * std::fabs(c.skew) / c.p_x);
+  return Rounded(1.0f) + Rounded(epsilon) * (Rounded(32.0f) + Rounded(8.0f * std::fabs(c.skew)) *
+                                                                  Rounded(c.q_y) / Rounded(c.p_x));
 }
 
 // Of ρ itself, absolutely, where it is found as log α - log o (up to 3ε·|log o| + 8ε):
@@ -44,8 +45,8 @@ VOYAGER_HD float support_growth(const Conic<float>& c) {
 inline constexpr float kRhoMargin = 4e-6f;
 
 // The radius in (p, q) of the grown support.
-VOYAGER_HD float support_radius(const Conic<float>& conic, float rho_min) {
-  return std::sqrt(kRhoMargin - rho_min) * support_growth(conic);
+VOYAGER_HD Rounded support_radius(const Conic<float>& conic, float rho_min) {
+  return sqrt(Rounded(kRhoMargin) - Rounded(rho_min)) * support_growth(conic);
 }
 
 // The grown support, ready to be cut into strips: dx = along·dy ± across·√(1 - (dy/reach_y)²).
@@ -54,15 +55,22 @@ struct SupportEllipse {
   float x, y, reach_x, reach_y, along, across, top;  // top: dy at the right-most point
 };
 
+// Exactly the same wherever it is compiled: a device counts a splat's tiles in one kernel
+// and lists them in another.
 VOYAGER_HD SupportEllipse support_ellipse(float x, float y, const Conic<float>& conic,
                                           float rho_min) {
-  constexpr float kOutwards = 1.000002f;
-  const float radius = kOutwards * support_radius(conic, rho_min);
-  const float width = radius / conic.p_x;  // half-width
-  const float tilt = conic.skew * width, thickness = radius / conic.q_y;
-  const float height = std::sqrt(tilt * tilt + thickness * thickness);
-  return {x,   y, width, height, width / height * (tilt / height), width * (thickness / height),
-          tilt};
+  const Rounded outwards = 1.000002f;
+  const Rounded radius = outwards * support_radius(conic, rho_min);
+  const Rounded width = radius / conic.p_x;  // half-width
+  const Rounded tilt = width * conic.skew, thickness = radius / conic.q_y;
+  const Rounded height = sqrt(tilt * tilt + thickness * thickness);
+  return {x,
+          y,
+          width.value,
+          height.value,
+          (width / height * (tilt / height)).value,
+          (width * (thickness / height)).value,
+          tilt.value};
 }
 VOYAGER_HD SupportEllipse support_ellipse(const Splat& s) {
   return support_ellipse(s.x, s.y, s.conic, s.rho_min);

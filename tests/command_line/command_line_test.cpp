@@ -112,7 +112,9 @@ TEST_F(CommandLine, AWalkWritesAFileAFrame) {
                   frame["left"].get<int64_t>(),
               frame["cut"].get<int64_t>());
     EXPECT_LE(frame["pairs_after"].get<int64_t>(), frame["pairs_before"].get<int64_t>());
+    EXPECT_EQ(frame["pairs_dropped"], 0);
   }
+  EXPECT_NE(stats["device"], "");
   EXPECT_EQ(stats["frames"][0]["tau_star"].get<std::string>().substr(0, 2), "0x");
 }
 
@@ -136,7 +138,6 @@ TEST_F(CommandLine, BenchRefusals) {
   const std::string bench =
       "voyager bench " + file("city.voy") + " --cameras " + file("city.cameras.json") + " ";
   const std::string json = "--json " + file("refused.json");
-  expect_refusal(bench + "--stages splat " + json, 1, "found splat");
   expect_refusal(bench + "--backend cpu --sms 16 " + json, 1, "--sms");
   expect_refusal(bench + "--json " + file("refused.txt"), 1, ".json");
   expect_refusal("voyager bench " + file("city.ply") + " --cameras " + file("city.cameras.json") +
@@ -186,15 +187,14 @@ TEST_F(CommandLine, EverySearchDumpsTheSameCuts) {
 
 TEST_F(CommandLine, BackendsDumpTheSameCut) {
   for (const std::string tau : {"0", "3", "15"}) {
-    ASSERT_EQ(run(render("city.voy", "--tau " + tau + " --dump-cut " + file("cpu.txt") + " -o " +
-                                         file("a.png")))
-                  .exit_code,
-              0);
-    ASSERT_EQ(run(render("city.voy", "--tau " + tau + " --backend reference --dump-cut " +
-                                         file("reference.txt") + " -o " + file("b.png")))
-                  .exit_code,
-              0);
-    EXPECT_TRUE(file_bytes(file("cpu.txt")) == file_bytes(file("reference.txt"))) << tau;
+    for (const std::string backend : {"auto", "cpu", "reference"})
+      ASSERT_EQ(run(render("city.voy", "--tau " + tau + " --backend " + backend + " --dump-cut " +
+                                           file(backend + ".txt") + " -o " + file("a.png")))
+                    .exit_code,
+                0);
+    for (const std::string backend : {"auto", "cpu"})
+      EXPECT_TRUE(file_bytes(file(backend + ".txt")) == file_bytes(file("reference.txt")))
+          << backend << " at " << tau;
     EXPECT_FALSE(file_bytes(file("cpu.txt")).empty());
   }
 }
@@ -231,6 +231,10 @@ TEST_F(CommandLine, BadUsageIsNamedAndExitsWithOne) {
   expect_refusal(render("city.voy", "--search guess -o a.png"), 1, "guess");
   expect_refusal(render("city.voy", "--slack maybe -o a.png"), 1, "maybe");
   expect_refusal(render("city.voy", "--exp half2 -o a.png"), 1, "half2");
+  expect_refusal(render("city.voy", "--splat 2dgs -o a.png"), 1, "2dgs");
+  for (const std::string backend : {"cpu", "reference"})
+    expect_refusal(render("city.voy", "--splat 3dgs --backend " + backend + " -o " + file("x.png")),
+                   1, "3dgs");
   expect_refusal(render("city.voy", "--tau -1 -o a.png"), 1, "-1");
   expect_refusal(render("city.voy", "--tau nan -o a.png"), 1, "nan");
   expect_refusal(render("city.voy", "--camera 120 -o a.png"), 1, "119");
@@ -357,6 +361,16 @@ TEST_F(CommandLine, AnEmptySceneBakesRendersAndHasAnEmptyCut) {
 
 TEST_F(CommandLine, AnOutputThatCannotBeWrittenExitsWithFour) {
   expect_refusal(render("city.voy", "-o " + file("no/such/folder.png")), 4, "no/such/folder.png");
+}
+
+TEST_F(CommandLine, CudaDrawsBothWaysOrExitsWithFour) {
+  for (const std::string splat : {"ours", "3dgs"}) {
+    const std::string command =
+        render("city.voy", "--backend cuda --splat " + splat + " -o " + file(splat + ".png"));
+    const bool drawn = run(command).exit_code == 0;
+    if (!drawn) expect_refusal(command, 4, "VOY_ERROR_NO_DEVICE");
+    EXPECT_EQ(fs::exists(file(splat + ".png")), drawn);
+  }
 }
 
 TEST_F(CommandLine, HelpHasAnExampleOfEachCommand) {

@@ -5,6 +5,8 @@
 
 #include <memory>
 
+#include "cuda/check.h"
+#include "cuda/cuda_backend.h"
 #include "cuda/device.h"
 
 namespace voyager::test {
@@ -20,6 +22,17 @@ class DeviceTest : public ::testing::Test {
 
   static std::shared_ptr<const cuda::Device> device(unsigned multiprocessors = 0) {
     return std::make_shared<cuda::Device>(0, multiprocessors);
+  }
+
+  static std::unique_ptr<Backend> create_backend(unsigned multiprocessors = 0) {
+    return cuda::create_cuda_backend({0, multiprocessors, nullptr});
+  }
+
+  // Of the device's memory.
+  static size_t free_bytes() {
+    size_t free = 0, all = 0;
+    cuda::check(cudaMemGetInfo(&free, &all), "memory");
+    return free;
   }
 };
 

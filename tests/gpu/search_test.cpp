@@ -65,8 +65,11 @@ class SearchTest : public DeviceTest {
   static std::unique_ptr<SceneSearch> create(const std::shared_ptr<Scene>& scene, Search kind,
                                              unsigned multiprocessors = 0) {
     const auto on = device(multiprocessors);
-    if (kind == Search::exhaustive) return cuda::create_exhaustive_search(on, scene, true);
-    return cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true);
+    auto search =
+        kind == Search::exhaustive
+            ? cuda::create_exhaustive_search(on, scene, true)
+            : cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true);
+    return cuda::create_timed_search(on, std::move(search), true);
   }
 
   static Result run(SceneSearch& search, const CutQuery& query) {

@@ -1,54 +1,41 @@
-#include <fmt/core.h>
-
+#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
 #include "runtime/cpu/cpu_backend.h"
 #include "runtime/frame/backend_module.h"
-#include "tools/cameras.h"
+#include "tools/commands/bench_arguments.h"
 #include "tools/commands/commands.h"
-#include "tools/options.h"
 #include "tools/output_paths.h"
-#include "tools/progress_bar.h"
-#include "tools/search_bench.h"
 
 namespace voyager::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum class Stages { search };
-enum class BenchBackend { automatic, cpu, cuda };
-enum class SearchChoice { all, exhaustive, streaming, temporal };
-
-struct Arguments {
-  std::string scene, cameras, json;
-  Stages stages = Stages::search;
-  BenchBackend backend = BenchBackend::automatic;
-  SearchChoice search = SearchChoice::all;
-  bool slack = true;
-  bool verify = false;
-  double tau = 3;
-  unsigned multiprocessors = 0;
-  ImageSize size;
-};
-
-bool wanted(const SearchCandidate& candidate, const Arguments& arguments) {
-  switch (arguments.search) {
-    case SearchChoice::exhaustive:
-      return candidate.kind == Search::exhaustive;
-    case SearchChoice::streaming:
-      return candidate.kind == Search::streaming;
-    case SearchChoice::temporal:
-      return candidate.kind == (arguments.slack ? Search::temporal : Search::temporal_visit);
-    case SearchChoice::all:
-      break;
-  }
-  return true;
+[[noreturn]] void bad_usage(const std::string& message) {
+  throw Error(ErrorCode::invalid_argument, message);
 }
 
-std::unique_ptr<Backend> create_backend(const Arguments& arguments) {
+// An option that the chosen stages make nothing of would be a figure misread.
+void refuse_misplaced(const BenchArguments& arguments) {
+  const bool frames = arguments.stages != BenchStages::search;
+  const std::pair<const char*, bool> of_frames[] = {
+      {"--lod", arguments.lod.has_value()},           {"--filter", arguments.filter.has_value()},
+      {"--splat", arguments.splatting.has_value()},   {"--exp", arguments.exponential.has_value()},
+      {"--lut-size", arguments.lut_size.has_value()}, {"--repeat", arguments.repeat.has_value()}};
+  for (const auto& [option, given] : of_frames)
+    if (given && !frames)
+      bad_usage(std::string(option) +
+                ": found it with --stages search, expected --stages splat or all");
+  if (arguments.verify && frames)
+    bad_usage("--verify: found it with whole frames, expected --stages search");
+  if (arguments.lut_size && arguments.exponential != Exponential::lut)
+    bad_usage("--lut-size: found another exponential, expected --exp lut");
+}
+
+std::unique_ptr<Backend> create_backend(const BenchArguments& arguments) {
   const BackendModuleOptions options{0, arguments.multiprocessors, nullptr};
   if (arguments.backend == BenchBackend::cuda) return load_backend("cuda", options);
   if (arguments.backend == BenchBackend::automatic) {
@@ -59,12 +46,11 @@ std::unique_ptr<Backend> create_backend(const Arguments& arguments) {
     }
   }
   if (arguments.multiprocessors != 0)
-    throw Error(ErrorCode::invalid_argument,
-                "--sms: found the CPU backend, expected --backend cuda");
+    bad_usage("--sms: found the CPU backend, expected --backend cuda");
   return create_cpu_backend();
 }
 
-std::vector<Camera> read_walk(const Arguments& arguments) {
+std::vector<Camera> read_walk(const BenchArguments& arguments) {
   std::vector<Camera> cameras = read_cameras(arguments.cameras);
   if (arguments.size.width != 0)
     for (Camera& camera : cameras)
@@ -72,95 +58,104 @@ std::vector<Camera> read_walk(const Arguments& arguments) {
   return cameras;
 }
 
-Json bench_search(const Arguments& arguments, Backend& backend,
-                  const std::shared_ptr<const Scene>& scene, Workers& workers) {
-  const std::vector<CutQuery> path = cut_path(read_walk(arguments), arguments.tau, scene->origin);
-  std::vector<SearchCandidate> searches;
-  for (const SearchCandidate& candidate : kSearchCandidates)
-    if (wanted(candidate, arguments)) searches.push_back(candidate);
-  const Progress progress = progress_bar();
-  Json rows = Json::array();
-  for (size_t i = 0; i < searches.size(); ++i) {
-    Json row = {{"search", searches[i].name}, {"slack", searches[i].slack}};
-    row.update(time_search(backend, scene, searches[i].kind, path, workers, [&](size_t frame) {
-      progress("searching", i * 2 * path.size() + frame + 1, searches.size() * 2 * path.size());
-    }));
-    if (arguments.verify && searches[i].kind != Search::exhaustive &&
-        !same_cuts(backend, scene, Search::exhaustive, searches[i].kind, path, workers))
-      throw Error(ErrorCode::internal,
-                  fmt::format("--verify: found another cut or weight by {}, expected that of the "
-                              "exhaustive search",
-                              searches[i].name));
-    rows.push_back(row);
-  }
-  print_searches(rows);
-  return rows;
-}
-
-void bench(const Arguments& arguments) {
+void bench(const BenchArguments& arguments) {
+  refuse_misplaced(arguments);
   require_extension("--json", arguments.json, {".json"});
   require_distinct({arguments.json}, {arguments.scene, arguments.cameras});
   AtomicFile file(arguments.json);  // refused before the work, not after it
   Workers workers;
   const auto scene =
       load_scene(open_file_source(arguments.scene), std::pmr::get_default_resource(), workers);
-  if (scene->tree.size() == 0)
+  const bool search = arguments.stages == BenchStages::search;
+  if (search && scene->tree.size() == 0)
     throw Error(
         ErrorCode::refused_input,
         arguments.scene + ": found a scene without a tree, expected a .voy that is not empty");
   const auto backend = create_backend(arguments);
+  const BenchSubject subject{scene, *backend, read_walk(arguments), workers};
   Json report = {{"scene", arguments.scene},
                  {"cameras", arguments.cameras},
                  {"version", VOYAGER_VERSION},
                  {"device", backend->device_name()},
                  {"multiprocessors_asked", arguments.multiprocessors},
-                 {"tau", arguments.tau},
-                 {"leaves", scene->leaf_count},
-                 {"nodes", scene->tree.size()},
-                 {"subtrees", scene->search.subtrees.size()},
-                 {"chunks", scene->search.chunk_count()},
-                 {"search_bytes", scene->search.bytes()}};
-  report["searches"] = bench_search(arguments, *backend, scene, workers);
+                 {"tau", arguments.tau}};
+  report.update(search ? bench_searches(arguments, subject) : bench_frames(arguments, subject));
   const std::string text = report.dump(2) + "\n";
   file.write(std::as_bytes(std::span(text)));
   file.commit();
 }
 
+void add_choices(CLI::App& command, BenchArguments& arguments) {
+  add_choice<std::optional<Lod>>(command, "--lod", arguments.lod,
+                                 {{"on", Lod::cut}, {"off", Lod::all_leaves}},
+                                 "off draws every leaf");
+  add_choice<std::optional<SearchChoice>>(command, "--search", arguments.search,
+                                          {{"all", SearchChoice::all},
+                                           {"exhaustive", SearchChoice::exhaustive},
+                                           {"streaming", SearchChoice::streaming},
+                                           {"temporal", SearchChoice::temporal}},
+                                          "Which; all compares them in one run. Frames of one "
+                                          "configuration take temporal");
+  add_choice<std::optional<bool>>(command, "--slack", arguments.slack,
+                                  {{"on", true}, {"off", false}},
+                                  "off: --search temporal visits every subtree of the last cut");
+  add_choice<std::optional<bool>>(command, "--filter", arguments.filter,
+                                  {{"on", true}, {"off", false}}, "The α-filter");
+  add_choice<std::optional<Splatting>>(
+      command, "--splat", arguments.splatting,
+      {{"ours", Splatting::ours}, {"3dgs", Splatting::baseline_3dgs}},
+      "3dgs: as 3DGS does it, the baseline");
+  add_choice<std::optional<Exponential>>(
+      command, "--exp", arguments.exponential,
+      {{"ex2", Exponential::ex2}, {"exact", Exponential::exact}, {"lut", Exponential::lut}},
+      "The exponential; --stages splat without one compares them, and their images with exact's. "
+      "3dgs takes exact");
+  command.add_option("--lut-size", arguments.lut_size, "Intervals of --exp lut (32)")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("M");
+}
+
+void add_conditions(CLI::App& command, BenchArguments& arguments) {
+  add_choice<BenchBackend>(
+      command, "--backend", arguments.backend,
+      {{"auto", BenchBackend::automatic}, {"cpu", BenchBackend::cpu}, {"cuda", BenchBackend::cuda}},
+      "Where; auto is CUDA where there is a device");
+  add_tau_option(command, arguments.tau);
+  add_size_option(command, arguments.size);
+  command
+      .add_option("--sms", arguments.multiprocessors,
+                  "Confine CUDA to so many multiprocessors (green context)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--repeat", arguments.repeat,
+                  "Time the path so often (default: until 100 frames are timed)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100000));
+  command.add_flag("--verify", arguments.verify,
+                   "Also compare every frame's cut and weights with the exhaustive search's");
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command = app.add_subcommand("bench", "Time the stages of a frame along a camera path");
-  command->add_option("scene", arguments->scene, "A .voy")->required();
+  command->add_option("scene", arguments->scene, "A .voy; for whole frames also .ply or .spz")
+      ->required();
   command->add_option("--cameras", arguments->cameras, "INRIA cameras.json, as one walk")
       ->required();
-  add_choice<Stages>(*command, "--stages", arguments->stages, {{"search", Stages::search}},
-                     "What to time");
-  add_choice<BenchBackend>(
-      *command, "--backend", arguments->backend,
-      {{"auto", BenchBackend::automatic}, {"cpu", BenchBackend::cpu}, {"cuda", BenchBackend::cuda}},
-      "Where; auto is CUDA where there is a device");
-  add_choice<SearchChoice>(*command, "--search", arguments->search,
-                           {{"all", SearchChoice::all},
-                            {"exhaustive", SearchChoice::exhaustive},
-                            {"streaming", SearchChoice::streaming},
-                            {"temporal", SearchChoice::temporal}},
-                           "Which; all compares them in one run");
-  add_choice<bool>(*command, "--slack", arguments->slack, {{"on", true}, {"off", false}},
-                   "off: --search temporal visits every subtree of the last cut");
-  add_tau_option(*command, arguments->tau);
-  add_size_option(*command, arguments->size);
-  command
-      ->add_option("--sms", arguments->multiprocessors,
-                   "Confine CUDA to so many multiprocessors (green context)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
-  command->add_flag("--verify", arguments->verify,
-                    "Also compare every frame's cut and weights with the exhaustive search's");
+  add_choice<BenchStages>(
+      *command, "--stages", arguments->stages,
+      {{"search", BenchStages::search}, {"splat", BenchStages::splat}, {"all", BenchStages::all}},
+      "What to time: the search alone, or whole frames. Without further choices splat compares "
+      "the exponentials, and all goes from 3DGS to ours in steps");
+  add_choices(*command, *arguments);
+  add_conditions(*command, *arguments);
   command->add_option("--json", arguments->json, "Where the figures go")->required();
   command->footer(
-      "Example: voyager bench city.voy --cameras city.cameras.json --stages search --tau 6 --json "
-      "search.json");
+      "Example: voyager bench city.voy --cameras city.cameras.json --stages all --tau 3 --json "
+      "all.json");
   command->callback([arguments] { bench(*arguments); });
 }
 

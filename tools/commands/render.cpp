@@ -88,17 +88,11 @@ void render(Arguments& arguments) {
     files.write(i, cameras[i], renderer);
     if (cameras.size() > 1) progress("rendering", i + 1, cameras.size());
   }
-  files.finish(renderer.notes());
+  files.finish(renderer);
   fmt::print("{}\n", arguments.outputs.image);
 }
 
-void add_choices(CLI::App& command, RenderChoices& choices) {
-  add_choice<VoyBackend>(command, "--backend", choices.backend,
-                         {{"auto", VOY_BACKEND_AUTO},
-                          {"cpu", VOY_BACKEND_CPU},
-                          {"cuda", VOY_BACKEND_CUDA},
-                          {"reference", VOY_BACKEND_REFERENCE}},
-                         "Who renders; reference is float64, slow, and judges the others");
+void add_cut_choices(CLI::App& command, RenderChoices& choices) {
   add_choice<VoyLod>(command, "--lod", choices.lod,
                      {{"on", VOY_LOD_CUT}, {"off", VOY_LOD_ALL_LEAVES}}, "off draws every leaf");
   add_tau_option(command, choices.tau);
@@ -109,18 +103,39 @@ void add_choices(CLI::App& command, RenderChoices& choices) {
                         "How the cut is found; all find the same");
   add_choice<bool>(command, "--slack", choices.slack, {{"on", true}, {"off", false}},
                    "off: the temporal search visits all of the last cut, for measurements");
+}
+
+void add_splat_choices(CLI::App& command, RenderChoices& choices) {
   add_choice<VoyAlphaFilter>(command, "--filter", choices.alpha_filter,
                              {{"on", VOY_ALPHA_FILTER_ON}, {"off", VOY_ALPHA_FILTER_OFF}},
                              "The α-filter; off gives the same image, slower");
+  add_choice<VoySplatting>(
+      command, "--splat", choices.splatting,
+      {{"ours", VOY_SPLATTING_OURS}, {"3dgs", VOY_SPLATTING_3DGS}},
+      "How Gaussians become pixels; 3dgs is the baseline of measurements, on CUDA only");
   add_choice<VoyExponential>(command, "--exp", choices.exponential,
-                             {{"exact", VOY_EXPONENTIAL_EXACT},
+                             {{"auto", VOY_EXPONENTIAL_AUTO},
+                              {"exact", VOY_EXPONENTIAL_EXACT},
                               {"ex2", VOY_EXPONENTIAL_EX2},
                               {"lut", VOY_EXPONENTIAL_LUT}},
-                             "The exponential");
+                             "The exponential; auto is ex2 on CUDA with --splat ours, else exact");
   command.add_option("--lut-size", choices.lut_size, "Intervals of --exp lut")
       ->check(CLI::Range(1, 4096))
       ->type_name("M")
       ->capture_default_str();
+}
+
+void add_choices(CLI::App& command, RenderChoices& choices) {
+  add_choice<VoyBackend>(
+      command, "--backend", choices.backend,
+      {{"auto", VOY_BACKEND_AUTO},
+       {"cpu", VOY_BACKEND_CPU},
+       {"cuda", VOY_BACKEND_CUDA},
+       {"reference", VOY_BACKEND_REFERENCE}},
+      "Who renders; auto is CUDA where there is a device, else the CPU; reference is "
+      "float64, slow, and judges the others");
+  add_cut_choices(command, choices);
+  add_splat_choices(command, choices);
   command
       .add_option_function<std::vector<float>>(
           "--background",

@@ -46,7 +46,7 @@ extern "C" {
  * major version and a minor version up to its own. The patch version never matters. */
 #define VOY_MAKE_VERSION(major, minor, patch) \
   ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
-#define VOY_API_VERSION VOY_MAKE_VERSION(0, 1, 0)
+#define VOY_API_VERSION VOY_MAKE_VERSION(0, 2, 0)
 
 typedef enum VoyResult {
   VOY_SUCCESS = 0,
@@ -107,9 +107,9 @@ VOY_API const char* voyGetLastErrorMessage(void);
 /* ------------------------------------------------------------------- device */
 
 typedef enum VoyBackend {
-  VOY_BACKEND_AUTO = 0, /* the fastest that this machine has */
+  VOY_BACKEND_AUTO = 0, /* CUDA where it is to be had, else CPU; the log says why (INFO) */
   VOY_BACKEND_CPU = 1,
-  VOY_BACKEND_CUDA = 2,
+  VOY_BACKEND_CUDA = 2,      /* libvoyager_cuda.so beside the library, a driver and a device */
   VOY_BACKEND_REFERENCE = 3, /* float64, slow: the judge of the others */
   VOY_BACKEND_MAX_ENUM = 0x7fffffff
 } VoyBackend;
@@ -145,9 +145,13 @@ typedef struct VoyDeviceDesc {
   const void* next;
   uint32_t apiVersion; /* VOY_API_VERSION of the header that the host was built with */
   VoyBackend backend;
-  const uint8_t* deviceUuid; /* 16 bytes as VkPhysicalDeviceIDProperties has them (a CPU's are 0),
-                                or NULL for any */
-  uint64_t memoryBudget;     /* bytes that scene data of this device may occupy; 0 is no limit */
+  /* 16 bytes as VkPhysicalDeviceIDProperties has them, or NULL for any; zeros are a CPU.
+   * AUTO is CUDA on the device that has it, and the CPU where there is none (another
+   * maker's device, say). The other backends are refused where it is not theirs. */
+  const uint8_t* deviceUuid;
+  /* Bytes that scene data may occupy in host memory, over all scenes of this device; 0 is
+   * no limit. CUDA's copies in the device's own memory are not counted in this version. */
+  uint64_t memoryBudget;
   uint32_t workerThreads; /* 1 to 1024, no more than there are processors; 0 is one a processor */
   VoyLogLevel logLevel;   /* the most verbose level wanted */
   VoyLogFunction log;     /* or NULL */
@@ -160,11 +164,13 @@ typedef struct VoyDeviceDesc {
         VOY_LOG_WARNING, NULL, NULL, NULL                                                \
   }
 
-/* VOY_SUCCESS if voyCreateDevice can make this backend here; else VOY_ERROR_NO_DEVICE
- * and the message says why. */
+/* VOY_SUCCESS if voyCreateDevice can make this backend here, on any device; else
+ * VOY_ERROR_NO_DEVICE and the message says why. AUTO can always be made. Asking for CUDA
+ * loads its module, and what its run-time sets up stays until the process ends. */
 VOY_API VoyResult voyQueryBackend(VoyBackend backend);
 
-/* Errors: INCOMPATIBLE_VERSION, NO_DEVICE (no such backend or UUID), INVALID_ARGUMENT. */
+/* Errors: INCOMPATIBLE_VERSION, NO_DEVICE (no such backend or UUID: never for AUTO),
+ * INVALID_ARGUMENT, OVER_BUDGET (CUDA: the device's memory is full). */
 VOY_API VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device);
 
 /* Destroys its scenes, views and targets with it. NULL is a no-op that succeeds,
@@ -175,7 +181,7 @@ VOY_API VoyResult voyDestroyDevice(VoyDevice device);
 typedef struct VoyCapabilities {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_CAPABILITIES */
   void* next;
-  VoyBackend backend; /* the one that AUTO chose */
+  VoyBackend backend; /* CPU, CUDA or REFERENCE: the one that AUTO chose */
   uint32_t workerThreads;
   char deviceName[256];   /* UTF-8, terminated */
   uint8_t deviceUuid[16]; /* zero for a CPU */
@@ -184,11 +190,15 @@ typedef struct VoyCapabilities {
   uint32_t maxWidth, maxHeight; /* pixels */
   uint32_t searches;            /* of VoySearch */
   uint32_t exponentials;        /* of VoyExponential */
+  uint32_t splattings;          /* of VoySplatting */
   uint32_t targetKinds;         /* of VoyTargetKind */
   uint32_t colorFormats;        /* of VoyColorFormat */
 } VoyCapabilities;
-#define VOY_CAPABILITIES_INIT \
-  { VOY_STRUCTURE_TYPE_CAPABILITIES, NULL, VOY_BACKEND_AUTO, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0 }
+#define VOY_CAPABILITIES_INIT                                                                     \
+  {                                                                                               \
+    VOY_STRUCTURE_TYPE_CAPABILITIES, NULL, VOY_BACKEND_AUTO, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0, \
+        0                                                                                         \
+  }
 
 VOY_API VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities);
 
@@ -251,7 +261,7 @@ typedef struct VoySceneInfo {
   double origin[3];     /* world position of the scene-local zero, metres */
   double boundsMin[3];  /* world metres: means ± 3·max(s) */
   double boundsMax[3];
-  uint64_t residentBytes; /* of scene data, in the device's memory */
+  uint64_t residentBytes; /* of scene data, as VoyDeviceDesc.memoryBudget counts it */
   uint64_t droppedCount;  /* Gaussians left out at import because they were impossible */
   uint64_t repairedCount; /* Gaussians mended at import, one for each attribute (scale,
                              rotation, opacity, SH) that was */
@@ -299,10 +309,15 @@ typedef enum VoyTargetKind {
   VOY_TARGET_KIND_MAX_ENUM = 0x7fffffff
 } VoyTargetKind;
 
+/* All hold display-referred code values, as they were blended: what an _SRGB format holds
+ * once it has encoded. Copied to such an image they are right; written through a view
+ * that encodes, they would be encoded twice. */
 typedef enum VoyColorFormat {
   VOY_COLOR_FORMAT_NONE = 0,        /* depth only */
   VOY_COLOR_FORMAT_RGBA8_UNORM = 1, /* code values, rounded to nearest, clamped to [0, 1] */
   VOY_COLOR_FORMAT_RGBA32F = 2,     /* before clamping */
+  VOY_COLOR_FORMAT_RGBA16F = 3,     /* the same in binary16, rounded to nearest even; what lies
+                                       beyond +-65504 becomes that, so all values are finite */
   VOY_COLOR_FORMAT_MAX_ENUM = 0x7fffffff
 } VoyColorFormat;
 
@@ -354,7 +369,7 @@ typedef enum VoySearch {
 } VoySearch;
 
 typedef enum VoyExponential {
-  VOY_EXPONENTIAL_AUTO = 0,  /* exact */
+  VOY_EXPONENTIAL_AUTO = 0,  /* EX2 on CUDA, where VoySplatting is OURS; else EXACT */
   VOY_EXPONENTIAL_EXACT = 1, /* within 2 ulp */
   VOY_EXPONENTIAL_EX2 = 2,   /* base 2, log2(e) folded into the conic */
   VOY_EXPONENTIAL_LUT = 3,   /* table of lutSize + 1 entries, nearest */
@@ -366,6 +381,14 @@ typedef enum VoyAlphaFilter {
   VOY_ALPHA_FILTER_OFF = 1, /* the same image to the bit, slower: for measurements */
   VOY_ALPHA_FILTER_MAX_ENUM = 0x7fffffff
 } VoyAlphaFilter;
+
+/* How Gaussians become pixels. */
+typedef enum VoySplatting {
+  VOY_SPLATTING_OURS = 0, /* tiles that the ellipse at the α threshold touches, sorted by depth */
+  VOY_SPLATTING_3DGS = 1, /* the baseline of measurements, CUDA only: boxes of 3 sigma, (tile,
+                             depth) keys, expf, one pixel a thread */
+  VOY_SPLATTING_MAX_ENUM = 0x7fffffff
+} VoySplatting;
 
 /* A view draws scene instances and keeps their cuts between frames. */
 typedef struct VoyViewDesc {
@@ -380,15 +403,17 @@ typedef struct VoyViewDesc {
   VoySearch search;
   VoyAlphaFilter alphaFilter;
   VoyExponential exponential;
-  uint32_t lutSize;  /* intervals, 1 to 4096; 0 is 32 */
-  uint32_t reserved; /* 0 */
+  uint32_t lutSize; /* intervals, 1 to 4096; 0 is 32 */
+  VoySplatting splatting;
 } VoyViewDesc;
 #define VOY_VIEW_DESC_INIT                                                                   \
   {                                                                                          \
     VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_CUT, 3.0, VOY_SEARCH_AUTO, \
-        VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, 0                                      \
+        VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, VOY_SPLATTING_OURS                     \
   }
 
+/* Errors: INVALID_ARGUMENT, UNSUPPORTED (a choice that VoyCapabilities does not have),
+ * OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no room for the scene). */
 VOY_API VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
 VOY_API VoyResult voyDestroyView(VoyView view);
 
@@ -464,14 +489,16 @@ typedef struct VoyFrame {
 
 /* Renders into the targets and returns when they are written. On error no target
  * is changed. Errors: INVALID_ARGUMENT (values out of range), SCENE_DESTROYED,
- * DAMAGED_CHUNK, OUT_OF_HOST_MEMORY, BUSY. */
+ * DAMAGED_CHUNK, OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no room for
+ * the frame), BUSY. */
 VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
 
 /* The last frame's cut of one instance (its index; 0 in this version): node ids in
  * ascending order.
  * capacity 0: only *count is set. Otherwise up to capacity ids are written, *count
  * is the size of the cut, and the result is VOY_INCOMPLETE if that is more.
- * VOY_ERROR_UNSUPPORTED where the view draws no cut (flat scene, ALL_LEAVES),
+ * VOY_ERROR_UNSUPPORTED where the view draws no cut (flat scene, ALL_LEAVES), and
+ * where CUDA drew it and a later frame failed, until the next that does not;
  * VOY_ERROR_INVALID_ARGUMENT before any frame, or for an instance that there is not. */
 VOY_API VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint32_t* nodes,
                                 uint32_t* count);
@@ -507,6 +534,7 @@ typedef struct VoyFrameStats {
   uint64_t splats;        /* that reach the image */
   uint64_t pairsBefore;   /* (tile, splat) pairs of the bounding boxes */
   uint64_t pairsAfter;    /* of the ellipses at the α threshold */
+  uint64_t pairsDropped;  /* pairs for which a device had no room; 0 in a whole image */
   uint64_t bytesStreamed, bytesNeeded;
   uint64_t missing;                    /* cut nodes that stood in for missing ones */
   double milliseconds[VOY_MAX_STAGES]; /* by VoyStage; 0 from stageCount on */

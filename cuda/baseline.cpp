@@ -1,0 +1,172 @@
+#include "cuda/baseline.h"
+
+#include "cuda/baseline_launch.h"
+#include "cuda/frame_image.h"
+#include "cuda/frame_timer.h"
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/frame/project_params.h"
+
+namespace voyager::cuda {
+namespace {
+
+enum Mark : size_t { kBegin, kSearched, kProjected, kBinned, kSorted, kRasterized, kMarks };
+
+class BaselinePipeline final : public Pipeline {
+ public:
+  BaselinePipeline(std::shared_ptr<const Device> device, std::shared_ptr<const Scene> scene,
+                   std::shared_ptr<const DeviceScene> gaussians, std::unique_ptr<Draws> draws)
+      : device_(std::move(device)),
+        scene_(std::move(scene)),
+        gaussians_(std::move(gaussians)),
+        draws_(std::move(draws)),
+        timer_(kMarks) {}
+
+  // What it frees belongs to the device's context.
+  ~BaselinePipeline() override { device_->use_quietly(); }
+
+  void draw(const FrameInput& frame, const Image& image, FrameStats& stats) override;
+  void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {
+    const Stopwatch stage;
+    image_.copy_to(image);
+    stats.milliseconds[kResolve] = stage.milliseconds();
+    stats.total_milliseconds += stats.milliseconds[kResolve];
+  }
+  void read_cut(std::pmr::vector<uint32_t>& cut) const override {
+    device_->use();
+    draws_->read_cut(cut);
+  }
+  bool cut_is_near() const override { return false; }
+
+ private:
+  void fit_places(uint32_t places);
+  void fit_pairs(unsigned long long pairs);
+  void fit_scratch(const BaselineView& view);
+  BaselineView view(const TileGrid& grid, uint32_t places, unsigned long long pairs) const;
+
+  std::shared_ptr<const Device> device_;
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const DeviceScene> gaussians_;
+  std::unique_ptr<Draws> draws_;
+  Buffer<BaselineSplat> splats_;
+  Buffer<TileRange> rows_, columns_;
+  Buffer<uint32_t> tile_counts_;
+  Buffer<unsigned long long> pair_ends_;
+  Buffer<unsigned long long> keys_[2];
+  Buffer<uint32_t> values_[2];
+  Buffer<ulonglong2> tiles_;
+  Buffer<char> scratch_;
+  FrameImage image_;
+  FrameTimer timer_;
+};
+
+template <class T>
+void fit(Buffer<T>& buffer, size_t count) {
+  if (buffer.size() >= count) return;
+  buffer = {};
+  buffer = Buffer<T>(count + count / 4);
+}
+
+void BaselinePipeline::fit_places(uint32_t places) {
+  fit(splats_, places);
+  fit(rows_, places);
+  fit(columns_, places);
+  fit(tile_counts_, places);
+  fit(pair_ends_, places);
+}
+
+void BaselinePipeline::fit_pairs(unsigned long long pairs) {
+  for (int side = 0; side < 2; ++side) {
+    fit(keys_[side], pairs);
+    fit(values_[side], pairs);
+  }
+}
+
+void BaselinePipeline::fit_scratch(const BaselineView& of) {
+  fit(scratch_, baseline_scratch(of));
+}
+
+BaselineView BaselinePipeline::view(const TileGrid& grid, uint32_t places,
+                                    unsigned long long pairs) const {
+  return {splats_.data(),
+          rows_.data(),
+          columns_.data(),
+          tile_counts_.data(),
+          pair_ends_.data(),
+          {keys_[0].data(), keys_[1].data()},
+          {values_[0].data(), values_[1].data()},
+          tiles_.data(),
+          grid,
+          places,
+          pairs};
+}
+
+template <class T>
+T read_value(const T* from, cudaStream_t stream) {
+  T value;
+  check(cudaMemcpyAsync(&value, from, sizeof value, cudaMemcpyDeviceToHost, stream), "a count");
+  check(cudaStreamSynchronize(stream), "a count");
+  return value;
+}
+
+void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
+  device_->use();
+  const TileGrid grid = tile_grid(image.width, image.height);
+  fit(tiles_, static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));
+  const RasterTarget target = image_.target(frame, image);
+  const cudaStream_t stream = timer_.stream();
+  timer_.mark(kBegin);
+  draws_->update(frame, stream);
+  const uint32_t places = read_value(draws_->view().list.size, stream);
+  timer_.mark(kSearched);
+  fit_places(places);
+  BaselineFrame work{gaussians_->view(),
+                     draws_->view(),
+                     project_params(*scene_, frame.camera, Exponential::exact),
+                     view(grid, places, 0),
+                     nullptr,
+                     0,
+                     stream};
+  fit_scratch(work.view);
+  work.scratch = scratch_.data(), work.scratch_bytes = scratch_.bytes();
+  launch_baseline_project(work);
+  timer_.mark(kProjected);
+  launch_baseline_scan(work);
+  const unsigned long long pairs =
+      places == 0 ? 0 : read_value(pair_ends_.data() + places - 1, stream);
+  fit_pairs(pairs);
+  work.view = view(grid, places, pairs);
+  fit_scratch(work.view);
+  work.scratch = scratch_.data(), work.scratch_bytes = scratch_.bytes();
+  launch_baseline_keys(work);
+  timer_.mark(kBinned);
+  launch_baseline_sort(work);
+  timer_.mark(kSorted);
+  launch_baseline_rasterize(work, target);
+  timer_.mark(kRasterized);
+  timer_.wait();
+
+  draws_->collect(stats);
+  stats.pairs_before = stats.pairs_after = pairs;
+  constexpr Mark kOrder[] = {kSearched, kProjected, kSorted, kBinned, kRasterized};
+  constexpr Mark kFrom[] = {kBegin, kSearched, kBinned, kProjected, kSorted};
+  for (size_t stage = 0; stage < std::size(kOrder); ++stage)
+    stats.milliseconds[stage] = timer_.milliseconds(kFrom[stage], kOrder[stage]);
+  stats.total_milliseconds = timer_.milliseconds(kBegin, kRasterized);
+}
+
+}  // namespace
+
+std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device> device,
+                                                   std::shared_ptr<const Scene> scene,
+                                                   std::shared_ptr<const DeviceScene> gaussians,
+                                                   std::unique_ptr<Draws> draws,
+                                                   const PipelineDesc& desc) {
+  if (desc.exponential != Exponential::exact)
+    throw Error(ErrorCode::unsupported,
+                "exponential: found one other than exact, 3dgs splatting has expf only");
+  return std::make_unique<BaselinePipeline>(std::move(device), std::move(scene),
+                                            std::move(gaussians), std::move(draws));
+}
+
+}  // namespace voyager::cuda

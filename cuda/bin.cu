@@ -1,0 +1,171 @@
+// METHOD §7b: the (tile, splat) pairs, tile by tile. bin_count counts the pairs of each block's
+// strips in shared memory and adds them up over the blocks; bin_place turns the sums into
+// places; bin_scatter puts each block's pairs where its share of a list begins. A list's
+// order is sort_tiles' work.
+#include <algorithm>
+#include <cub/block/block_scan.cuh>
+
+#include "cuda/bin_order.cuh"
+#include "cuda/splat_launch.h"
+
+namespace voyager::cuda {
+namespace {
+
+constexpr unsigned kBinThreads = 1024;
+constexpr uint32_t kBandTiles = 12288;  // of which a block counts in shared memory at a time
+constexpr uint32_t kNarrow = 4;         // tiles of a strip that a lane places by itself
+
+// The strips of a block, and the tiles that it sees to.
+struct Share {
+  const TileStrip* strips;
+  uint32_t count;
+  uint32_t first_tile, tiles;
+};
+
+__device__ Share bin_share(const SplatView& splats) {
+  const uint32_t region = blockIdx.x % kStripRegions, room = splats.strip_room / kStripRegions;
+  const uint32_t part = blockIdx.x / kStripRegions, parts = gridDim.x / kStripRegions;
+  const uint32_t count = min(*strip_count(splats, region), room);
+  const uint32_t each = (count + parts - 1) / parts, first = min(part * each, count);
+  const uint32_t tile = blockIdx.y * kBandTiles;
+  return {splats.strips + region * room + first, min(each, count - first), tile,
+          min(kBandTiles, splats.tile_count() - tile)};
+}
+
+// The part of a strip that lies in the band, from the band's first tile on.
+__device__ TileRange bin_band(const TileStrip& strip, const Share& share) {
+  const uint32_t begin = max(strip.first_tile, share.first_tile);
+  const uint32_t end = min(strip.first_tile + strip.tiles, share.first_tile + share.tiles);
+  if (begin >= end) return {0, 0};
+  return {static_cast<int32_t>(begin - share.first_tile),
+          static_cast<int32_t>(end - share.first_tile)};
+}
+
+// Where this block's pairs of a tile begin in its list, from the list's first.
+__device__ uint32_t* bin_offsets(const SplatView& splats, const Share& share) {
+  return splats.tile_offsets + size_t{blockIdx.x} * splats.tile_count() + share.first_tile;
+}
+
+__global__ void __launch_bounds__(kBinThreads, 2) bin_count(SplatView splats) {
+  __shared__ uint32_t counts[kBandTiles];
+  const Share share = bin_share(splats);
+  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) counts[i] = 0;
+  __syncthreads();
+  for (uint32_t i = threadIdx.x; i < share.count; i += kBinThreads) {
+    const TileRange range = bin_band(share.strips[i], share);
+    for (int32_t tile = range.begin; tile < range.end; ++tile) atomicAdd(counts + tile, 1u);
+  }
+  __syncthreads();
+  uint32_t* offsets = bin_offsets(splats, share);
+  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) {
+    const uint32_t count = counts[i];
+    offsets[i] = count == 0 ? 0 : atomicAdd(splats.tile_counts + share.first_tile + i, count);
+  }
+}
+
+constexpr unsigned kPlaceThreads = 1024, kPlaceItems = 4;
+constexpr unsigned kChunk = kPlaceThreads * kPlaceItems;
+using PlaceScan = cub::BlockScan<unsigned long long, kPlaceThreads, cub::BLOCK_SCAN_WARP_SCANS>;
+
+// One block: where each tile's list begins and ends, and the order in which lists are worked
+// on. What is beyond the room is cut off.
+__global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats) {
+  __shared__ PlaceScan::TempStorage storage;
+  __shared__ uint32_t counts[kChunk];
+  __shared__ uint32_t firsts[kChunk + 1];
+  __shared__ BinOrder order;
+  const uint32_t tiles = splats.tile_count();
+  const auto room = static_cast<unsigned long long>(splats.pairs);
+  unsigned long long total = 0;
+  order.clear();
+  for (uint32_t base = 0; base < tiles; base += kChunk) {
+    __syncthreads();
+    for (uint32_t i = threadIdx.x; i < kChunk; i += kPlaceThreads) {
+      const uint32_t count = base + i < tiles ? splats.tile_counts[base + i] : 0;
+      counts[i] = count;
+      if (base + i < tiles) order.count(count);
+    }
+    __syncthreads();
+    unsigned long long own[kPlaceItems], before[kPlaceItems], sum;
+#pragma unroll
+    for (unsigned k = 0; k < kPlaceItems; ++k) own[k] = counts[threadIdx.x * kPlaceItems + k];
+    PlaceScan(storage).ExclusiveSum(own, before, sum);
+#pragma unroll
+    for (unsigned k = 0; k < kPlaceItems; ++k)
+      firsts[threadIdx.x * kPlaceItems + k] = static_cast<uint32_t>(min(total + before[k], room));
+    total += sum;
+    if (threadIdx.x == 0) firsts[kChunk] = static_cast<uint32_t>(min(total, room));
+    __syncthreads();
+    for (uint32_t i = threadIdx.x; i < kChunk && base + i < tiles; i += kPlaceThreads)
+      splats.tiles[base + i] = {firsts[i], firsts[i + 1]};
+  }
+  order.place(*splats.counters);
+  for (uint32_t tile = threadIdx.x; tile < tiles; tile += kPlaceThreads)
+    splats.tile_order[order.take(splats.tile_counts[tile])] = tile;
+  if (threadIdx.x == 0) splats.counters->pairs = total;
+  if (threadIdx.x >= 32) return;
+  const uint32_t most = __reduce_max_sync(0xffffffffu, *strip_count(splats, threadIdx.x));
+  if (threadIdx.x == 0) splats.counters->strips = most * kStripRegions;
+}
+
+__device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) {
+  if (place < splats.pairs) splats.keys[place] = key;
+}
+
+// A strip a lane; the rest of a wide one is the whole warp's.
+__device__ void bin_strip(const SplatView& splats, uint32_t* cursors, const TileRange& range,
+                          DepthKey key) {
+  const auto begin = static_cast<uint32_t>(range.begin), lane = threadIdx.x % 32;
+  const auto tiles = static_cast<uint32_t>(range.end - range.begin);
+  uint32_t place[kNarrow];
+#pragma unroll
+  for (uint32_t k = 0; k < kNarrow; ++k)
+    place[k] = k < tiles ? atomicAdd(cursors + begin + k, 1u) : splats.pairs;
+#pragma unroll
+  for (uint32_t k = 0; k < kNarrow; ++k) bin_pair(splats, place[k], key);
+  unsigned wide = __ballot_sync(0xffffffffu, tiles > kNarrow);
+  for (; wide != 0; wide &= wide - 1) {
+    const int owner = __ffs(wide) - 1;
+    const DepthKey shared_key = __shfl_sync(0xffffffffu, key, owner);
+    const uint32_t first = __shfl_sync(0xffffffffu, begin, owner);
+    const uint32_t count = __shfl_sync(0xffffffffu, tiles, owner);
+    for (uint32_t k = kNarrow + lane; k < count; k += 32)
+      bin_pair(splats, atomicAdd(cursors + first + k, 1u), shared_key);
+  }
+}
+
+__global__ void __launch_bounds__(kBinThreads, 2) bin_scatter(SplatView splats) {
+  __shared__ uint32_t cursors[kBandTiles];
+  const Share share = bin_share(splats);
+  const uint32_t* offsets = bin_offsets(splats, share);
+  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads)
+    cursors[i] = splats.tiles[share.first_tile + i].first + offsets[i];
+  __syncthreads();
+  for (uint32_t base = threadIdx.x / 32 * 32; base < share.count; base += kBinThreads) {
+    const uint32_t i = base + threadIdx.x % 32;
+    TileStrip strip{};
+    if (i < share.count) strip = share.strips[i];
+    const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
+    bin_strip(splats, cursors, bin_band(strip, share), key);
+  }
+}
+
+}  // namespace
+
+// As many as are resident, or the last would run alone.
+unsigned bin_blocks(unsigned multiprocessors) {
+  return std::max(2 * multiprocessors / kStripRegions, 1u) * kStripRegions;
+}
+
+void launch_bin(const SplatFrame& f) {
+  const dim3 blocks(bin_blocks(f.multiprocessors),
+                    (f.splats.tile_count() + kBandTiles - 1) / kBandTiles);
+  bin_count<<<blocks, kBinThreads, 0, f.stream>>>(f.splats);
+  check(cudaGetLastError(), "bin_count");
+  bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats);
+  check(cudaGetLastError(), "bin_place");
+  bin_scatter<<<blocks, kBinThreads, 0, f.stream>>>(f.splats);
+  check(cudaGetLastError(), "bin_scatter");
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,105 @@
+#include "cuda/cuda_backend.h"
+
+#include <cuda_runtime_api.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "cuda/baseline.h"
+#include "cuda/pipeline.h"
+#include "cuda/search.h"
+#include "runtime/base/error.h"
+
+namespace voyager::cuda {
+namespace {
+
+int find_device(const uint8_t* uuid) {
+  int count = 0;
+  check(cudaGetDeviceCount(&count), "devices");
+  for (int ordinal = 0; ordinal < count; ++ordinal) {
+    cudaDeviceProp properties;
+    check(cudaGetDeviceProperties(&properties, ordinal), "device properties");
+    if (std::equal(uuid, uuid + 16, reinterpret_cast<const uint8_t*>(properties.uuid.bytes)))
+      return ordinal;
+  }
+  throw Error(ErrorCode::no_device, "CUDA: found " + std::to_string(count) +
+                                        " devices, none with the UUID that was asked for");
+}
+
+// What views of one scene share, for as long as one of them is there.
+template <class T>
+class Shared {
+ public:
+  template <class Make>
+  std::shared_ptr<const T> of(const std::shared_ptr<const Scene>& scene, const Make& make) {
+    const std::lock_guard lock(mutex_);
+    if (scene_.lock() == scene)
+      if (auto value = value_.lock()) return value;
+    const std::shared_ptr<const T> value = make(*scene);
+    scene_ = scene;
+    value_ = value;
+    return value;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::weak_ptr<const Scene> scene_;
+  std::weak_ptr<const T> value_;
+};
+
+class CudaBackend final : public Backend {
+ public:
+  explicit CudaBackend(const BackendModuleOptions& options)
+      : device_(std::make_shared<Device>(
+            options.uuid == nullptr ? options.device : find_device(options.uuid),
+            options.multiprocessors)) {}
+
+  std::string device_name() const override {
+    return device_->name() + ", " + std::to_string(device_->multiprocessors()) + " multiprocessors";
+  }
+  std::array<uint8_t, 16> device_uuid() const override { return device_->uuid(); }
+  DeviceRates rates() const override { return device_->rates(); }
+
+  std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
+                                            const PipelineDesc& desc, std::pmr::memory_resource*,
+                                            Workers& workers) override {
+    device_->use();
+    const auto gaussians = gaussians_.of(
+        scene, [&](const Scene& s) { return std::make_shared<DeviceScene>(s, workers); });
+    const bool draws_cut = !scene->flat() && desc.lod == Lod::cut;
+    auto search = draws_cut ? search_for(scene, desc.search, true, workers) : nullptr;
+    auto draws = create_draws(scene, desc.lod, std::move(search));
+    if (desc.splatting == Splatting::baseline_3dgs)
+      return create_baseline_pipeline(device_, std::move(scene), gaussians, std::move(draws), desc);
+    return cuda::create_pipeline(device_, std::move(scene), gaussians, std::move(draws), desc);
+  }
+
+  std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
+                                             const SearchDesc& desc, std::pmr::memory_resource*,
+                                             Workers& workers) override {
+    device_->use();
+    return create_timed_search(device_, search_for(scene, desc.kind, desc.weights, workers),
+                               desc.weights);
+  }
+
+ private:
+  std::unique_ptr<CutSearch> search_for(const std::shared_ptr<const Scene>& scene, Search kind,
+                                        bool weights, Workers& workers) {
+    if (!scene->damaged_chunks.empty()) return create_host_cut_search(scene, kind, workers);
+    if (kind == Search::exhaustive) return create_exhaustive_search(device_, scene, weights);
+    const auto tree = trees_.of(scene, [](const Scene& s) { return upload_tree(s); });
+    return create_partitioned_search(device_, tree, scene, kind, weights);
+  }
+
+  std::shared_ptr<const Device> device_;
+  Shared<DeviceTree> trees_;
+  Shared<DeviceScene> gaussians_;
+};
+
+}  // namespace
+
+std::unique_ptr<Backend> create_cuda_backend(const BackendModuleOptions& options) {
+  return std::make_unique<CudaBackend>(options);
+}
+
+}  // namespace voyager::cuda

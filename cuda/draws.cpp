@@ -1,0 +1,94 @@
+#include "cuda/draws.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "runtime/base/error.h"
+
+namespace voyager::cuda {
+namespace {
+
+class CutDraws final : public Draws {
+ public:
+  CutDraws(std::shared_ptr<const Scene> scene, std::unique_ptr<CutSearch> search)
+      : scene_(std::move(scene)), search_(std::move(search)) {}
+
+  void update(const FrameInput& frame, cudaStream_t stream) override {
+    const CutQuery query{cut_centre(frame.camera.eye, scene_->origin),
+                         target_size(frame.tau, frame.camera.fx)};
+    search_->find(query, stream);
+    search_->weigh(query, stream);
+  }
+  DrawView view() const override { return {search_->list(), nullptr}; }
+  void collect(FrameStats& stats) override {
+    const SearchStats found = search_->stats();
+    stats.search = found.ran;
+    stats.nodes_tested = found.nodes_tested;
+    stats.subtrees_visited = found.subtrees_visited;
+    stats.chunks_read = found.chunks_read;
+    stats.bytes_read = found.bytes_read;
+    stats.changes_counted = search_->counts_changes();
+    stats.entered = found.entered;
+    stats.left = found.left;
+    stats.cut_size = search_->cut_size();
+    stats.bytes[kSearch] = found.bytes_read;
+  }
+  void read_cut(std::pmr::vector<uint32_t>& cut) override {
+    std::vector<uint32_t> nodes;
+    std::vector<float> weights;
+    search_->read(nodes, weights);
+    cut.assign(nodes.begin(), nodes.end());
+  }
+
+ private:
+  std::shared_ptr<const Scene> scene_;
+  std::unique_ptr<CutSearch> search_;
+};
+
+// A tree's leaves go in the order of their nodes, neighbours together; the contract's
+// order is the input's.
+class LeafDraws final : public Draws {
+ public:
+  explicit LeafDraws(const Scene& scene) {
+    if (std::find(scene.leaves.begin(), scene.leaves.end(), kNoNode) != scene.leaves.end()) {
+      damage_ = scene.damaged[0].message;
+      return;
+    }
+    const auto count =
+        static_cast<uint32_t>(scene.flat() ? scene.gaussians.size() : scene.leaves.size());
+    size_ = upload(std::span<const uint32_t>(&count, 1));
+    count_ = count;
+    if (scene.flat()) return;
+    std::vector<uint32_t> order(count), nodes(count);
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return scene.leaves[a] < scene.leaves[b]; });
+    for (uint32_t i = 0; i < count; ++i) nodes[i] = scene.leaves[order[i]];
+    nodes_ = upload(std::span<const uint32_t>(nodes));
+    ids_ = upload(std::span<const uint32_t>(order));
+  }
+
+  void update(const FrameInput&, cudaStream_t) override {
+    if (!damage_.empty()) throw Error(ErrorCode::damaged_chunk, damage_);
+  }
+  DrawView view() const override {
+    return {{nodes_.data(), nullptr, size_.data(), count_}, ids_.data()};
+  }
+  void collect(FrameStats& stats) override { stats.cut_size = count_; }
+  void read_cut(std::pmr::vector<uint32_t>& cut) override { cut.clear(); }
+
+ private:
+  std::string damage_;  // what is wrong with a leaf, if one is
+  Buffer<uint32_t> nodes_, ids_, size_;
+  uint32_t count_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Draws> create_draws(std::shared_ptr<const Scene> scene, Lod lod,
+                                    std::unique_ptr<CutSearch> search) {
+  if (scene->flat() || lod == Lod::all_leaves) return std::make_unique<LeafDraws>(*scene);
+  return std::make_unique<CutDraws>(std::move(scene), std::move(search));
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,27 @@
+#pragma once
+// What a view draws: the cut that its search finds, or every Gaussian.
+#include <memory>
+
+#include "cuda/search.h"
+#include "cuda/splat_launch.h"
+#include "runtime/frame/backend.h"
+
+namespace voyager::cuda {
+
+class Draws {
+ public:
+  virtual ~Draws() = default;
+  // Launches the search and the weights, where there are any. Throws Error(damaged_chunk)
+  // where the frame needs a node that is not there.
+  virtual void update(const FrameInput& frame, cudaStream_t stream) = 0;
+  virtual DrawView view() const = 0;
+  // Of the last frame, whose work is done.
+  virtual void collect(FrameStats& stats) = 0;
+  virtual void read_cut(std::pmr::vector<uint32_t>& cut) = 0;
+};
+
+// search: of a scene with a tree whose cut is drawn.
+std::unique_ptr<Draws> create_draws(std::shared_ptr<const Scene> scene, Lod lod,
+                                    std::unique_ptr<CutSearch> search);
+
+}  // namespace voyager::cuda

@@ -1,0 +1,26 @@
+#include "cuda/frame_image.h"
+
+namespace voyager::cuda {
+
+RasterTarget FrameImage::target(const FrameInput& frame, const Image& image) {
+  const size_t pixels = size_t{image.width} * image.height;
+  const size_t bytes = pixels * pixel_bytes(image.format);
+  if (color_.size() < bytes) color_ = {}, color_ = Buffer<unsigned char>(bytes);
+  const bool depth = frame.depth_wanted || image.depth != nullptr;
+  if (depth && depth_.size() < pixels) depth_ = {}, depth_ = Buffer<float>(pixels);
+  return {image.format, color_.data(), depth ? depth_.data() : nullptr,
+          image.width,  image.height,  frame.background};
+}
+
+void FrameImage::copy_to(const Image& image) const {
+  const auto copy = [&](void* into, size_t pitch, const void* from, size_t row) {
+    check(cudaMemcpy2D(into, pitch, from, row, row, image.height, cudaMemcpyDeviceToHost),
+          "an image");
+  };
+  if (image.color != nullptr)
+    copy(image.color, image.color_pitch, color_.data(), image.width * pixel_bytes(image.format));
+  if (image.depth != nullptr)
+    copy(image.depth, image.depth_pitch, depth_.data(), image.width * sizeof(float));
+}
+
+}  // namespace voyager::cuda

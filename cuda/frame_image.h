@@ -1,0 +1,21 @@
+#pragma once
+// A frame's image on the device, and its way to the host.
+#include "cuda/buffer.h"
+#include "cuda/splat_launch.h"
+#include "runtime/frame/backend.h"
+
+namespace voyager::cuda {
+
+class FrameImage {
+ public:
+  // The target of a frame, of the image's size and format. May allocate.
+  RasterTarget target(const FrameInput& frame, const Image& image);
+  // Into the image's memory, where it has any; the stream's work is done.
+  void copy_to(const Image& image) const;
+
+ private:
+  Buffer<unsigned char> color_;
+  Buffer<float> depth_;
+};
+
+}  // namespace voyager::cuda

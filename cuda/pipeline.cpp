@@ -1,0 +1,159 @@
+#include "cuda/pipeline.h"
+
+#include <vector>
+
+#include "cuda/frame_image.h"
+#include "cuda/frame_timer.h"
+#include "cuda/splat_state.h"
+#include "runtime/base/clock.h"
+#include "runtime/frame/project_params.h"
+#include "runtime/math/alpha_lut.h"
+
+namespace voyager::cuda {
+namespace {
+
+// Events at the ends of the stages, in the order in which they run.
+enum Mark : size_t { kBegin, kSearched, kProjected, kBinned, kSorted, kRasterized, kMarks };
+
+Buffer<float> upload_lut(const PipelineDesc& desc) {
+  if (desc.exponential != Exponential::lut) return {};
+  std::vector<float> lut(desc.lut_size + 1);
+  fill_alpha_lut(desc.lut_size, lut.data());
+  return upload(std::span<const float>(lut));
+}
+
+class SplatPipeline final : public Pipeline {
+ public:
+  SplatPipeline(std::shared_ptr<const Device> device, std::shared_ptr<const Scene> scene,
+                std::shared_ptr<const DeviceScene> gaussians, std::unique_ptr<Draws> draws,
+                const PipelineDesc& desc)
+      : device_(std::move(device)),
+        scene_(std::move(scene)),
+        gaussians_(std::move(gaussians)),
+        draws_(std::move(draws)),
+        desc_(desc),
+        lut_(upload_lut(desc)),
+        splats_(bin_blocks(device_->multiprocessors())),
+        timer_(kMarks) {}
+
+  // What it frees belongs to the device's context.
+  ~SplatPipeline() override { device_->use_quietly(); }
+
+  void draw(const FrameInput& frame, const Image& image, FrameStats& stats) override;
+  void resolve(const FrameInput& frame, const Image& image, FrameStats& stats) override;
+  void read_cut(std::pmr::vector<uint32_t>& cut) const override {
+    device_->use();
+    draws_->read_cut(cut);
+  }
+  bool cut_is_near() const override { return false; }
+
+ private:
+  void launch_splatting(const SplatFrame& frame, const RasterTarget& target);
+  SplatCounters counters() const;
+  void collect(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
+
+  std::shared_ptr<const Device> device_;
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const DeviceScene> gaussians_;
+  std::unique_ptr<Draws> draws_;
+  PipelineDesc desc_;
+  Buffer<float> lut_;
+  SplatState splats_;
+  FrameImage image_;
+  FrameTimer timer_;
+};
+
+void SplatPipeline::launch_splatting(const SplatFrame& frame, const RasterTarget& target) {
+  const TileGrid& grid = frame.splats.grid;
+  splats_.begin_frame(grid, frame.stream);
+  launch_project(frame, desc_.alpha_filter);
+  timer_.mark(kProjected);
+  launch_bin(frame);
+  timer_.mark(kBinned);
+  launch_sort(frame);
+  timer_.mark(kSorted);
+  launch_rasterize(
+      frame,
+      {desc_.exponential, desc_.alpha_filter, desc_.count_pixels, lut_.data(), desc_.lut_size},
+      target);
+  timer_.mark(kRasterized);
+}
+
+SplatCounters SplatPipeline::counters() const {
+  timer_.wait();
+  SplatCounters counters;
+  check(cudaMemcpy(&counters, splats_.counters(), sizeof counters, cudaMemcpyDeviceToHost),
+        "counters");
+  return counters;
+}
+
+void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
+  device_->use();
+  const TileGrid grid = tile_grid(image.width, image.height);
+  splats_.fit(grid);
+  const RasterTarget target = image_.target(frame, image);
+  timer_.mark(kBegin);
+  draws_->update(frame, timer_.stream());
+  timer_.mark(kSearched);
+  SplatFrame work{gaussians_->view(),
+                  draws_->view(),
+                  project_params(*scene_, frame.camera, desc_.exponential),
+                  splats_.view(grid),
+                  device_->multiprocessors(),
+                  timer_.stream()};
+  launch_splatting(work, target);
+  SplatCounters counted = counters();
+  // A frame that found too little room is drawn again with more.
+  while (splats_.grow(counted)) {
+    work.splats = splats_.view(grid);
+    launch_splatting(work, target);
+    counted = counters();
+  }
+  collect(counted, image, stats);
+}
+
+void SplatPipeline::collect(const SplatCounters& counted, const Image& image,
+                            FrameStats& stats) const {
+  draws_->collect(stats);
+  const SplatView room = splats_.view(tile_grid(image.width, image.height));
+  stats.splats = counted.splats;
+  stats.pairs_before = counted.pairs_boxed;
+  stats.pairs_after = counted.pairs;
+  stats.pairs_dropped = counted.pairs > room.pairs ? counted.pairs - room.pairs : 0;
+  stats.pixels_evaluated = counted.evaluated;
+  stats.pixels_blended = counted.blended;
+
+  const uint64_t cut = stats.cut_size, splats = counted.splats, pairs = counted.pairs;
+  const uint64_t pixels = uint64_t{image.width} * image.height;
+  constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
+  stats.bytes[kProject] =
+      cut * sizeof(float4) + splats * (gaussians_->bytes_a_gaussian() + kRecord + sizeof(uint32_t));
+  stats.bytes[kBin] = splats * kRecord + pairs * kKey;
+  stats.bytes[kSort] = 2 * pairs * kKey;
+  stats.bytes[kRasterize] = pairs * (kKey + kRecord) + pixels * pixel_bytes(image.format);
+
+  constexpr Mark kEnds[] = {kSearched, kProjected, kSorted, kBinned, kRasterized};
+  constexpr Mark kStarts[] = {kBegin, kSearched, kBinned, kProjected, kSorted};
+  for (size_t stage = 0; stage < std::size(kEnds); ++stage)
+    stats.milliseconds[stage] = timer_.milliseconds(kStarts[stage], kEnds[stage]);
+  stats.total_milliseconds = timer_.milliseconds(kBegin, kRasterized);
+}
+
+void SplatPipeline::resolve(const FrameInput&, const Image& image, FrameStats& stats) {
+  const Stopwatch stage;
+  image_.copy_to(image);
+  stats.milliseconds[kResolve] = stage.milliseconds();
+  stats.total_milliseconds += stats.milliseconds[kResolve];
+}
+
+}  // namespace
+
+std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Device> device,
+                                          std::shared_ptr<const Scene> scene,
+                                          std::shared_ptr<const DeviceScene> gaussians,
+                                          std::unique_ptr<Draws> draws, const PipelineDesc& desc) {
+  return std::make_unique<SplatPipeline>(std::move(device), std::move(scene), std::move(gaussians),
+                                         std::move(draws), desc);
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,154 @@
+// METHOD §5–7: the Gaussians of a frame to splats. project_cull reads their hulls and lists
+// those that may reach the image; project_splats reads the rest of these.
+#include "cuda/device_arrays.cuh"
+#include "cuda/draw_item.cuh"
+#include "cuda/grid.h"
+#include "cuda/splat_launch.h"
+#include "cuda/tile_strips.cuh"
+
+namespace voyager::cuda {
+namespace {
+
+constexpr unsigned kAll = 0xffffffffu;
+constexpr unsigned kCullThreads = 256, kCullItems = 4;
+constexpr unsigned kProjectThreads = 128;
+
+struct Hull {
+  Vec3f mean;
+  float max_scale, radius;
+};
+
+__device__ Hull hull_at(const GaussianView& gaussians, uint32_t i) {
+  const float4 h = __ldg(gaussians.hulls + i);
+  const uint32_t bounds = __float_as_uint(h.w);
+  return {{h.x, h.y, h.z}, __uint_as_float(bounds & 0xffff0000u), __uint_as_float(bounds << 16)};
+}
+
+template <bool kLod>
+__device__ bool project_may_reach(const SplatFrame& f, uint32_t place) {
+  const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
+  if (item.gaussian == kNoNode) return false;
+  Hull hull = hull_at(f.gaussians, item.gaussian);
+  if (kLod && item.t != 1.0f) {
+    const Hull parent = hull_at(f.gaussians, item.parent);
+    hull = {lerp_rn(parent.mean, hull.mean, item.t), fmaxf(parent.max_scale, hull.max_scale),
+            fmaxf(parent.radius, hull.radius)};
+  }
+  return hull.radius > 0.0f && may_reach(f.params, hull.mean, hull.max_scale, hull.radius);
+}
+
+// The order of the candidates depends on scheduling; nothing that is made of them does.
+template <bool kLod>
+__global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
+  __shared__ uint32_t found, first;
+  const uint32_t places = *f.draws.list.size, lane = threadIdx.x % 32;
+  if (blockIdx.x == 0 && threadIdx.x == 0) f.splats.counters->places = places;
+  const uint32_t end = min(places, f.splats.slots);
+  constexpr uint32_t kChunk = kCullThreads * kCullItems;
+  for (uint32_t base = blockIdx.x * kChunk; base < end; base += gridDim.x * kChunk) {
+    if (threadIdx.x == 0) found = 0;
+    __syncthreads();
+    uint32_t lanes[kCullItems], before[kCullItems];
+#pragma unroll
+    for (unsigned k = 0; k < kCullItems; ++k) {
+      const uint32_t place = base + k * kCullThreads + threadIdx.x;
+      lanes[k] = __ballot_sync(kAll, place < end && project_may_reach<kLod>(f, place));
+    }
+#pragma unroll
+    for (unsigned k = 0; k < kCullItems; ++k)
+      if (lane == 0) before[k] = atomicAdd(&found, static_cast<uint32_t>(__popc(lanes[k])));
+    __syncthreads();
+    if (threadIdx.x == 0) first = atomicAdd(&f.splats.counters->candidates, found);
+    __syncthreads();
+#pragma unroll
+    for (unsigned k = 0; k < kCullItems; ++k) {
+      const uint32_t at = first + __shfl_sync(kAll, before[k], 0);
+      if (lanes[k] >> lane & 1)
+        f.splats.candidates[at + __popc(lanes[k] & ((1u << lane) - 1))] =
+            base + k * kCullThreads + threadIdx.x;
+    }
+  }
+}
+
+__device__ SplatRecord record_of(const Splat& s, float log_scale) {
+  return {s.x,     s.y, s.conic.p_x, s.conic.q_y, s.conic.skew, s.log_opacity * log_scale,
+          s.depth, s.t, s.colour.x,  s.colour.y,  s.colour.z,   s.inverse_k};
+}
+
+template <class Sh, bool kLod>
+__global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, bool boxes) {
+  const DeviceArrays<Sh> arrays{f.gaussians};
+  const uint32_t count = f.splats.counters->candidates;
+  uint32_t visible = 0;
+  unsigned long long boxed = 0;
+  const uint32_t first = blockIdx.x * kProjectThreads + threadIdx.x / 32 * 32;
+  __shared__ WarpExtents extents[kProjectThreads / 32];
+  // Whole warps together: they share the strips of their splats.
+  for (uint32_t base = first; base < count; base += gridDim.x * kProjectThreads) {
+    const uint32_t at = base + threadIdx.x % 32;
+    TileExtent extent{};
+    float depth = 0.0f;
+    uint32_t slot = 0;
+    if (at < count) {
+      const uint32_t place = f.splats.candidates[at];
+      const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
+      Splat splat;
+      Vec3f relative;
+      if (project_shape(f.params, arrays, item, splat, relative)) {
+        slot = f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place);
+        const float inverse_length = 1.0f / std::sqrt(dot(relative, relative));
+        splat.colour = interpolated_colour(arrays, item, inverse_length * relative);
+        const SplatRecord record = record_of(splat, f.params.log_scale);
+        f.splats.records[slot] = record;
+        extent = tile_extent(support_of(record, f.params.log_scale), f.splats.grid);
+        depth = splat.depth;
+        ++visible;
+        boxed += extent.boxed();
+      }
+    }
+    write_strips(extents[threadIdx.x / 32], extent, f.splats, depth, slot, boxes);
+  }
+  visible = __reduce_add_sync(kAll, visible);
+  for (int step = 16; step != 0; step /= 2) boxed += __shfl_xor_sync(kAll, boxed, step);
+  if (threadIdx.x % 32 != 0 || visible == 0) return;
+  atomicAdd(&f.splats.counters->splats, visible);
+  atomicAdd(&f.splats.counters->pairs_boxed, boxed);
+}
+
+template <class Sh, bool kLod>
+void launch(const SplatFrame& f, bool boxes) {
+  const auto kernel = project_splats<Sh, kLod>;
+  static const unsigned resident = resident_blocks(kernel, kProjectThreads, 1);
+  kernel<<<f.multiprocessors * resident, kProjectThreads, 0, f.stream>>>(f, boxes);
+}
+
+template <bool kLod>
+void launch_for(const SplatFrame& f, bool boxes) {
+  static const unsigned resident = resident_blocks(project_cull<kLod>, kCullThreads, 1);
+  project_cull<kLod><<<f.multiprocessors * resident, kCullThreads, 0, f.stream>>>(f);
+  check(cudaGetLastError(), "project_cull");
+  if (!f.gaussians.half_sh) return launch<FloatSh, kLod>(f, boxes);
+  switch (f.gaussians.sh_degree) {
+    case 0:
+      return launch<HalfSh<0>, kLod>(f, boxes);
+    case 1:
+      return launch<HalfSh<1>, kLod>(f, boxes);
+    case 2:
+      return launch<HalfSh<2>, kLod>(f, boxes);
+    default:
+      return launch<HalfSh<3>, kLod>(f, boxes);
+  }
+}
+
+}  // namespace
+
+void launch_project(const SplatFrame& frame, bool alpha_filter) {
+  if (frame.draws.list.room == 0) return;
+  if (frame.draws.list.weights != nullptr)
+    launch_for<true>(frame, !alpha_filter);
+  else
+    launch_for<false>(frame, !alpha_filter);
+  check(cudaGetLastError(), "project_splats");
+}
+
+}  // namespace voyager::cuda

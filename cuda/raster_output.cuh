@@ -1,0 +1,45 @@
+#pragma once
+// A finished pixel into the target's format: premultiplied colour over the background,
+// display-referred code values (METHOD §1), rounded as runtime/frame/resolve.h rounds.
+#include <cuda_fp16.h>
+
+#include "cuda/raster_pixel.cuh"
+#include "cuda/splat_launch.h"
+
+namespace voyager::cuda {
+
+__device__ inline uint32_t to_code(float value) {
+  return static_cast<uint32_t>(fmaf(__saturatef(value), 255.0f, 0.5f));
+}
+
+__device__ inline uint32_t to_half_pair(float a, float b) {
+  constexpr float kMost = 65504.0f;
+  const __half2 pair = __floats2half2_rn(fminf(a, kMost), fminf(b, kMost));
+  return *reinterpret_cast<const uint32_t*>(&pair);
+}
+
+__device__ inline void write_pixel(const RasterTarget& target, uint32_t x, uint32_t y,
+                                   const RasterPixel& pixel) {
+  const size_t i = size_t{y} * target.width + x;
+  const float r = fmaf(pixel.transmittance, target.background.x, pixel.r);
+  const float g = fmaf(pixel.transmittance, target.background.y, pixel.g);
+  const float b = fmaf(pixel.transmittance, target.background.z, pixel.b);
+  const float a = 1.0f - pixel.transmittance;
+  switch (target.format) {
+    case ColorFormat::none:
+      break;
+    case ColorFormat::rgba8:
+      static_cast<uint32_t*>(target.color)[i] =
+          to_code(r) | to_code(g) << 8 | to_code(b) << 16 | to_code(a) << 24;
+      break;
+    case ColorFormat::rgba16f:
+      static_cast<uint2*>(target.color)[i] = {to_half_pair(r, g), to_half_pair(b, a)};
+      break;
+    case ColorFormat::rgba32f:
+      static_cast<float4*>(target.color)[i] = {r, g, b, a};
+      break;
+  }
+  if (target.depth != nullptr) target.depth[i] = pixel.depth;
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,65 @@
+#pragma once
+// METHOD §6–8 at one pixel, on the device.
+#include <limits>
+
+#include "cuda/splats.h"
+#include "runtime/math/alpha.h"
+#include "runtime/math/alpha_lut.h"
+
+namespace voyager::cuda {
+
+inline constexpr float kLog2e = 1.44269504088896341f;
+inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+__device__ inline float ex2(float x) {
+  float y;
+  asm("ex2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
+}
+__device__ inline float lg2(float x) {
+  float y;
+  asm("lg2.approx.ftz.f32 %0, %1;" : "=f"(y) : "f"(x));
+  return y;
+}
+
+// A splat contributes where log α is at least this, in the base of the exponential.
+template <Exponential E>
+__device__ constexpr float log_threshold() {
+  return E == Exponential::ex2 ? kLogAlphaThreshold * kLog2e : kLogAlphaThreshold;
+}
+
+template <Exponential E>
+__device__ inline float alpha_of(float log_alpha, const float* lut, float lut_scale) {
+  float alpha;
+  if constexpr (E == Exponential::ex2)
+    alpha = ex2(log_alpha);
+  else if constexpr (E == Exponential::lut)
+    alpha = lut[alpha_lut_index(log_alpha, lut_scale)];
+  else
+    alpha = expf(log_alpha);
+  return fminf(alpha, kAlphaMax);
+}
+
+// METHOD §4's correction. For few siblings 1 - (1 - α)^(1/k) is found as it stands: it is
+// then off by 2e-7, and what k of them add up to by that many times k.
+template <Exponential E>
+__device__ inline float blended_alpha(float alpha, float t, float inverse_k) {
+  constexpr float kFew = 1.0f / 64.0f;
+  if (E == Exponential::exact || inverse_k < kFew) return sibling_alpha(alpha, t, inverse_k);
+  const float each = 1.0f - ex2(lg2(1.0f - alpha) * inverse_k);
+  return fmaf(t, alpha - each, each);
+}
+
+// A pixel in progress.
+struct RasterPixel {
+  float r = 0.0f, g = 0.0f, b = 0.0f, transmittance = 1.0f;
+  float depth = kInfinity;
+  float halfway = 0.5f;  // the T at which depth is found; below all T once it is
+  float limit;           // splats contribute while their -log α is no more; -inf once it has ended
+};
+
+__device__ inline bool ended(const RasterPixel& pixel) {
+  return pixel.limit == -kInfinity;
+}
+
+}  // namespace voyager::cuda

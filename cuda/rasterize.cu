@@ -1,0 +1,273 @@
+// METHOD §6–8: each tile's list, front to back. A warp has a part of the tile, a lane
+// several of its pixels. The warp takes 32 splats of the list at a time, a lane each, drops
+// those that miss its part, and blends the others one after the other. Warps wait for
+// nobody.
+#include "cuda/raster_output.cuh"
+#include "cuda/raster_pixel.cuh"
+#include "cuda/splat_launch.h"
+
+namespace voyager::cuda {
+namespace {
+
+constexpr unsigned kAll = 0xffffffffu;
+constexpr int kPartWidth = 8;               // pixels of a warp's part: a lane a column, and
+constexpr int kLaneRows = 32 / kPartWidth;  // rows that lie so far apart
+constexpr int kRows = 2;                    // pixels a lane
+constexpr int kPartHeight = kLaneRows * kRows;
+constexpr int kWarps = kTile / kPartWidth * (kTile / kPartHeight);
+constexpr unsigned kThreads = 32 * kWarps;
+
+// A SplatRecord in registers or shared memory.
+struct RasterSplat {
+  float4 shape;   // x, y, p_x, q_y
+  float4 middle;  // skew, log o, depth, t
+  float4 colour;  // r, g, b, 1/k
+};
+
+// The splats that a warp blends, in the order of the list.
+struct WarpSplats {
+  float4 shape[32], middle[32], colour[32];
+};
+
+// The centres of the first and the last pixel of a warp's part.
+struct Part {
+  float x0, x1, y0, y1;
+};
+
+// Whether the support may touch the part: the least p² + q² over it is on one of the two
+// edges that face the centre.
+template <Exponential E>
+__device__ bool rasterize_touches(const RasterSplat& s, const Part& part) {
+  const float p_x = s.shape.z, q_y = s.shape.w, skew = s.middle.x;
+  const float pp = p_x * p_x, kq = skew * q_y;
+  const float x0 = part.x0 - s.shape.x, x1 = part.x1 - s.shape.x;
+  const float y0 = part.y0 - s.shape.y, y1 = part.y1 - s.shape.y;
+  const float x = fminf(fmaxf(0.0f, x0), x1), y = fminf(fmaxf(0.0f, y0), y1);
+  const float p1 = x * p_x, t1 = skew * x;
+  const float q1 = (fminf(fmaxf(t1, y0), y1) - t1) * q_y;
+  // Where (p, q) is shortest on the row at y.
+  const float nearest = __fdividef(kq * q_y, fmaf(kq, kq, pp)) * y;
+  const float along = fminf(fmaxf(nearest, x0), x1);
+  const float p2 = along * p_x, q2 = fmaf(-skew, along, y) * q_y;
+  // Twice the growth of runtime/stages/project.h: this arithmetic rounds too.
+  const float growth = 1.0f + 1.2e-7f * (64.0f + __fdividef(16.0f * fabsf(kq), p_x));
+  const float radius = (s.middle.y - log_threshold<E>()) + 2.0f * kRhoMargin;
+  return fminf(fmaf(p1, p1, q1 * q1), fmaf(p2, p2, q2 * q2)) <= radius * (growth * growth);
+}
+
+struct Counts {
+  uint32_t evaluated = 0, blended = 0;
+};
+
+struct Lut {
+  const float* entries;
+  float scale;
+};
+
+// A lane's pixels, and where they are.
+struct Lane {
+  float x, y;  // the centre of the first
+  RasterPixel pixels[kRows];
+};
+
+// What a kernel is compiled for.
+template <Exponential E, bool kFilterOn, bool kSiblingsIn, bool kDepthOut, bool kCounting>
+struct Mode {
+  static constexpr Exponential kExponential = E;
+  static constexpr bool kFilter = kFilterOn, kSiblings = kSiblingsIn, kDepth = kDepthOut,
+                        kCount = kCounting;
+};
+
+// Without a branch, so that the splats of a loop overlap. siblings: t < 1.
+template <class M>
+__device__ void rasterize_splat(const float4& shape, const float4& middle, const float4& colour,
+                                bool siblings, const Lut& lut, Lane& lane, Counts& counts) {
+  constexpr Exponential E = M::kExponential;
+  const float dx = lane.x - shape.x, dy = lane.y - shape.y;
+  const float p = dx * shape.z, q0 = fmaf(-middle.x, dx, dy) * shape.w;
+  const float base = fmaf(p, p, -middle.y);
+#pragma unroll
+  for (int row = 0; row < kRows; ++row) {
+    RasterPixel& pixel = lane.pixels[row];
+    const float q = row == 0 ? q0 : fmaf(static_cast<float>(row * kLaneRows), shape.w, q0);
+    const float minus_log = fmaf(q, q, base);
+    const bool hit = minus_log <= pixel.limit;
+    float alpha = alpha_of<E>(-minus_log, lut.entries, lut.scale);
+    if (M::kSiblings && siblings) alpha = blended_alpha<E>(alpha, middle.w, colour.w);
+    const float before = pixel.transmittance, after = fmaf(-alpha, before, before);
+    const bool ends = hit && after < kTransmittanceEnd, blends = hit && !ends;
+    const float weight = blends ? alpha * before : 0.0f;
+    pixel.limit = ends ? -kInfinity : pixel.limit;
+    pixel.transmittance = blends ? after : before;
+    pixel.r = fmaf(weight, colour.x, pixel.r);
+    pixel.g = fmaf(weight, colour.y, pixel.g);
+    pixel.b = fmaf(weight, colour.z, pixel.b);
+    if constexpr (M::kDepth) {
+      const bool found = pixel.transmittance <= pixel.halfway;
+      pixel.depth = found ? middle.z : pixel.depth;
+      pixel.halfway = found ? -1.0f : pixel.halfway;
+    }
+    if constexpr (M::kCount) counts.evaluated += 1, counts.blended += blends;
+  }
+}
+
+struct RasterParams {
+  SplatView splats;
+  RasterTarget target;
+  const float* lut;
+  uint32_t lut_size;
+};
+
+// A list's splats, 32 at a time, asked for before they are wanted.
+struct Reader {
+  const SplatRecord* records;
+  const DepthKey* keys;
+  uint32_t last;
+  uint32_t next_slot;
+  RasterSplat next;
+
+  __device__ Reader(const SplatView& splats, const TileList& list, uint32_t lane)
+      : records(splats.records), keys(splats.keys), last(list.last) {
+    next_slot = slot_at(list.first + lane);
+    read_next();
+    next_slot = slot_at(list.first + 32 + lane);
+  }
+  __device__ uint32_t slot_at(uint32_t at) const {
+    return at < last ? slot_of(__ldg(keys + at)) : kNoNode;
+  }
+  __device__ void read_next() {
+    if (next_slot == kNoNode) return;
+    const float4* record = reinterpret_cast<const float4*>(records + next_slot);
+    next = {__ldg(record), __ldg(record + 1), __ldg(record + 2)};
+  }
+  // The splat at `at`, if there is one; then that at + 32 is on its way.
+  __device__ RasterSplat take(uint32_t at) {
+    const RasterSplat splat = next;
+    read_next();
+    next_slot = slot_at(at + 64);
+    return splat;
+  }
+};
+
+__device__ bool all_ended(const Lane& lane) {
+  bool all = true;
+#pragma unroll
+  for (const RasterPixel& pixel : lane.pixels) all &= ended(pixel);
+  return __all_sync(kAll, all);
+}
+
+template <class M>
+__device__ void rasterize_list(const SplatView& splats, const TileList& list, const Part& part,
+                               const Lut& lut, WarpSplats& chosen, Lane& lane, Counts& counts) {
+  const uint32_t self = threadIdx.x % 32;
+  Reader reader(splats, list, self);
+  for (uint32_t first = list.first; first < list.last; first += 32) {
+    const RasterSplat splat = reader.take(first + self);
+    const bool valid = first + self < list.last;
+    const bool touches = valid && (!M::kFilter || rasterize_touches<M::kExponential>(splat, part));
+    const unsigned lanes = __ballot_sync(kAll, touches);
+    __syncwarp();
+    if (touches) {
+      const int at = __popc(lanes & ((1u << self) - 1));
+      chosen.shape[at] = splat.shape;
+      chosen.middle[at] = splat.middle;
+      chosen.colour[at] = splat.colour;
+    }
+    __syncwarp();
+    const int count = __popc(lanes);
+    if (M::kSiblings && __any_sync(kAll, touches && splat.middle.w != 1.0f)) {
+      for (int i = 0; i < count; ++i)
+        rasterize_splat<M>(chosen.shape[i], chosen.middle[i], chosen.colour[i],
+                           chosen.middle[i].w != 1.0f, lut, lane, counts);
+    } else {
+#pragma unroll 4
+      for (int i = 0; i < count; ++i)
+        rasterize_splat<M>(chosen.shape[i], chosen.middle[i], chosen.colour[i], false, lut, lane,
+                           counts);
+    }
+    if (all_ended(lane)) return;
+  }
+}
+
+template <class M>
+__global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(RasterParams params) {
+  __shared__ WarpSplats chosen[kWarps];
+  extern __shared__ float lut_entries[];
+  if constexpr (M::kExponential == Exponential::lut) {
+    for (uint32_t i = threadIdx.x; i <= params.lut_size; i += kThreads)
+      lut_entries[i] = params.lut[i];
+    __syncthreads();
+  }
+  const uint32_t tile = params.splats.tile_order[blockIdx.x];
+  const auto columns = static_cast<uint32_t>(params.splats.grid.columns);
+  const unsigned warp = threadIdx.x / 32, self = threadIdx.x % 32;
+  const uint32_t part_x = tile % columns * kTile + warp % (kTile / kPartWidth) * kPartWidth;
+  const uint32_t part_y = tile / columns * kTile + warp / (kTile / kPartWidth) * kPartHeight;
+  const uint32_t x = part_x + self % kPartWidth, y = part_y + self / kPartWidth;
+  const auto inside = [&](int row) {
+    return x < params.target.width && y + row * kLaneRows < params.target.height;
+  };
+  const Part part{static_cast<float>(part_x) + 0.5f, static_cast<float>(part_x + kPartWidth) - 0.5f,
+                  static_cast<float>(part_y) + 0.5f,
+                  static_cast<float>(part_y + kPartHeight) - 0.5f};
+  Lane lane{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, {}};
+#pragma unroll
+  for (int row = 0; row < kRows; ++row)
+    lane.pixels[row].limit = inside(row) ? -log_threshold<M::kExponential>() : -kInfinity;
+  Counts counts;
+  const Lut lut{lut_entries, static_cast<float>(params.lut_size) / kLutRange};
+  rasterize_list<M>(params.splats, params.splats.tiles[tile], part, lut, chosen[warp], lane,
+                    counts);
+#pragma unroll
+  for (int row = 0; row < kRows; ++row)
+    if (inside(row)) write_pixel(params.target, x, y + row * kLaneRows, lane.pixels[row]);
+  if constexpr (M::kCount) {
+    SplatCounters& sum = *params.splats.counters;
+    atomicAdd(&sum.evaluated, static_cast<unsigned long long>(counts.evaluated));
+    atomicAdd(&sum.blended, static_cast<unsigned long long>(counts.blended));
+  }
+}
+
+template <class M>
+void launch(const SplatFrame& f, const RasterParams& params) {
+  const bool lut = M::kExponential == Exponential::lut;
+  const size_t lut_bytes = lut ? (params.lut_size + 1) * sizeof(float) : 0;
+  rasterize_tiles<M><<<f.splats.tile_count(), kThreads, lut_bytes, f.stream>>>(params);
+}
+
+template <Exponential E, bool kFilter>
+void launch_for(const SplatFrame& f, const RasterParams& params) {
+  const bool siblings = f.draws.list.weights != nullptr, depth = params.target.depth != nullptr;
+  if (siblings && depth) return launch<Mode<E, kFilter, true, true, false>>(f, params);
+  if (siblings) return launch<Mode<E, kFilter, true, false, false>>(f, params);
+  if (depth) return launch<Mode<E, kFilter, false, true, false>>(f, params);
+  launch<Mode<E, kFilter, false, false, false>>(f, params);
+}
+
+template <Exponential E>
+void launch_for(const SplatFrame& f, const RasterChoices& choices, const RasterParams& params) {
+  if (choices.count_pixels) return launch<Mode<E, true, true, true, true>>(f, params);
+  if (choices.alpha_filter) return launch_for<E, true>(f, params);
+  launch_for<E, false>(f, params);
+}
+
+}  // namespace
+
+void launch_rasterize(const SplatFrame& f, const RasterChoices& choices,
+                      const RasterTarget& target) {
+  const RasterParams params{f.splats, target, choices.lut, choices.lut_size};
+  switch (choices.exponential) {
+    case Exponential::exact:
+      launch_for<Exponential::exact>(f, choices, params);
+      break;
+    case Exponential::ex2:
+      launch_for<Exponential::ex2>(f, choices, params);
+      break;
+    case Exponential::lut:
+      launch_for<Exponential::lut>(f, choices, params);
+      break;
+  }
+  check(cudaGetLastError(), "rasterize_tiles");
+}
+
+}  // namespace voyager::cuda

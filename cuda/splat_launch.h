@@ -1,0 +1,58 @@
+#pragma once
+// The kernels of the stages from projection on, launched on a stream. None waits for the host.
+#include <cuda_runtime_api.h>
+
+#include "cuda/device_scene.h"
+#include "cuda/search.h"
+#include "cuda/splats.h"
+#include "runtime/frame/backend.h"
+#include "runtime/stages/project.h"
+
+namespace voyager::cuda {
+
+// What a frame draws, in the order of ids.
+struct DrawView {
+  CutList list;         // its nodes null: every Gaussian, by its index
+  const uint32_t* ids;  // by place, what breaks ties of depth: 0 to the last place, each
+                        // once. Null: the places themselves.
+};
+
+// What a frame's kernels share.
+struct SplatFrame {
+  GaussianView gaussians;
+  DrawView draws;
+  ProjectParams params;
+  SplatView splats;
+  unsigned multiprocessors;
+  cudaStream_t stream;
+};
+
+// project.cu. Splats into slots, and into strips of tiles (METHOD §7b): with the α-filter
+// those that its ellipse touches, without it its box's.
+void launch_project(const SplatFrame& frame, bool alpha_filter);
+// bin.cu: the (tile, splat) pairs, tile by tile. Those beyond the room are left out.
+void launch_bin(const SplatFrame& frame);
+// Thread blocks that count for themselves: rows of SplatView::tile_offsets.
+unsigned bin_blocks(unsigned multiprocessors);
+// sort.cu: each tile's list by depth, then id.
+void launch_sort(const SplatFrame& frame);
+
+// rasterize.cu
+struct RasterTarget {
+  ColorFormat format;
+  void* color;   // tightly packed; null where format is none
+  float* depth;  // or null
+  uint32_t width, height;
+  Vec3f background;
+};
+struct RasterChoices {
+  Exponential exponential;
+  bool alpha_filter;
+  bool count_pixels;
+  const float* lut;  // lut_size + 1 entries on the device
+  uint32_t lut_size;
+};
+void launch_rasterize(const SplatFrame& frame, const RasterChoices& choices,
+                      const RasterTarget& target);
+
+}  // namespace voyager::cuda

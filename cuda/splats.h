@@ -1,0 +1,93 @@
+#pragma once
+// What the stages from projection on hand to one another, on the device.
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "runtime/frame/backend.h"
+#include "runtime/stages/bin.h"
+
+namespace voyager::cuda {
+
+// A projected splat; log α of a pixel is log_opacity - (p² + q²), all in the conic's base.
+struct alignas(16) SplatRecord {
+  float x, y, p_x, q_y;
+  float skew, log_opacity, depth, t;
+  float r, g, b, inverse_k;
+};
+static_assert(sizeof(SplatRecord) == 48);
+
+// The grown support of a splat from its record, in every stage alike.
+VOYAGER_HD SupportEllipse support_of(const SplatRecord& r, float log_scale) {
+  const Rounded threshold = Rounded(kLogAlphaThreshold) * log_scale;
+  return support_ellipse(r.x, r.y, {r.p_x, r.skew, r.q_y}, (threshold - r.log_opacity).value);
+}
+
+// A (tile, splat) pair in its tile's list: the bits of z > 0 above the splat's slot. Slots
+// ascend with ids, so that keys are in the contract's order.
+using DepthKey = unsigned long long;
+
+VOYAGER_HD uint32_t slot_of(DepthKey key) {
+  return static_cast<uint32_t>(key);
+}
+
+// Strips are appended in as many places, or all warps would wait for one counter.
+inline constexpr uint32_t kStripRegions = 32;
+struct alignas(128) StripRegion {
+  uint32_t strips;
+};
+
+// Of one frame.
+struct SplatCounters {
+  StripRegion regions[kStripRegions];
+  unsigned long long pairs, pairs_boxed;  // of the ellipses, and of their boxes
+  unsigned long long evaluated, blended;  // pixels, where they are counted
+  uint32_t places;                        // of the list that is drawn
+  uint32_t candidates;                    // of them, that may reach the image
+  uint32_t splats;                        // that reach it
+  uint32_t strips;                        // of them: the room that they need
+  uint32_t long_lists, large_lists;       // the first tiles of tile_order
+};
+
+// At most so many keys are in lists behind the long ones, and behind the large ones: just
+// under where bin_order's classes begin.
+inline constexpr uint32_t kShortList = 511, kMediumList = 2047;
+
+// A splat in one row of tiles.
+struct alignas(16) TileStrip {
+  uint32_t slot, depth;        // of its key
+  uint32_t first_tile, tiles;  // none: the box reaches the row, the ellipse does not
+};
+
+// [first, last) of the pairs.
+struct TileList {
+  uint32_t first, last;
+};
+
+// As kernels take it.
+struct SplatView {
+  SplatRecord* records;  // by slot
+  uint32_t* candidates;  // places
+  uint32_t slots;        // room
+  TileStrip* strips;     // kStripRegions regions of equal room
+  uint32_t strip_room;   // of all
+  DepthKey* keys;
+  DepthKey* merge_keys;  // as many
+  uint32_t pairs;        // room
+  SplatCounters* counters;
+  uint32_t* tile_counts;   // behind the counters, so that they are cleared together
+  uint32_t* tile_offsets;  // [block of bin_count][tile]
+  TileList* tiles;
+  uint32_t* tile_order;  // longest lists first
+  TileGrid grid;
+
+  VOYAGER_HD uint32_t tile_count() const {
+    return static_cast<uint32_t>(grid.columns) * static_cast<uint32_t>(grid.rows);
+  }
+};
+
+VOYAGER_HD uint32_t* strip_count(const SplatView& splats, uint32_t region) {
+  return &splats.counters->regions[region].strips;
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,57 @@
+#include "cuda/frame_timer.h"
+#include "cuda/head_start.h"
+#include "cuda/search.h"
+
+namespace voyager::cuda {
+namespace {
+
+enum Mark : size_t { kBegin, kFound, kWeighed, kMarks };
+
+class TimedSearch final : public SceneSearch {
+ public:
+  TimedSearch(std::shared_ptr<const Device> device, std::unique_ptr<CutSearch> search, bool weights)
+      : device_(std::move(device)), search_(std::move(search)), weights_(weights), timer_(kMarks) {}
+
+  // What it frees belongs to the device's context.
+  ~TimedSearch() override { device_->use_quietly(); }
+
+  void run(const CutQuery& query) override {
+    device_->use();
+    give_head_start(timer_.stream());
+    timer_.mark(kBegin);
+    search_->find(query, timer_.stream());
+    timer_.mark(kFound);
+    if (weights_) search_->weigh(query, timer_.stream());
+    timer_.mark(kWeighed);
+  }
+  SearchTimes times() override {
+    device_->use();
+    return {timer_.milliseconds(kBegin, kFound), timer_.milliseconds(kFound, kWeighed)};
+  }
+  SearchStats stats() override {
+    device_->use();
+    timer_.wait();
+    return search_->stats();
+  }
+  void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
+    device_->use();
+    timer_.wait();
+    search_->read(cut, weights);
+  }
+
+ private:
+  std::shared_ptr<const Device> device_;
+  std::unique_ptr<CutSearch> search_;
+  bool weights_;
+  FrameTimer timer_;
+};
+
+}  // namespace
+
+std::unique_ptr<SceneSearch> create_timed_search(std::shared_ptr<const Device> device,
+                                                 std::unique_ptr<CutSearch> search, bool weights) {
+  device->use();
+  return std::make_unique<TimedSearch>(std::move(device), std::move(search), weights);
+}
+
+}  // namespace voyager::cuda

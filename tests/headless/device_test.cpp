@@ -1,0 +1,203 @@
+// Which backend a host gets, on machines with a CUDA device and without, and that
+// VoyCapabilities says what it takes.
+#include "host.h"
+
+namespace {
+
+constexpr VoyBackend kBackends[] = {VOY_BACKEND_AUTO, VOY_BACKEND_CPU, VOY_BACKEND_CUDA,
+                                    VOY_BACKEND_REFERENCE};
+
+struct Uuid {
+  uint8_t bytes[16] = {};
+  bool operator==(const Uuid& other) const {
+    return std::memcmp(bytes, other.bytes, sizeof bytes) == 0;
+  }
+};
+constexpr Uuid kCpu = {};
+constexpr Uuid kNobodys = {{0x9a, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15}};
+
+class Devices : public ::testing::Test {
+ protected:
+  bool has_cuda() const { return voy.QueryBackend(VOY_BACKEND_CUDA) == VOY_SUCCESS; }
+  VoyDevice create(VoyBackend backend, const Uuid* uuid) {
+    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+    desc.backend = backend;
+    desc.deviceUuid = uuid == nullptr ? nullptr : uuid->bytes;
+    VoyDevice device = nullptr;
+    result = voy.CreateDevice(&desc, &device);
+    EXPECT_EQ(result == VOY_SUCCESS, device != nullptr);
+    return device;
+  }
+  VoyCapabilities capabilities(VoyDevice device) {
+    VoyCapabilities found = VOY_CAPABILITIES_INIT;
+    EXPECT_EQ(voy.GetCapabilities(device, &found), VOY_SUCCESS) << voy.message();
+    return found;
+  }
+  static Uuid uuid_of(const VoyCapabilities& capabilities) {
+    Uuid uuid;
+    std::memcpy(uuid.bytes, capabilities.deviceUuid, sizeof uuid.bytes);
+    return uuid;
+  }
+  void expect_chosen(VoyBackend asked, const Uuid* uuid, VoyBackend expected) {
+    const VoyDevice device = create(asked, uuid);
+    ASSERT_EQ(result, VOY_SUCCESS) << voy.message();
+    const VoyCapabilities found = capabilities(device);
+    EXPECT_EQ(found.backend, expected);
+    EXPECT_EQ(uuid_of(found) == kCpu, expected != VOY_BACKEND_CUDA);
+    EXPECT_NE(found.deviceName[0], '\0');
+    EXPECT_EQ(voy.DestroyDevice(device), VOY_SUCCESS);
+  }
+  void expect_none(VoyBackend asked, const Uuid* uuid, const char* part) {
+    create(asked, uuid);
+    EXPECT_EQ(result, VOY_ERROR_NO_DEVICE);
+    EXPECT_NE(voy.message().find(part), std::string::npos) << voy.message();
+  }
+
+  Library voy;
+  VoyResult result = VOY_SUCCESS;
+};
+
+TEST_F(Devices, QueryingSaysWhatCreatingDoes) {
+  for (const VoyBackend backend : kBackends) {
+    const VoyResult asked = voy.QueryBackend(backend);
+    const VoyDevice device = create(backend, nullptr);
+    EXPECT_EQ(result, asked) << voy.message();
+    EXPECT_TRUE(asked == VOY_SUCCESS || backend == VOY_BACKEND_CUDA) << voy.message();
+    EXPECT_EQ(voy.DestroyDevice(device), VOY_SUCCESS);
+  }
+}
+
+TEST_F(Devices, AutoIsCudaWhereThereIsADevice) {
+  const VoyBackend fastest = has_cuda() ? VOY_BACKEND_CUDA : VOY_BACKEND_CPU;
+  expect_chosen(VOY_BACKEND_AUTO, nullptr, fastest);
+  expect_chosen(VOY_BACKEND_CPU, nullptr, VOY_BACKEND_CPU);
+  expect_chosen(VOY_BACKEND_REFERENCE, nullptr, VOY_BACKEND_REFERENCE);
+}
+
+TEST_F(Devices, AUuidPicksTheDevice) {
+  for (const VoyBackend backend : {VOY_BACKEND_AUTO, VOY_BACKEND_CPU})
+    expect_chosen(backend, &kCpu, VOY_BACKEND_CPU);
+  expect_chosen(VOY_BACKEND_REFERENCE, &kCpu, VOY_BACKEND_REFERENCE);
+  expect_chosen(VOY_BACKEND_AUTO, &kNobodys, VOY_BACKEND_CPU);
+  for (const VoyBackend backend : {VOY_BACKEND_CPU, VOY_BACKEND_REFERENCE})
+    expect_none(backend, &kNobodys, "deviceUuid");
+  for (const Uuid* uuid : {&kCpu, &kNobodys}) expect_none(VOY_BACKEND_CUDA, uuid, "");
+}
+
+TEST_F(Devices, ACudaDeviceIsFoundByTheUuidItReports) {
+  const VoyDevice device = create(VOY_BACKEND_CUDA, nullptr);
+  if (result != VOY_SUCCESS) GTEST_SKIP() << voy.message();
+  const Uuid uuid = uuid_of(capabilities(device));
+  EXPECT_EQ(voy.DestroyDevice(device), VOY_SUCCESS);
+  for (const VoyBackend backend : {VOY_BACKEND_AUTO, VOY_BACKEND_CUDA})
+    expect_chosen(backend, &uuid, VOY_BACKEND_CUDA);
+}
+
+TEST_F(Devices, WithoutCudaTheRefusalSaysWhatWasFound) {
+  if (has_cuda()) GTEST_SKIP() << "this machine has a CUDA device";
+  const std::string prefix = "voyQueryBackend: ", why = voy.message().substr(prefix.size());
+  EXPECT_TRUE(why.find("CUDA") != std::string::npos || why.find("cuda") != std::string::npos)
+      << why;
+  expect_none(VOY_BACKEND_CUDA, nullptr, why.c_str());
+}
+
+// Messages of a device that is made and destroyed again.
+std::string creation_log(const Library& voy, VoyBackend backend, const Uuid* uuid) {
+  std::string text;
+  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  desc.backend = backend;
+  desc.deviceUuid = uuid == nullptr ? nullptr : uuid->bytes;
+  desc.logLevel = VOY_LOG_INFO;
+  desc.logUser = &text;
+  desc.log = [](void* user, VoyLogLevel level, const char* message) {
+    EXPECT_EQ(level, VOY_LOG_INFO) << message;
+    *static_cast<std::string*>(user) += std::string(message) + "\n";
+  };
+  VoyDevice device = nullptr;
+  EXPECT_EQ(voy.CreateDevice(&desc, &device), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(voy.DestroyDevice(device), VOY_SUCCESS);
+  return text;
+}
+
+TEST_F(Devices, TheLogSaysWhyAutoIsNotCuda) {
+  const char* words = "CUDA is left out: ";
+  EXPECT_NE(creation_log(voy, VOY_BACKEND_AUTO, &kNobodys).find(words), std::string::npos);
+  EXPECT_EQ(creation_log(voy, VOY_BACKEND_AUTO, nullptr).find(words) == std::string::npos,
+            has_cuda());
+  EXPECT_EQ(creation_log(voy, VOY_BACKEND_AUTO, &kCpu).find(words), std::string::npos);
+  EXPECT_EQ(creation_log(voy, VOY_BACKEND_CPU, nullptr).find(words), std::string::npos);
+}
+
+bool has(uint32_t mask, int enumerant) {
+  return (mask >> enumerant & 1) != 0;
+}
+
+// Each choice by itself, the others as they are by default.
+void expect_views_as_capable(Host& host, const VoyCapabilities& found) {
+  const auto expect_made = [&](bool expected, const VoyViewDesc& desc) {
+    VoyView view = nullptr;
+    const VoyResult result = host.voy.CreateView(host.device, &desc, &view);
+    EXPECT_EQ(result, expected ? VOY_SUCCESS : VOY_ERROR_UNSUPPORTED) << host.voy.message();
+    EXPECT_EQ(host.voy.DestroyView(view), VOY_SUCCESS);
+  };
+  VoyViewDesc desc = host.view_desc();
+  for (const VoySearch search : {VOY_SEARCH_AUTO, VOY_SEARCH_EXHAUSTIVE, VOY_SEARCH_STREAMING,
+                                 VOY_SEARCH_TEMPORAL, VOY_SEARCH_TEMPORAL_VISIT}) {
+    desc.search = search;
+    expect_made(has(found.searches, search), desc);
+  }
+  desc = host.view_desc();
+  for (const VoyExponential exponential :
+       {VOY_EXPONENTIAL_AUTO, VOY_EXPONENTIAL_EXACT, VOY_EXPONENTIAL_EX2, VOY_EXPONENTIAL_LUT}) {
+    desc.exponential = exponential;
+    expect_made(has(found.exponentials, exponential), desc);
+  }
+  desc = host.view_desc();
+  for (const VoySplatting splatting : {VOY_SPLATTING_OURS, VOY_SPLATTING_3DGS}) {
+    desc.splatting = splatting;
+    expect_made(has(found.splattings, splatting), desc);
+  }
+}
+
+TEST_F(Devices, CapabilitiesAreWhatAViewMayChoose) {
+  for (const VoyBackend backend : kBackends) {
+    if (voy.QueryBackend(backend) != VOY_SUCCESS) continue;
+    SCOPED_TRACE(backend);
+    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+    desc.backend = backend;
+    Host host(voy, desc);
+    const VoyCapabilities found = capabilities(host.device);
+    EXPECT_EQ(has(found.splattings, VOY_SPLATTING_3DGS), found.backend == VOY_BACKEND_CUDA);
+    expect_views_as_capable(host, found);
+  }
+}
+
+TEST_F(Devices, TheCpuNamesTheBaselineItLacks) {
+  for (const VoyBackend backend : {VOY_BACKEND_CPU, VOY_BACKEND_REFERENCE}) {
+    VoyDeviceDesc device_desc = VOY_DEVICE_DESC_INIT;
+    device_desc.backend = backend;
+    Host host(voy, device_desc);
+    VoyViewDesc desc = host.view_desc();
+    desc.splatting = VOY_SPLATTING_3DGS;
+    VoyView view = nullptr;
+    EXPECT_EQ(voy.CreateView(host.device, &desc, &view), VOY_ERROR_UNSUPPORTED);
+    EXPECT_NE(voy.message().find("3dgs"), std::string::npos) << voy.message();
+    EXPECT_EQ(view, nullptr);
+  }
+}
+
+TEST_F(Devices, AWholeImageHasDroppedNoPair) {
+  for (const VoyBackend backend : {VOY_BACKEND_CPU, VOY_BACKEND_REFERENCE}) {
+    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+    desc.backend = backend;
+    Host host(voy, desc);
+    ASSERT_EQ(host.render(), VOY_SUCCESS) << voy.message();
+    VoyFrameStats stats = {};
+    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    std::memset(&stats.pairsDropped, 0xff, sizeof stats.pairsDropped);
+    ASSERT_EQ(voy.GetFrameStats(host.view, &stats), VOY_SUCCESS) << voy.message();
+    EXPECT_EQ(stats.pairsDropped, 0u);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,47 @@
+#pragma once
+// What `voyager bench` was asked, and the runs behind it.
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "runtime/frame/backend.h"
+#include "tools/cameras.h"
+#include "tools/options.h"
+
+namespace voyager::tools {
+
+enum class BenchStages { search, splat, all };
+enum class BenchBackend { automatic, cpu, cuda };
+enum class SearchChoice { all, exhaustive, streaming, temporal };
+
+// Options that were not given have no value where that means something else than a default.
+struct BenchArguments {
+  std::string scene, cameras, json;
+  BenchStages stages = BenchStages::search;
+  BenchBackend backend = BenchBackend::automatic;
+  std::optional<Lod> lod;
+  std::optional<SearchChoice> search;
+  std::optional<bool> slack, filter;
+  std::optional<Splatting> splatting;
+  std::optional<Exponential> exponential;
+  std::optional<uint32_t> lut_size;
+  std::optional<size_t> repeat;
+  bool verify = false;
+  double tau = 3;
+  unsigned multiprocessors = 0;
+  ImageSize size;
+};
+
+struct BenchSubject {
+  std::shared_ptr<const Scene> scene;
+  Backend& backend;
+  std::vector<Camera> cameras;
+  Workers& workers;
+};
+
+// Each prints a table and gives its part of the report.
+nlohmann::ordered_json bench_searches(const BenchArguments& arguments, const BenchSubject& subject);
+nlohmann::ordered_json bench_frames(const BenchArguments& arguments, const BenchSubject& subject);
+
+}  // namespace voyager::tools

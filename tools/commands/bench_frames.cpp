@@ -1,0 +1,179 @@
+#include <fmt/core.h>
+
+#include "runtime/base/error.h"
+#include "runtime/frame/view.h"
+#include "tools/commands/bench_arguments.h"
+#include "tools/frame_path.h"
+#include "tools/frame_report.h"
+#include "tools/frame_table.h"
+#include "tools/progress_bar.h"
+
+namespace voyager::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kFewestFrames = 100;  // timed, so that a median means something
+constexpr size_t kComparedImages = 8;  // for the error of an exponential
+
+struct Plan {
+  std::vector<FrameRow> rows;
+  bool compares = false;  // rows with one another; one that the backend lacks is left out then
+  bool images = false;    // also their images with the exact row's
+};
+
+Search chosen_search(const BenchArguments& arguments) {
+  switch (arguments.search.value_or(SearchChoice::temporal)) {
+    case SearchChoice::exhaustive:
+      return Search::exhaustive;
+    case SearchChoice::streaming:
+      return Search::streaming;
+    case SearchChoice::temporal:
+      break;
+    case SearchChoice::all:
+      throw Error(ErrorCode::invalid_argument,
+                  "--search: found all, expected one search (--stages all without another choice "
+                  "compares them)");
+  }
+  return arguments.slack.value_or(true) ? Search::temporal : Search::temporal_visit;
+}
+
+// What is not chosen is as in the row "ours"; 3DGS has expf only.
+PipelineDesc chosen_desc(const BenchArguments& arguments) {
+  PipelineDesc desc;
+  desc.lod = arguments.lod.value_or(Lod::cut);
+  desc.search = chosen_search(arguments);
+  desc.splatting = arguments.splatting.value_or(Splatting::ours);
+  const bool ours = desc.splatting == Splatting::ours;
+  desc.alpha_filter = ours && arguments.filter.value_or(true);  // 3DGS has none
+  desc.exponential = arguments.exponential.value_or(ours ? Exponential::ex2 : Exponential::exact);
+  desc.lut_size = arguments.lut_size.value_or(desc.lut_size);
+  return desc;
+}
+
+bool has_choice(const BenchArguments& arguments) {
+  const bool one_search = arguments.search.has_value() && *arguments.search != SearchChoice::all;
+  return one_search || arguments.lod || arguments.slack || arguments.filter ||
+         arguments.splatting || arguments.exponential;
+}
+
+Plan make_plan(const BenchArguments& arguments, bool flat) {
+  if (arguments.stages == BenchStages::all && !has_choice(arguments))
+    return {ablation_rows(), true, false};
+  const PipelineDesc desc = chosen_desc(arguments);
+  if (arguments.stages == BenchStages::splat && !arguments.exponential &&
+      desc.splatting == Splatting::ours)
+    return {exponential_rows(desc), true, true};
+  return {{chosen_row(desc, flat)}, false, false};
+}
+
+FramePath make_path(const BenchArguments& arguments, const BenchSubject& subject) {
+  FramePath path;
+  path.frames = frame_path(subject.cameras, arguments.tau);
+  const size_t count = path.frames.size();
+  path.repeats = arguments.repeat.value_or((kFewestFrames + count - 1) / count);
+  return path;
+}
+
+// "WxH" where all frames have one size.
+Json size_of(const FramePath& path) {
+  const auto& first = path.frames[0].camera;
+  for (const FrameInput& frame : path.frames)
+    if (frame.camera.width != first.width || frame.camera.height != first.height) return nullptr;
+  return fmt::format("{}x{}", first.width, first.height);
+}
+
+// Rows of one report.
+class Rows {
+ public:
+  Rows(const BenchSubject& subject, const FramePath& path, const Plan& plan)
+      : maker_{subject.backend, subject.scene, subject.workers},
+        keeper_(subject.scene, subject.backend, plan.rows.back().desc,
+                std::pmr::get_default_resource(), subject.workers),
+        path_(path),
+        plan_(plan),
+        context_{path, subject.backend.rates(), subject.scene->sh_degree, subject.scene->flat()},
+        compared_(spread_indices(path.frames.size(), kComparedImages)) {}
+
+  void run() {
+    for (size_t i = 0; i < plan_.rows.size(); ++i) {
+      const FrameRow& row = plan_.rows[i];
+      try {
+        if (repeats_another(row))
+          leave_out(row, "the scene has no tree: the same as 3dgs");
+        else
+          add(row, i);
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::unsupported || !plan_.compares) throw;
+        leave_out(row, error.what());
+      }
+    }
+    progress_("timing", 1, 1);  // a backend that counts no pixels draws fewer frames
+  }
+
+  Json rows = Json::array(), left_out = Json::array();
+
+ private:
+  // In a scene without a tree, steps of the search change nothing.
+  bool repeats_another(const FrameRow& row) const {
+    return context_.flat && plan_.compares && row.desc.lod == Lod::cut &&
+           row.desc.splatting == Splatting::baseline_3dgs;
+  }
+
+  void leave_out(const FrameRow& row, const std::string& why) {
+    left_out.push_back({{"name", row.name}, {"why", why}});
+  }
+
+  void add(const FrameRow& row, size_t index) {
+    const size_t frames = path_.frames_drawn();
+    const FrameRun run = run_frames(maker_, row.desc, path_, [&](size_t drawn) {
+      progress_("timing", index * frames + drawn, plan_.rows.size() * frames);
+    });
+    Json json = report_row(row, run, context_);
+    if (plan_.images) compare_images(row, json);
+    rows.push_back(json);
+  }
+
+  void compare_images(const FrameRow& row, Json& json) {
+    const std::vector<RgbaImage> images = draw_images(maker_, row.desc, path_.frames, compared_);
+    if (row.desc.exponential == Exponential::exact) expected_ = images;
+    if (!expected_.empty()) add_error(json, image_error(images, expected_), images.size());
+  }
+
+  FrameMaker maker_;
+  View keeper_;  // draws nothing; the scene stays on its device from row to row
+  const FramePath& path_;
+  const Plan& plan_;
+  ReportContext context_;
+  std::vector<size_t> compared_;
+  std::vector<RgbaImage> expected_;  // of the exact row, which is the first
+  Progress progress_ = progress_bar();
+};
+
+}  // namespace
+
+Json bench_frames(const BenchArguments& arguments, const BenchSubject& subject) {
+  const Plan plan = make_plan(arguments, subject.scene->flat());
+  const FramePath path = make_path(arguments, subject);
+  Rows rows(subject, path, plan);
+  rows.run();
+  if (plan.compares && !plan.images) add_speedups(rows.rows);
+  print_frames(rows.rows);
+  for (const Json& row : rows.left_out)
+    fmt::print("left out: {}: {}\n", row["name"].get<std::string>(), row["why"].get<std::string>());
+  const DeviceRates rates = subject.backend.rates();
+  return {{"stages", arguments.stages == BenchStages::all ? "all" : "splat"},
+          {"size", size_of(path)},
+          {"frames", path.frames.size()},
+          {"repeats", path.repeats},
+          {"leaves", subject.scene->leaf_count},
+          {"nodes", subject.scene->tree.size()},
+          {"sh_degree", subject.scene->sh_degree},
+          {"rates",
+           {{"bytes_per_second", rates.bytes},
+            {"lane_instructions_per_second", rates.lane_instructions}}},
+          {"rows", rows.rows},
+          {"left_out", rows.left_out}};
+}
+
+}  // namespace voyager::tools

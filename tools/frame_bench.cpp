@@ -1,0 +1,85 @@
+#include "tools/frame_bench.h"
+
+#include <algorithm>
+
+#include "runtime/frame/view.h"
+
+namespace voyager::tools {
+namespace {
+
+constexpr size_t kWarmUpFrames = 32;
+
+size_t warm_up_frames(const FramePath& path) {
+  return std::min(path.frames.size(), kWarmUpFrames);
+}
+
+View make_view(const FrameMaker& maker, const PipelineDesc& desc) {
+  return View(maker.scene, maker.backend, desc, std::pmr::get_default_resource(), maker.workers);
+}
+
+Image unseen_image(const FrameInput& frame) {
+  Image image;
+  image.format = ColorFormat::rgba8;
+  image.width = frame.camera.width;
+  image.height = frame.camera.height;
+  return image;
+}
+
+// The first frame tells whether the backend counts pixels at all.
+bool counts_pixels(const FrameStats& stats) {
+  return stats.pixels_evaluated > 0 || stats.pairs_after == 0;
+}
+
+}  // namespace
+
+size_t FramePath::frames_drawn() const {
+  return warm_up_frames(*this) + 1 + frames.size() * (repeats + 1);
+}
+
+FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const FramePath& path,
+                    const std::function<void(size_t)>& frame_done) {
+  FrameRun run;
+  size_t drawn = 0;
+  const auto draw = [&](View& view, const FrameInput& frame) -> const FrameStats& {
+    view.render(frame, unseen_image(frame));
+    frame_done(++drawn);
+    return view.stats();
+  };
+  {
+    View view = make_view(maker, desc);
+    for (size_t i = 0; i < warm_up_frames(path); ++i) draw(view, path.frames[i]);
+    draw(view, path.frames[0]);
+    for (size_t i = 0; i < path.repeats * path.frames.size(); ++i)
+      run.timed.push_back(draw(view, path.frames[i % path.frames.size()]));
+  }
+  PipelineDesc counting = desc;
+  counting.count_pixels = true;
+  View view = make_view(maker, counting);
+  for (const FrameInput& frame : path.frames) {
+    const FrameStats& stats = draw(view, frame);
+    if (!counts_pixels(stats)) {
+      run.counted.clear();
+      break;
+    }
+    run.counted.push_back(stats);
+  }
+  return run;
+}
+
+std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& desc,
+                                   const std::vector<FrameInput>& frames,
+                                   const std::vector<size_t>& chosen) {
+  View view = make_view(maker, desc);
+  std::vector<RgbaImage> images;
+  for (const size_t i : chosen) {
+    Image image = unseen_image(frames[i]);
+    RgbaImage& pixels = images.emplace_back(size_t{4} * image.width * image.height);
+    image.format = ColorFormat::rgba32f;
+    image.color = pixels.data();
+    image.color_pitch = pixel_bytes(image.format) * image.width;
+    view.render(frames[i], image);
+  }
+  return images;
+}
+
+}  // namespace voyager::tools

@@ -1,0 +1,42 @@
+#pragma once
+// Runs one configuration of a frame along a camera path.
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "runtime/frame/backend.h"
+#include "tools/image_error.h"
+
+namespace voyager::tools {
+
+struct FramePath {
+  std::vector<FrameInput> frames;  // not empty
+  size_t repeats = 1;              // how often the path is timed, end to start at once
+
+  // Frames that run_frames() draws, at most.
+  size_t frames_drawn() const;
+};
+
+struct FrameRun {
+  std::vector<FrameStats> timed;    // path after path
+  std::vector<FrameStats> counted;  // the path once, with pixel counts; none where not counted
+};
+
+struct FrameMaker {
+  Backend& backend;
+  std::shared_ptr<const Scene> scene;
+  Workers& workers;
+};
+
+// Images are 8-bit and handed to nobody. After a start on the path's first 32 frames and
+// on the first again, each camera in order. frame_done(frames drawn so far) follows each.
+// Throws Error(unsupported) for a choice that the backend lacks.
+FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const FramePath& path,
+                    const std::function<void(size_t)>& frame_done);
+
+// The chosen frames as floats, before clamping.
+std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& desc,
+                                   const std::vector<FrameInput>& frames,
+                                   const std::vector<size_t>& chosen);
+
+}  // namespace voyager::tools
