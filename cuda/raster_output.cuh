@@ -14,7 +14,8 @@ __device__ inline uint32_t to_code(float value) {
 
 __device__ inline uint32_t to_half_pair(float a, float b) {
   constexpr float kMost = 65504.0f;
-  const __half2 pair = __floats2half2_rn(fminf(a, kMost), fminf(b, kMost));
+  const auto within = [](float value) { return fminf(fmaxf(value, -kMost), kMost); };
+  const __half2 pair = __floats2half2_rn(within(a), within(b));
   return *reinterpret_cast<const uint32_t*>(&pair);
 }
 

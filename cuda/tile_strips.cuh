@@ -2,6 +2,7 @@
 // A splat's tiles, a row of tiles at a time. All splats of a warp are cut up by all of its
 // lanes together: one splat may have one strip, another a hundred.
 #include "cuda/splats.h"
+#include "cuda/warp_shares.cuh"
 
 namespace voyager::cuda {
 
@@ -36,13 +37,8 @@ __device__ inline void write_strips(WarpExtents& shared, const TileExtent& own,
                                     bool boxes) {
   constexpr unsigned kAll = 0xffffffffu;
   const uint32_t lane = threadIdx.x % 32;
-  uint32_t through = own.strips();  // of the lanes up to this one
-#pragma unroll
-  for (unsigned step = 1; step < 32; step *= 2) {
-    const uint32_t lower = __shfl_up_sync(kAll, through, step);
-    if (lane >= step) through += lower;
-  }
-  const uint32_t before = through - own.strips(), strips = __shfl_sync(kAll, through, 31);
+  const WarpShares shares(own.strips());
+  const uint32_t strips = shares.total();
   if (strips == 0) return;
   const uint32_t region = blockIdx.x % kStripRegions, room = splats.strip_room / kStripRegions;
   uint32_t first = 0;
@@ -54,11 +50,8 @@ __device__ inline void write_strips(WarpExtents& shared, const TileExtent& own,
   __syncwarp();
   for (uint32_t base = 0; base < strips; base += 32) {
     const uint32_t strip = base + lane;
-    uint32_t owner = 0;  // the last lane with before ≤ strip
-#pragma unroll
-    for (uint32_t step = 16; step != 0; step /= 2)
-      if (__shfl_sync(kAll, before, owner + step) <= strip) owner += step;
-    const uint32_t owner_before = __shfl_sync(kAll, before, owner);
+    const unsigned owner = shares.owner(strip);
+    const uint32_t owner_before = __shfl_sync(kAll, shares.before(), owner);
     if (strip >= strips) continue;
     const TileExtent& extent = shared.extent[owner];
     const int32_t row = extent.rows.begin + static_cast<int32_t>(strip - owner_before);

@@ -1,0 +1,43 @@
+#pragma once
+// Work of very different sizes, one piece a lane, to be shared out evenly over the warp.
+#include <cstdint>
+
+namespace voyager::cuda {
+
+// All members are called by the whole warp together.
+class WarpShares {
+ public:
+  // count: how many items the lane's piece has.
+  __device__ explicit WarpShares(uint32_t count) {
+    uint32_t through = count;
+#pragma unroll
+    for (unsigned step = 1; step < 32; step *= 2) {
+      const uint32_t lower = __shfl_up_sync(kAll, through, step);
+      if (threadIdx.x % 32 >= step) through += lower;
+    }
+    before_ = through - count;
+    total_ = __shfl_sync(kAll, through, 31);
+  }
+
+  // Items of the lanes below, and of all.
+  __device__ uint32_t before() const {
+    return before_;
+  }
+  __device__ uint32_t total() const {
+    return total_;
+  }
+  // The lane whose piece an item is in; some lane for an item that there is not.
+  __device__ unsigned owner(uint32_t item) const {
+    unsigned lane = 0;
+#pragma unroll
+    for (unsigned step = 16; step != 0; step /= 2)
+      if (__shfl_sync(kAll, before_, lane + step) <= item) lane += step;
+    return lane;
+  }
+
+ private:
+  static constexpr unsigned kAll = 0xffffffffu;
+  uint32_t before_, total_;
+};
+
+}  // namespace voyager::cuda
