@@ -7,12 +7,12 @@
 
 #include "cuda/bin_order.cuh"
 #include "cuda/splat_launch.h"
-#include "cuda/warp_shares.cuh"
 
 namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kBinThreads = 1024;
+constexpr uint32_t kNarrow = 4;         // tiles of a strip that a lane places by itself
 constexpr uint32_t kBandTiles = 12288;  // of which a block counts in shared memory at a time
 
 // The strips of a block, and the tiles that it sees to.
@@ -108,21 +108,29 @@ __global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats) {
   if (threadIdx.x == 0) splats.counters->strips = most * kStripRegions;
 }
 
-// The pairs of a warp's strips, one strip a lane: shared out over the lanes, since one strip
-// may have a tile and another a hundred.
-__device__ void bin_pairs(const SplatView& splats, uint32_t* cursors, const TileRange& range,
+__device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) {
+  if (place < splats.pairs) splats.keys[place] = key;
+}
+
+// A strip a lane; the rest of a wide one is the whole warp's.
+__device__ void bin_strip(const SplatView& splats, uint32_t* cursors, const TileRange& range,
                           DepthKey key) {
+  const auto begin = static_cast<uint32_t>(range.begin), lane = threadIdx.x % 32;
   const auto tiles = static_cast<uint32_t>(range.end - range.begin);
-  const WarpShares shares(tiles);
-  const uint32_t first = static_cast<uint32_t>(range.begin) - shares.before();
-  for (uint32_t base = 0; base < shares.total(); base += 32) {
-    const uint32_t pair = base + threadIdx.x % 32;
-    const unsigned owner = shares.owner(pair);
-    const uint32_t tile = __shfl_sync(0xffffffffu, first, owner) + pair;
-    const DepthKey owner_key = __shfl_sync(0xffffffffu, key, owner);
-    if (pair >= shares.total()) continue;
-    const uint32_t place = atomicAdd(cursors + tile, 1u);
-    if (place < splats.pairs) splats.keys[place] = owner_key;
+  uint32_t place[kNarrow];
+#pragma unroll
+  for (uint32_t k = 0; k < kNarrow; ++k)
+    place[k] = k < tiles ? atomicAdd(cursors + begin + k, 1u) : splats.pairs;
+#pragma unroll
+  for (uint32_t k = 0; k < kNarrow; ++k) bin_pair(splats, place[k], key);
+  unsigned wide = __ballot_sync(0xffffffffu, tiles > kNarrow);
+  for (; wide != 0; wide &= wide - 1) {
+    const int owner = __ffs(wide) - 1;
+    const DepthKey shared_key = __shfl_sync(0xffffffffu, key, owner);
+    const uint32_t first = __shfl_sync(0xffffffffu, begin, owner);
+    const uint32_t count = __shfl_sync(0xffffffffu, tiles, owner);
+    for (uint32_t k = kNarrow + lane; k < count; k += 32)
+      bin_pair(splats, atomicAdd(cursors + first + k, 1u), shared_key);
   }
 }
 
@@ -138,7 +146,7 @@ __global__ void __launch_bounds__(kBinThreads, 2) bin_scatter(SplatView splats) 
     TileStrip strip{};
     if (i < share.count) strip = share.strips[i];
     const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
-    bin_pairs(splats, cursors, bin_band(strip, share), key);
+    bin_strip(splats, cursors, bin_band(strip, share), key);
   }
 }
 

@@ -55,6 +55,8 @@ CutState::CutState(const SearchTree& tree, size_t leaves, bool weights) {
        {&refined_, &cut_, &open_counts_, &open_blocks_, &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);
   fill(segments_, 0);
+  fill(weights_, 0);  // places that hold no node are read with the others
+  fill(nodes_, 0xff);
   fill(signals_, 0xff);
   fill(counters_, 0);
 }

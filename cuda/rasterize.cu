@@ -12,11 +12,7 @@ namespace {
 constexpr unsigned kAll = 0xffffffffu;
 constexpr int kPartWidth = 8;               // pixels of a warp's part: a lane a column, and
 constexpr int kLaneRows = 32 / kPartWidth;  // rows that lie so far apart
-#ifndef KROWS
-#define KROWS 2
-#define KOCC 8
-#endif
-constexpr int kRows = KROWS;                    // pixels a lane
+constexpr int kRows = 2;                    // pixels a lane
 constexpr int kPartHeight = kLaneRows * kRows;
 constexpr int kWarps = kTile / kPartWidth * (kTile / kPartHeight);
 constexpr unsigned kThreads = 32 * kWarps;
@@ -194,7 +190,7 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
 }
 
 template <class M>
-__global__ void __launch_bounds__(kThreads, KOCC) rasterize_tiles(RasterParams params) {
+__global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(RasterParams params) {
   __shared__ WarpSplats chosen[kWarps];
   extern __shared__ float lut_entries[];
   if constexpr (M::kExponential == Exponential::lut) {

@@ -23,11 +23,6 @@ struct Before {
   __device__ bool operator()(DepthKey a, DepthKey b) const { return a < b; }
 };
 
-template <int kThreads, int kEach>
-using BlockSort = cub::BlockMergeSort<DepthKey, kThreads, kEach>;
-template <int kEach>
-using WarpSort = cub::WarpMergeSort<DepthKey, kEach, 32>;
-
 // count ≤ kEach times the threads, which `thread` numbers.
 template <class Sort, int kEach, int kThreads>
 __device__ void sort_keys(typename Sort::TempStorage& storage, DepthKey* keys, uint32_t count,
@@ -46,24 +41,40 @@ __device__ void sort_keys(typename Sort::TempStorage& storage, DepthKey* keys, u
   }
 }
 
-union WarpStorage {
-  WarpSort<3>::TempStorage three;
-  WarpSort<5>::TempStorage five;
-  WarpSort<9>::TempStorage nine;
-  WarpSort<17>::TempStorage seventeen;
+// The least of the odd numbers below that holds the list.
+template <template <int> class SortOf, int kThreads, int kEach, int... kMore>
+struct Sizes {
+  using Sort = SortOf<kEach>;
+  using Rest = Sizes<SortOf, kThreads, kMore...>;
+  union Storage {
+    typename Sort::TempStorage own;
+    typename Rest::Storage rest;
+  };
+  static __device__ void sort(Storage& storage, DepthKey* keys, uint32_t count, uint32_t thread) {
+    if (count <= kEach * kThreads)
+      sort_keys<Sort, kEach, kThreads>(storage.own, keys, count, thread);
+    else
+      Rest::sort(storage.rest, keys, count, thread);
+  }
+};
+template <template <int> class SortOf, int kThreads, int kEach>
+struct Sizes<SortOf, kThreads, kEach> {
+  using Sort = SortOf<kEach>;
+  using Storage = typename Sort::TempStorage;
+  static __device__ void sort(Storage& storage, DepthKey* keys, uint32_t count, uint32_t thread) {
+    sort_keys<Sort, kEach, kThreads>(storage, keys, count, thread);
+  }
 };
 
-__device__ void sort_short(WarpStorage& storage, DepthKey* keys, uint32_t count) {
-  const uint32_t lane = threadIdx.x % 32;
-  if (count <= 3 * 32)
-    sort_keys<WarpSort<3>, 3, 32>(storage.three, keys, count, lane);
-  else if (count <= 5 * 32)
-    sort_keys<WarpSort<5>, 5, 32>(storage.five, keys, count, lane);
-  else if (count <= 9 * 32)
-    sort_keys<WarpSort<9>, 9, 32>(storage.nine, keys, count, lane);
-  else
-    sort_keys<WarpSort<17>, 17, 32>(storage.seventeen, keys, count, lane);
-}
+template <int kEach>
+using WarpSort = cub::WarpMergeSort<DepthKey, kEach, 32>;
+template <int kEach>
+using MediumSort = cub::BlockMergeSort<DepthKey, kSortThreads, kEach>;
+template <int kEach>
+using LargeSort = cub::BlockMergeSort<DepthKey, kLargeThreads, kEach>;
+using ShortLists = Sizes<WarpSort, 32, 3, 5, 7, 9, 13, kItems>;
+using MediumLists = Sizes<MediumSort, kSortThreads, 5, 9, 13, kItems>;
+using LargeLists = Sizes<LargeSort, kLargeThreads, 5, 9, kItems>;
 
 // How many of the first `diagonal` keys of the two sorted runs, merged, come from `a`.
 __device__ uint32_t merge_path(const DepthKey* a, uint32_t a_count, const DepthKey* b,
@@ -101,13 +112,10 @@ __device__ void merge_runs(const DepthKey* from, DepthKey* into, uint32_t count,
   }
 }
 
-using LargeSort = BlockSort<kLargeThreads, kItems>;
-
-__device__ void sort_in_parts(LargeSort::TempStorage& storage, DepthKey* keys, DepthKey* spare,
+__device__ void sort_in_parts(LargeLists::Storage& storage, DepthKey* keys, DepthKey* spare,
                               uint32_t count) {
   for (uint32_t first = 0; first < count; first += kPart) {
-    sort_keys<LargeSort, kItems, kLargeThreads>(storage, keys + first, min(kPart, count - first),
-                                                threadIdx.x);
+    LargeLists::sort(storage, keys + first, min(kPart, count - first), threadIdx.x);
     __syncthreads();
   }
   DepthKey *from = keys, *into = spare;
@@ -123,7 +131,7 @@ __device__ void sort_in_parts(LargeSort::TempStorage& storage, DepthKey* keys, D
 
 __global__ void __launch_bounds__(kLargeThreads) sort_large(SplatView splats) {
   extern __shared__ __align__(16) unsigned char memory[];  // more than a kernel declares itself
-  auto& storage = *reinterpret_cast<LargeSort::TempStorage*>(memory);
+  auto& storage = *reinterpret_cast<LargeLists::Storage*>(memory);
   const uint32_t lists = splats.counters->large_lists;
   for (uint32_t i = blockIdx.x; i < lists; i += gridDim.x) {
     const TileList list = splats.tiles[splats.tile_order[i]];
@@ -134,25 +142,17 @@ __global__ void __launch_bounds__(kLargeThreads) sort_large(SplatView splats) {
 }
 
 union Storage {
-  WarpStorage warp[kSortWarps];
-  BlockSort<kSortThreads, 9>::TempStorage nine;
-  BlockSort<kSortThreads, kItems>::TempStorage most;
+  ShortLists::Storage warp[kSortWarps];
+  MediumLists::Storage block;
 };
 
-__device__ void sort_medium(Storage& storage, DepthKey* keys, uint32_t count) {
-  if (count <= 9 * kSortThreads)
-    sort_keys<BlockSort<kSortThreads, 9>, 9, kSortThreads>(storage.nine, keys, count, threadIdx.x);
-  else
-    sort_keys<BlockSort<kSortThreads, kItems>, kItems, kSortThreads>(storage.most, keys, count,
-                                                                     threadIdx.x);
-}
-
-__global__ void __launch_bounds__(kSortThreads) sort_tiles(SplatView splats) {
+// Nine blocks are what the shared memory of a Hopper multiprocessor holds.
+__global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) {
   __shared__ Storage storage;
   const uint32_t tiles = splats.tile_count(), long_lists = splats.counters->long_lists;
   for (uint32_t i = splats.counters->large_lists + blockIdx.x; i < long_lists; i += gridDim.x) {
     const TileList list = splats.tiles[splats.tile_order[i]];
-    sort_medium(storage, splats.keys + list.first, list.last - list.first);
+    MediumLists::sort(storage.block, splats.keys + list.first, list.last - list.first, threadIdx.x);
     __syncthreads();
   }
   const uint32_t warp = threadIdx.x / 32;
@@ -160,7 +160,8 @@ __global__ void __launch_bounds__(kSortThreads) sort_tiles(SplatView splats) {
        i += gridDim.x * kSortWarps) {
     const TileList list = splats.tiles[splats.tile_order[i]];
     if (list.last - list.first > 1)
-      sort_short(storage.warp[warp], splats.keys + list.first, list.last - list.first);
+      ShortLists::sort(storage.warp[warp], splats.keys + list.first, list.last - list.first,
+                       threadIdx.x % 32);
     __syncwarp();
   }
 }
@@ -168,12 +169,12 @@ __global__ void __launch_bounds__(kSortThreads) sort_tiles(SplatView splats) {
 }  // namespace
 
 void launch_sort(const SplatFrame& f) {
-  constexpr size_t kBytes = sizeof(LargeSort::TempStorage);
+  constexpr size_t kBytes = sizeof(LargeLists::Storage);
   // Of the context, of which a process may have several.
   check(cudaFuncSetAttribute(sort_large, cudaFuncAttributeMaxDynamicSharedMemorySize,
                              static_cast<int>(kBytes)),
         "shared memory of sort_large");
-  sort_large<<<f.multiprocessors, kLargeThreads, kBytes, f.stream>>>(f.splats);
+  sort_large<<<2 * f.multiprocessors, kLargeThreads, kBytes, f.stream>>>(f.splats);
   check(cudaGetLastError(), "sort_large");
   static const unsigned resident = resident_blocks(sort_tiles, kSortThreads, 1);
   sort_tiles<<<f.multiprocessors * resident, kSortThreads, 0, f.stream>>>(f.splats);
