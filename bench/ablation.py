@@ -161,7 +161,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder")
     parser.add_argument("--voyager", default="build/release/bin/voyager")
-    parser.add_argument("--scene", nargs="+", default=[], metavar="SCENE=CAMERAS")
+    parser.add_argument("--scene", nargs="+", action="extend", default=[], metavar="SCENE=CAMERAS")
     parser.add_argument("--stages", nargs="+", default=["all", "splat"], choices=["all", "splat"])
     parser.add_argument("--tau", nargs="+", type=float, default=[0, 3, 15], metavar="PX")
     parser.add_argument("--size", nargs="+", default=["1920x1080"], metavar="WxH")

@@ -104,6 +104,10 @@ __global__ void __launch_bounds__(kThreads) baseline_ranges(BaselineView view) {
   if (at + 1 == view.pairs || view.keys[1][at + 1] >> 32 != tile) view.tiles[tile].y = at + 1;
 }
 
+__device__ bool ended(const RasterPixel& pixel) {
+  return pixel.limit == -kInfinity;
+}
+
 template <bool kLod>
 __device__ void baseline_blend(const BaselineSplat& s, float x, float y, RasterPixel& pixel) {
   const float dx = s.x - x, dy = s.y - y;

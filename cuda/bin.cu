@@ -11,7 +11,7 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kBinThreads = 1024;
+constexpr unsigned kBinThreads = 768;  // two blocks are all that a multiprocessor of Orin holds
 constexpr uint32_t kNarrow = 4;         // tiles of a strip that a lane places by itself
 constexpr uint32_t kBandTiles = 12288;  // of which a block counts in shared memory at a time
 

@@ -25,7 +25,7 @@ __device__ inline float lg2(float x) {
 // A splat contributes where log α is at least this, in the base of the exponential.
 template <Exponential E>
 __device__ constexpr float log_threshold() {
-  return E == Exponential::ex2 ? kLogAlphaThreshold * kLog2e : kLogAlphaThreshold;
+  return is_base_2(E) ? kLogAlphaThreshold * kLog2e : kLogAlphaThreshold;
 }
 
 template <Exponential E>
@@ -57,9 +57,5 @@ struct RasterPixel {
   float halfway = 0.5f;  // the T at which depth is found; below all T once it is
   float limit;           // splats contribute while their -log α is no more; -inf once it has ended
 };
-
-__device__ inline bool ended(const RasterPixel& pixel) {
-  return pixel.limit == -kInfinity;
-}
 
 }  // namespace voyager::cuda

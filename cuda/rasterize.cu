@@ -2,27 +2,17 @@
 // several of its pixels. The warp takes 32 splats of the list at a time, a lane each, drops
 // those that miss its part, and blends the others one after the other. Warps wait for
 // nobody.
+#include "cuda/raster_lane.cuh"
 #include "cuda/raster_output.cuh"
-#include "cuda/raster_pixel.cuh"
 #include "cuda/splat_launch.h"
 
 namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kAll = 0xffffffffu;
-constexpr int kPartWidth = 8;               // pixels of a warp's part: a lane a column, and
-constexpr int kLaneRows = 32 / kPartWidth;  // rows that lie so far apart
-constexpr int kRows = 2;                    // pixels a lane
 constexpr int kPartHeight = kLaneRows * kRows;
 constexpr int kWarps = kTile / kPartWidth * (kTile / kPartHeight);
 constexpr unsigned kThreads = 32 * kWarps;
-
-// A SplatRecord in registers or shared memory.
-struct RasterSplat {
-  float4 shape;   // x, y, p_x, q_y
-  float4 middle;  // skew, log o, depth, t
-  float4 colour;  // r, g, b, 1/k
-};
 
 // The splats that a warp blends, in the order of the list.
 struct WarpSplats {
@@ -53,62 +43,6 @@ __device__ bool rasterize_touches(const RasterSplat& s, const Part& part) {
   const float growth = 1.0f + 1.2e-7f * (64.0f + __fdividef(16.0f * fabsf(kq), p_x));
   const float radius = (s.middle.y - log_threshold<E>()) + 2.0f * kRhoMargin;
   return fminf(fmaf(p1, p1, q1 * q1), fmaf(p2, p2, q2 * q2)) <= radius * (growth * growth);
-}
-
-struct Counts {
-  uint32_t evaluated = 0, blended = 0;
-};
-
-struct Lut {
-  const float* entries;
-  float scale;
-};
-
-// A lane's pixels, and where they are.
-struct Lane {
-  float x, y;  // the centre of the first
-  RasterPixel pixels[kRows];
-};
-
-// What a kernel is compiled for.
-template <Exponential E, bool kFilterOn, bool kSiblingsIn, bool kDepthOut, bool kCounting>
-struct Mode {
-  static constexpr Exponential kExponential = E;
-  static constexpr bool kFilter = kFilterOn, kSiblings = kSiblingsIn, kDepth = kDepthOut,
-                        kCount = kCounting;
-};
-
-// Without a branch, so that the splats of a loop overlap. siblings: t < 1.
-template <class M>
-__device__ void rasterize_splat(const float4& shape, const float4& middle, const float4& colour,
-                                bool siblings, const Lut& lut, Lane& lane, Counts& counts) {
-  constexpr Exponential E = M::kExponential;
-  const float dx = lane.x - shape.x, dy = lane.y - shape.y;
-  const float p = dx * shape.z, q0 = fmaf(-middle.x, dx, dy) * shape.w;
-  const float base = fmaf(p, p, -middle.y);
-#pragma unroll
-  for (int row = 0; row < kRows; ++row) {
-    RasterPixel& pixel = lane.pixels[row];
-    const float q = row == 0 ? q0 : fmaf(static_cast<float>(row * kLaneRows), shape.w, q0);
-    const float minus_log = fmaf(q, q, base);
-    const bool hit = minus_log <= pixel.limit;
-    float alpha = alpha_of<E>(-minus_log, lut.entries, lut.scale);
-    if (M::kSiblings && siblings) alpha = blended_alpha<E>(alpha, middle.w, colour.w);
-    const float before = pixel.transmittance, after = fmaf(-alpha, before, before);
-    const bool ends = hit && after < kTransmittanceEnd, blends = hit && !ends;
-    const float weight = blends ? alpha * before : 0.0f;
-    pixel.limit = ends ? -kInfinity : pixel.limit;
-    pixel.transmittance = blends ? after : before;
-    pixel.r = fmaf(weight, colour.x, pixel.r);
-    pixel.g = fmaf(weight, colour.y, pixel.g);
-    pixel.b = fmaf(weight, colour.z, pixel.b);
-    if constexpr (M::kDepth) {
-      const bool found = pixel.transmittance <= pixel.halfway;
-      pixel.depth = found ? middle.z : pixel.depth;
-      pixel.halfway = found ? -1.0f : pixel.halfway;
-    }
-    if constexpr (M::kCount) counts.evaluated += 1, counts.blended += blends;
-  }
 }
 
 struct RasterParams {
@@ -149,14 +83,15 @@ struct Reader {
   }
 };
 
+template <class Lane>
 __device__ bool all_ended(const Lane& lane) {
   bool all = true;
 #pragma unroll
-  for (const RasterPixel& pixel : lane.pixels) all &= ended(pixel);
+  for (int row = 0; row < kRows; ++row) all &= lane.limit(row) == -kInfinity;
   return __all_sync(kAll, all);
 }
 
-template <class M>
+template <class M, class Lane>
 __device__ void rasterize_list(const SplatView& splats, const TileList& list, const Part& part,
                                const Lut& lut, WarpSplats& chosen, Lane& lane, Counts& counts) {
   const uint32_t self = threadIdx.x % 32;
@@ -171,19 +106,18 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
       const int at = __popc(lanes & ((1u << self) - 1));
       chosen.shape[at] = splat.shape;
       chosen.middle[at] = splat.middle;
-      chosen.colour[at] = splat.colour;
+      chosen.colour[at] = Lane::prepare(splat.colour);
     }
     __syncwarp();
     const int count = __popc(lanes);
     if (M::kSiblings && __any_sync(kAll, touches && splat.middle.w != 1.0f)) {
       for (int i = 0; i < count; ++i)
-        rasterize_splat<M>(chosen.shape[i], chosen.middle[i], chosen.colour[i],
-                           chosen.middle[i].w != 1.0f, lut, lane, counts);
+        lane.blend(chosen.shape[i], chosen.middle[i], chosen.colour[i], chosen.middle[i].w != 1.0f,
+                   lut, counts);
     } else {
 #pragma unroll 4
       for (int i = 0; i < count; ++i)
-        rasterize_splat<M>(chosen.shape[i], chosen.middle[i], chosen.colour[i], false, lut, lane,
-                           counts);
+        lane.blend(chosen.shape[i], chosen.middle[i], chosen.colour[i], false, lut, counts);
     }
     if (all_ended(lane)) return;
   }
@@ -210,17 +144,17 @@ __global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(RasterParams para
   const Part part{static_cast<float>(part_x) + 0.5f, static_cast<float>(part_x + kPartWidth) - 0.5f,
                   static_cast<float>(part_y) + 0.5f,
                   static_cast<float>(part_y + kPartHeight) - 0.5f};
-  Lane lane{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, {}};
+  typename LaneOf<M>::Type lane(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
 #pragma unroll
   for (int row = 0; row < kRows; ++row)
-    lane.pixels[row].limit = inside(row) ? -log_threshold<M::kExponential>() : -kInfinity;
+    lane.set_limit(row, inside(row) ? -log_threshold<M::kExponential>() : -kInfinity);
   Counts counts;
   const Lut lut{lut_entries, static_cast<float>(params.lut_size) / kLutRange};
   rasterize_list<M>(params.splats, params.splats.tiles[tile], part, lut, chosen[warp], lane,
                     counts);
 #pragma unroll
   for (int row = 0; row < kRows; ++row)
-    if (inside(row)) write_pixel(params.target, x, y + row * kLaneRows, lane.pixels[row]);
+    if (inside(row)) write_pixel(params.target, x, y + row * kLaneRows, lane.pixel(row));
   if constexpr (M::kCount) {
     SplatCounters& sum = *params.splats.counters;
     atomicAdd(&sum.evaluated, static_cast<unsigned long long>(counts.evaluated));
@@ -265,6 +199,9 @@ void launch_rasterize(const SplatFrame& f, const RasterChoices& choices,
       break;
     case Exponential::lut:
       launch_for<Exponential::lut>(f, choices, params);
+      break;
+    case Exponential::half2:
+      launch_for<Exponential::half2>(f, choices, params);
       break;
   }
   check(cudaGetLastError(), "rasterize_tiles");

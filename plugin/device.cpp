@@ -42,7 +42,8 @@ constexpr uint32_t bits_up_to(Enum last) {
 }
 
 uint32_t exponentials_of(VoyBackend backend) {
-  return bits_up_to(backend == VOY_BACKEND_REFERENCE ? VOY_EXPONENTIAL_EXACT : VOY_EXPONENTIAL_LUT);
+  if (backend == VOY_BACKEND_CUDA) return bits_up_to(VOY_EXPONENTIAL_HALF2);
+  return bits_up_to(backend == VOY_BACKEND_CPU ? VOY_EXPONENTIAL_LUT : VOY_EXPONENTIAL_EXACT);
 }
 
 uint32_t splattings_of(VoyBackend backend) {

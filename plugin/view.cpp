@@ -45,6 +45,8 @@ Exponential exponential_of(const VoyViewDesc& desc, VoyBackend backend) {
       return Exponential::exact;
     case VOY_EXPONENTIAL_EX2:
       return Exponential::ex2;
+    case VOY_EXPONENTIAL_HALF2:
+      return Exponential::half2;
     case VOY_EXPONENTIAL_LUT:
       return Exponential::lut;
     default:
@@ -59,7 +61,7 @@ PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   check_enum(desc.lod, VOY_LOD_ALL_LEAVES, "desc.lod");
   check_enum(desc.search, VOY_SEARCH_TEMPORAL_VISIT, "desc.search");
   check_enum(desc.alphaFilter, VOY_ALPHA_FILTER_OFF, "desc.alphaFilter");
-  check_enum(desc.exponential, VOY_EXPONENTIAL_LUT, "desc.exponential");
+  check_enum(desc.exponential, VOY_EXPONENTIAL_HALF2, "desc.exponential");
   check_count(desc.lutSize, 0, kMaxLutSize, "desc.lutSize");
   check_enum(desc.splatting, VOY_SPLATTING_3DGS, "desc.splatting");
   PipelineDesc choices;

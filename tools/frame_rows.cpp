@@ -39,6 +39,8 @@ std::vector<FrameRow> exponential_rows(PipelineDesc desc) {
   rows.push_back({"exact", desc});
   desc.exponential = Exponential::ex2;
   rows.push_back({"ex2", desc});
+  desc.exponential = Exponential::half2;
+  rows.push_back({"half2", desc});
   desc.exponential = Exponential::lut;
   for (const uint32_t size : {8u, 16u, 32u, 64u, 128u}) {
     desc.lut_size = size;
@@ -75,6 +77,8 @@ const char* exponential_name(Exponential exponential) {
       return "ex2";
     case Exponential::lut:
       return "lut";
+    case Exponential::half2:
+      return "half2";
     case Exponential::exact:
       break;
   }

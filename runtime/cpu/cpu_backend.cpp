@@ -140,6 +140,9 @@ class CpuBackend final : public Backend {
     if (desc.splatting != Splatting::ours)
       throw Error(ErrorCode::unsupported,
                   "splatting: found 3dgs, the CPU backend has ours only (CUDA has both)");
+    if (desc.exponential == Exponential::half2)
+      throw Error(ErrorCode::unsupported,
+                  "exponential: found half2, the CPU backend has exact, ex2 and lut");
     return std::make_unique<CpuPipeline>(std::move(scene), desc, memory, workers);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,

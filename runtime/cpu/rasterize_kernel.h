@@ -141,6 +141,7 @@ RasterizeTile pick(Exponential exponential, bool filter, bool depth) {
     case Exponential::lut:
       return pick_for<Exponential::lut>(filter, depth);
     case Exponential::exact:
+    case Exponential::half2:  // refused before a frame
       break;
   }
   return pick_for<Exponential::exact>(filter, depth);

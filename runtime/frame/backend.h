@@ -16,7 +16,11 @@
 namespace voyager {
 
 enum class Lod { cut, all_leaves };
-enum class Exponential { exact, ex2, lut };
+// half2: ex2 and what follows it in binary16, two pixels at a time (CUDA only).
+enum class Exponential { exact, ex2, lut, half2 };
+constexpr bool is_base_2(Exponential exponential) {
+  return exponential == Exponential::ex2 || exponential == Exponential::half2;
+}
 // baseline_3dgs: as 3DGS does it, the baseline of measurements (METHOD §4, §7: boxes of
 // 3σ, α' tested against α*).
 enum class Splatting { ours, baseline_3dgs };

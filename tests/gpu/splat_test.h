@@ -47,6 +47,7 @@ inline std::vector<NamedDesc> all_exponentials(std::span<const uint32_t> lut_siz
   std::vector<NamedDesc> all;
   all.push_back({"exact", {}});
   all.push_back({"ex2", {.exponential = Exponential::ex2}});
+  all.push_back({"half2", {.exponential = Exponential::half2}});
   for (const uint32_t m : lut_sizes)
     all.push_back(
         {"lut of " + std::to_string(m), {.exponential = Exponential::lut, .lut_size = m}});

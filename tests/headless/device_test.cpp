@@ -148,7 +148,8 @@ void expect_views_as_capable(Host& host, const VoyCapabilities& found) {
   }
   desc = host.view_desc();
   for (const VoyExponential exponential :
-       {VOY_EXPONENTIAL_AUTO, VOY_EXPONENTIAL_EXACT, VOY_EXPONENTIAL_EX2, VOY_EXPONENTIAL_LUT}) {
+       {VOY_EXPONENTIAL_AUTO, VOY_EXPONENTIAL_EXACT, VOY_EXPONENTIAL_EX2, VOY_EXPONENTIAL_LUT,
+        VOY_EXPONENTIAL_HALF2}) {
     desc.exponential = exponential;
     expect_made(has(found.exponentials, exponential), desc);
   }

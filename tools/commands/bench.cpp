@@ -107,7 +107,10 @@ void add_choices(CLI::App& command, BenchArguments& arguments) {
       "3dgs: as 3DGS does it, the baseline");
   add_choice<std::optional<Exponential>>(
       command, "--exp", arguments.exponential,
-      {{"ex2", Exponential::ex2}, {"exact", Exponential::exact}, {"lut", Exponential::lut}},
+      {{"ex2", Exponential::ex2},
+       {"exact", Exponential::exact},
+       {"lut", Exponential::lut},
+       {"half2", Exponential::half2}},
       "The exponential; --stages splat without one compares them, and their images with exact's. "
       "3dgs takes exact");
   command.add_option("--lut-size", arguments.lut_size, "Intervals of --exp lut (32)")

@@ -117,7 +117,8 @@ void add_splat_choices(CLI::App& command, RenderChoices& choices) {
                              {{"auto", VOY_EXPONENTIAL_AUTO},
                               {"exact", VOY_EXPONENTIAL_EXACT},
                               {"ex2", VOY_EXPONENTIAL_EX2},
-                              {"lut", VOY_EXPONENTIAL_LUT}},
+                              {"lut", VOY_EXPONENTIAL_LUT},
+                              {"half2", VOY_EXPONENTIAL_HALF2}},
                              "The exponential; auto is ex2 on CUDA with --splat ours, else exact");
   command.add_option("--lut-size", choices.lut_size, "Intervals of --exp lut")
       ->check(CLI::Range(1, 4096))
