@@ -39,6 +39,7 @@ class BaselinePipeline final : public Pipeline {
   bool cut_is_near() const override { return false; }
 
  private:
+  void collect(unsigned long long pairs, FrameStats& stats) const;
   void fit_places(uint32_t places);
   void fit_pairs(unsigned long long pairs);
   void fit_scratch(const BaselineView& view);
@@ -55,6 +56,7 @@ class BaselinePipeline final : public Pipeline {
   Buffer<unsigned long long> keys_[2];
   Buffer<uint32_t> values_[2];
   Buffer<ulonglong2> tiles_;
+  Buffer<uint32_t> splat_count_{1};
   Buffer<char> scratch_;
   FrameImage image_;
   FrameTimer timer_;
@@ -96,6 +98,7 @@ BaselineView BaselinePipeline::view(const TileGrid& grid, uint32_t places,
           {keys_[0].data(), keys_[1].data()},
           {values_[0].data(), values_[1].data()},
           tiles_.data(),
+          splat_count_.data(),
           grid,
           places,
           pairs};
@@ -144,8 +147,13 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
   timer_.mark(kSorted);
   launch_baseline_rasterize(work, target);
   timer_.mark(kRasterized);
-  timer_.wait();
+  launch_baseline_count(work);
+  stats.splats = read_value(splat_count_.data(), stream);
+  stats.gaussian_bytes = gaussians_->bytes_a_gaussian();
+  collect(pairs, stats);
+}
 
+void BaselinePipeline::collect(unsigned long long pairs, FrameStats& stats) const {
   draws_->collect(stats);
   stats.pairs_before = stats.pairs_after = pairs;
   constexpr Mark kOrder[] = {kSearched, kProjected, kSorted, kBinned, kRasterized};

@@ -152,6 +152,15 @@ __global__ void __launch_bounds__(kThreads)
   if (inside) write_pixel(target, x, y, pixel);
 }
 
+__global__ void __launch_bounds__(kThreads) baseline_count(BaselineView view) {
+  uint32_t drawn = 0;
+  for (uint32_t place = blockIdx.x * kThreads + threadIdx.x; place < view.places;
+       place += gridDim.x * kThreads)
+    drawn += view.tile_counts[place] != 0;
+  drawn = __reduce_add_sync(0xffffffffu, drawn);
+  if (threadIdx.x % 32 == 0) atomicAdd(view.splat_count, drawn);
+}
+
 template <class Sh>
 void launch_project(const BaselineFrame& f) {
   const unsigned blocks = blocks_for(f.view.places);
@@ -203,6 +212,12 @@ void launch_baseline_project(const BaselineFrame& f) {
   else
     launch_project<HalfSh<3>>(f);
   check(cudaGetLastError(), "baseline_project");
+}
+
+void launch_baseline_count(const BaselineFrame& f) {
+  check(cudaMemsetAsync(f.view.splat_count, 0, sizeof(uint32_t), f.stream), "baseline_count");
+  baseline_count<<<64, kThreads, 0, f.stream>>>(f.view);
+  check(cudaGetLastError(), "baseline_count");
 }
 
 void launch_baseline_scan(const BaselineFrame& f) {

@@ -22,6 +22,7 @@ struct BaselineView {
   unsigned long long* keys[2];    // tile above depth; before and after they are sorted
   uint32_t* values[2];            // places
   ulonglong2* tiles;              // [first, last) of the sorted pairs
+  uint32_t* splat_count;
   TileGrid grid;
   uint32_t places;
   unsigned long long pairs;
@@ -44,6 +45,8 @@ void launch_baseline_project(const BaselineFrame& frame);
 void launch_baseline_scan(const BaselineFrame& frame);
 void launch_baseline_keys(const BaselineFrame& frame);
 void launch_baseline_sort(const BaselineFrame& frame);
+// How many are drawn, for the statistics: apart from what is timed.
+void launch_baseline_count(const BaselineFrame& frame);
 void launch_baseline_rasterize(const BaselineFrame& frame, const RasterTarget& target);
 
 }  // namespace voyager::cuda

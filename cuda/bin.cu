@@ -11,7 +11,8 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kBinThreads = 768;  // two blocks are all that a multiprocessor of Orin holds
+// Two blocks are all that a multiprocessor of Orin holds.
+constexpr unsigned kBinThreads = 768;
 constexpr uint32_t kNarrow = 4;         // tiles of a strip that a lane places by itself
 constexpr uint32_t kBandTiles = 12288;  // of which a block counts in shared memory at a time
 
@@ -63,6 +64,23 @@ __global__ void __launch_bounds__(kBinThreads, 2) bin_count(SplatView splats) {
   }
 }
 
+// By one warp: a region of strips a lane.
+__device__ void bin_strip_counts(const SplatView& splats) {
+  static_assert(kStripRegions == 32);
+  const uint32_t strips = *strip_count(splats, threadIdx.x);
+  const uint32_t room = splats.strip_room / kStripRegions;
+  unsigned long long sum = strips, dropped = strips > room ? strips - room : 0;
+  for (int step = 16; step != 0; step /= 2) {
+    sum += __shfl_xor_sync(0xffffffffu, sum, step);
+    dropped += __shfl_xor_sync(0xffffffffu, dropped, step);
+  }
+  const unsigned long long most = __reduce_max_sync(0xffffffffu, strips);
+  if (threadIdx.x != 0) return;
+  splats.counters->strips = sum;
+  splats.counters->strip_room = most * kStripRegions;
+  splats.counters->strips_dropped = dropped;
+}
+
 constexpr unsigned kPlaceThreads = 1024, kPlaceItems = 4;
 constexpr unsigned kChunk = kPlaceThreads * kPlaceItems;
 using PlaceScan = cub::BlockScan<unsigned long long, kPlaceThreads, cub::BLOCK_SCAN_WARP_SCANS>;
@@ -104,8 +122,7 @@ __global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats) {
     splats.tile_order[order.take(splats.tile_counts[tile])] = tile;
   if (threadIdx.x == 0) splats.counters->pairs = total;
   if (threadIdx.x >= 32) return;
-  const uint32_t most = __reduce_max_sync(0xffffffffu, *strip_count(splats, threadIdx.x));
-  if (threadIdx.x == 0) splats.counters->strips = most * kStripRegions;
+  bin_strip_counts(splats);
 }
 
 __device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) {

@@ -28,9 +28,11 @@ struct BinOrder {
     __syncthreads();
     if (threadIdx.x < 32) sum_up();
     __syncthreads();
-    if (threadIdx.x != 0) return;
-    counters.large_lists = places[class_of(kMediumList) + 1];
-    counters.long_lists = places[class_of(kShortList) + 1];
+    if (threadIdx.x == 0) {
+      counters.large_lists = places[class_of(kMediumList)];
+      counters.long_lists = places[class_of(kShortList)];
+    }
+    __syncthreads();
   }
   __device__ uint32_t take(uint32_t length) { return atomicAdd(places + class_of(length), 1u); }
 

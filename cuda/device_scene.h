@@ -34,8 +34,8 @@ VOYAGER_HD constexpr int half_sh_words(int degree) {
   return (3 * sh_coefficients(degree) + 7) / 8;
 }
 
-// Coefficients no larger than this are kept in binary16 on the device: a channel of a
-// colour is then off by 2^-9·0.3 at the very most a coefficient, and by 1e-4 as a rule.
+// Coefficients no larger than this are kept in binary16 on the device: each is then off by
+// at most 2⁻⁹ (docs/numerics.md has what that does to colours).
 inline constexpr float kMaxHalfCoefficient = 8.0f;
 
 class DeviceScene {

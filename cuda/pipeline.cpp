@@ -51,6 +51,7 @@ class SplatPipeline final : public Pipeline {
   void launch_splatting(const SplatFrame& frame, const RasterTarget& target);
   SplatCounters counters() const;
   void collect(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
+  void count_bytes(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
 
   std::shared_ptr<const Device> device_;
   std::shared_ptr<const Scene> scene_;
@@ -115,28 +116,40 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
 void SplatPipeline::collect(const SplatCounters& counted, const Image& image,
                             FrameStats& stats) const {
   draws_->collect(stats);
-  const SplatView room = splats_.view(tile_grid(image.width, image.height));
   stats.splats = counted.splats;
   stats.pairs_before = counted.pairs_boxed;
   stats.pairs_after = counted.pairs;
-  stats.pairs_dropped = counted.pairs > room.pairs ? counted.pairs - room.pairs : 0;
+  stats.pairs_dropped = splats_.dropped(counted);
   stats.pixels_evaluated = counted.evaluated;
   stats.pixels_blended = counted.blended;
 
-  const uint64_t cut = stats.cut_size, splats = counted.splats, pairs = counted.pairs;
-  const uint64_t pixels = uint64_t{image.width} * image.height;
-  constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
-  stats.bytes[kProject] =
-      cut * sizeof(float4) + splats * (gaussians_->bytes_a_gaussian() + kRecord + sizeof(uint32_t));
-  stats.bytes[kBin] = splats * kRecord + pairs * kKey;
-  stats.bytes[kSort] = 2 * pairs * kKey;
-  stats.bytes[kRasterize] = pairs * (kKey + kRecord) + pixels * pixel_bytes(image.format);
-
+  count_bytes(counted, image, stats);
   constexpr Mark kEnds[] = {kSearched, kProjected, kSorted, kBinned, kRasterized};
   constexpr Mark kStarts[] = {kBegin, kSearched, kBinned, kProjected, kSorted};
   for (size_t stage = 0; stage < std::size(kEnds); ++stage)
     stats.milliseconds[stage] = timer_.milliseconds(kStarts[stage], kEnds[stage]);
   stats.total_milliseconds = timer_.milliseconds(kBegin, kRasterized);
+}
+
+// What each stage reads and writes of its own arrays; what siblings share of their parents
+// is left out.
+void SplatPipeline::count_bytes(const SplatCounters& counted, const Image& image,
+                                FrameStats& stats) const {
+  const TileGrid grid = tile_grid(image.width, image.height);
+  const uint64_t tiles = static_cast<uint64_t>(grid.columns) * static_cast<uint64_t>(grid.rows);
+  const uint64_t offsets = tiles * bin_blocks(device_->multiprocessors()) * sizeof(uint32_t);
+  const uint64_t pixels = uint64_t{image.width} * image.height, pairs = counted.pairs;
+  const CutList list = draws_->view().list;
+  const uint64_t place = sizeof(float4) + (list.nodes != nullptr ? sizeof(uint32_t) : 0) +
+                         (list.weights != nullptr ? sizeof(float) : 0);
+  constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
+  stats.gaussian_bytes = gaussians_->bytes_a_gaussian();
+  stats.bytes[kProject] = counted.places * place + 2 * sizeof(uint32_t) * counted.candidates +
+                          counted.splats * (stats.gaussian_bytes + kRecord) +
+                          counted.strips * sizeof(TileStrip);
+  stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
+  stats.bytes[kSort] = 2 * pairs * kKey;
+  stats.bytes[kRasterize] = pairs * (kKey + kRecord) + pixels * pixel_bytes(image.format);
 }
 
 void SplatPipeline::resolve(const FrameInput&, const Image& image, FrameStats& stats) {

@@ -94,8 +94,9 @@ __global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, 
       const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
       Splat splat;
       Vec3f relative;
-      if (project_shape(f.params, arrays, item, splat, relative)) {
-        slot = f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place);
+      slot = f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place);
+      // A slot beyond the room is that of a place that is, too: counted there.
+      if (slot < f.splats.slots && project_shape(f.params, arrays, item, splat, relative)) {
         const float inverse_length = 1.0f / std::sqrt(dot(relative, relative));
         splat.colour = interpolated_colour(arrays, item, inverse_length * relative);
         const SplatRecord record = record_of(splat, f.params.log_scale);

@@ -8,7 +8,6 @@
 
 namespace voyager::cuda {
 
-inline constexpr float kLog2e = 1.44269504088896341f;
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 __device__ inline float ex2(float x) {

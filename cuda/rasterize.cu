@@ -180,7 +180,9 @@ void launch_for(const SplatFrame& f, const RasterParams& params) {
 
 template <Exponential E>
 void launch_for(const SplatFrame& f, const RasterChoices& choices, const RasterParams& params) {
-  if (choices.count_pixels) return launch<Mode<E, true, true, true, true>>(f, params);
+  if (choices.count_pixels && choices.alpha_filter)
+    return launch<Mode<E, true, true, true, true>>(f, params);
+  if (choices.count_pixels) return launch<Mode<E, false, true, true, true>>(f, params);
   if (choices.alpha_filter) return launch_for<E, true>(f, params);
   launch_for<E, false>(f, params);
 }

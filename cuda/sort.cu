@@ -146,7 +146,7 @@ union Storage {
   MediumLists::Storage block;
 };
 
-// Nine blocks are what the shared memory of a Hopper multiprocessor holds.
+// Nine blocks: with fewer registers a thread the sorts spill, with more too few run at once.
 __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) {
   __shared__ Storage storage;
   const uint32_t tiles = splats.tile_count(), long_lists = splats.counters->long_lists;

@@ -9,23 +9,25 @@ namespace {
 
 constexpr size_t kFirstSlots = size_t{1} << 18;
 constexpr size_t kFirstStrips = size_t{1} << 19, kFirstPairs = size_t{1} << 20;
-// Indices are 32 bits; one is no index.
-constexpr size_t kMostIndices = 0xfffffffe;
+// Indices of 32 bits, and sums of two of them.
+constexpr size_t kMostIndices = size_t{1} << 31;
 
-size_t with_spare(size_t wanted) {
-  return std::min(wanted + wanted / 4, kMostIndices);
-}
-
-// False for want of memory.
-template <class Work>
-bool tries(const Work& work) {
-  try {
-    work();
-    return true;
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::over_budget) throw;
-    return false;
+// Allocates with some to spare, else as much as is wanted, else what there was. False
+// where that did not help. Throws where not even that is left.
+template <class Allocate>
+bool grow_to(size_t wanted, size_t before, const Allocate& allocate) {
+  const size_t least = std::min(wanted, kMostIndices);
+  if (least <= before) return false;
+  for (const size_t room : {std::min(least + least / 4, kMostIndices), least}) {
+    try {
+      allocate(room);
+      return true;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::over_budget) throw;
+    }
   }
+  allocate(before);
+  return false;
 }
 
 }  // namespace
@@ -49,58 +51,52 @@ void SplatState::fit(const TileGrid& grid) {
 
 // The old buffers go first: nothing in them outlives a frame.
 bool SplatState::grow_slots(size_t wanted) {
-  const size_t before = records_.size();
-  const auto allocate = [&](size_t slots) {
+  return grow_to(wanted, slots(), [&](size_t slots) {
     records_ = {}, candidates_ = {};
     records_ = Buffer<SplatRecord>(slots);
     candidates_ = Buffer<uint32_t>(slots);
-  };
-  if (tries([&] { allocate(with_spare(wanted)); })) return true;
-  allocate(before);
-  return false;
+  });
 }
 
 bool SplatState::grow_strips(size_t wanted) {
-  const size_t before = strips_.size();
-  const auto allocate = [&](size_t strips) {
+  return grow_to(wanted, strips_.size(), [&](size_t strips) {
     strips_ = {};
     strips_ = Buffer<TileStrip>(strips);
-  };
-  if (tries([&] { allocate(with_spare(wanted)); })) return true;
-  allocate(before);
-  return false;
+  });
 }
 
 bool SplatState::grow_pairs(size_t wanted) {
-  const size_t before = keys_.size();
-  const auto allocate = [&](size_t pairs) {
+  return grow_to(wanted, pairs(), [&](size_t pairs) {
     keys_ = {}, merge_keys_ = {};
     keys_ = Buffer<DepthKey>(pairs);
     merge_keys_ = Buffer<DepthKey>(pairs);
-  };
-  if (tries([&] { allocate(with_spare(wanted)); })) return true;
-  allocate(before);
-  return false;
+  });
 }
 
 bool SplatState::grow(const SplatCounters& counters) {
-  bool grown = false;
-  if (counters.places > records_.size()) grown |= grow_slots(counters.places);
-  if (counters.strips > strips_.size()) grown |= grow_strips(counters.strips);
-  if (counters.pairs > keys_.size() && keys_.size() < kMostIndices)
-    grown |= grow_pairs(counters.pairs);
-  return grown;
+  // All three, whatever becomes of one.
+  const bool slots = grow_slots(counters.places), strips = grow_strips(counters.strip_room),
+             pairs = grow_pairs(counters.pairs);
+  return slots || strips || pairs;
+}
+
+uint64_t SplatState::dropped(const SplatCounters& counters) const {
+  const auto beyond = [](uint64_t counted, size_t room) {
+    return counted > room ? counted - room : 0;
+  };
+  return beyond(counters.places, slots()) + counters.strips_dropped +
+         beyond(counters.pairs, pairs());
 }
 
 SplatView SplatState::view(const TileGrid& grid) const {
   return {records_.data(),
           candidates_.data(),
-          static_cast<uint32_t>(records_.size()),
+          static_cast<uint32_t>(slots()),
           strips_.data(),
           static_cast<uint32_t>(strips_.size()),
           keys_.data(),
           merge_keys_.data(),
-          static_cast<uint32_t>(keys_.size()),
+          static_cast<uint32_t>(pairs()),
           reinterpret_cast<SplatCounters*>(counters_.data()),
           reinterpret_cast<uint32_t*>(counters_.data() + sizeof(SplatCounters)),
           tile_offsets_.data(),

@@ -1,5 +1,7 @@
 #pragma once
 // The buffers of the stages from projection on. They grow between frames, never in one.
+#include <algorithm>
+
 #include "cuda/buffer.h"
 #include "cuda/splats.h"
 
@@ -15,6 +17,8 @@ class SplatState {
   // Makes room for what a frame has counted, with some to spare. False where there is
   // nothing to do, or no memory for it: the frame is then what it can be.
   bool grow(const SplatCounters& counters);
+  // Pairs, strips and places of the frame for which there was no room.
+  uint64_t dropped(const SplatCounters& counters) const;
 
   SplatView view(const TileGrid& grid) const;
   // Clears what the kernels add to.
@@ -25,6 +29,9 @@ class SplatState {
 
  private:
   unsigned bin_blocks_;
+  // Buffers that belong together may differ after an allocation that failed.
+  size_t slots() const { return std::min(records_.size(), candidates_.size()); }
+  size_t pairs() const { return std::min(keys_.size(), merge_keys_.size()); }
   bool grow_slots(size_t wanted);
   bool grow_strips(size_t wanted);
   bool grow_pairs(size_t wanted);

@@ -45,8 +45,10 @@ struct SplatCounters {
   uint32_t places;                        // of the list that is drawn
   uint32_t candidates;                    // of them, that may reach the image
   uint32_t splats;                        // that reach it
-  uint32_t strips;                        // of them: the room that they need
-  uint32_t long_lists, large_lists;       // the first tiles of tile_order
+  unsigned long long strips;              // of them
+  unsigned long long strip_room;          // that they need in all regions
+  unsigned long long strips_dropped;
+  uint32_t long_lists, large_lists;  // the first tiles of tile_order
 };
 
 // At most so many keys are in lists behind the long ones, and behind the large ones: just

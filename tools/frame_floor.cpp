@@ -30,10 +30,8 @@ double stored_bytes(int sh_degree) {
   return 4.0 * floats;
 }
 
-double attribute_bytes(const FrameWork& work, double project_bytes, int sh_degree) {
-  if (project_bytes <= 0 || work.splats <= 0) return stored_bytes(sh_degree);
-  const double visible = (project_bytes - work.cut * kMeanBytes) / work.splats;
-  return std::max(kMeanBytes, visible + kMeanBytes - kSplatBytes);
+double attribute_bytes(double gaussian_bytes, int sh_degree) {
+  return gaussian_bytes > 0 ? gaussian_bytes : stored_bytes(sh_degree);
 }
 
 }  // namespace voyager::tools

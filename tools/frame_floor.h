@@ -43,9 +43,7 @@ double stage_floor(double bytes, double instructions, const DeviceRates& rates);
 // b_attr of binary32 Gaussians: mean, rotation, scale, opacity and SH coefficients.
 double stored_bytes(int sh_degree);
 
-// b_attr of a projection that moves `project_bytes` in all (0: unknown, then stored_bytes()):
-// what makes project = project_bytes / B, at least a mean. Parents that interpolation
-// reads are in it.
-double attribute_bytes(const FrameWork& work, double project_bytes, int sh_degree);
+// b_attr of a backend that stores so many bytes a Gaussian; 0: unknown, then stored_bytes().
+double attribute_bytes(double gaussian_bytes, int sh_degree);
 
 }  // namespace voyager::tools

@@ -91,7 +91,9 @@ FrameWork work_of(const FrameRun& run, const ReportContext& context) {
     work.pixels += double{1} * frame.camera.width * frame.camera.height /
                    static_cast<double>(context.path.frames.size());
   work.pixel_bytes = static_cast<double>(pixel_bytes(ColorFormat::rgba8));
-  work.attribute_bytes = attribute_bytes(work, mean_bytes(run, kProject), context.sh_degree);
+  work.attribute_bytes =
+      attribute_bytes(mean(run.timed, [](const FrameStats& stats) { return stats.gaussian_bytes; }),
+                      context.sh_degree);
   return work;
 }
 
@@ -130,7 +132,9 @@ Json orin(const FrameWork& work, const FrameRun& run) {
   for (int stage = 0; stage < kFrameEnd; ++stage) {
     const double bytes = mean_bytes(run, stage);
     const double blended = stage == kRasterize ? work.pixels_blended : 0;
-    stages[stage_name(stage)] = stage_floor(bytes, blended * kBlendInstructions, kOrin);
+    const bool known = bytes > 0 || stage == kSearch;  // a view may have nothing to search
+    stages[stage_name(stage)] =
+        known ? Json(stage_floor(bytes, blended * kBlendInstructions, kOrin)) : Json();
     moved += bytes;
   }
   return {{"model_ms", floor_json(work, !run.counted.empty(), kOrin)},

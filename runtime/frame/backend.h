@@ -92,9 +92,11 @@ struct FrameStats {
   uint64_t nodes_total = 0, nodes_tested = 0, subtrees_visited = 0, chunks_read = 0, bytes_read = 0;
   uint64_t cut_size = 0, entered = 0, left = 0;
   uint64_t splats = 0, pairs_before = 0, pairs_after = 0;
-  uint64_t pairs_dropped = 0;  // for which a device's buffers had no room; 0 in a whole image
+  // Pairs, or what would have become pairs, for which a device had no memory; 0 in a whole image.
+  uint64_t pairs_dropped = 0;
   // (pixel, splat) pairs: whose ρ was found, and that were blended.
   uint64_t pixels_evaluated = 0, pixels_blended = 0;
+  uint32_t gaussian_bytes = 0;  // stored, that a device reads of a visible Gaussian
   // What each stage has to move through a device's memory, from its layouts and the counters
   // above; 0 on a host.
   uint64_t bytes[kStageCount] = {};

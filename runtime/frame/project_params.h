@@ -15,7 +15,7 @@ inline ProjectParams project_params(const Scene& scene, const Camera& camera,
   params.near_z = static_cast<float>(camera.near_z);
   params.width = static_cast<float>(camera.width);
   params.height = static_cast<float>(camera.height);
-  params.log_scale = is_base_2(exponential) ? 1.44269504088896341f : 1.0f;
+  params.log_scale = is_base_2(exponential) ? kLog2e : 1.0f;
   params.half = 0.5f * params.log_scale;
   return params;
 }

@@ -35,11 +35,12 @@ VOYAGER_HD float bits_float(uint32_t bits) {
   return x;
 }
 
+inline constexpr float kLog2e = 1.44269504088896341f;
+
 namespace detail {
 // Adding and subtracting 1.5·2²³ rounds to the nearest integer, which then also
 // stands in the low bits of the sum.
 inline constexpr float kRoundShift = 12582912.0f;
-inline constexpr float kLog2e = 1.44269504088896341f;
 inline constexpr float kLn2High = 0.693359375f, kLn2Low = -2.12194440e-4f;
 
 VOYAGER_HD float power_of_two(float shifted) {  // shifted = n + kRoundShift, n ≥ -126
@@ -59,7 +60,7 @@ VOYAGER_HD float exp_tail(float r) {
 // e^x for x ≤ 0, within 2 ulp; below -87 the value at -87.
 VOYAGER_HD float exp_negative(float x) {
   x = x < -87.0f ? -87.0f : x;
-  const float shifted = std::fma(x, detail::kLog2e, detail::kRoundShift);
+  const float shifted = std::fma(x, kLog2e, detail::kRoundShift);
   const float n = shifted - detail::kRoundShift;
   const float r = std::fma(n, -detail::kLn2Low, std::fma(n, -detail::kLn2High, x));
   return std::fma(r * r, detail::exp_tail(r), r + 1.0f) * detail::power_of_two(shifted);
@@ -76,7 +77,7 @@ VOYAGER_HD float exp2_negative(float x) {
 // e^x - 1 for x ≤ 0, with full relative precision near 0.
 VOYAGER_HD float expm1_negative(float x) {
   x = x < -87.0f ? -87.0f : x;
-  const float shifted = std::fma(x, detail::kLog2e, detail::kRoundShift);
+  const float shifted = std::fma(x, kLog2e, detail::kRoundShift);
   const float n = shifted - detail::kRoundShift;
   const float r = std::fma(n, -detail::kLn2Low, std::fma(n, -detail::kLn2High, x));
   const float q = std::fma(r * r, detail::exp_tail(r), r);

@@ -40,8 +40,8 @@ VOYAGER_HD Rounded support_growth(const Conic<float>& c) {
                                                                   Rounded(c.q_y) / Rounded(c.p_x));
 }
 
-// Of ρ itself, absolutely, where it is found as log α - log o (up to 3ε·|log o| + 8ε):
-// what is proportional to |log o| is in the growth.
+// Of ρ itself, absolutely, where it is found as log α - log o (3ε·|log o| + 8ε): where o is
+// far above α* the growth covers it, and just above α* this does, 25ε being 1.5e-6.
 inline constexpr float kRhoMargin = 4e-6f;
 
 // The radius in (p, q) of the grown support.

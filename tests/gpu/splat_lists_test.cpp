@@ -122,6 +122,61 @@ TEST_F(SplatLists, AViewsFirstFrameIsWholeHoweverLargeItIs) {
   with_cpu.expect();
 }
 
+// The leaves of a tree go in the order of its nodes into slots that are numbered by the input's.
+TEST_F(SplatLists, AllLeavesOfALargeTreeAreWholeInTheFirstFrame) {
+  const auto scene = baked_scene(random_cloud(300000, 13, 0));
+  const FrameInput input = frame_input(look({3, -6, -24}, {0, 0, 0}, 320, 200));
+  const auto cold = view(scene, {.lod = Lod::all_leaves});
+  const Frame first = render(*cold, input);
+  EXPECT_GT(first.stats.cut_size, kFirstSlots);
+  expect_same_bits(first, render(*cold, input));
+  Agreement with_cpu("all leaves of a tree, CUDA against the CPU");
+  with_cpu.add(first, draw(*cpu, scene, {.lod = Lod::all_leaves}, input));
+  with_cpu.expect();
+}
+
+// All of the device's memory but so much, until it goes.
+class TakenMemory {
+ public:
+  explicit TakenMemory(size_t left) {
+    for (size_t piece = size_t{1} << 37; piece >= size_t{1} << 20; piece /= 2) {
+      size_t free = 0, all = 0;
+      while (cudaMemGetInfo(&free, &all) == cudaSuccess && free > left + piece) {
+        void* taken = nullptr;
+        if (cudaMalloc(&taken, piece) != cudaSuccess) break;
+        pieces_.push_back(taken);
+      }
+    }
+    cudaGetLastError();
+  }
+  ~TakenMemory() {
+    for (void* piece : pieces_) cudaFree(piece);
+  }
+
+ private:
+  std::vector<void*> pieces_;
+};
+
+TEST_F(SplatLists, WithoutMemoryAFrameSaysWhatItLeftOutAndTheNextIsWhole) {
+  const auto scene = stack(100000, Depths::shuffled);
+  const FrameInput input = frame_input(look({0, 0, 0}, {0, 0, 1}, 256, 128));
+  const Frame whole = draw(scene, {}, input);
+  EXPECT_EQ(whole.stats.pairs_dropped, 0u);
+  const auto poor = view(scene);
+  {
+    const TakenMemory taken(size_t{64} << 20);
+    for (int frame = 0; frame < 3; ++frame) {
+      const Frame found = render(*poor, input);
+      EXPECT_GT(found.stats.pairs_dropped, 0u);
+      EXPECT_LT(found.stats.pairs_dropped, found.stats.pairs_after);
+      expect_no_nan(found);
+    }
+  }
+  const Frame found = render(*poor, input);
+  EXPECT_EQ(found.stats.pairs_dropped, 0u);
+  expect_same_bits(found, whole);
+}
+
 // Few splats, many pairs; and the other way round.
 TEST_F(SplatLists, SlotsAndPairsGrowEachForItself) {
   const auto sheets = stack(4000, Depths::shuffled);

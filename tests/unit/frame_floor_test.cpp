@@ -54,20 +54,9 @@ TEST(FrameFloor, StoredBytesAreThoseOfTheInputFormats) {
   EXPECT_EQ(stored_bytes(3), 236);
 }
 
-TEST(FrameFloor, AttributeBytesTurnBackIntoTheBytesOfProjection) {
-  FrameWork measured = work();
-  const double bytes = 90e6;
-  measured.attribute_bytes = attribute_bytes(measured, bytes, 3);
-  EXPECT_DOUBLE_EQ(measured.attribute_bytes, 140);  // (90e6 - 12e6) / 5e5 + 12 - 28
-  EXPECT_NEAR(frame_floor(measured, kOrin).project, bytes / 204.8e6, 1e-12);
-}
-
-TEST(FrameFloor, AttributeBytesAreAtLeastAMeanAndStoredWhereNothingIsKnown) {
-  EXPECT_EQ(attribute_bytes(work(), 13e6, 3), 12);
-  EXPECT_EQ(attribute_bytes(work(), 0, 3), 236);
-  FrameWork nothing_visible = work();
-  nothing_visible.splats = 0;
-  EXPECT_EQ(attribute_bytes(nothing_visible, 12e6, 1), 92);
+TEST(FrameFloor, AttributeBytesAreTheBackendsWhereItSaysThem) {
+  EXPECT_EQ(attribute_bytes(144, 3), 144);
+  EXPECT_EQ(attribute_bytes(0, 3), 236);
 }
 
 }  // namespace

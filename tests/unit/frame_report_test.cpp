@@ -75,7 +75,7 @@ TEST(FrameReport, CamerasHaveMediansOfTheirOwn) {
 TEST(FrameReport, ScoresAreFloorOverTime) {
   const Json row = report(run_of_two());
   const Json& floor = row["floor"];
-  EXPECT_EQ(floor["attribute_bytes"], 236);  // (138,000 - 12,000) / 500 + 12 - 28
+  EXPECT_EQ(floor["attribute_bytes"], 236);
   // Milliseconds at 1e11 bytes and 1e12 slots a second.
   const double project = 138'000 / 1e8, sort = (500 * 68 + 2000 * 26) / 1e8,
                blend = 100e6 * 11 / 1e9, out = 100 * 50 * 4 / 1e8;
@@ -99,7 +99,7 @@ TEST(FrameReport, WhatIsNotKnownIsNull) {
   EXPECT_TRUE(row["floor"]["score"]["frame"].is_null());
   EXPECT_FALSE(row["floor"]["score"]["sort"].is_null());
   EXPECT_TRUE(report(run, {})["floor"].is_null());
-  EXPECT_EQ(row["orin"]["stage_ms"]["sort"], 0);
+  EXPECT_TRUE(row["orin"]["stage_ms"]["sort"].is_null());
   for (FrameStats& stats : run.timed) std::fill_n(stats.bytes, int{kStageCount}, 0);
   EXPECT_TRUE(report(run)["orin"]["stage_ms"].is_null());  // a host
 }

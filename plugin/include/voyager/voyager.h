@@ -373,7 +373,7 @@ typedef enum VoyExponential {
   VOY_EXPONENTIAL_EXACT = 1, /* within 2 ulp */
   VOY_EXPONENTIAL_EX2 = 2,   /* base 2, log2(e) folded into the conic */
   VOY_EXPONENTIAL_LUT = 3,   /* table of lutSize + 1 entries, nearest */
-  VOY_EXPONENTIAL_HALF2 = 4, /* CUDA only: ex2 and blending in binary16, about 50 dB from exact */
+  VOY_EXPONENTIAL_HALF2 = 4, /* CUDA only: ex2 and blending in binary16; about 60 dB from exact */
   VOY_EXPONENTIAL_MAX_ENUM = 0x7fffffff
 } VoyExponential;
 
