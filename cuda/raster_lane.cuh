@@ -59,9 +59,10 @@ struct FloatLane {
   __device__ RasterPixel pixel(int row) const { return pixels[row]; }
   static __device__ float4 prepare(const float4& colour) { return colour; }
 
-  // Without a branch, so that the splats of a loop overlap. siblings: t < 1.
+  // Without a branch but for many siblings, so that the splats of a loop overlap.
+  template <Siblings kMost>
   __device__ void blend(const float4& shape, const float4& middle, const float4& colour,
-                        bool siblings, const Lut& lut, Counts& counts) {
+                        const Lut& lut, Counts& counts) {
     constexpr Exponential E = M::kExponential;
     float minus_log[kRows];
     lane_logarithms(x, y, shape, middle, minus_log);
@@ -70,7 +71,7 @@ struct FloatLane {
       RasterPixel& pixel = pixels[row];
       const bool hit = minus_log[row] <= pixel.limit;
       float alpha = alpha_of<E>(-minus_log[row], lut.entries, lut.scale);
-      if (M::kSiblings && siblings) alpha = blended_alpha<E>(alpha, middle.w, colour.w);
+      alpha = blended_alpha<E, kMost>(alpha, middle.w, colour.w);
       const float before = pixel.transmittance, after = fmaf(-alpha, before, before);
       const bool ends = hit && after < kTransmittanceEnd, blends = hit && !ends;
       const float weight = blends ? alpha * before : 0.0f;
@@ -120,8 +121,9 @@ struct HalfLane {
     return {twice(colour.x), twice(colour.y), twice(colour.z), colour.w};
   }
 
-  __device__ void blend(const float4& shape, const float4& middle, const float4& colour,
-                        bool siblings, const Lut&, Counts& counts) {
+  template <Siblings kMost>
+  __device__ void blend(const float4& shape, const float4& middle, const float4& colour, const Lut&,
+                        Counts& counts) {
     float minus_log[kRows];
     lane_logarithms(x, y, shape, middle, minus_log);
     // What does not contribute has an α of 2^-∞.
@@ -130,10 +132,10 @@ struct HalfLane {
                                     hits[1] ? -minus_log[1] : -kInfinity};
     __half2 alpha =
         __hmin2(h2exp2(__floats2half2_rn(exponents[0], exponents[1])), __float2half2_rn(kAlphaMax));
-    if (M::kSiblings && siblings) {
-      const float each[kRows] = {
-          blended_alpha<M::kExponential>(__low2float(alpha), middle.w, colour.w),
-          blended_alpha<M::kExponential>(__high2float(alpha), middle.w, colour.w)};
+    if constexpr (kMost != Siblings::none) {
+      constexpr Exponential E = M::kExponential;
+      const float each[kRows] = {blended_alpha<E, kMost>(__low2float(alpha), middle.w, colour.w),
+                                 blended_alpha<E, kMost>(__high2float(alpha), middle.w, colour.w)};
       alpha = __floats2half2_rn(each[0], each[1]);
     }
     __half2 after = __hfma2(__hneg2(alpha), transmittance, transmittance);

@@ -39,14 +39,32 @@ __device__ inline float alpha_of(float log_alpha, const float* lut, float lut_sc
   return fminf(alpha, kAlphaMax);
 }
 
-// METHOD §4's correction. For few siblings 1 - (1 - α)^(1/k) is found as it stands: it is
-// then off by 2e-7, and what k of them add up to by that many times k.
+// Splats of a warp differ in what METHOD §4's correction asks of them: none has siblings in
+// the blend (t = 1), some have few, some have many.
+enum class Siblings { none, few, many };
+
+// For few siblings 1 - (1 - α)^(1/k) is found as it stands: it is then off by 2e-7, and what
+// k of them add up to by that many times k.
+inline constexpr float kManySiblings = 1.0f / 64.0f;  // 1/k below this
+
 template <Exponential E>
+__device__ constexpr Siblings siblings_of(float t, float inverse_k) {
+  if (t == 1.0f) return Siblings::none;
+  return E == Exponential::exact || inverse_k < kManySiblings ? Siblings::many : Siblings::few;
+}
+
+// kMost: no splat of the loop has more. What comes out for a splat does not depend on it.
+template <Exponential E, Siblings kMost>
 __device__ inline float blended_alpha(float alpha, float t, float inverse_k) {
-  constexpr float kFew = 1.0f / 64.0f;
-  if (E == Exponential::exact || inverse_k < kFew) return sibling_alpha(alpha, t, inverse_k);
-  const float each = 1.0f - ex2(lg2(1.0f - alpha) * inverse_k);
-  return fmaf(t, alpha - each, each);
+  if constexpr (kMost == Siblings::none) return alpha;
+  float corrected;
+  if (kMost == Siblings::many && siblings_of<E>(t, inverse_k) == Siblings::many) {
+    corrected = sibling_alpha(alpha, t, inverse_k);
+  } else {
+    const float each = 1.0f - ex2(lg2(1.0f - alpha) * inverse_k);
+    corrected = fmaf(t, alpha - each, each);
+  }
+  return t == 1.0f ? alpha : corrected;
 }
 
 // A pixel in progress.

@@ -91,6 +91,23 @@ __device__ bool all_ended(const Lane& lane) {
   return __all_sync(kAll, all);
 }
 
+// Of the splats that the warp blends.
+template <class M>
+__device__ Siblings most_siblings(bool touches, const RasterSplat& splat) {
+  const Siblings own =
+      touches ? siblings_of<M::kExponential>(splat.middle.w, splat.colour.w) : Siblings::none;
+  if (__any_sync(kAll, own == Siblings::many)) return Siblings::many;
+  return __any_sync(kAll, own == Siblings::few) ? Siblings::few : Siblings::none;
+}
+
+template <Siblings kMost, class Lane>
+__device__ void blend_chosen(const WarpSplats& chosen, int count, const Lut& lut, Lane& lane,
+                             Counts& counts) {
+#pragma unroll(kMost == Siblings::many ? 1 : 4)
+  for (int i = 0; i < count; ++i)
+    lane.template blend<kMost>(chosen.shape[i], chosen.middle[i], chosen.colour[i], lut, counts);
+}
+
 template <class M, class Lane>
 __device__ void rasterize_list(const SplatView& splats, const TileList& list, const Part& part,
                                const Lut& lut, WarpSplats& chosen, Lane& lane, Counts& counts) {
@@ -110,14 +127,15 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
     }
     __syncwarp();
     const int count = __popc(lanes);
-    if (M::kSiblings && __any_sync(kAll, touches && splat.middle.w != 1.0f)) {
-      for (int i = 0; i < count; ++i)
-        lane.blend(chosen.shape[i], chosen.middle[i], chosen.colour[i], chosen.middle[i].w != 1.0f,
-                   lut, counts);
-    } else {
-#pragma unroll 4
-      for (int i = 0; i < count; ++i)
-        lane.blend(chosen.shape[i], chosen.middle[i], chosen.colour[i], false, lut, counts);
+    Siblings most = Siblings::none;
+    if constexpr (M::kSiblings) most = most_siblings<M>(touches, splat);
+    if (most == Siblings::none) {
+      blend_chosen<Siblings::none>(chosen, count, lut, lane, counts);
+    } else if constexpr (M::kSiblings) {
+      if (most == Siblings::few)
+        blend_chosen<Siblings::few>(chosen, count, lut, lane, counts);
+      else
+        blend_chosen<Siblings::many>(chosen, count, lut, lane, counts);
     }
     if (all_ended(lane)) return;
   }

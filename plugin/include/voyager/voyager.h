@@ -535,7 +535,8 @@ typedef struct VoyFrameStats {
   uint64_t splats;        /* that reach the image */
   uint64_t pairsBefore;   /* (tile, splat) pairs of the bounding boxes */
   uint64_t pairsAfter;    /* of the ellipses at the α threshold */
-  uint64_t pairsDropped;  /* pairs for which a device had no room; 0 in a whole image */
+  uint64_t pairsDropped;  /* pairs, strips and Gaussians for which a device had no memory;
+                             0 in a whole image */
   uint64_t bytesStreamed, bytesNeeded;
   uint64_t missing;                    /* cut nodes that stood in for missing ones */
   double milliseconds[VOY_MAX_STAGES]; /* by VoyStage; 0 from stageCount on */
