@@ -28,6 +28,7 @@ FrameInput frame_input(const Camera& camera, double tau) {
 
 std::vector<FrameInput> frame_path(const std::vector<Camera>& cameras, double tau) {
   std::vector<FrameInput> path;
+  path.reserve(cameras.size());
   for (const Camera& camera : cameras) path.push_back(frame_input(camera, tau));
   return path;
 }

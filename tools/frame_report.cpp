@@ -27,6 +27,7 @@ template <class Reduce>
 Json times(const std::vector<FrameStats>& frames, const Reduce& reduce) {
   const auto between = [&](int first, int end) {
     std::vector<double> samples;
+    samples.reserve(frames.size());
     for (const FrameStats& stats : frames) samples.push_back(time_between(stats, first, end));
     return reduce(samples);
   };

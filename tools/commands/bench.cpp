@@ -31,8 +31,6 @@ void refuse_misplaced(const BenchArguments& arguments) {
                 ": found it with --stages search, expected --stages splat or all");
   if (arguments.verify && frames)
     bad_usage("--verify: found it with whole frames, expected --stages search");
-  if (arguments.lut_size && arguments.exponential != Exponential::lut)
-    bad_usage("--lut-size: found another exponential, expected --exp lut");
 }
 
 std::unique_ptr<Backend> create_backend(const BenchArguments& arguments) {
