@@ -1,22 +1,16 @@
 // CUDA's frames of real scenes against the float64 reference's and the CPU's.
-#include <algorithm>
 #include <filesystem>
 
-#include "runtime/scene/import/importer.h"
 #include "tests/gpu/agreement.h"
 #include "tests/gpu/splat_test.h"
 #include "tests/support/camera_files.h"
+#include "tests/support/real_scenes.h"
 
 namespace voyager::test {
 namespace {
 
 #define VOYAGER_NEEDS_FILE(path) \
   if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here"
-
-GaussianCloud import_file(const std::string& path) {
-  const auto source = open_file_source(path);
-  return import_gaussians(*read_source(*source));
-}
 
 class SplatReal : public SplatTest {
  protected:
@@ -63,16 +57,7 @@ TEST_F(SplatReal, TheDistrict) {
 
 // From above at an angle, the middle of the scene across most of the image.
 std::vector<FrameInput> overview(const Scene& scene) {
-  Vec3d low, high;
-  for (int k = 0; k < 3; ++k) {
-    std::vector<float> values;
-    for (const Gaussian& g : scene.gaussians) values.push_back(g.mean[k]);
-    std::sort(values.begin(), values.end());
-    low[k] = double{values[values.size() / 10]} + scene.origin[k];
-    high[k] = double{values[values.size() * 9 / 10]} + scene.origin[k];
-  }
-  const Vec3d middle = 0.5 * (low + high), size = high - low;
-  const double reach = std::sqrt(dot(size, size));
+  const auto [middle, reach] = middle_of(scene);
   std::vector<FrameInput> frames;
   for (const double tau : {0.0, 3.0, 15.0})
     for (const double side : {-0.5, 0.4})

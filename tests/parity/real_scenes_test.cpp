@@ -1,8 +1,7 @@
 // Real Gaussians: both backends, and one scene in several formats.
-#include <algorithm>
 #include <cstdio>
 
-#include "runtime/scene/import/importer.h"
+#include "tests/support/real_scenes.h"
 #include "tests/support/render_scene.h"
 
 namespace voyager {
@@ -19,23 +18,9 @@ std::shared_ptr<const Scene> load(const std::string& path) {
   return load_scene(open_file_source(path), std::pmr::get_default_resource(), workers);
 }
 
-GaussianCloud import_all(const std::string& path) {
-  const auto source = open_file_source(path);
-  return import_gaussians(*read_source(*source));
-}
-
-// From above at an angle, the middle 80 % of the means across most of the image.
+// From above at an angle, most of the scene across most of the image.
 Camera overview(const Scene& scene, uint32_t width, uint32_t height) {
-  Vec3d low, high;
-  for (int k = 0; k < 3; ++k) {
-    std::vector<float> values;
-    for (const Gaussian& g : scene.gaussians) values.push_back(g.mean[k]);
-    std::sort(values.begin(), values.end());
-    low[k] = double{values[values.size() / 10]} + scene.origin[k];
-    high[k] = double{values[values.size() * 9 / 10]} + scene.origin[k];
-  }
-  const Vec3d middle = 0.5 * (low + high), size = high - low;
-  const double reach = std::sqrt(dot(size, size));
+  const auto [middle, reach] = test::middle_of(scene);
   return look({middle.x - 0.5 * reach, middle.y - 0.6 * reach, middle.z - 0.7 * reach}, middle,
               width, height);
 }
@@ -48,7 +33,7 @@ double share_covered(const Frame& frame) {
 
 void expect_parity(const std::string& path, const char* name) {
   const auto flat = load(path);
-  const auto baked = test::baked_scene(import_all(path));
+  const auto baked = test::baked_scene(test::import_file(path));
   const auto cpu = create_cpu_backend(), reference = create_reference_backend();
   const FrameInput input = frame_input(overview(*flat, 240, 160), 3);
   const Frame all = render(*cpu, flat, {}, input);
@@ -95,7 +80,7 @@ TEST(RealScenes, SpzIsWithinItsQuantisationOfThePly) {
 
 TEST(RealScenes, CompactStorageIsNearTheLossless) {
   VOYAGER_NEEDS_SCENES(folder);
-  const GaussianCloud cloud = import_all(folder + "/formats/block.ply");
+  const GaussianCloud cloud = test::import_file(folder + "/formats/block.ply");
   const auto lossless = test::baked_scene(cloud);
   const auto compact = test::baked_scene(cloud, Quality::compact);
   const auto cpu = create_cpu_backend();
