@@ -112,7 +112,7 @@ template <bool kLod>
 __device__ void baseline_blend(const BaselineSplat& s, float x, float y, RasterPixel& pixel) {
   const float dx = s.x - x, dy = s.y - y;
   const float power = -0.5f * (s.a * dx * dx + s.c * dy * dy) - s.b * dx * dy;
-  if (power > 0.0f) return;
+  if (!(power <= 0.0f)) return;  // NaN, too
   float alpha = fminf(kAlphaMax, s.opacity * expf(power));
   if (kLod && s.t != 1.0f) alpha = sibling_alpha(alpha, s.t, s.inverse_k);
   if (alpha < kAlphaThreshold) return;
