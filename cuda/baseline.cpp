@@ -2,15 +2,12 @@
 
 #include "cuda/baseline_launch.h"
 #include "cuda/frame_image.h"
-#include "cuda/frame_timer.h"
-#include "runtime/base/clock.h"
+#include "cuda/stage_timer.h"
 #include "runtime/base/error.h"
 #include "runtime/frame/project_params.h"
 
 namespace voyager::cuda {
 namespace {
-
-enum Mark : size_t { kBegin, kSearched, kProjected, kBinned, kSorted, kRasterized, kMarks };
 
 class BaselinePipeline final : public Pipeline {
  public:
@@ -19,18 +16,14 @@ class BaselinePipeline final : public Pipeline {
       : device_(std::move(device)),
         scene_(std::move(scene)),
         gaussians_(std::move(gaussians)),
-        draws_(std::move(draws)),
-        timer_(kMarks) {}
+        draws_(std::move(draws)) {}
 
   // What it frees belongs to the device's context.
   ~BaselinePipeline() override { device_->use_quietly(); }
 
   void draw(const FrameInput& frame, const Image& image, FrameStats& stats) override;
   void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {
-    const Stopwatch stage;
-    image_.copy_to(image);
-    stats.milliseconds[kResolve] = stage.milliseconds();
-    stats.total_milliseconds += stats.milliseconds[kResolve];
+    image_.resolve(image, stats);
   }
   void read_cut(std::pmr::vector<uint32_t>& cut) const override {
     device_->use();
@@ -59,7 +52,7 @@ class BaselinePipeline final : public Pipeline {
   Buffer<uint32_t> splat_count_{1};
   Buffer<char> scratch_;
   FrameImage image_;
-  FrameTimer timer_;
+  StageTimer timer_;
 };
 
 template <class T>
@@ -118,10 +111,10 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
   fit(tiles_, static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));
   const RasterTarget target = image_.target(frame, image);
   const cudaStream_t stream = timer_.stream();
-  timer_.mark(kBegin);
+  timer_.begin();
   draws_->update(frame, stream);
   const uint32_t places = read_value(draws_->view().list.size, stream);
-  timer_.mark(kSearched);
+  timer_.end(kSearch);
   fit_places(places);
   BaselineFrame work{gaussians_->view(),
                      draws_->view(),
@@ -133,7 +126,7 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
   fit_scratch(work.view);
   work.scratch = scratch_.data(), work.scratch_bytes = scratch_.bytes();
   launch_baseline_project(work);
-  timer_.mark(kProjected);
+  timer_.end(kProject);
   launch_baseline_scan(work);
   const unsigned long long pairs =
       places == 0 ? 0 : read_value(pair_ends_.data() + places - 1, stream);
@@ -142,11 +135,11 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
   fit_scratch(work.view);
   work.scratch = scratch_.data(), work.scratch_bytes = scratch_.bytes();
   launch_baseline_keys(work);
-  timer_.mark(kBinned);
+  timer_.end(kBin);
   launch_baseline_sort(work);
-  timer_.mark(kSorted);
+  timer_.end(kSort);
   launch_baseline_rasterize(work, target);
-  timer_.mark(kRasterized);
+  timer_.end(kRasterize);
   launch_baseline_count(work);
   stats.splats = read_value(splat_count_.data(), stream);
   stats.gaussian_bytes = gaussians_->bytes_a_gaussian();
@@ -156,11 +149,7 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
 void BaselinePipeline::collect(unsigned long long pairs, FrameStats& stats) const {
   draws_->collect(stats);
   stats.pairs_before = stats.pairs_after = pairs;
-  constexpr Mark kOrder[] = {kSearched, kProjected, kSorted, kBinned, kRasterized};
-  constexpr Mark kFrom[] = {kBegin, kSearched, kBinned, kProjected, kSorted};
-  for (size_t stage = 0; stage < std::size(kOrder); ++stage)
-    stats.milliseconds[stage] = timer_.milliseconds(kFrom[stage], kOrder[stage]);
-  stats.total_milliseconds = timer_.milliseconds(kBegin, kRasterized);
+  timer_.collect(stats);
 }
 
 }  // namespace

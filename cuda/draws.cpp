@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "runtime/base/error.h"
+#include "runtime/frame/frame_search.h"
 
 namespace voyager::cuda {
 namespace {
@@ -14,24 +15,16 @@ class CutDraws final : public Draws {
       : scene_(std::move(scene)), search_(std::move(search)) {}
 
   void update(const FrameInput& frame, cudaStream_t stream) override {
-    const CutQuery query{cut_centre(frame.camera.eye, scene_->origin),
-                         target_size(frame.tau, frame.camera.fx)};
+    const CutQuery query = cut_query(frame, scene_->origin);
     search_->find(query, stream);
     search_->weigh(query, stream);
   }
   DrawView view() const override { return {search_->list(), nullptr}; }
   void collect(FrameStats& stats) override {
-    const SearchStats found = search_->stats();
-    stats.search = found.ran;
-    stats.nodes_tested = found.nodes_tested;
-    stats.subtrees_visited = found.subtrees_visited;
-    stats.chunks_read = found.chunks_read;
-    stats.bytes_read = found.bytes_read;
-    stats.changes_counted = search_->counts_changes();
-    stats.entered = found.entered;
-    stats.left = found.left;
-    stats.cut_size = search_->cut_size();
-    stats.bytes[kSearch] = found.bytes_read;
+    const CutFound found = search_->found();
+    add_search(found.stats, search_->counts_changes(), stats);
+    stats.cut_size = found.cut_size;
+    stats.bytes[kSearch] = found.stats.bytes_read;
   }
   void read_cut(std::pmr::vector<uint32_t>& cut) override {
     std::vector<uint32_t> nodes;

@@ -35,16 +35,16 @@ class ExhaustiveSearch final : public CutSearch {
     return {nodes_.data(), weights_.data(), count_.data(), tree_.size};
   }
   bool counts_changes() const override { return false; }
-  uint32_t cut_size() override {
-    uint32_t size = 0;
-    check(cudaMemcpy(&size, count_.data(), sizeof size, cudaMemcpyDeviceToHost), "cut");
-    return size;
-  }
-  SearchStats stats() override {
+  CutFound found() override {
     SearchStats stats;
     stats.nodes_tested = tree_.size;
     stats.bytes_read = tree_.size * (sizeof(NodeRecord) + sizeof(uint32_t));
-    return stats;
+    return {stats, cut_size()};
+  }
+  uint32_t cut_size() const {
+    uint32_t size = 0;
+    check(cudaMemcpy(&size, count_.data(), sizeof size, cudaMemcpyDeviceToHost), "cut");
+    return size;
   }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
     const uint32_t size = cut_size();

@@ -1,5 +1,7 @@
 #include "cuda/frame_image.h"
 
+#include "runtime/base/clock.h"
+
 namespace voyager::cuda {
 
 RasterTarget FrameImage::target(const FrameInput& frame, const Image& image) {
@@ -12,7 +14,8 @@ RasterTarget FrameImage::target(const FrameInput& frame, const Image& image) {
           image.width,  image.height,  frame.background};
 }
 
-void FrameImage::copy_to(const Image& image) const {
+void FrameImage::resolve(const Image& image, FrameStats& stats) const {
+  const Stopwatch stage;
   const auto copy = [&](void* into, size_t pitch, const void* from, size_t row) {
     check(cudaMemcpy2D(into, pitch, from, row, row, image.height, cudaMemcpyDeviceToHost),
           "an image");
@@ -21,6 +24,8 @@ void FrameImage::copy_to(const Image& image) const {
     copy(image.color, image.color_pitch, color_.data(), image.width * pixel_bytes(image.format));
   if (image.depth != nullptr)
     copy(image.depth, image.depth_pitch, depth_.data(), image.width * sizeof(float));
+  stats.milliseconds[kResolve] = stage.milliseconds();
+  stats.total_milliseconds += stats.milliseconds[kResolve];
 }
 
 }  // namespace voyager::cuda

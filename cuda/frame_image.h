@@ -10,8 +10,8 @@ class FrameImage {
  public:
   // The target of a frame, of the image's size and format. May allocate.
   RasterTarget target(const FrameInput& frame, const Image& image);
-  // Into the image's memory, where it has any; the stream's work is done.
-  void copy_to(const Image& image) const;
+  // The last stage: into the image's memory, where it has any. The stream's work is done.
+  void resolve(const Image& image, FrameStats& stats) const;
 
  private:
   Buffer<unsigned char> color_;

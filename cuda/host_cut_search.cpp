@@ -27,9 +27,8 @@ class HostCutSearch final : public CutSearch {
   CutList list() const override {
     return {nodes_.data(), weights_.data(), size_.data(), static_cast<uint32_t>(nodes_.size())};
   }
-  SearchStats stats() override { return search_.stats(); }
+  CutFound found() override { return {search_.stats(), host_size_}; }
   bool counts_changes() const override { return search_.counts_changes(); }
-  uint32_t cut_size() override { return host_size_; }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
     cut.assign(search_.cut().begin(), search_.cut().end());
     weights = host_weights_;

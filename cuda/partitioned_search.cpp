@@ -36,9 +36,8 @@ class PartitionedSearch final : public CutSearch {
   void find(const CutQuery& query, cudaStream_t stream) override;
   void weigh(const CutQuery& query, cudaStream_t stream) override;
   CutList list() const override;
-  SearchStats stats() override;
+  CutFound found() override;
   bool counts_changes() const override { return true; }
-  uint32_t cut_size() override { return counters().cut_size; }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override;
 
  private:
@@ -103,7 +102,7 @@ FrameCounters PartitionedSearch::counters() const {
   return counters;
 }
 
-SearchStats PartitionedSearch::stats() {
+CutFound PartitionedSearch::found() {
   const FrameCounters c = counters();
   SearchStats stats;
   stats.ran = c.streamed != 0 ? Search::streaming : kind_;
@@ -113,7 +112,7 @@ SearchStats PartitionedSearch::stats() {
   stats.bytes_read = c.bytes_read;
   stats.entered = c.entered;
   stats.left = c.left;
-  return stats;
+  return {stats, c.cut_size};
 }
 
 void PartitionedSearch::read(std::vector<uint32_t>& cut, std::vector<float>& weights) {

@@ -3,17 +3,13 @@
 #include <vector>
 
 #include "cuda/frame_image.h"
-#include "cuda/frame_timer.h"
 #include "cuda/splat_state.h"
-#include "runtime/base/clock.h"
+#include "cuda/stage_timer.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/math/alpha_lut.h"
 
 namespace voyager::cuda {
 namespace {
-
-// Events at the ends of the stages, in the order in which they run.
-enum Mark : size_t { kBegin, kSearched, kProjected, kBinned, kSorted, kRasterized, kMarks };
 
 Buffer<float> upload_lut(const PipelineDesc& desc) {
   if (desc.exponential != Exponential::lut) return {};
@@ -33,14 +29,15 @@ class SplatPipeline final : public Pipeline {
         draws_(std::move(draws)),
         desc_(desc),
         lut_(upload_lut(desc)),
-        splats_(bin_blocks(device_->multiprocessors())),
-        timer_(kMarks) {}
+        splats_(bin_blocks(device_->multiprocessors())) {}
 
   // What it frees belongs to the device's context.
   ~SplatPipeline() override { device_->use_quietly(); }
 
   void draw(const FrameInput& frame, const Image& image, FrameStats& stats) override;
-  void resolve(const FrameInput& frame, const Image& image, FrameStats& stats) override;
+  void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {
+    image_.resolve(image, stats);
+  }
   void read_cut(std::pmr::vector<uint32_t>& cut) const override {
     device_->use();
     draws_->read_cut(cut);
@@ -61,23 +58,23 @@ class SplatPipeline final : public Pipeline {
   Buffer<float> lut_;
   SplatState splats_;
   FrameImage image_;
-  FrameTimer timer_;
+  StageTimer timer_;
 };
 
 void SplatPipeline::launch_splatting(const SplatFrame& frame, const RasterTarget& target) {
   const TileGrid& grid = frame.splats.grid;
   splats_.begin_frame(grid, frame.stream);
   launch_project(frame, desc_.alpha_filter);
-  timer_.mark(kProjected);
+  timer_.end(kProject);
   launch_bin(frame);
-  timer_.mark(kBinned);
+  timer_.end(kBin);
   launch_sort(frame);
-  timer_.mark(kSorted);
+  timer_.end(kSort);
   launch_rasterize(
       frame,
       {desc_.exponential, desc_.alpha_filter, desc_.count_pixels, lut_.data(), desc_.lut_size},
       target);
-  timer_.mark(kRasterized);
+  timer_.end(kRasterize);
 }
 
 SplatCounters SplatPipeline::counters() const {
@@ -93,9 +90,9 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
   const TileGrid grid = tile_grid(image.width, image.height);
   splats_.fit(grid);
   const RasterTarget target = image_.target(frame, image);
-  timer_.mark(kBegin);
+  timer_.begin();
   draws_->update(frame, timer_.stream());
-  timer_.mark(kSearched);
+  timer_.end(kSearch);
   SplatFrame work{gaussians_->view(),
                   draws_->view(),
                   project_params(*scene_, frame.camera, desc_.exponential),
@@ -107,6 +104,7 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
   // A frame that found too little room is drawn again with more.
   while (splats_.grow(counted)) {
     work.splats = splats_.view(grid);
+    timer_.go_back_to(kSearch);
     launch_splatting(work, target);
     counted = counters();
   }
@@ -124,11 +122,7 @@ void SplatPipeline::collect(const SplatCounters& counted, const Image& image,
   stats.pixels_blended = counted.blended;
 
   count_bytes(counted, image, stats);
-  constexpr Mark kEnds[] = {kSearched, kProjected, kSorted, kBinned, kRasterized};
-  constexpr Mark kStarts[] = {kBegin, kSearched, kBinned, kProjected, kSorted};
-  for (size_t stage = 0; stage < std::size(kEnds); ++stage)
-    stats.milliseconds[stage] = timer_.milliseconds(kStarts[stage], kEnds[stage]);
-  stats.total_milliseconds = timer_.milliseconds(kBegin, kRasterized);
+  timer_.collect(stats);
 }
 
 // What each stage reads and writes of its own arrays; what siblings share of their parents
@@ -150,13 +144,6 @@ void SplatPipeline::count_bytes(const SplatCounters& counted, const Image& image
   stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
   stats.bytes[kSort] = 2 * pairs * kKey;
   stats.bytes[kRasterize] = pairs * (kKey + kRecord) + pixels * pixel_bytes(image.format);
-}
-
-void SplatPipeline::resolve(const FrameInput&, const Image& image, FrameStats& stats) {
-  const Stopwatch stage;
-  image_.copy_to(image);
-  stats.milliseconds[kResolve] = stage.milliseconds();
-  stats.total_milliseconds += stats.milliseconds[kResolve];
 }
 
 }  // namespace

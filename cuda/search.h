@@ -19,6 +19,11 @@ struct CutList {
   uint32_t room;         // no list has more places
 };
 
+struct CutFound {
+  SearchStats stats;
+  uint32_t cut_size;  // nodes
+};
+
 // Keeps its cut from run to run. Not thread-safe; one stream at a time.
 class CutSearch {
  public:
@@ -29,9 +34,8 @@ class CutSearch {
   virtual CutList list() const = 0;
 
   // Of the last run; the stream has come to its end.
-  virtual SearchStats stats() = 0;
+  virtual CutFound found() = 0;
   virtual bool counts_changes() const = 0;
-  virtual uint32_t cut_size() = 0;
   virtual void read(std::vector<uint32_t>& cut, std::vector<float>& weights) = 0;
 };
 

@@ -28,7 +28,6 @@ class SplatState {
   }
 
  private:
-  unsigned bin_blocks_;
   // Buffers that belong together may differ after an allocation that failed.
   size_t slots() const { return std::min(records_.size(), candidates_.size()); }
   size_t pairs() const { return std::min(keys_.size(), merge_keys_.size()); }
@@ -36,6 +35,7 @@ class SplatState {
   bool grow_strips(size_t wanted);
   bool grow_pairs(size_t wanted);
 
+  unsigned bin_blocks_;
   Buffer<SplatRecord> records_;
   Buffer<uint32_t> candidates_;
   Buffer<DepthKey> keys_, merge_keys_;

@@ -31,7 +31,7 @@ class TimedSearch final : public SceneSearch {
   SearchStats stats() override {
     device_->use();
     timer_.wait();
-    return search_->stats();
+    return search_->found().stats;
   }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
     device_->use();

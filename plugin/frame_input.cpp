@@ -6,6 +6,7 @@
 
 #include "plugin/frustum.h"
 #include "plugin/structs.h"
+#include "runtime/frame/eye_camera.h"
 
 namespace voyager {
 namespace {
@@ -46,15 +47,6 @@ void check_instance(const VoyInstancePose* instance) {
                    "the only one that this version draws");
 }
 
-// OpenXR's camera looks along -z with y up; the runtime's view axes are right,
-// down and forward, as the rows of the rotation from the world.
-Mat3d world_to_view(const Quatd& orientation) {
-  const Mat3d r = rotation(orientation);
-  return {{{r.row[0].x, r.row[1].x, r.row[2].x},
-           {-r.row[0].y, -r.row[1].y, -r.row[2].y},
-           {-r.row[0].z, -r.row[1].z, -r.row[2].z}}};
-}
-
 }  // namespace
 
 FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Image& image) {
@@ -80,10 +72,7 @@ FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Imag
   check_frustum(f, "frame.eyes[0].frustum");
   camera.width = image.width;
   camera.height = image.height;
-  camera.fx = image.width / (f.right - f.left);
-  camera.fy = image.height / (f.up - f.down);
-  camera.cx = -f.left * camera.fx;
-  camera.cy = f.up * camera.fy;
+  set_frustum(camera, f.left, f.right, f.up, f.down);
   camera.near_z = frame.nearZ;
   input.depth_wanted = image.depth != nullptr;
   return input;

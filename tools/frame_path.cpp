@@ -2,27 +2,22 @@
 
 #include <algorithm>
 
+#include "runtime/frame/eye_camera.h"
+
 namespace voyager::tools {
 
 FrameInput frame_input(const Camera& camera, double tau) {
   const auto& p = camera.pose.position;
   const auto& q = camera.pose.orientation;  // x, y, z, w
-  const Mat3d r = rotation(normalise(Quatd{q[3], q[0], q[1], q[2]}));
   const VoyFrustum frustum = camera.frustum();
   FrameInput input;
   input.tau = tau;
   voyager::Camera& view = input.camera;
   view.eye = {p[0], p[1], p[2]};
-  // The pose's axes are right, up, backward; the view's right, down, forward.
-  view.world_to_view = {{{r.row[0].x, r.row[1].x, r.row[2].x},
-                         {-r.row[0].y, -r.row[1].y, -r.row[2].y},
-                         {-r.row[0].z, -r.row[1].z, -r.row[2].z}}};
+  view.world_to_view = world_to_view(normalise(Quatd{q[3], q[0], q[1], q[2]}));
   view.width = camera.width;
   view.height = camera.height;
-  view.fx = camera.width / (frustum.right - frustum.left);
-  view.fy = camera.height / (frustum.up - frustum.down);
-  view.cx = -frustum.left * view.fx;
-  view.cy = frustum.up * view.fy;
+  set_frustum(view, frustum.left, frustum.right, frustum.up, frustum.down);
   return input;
 }
 

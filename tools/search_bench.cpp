@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include "runtime/frame/frame_search.h"
+#include "tools/frame_path.h"
 #include "tools/statistics.h"
 
 namespace voyager::tools {
@@ -62,13 +64,7 @@ void print_row(const nlohmann::ordered_json& row) {
 std::vector<CutQuery> cut_path(const std::vector<Camera>& cameras, double tau,
                                const Vec3d& origin) {
   std::vector<CutQuery> path;
-  for (const Camera& camera : cameras) {
-    const auto& p = camera.pose.position;
-    // f_x as a frame has it, from the tangents.
-    const VoyFrustum frustum = camera.frustum();
-    const double focal = camera.width / (frustum.right - frustum.left);
-    path.push_back({voyager::cut_centre({p[0], p[1], p[2]}, origin), target_size(tau, focal)});
-  }
+  for (const FrameInput& frame : frame_path(cameras, tau)) path.push_back(cut_query(frame, origin));
   return path;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/base/error.h"
+#include "runtime/frame/frame_search.h"
 
 namespace voyager {
 
@@ -36,23 +37,12 @@ void DrawList::list_leaves() {
 void DrawList::update(const FrameInput& frame, Workers& workers) {
   if (leaves_missing_) throw Error(ErrorCode::damaged_chunk, scene_->damaged[0].message);
   if (!search_) return;
-  search_->run(
-      {cut_centre(frame.camera.eye, scene_->origin), target_size(frame.tau, frame.camera.fx)},
-      workers);
+  search_->run(cut_query(frame, scene_->origin), workers);
 }
 
 void DrawList::collect(FrameStats& stats) const {
   stats.cut_size = items().size();
-  if (!search_) return;
-  const SearchStats found = search_->stats();
-  stats.search = found.ran;
-  stats.nodes_tested = found.nodes_tested;
-  stats.subtrees_visited = found.subtrees_visited;
-  stats.chunks_read = found.chunks_read;
-  stats.bytes_read = found.bytes_read;
-  stats.changes_counted = search_->counts_changes();
-  stats.entered = found.entered;
-  stats.left = found.left;
+  if (search_) add_search(search_->stats(), search_->counts_changes(), stats);
 }
 
 }  // namespace voyager

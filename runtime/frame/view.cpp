@@ -1,6 +1,7 @@
 #include "runtime/frame/view.h"
 
 #include "runtime/base/error.h"
+#include "runtime/frame/frame_search.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager {
@@ -37,7 +38,8 @@ View::View(std::shared_ptr<const Scene> scene, Backend& backend, const PipelineD
       last_cut_(memory) {}
 
 // A search that does not count what entered and left has its cuts compared. A cut that
-// is far is only read for that.
+// is far is only read for that; where the one before it was not, the frame before failed,
+// and the comparison is with the last that was.
 bool View::read_changes(bool follows, FrameStats& stats) {
   const bool counted = stats.changes_counted && follows;
   if (counted && !pipeline_->cut_is_near()) return false;
@@ -56,8 +58,9 @@ void View::render(const FrameInput& frame, const Image& image) {
   FrameStats stats;
   stats.searched = draws_cut();
   stats.nodes_total = scene_->tree.size();
-  stats.tau_star = target_size(frame.tau, frame.camera.fx);
-  stats.cut_centre = cut_centre(frame.camera.eye, scene_->origin);
+  const CutQuery query = cut_query(frame, scene_->origin);
+  stats.tau_star = query.target_size;
+  stats.cut_centre = query.centre;
   pipeline_->draw(frame, image, stats);
   const bool read = read_changes(follows, stats);
   pipeline_->resolve(frame, image, stats);

@@ -53,7 +53,6 @@ struct Rounded {
   float value;
 
   VOYAGER_HD Rounded(float v) : value(v) {}
-  VOYAGER_HD explicit operator float() const { return value; }
 };
 VOYAGER_HD Rounded operator+(Rounded a, Rounded b) {
   return add_rn(a.value, b.value);

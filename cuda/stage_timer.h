@@ -1,0 +1,28 @@
+#pragma once
+// When each stage of a frame ends on the device.
+#include "cuda/frame_timer.h"
+#include "runtime/frame/backend.h"
+
+namespace voyager::cuda {
+
+class StageTimer {
+ public:
+  StageTimer() : timer_(kStageCount + 1) {}
+
+  cudaStream_t stream() const { return timer_.stream(); }
+  void begin();
+  // The stages that have ended, in their order; each at most once.
+  void end(Stage stage);
+  // What ended after `stage` is done again, and its time is that of both.
+  void go_back_to(Stage stage);
+  void wait() const { timer_.wait(); }
+  // Waits. Sets the times of what has ended, and their sum.
+  void collect(FrameStats& stats) const;
+
+ private:
+  FrameTimer timer_;
+  Stage ended_[kStageCount] = {};
+  size_t count_ = 0;
+};
+
+}  // namespace voyager::cuda
