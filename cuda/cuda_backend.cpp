@@ -3,11 +3,11 @@
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
-#include <mutex>
 
 #include "cuda/baseline.h"
 #include "cuda/pipeline.h"
 #include "cuda/search.h"
+#include "cuda/shared_by_scene.h"
 #include "runtime/base/error.h"
 
 namespace voyager::cuda {
@@ -25,27 +25,6 @@ int find_device(const uint8_t* uuid) {
   throw Error(ErrorCode::no_device, "CUDA: found " + std::to_string(count) +
                                         " devices, none with the UUID that was asked for");
 }
-
-// What views of one scene share, for as long as one of them is there.
-template <class T>
-class Shared {
- public:
-  template <class Make>
-  std::shared_ptr<const T> of(const std::shared_ptr<const Scene>& scene, const Make& make) {
-    const std::lock_guard lock(mutex_);
-    if (scene_.lock() == scene)
-      if (auto value = value_.lock()) return value;
-    const std::shared_ptr<const T> value = make(*scene);
-    scene_ = scene;
-    value_ = value;
-    return value;
-  }
-
- private:
-  std::mutex mutex_;
-  std::weak_ptr<const Scene> scene_;
-  std::weak_ptr<const T> value_;
-};
 
 class CudaBackend final : public Backend {
  public:
@@ -92,8 +71,8 @@ class CudaBackend final : public Backend {
   }
 
   std::shared_ptr<const Device> device_;
-  Shared<DeviceTree> trees_;
-  Shared<DeviceScene> gaussians_;
+  SharedByScene<DeviceTree> trees_;
+  SharedByScene<DeviceScene> gaussians_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cuda_fp16.h>
 
 #include "cuda/raster_pixel.cuh"
+#include "runtime/math/half.h"
 
 namespace voyager::cuda {
 
@@ -113,10 +114,10 @@ struct HalfLane {
     pixel.depth = depth[row];
     return pixel;
   }
-  // Each channel twice; binary16 has no room for more than 65504.
+  // Each channel twice.
   static __device__ float4 prepare(const float4& colour) {
     const auto twice = [](float channel) {
-      return __uint_as_float(bits(__float2half2_rn(fminf(channel, 65504.0f))));
+      return __uint_as_float(bits(__float2half2_rn(fminf(channel, kMaxHalf))));
     };
     return {twice(colour.x), twice(colour.y), twice(colour.z), colour.w};
   }

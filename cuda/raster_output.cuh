@@ -5,6 +5,7 @@
 
 #include "cuda/raster_pixel.cuh"
 #include "cuda/splat_launch.h"
+#include "runtime/math/half.h"
 
 namespace voyager::cuda {
 
@@ -13,8 +14,7 @@ __device__ inline uint32_t to_code(float value) {
 }
 
 __device__ inline uint32_t to_half_pair(float a, float b) {
-  constexpr float kMost = 65504.0f;
-  const auto within = [](float value) { return fminf(fmaxf(value, -kMost), kMost); };
+  const auto within = [](float value) { return fminf(fmaxf(value, -kMaxHalf), kMaxHalf); };
   const __half2 pair = __floats2half2_rn(within(a), within(b));
   return *reinterpret_cast<const uint32_t*>(&pair);
 }

@@ -20,8 +20,7 @@ class Devices : public ::testing::Test {
  protected:
   bool has_cuda() const { return voy.QueryBackend(VOY_BACKEND_CUDA) == VOY_SUCCESS; }
   VoyDevice create(VoyBackend backend, const Uuid* uuid) {
-    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-    desc.backend = backend;
+    VoyDeviceDesc desc = device_for(backend);
     desc.deviceUuid = uuid == nullptr ? nullptr : uuid->bytes;
     VoyDevice device = nullptr;
     result = voy.CreateDevice(&desc, &device);
@@ -104,8 +103,7 @@ TEST_F(Devices, WithoutCudaTheRefusalSaysWhatWasFound) {
 // Messages of a device that is made and destroyed again.
 std::string creation_log(const Library& voy, VoyBackend backend, const Uuid* uuid) {
   std::string text;
-  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  desc.backend = backend;
+  VoyDeviceDesc desc = device_for(backend);
   desc.deviceUuid = uuid == nullptr ? nullptr : uuid->bytes;
   desc.logLevel = VOY_LOG_INFO;
   desc.logUser = &text;
@@ -164,9 +162,7 @@ TEST_F(Devices, CapabilitiesAreWhatAViewMayChoose) {
   for (const VoyBackend backend : kBackends) {
     if (voy.QueryBackend(backend) != VOY_SUCCESS) continue;
     SCOPED_TRACE(backend);
-    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-    desc.backend = backend;
-    Host host(voy, desc);
+    Host host(voy, device_for(backend));
     const VoyCapabilities found = capabilities(host.device);
     EXPECT_EQ(has(found.splattings, VOY_SPLATTING_3DGS), found.backend == VOY_BACKEND_CUDA);
     expect_views_as_capable(host, found);
@@ -175,9 +171,7 @@ TEST_F(Devices, CapabilitiesAreWhatAViewMayChoose) {
 
 TEST_F(Devices, TheCpuNamesTheBaselineItLacks) {
   for (const VoyBackend backend : {VOY_BACKEND_CPU, VOY_BACKEND_REFERENCE}) {
-    VoyDeviceDesc device_desc = VOY_DEVICE_DESC_INIT;
-    device_desc.backend = backend;
-    Host host(voy, device_desc);
+    Host host(voy, device_for(backend));
     VoyViewDesc desc = host.view_desc();
     desc.splatting = VOY_SPLATTING_3DGS;
     VoyView view = nullptr;
@@ -189,9 +183,7 @@ TEST_F(Devices, TheCpuNamesTheBaselineItLacks) {
 
 TEST_F(Devices, AWholeImageHasDroppedNoPair) {
   for (const VoyBackend backend : {VOY_BACKEND_CPU, VOY_BACKEND_REFERENCE}) {
-    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-    desc.backend = backend;
-    Host host(voy, desc);
+    Host host(voy, device_for(backend));
     ASSERT_EQ(host.render(), VOY_SUCCESS) << voy.message();
     VoyFrameStats stats = {};
     stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;

@@ -51,9 +51,7 @@ std::vector<uint16_t> render_half(Host& host, VoyFrame frame, size_t padding) {
 // Backgrounds take values beyond binary16 into the image, where splats leave room.
 void expect_half_is_float_rounded(VoyBackend backend) {
   const Library voy;
-  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  desc.backend = backend;
-  Host host(voy, desc);
+  Host host(voy, device_for(backend));
   const VoyFrameEye eye = host.eye();
   VoyFrame frame = Host::frame(eye);
   for (const auto [r, g, b] : {std::array{0.25f, 0.5f, 1.0f}, std::array{1e6f, -1e6f, 65519.0f},

@@ -6,6 +6,12 @@
 #include "library.h"
 #include "scene_bytes.h"
 
+inline VoyDeviceDesc device_for(VoyBackend backend) {
+  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  desc.backend = backend;
+  return desc;
+}
+
 struct Host {
   static constexpr uint32_t kWidth = 96, kHeight = 64;
 

@@ -77,9 +77,8 @@ void fail_every_allocation(VoyBackend backend, bool throws) {
     memory.failing = failing;
     memory.throws = throws;
     const VoyAllocator allocator = memory.desc();
-    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+    VoyDeviceDesc desc = device_for(backend);
     desc.allocator = &allocator;
-    desc.backend = backend;
     VoyDevice device = nullptr;
     VoyResult result = voy.CreateDevice(&desc, &device);
     std::vector<float> pixels(size_t{32} * 32 * 4, -1.0f);
