@@ -61,7 +61,6 @@ FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Imag
   }
   check_count(frame.reserved, 0, 0, "frame.reserved");
   check_instance(frame.instances);
-  check_count(eye.layer, 0, 0, "frame.eyes[0].layer");
   check_count(eye.reserved, 0, 0, "frame.eyes[0].reserved");
 
   Camera& camera = input.camera;

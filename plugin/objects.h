@@ -11,7 +11,9 @@
 #include "runtime/frame/backend.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/view.h"
-#include "voyager/voyager.h"
+#include "vulkan_interop/composite.h"
+#include "vulkan_interop/ring.h"
+#include "voyager/voyager_vulkan.h"
 
 namespace voyager {
 
@@ -43,6 +45,7 @@ struct DeviceObject final : Object {
   Workers workers;
   VoyBackend backend_kind;
   std::unique_ptr<Backend> backend;
+  std::shared_ptr<const vulkan::Device> vulkan;  // or NULL
 };
 
 struct Child : Object {
@@ -81,8 +84,18 @@ struct TargetObject final : Child {
   TargetObject(std::shared_ptr<DeviceObject> owner, const Image& pixels)
       : Child(kKind, std::move(owner)), image(pixels) {}
 
-  Image image;
-  std::mutex busy;  // held while a frame writes the host's memory
+  Image image;                         // of a ring: its size and format alone
+  std::mutex busy;                     // held while a frame writes, or commands are recorded
+  std::shared_ptr<vulkan::Ring> ring;  // of a Vulkan target
+};
+
+struct CompositeObject final : Child {
+  using Handle = VoyComposite;
+  static constexpr Kind kKind = Kind::composite;
+  CompositeObject(std::shared_ptr<DeviceObject> owner, const vulkan::CompositeDesc& desc)
+      : Child(kKind, std::move(owner)), composite(device().vulkan, desc) {}
+
+  const vulkan::Composite composite;
 };
 
 }  // namespace voyager

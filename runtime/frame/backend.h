@@ -9,6 +9,7 @@
 #include <string>
 
 #include "runtime/base/workers.h"
+#include "runtime/frame/external_ring.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
 #include "runtime/math/vec.h"
@@ -62,7 +63,7 @@ constexpr size_t pixel_bytes(ColorFormat format) {
   return 16;
 }
 
-// Where color is null but format is not none, the frame is drawn and handed to nobody:
+// Where external.ring is set, the frame goes there. Where color is null but format is not none, the frame is drawn and handed to nobody:
 // for measurements.
 struct Image {
   ColorFormat format = ColorFormat::none;
@@ -71,6 +72,7 @@ struct Image {
   size_t color_pitch = 0;  // bytes
   float* depth = nullptr;
   size_t depth_pitch = 0;  // bytes
+  ExternalTarget external;
 };
 
 struct FrameInput {
@@ -130,6 +132,12 @@ class Backend {
   // As VkPhysicalDeviceIDProperties has it; zero for a CPU.
   virtual std::array<uint8_t, 16> device_uuid() const { return {}; }
   virtual DeviceRates rates() const { return {}; }
+  // While the result lives, this thread's calls may change what is current to a device's
+  // driver; then all is as it was.
+  virtual std::shared_ptr<void> enter() const { return nullptr; }
+  virtual ExternalSupport external_support() const { return {}; }
+  // Only where external_support() has images. Memory and semaphores are the result's.
+  virtual std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc) const { return nullptr; }
   // Throws Error(unsupported) for a choice that the backend lacks.
   virtual std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
                                                     const PipelineDesc& desc,

@@ -67,6 +67,8 @@ typedef enum VoyResult {
   VOY_ERROR_BUSY = -13,
   VOY_ERROR_SCENE_DESTROYED = -14, /* the scene that the view draws is gone; destroy the view */
   VOY_ERROR_INTERNAL = -15,        /* a bug of ours: please report the message */
+  VOY_ERROR_DEVICE_LOST = -16,     /* a GPU stopped working: destroy the device and what is on it */
+  VOY_ERROR_TIMEOUT = -17,         /* what the host promised to signal did not come */
   VOY_RESULT_MAX_ENUM = 0x7fffffff
 } VoyResult;
 
@@ -84,6 +86,21 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_ALLOCATOR = 11,
   VOY_STRUCTURE_TYPE_FRAME_EYE = 12,
   VOY_STRUCTURE_TYPE_INSTANCE_POSE = 13,
+  /* voyager_vulkan.h */
+  VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE = 15,
+  VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS = 16,
+  VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC = 17,
+  VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES = 18,
+  VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE = 19,
+  VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES = 20,
+  VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC = 21,
+  VOY_STRUCTURE_TYPE_VULKAN_IMAGE = 22,
+  VOY_STRUCTURE_TYPE_VULKAN_FRAME = 23,
+  VOY_STRUCTURE_TYPE_VULKAN_USE = 24,
+  VOY_STRUCTURE_TYPE_VULKAN_COPY = 25,
+  VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT = 26,
+  VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC = 27,
+  VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW = 28,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -306,6 +323,7 @@ VOY_API VoyResult voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNo
 
 typedef enum VoyTargetKind {
   VOY_TARGET_KIND_HOST_MEMORY = 0,
+  VOY_TARGET_KIND_VULKAN = 1, /* images of a Vulkan host: voyager_vulkan.h */
   VOY_TARGET_KIND_MAX_ENUM = 0x7fffffff
 } VoyTargetKind;
 
