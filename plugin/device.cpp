@@ -155,7 +155,7 @@ VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
     object->backend->device_name().copy(found.deviceName, sizeof found.deviceName - 1);
     const auto uuid = object->backend->device_uuid();
     std::copy(uuid.begin(), uuid.end(), found.deviceUuid);
-    found.maxInstances = 1;
+    found.maxInstances = kMaxInstances;
     found.maxEyes = 1;
     found.maxWidth = found.maxHeight = kMaxImageSide;
     found.searches = bits_up_to(VOY_SEARCH_TEMPORAL_VISIT);

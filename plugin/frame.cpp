@@ -92,7 +92,7 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
       refuse("frame.eyes[0].target: found a target of another device, expected the view's");
     check_size(target->image, *object);
     const vulkan::FrameSync sync = checked_sync(*target, vulkan, eye.layer);
-    FrameInput input = frame_input(*frame, eye, target->image);
+    FrameInput input = frame_input(*frame, eye, target->image, object->instances);
 
     const auto view_lock = claim(*object);
     const auto target_lock = claim_object(*target, "frame.eyes[0].target");

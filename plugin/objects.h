@@ -4,6 +4,7 @@
 #include <memory_resource>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "plugin/handles.h"
 #include "plugin/memory.h"
@@ -66,15 +67,18 @@ struct SceneObject final : Child {
 struct ViewObject final : Child {
   using Handle = VoyView;
   static constexpr Kind kKind = Kind::view;
-  ViewObject(std::shared_ptr<DeviceObject> owner, std::shared_ptr<SceneObject> drawn)
-      : Child(kKind, std::move(owner)), scene(std::move(drawn)) {}
+  ViewObject(std::shared_ptr<DeviceObject> owner, std::vector<std::shared_ptr<SceneObject>> drawn)
+      : Child(kKind, std::move(owner)),
+        instances(static_cast<uint32_t>(drawn.size())),
+        scenes(std::move(drawn)) {}
 
+  const uint32_t instances;
   uint32_t max_width = 0, max_height = 0;
   std::mutex busy;  // guards what follows
   double tau = 0;
-  // Both NULL once the scene was destroyed. The view reads the scene's memory,
-  // so is declared after it.
-  std::shared_ptr<SceneObject> scene;
+  // One an instance. None, and no view, once one of them was destroyed. The view reads the
+  // scenes' memory, so is declared after them.
+  std::vector<std::shared_ptr<SceneObject>> scenes;
   std::unique_ptr<View> view;
 };
 

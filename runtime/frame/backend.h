@@ -7,6 +7,7 @@
 #include <memory>
 #include <memory_resource>
 #include <string>
+#include <vector>
 
 #include "runtime/base/workers.h"
 #include "runtime/frame/external_ring.h"
@@ -46,6 +47,15 @@ struct Camera {
   double cx = 0, cy = 0;  // pixels, from the top left corner
   uint32_t width = 0, height = 0;
   double near_z = 0.2;  // metres
+  // Where these are a scaled instance's coordinates: metres in the world a unit here.
+  double depth_scale = 1;
+};
+
+// Where an instance stands: x in its scene's axes is position + scale·rotation·x in the world.
+struct InstancePose {
+  Mat3d rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3d position{0, 0, 0};
+  double scale = 1;
 };
 
 enum class ColorFormat { none, rgba8, rgba16f, rgba32f };
@@ -78,6 +88,7 @@ struct Image {
 
 struct FrameInput {
   Camera camera;
+  std::vector<InstancePose> instances;  // one an instance of the view; none: all at the identity
   double tau = 3;
   Vec3f background{0, 0, 0};
   bool depth_wanted = false;
@@ -90,10 +101,11 @@ enum Stage { kSearch, kProject, kSort, kBin, kRasterize, kResolve, kStageCount }
 struct FrameStats {
   uint64_t frame_index = 0;
   bool searched = false;
-  Search search = Search::exhaustive;  // the one that ran, where one did
-  bool changes_counted = false;        // entered and left are the search's own
+  Search search = Search::exhaustive;  // the one that ran, of the first instance with a tree
+  bool changes_counted = true;         // entered and left are the searches' own
   float tau_star = 0;
-  Vec3f cut_centre{0, 0, 0};
+  Vec3f cut_centre{0, 0, 0};  // the first instance's, in its scene's coordinates
+  // Sums over the instances, as all that follows.
   uint64_t nodes_total = 0, nodes_tested = 0, subtrees_visited = 0, chunks_read = 0, bytes_read = 0;
   uint64_t cut_size = 0, entered = 0, left = 0;
   uint64_t splats = 0, pairs_before = 0, pairs_after = 0;
@@ -101,13 +113,15 @@ struct FrameStats {
   uint64_t pairs_dropped = 0;
   // (pixel, splat) pairs: whose ρ was found, and that were blended.
   uint64_t pixels_evaluated = 0, pixels_blended = 0;
-  uint32_t gaussian_bytes = 0;  // stored, that a device reads of a visible Gaussian
+  uint32_t gaussian_bytes = 0;  // stored, that a device reads of a visible Gaussian, at most
   // What each stage has to move through a device's memory, from its layouts and the counters
   // above; 0 on a host.
   uint64_t bytes[kStageCount] = {};
   double milliseconds[kStageCount] = {};
   double total_milliseconds = 0;
 };
+
+using Scenes = std::vector<std::shared_ptr<const Scene>>;
 
 class Pipeline {
  public:
@@ -116,9 +130,9 @@ class Pipeline {
   // size and format; only resolve() writes to it, after all else that may fail.
   virtual void draw(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
   virtual void resolve(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
-  // Of the last frame, ascending; none where the view draws no cut.
-  virtual void read_cut(std::pmr::vector<uint32_t>& cut) const = 0;
-  // Reading the cut is a copy in memory, and waits for no device.
+  // An instance's of the last frame, ascending; none where it draws no cut.
+  virtual void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const = 0;
+  // Reading a cut is a copy in memory, and waits for no device.
   virtual bool cut_is_near() const = 0;
 };
 
@@ -141,9 +155,9 @@ class Backend {
   virtual ExternalSupport external_support() const { return {}; }
   // Only where external_support() has images. Memory and semaphores are the result's.
   virtual std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc) const { return nullptr; }
-  // Throws Error(unsupported) for a choice that the backend lacks.
-  virtual std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
-                                                    const PipelineDesc& desc,
+  // scenes: one an instance, from one to kMaxInstances; a scene may be several. Throws
+  // Error(unsupported) for a choice that the backend lacks.
+  virtual std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                                     std::pmr::memory_resource* memory,
                                                     Workers& workers) = 0;
   // The scene has a tree. Throws Error(unsupported) where the backend has no such search.
@@ -155,5 +169,7 @@ class Backend {
 
 inline constexpr uint32_t kMaxImageSide =
     16384;  // pixels; 2^20 tiles of 16 x 16 then fit a 32-bit key
+// Of a view. Each costs a search, a projection and their launches, however little it draws.
+inline constexpr uint32_t kMaxInstances = 64;
 
 }  // namespace voyager

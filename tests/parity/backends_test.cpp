@@ -92,7 +92,7 @@ std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const Fr
                              Exponential exponential) {
   Workers workers(1);
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
-  draws.update(input, workers);
+  draws.update(input.camera, input.tau, workers);
   const ProjectParams params = project_params(*scene, input.camera, exponential);
   const GaussianArrays arrays = gaussian_arrays(*scene);
   std::vector<Splat> splats;
