@@ -109,16 +109,17 @@ void CpuPipeline::bin(const FrameInput& frame) {
 void CpuPipeline::rasterize(const FrameInput& frame) {
   const size_t count = size_t{frame.camera.width} * frame.camera.height;
   if (pixels_.size() < count) pixels_.resize(count);
-  if (frame.depth_wanted && depth_.size() < count) depth_.resize(count);
+  const bool limits = frame.limits.values != nullptr, depth = frame.depth_wanted || limits;
+  if (depth && depth_.size() < count) depth_.resize(count);
   const RasterParams params{splats_.data(),
                             lut_.data(),
                             static_cast<float>(desc_.lut_size) / kLutRange,
                             frame.camera.width,
                             frame.camera.height,
                             pixels_.data(),
-                            frame.depth_wanted ? depth_.data() : nullptr};
-  const RasterizeTile run =
-      pick_rasterizer(desc_.exponential, desc_.alpha_filter, frame.depth_wanted);
+                            depth ? depth_.data() : nullptr,
+                            frame.limits};
+  const RasterizeTile run = pick_rasterizer(desc_.exponential, desc_.alpha_filter, depth, limits);
   const TileGrid grid = tile_grid(frame.camera.width, frame.camera.height);
   const auto columns = static_cast<uint32_t>(grid.columns);
   workers_.for_blocks(size_t{columns} * static_cast<size_t>(grid.rows), 1,

@@ -11,6 +11,7 @@
 #include "runtime/base/workers.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
+#include "runtime/math/host_depth.h"
 #include "runtime/math/vec.h"
 
 namespace voyager {
@@ -78,6 +79,8 @@ struct FrameInput {
   double tau = 3;
   Vec3f background{0, 0, 0};
   bool depth_wanted = false;
+  // In host memory, read by draw(). A splat whose z exceeds the pixel's is not blended there.
+  DepthLimits limits;
 };
 
 enum Stage { kSearch, kProject, kSort, kBin, kRasterize, kResolve, kStageCount };

@@ -21,12 +21,13 @@ constexpr size_t kBlock = 4096;
 struct Pixel {
   double r = 0, g = 0, b = 0, transmittance = 1;
   double depth = std::numeric_limits<double>::infinity();
+  double limit = std::numeric_limits<double>::infinity();
   bool ended = false;
 };
 
 // METHOD §6 at one pixel.
 void blend(const Splat& s, double x, double y, Pixel& pixel) {
-  if (pixel.ended) return;
+  if (pixel.ended || s.depth > pixel.limit) return;
   const double dx = x + 0.5 - s.x, dy = y + 0.5 - s.y;
   const double p = dx * s.conic.p_x, q = (dy - s.conic.skew * dx) * s.conic.q_y;
   const double rho = -(p * p + q * q);
@@ -86,6 +87,9 @@ class ReferencePipeline final : public HostPipeline {
   void rasterize(const FrameInput& frame) override {
     const size_t width = frame.camera.width;
     pixels_.assign(width * frame.camera.height, Pixel{});
+    if (frame.limits.values != nullptr)
+      for (size_t i = 0; i < pixels_.size(); ++i)
+        pixels_[i].limit = frame.limits.at(i % width, i / width);
     workers_.for_blocks(frame.camera.height, kBandRows, [&](size_t begin, size_t end) {
       for (const uint64_t key : keys_) {
         const Splat& s = splats_[depth_key_index(key)];
