@@ -3,8 +3,10 @@
 #include <vector>
 
 #include "cuda/frame_image.h"
+#include "cuda/frame_limits.h"
 #include "cuda/splat_state.h"
 #include "cuda/stage_timer.h"
+#include "runtime/base/error.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/math/alpha_lut.h"
 
@@ -45,7 +47,8 @@ class SplatPipeline final : public Pipeline {
   bool cut_is_near() const override { return false; }
 
  private:
-  void launch_splatting(const SplatFrame& frame, const RasterTarget& target);
+  void launch_splatting(const FrameInput& input, const SplatFrame& frame,
+                        const RasterTarget& target);
   SplatCounters counters() const;
   void collect(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
   void count_bytes(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
@@ -58,10 +61,12 @@ class SplatPipeline final : public Pipeline {
   Buffer<float> lut_;
   SplatState splats_;
   FrameImage image_;
+  FrameLimits limits_;
   StageTimer timer_;
 };
 
-void SplatPipeline::launch_splatting(const SplatFrame& frame, const RasterTarget& target) {
+void SplatPipeline::launch_splatting(const FrameInput& input, const SplatFrame& frame,
+                                     const RasterTarget& target) {
   const TileGrid& grid = frame.splats.grid;
   splats_.begin_frame(grid, frame.stream);
   launch_project(frame, desc_.alpha_filter);
@@ -70,10 +75,10 @@ void SplatPipeline::launch_splatting(const SplatFrame& frame, const RasterTarget
   timer_.end(kBin);
   launch_sort(frame);
   timer_.end(kSort);
-  launch_rasterize(
-      frame,
-      {desc_.exponential, desc_.alpha_filter, desc_.count_pixels, lut_.data(), desc_.lut_size},
-      target);
+  launch_rasterize(frame,
+                   {desc_.exponential, desc_.alpha_filter, desc_.count_pixels, lut_.data(),
+                    desc_.lut_size, limits_.upload(input, frame.stream)},
+                   target);
   timer_.end(kRasterize);
 }
 
@@ -86,9 +91,13 @@ SplatCounters SplatPipeline::counters() const {
 }
 
 void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
+  if (desc_.count_pixels && frame.limits.values != nullptr)
+    throw Error(ErrorCode::unsupported,
+                "depth limits: found some, pixels are counted of frames without");
   device_->use();
   const TileGrid grid = tile_grid(image.width, image.height);
   splats_.fit(grid);
+  limits_.fit(frame);
   const RasterTarget target = image_.target(frame, image);
   timer_.begin();
   draws_->update(frame, timer_.stream());
@@ -99,13 +108,13 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
                   splats_.view(grid),
                   device_->multiprocessors(),
                   timer_.stream()};
-  launch_splatting(work, target);
+  launch_splatting(frame, work, target);
   SplatCounters counted = counters();
   // A frame that found too little room is drawn again with more.
   while (splats_.grow(counted)) {
     work.splats = splats_.view(grid);
     timer_.go_back_to(kSearch);
-    launch_splatting(work, target);
+    launch_splatting(frame, work, target);
     counted = counters();
   }
   collect(counted, image, stats);

@@ -51,6 +51,7 @@ struct RasterChoices {
   bool count_pixels;
   const float* lut;  // lut_size + 1 entries on the device
   uint32_t lut_size;
+  DepthLimits limits;  // on the device
 };
 void launch_rasterize(const SplatFrame& frame, const RasterChoices& choices,
                       const RasterTarget& target);
