@@ -3,6 +3,7 @@
 
 #include "plugin/call.h"
 #include "plugin/claim.h"
+#include "plugin/depth_limit.h"
 #include "plugin/frame_input.h"
 #include "plugin/structs.h"
 
@@ -66,12 +67,15 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
     check_count(frame->eyeCount, 1, 1, "frame.eyeCount");
     check_pointer(frame->eyes, "frame.eyes");
     const VoyFrameEye& eye = frame->eyes[0];
-    check_structure(&eye, VOY_STRUCTURE_TYPE_FRAME_EYE, "frame.eyes[0]");
+    const VoyEyeDepthLimit* limit = nullptr;
+    check_structure(&eye, VOY_STRUCTURE_TYPE_FRAME_EYE, "frame.eyes[0]",
+                    Extension{VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, limit});
     const auto target = call.use<TargetObject>(eye.target);
     if (target->parent() != object->parent())
       refuse("frame.eyes[0].target: found a target of another device, expected the view's");
     check_size(target->image, *object);
     FrameInput input = frame_input(*frame, eye, target->image);
+    input.limits = depth_limits(limit, target->image);
 
     const auto view_lock = claim(*object);
     const auto target_lock = claim_object(*target, "frame.eyes[0].target");
