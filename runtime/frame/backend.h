@@ -84,7 +84,7 @@ struct Image {
   size_t color_pitch = 0;  // bytes
   float* depth = nullptr;
   size_t depth_pitch = 0;  // bytes
-  ExternalTarget external;
+  ExternalTarget external = {};
 };
 
 struct FrameInput {
