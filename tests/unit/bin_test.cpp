@@ -137,8 +137,8 @@ TEST(Bin, TheRasterizerVisitsEveryRowThatContributes) {
     splat.colour = {1, 1, 1};
     for (const bool filter : {true, false}) {
       const cpu::RasterParams params{
-          &splat, nullptr, 0, kTile, kTile, filter ? filtered.data() : whole.data(), nullptr};
-      cpu::pick_rasterizer(Exponential::exact, filter, false)(params, {0, 0, index});
+          &splat, nullptr, 0, kTile, kTile, filter ? filtered.data() : whole.data(), nullptr, {}};
+      cpu::pick_rasterizer(Exponential::exact, filter, false, false)(params, {0, 0, index});
     }
     for (size_t pixel = 0; pixel < whole.size(); ++pixel) {
       ASSERT_EQ(filtered[pixel].transmittance, whole[pixel].transmittance) << i;
