@@ -108,10 +108,10 @@ class Interop : public ::testing::Test {
     std::vector<VoyVulkanImage> images;
     uint64_t next = 0;  // of timelines
 
-    VulkanHost::Point released(uint32_t image) const {
+    Point released(uint32_t image) const {
       return {images[image].released, next};
     }
-    VulkanHost::Point rendered(uint32_t image) const { return {images[image].rendered, next}; }
+    Point rendered(uint32_t image) const { return {images[image].rendered, next}; }
     VoyVulkanFrame frame(uint32_t image) const {
       VoyVulkanFrame out = VOY_VULKAN_FRAME_INIT;
       out.imageIndex = image;

@@ -25,6 +25,12 @@ struct Messages {
   }
 };
 
+// A semaphore and, for timelines, its value; none where it is NULL.
+struct Point {
+  VkSemaphore semaphore = VK_NULL_HANDLE;
+  uint64_t value = 0;
+};
+
 class VulkanHost {
  public:
   // Nothing is made where there is no Vulkan device: see exists().
@@ -79,11 +85,6 @@ class VulkanHost {
     return commands;
   }
 
-  // A semaphore and, for timelines, its value; none where it is NULL.
-  struct Point {
-    VkSemaphore semaphore = VK_NULL_HANDLE;
-    uint64_t value = 0;
-  };
   void submit(VkCommandBuffer commands, const Point& wait, const Point& signal,
               VkFence fence = VK_NULL_HANDLE) const {
     VK(vkEndCommandBuffer(commands));
