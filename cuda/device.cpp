@@ -113,7 +113,8 @@ Device::~Device() {
   if (green_ == nullptr) return;
   cudaSetDevice(ordinal_);
   try {
-    driver_function<CUresult (*)(CUgreenCtx)>("cuGreenCtxDestroy", 12040)(static_cast<CUgreenCtx>(green_));
+    driver_function<CUresult (*)(CUgreenCtx)>("cuGreenCtxDestroy",
+                                              12040)(static_cast<CUgreenCtx>(green_));
   } catch (const Error&) {
     return;  // it was there when the context was made
   }

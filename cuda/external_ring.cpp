@@ -146,8 +146,7 @@ void Ring::import_slot(ExternalSlot& from, bool with_semaphores) {
   if (desc_.format != ColorFormat::none)
     slot.color = import_image(from.color, channels(desc_.format), desc_);
   if (desc_.depth)
-    slot.depth = import_image(
-        from.depth, {32, 0, 0, 0, cudaChannelFormatKindFloat}, desc_);
+    slot.depth = import_image(from.depth, {32, 0, 0, 0, cudaChannelFormatKindFloat}, desc_);
   if (desc_.depth_limit) {
     slot.limit_memory = import_memory(from.depth_limit);
     cudaExternalMemoryBufferDesc buffer{};
@@ -208,8 +207,7 @@ DepthLimits depth_limits(const ExternalTarget& target, const DepthEncoding& enco
 
 void wait_released(const ExternalTarget& target, cudaStream_t stream) {
   if (!target.waits) return;
-  const cudaExternalSemaphore_t semaphore =
-      ring_of(target).semaphores(target.slot).released.get();
+  const cudaExternalSemaphore_t semaphore = ring_of(target).semaphores(target.slot).released.get();
   cudaExternalSemaphoreWaitParams params{};
   params.params.fence.value = target.wait_value;
   check(cudaWaitExternalSemaphoresAsync(&semaphore, &params, 1, stream),

@@ -13,9 +13,9 @@ class FrameReport {
 
   // On the stream, behind the frame's work so far.
   void copy(const SplatCounters* counters, const DeviceInstances& instances, cudaStream_t stream) {
-    check(cudaMemcpyAsync(memory_.data(), counters, sizeof *counters, cudaMemcpyDeviceToHost,
-                          stream),
-          "counters");
+    check(
+        cudaMemcpyAsync(memory_.data(), counters, sizeof *counters, cudaMemcpyDeviceToHost, stream),
+        "counters");
     instances.report(memory_.data() + sizeof *counters, stream);
     copied_.record(stream);
   }

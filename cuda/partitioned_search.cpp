@@ -105,8 +105,8 @@ FrameCounters PartitionedSearch::counters() const {
 }
 
 void PartitionedSearch::report(void* into, cudaStream_t stream) const {
-  check(cudaMemcpyAsync(into, state_.view().work + 1, sizeof(FrameCounters),
-                        cudaMemcpyDeviceToHost, stream),
+  check(cudaMemcpyAsync(into, state_.view().work + 1, sizeof(FrameCounters), cudaMemcpyDeviceToHost,
+                        stream),
         "counters");
 }
 

@@ -145,8 +145,7 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, const 
     free_.pop_back();
   }
   report->grid = tile_grid(image.width, image.height);
-  report->target_bytes =
-      uint64_t{image.width} * image.height * pixel_bytes(image.format);
+  report->target_bytes = uint64_t{image.width} * image.height * pixel_bytes(image.format);
   splats_.fit(report->grid);
   limits_.fit(frame);
   report->timer.begin();

@@ -55,9 +55,7 @@ class Event {
 // The host's memory that a stream copies to.
 class PinnedMemory {
  public:
-  explicit PinnedMemory(size_t bytes) {
-    check(cudaMallocHost(&data_, bytes), "pinned memory");
-  }
+  explicit PinnedMemory(size_t bytes) { check(cudaMallocHost(&data_, bytes), "pinned memory"); }
   ~PinnedMemory() { cudaFreeHost(data_); }
   PinnedMemory(const PinnedMemory&) = delete;
   PinnedMemory& operator=(const PinnedMemory&) = delete;

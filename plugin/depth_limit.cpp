@@ -28,8 +28,7 @@ DepthEncoding checked_encoding(VoyDepthEncoding encoding, double near_z, double 
   if (encoding == VOY_DEPTH_ENCODING_METRES) return {};
   if (!(near_z >= kLeastNear && near_z <= kMostNear))
     refuse_number(name + ".nearZ", near_z, "metres from 1e-18 to 1e18");
-  if (!(far_z > near_z))
-    refuse_number(name + ".farZ", far_z, "metres beyond nearZ, or infinity");
+  if (!(far_z > near_z)) refuse_number(name + ".farZ", far_z, "metres beyond nearZ, or infinity");
   return depth_encoding(form_of(encoding), near_z, far_z);
 }
 

@@ -79,9 +79,8 @@ std::shared_ptr<DeviceObject> make_device(const VoyDeviceDesc& desc,
     wanted = vulkan_device_desc(*host);
     physical.emplace(wanted->get, wanted->instance, wanted->physical_device);
   }
-  const uint8_t* uuid =
-      checked_uuid(desc, physical ? &*physical : nullptr,
-                   wanted ? wanted->sharing : vulkan::Sharing::automatic);
+  const uint8_t* uuid = checked_uuid(desc, physical ? &*physical : nullptr,
+                                     wanted ? wanted->sharing : vulkan::Sharing::automatic);
   BackendChoice choice = choose_backend(desc.backend, uuid);
   const auto object = std::make_shared<DeviceObject>(desc, choice.kind, std::move(choice.backend));
   if (wanted) {

@@ -12,9 +12,9 @@
 #include "runtime/frame/backend.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/view.h"
+#include "voyager/voyager_vulkan.h"
 #include "vulkan_interop/composite.h"
 #include "vulkan_interop/ring.h"
-#include "voyager/voyager_vulkan.h"
 
 namespace voyager {
 

@@ -37,8 +37,7 @@ void check_vulkan(const Desc& desc) {
 }
 
 void describe(const VoyVulkanPhysicalDevice& desc, VoyVulkanRequirements& out) {
-  const vulkan::PhysicalDevice device(desc.getInstanceProcAddr, desc.instance,
-                                      desc.physicalDevice);
+  const vulkan::PhysicalDevice device(desc.getInstanceProcAddr, desc.instance, desc.physicalDevice);
   uint32_t subset = 0;
   for (uint32_t i = 0; i < kCount; ++i)
     if (device.has(kDeviceExtensions[i])) subset |= 1u << i;

@@ -144,10 +144,14 @@ VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVulkanImage
     const uint32_t there = ring.desc().images, written = std::min(capacity, there);
     for (uint32_t i = 0; i < written; ++i) {
       const vulkan::RingImage image = ring.image(i);
-      images[i] = {VOY_STRUCTURE_TYPE_VULKAN_IMAGE, nullptr,
-                   image.color,  image.color_view,
-                   image.depth,  image.depth_view,
-                   image.released, image.rendered};
+      images[i] = {VOY_STRUCTURE_TYPE_VULKAN_IMAGE,
+                   nullptr,
+                   image.color,
+                   image.color_view,
+                   image.depth,
+                   image.depth_view,
+                   image.released,
+                   image.rendered};
     }
     *count = there;
     return capacity > 0 && written < there ? VOY_INCOMPLETE : VOY_SUCCESS;

@@ -162,12 +162,14 @@ void Composite::record(const Ring& ring, uint32_t index, uint32_t layer,
   const bool depth = to.depth_use != DepthUse::none;
   const bool reversed = to.encoding.form == DepthForm::reversed;
   if (image.color_view == VK_NULL_HANDLE)
-    refuse("draw.target: found an image that cannot be sampled, expected colour with "
-           "VK_IMAGE_USAGE_SAMPLED_BIT");
+    refuse(
+        "draw.target: found an image that cannot be sampled, expected colour with "
+        "VK_IMAGE_USAGE_SAMPLED_BIT");
   if (depth && image.depth_view == VK_NULL_HANDLE)
     refuse("draw.depthUse: found one with depth for a target without, expected NONE");
   if (depth && !has_depth_)
-    refuse("draw.depthUse: found one with depth for a composite without depthFormat, expected NONE");
+    refuse(
+        "draw.depthUse: found one with depth for a composite without depthFormat, expected NONE");
   const DeviceFunctions& vk = device_->functions();
   const VkDescriptorSet set = ring.descriptors(index);
   vk.CmdBindDescriptorSets(to.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set,

@@ -28,8 +28,9 @@ Device::Device(const DeviceDesc& desc, const ExternalSupport& backend)
                            vk_.GetMemoryHostPointerPropertiesEXT != nullptr &&
                            physical_.host_pointer_alignment() != 0) {
   if (desc.version < kLeastVersion)
-    throw Error(ErrorCode::unsupported,
-                "VoyVulkanDeviceDesc.apiVersion: found one below Vulkan 1.1, expected 1.1 or newer");
+    throw Error(
+        ErrorCode::unsupported,
+        "VoyVulkanDeviceDesc.apiVersion: found one below Vulkan 1.1, expected 1.1 or newer");
   choose_sharing(desc.sharing, backend);
   choose_sync(desc.sync, backend);
 }
@@ -78,8 +79,7 @@ void Device::choose_sync(Sync wanted, const ExternalSupport& backend) {
   if (wanted == Sync::binary && !no_binaries.empty()) refuse("sync", no_binaries);
   sync_ = wanted;
   if (wanted != Sync::automatic) return;
-  sync_ = no_timelines.empty() ? Sync::timeline
-                               : (no_binaries.empty() ? Sync::binary : Sync::host);
+  sync_ = no_timelines.empty() ? Sync::timeline : (no_binaries.empty() ? Sync::binary : Sync::host);
   if (why_.empty()) why_ = no_timelines;
 }
 

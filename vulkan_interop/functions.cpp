@@ -22,7 +22,7 @@ void load(Function& into, Get get, Handle handle, const char* name) {
 
 InstanceFunctions load_instance_functions(PFN_vkGetInstanceProcAddr get, VkInstance instance) {
   InstanceFunctions vk;
-#define VOYAGER_VULKAN_LOAD(name)          \
+#define VOYAGER_VULKAN_LOAD(name)           \
   load(vk.name, get, instance, "vk" #name); \
   if (vk.name == nullptr) fail_missing("vk" #name);
   VOYAGER_VULKAN_INSTANCE_FUNCTIONS(VOYAGER_VULKAN_LOAD)
@@ -32,12 +32,12 @@ InstanceFunctions load_instance_functions(PFN_vkGetInstanceProcAddr get, VkInsta
 
 DeviceFunctions load_device_functions(PFN_vkGetDeviceProcAddr get, VkDevice device) {
   DeviceFunctions vk;
-#define VOYAGER_VULKAN_LOAD(name)        \
+#define VOYAGER_VULKAN_LOAD(name)         \
   load(vk.name, get, device, "vk" #name); \
   if (vk.name == nullptr) fail_missing("vk" #name);
   VOYAGER_VULKAN_DEVICE_FUNCTIONS(VOYAGER_VULKAN_LOAD)
 #undef VOYAGER_VULKAN_LOAD
-#define VOYAGER_VULKAN_LOAD(name)        \
+#define VOYAGER_VULKAN_LOAD(name)         \
   load(vk.name, get, device, "vk" #name); \
   if (vk.name == nullptr) load(vk.name, get, device, "vk" #name "KHR");
   VOYAGER_VULKAN_OPTIONAL_FUNCTIONS(VOYAGER_VULKAN_LOAD)

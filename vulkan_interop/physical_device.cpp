@@ -17,8 +17,7 @@ std::set<std::string> extensions_of(const InstanceFunctions& vk, VkPhysicalDevic
   uint32_t count = 0;
   check(vk.EnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "extensions");
   std::vector<VkExtensionProperties> found(count);
-  check(vk.EnumerateDeviceExtensionProperties(device, nullptr, &count, found.data()),
-        "extensions");
+  check(vk.EnumerateDeviceExtensionProperties(device, nullptr, &count, found.data()), "extensions");
   found.resize(count);
   std::set<std::string> names;
   for (const VkExtensionProperties& extension : found) names.insert(extension.extensionName);

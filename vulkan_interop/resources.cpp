@@ -5,8 +5,7 @@
 namespace voyager::vulkan {
 namespace {
 
-constexpr VkExternalMemoryHandleTypeFlagBits kOpaque =
-    VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+constexpr VkExternalMemoryHandleTypeFlagBits kOpaque = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
 constexpr VkExternalMemoryHandleTypeFlagBits kHostPointer =
     VK_EXTERNAL_MEMORY_HANDLE_TYPE_HOST_ALLOCATION_BIT_EXT;
 constexpr VkMemoryPropertyFlags kMapped =
@@ -44,9 +43,9 @@ Owned<VkDeviceMemory> allocate_exported(const Device& device, const VkMemoryRequ
                                                 nullptr, image, buffer};
   const VkExportMemoryAllocateInfo exported{VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO,
                                             &dedicated, kOpaque};
-  return allocate(
-      device, needs.size,
-      need_type(device, needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT), &exported);
+  return allocate(device, needs.size,
+                  need_type(device, needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT),
+                  &exported);
 }
 
 Owned<VkBuffer> make_buffer(const Device& device, uint64_t bytes, const void* next) {
@@ -66,9 +65,9 @@ VkMemoryRequirements requirements(const Device& device, VkBuffer buffer) {
 }
 
 void bind(const Device& device, const BufferResource& made) {
-  check(device.functions().BindBufferMemory(device.handle(), made.buffer.get(), made.memory.get(),
-                                            0),
-        "vkBindBufferMemory");
+  check(
+      device.functions().BindBufferMemory(device.handle(), made.buffer.get(), made.memory.get(), 0),
+      "vkBindBufferMemory");
 }
 
 }  // namespace
@@ -96,12 +95,12 @@ ImageResource make_image(const Device& device, VkFormat format, uint32_t width, 
   VkMemoryRequirements needs;
   vk.GetImageMemoryRequirements(device.handle(), made.image.get(), &needs);
   made.bytes = needs.size;
-  made.memory = exported
-                    ? allocate_exported(device, needs, made.image.get(), VK_NULL_HANDLE)
-                    : allocate(device, needs.size,
-                               need_type(device, needs.memoryTypeBits,
-                                         VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT),
-                               nullptr);
+  made.memory =
+      exported
+          ? allocate_exported(device, needs, made.image.get(), VK_NULL_HANDLE)
+          : allocate(device, needs.size,
+                     need_type(device, needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT),
+                     nullptr);
   check(vk.BindImageMemory(device.handle(), made.image.get(), made.memory.get(), 0),
         "vkBindImageMemory");
   return made;
@@ -137,8 +136,8 @@ BufferResource make_mapped_buffer(const Device& device, uint64_t bytes) {
   const VkMemoryRequirements needs = requirements(device, made.buffer.get());
   made.bytes = needs.size;
   // Cached where there is such a type: the host's depth is read from it.
-  uint32_t type = find_type(device, needs.memoryTypeBits,
-                            kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+  uint32_t type =
+      find_type(device, needs.memoryTypeBits, kMapped | VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
   if (type == kNoType) type = need_type(device, needs.memoryTypeBits, kMapped);
   made.memory = allocate(device, needs.size, type, nullptr);
   bind(device, made);
@@ -149,8 +148,8 @@ BufferResource make_mapped_buffer(const Device& device, uint64_t bytes) {
 }
 
 BufferResource make_imported_buffer(const Device& device, void* memory, uint64_t bytes) {
-  VkMemoryHostPointerPropertiesEXT properties{
-      VK_STRUCTURE_TYPE_MEMORY_HOST_POINTER_PROPERTIES_EXT, nullptr, 0};
+  VkMemoryHostPointerPropertiesEXT properties{VK_STRUCTURE_TYPE_MEMORY_HOST_POINTER_PROPERTIES_EXT,
+                                              nullptr, 0};
   check(device.functions().GetMemoryHostPointerPropertiesEXT(device.handle(), kHostPointer, memory,
                                                              &properties),
         "vkGetMemoryHostPointerPropertiesEXT");
@@ -185,8 +184,8 @@ Owned<VkSemaphore> make_semaphore(const Device& device, bool timeline, bool expo
   const void* next = exported ? &exports : nullptr;
   const VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO, next,
                                        VK_SEMAPHORE_TYPE_TIMELINE, 0};
-  const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
-                                   timeline ? &type : next, 0};
+  const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, timeline ? &type : next,
+                                   0};
   return make<VkSemaphore>(device, device.functions().CreateSemaphore,
                            device.functions().DestroySemaphore, info, "vkCreateSemaphore");
 }

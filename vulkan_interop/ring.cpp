@@ -45,7 +45,10 @@ void check_usage(VkImageUsageFlags usage, const char* field) {
 
 Ring::Ring(std::shared_ptr<const Device> device, const RingDesc& desc, const ImportRing& import,
            std::pmr::memory_resource* memory)
-    : device_(std::move(device)), desc_(desc), slots_(desc.images), descriptors_(*device_, desc.images) {
+    : device_(std::move(device)),
+      desc_(desc),
+      slots_(desc.images),
+      descriptors_(*device_, desc.images) {
   check_imported();
   make_semaphores();
   for (uint32_t i = 0; i < desc.images; ++i) make_slot(i);
@@ -115,8 +118,7 @@ void Ring::make_views(uint32_t index) {
   const ImportedImage none;
   const ImportedImage& passed = desc_.imported.empty() ? none : desc_.imported[index];
   if (slot.image.color != VK_NULL_HANDLE && sampled(passed.color_usage))
-    slot.color_view =
-        make_view(*device_, slot.image.color, vk_format(desc_.format), desc_.layers);
+    slot.color_view = make_view(*device_, slot.image.color, vk_format(desc_.format), desc_.layers);
   if (slot.image.depth != VK_NULL_HANDLE && sampled(passed.depth_usage))
     slot.depth_view = make_view(*device_, slot.image.depth, kDepthFormat, desc_.layers);
   slot.image.color_view = slot.color_view.get();
@@ -203,14 +205,12 @@ void Ring::wait_for_host(const FrameSync& sync) const {
   const VkSemaphore semaphore = slots_[0].image.released;
   const VkSemaphoreWaitInfo info{
       VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO, nullptr, 0, 1, &semaphore, &sync.wait_value};
-  const VkResult status =
-      device_->functions().WaitSemaphores(device_->handle(), &info, kPatience);
+  const VkResult status = device_->functions().WaitSemaphores(device_->handle(), &info, kPatience);
   check(status, "vkWaitSemaphores");
   if (status == VK_TIMEOUT)
-    throw Error(ErrorCode::timeout,
-                "VoyVulkanFrame.waitValue: `released` did not reach " +
-                    std::to_string(sync.wait_value) +
-                    " within 10 s, expected its signal to have been submitted");
+    throw Error(ErrorCode::timeout, "VoyVulkanFrame.waitValue: `released` did not reach " +
+                                        std::to_string(sync.wait_value) +
+                                        " within 10 s, expected its signal to have been submitted");
 }
 
 Image Ring::begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync) {
@@ -237,8 +237,7 @@ Image Ring::begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync) {
     image.color_pitch = size_t{desc_.width} * pixel_bytes(desc_.format);
   }
   if (desc_.depth) {
-    image.depth =
-        reinterpret_cast<float*>(staging_->mapped() + staging_->depth_at(index, layer));
+    image.depth = reinterpret_cast<float*>(staging_->mapped() + staging_->depth_at(index, layer));
     image.depth_pitch = size_t{desc_.width} * sizeof(float);
   }
   return image;

@@ -27,8 +27,8 @@ struct RingDesc {
   ColorFormat format = ColorFormat::none;
   uint32_t width = 0, height = 0, images = 0, layers = 1;
   bool depth = false, depth_limit = false;
-  std::vector<ImportedImage> imported;            // none, or one an image
-  std::vector<ImportedSemaphores> semaphores;     // none, or one (timelines) or one an image
+  std::vector<ImportedImage> imported;         // none, or one an image
+  std::vector<ImportedSemaphores> semaphores;  // none, or one (timelines) or one an image
 };
 
 }  // namespace voyager::vulkan

@@ -114,12 +114,9 @@ void Ring::copy_from_staging(uint32_t index, const Use& use) const {
              VK_PIPELINE_STAGE_TRANSFER_BIT, barrier);
   const auto copy = [&](VkImage image, uint32_t layer, uint64_t offset) {
     if (image == VK_NULL_HANDLE) return;
-    const VkBufferImageCopy region{offset,
-                                   0,
-                                   0,
-                                   layer_of(layer, VK_IMAGE_ASPECT_COLOR_BIT),
-                                   {0, 0, 0},
-                                   {desc_.width, desc_.height, 1}};
+    const VkBufferImageCopy region{offset,    0,
+                                   0,         layer_of(layer, VK_IMAGE_ASPECT_COLOR_BIT),
+                                   {0, 0, 0}, {desc_.width, desc_.height, 1}};
     vk.CmdCopyBufferToImage(use.commands, staging_->buffer(), image,
                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
   };
@@ -152,10 +149,8 @@ void Ring::record_copy(uint32_t index, uint32_t layer, const CopyTo& to) const {
                     " as it is; voyRecordVulkanComposite draws into others");
   const auto width = static_cast<int32_t>(desc_.width);
   const auto height = static_cast<int32_t>(desc_.height);
-  const VkImageBlit region{from,
-                           {{0, 0, 0}, {width, height, 1}},
-                           into,
-                           {first, {first.x + width, first.y + height, 1}}};
+  const VkImageBlit region{
+      from, {{0, 0, 0}, {width, height, 1}}, into, {first, {first.x + width, first.y + height, 1}}};
   vk.CmdBlitImage(to.commands, image, to.layout, to.image, to.image_layout, 1, &region,
                   VK_FILTER_NEAREST);
 }

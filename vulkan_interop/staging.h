@@ -15,7 +15,9 @@ class Staging {
   VkBuffer buffer() const { return buffer_.buffer.get(); }
   // Where in the buffer, bytes.
   uint64_t color_at(uint32_t image, uint32_t layer) const { return at(image, layer); }
-  uint64_t depth_at(uint32_t image, uint32_t layer) const { return at(image, layer) + color_bytes_; }
+  uint64_t depth_at(uint32_t image, uint32_t layer) const {
+    return at(image, layer) + color_bytes_;
+  }
   uint64_t limit_at(uint32_t image, uint32_t layer) const {
     return at(image, layer) + color_bytes_ + depth_bytes_;
   }

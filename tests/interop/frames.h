@@ -108,9 +108,7 @@ class Interop : public ::testing::Test {
     std::vector<VoyVulkanImage> images;
     uint64_t next = 0;  // of timelines
 
-    Point released(uint32_t image) const {
-      return {images[image].released, next};
-    }
+    Point released(uint32_t image) const { return {images[image].released, next}; }
     Point rendered(uint32_t image) const { return {images[image].rendered, next}; }
     VoyVulkanFrame frame(uint32_t image) const {
       VoyVulkanFrame out = VOY_VULKAN_FRAME_INIT;
@@ -174,8 +172,8 @@ class Interop : public ::testing::Test {
   }
 
   // The same frame in host memory.
-  Shot expected(VoyColorFormat format, VoyFrameEye eye, size_t pixel_bytes,
-                uint32_t width = kWidth, uint32_t height = kHeight) {
+  Shot expected(VoyColorFormat format, VoyFrameEye eye, size_t pixel_bytes, uint32_t width = kWidth,
+                uint32_t height = kHeight) {
     Shot shot;
     shot.color.resize(size_t{width} * height * pixel_bytes);
     shot.depth.resize(size_t{width} * height);
@@ -211,15 +209,15 @@ constexpr VoyVulkanSync kSyncs[] = {VOY_VULKAN_SYNC_TIMELINE, VOY_VULKAN_SYNC_BI
                                     VOY_VULKAN_SYNC_HOST};
 
 // body() for each mode that this machine has; there is one at least.
-#define FOR_EACH_MODE(...)                                                    \
-  do {                                                                        \
-    int modes = 0;                                                            \
-    for (const VoyVulkanSharing sharing : kSharings)                          \
-      for (const VoyVulkanSync sync : kSyncs) {                               \
-        if (!create(sharing, sync)) continue;                                 \
+#define FOR_EACH_MODE(...)                                                                     \
+  do {                                                                                         \
+    int modes = 0;                                                                             \
+    for (const VoyVulkanSharing sharing : kSharings)                                           \
+      for (const VoyVulkanSync sync : kSyncs) {                                                \
+        if (!create(sharing, sync)) continue;                                                  \
         SCOPED_TRACE("sharing " + std::to_string(sharing) + ", sync " + std::to_string(sync)); \
-        ++modes;                                                              \
-        __VA_ARGS__                                                           \
-      }                                                                       \
-    EXPECT_GE(modes, 1);                                                      \
+        ++modes;                                                                               \
+        __VA_ARGS__                                                                            \
+      }                                                                                        \
+    EXPECT_GE(modes, 1);                                                                       \
   } while (false)

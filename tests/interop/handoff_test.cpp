@@ -78,8 +78,7 @@ TEST_F(Interop, NoFrameIsTornOrStale) {
       std::unique_ptr<MappedBuffer> read;
       uint32_t mark = 0;
     } flight[kRing];
-    for (InFlight& f : flight)
-      f.read = std::make_unique<MappedBuffer>(*host, kWidth * kHeight * 4);
+    for (InFlight& f : flight) f.read = std::make_unique<MappedBuffer>(*host, kWidth * kHeight * 4);
     std::mt19937 random(5);
     const auto dawdle = [&] { ::usleep(random() % 4 == 0 ? random() % 3000 : 0); };
     int wrong = 0;
@@ -140,7 +139,8 @@ TEST_F(Interop, ADepthLimitFromTheHostsDepthBufferIsThatFromItsMemory) {
     // Reversed, infinitely far: 0.1 m / z. A ramp from 8 to 16 m, and nothing in a corner.
     std::vector<float> depth(kWidth * kHeight);
     for (uint32_t i = 0; i < depth.size(); ++i)
-      depth[i] = i % kWidth < 10 ? 0.0f : 0.1f / (8.0f + 8.0f * static_cast<float>(i % kWidth) / kWidth);
+      depth[i] =
+          i % kWidth < 10 ? 0.0f : 0.1f / (8.0f + 8.0f * static_cast<float>(i % kWidth) / kWidth);
     const MappedBuffer source(*host, depth.size() * sizeof(float));
     std::memcpy(source.data, depth.data(), depth.size() * sizeof(float));
     ImageDesc wanted;
@@ -218,7 +218,8 @@ TEST_F(Interop, ACopyKeepsCodeValues) {
     int wrong = 0;
     for (uint32_t i = 0; i < kWidth * kHeight * 4; ++i) {
       const uint32_t pixel = i / 4, channel = swapped && i % 4 != 3 ? 2 - i % 4 : i % 4;
-      wrong += got[((pixel / kWidth + 3) * width + pixel % kWidth + 7) * 4 + channel] != shot.color[i];
+      wrong +=
+          got[((pixel / kWidth + 3) * width + pixel % kWidth + 7) * 4 + channel] != shot.color[i];
     }
     EXPECT_EQ(wrong, 0);
   }

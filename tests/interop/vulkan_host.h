@@ -88,7 +88,8 @@ class VulkanHost {
   void submit(VkCommandBuffer commands, const Point& wait, const Point& signal,
               VkFence fence = VK_NULL_HANDLE) const {
     VK(vkEndCommandBuffer(commands));
-    const bool waits = wait.semaphore != VK_NULL_HANDLE, signals = signal.semaphore != VK_NULL_HANDLE;
+    const bool waits = wait.semaphore != VK_NULL_HANDLE,
+               signals = signal.semaphore != VK_NULL_HANDLE;
     const VkTimelineSemaphoreSubmitInfo values{VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
                                                nullptr,
                                                waits ? 1u : 0u,

@@ -67,8 +67,8 @@ struct HostImage {
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(host.device, image, &needs);
     bytes = needs.size;
-    const VkMemoryDedicatedAllocateInfo dedicated{
-        VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO, nullptr, image, VK_NULL_HANDLE};
+    const VkMemoryDedicatedAllocateInfo dedicated{VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO,
+                                                  nullptr, image, VK_NULL_HANDLE};
     const VkExportMemoryAllocateInfo exported{VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO,
                                               &dedicated,
                                               VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT};

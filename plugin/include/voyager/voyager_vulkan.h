@@ -101,9 +101,9 @@ typedef struct VoyVulkanDeviceDesc {
   VoyVulkanSharing sharing;            /* AUTO, or the one to take; refused where it cannot be */
   VoyVulkanSync sync;                  /* the same */
 } VoyVulkanDeviceDesc;
-#define VOY_VULKAN_DEVICE_DESC_INIT                                                           \
-  {                                                                                           \
-    VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC, NULL, NULL, VK_NULL_HANDLE, VK_NULL_HANDLE,        \
+#define VOY_VULKAN_DEVICE_DESC_INIT                                                         \
+  {                                                                                         \
+    VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC, NULL, NULL, VK_NULL_HANDLE, VK_NULL_HANDLE,      \
         VK_NULL_HANDLE, 0, 0, NULL, VK_FALSE, VOY_VULKAN_SHARING_AUTO, VOY_VULKAN_SYNC_AUTO \
   }
 
@@ -120,7 +120,9 @@ typedef struct VoyVulkanCapabilities {
 #define VOY_VULKAN_CAPABILITIES_INIT                                                             \
   {                                                                                              \
     VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES, NULL, VOY_VULKAN_SHARING_AUTO, VOY_VULKAN_SYNC_AUTO, \
-        VK_FALSE, {0}                                                                            \
+        VK_FALSE, {                                                                              \
+      0                                                                                          \
+    }                                                                                            \
   }
 
 /* ------------------------------------------------------------------- target */
@@ -146,10 +148,10 @@ typedef struct VoyVulkanImportedImage {
   VoyVulkanMemory depthMemory;
   VkImageUsageFlags depthUsage;
 } VoyVulkanImportedImage;
-#define VOY_VULKAN_IMPORTED_IMAGE_INIT                                                  \
-  {                                                                                     \
+#define VOY_VULKAN_IMPORTED_IMAGE_INIT                                                \
+  {                                                                                   \
     VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE, NULL, VK_NULL_HANDLE, {-1, 0, 0, 0}, 0, \
-        VK_NULL_HANDLE, {-1, 0, 0, 0}, 0                                                \
+        VK_NULL_HANDLE, {-1, 0, 0, 0}, 0                                              \
   }
 
 /* Semaphores that the host made: timeline ones for TIMELINE, else binary, exported as opaque
@@ -162,10 +164,8 @@ typedef struct VoyVulkanImportedSemaphores {
   VkSemaphore rendered; /* Voyager signals it, the host waits */
   int renderedFd;
 } VoyVulkanImportedSemaphores;
-#define VOY_VULKAN_IMPORTED_SEMAPHORES_INIT                                             \
-  {                                                                                     \
-    VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES, NULL, VK_NULL_HANDLE, -1, VK_NULL_HANDLE, -1 \
-  }
+#define VOY_VULKAN_IMPORTED_SEMAPHORES_INIT \
+  { VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES, NULL, VK_NULL_HANDLE, -1, VK_NULL_HANDLE, -1 }
 
 #define VOY_MAX_VULKAN_IMAGES 8 /* in a ring */
 #define VOY_MAX_VULKAN_LAYERS 8
@@ -179,19 +179,17 @@ typedef struct VoyVulkanImportedSemaphores {
 typedef struct VoyVulkanTargetDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC */
   const void* next;
-  uint32_t imageCount; /* 1 to VOY_MAX_VULKAN_IMAGES */
-  uint32_t layerCount; /* 1 to VOY_MAX_VULKAN_LAYERS */
-  VkBool32 depth;      /* Voyager writes depth */
-  VkBool32 depthLimit; /* the host's depth comes in (voyRecordVulkanDepthLimit) */
+  uint32_t imageCount;                  /* 1 to VOY_MAX_VULKAN_IMAGES */
+  uint32_t layerCount;                  /* 1 to VOY_MAX_VULKAN_LAYERS */
+  VkBool32 depth;                       /* Voyager writes depth */
+  VkBool32 depthLimit;                  /* the host's depth comes in (voyRecordVulkanDepthLimit) */
   const VoyVulkanImportedImage* images; /* imageCount of them, or NULL: Voyager makes them */
   uint32_t semaphoreCount;              /* 0: Voyager makes them; else 1 for TIMELINE, imageCount
                                            for BINARY */
   const VoyVulkanImportedSemaphores* semaphores;
 } VoyVulkanTargetDesc;
-#define VOY_VULKAN_TARGET_DESC_INIT                                                           \
-  {                                                                                           \
-    VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC, NULL, 2, 1, VK_FALSE, VK_FALSE, NULL, 0, NULL \
-  }
+#define VOY_VULKAN_TARGET_DESC_INIT \
+  { VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC, NULL, 2, 1, VK_FALSE, VK_FALSE, NULL, 0, NULL }
 
 /* What stands behind an image of the ring: Voyager's handles, or those that were passed.
  * Views are VK_IMAGE_VIEW_TYPE_2D_ARRAY over all layers; NULL for images that were passed
@@ -251,9 +249,9 @@ typedef struct VoyVulkanUse {
                                   GENERAL */
   VkPipelineStageFlags stages; /* of the host's commands that use the image */
 } VoyVulkanUse;
-#define VOY_VULKAN_USE_INIT                                                                \
-  {                                                                                        \
-    VOY_STRUCTURE_TYPE_VULKAN_USE, NULL, VK_NULL_HANDLE, 0, 0,                             \
+#define VOY_VULKAN_USE_INIT                                                             \
+  {                                                                                     \
+    VOY_STRUCTURE_TYPE_VULKAN_USE, NULL, VK_NULL_HANDLE, 0, 0,                          \
         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT \
   }
 
@@ -273,17 +271,18 @@ typedef struct VoyVulkanCopy {
   uint32_t imageIndex;           /* acquired in TRANSFER_SRC_OPTIMAL or GENERAL */
   VkImageLayout layout;          /* that one */
   uint32_t layer;
-  VkImage into;               /* the host's: 2D, one sample, usage TRANSFER_DST */
-  VkFormat intoFormat;        /* see voyRecordVulkanCopy */
-  VkImageLayout intoLayout;   /* TRANSFER_DST_OPTIMAL or GENERAL */
+  VkImage into;             /* the host's: 2D, one sample, usage TRANSFER_DST */
+  VkFormat intoFormat;      /* see voyRecordVulkanCopy */
+  VkImageLayout intoLayout; /* TRANSFER_DST_OPTIMAL or GENERAL */
   uint32_t intoLayer;
   VkOffset2D intoOffset; /* the whole layer must fit there */
 } VoyVulkanCopy;
-#define VOY_VULKAN_COPY_INIT                                                               \
-  {                                                                                        \
-    VOY_STRUCTURE_TYPE_VULKAN_COPY, NULL, VK_NULL_HANDLE, 0,                               \
-        VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0, VK_NULL_HANDLE, VK_FORMAT_R8G8B8A8_SRGB, \
-        VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, {0, 0}                                    \
+#define VOY_VULKAN_COPY_INIT                                                                       \
+  {                                                                                                \
+    VOY_STRUCTURE_TYPE_VULKAN_COPY, NULL, VK_NULL_HANDLE, 0, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, \
+        0, VK_NULL_HANDLE, VK_FORMAT_R8G8B8A8_SRGB, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, {     \
+      0, 0                                                                                         \
+    }                                                                                              \
   }
 
 /* Code values as they are: RGBA8 into R8G8B8A8 UNORM or SRGB and (swizzled) B8G8R8A8 UNORM,
@@ -301,16 +300,18 @@ typedef struct VoyVulkanDepthLimit {
   uint32_t queueFamily;          /* of the queue that it will be submitted to */
   uint32_t imageIndex;
   uint32_t layer; /* of the target */
-  VkImage depth;  /* the host's: 2D, one sample, usage TRANSFER_SRC, of the target's size at least */
+  VkImage depth; /* the host's: 2D, one sample, usage TRANSFER_SRC, of the target's size at least */
   VkFormat format;      /* D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT */
   VkImageLayout layout; /* TRANSFER_SRC_OPTIMAL or GENERAL */
   uint32_t depthLayer;
   VkOffset2D offset; /* of the target's rectangle in it */
 } VoyVulkanDepthLimit;
-#define VOY_VULKAN_DEPTH_LIMIT_INIT                                                             \
-  {                                                                                             \
-    VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT, NULL, VK_NULL_HANDLE, 0, 0, 0, VK_NULL_HANDLE,       \
-        VK_FORMAT_D32_SFLOAT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0, {0, 0} \
+#define VOY_VULKAN_DEPTH_LIMIT_INIT                                                       \
+  {                                                                                       \
+    VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT, NULL, VK_NULL_HANDLE, 0, 0, 0, VK_NULL_HANDLE, \
+        VK_FORMAT_D32_SFLOAT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, 0, {                  \
+      0, 0                                                                                \
+    }                                                                                     \
   }
 VOY_API VoyResult voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDepthLimit* limit);
 
@@ -330,10 +331,10 @@ typedef struct VoyVulkanCompositeDesc {
   VkFormat colorFormat; /* of the attachment that is drawn to, the first of the subpass */
   VkFormat depthFormat; /* UNDEFINED: no depth attachment */
 } VoyVulkanCompositeDesc;
-#define VOY_VULKAN_COMPOSITE_DESC_INIT                                              \
-  {                                                                                 \
+#define VOY_VULKAN_COMPOSITE_DESC_INIT                                                      \
+  {                                                                                         \
     VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC, NULL, VK_NULL_HANDLE, 0, VK_FORMAT_UNDEFINED, \
-        VK_FORMAT_UNDEFINED                                                         \
+        VK_FORMAT_UNDEFINED                                                                 \
   }
 VOY_API VoyResult voyCreateVulkanComposite(VoyDevice device, const VoyVulkanCompositeDesc* desc,
                                            VoyComposite* composite);
@@ -358,15 +359,15 @@ typedef struct VoyVulkanCompositeDraw {
   VoyTarget target;              /* of the composite's device */
   uint32_t imageIndex;           /* acquired in SHADER_READ_ONLY_OPTIMAL for FRAGMENT_SHADER */
   uint32_t layer;
-  VkRect2D area; /* of the attachment: where the layer goes, pixel by pixel */
+  VkRect2D area;              /* of the attachment: where the layer goes, pixel by pixel */
   VoyVulkanDepthUse depthUse; /* other than NONE asks for a target with depth and a depthFormat */
   VoyDepthEncoding encoding;  /* of the attachment: STANDARD or REVERSED */
   double nearZ, farZ;         /* of the host's projection, metres; farZ may be infinite */
 } VoyVulkanCompositeDraw;
-#define VOY_VULKAN_COMPOSITE_DRAW_INIT                                                       \
-  {                                                                                          \
-    VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW, NULL, VK_NULL_HANDLE, NULL, 0, 0,              \
-        {{0, 0}, {0, 0}}, VOY_VULKAN_DEPTH_USE_NONE, VOY_DEPTH_ENCODING_STANDARD, 0.1, 1000.0 \
+#define VOY_VULKAN_COMPOSITE_DRAW_INIT                                                            \
+  {                                                                                               \
+    VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW, NULL, VK_NULL_HANDLE, NULL, 0, 0, {{0, 0}, {0, 0}}, \
+        VOY_VULKAN_DEPTH_USE_NONE, VOY_DEPTH_ENCODING_STANDARD, 0.1, 1000.0                       \
   }
 
 /* Sets pipeline, descriptor set 0, push constants, viewport and scissor. */

@@ -1,0 +1,228 @@
+// A ring's image over the host's, against the same composite made here.
+#include <algorithm>
+
+#include "frames.h"
+
+namespace {
+
+constexpr VkFormat kColor = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFLOAT;
+
+// The host's picture: colour, and a mesh before, amid and behind the splats, and none.
+struct Picture {
+  std::vector<uint8_t> color;
+  std::vector<float> metres;
+};
+
+// As OpenGL and Vulkan have it with a far plane, and reversed without.
+struct Convention {
+  VoyDepthEncoding encoding;
+  double near_z, far_z;
+  float code(float z) const {
+    const double t = (1 / static_cast<double>(z) - 1 / far_z) / (1 / near_z - 1 / far_z);
+    const double within = std::max(t, 0.0);  // nothing lies at the far plane
+    return static_cast<float>(encoding == VOY_DEPTH_ENCODING_REVERSED ? within : 1 - within);
+  }
+};
+
+class Composites : public Interop {
+ protected:
+  void TearDown() override {
+    if (composite != nullptr) {
+      EXPECT_EQ(voyDestroyVulkanComposite(composite), VOY_SUCCESS);
+      vkDestroyFramebuffer(host->device, framebuffer, nullptr);
+      vkDestroyImageView(host->device, color_view, nullptr);
+      vkDestroyImageView(host->device, depth_view, nullptr);
+      vkDestroyRenderPass(host->device, pass, nullptr);
+      color.reset(), depth.reset();
+    }
+    Interop::TearDown();
+  }
+
+  void make_pass() {
+    const auto attachment = [](VkFormat format, VkImageLayout layout) {
+      VkAttachmentDescription out{};
+      out.format = format;
+      out.samples = VK_SAMPLE_COUNT_1_BIT;
+      out.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+      out.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+      out.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+      out.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+      out.initialLayout = out.finalLayout = layout;
+      return out;
+    };
+    const VkAttachmentDescription attachments[] = {
+        attachment(kColor, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL),
+        attachment(kDepth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL)};
+    const VkAttachmentReference to_color{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    const VkAttachmentReference to_depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+    VkSubpassDescription subpass{};
+    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &to_color;
+    subpass.pDepthStencilAttachment = &to_depth;
+    VkRenderPassCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+    info.attachmentCount = 2;
+    info.pAttachments = attachments;
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
+    VK(vkCreateRenderPass(host->device, &info, nullptr, &pass));
+  }
+
+  VkImageView make_view_of(const HostImage& image) const {
+    VkImageViewCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+    info.image = image.image;
+    info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    info.format = image.desc.format;
+    info.subresourceRange = {image.desc.aspect, 0, 1, 0, 1};
+    VkImageView made = VK_NULL_HANDLE;
+    VK(vkCreateImageView(host->device, &info, nullptr, &made));
+    return made;
+  }
+
+  void make_attachments() {
+    make_pass();
+    ImageDesc desc;
+    desc.width = kWidth, desc.height = kHeight;
+    desc.format = kColor;
+    desc.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    color = std::make_unique<HostImage>(*host, desc);
+    desc.format = kDepth;
+    desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+    desc.usage ^= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
+    depth = std::make_unique<HostImage>(*host, desc);
+    color_view = make_view_of(*color), depth_view = make_view_of(*depth);
+    const VkImageView views[] = {color_view, depth_view};
+    const VkFramebufferCreateInfo info{
+        VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO, nullptr, 0, pass, 2, views, kWidth, kHeight, 1};
+    VK(vkCreateFramebuffer(host->device, &info, nullptr, &framebuffer));
+    VoyVulkanCompositeDesc desc_of = VOY_VULKAN_COMPOSITE_DESC_INIT;
+    desc_of.renderPass = pass;
+    desc_of.colorFormat = kColor;
+    desc_of.depthFormat = kDepth;
+    ASSERT_EQ(voyCreateVulkanComposite(device, &desc_of, &composite), VOY_SUCCESS)
+        << voyGetLastErrorMessage();
+  }
+
+  static void fill_image(VkCommandBuffer commands, const HostImage& image, const MappedBuffer& from,
+                         VkImageLayout to) {
+    image.barrier(commands, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    const VkBufferImageCopy region{
+        0, 0, 0, {image.desc.aspect, 0, 0, 1}, {0, 0, 0}, {kWidth, kHeight, 1}};
+    vkCmdCopyBufferToImage(commands, from.buffer, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                           1, &region);
+    image.barrier(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, to);
+  }
+
+  VkRenderPass pass = VK_NULL_HANDLE;
+  VkFramebuffer framebuffer = VK_NULL_HANDLE;
+  VkImageView color_view = VK_NULL_HANDLE, depth_view = VK_NULL_HANDLE;
+  std::unique_ptr<HostImage> color, depth;
+  VoyComposite composite = nullptr;
+};
+
+Picture host_picture(uint32_t width, uint32_t height) {
+  Picture picture;
+  for (uint32_t i = 0; i < width * height; ++i) {
+    const uint32_t x = i % width;
+    for (const uint32_t channel : {x * 2, i % 200, 90u, 255u})
+      picture.color.push_back(static_cast<uint8_t>(channel));
+    const float metres[] = {3.0f, 12.0f, 30.0f, INFINITY};
+    picture.metres.push_back(metres[x * 4 / width]);
+  }
+  return picture;
+}
+
+constexpr Convention kConventions[] = {{VOY_DEPTH_ENCODING_STANDARD, 0.5, 100},
+                                       {VOY_DEPTH_ENCODING_REVERSED, 0.2, INFINITY}};
+constexpr VoyVulkanDepthUse kUses[] = {VOY_VULKAN_DEPTH_USE_NONE, VOY_VULKAN_DEPTH_USE_TEST,
+                                       VOY_VULKAN_DEPTH_USE_WRITE};
+
+TEST_F(Composites, EqualTheOneMadeFromTheSameImages) {
+  ASSERT_TRUE(create());
+  make_attachments();
+  VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+  images.depth = VK_TRUE;
+  const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+  Line line = line_of(target);
+  const Picture before = host_picture(kWidth, kHeight);
+  const size_t pixels = size_t{kWidth} * kHeight;
+  const MappedBuffer from_color(*host, pixels * 4), from_depth(*host, pixels * 4),
+      into_color(*host, pixels * 4), into_depth(*host, pixels * 4);
+  std::memcpy(from_color.data, before.color.data(), pixels * 4);
+  for (const Convention& convention : kConventions)
+    for (const VoyVulkanDepthUse depth_use : kUses) {
+      SCOPED_TRACE(std::to_string(convention.encoding) + ", depth use " +
+                   std::to_string(depth_use));
+      std::vector<float> codes(pixels);
+      for (size_t i = 0; i < pixels; ++i) codes[i] = convention.code(before.metres[i]);
+      std::memcpy(from_depth.data, codes.data(), pixels * 4);
+      const Shot shot = expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target), 4);
+
+      VkCommandBuffer commands = host->begin();
+      release(line, target, 0, commands);
+      host->finish(commands, {}, line.released(0));
+      ASSERT_EQ(render(line, 0, eye(target)), VOY_SUCCESS) << voyGetLastErrorMessage();
+      commands = host->begin();
+      fill_image(commands, *color, from_color, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+      fill_image(commands, *depth, from_depth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+      VoyVulkanUse used = use(commands, 0);
+      used.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+      used.stages = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+      ASSERT_EQ(voyRecordVulkanAcquire(target, &used), VOY_SUCCESS);
+      const VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
+                                        nullptr,
+                                        pass,
+                                        framebuffer,
+                                        {{0, 0}, {kWidth, kHeight}},
+                                        0,
+                                        nullptr};
+      vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+      VoyVulkanCompositeDraw draw = VOY_VULKAN_COMPOSITE_DRAW_INIT;
+      draw.commandBuffer = commands;
+      draw.target = target;
+      draw.area = {{0, 0}, {kWidth, kHeight}};
+      draw.depthUse = depth_use;
+      draw.encoding = convention.encoding;
+      draw.nearZ = convention.near_z;
+      draw.farZ = convention.far_z;
+      ASSERT_EQ(voyRecordVulkanComposite(composite, &draw), VOY_SUCCESS)
+          << voyGetLastErrorMessage();
+      vkCmdEndRenderPass(commands);
+      color->barrier(commands, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+      depth->barrier(commands, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+      copy_to_buffer(commands, color->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                     extent(kWidth, kHeight), 0, VK_IMAGE_ASPECT_COLOR_BIT, into_color);
+      copy_to_buffer(commands, depth->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                     extent(kWidth, kHeight), 0, VK_IMAGE_ASPECT_DEPTH_BIT, into_depth);
+      host->finish(commands, line.rendered(0), {});
+
+      const std::vector<uint8_t> got = into_color.read<uint8_t>(pixels * 4);
+      const std::vector<float> got_depth = into_depth.read<float>(pixels);
+      const bool tested = depth_use == VOY_VULKAN_DEPTH_USE_TEST;
+      int wrong = 0, wrong_depth = 0, hidden = 0, drawn = 0;
+      for (size_t i = 0; i < pixels; ++i) {
+        const float z = shot.depth[i];  // +inf where it has none
+        const bool nearer = z <= before.metres[i];
+        const bool shows = !tested || nearer;
+        const uint8_t* own = &shot.color[4 * i];
+        (shows ? drawn : hidden) += own[3] != 0;
+        for (int k = 0; k < 4; ++k) {
+          const double over = shows ? own[k] + before.color[4 * i + k] * (255 - own[3]) / 255.0
+                                    : before.color[4 * i + k];
+          wrong += std::fabs(got[4 * i + k] - over) > 1.0;
+        }
+        const bool writes = depth_use != VOY_VULKAN_DEPTH_USE_NONE && nearer && z < INFINITY;
+        wrong_depth += std::fabs(got_depth[i] - (writes ? convention.code(z) : codes[i])) > 2e-6f;
+      }
+      EXPECT_EQ(wrong, 0);
+      EXPECT_EQ(wrong_depth, 0);
+      EXPECT_GT(drawn, 500);
+      EXPECT_EQ(hidden > 0, tested);
+    }
+}
+
+}  // namespace

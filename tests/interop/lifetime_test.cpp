@@ -1,0 +1,178 @@
+// What a host may do to targets, and what it leaves behind: nothing.
+#include <dirent.h>
+#include <fcntl.h>
+
+#include <fstream>
+
+#include "frames.h"
+
+namespace {
+
+int open_descriptors() {
+  int count = 0;
+  DIR* folder = ::opendir("/proc/self/fd");
+  while (::readdir(folder) != nullptr) ++count;
+  ::closedir(folder);
+  return count;
+}
+
+long resident_pages() {
+  long all = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> all >> resident;
+  return resident;
+}
+
+int wanted_cycles() {
+  const char* wanted = std::getenv("VOYAGER_INTEROP_CYCLES");
+  return wanted == nullptr ? 60 : std::atoi(wanted);
+}
+
+TEST_F(Interop, TargetsComeAndGoWithoutATrace) {
+  FOR_EACH_MODE({
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    images.depth = images.depthLimit = VK_TRUE;
+    int descriptors = 0;
+    long pages = 0;
+    const int cycles = wanted_cycles();
+    for (int cycle = 0; cycle < cycles; ++cycle) {
+      if (cycle == cycles / 2) descriptors = open_descriptors(), pages = resident_pages();
+      const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+      Line line = line_of(target);
+      if (cycle % 8 == 0) shoot(line, target, 0, eye(target), 4);
+      ASSERT_EQ(voyDestroyTarget(target), VOY_SUCCESS) << voyGetLastErrorMessage();
+    }
+    EXPECT_EQ(open_descriptors(), descriptors);
+    EXPECT_LT(resident_pages() - pages, 4096) << "16 MB in " << cycles / 2 << " cycles";
+  });
+}
+
+TEST_F(Interop, DevicesComeAndGoWithoutATrace) {
+  ASSERT_TRUE(create());  // what a driver sets up once
+  const int descriptors = open_descriptors();
+  for (int cycle = 0; cycle < 4; ++cycle) {
+    ASSERT_TRUE(create());
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    make_target(target_desc(VOY_COLOR_FORMAT_RGBA16F, &images));  // goes with its device
+  }
+  EXPECT_EQ(open_descriptors(), descriptors);
+}
+
+TEST_F(Interop, AViewDrawsIntoTargetsOfChangingSizes) {
+  FOR_EACH_MODE({
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    images.imageCount = 1;
+    for (const VkExtent2D& size :
+         {extent(33, 17), extent(400, 300), extent(1, 1), extent(128, 64)}) {
+      const VoyTarget target =
+          make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images, size.width, size.height));
+      Line line = line_of(target);
+      const Shot shot = shoot(line, target, 0, eye(target), 4, size.width, size.height);
+      EXPECT_EQ(
+          shot.color,
+          expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target), 4, size.width, size.height).color);
+      EXPECT_EQ(voyDestroyTarget(target), VOY_SUCCESS);
+    }
+  });
+}
+
+// The host's own commands have ended, as Vulkan asks; Voyager's frame need not have.
+TEST_F(Interop, ATargetMayGoWhileAFrameIntoItIsUnderWay) {
+  FOR_EACH_MODE({
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    for (int round = 0; round < 8; ++round) {
+      const VoyTarget target =
+          make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images, 400, 300));
+      Line line = line_of(target);
+      VkCommandBuffer commands = host->begin();
+      release(line, target, 0, commands);
+      host->finish(commands, {}, line.released(0));
+      ASSERT_EQ(render(line, 0, eye(target)), VOY_SUCCESS) << voyGetLastErrorMessage();
+      if (round % 2 == 0) {
+        ASSERT_EQ(voyDestroyTarget(target), VOY_SUCCESS);
+      } else {
+        ASSERT_EQ(voyDestroyView(view), VOY_SUCCESS);
+        view = make_view();
+        ASSERT_EQ(voyDestroyTarget(target), VOY_SUCCESS);
+      }
+    }
+    const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+    Line line = line_of(target);
+    EXPECT_EQ(shoot(line, target, 1, eye(target), 4).color,
+              expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target), 4).color);
+  });
+}
+
+TEST_F(Interop, StatisticsFollowFramesUnderWay) {
+  FOR_EACH_MODE({
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+    Line line = line_of(target);
+    for (uint32_t frame = 0; frame < 6; ++frame) shoot(line, target, frame % 2, eye(target), 4);
+    VoyFrameStats stats = {};
+    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    ASSERT_EQ(voyGetFrameStats(view, &stats), VOY_SUCCESS) << voyGetLastErrorMessage();
+    EXPECT_EQ(stats.frameIndex, 5u);
+    EXPECT_GT(stats.splats, 100u);
+    EXPECT_EQ(stats.pairsDropped, 0u);
+    EXPECT_GT(stats.millisecondsTotal, 0);
+  });
+}
+
+// Images of the host's own, by descriptor.
+struct Imported {
+  Imported(const VulkanHost& host, uint32_t width, uint32_t height, bool exported) {
+    ImageDesc desc;
+    desc.width = width, desc.height = height;
+    desc.usage |= VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    desc.exported = exported;
+    for (auto& image : images) {
+      image = std::make_unique<HostImage>(host, desc);
+      VoyVulkanImportedImage& out = passed.emplace_back();
+      out = VOY_VULKAN_IMPORTED_IMAGE_INIT;
+      out.color = image->image;
+      out.colorUsage = desc.usage;
+      out.colorMemory = {exported ? image->export_fd() : -1, exported ? VK_TRUE : VK_FALSE,
+                         image->bytes, 0};
+    }
+  }
+  std::unique_ptr<HostImage> images[2];
+  std::vector<VoyVulkanImportedImage> passed;
+};
+
+TEST_F(Interop, ImagesOfTheHostsAreFilled) {
+  FOR_EACH_MODE({
+    const bool shared = found.sharing == VOY_VULKAN_SHARING_DEVICE;
+    Imported imported(*host, kWidth, kHeight, shared);
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    images.images = imported.passed.data();
+    const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+    for (const VoyVulkanImportedImage& image : imported.passed)
+      if (shared) {
+        EXPECT_EQ(::fcntl(image.colorMemory.fd, F_GETFD), -1) << "it is the library's now";
+      }
+    Line line = line_of(target);
+    for (uint32_t frame = 0; frame < 4; ++frame) {
+      EXPECT_EQ(line.images[frame % 2].color, imported.images[frame % 2]->image);
+      EXPECT_EQ(shoot(line, target, frame % 2, eye(target, frame), 4).color,
+                expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target, frame), 4).color);
+    }
+    EXPECT_EQ(voyDestroyTarget(target), VOY_SUCCESS);
+  });
+}
+
+TEST_F(Interop, ADescriptorThatIsRefusedStaysTheHosts) {
+  if (!create(VOY_VULKAN_SHARING_DEVICE)) GTEST_SKIP() << voyGetLastErrorMessage();
+  Imported imported(*host, kWidth, kHeight, true);
+  const int second =
+      std::exchange(imported.passed[1].colorMemory.fd, ::open("/dev/null", O_RDONLY));
+  VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+  images.images = imported.passed.data();
+  const VoyTargetDesc desc = target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images);
+  VoyTarget target = nullptr;
+  EXPECT_NE(voyCreateTarget(device, &desc, &target), VOY_SUCCESS);
+  for (const VoyVulkanImportedImage& image : imported.passed)
+    EXPECT_EQ(::close(image.colorMemory.fd), 0) << voyGetLastErrorMessage();
+  EXPECT_EQ(::close(second), 0);
+}
+
+}  // namespace
