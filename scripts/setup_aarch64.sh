@@ -12,6 +12,7 @@ packages=(
   libtbb-dev zlib1g-dev libzstd-dev libxxhash-dev        # runtime
   libeigen3-dev
   libpng-dev libfmt-dev nlohmann-json3-dev libcli11-dev  # tools
+  libvulkan-dev                                          # Vulkan's headers
   libgtest-dev                                           # tests
 )
 sysroot=build/aarch64-sysroot
