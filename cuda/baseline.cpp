@@ -4,6 +4,7 @@
 #include "cuda/frame_image.h"
 #include "cuda/stage_timer.h"
 #include "runtime/base/error.h"
+#include "runtime/frame/instance.h"
 #include "runtime/frame/project_params.h"
 
 namespace voyager::cuda {
@@ -11,12 +12,10 @@ namespace {
 
 class BaselinePipeline final : public Pipeline {
  public:
-  BaselinePipeline(std::shared_ptr<const Device> device, std::shared_ptr<const Scene> scene,
-                   std::shared_ptr<const DeviceScene> gaussians, std::unique_ptr<Draws> draws)
+  BaselinePipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances)
       : device_(std::move(device)),
-        scene_(std::move(scene)),
-        gaussians_(std::move(gaussians)),
-        draws_(std::move(draws)) {}
+        instances_(std::move(instances)),
+        places_(instances_.all().size()) {}
 
   // What it frees belongs to the device's context.
   ~BaselinePipeline() override { device_->use_quietly(); }
@@ -25,13 +24,15 @@ class BaselinePipeline final : public Pipeline {
   void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {
     image_.resolve(image, stats);
   }
-  void read_cut(std::pmr::vector<uint32_t>& cut) const override {
+  void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
     device_->use();
-    draws_->read_cut(cut);
+    instances_.all()[instance].draws->read_cut(cut);
   }
   bool cut_is_near() const override { return false; }
 
  private:
+  uint32_t read_places(cudaStream_t stream);
+  void launch_projections(const FrameInput& frame, BaselineFrame& work) const;
   void collect(unsigned long long pairs, FrameStats& stats) const;
   void fit_places(uint32_t places);
   void fit_pairs(unsigned long long pairs);
@@ -39,9 +40,8 @@ class BaselinePipeline final : public Pipeline {
   BaselineView view(const TileGrid& grid, uint32_t places, unsigned long long pairs) const;
 
   std::shared_ptr<const Device> device_;
-  std::shared_ptr<const Scene> scene_;
-  std::shared_ptr<const DeviceScene> gaussians_;
-  std::unique_ptr<Draws> draws_;
+  DeviceInstances instances_;
+  std::vector<uint32_t> places_;  // of each instance's list
   Buffer<BaselineSplat> splats_;
   Buffer<TileRange> rows_, columns_;
   Buffer<uint32_t> tile_counts_;
@@ -105,6 +105,28 @@ T read_value(const T* from, cudaStream_t stream) {
   return value;
 }
 
+// Of all instances.
+uint32_t BaselinePipeline::read_places(cudaStream_t stream) {
+  uint32_t sum = 0;
+  for (size_t i = 0; i < places_.size(); ++i) {
+    const CutList list = instances_.all()[i].draws->view().list;
+    sum += places_[i] = list.room == 0 ? 0 : read_value(list.size, stream);
+  }
+  return sum;
+}
+
+void BaselinePipeline::launch_projections(const FrameInput& frame, BaselineFrame& work) const {
+  for (size_t i = 0; i < places_.size(); ++i) {
+    const DeviceInstance& instance = instances_.all()[i];
+    work.places = places_[i];
+    work.gaussians = instance.gaussians->view();
+    work.draws = instance.draws->view();
+    work.params = project_params(*instance.scene, instance_camera(frame, i), Exponential::exact);
+    launch_baseline_project(work);
+    work.first += work.places;
+  }
+}
+
 void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
   device_->use();
   const TileGrid grid = tile_grid(image.width, image.height);
@@ -112,20 +134,16 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
   const RasterTarget target = image_.target(frame, image);
   const cudaStream_t stream = timer_.stream();
   timer_.begin();
-  draws_->update(frame, stream);
-  const uint32_t places = read_value(draws_->view().list.size, stream);
+  instances_.update(frame, stream);
+  const uint32_t places = read_places(stream);
   timer_.end(kSearch);
   fit_places(places);
-  BaselineFrame work{gaussians_->view(),
-                     draws_->view(),
-                     project_params(*scene_, frame.camera, Exponential::exact),
-                     view(grid, places, 0),
-                     nullptr,
-                     0,
-                     stream};
+  BaselineFrame work{};
+  work.view = view(grid, places, 0);
+  work.stream = stream;
   fit_scratch(work.view);
   work.scratch = scratch_.data(), work.scratch_bytes = scratch_.bytes();
-  launch_baseline_project(work);
+  launch_projections(frame, work);
   timer_.end(kProject);
   launch_baseline_scan(work);
   const unsigned long long pairs =
@@ -138,16 +156,16 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
   timer_.end(kBin);
   launch_baseline_sort(work);
   timer_.end(kSort);
-  launch_baseline_rasterize(work, target);
+  launch_baseline_rasterize(work, instances_.siblings(), target);
   timer_.end(kRasterize);
   launch_baseline_count(work);
   stats.splats = read_value(splat_count_.data(), stream);
-  stats.gaussian_bytes = gaussians_->bytes_a_gaussian();
+  stats.gaussian_bytes = instances_.bytes_a_gaussian();
   collect(pairs, stats);
 }
 
 void BaselinePipeline::collect(unsigned long long pairs, FrameStats& stats) const {
-  draws_->collect(stats);
+  instances_.collect(stats);
   stats.pairs_before = stats.pairs_after = pairs;
   timer_.collect(stats);
 }
@@ -155,15 +173,12 @@ void BaselinePipeline::collect(unsigned long long pairs, FrameStats& stats) cons
 }  // namespace
 
 std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device> device,
-                                                   std::shared_ptr<const Scene> scene,
-                                                   std::shared_ptr<const DeviceScene> gaussians,
-                                                   std::unique_ptr<Draws> draws,
+                                                   std::vector<DeviceInstance> instances,
                                                    const PipelineDesc& desc) {
   if (desc.exponential != Exponential::exact)
     throw Error(ErrorCode::unsupported,
                 "exponential: found one other than exact, 3dgs splatting has expf only");
-  return std::make_unique<BaselinePipeline>(std::move(device), std::move(scene),
-                                            std::move(gaussians), std::move(draws));
+  return std::make_unique<BaselinePipeline>(std::move(device), std::move(instances));
 }
 
 }  // namespace voyager::cuda

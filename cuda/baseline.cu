@@ -59,13 +59,14 @@ __device__ bool baseline_splat(const BaselineFrame& f, uint32_t place) {
   splat.opacity = expf(shape.log_opacity);
   const Vec3f colour = interpolated_colour(arrays, item, (1.0f / std::sqrt(dot(d, d))) * d);
   splat.red = colour.x, splat.green = colour.y, splat.blue = colour.z;
-  splat.depth = view.z;
+  splat.depth = sort_depth(view.z, f.params.depth_scale);
   splat.t = item.t;
   splat.inverse_k = item.inverse_k;
-  f.view.splats[place] = splat;
-  f.view.rows[place] = rows;
-  f.view.columns[place] = columns;
-  f.view.tile_counts[place] =
+  const uint32_t at = f.first + place;
+  f.view.splats[at] = splat;
+  f.view.rows[at] = rows;
+  f.view.columns[at] = columns;
+  f.view.tile_counts[at] =
       static_cast<uint32_t>((rows.end - rows.begin) * (columns.end - columns.begin));
   return true;
 }
@@ -73,10 +74,10 @@ __device__ bool baseline_splat(const BaselineFrame& f, uint32_t place) {
 template <class Sh, bool kLod>
 __global__ void __launch_bounds__(kThreads) baseline_project(BaselineFrame f) {
   const uint32_t place = blockIdx.x * kThreads + threadIdx.x;
-  if (place >= f.view.places) return;
+  if (place >= f.places) return;
   if (!baseline_splat<Sh, kLod>(f, place)) {
-    f.view.tile_counts[place] = 0;
-    f.view.rows[place] = {0, 0};
+    f.view.tile_counts[f.first + place] = 0;
+    f.view.rows[f.first + place] = {0, 0};
   }
 }
 
@@ -163,7 +164,7 @@ __global__ void __launch_bounds__(kThreads) baseline_count(BaselineView view) {
 
 template <class Sh>
 void launch_project(const BaselineFrame& f) {
-  const unsigned blocks = blocks_for(f.view.places);
+  const unsigned blocks = blocks_for(f.places);
   if (f.draws.list.weights != nullptr)
     baseline_project<Sh, true><<<blocks, kThreads, 0, f.stream>>>(f);
   else
@@ -200,7 +201,7 @@ size_t baseline_scratch(const BaselineView& view) {
 }
 
 void launch_baseline_project(const BaselineFrame& f) {
-  if (f.view.places == 0) return;
+  if (f.places == 0) return;
   if (!f.gaussians.half_sh)
     launch_project<FloatSh>(f);
   else if (f.gaussians.sh_degree == 0)
@@ -236,13 +237,13 @@ void launch_baseline_sort(const BaselineFrame& f) {
   if (f.view.pairs != 0) check(sort(f.scratch, bytes, f.view, f.stream), "baseline_sort");
 }
 
-void launch_baseline_rasterize(const BaselineFrame& f, const RasterTarget& target) {
+void launch_baseline_rasterize(const BaselineFrame& f, bool siblings, const RasterTarget& target) {
   const BaselineView& v = f.view;
   const auto tiles = static_cast<unsigned>(v.grid.columns * v.grid.rows);
   check(cudaMemsetAsync(v.tiles, 0, tiles * sizeof(ulonglong2), f.stream), "baseline_ranges");
   if (v.pairs != 0) baseline_ranges<<<blocks_for(v.pairs), kThreads, 0, f.stream>>>(v);
   check(cudaGetLastError(), "baseline_ranges");
-  if (f.draws.list.weights != nullptr)
+  if (siblings)
     baseline_rasterize<true><<<tiles, kThreads, 0, f.stream>>>(v, target);
   else
     baseline_rasterize<false><<<tiles, kThreads, 0, f.stream>>>(v, target);

@@ -4,15 +4,13 @@
 // in the middle of a frame.
 #include <memory>
 
-#include "cuda/draws.h"
+#include "cuda/instances.h"
 
 namespace voyager::cuda {
 
 // Throws Error(unsupported) for an exponential other than exact.
 std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device> device,
-                                                   std::shared_ptr<const Scene> scene,
-                                                   std::shared_ptr<const DeviceScene> gaussians,
-                                                   std::unique_ptr<Draws> draws,
+                                                   std::vector<DeviceInstance> instances,
                                                    const PipelineDesc& desc);
 
 }  // namespace voyager::cuda

@@ -12,7 +12,7 @@ struct alignas(16) BaselineSplat {
   float red, green, blue, inverse_k;
 };
 
-// As kernels take it, by place of the list.
+// As kernels take it, by place: those of one instance's list behind those of another's.
 struct BaselineView {
   BaselineSplat* splats;
   TileRange* rows;  // of each splat's box; none where it is not drawn
@@ -24,11 +24,13 @@ struct BaselineView {
   ulonglong2* tiles;              // [first, last) of the sorted pairs
   uint32_t* splat_count;
   TileGrid grid;
-  uint32_t places;
+  uint32_t places;  // of all instances
   unsigned long long pairs;
 };
 
+// What comes first, up to the view, is an instance's, and projection's alone.
 struct BaselineFrame {
+  uint32_t first, places;  // where its list begins, and how long it is
   GaussianView gaussians;
   DrawView draws;
   ProjectParams params;
@@ -47,6 +49,8 @@ void launch_baseline_keys(const BaselineFrame& frame);
 void launch_baseline_sort(const BaselineFrame& frame);
 // How many are drawn, for the statistics: apart from what is timed.
 void launch_baseline_count(const BaselineFrame& frame);
-void launch_baseline_rasterize(const BaselineFrame& frame, const RasterTarget& target);
+// siblings: some t may be below 1.
+void launch_baseline_rasterize(const BaselineFrame& frame, bool siblings,
+                               const RasterTarget& target);
 
 }  // namespace voyager::cuda

@@ -39,18 +39,14 @@ class CudaBackend final : public Backend {
   std::array<uint8_t, 16> device_uuid() const override { return device_->uuid(); }
   DeviceRates rates() const override { return device_->rates(); }
 
-  std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
-                                            const PipelineDesc& desc, std::pmr::memory_resource*,
-                                            Workers& workers) override {
+  std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
+                                            std::pmr::memory_resource*, Workers& workers) override {
     device_->use();
-    const auto gaussians = gaussians_.of(
-        scene, [&](const Scene& s) { return std::make_shared<DeviceScene>(s, workers); });
-    const bool draws_cut = !scene->flat() && desc.lod == Lod::cut;
-    auto search = draws_cut ? search_for(scene, desc.search, true, workers) : nullptr;
-    auto draws = create_draws(scene, desc.lod, std::move(search));
+    std::vector<DeviceInstance> instances;
+    for (const auto& scene : scenes) instances.push_back(instance_of(scene, desc, workers));
     if (desc.splatting == Splatting::baseline_3dgs)
-      return create_baseline_pipeline(device_, std::move(scene), gaussians, std::move(draws), desc);
-    return cuda::create_pipeline(device_, std::move(scene), gaussians, std::move(draws), desc);
+      return create_baseline_pipeline(device_, std::move(instances), desc);
+    return cuda::create_pipeline(device_, std::move(instances), desc);
   }
 
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
@@ -62,6 +58,15 @@ class CudaBackend final : public Backend {
   }
 
  private:
+  DeviceInstance instance_of(const std::shared_ptr<const Scene>& scene, const PipelineDesc& desc,
+                             Workers& workers) {
+    auto gaussians = gaussians_.of(
+        scene, [&](const Scene& s) { return std::make_shared<DeviceScene>(s, workers); });
+    const bool draws_cut = !scene->flat() && desc.lod == Lod::cut;
+    auto search = draws_cut ? search_for(scene, desc.search, true, workers) : nullptr;
+    return {scene, std::move(gaussians), create_draws(scene, desc.lod, std::move(search))};
+  }
+
   std::unique_ptr<CutSearch> search_for(const std::shared_ptr<const Scene>& scene, Search kind,
                                         bool weights, Workers& workers) {
     if (!scene->damaged_chunks.empty()) return create_host_cut_search(scene, kind, workers);

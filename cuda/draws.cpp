@@ -14,8 +14,8 @@ class CutDraws final : public Draws {
   CutDraws(std::shared_ptr<const Scene> scene, std::unique_ptr<CutSearch> search)
       : scene_(std::move(scene)), search_(std::move(search)) {}
 
-  void update(const FrameInput& frame, cudaStream_t stream) override {
-    const CutQuery query = cut_query(frame, scene_->origin);
+  void update(const Camera& camera, double tau, cudaStream_t stream) override {
+    const CutQuery query = cut_query(camera, tau, scene_->origin);
     search_->find(query, stream);
     search_->weigh(query, stream);
   }
@@ -23,8 +23,8 @@ class CutDraws final : public Draws {
   void collect(FrameStats& stats) override {
     const CutFound found = search_->found();
     add_search(found.stats, search_->counts_changes(), stats);
-    stats.cut_size = found.cut_size;
-    stats.bytes[kSearch] = found.stats.bytes_read;
+    stats.cut_size += found.cut_size;
+    stats.bytes[kSearch] += found.stats.bytes_read;
   }
   void read_cut(std::pmr::vector<uint32_t>& cut) override {
     std::vector<uint32_t> nodes;
@@ -61,13 +61,13 @@ class LeafDraws final : public Draws {
     ids_ = upload(std::span<const uint32_t>(order));
   }
 
-  void update(const FrameInput&, cudaStream_t) override {
+  void update(const Camera&, double, cudaStream_t) override {
     if (!damage_.empty()) throw Error(ErrorCode::damaged_chunk, damage_);
   }
   DrawView view() const override {
     return {{nodes_.data(), nullptr, size_.data(), count_}, ids_.data()};
   }
-  void collect(FrameStats& stats) override { stats.cut_size = count_; }
+  void collect(FrameStats& stats) override { stats.cut_size += count_; }
   void read_cut(std::pmr::vector<uint32_t>& cut) override { cut.clear(); }
 
  private:

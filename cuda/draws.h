@@ -1,5 +1,5 @@
 #pragma once
-// What a view draws: the cut that its search finds, or every Gaussian.
+// What a view draws of a scene: the cut that its search finds, or every Gaussian.
 #include <memory>
 
 #include "cuda/search.h"
@@ -11,11 +11,11 @@ namespace voyager::cuda {
 class Draws {
  public:
   virtual ~Draws() = default;
-  // Launches the search and the weights, where there are any. Throws Error(damaged_chunk)
-  // where the frame needs a node that is not there.
-  virtual void update(const FrameInput& frame, cudaStream_t stream) = 0;
+  // Launches the search and the weights, where there are any. camera: in the scene's
+  // coordinates. Throws Error(damaged_chunk) where the frame needs a node that is not there.
+  virtual void update(const Camera& camera, double tau, cudaStream_t stream) = 0;
   virtual DrawView view() const = 0;
-  // Of the last frame, whose work is done.
+  // Adds the counters of the last frame, whose work is done.
   virtual void collect(FrameStats& stats) = 0;
   virtual void read_cut(std::pmr::vector<uint32_t>& cut) = 0;
 };

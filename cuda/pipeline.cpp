@@ -5,6 +5,7 @@
 #include "cuda/frame_image.h"
 #include "cuda/splat_state.h"
 #include "cuda/stage_timer.h"
+#include "runtime/frame/instance.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/math/alpha_lut.h"
 
@@ -20,13 +21,10 @@ Buffer<float> upload_lut(const PipelineDesc& desc) {
 
 class SplatPipeline final : public Pipeline {
  public:
-  SplatPipeline(std::shared_ptr<const Device> device, std::shared_ptr<const Scene> scene,
-                std::shared_ptr<const DeviceScene> gaussians, std::unique_ptr<Draws> draws,
+  SplatPipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances,
                 const PipelineDesc& desc)
       : device_(std::move(device)),
-        scene_(std::move(scene)),
-        gaussians_(std::move(gaussians)),
-        draws_(std::move(draws)),
+        instances_(std::move(instances)),
         desc_(desc),
         lut_(upload_lut(desc)),
         splats_(bin_blocks(device_->multiprocessors())) {}
@@ -38,22 +36,21 @@ class SplatPipeline final : public Pipeline {
   void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {
     image_.resolve(image, stats);
   }
-  void read_cut(std::pmr::vector<uint32_t>& cut) const override {
+  void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
     device_->use();
-    draws_->read_cut(cut);
+    instances_.all()[instance].draws->read_cut(cut);
   }
   bool cut_is_near() const override { return false; }
 
  private:
-  void launch_splatting(const SplatFrame& frame, const RasterTarget& target);
+  void launch_splatting(const FrameInput& frame, const TileGrid& grid, const RasterTarget& target);
+  void launch_projections(const FrameInput& frame, SplatFrame& work);
   SplatCounters counters() const;
   void collect(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
   void count_bytes(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
 
   std::shared_ptr<const Device> device_;
-  std::shared_ptr<const Scene> scene_;
-  std::shared_ptr<const DeviceScene> gaussians_;
-  std::unique_ptr<Draws> draws_;
+  DeviceInstances instances_;
   PipelineDesc desc_;
   Buffer<float> lut_;
   SplatState splats_;
@@ -61,19 +58,34 @@ class SplatPipeline final : public Pipeline {
   StageTimer timer_;
 };
 
-void SplatPipeline::launch_splatting(const SplatFrame& frame, const RasterTarget& target) {
-  const TileGrid& grid = frame.splats.grid;
-  splats_.begin_frame(grid, frame.stream);
-  launch_project(frame, desc_.alpha_filter);
+// One instance after the other, so that each finds on the device where its slots begin.
+void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work) {
+  for (size_t i = 0; i < instances_.all().size(); ++i) {
+    const DeviceInstance& instance = instances_.all()[i];
+    work.gaussians = instance.gaussians->view();
+    work.draws = instance.draws->view();
+    work.params = project_params(*instance.scene, instance_camera(frame, i), desc_.exponential);
+    if (launch_project(work, desc_.alpha_filter)) ++work.instance;
+  }
+}
+
+void SplatPipeline::launch_splatting(const FrameInput& frame, const TileGrid& grid,
+                                     const RasterTarget& target) {
+  SplatFrame work{};
+  work.splats = splats_.view(grid);
+  work.multiprocessors = device_->multiprocessors();
+  work.stream = timer_.stream();
+  splats_.begin_frame(grid, work.stream);
+  launch_projections(frame, work);
   timer_.end(kProject);
-  launch_bin(frame);
+  launch_bin(work);
   timer_.end(kBin);
-  launch_sort(frame);
+  launch_sort(work);
   timer_.end(kSort);
-  launch_rasterize(
-      frame,
-      {desc_.exponential, desc_.alpha_filter, desc_.count_pixels, lut_.data(), desc_.lut_size},
-      target);
+  launch_rasterize(work,
+                   {desc_.exponential, desc_.alpha_filter, desc_.count_pixels,
+                    instances_.siblings(), lut_.data(), desc_.lut_size},
+                   target);
   timer_.end(kRasterize);
 }
 
@@ -91,21 +103,14 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
   splats_.fit(grid);
   const RasterTarget target = image_.target(frame, image);
   timer_.begin();
-  draws_->update(frame, timer_.stream());
+  instances_.update(frame, timer_.stream());
   timer_.end(kSearch);
-  SplatFrame work{gaussians_->view(),
-                  draws_->view(),
-                  project_params(*scene_, frame.camera, desc_.exponential),
-                  splats_.view(grid),
-                  device_->multiprocessors(),
-                  timer_.stream()};
-  launch_splatting(work, target);
+  launch_splatting(frame, grid, target);
   SplatCounters counted = counters();
   // A frame that found too little room is drawn again with more.
   while (splats_.grow(counted)) {
-    work.splats = splats_.view(grid);
     timer_.go_back_to(kSearch);
-    launch_splatting(work, target);
+    launch_splatting(frame, grid, target);
     counted = counters();
   }
   collect(counted, image, stats);
@@ -113,7 +118,7 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
 
 void SplatPipeline::collect(const SplatCounters& counted, const Image& image,
                             FrameStats& stats) const {
-  draws_->collect(stats);
+  instances_.collect(stats);
   stats.splats = counted.splats;
   stats.pairs_before = counted.pairs_boxed;
   stats.pairs_after = counted.pairs;
@@ -133,14 +138,13 @@ void SplatPipeline::count_bytes(const SplatCounters& counted, const Image& image
   const uint64_t tiles = static_cast<uint64_t>(grid.columns) * static_cast<uint64_t>(grid.rows);
   const uint64_t offsets = tiles * bin_blocks(device_->multiprocessors()) * sizeof(uint32_t);
   const uint64_t pixels = uint64_t{image.width} * image.height, pairs = counted.pairs;
-  const CutList list = draws_->view().list;
-  const uint64_t place = sizeof(float4) + (list.nodes != nullptr ? sizeof(uint32_t) : 0) +
-                         (list.weights != nullptr ? sizeof(float) : 0);
+  uint64_t candidates = 0;
+  for (const InstanceCounters& instance : counted.instances) candidates += instance.candidates;
   constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
-  stats.gaussian_bytes = gaussians_->bytes_a_gaussian();
-  stats.bytes[kProject] = counted.places * place + 2 * sizeof(uint32_t) * counted.candidates +
-                          counted.splats * (stats.gaussian_bytes + kRecord) +
-                          counted.strips * sizeof(TileStrip);
+  stats.gaussian_bytes = instances_.bytes_a_gaussian();
+  stats.bytes[kProject] =
+      uint64_t{counted.places} * instances_.bytes_a_place() + 2 * sizeof(uint32_t) * candidates +
+      counted.splats * (stats.gaussian_bytes + kRecord) + counted.strips * sizeof(TileStrip);
   stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
   stats.bytes[kSort] = 2 * pairs * kKey;
   stats.bytes[kRasterize] = pairs * (kKey + kRecord) + pixels * pixel_bytes(image.format);
@@ -149,11 +153,9 @@ void SplatPipeline::count_bytes(const SplatCounters& counted, const Image& image
 }  // namespace
 
 std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Device> device,
-                                          std::shared_ptr<const Scene> scene,
-                                          std::shared_ptr<const DeviceScene> gaussians,
-                                          std::unique_ptr<Draws> draws, const PipelineDesc& desc) {
-  return std::make_unique<SplatPipeline>(std::move(device), std::move(scene), std::move(gaussians),
-                                         std::move(draws), desc);
+                                          std::vector<DeviceInstance> instances,
+                                          const PipelineDesc& desc) {
+  return std::make_unique<SplatPipeline>(std::move(device), std::move(instances), desc);
 }
 
 }  // namespace voyager::cuda

@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "cuda/draws.h"
+#include "cuda/instances.h"
 #include "runtime/frame/backend.h"
 
 namespace voyager::cuda {
@@ -9,8 +9,7 @@ namespace voyager::cuda {
 // A view's frames with our splatting: every stage on one stream, no wait for the host
 // before the end, no allocation once the buffers have grown to what the frames need.
 std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Device> device,
-                                          std::shared_ptr<const Scene> scene,
-                                          std::shared_ptr<const DeviceScene> gaussians,
-                                          std::unique_ptr<Draws> draws, const PipelineDesc& desc);
+                                          std::vector<DeviceInstance> instances,
+                                          const PipelineDesc& desc);
 
 }  // namespace voyager::cuda

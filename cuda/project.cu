@@ -42,8 +42,11 @@ template <bool kLod>
 __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
   __shared__ uint32_t found, first;
   const uint32_t places = *f.draws.list.size, lane = threadIdx.x % 32;
-  if (blockIdx.x == 0 && threadIdx.x == 0) f.splats.counters->places = places;
-  const uint32_t end = min(places, f.splats.slots);
+  InstanceCounters* const counters = f.splats.counters->instances + f.instance;
+  const uint32_t first_slot = counters->first_slot;
+  if (blockIdx.x == 0 && threadIdx.x == 0)
+    f.splats.counters->places = counters[1].first_slot = first_slot + places;
+  const uint32_t end = min(places, f.splats.slots - min(first_slot, f.splats.slots));
   constexpr uint32_t kChunk = kCullThreads * kCullItems;
   for (uint32_t base = blockIdx.x * kChunk; base < end; base += gridDim.x * kChunk) {
     if (threadIdx.x == 0) found = 0;
@@ -58,7 +61,7 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
     for (unsigned k = 0; k < kCullItems; ++k)
       if (lane == 0) before[k] = atomicAdd(&found, static_cast<uint32_t>(__popc(lanes[k])));
     __syncthreads();
-    if (threadIdx.x == 0) first = atomicAdd(&f.splats.counters->candidates, found);
+    if (threadIdx.x == 0) first = atomicAdd(&counters->candidates, found);
     __syncthreads();
 #pragma unroll
     for (unsigned k = 0; k < kCullItems; ++k) {
@@ -78,7 +81,8 @@ __device__ SplatRecord record_of(const Splat& s, float log_scale) {
 template <class Sh, bool kLod>
 __global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, bool boxes) {
   const DeviceArrays<Sh> arrays{f.gaussians};
-  const uint32_t count = f.splats.counters->candidates;
+  const InstanceCounters& counters = f.splats.counters->instances[f.instance];
+  const uint32_t count = counters.candidates, first_slot = counters.first_slot;
   uint32_t visible = 0;
   unsigned long long boxed = 0;
   const uint32_t first = blockIdx.x * kProjectThreads + threadIdx.x / 32 * 32;
@@ -94,7 +98,7 @@ __global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, 
       const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
       Splat splat;
       Vec3f relative;
-      slot = f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place);
+      slot = first_slot + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
       // A slot beyond the room is that of a place that is, too: counted there.
       if (slot < f.splats.slots && project_shape(f.params, arrays, item, splat, relative)) {
         const float inverse_length = 1.0f / std::sqrt(dot(relative, relative));
@@ -143,13 +147,14 @@ void launch_for(const SplatFrame& f, bool boxes) {
 
 }  // namespace
 
-void launch_project(const SplatFrame& frame, bool alpha_filter) {
-  if (frame.draws.list.room == 0) return;
+bool launch_project(const SplatFrame& frame, bool alpha_filter) {
+  if (frame.draws.list.room == 0) return false;
   if (frame.draws.list.weights != nullptr)
     launch_for<true>(frame, !alpha_filter);
   else
     launch_for<false>(frame, !alpha_filter);
   check(cudaGetLastError(), "project_splats");
+  return true;
 }
 
 }  // namespace voyager::cuda

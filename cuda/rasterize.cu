@@ -188,8 +188,8 @@ void launch(const SplatFrame& f, const RasterParams& params) {
 }
 
 template <Exponential E, bool kFilter>
-void launch_for(const SplatFrame& f, const RasterParams& params) {
-  const bool siblings = f.draws.list.weights != nullptr, depth = params.target.depth != nullptr;
+void launch_for(const SplatFrame& f, bool siblings, const RasterParams& params) {
+  const bool depth = params.target.depth != nullptr;
   if (siblings && depth) return launch<Mode<E, kFilter, true, true, false>>(f, params);
   if (siblings) return launch<Mode<E, kFilter, true, false, false>>(f, params);
   if (depth) return launch<Mode<E, kFilter, false, true, false>>(f, params);
@@ -201,8 +201,8 @@ void launch_for(const SplatFrame& f, const RasterChoices& choices, const RasterP
   if (choices.count_pixels && choices.alpha_filter)
     return launch<Mode<E, true, true, true, true>>(f, params);
   if (choices.count_pixels) return launch<Mode<E, false, true, true, true>>(f, params);
-  if (choices.alpha_filter) return launch_for<E, true>(f, params);
-  launch_for<E, false>(f, params);
+  if (choices.alpha_filter) return launch_for<E, true>(f, choices.siblings, params);
+  launch_for<E, false>(f, choices.siblings, params);
 }
 
 }  // namespace

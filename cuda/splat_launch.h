@@ -10,15 +10,16 @@
 
 namespace voyager::cuda {
 
-// What a frame draws, in the order of ids.
+// What a frame draws of an instance, in the order of ids.
 struct DrawView {
   CutList list;         // its nodes null: every Gaussian, by its index
   const uint32_t* ids;  // by place, what breaks ties of depth: 0 to the last place, each
                         // once. Null: the places themselves.
 };
 
-// What a frame's kernels share.
+// What a frame's kernels share. The first four are an instance's, and projection's alone.
 struct SplatFrame {
+  uint32_t instance;  // those projected before it in this frame
   GaussianView gaussians;
   DrawView draws;
   ProjectParams params;
@@ -27,14 +28,15 @@ struct SplatFrame {
   cudaStream_t stream;
 };
 
-// project.cu. Splats into slots, and into strips of tiles (METHOD §7b): with the α-filter
-// those that its ellipse touches, without it its box's.
-void launch_project(const SplatFrame& frame, bool alpha_filter);
+// project.cu. An instance's splats into slots behind those of the instances before it, and
+// into strips of tiles (METHOD §7b): with the α-filter those that its ellipse touches, without
+// it its box's. False where the instance has nothing to draw, and so takes no number.
+bool launch_project(const SplatFrame& frame, bool alpha_filter);
 // bin.cu: the (tile, splat) pairs, tile by tile. Those beyond the room are left out.
 void launch_bin(const SplatFrame& frame);
 // Thread blocks that count for themselves: rows of SplatView::tile_offsets.
 unsigned bin_blocks(unsigned multiprocessors);
-// sort.cu: each tile's list by depth, then id.
+// sort.cu: each tile's list by depth, then instance, then id.
 void launch_sort(const SplatFrame& frame);
 
 // rasterize.cu
@@ -49,6 +51,7 @@ struct RasterChoices {
   Exponential exponential;
   bool alpha_filter;
   bool count_pixels;
+  bool siblings;     // some t may be below 1
   const float* lut;  // lut_size + 1 entries on the device
   uint32_t lut_size;
 };

@@ -24,7 +24,7 @@ VOYAGER_HD SupportEllipse support_of(const SplatRecord& r, float log_scale) {
 }
 
 // A (tile, splat) pair in its tile's list: the bits of z > 0 above the splat's slot. Slots
-// ascend with ids, so that keys are in the contract's order.
+// ascend with (instance, id), so that keys are in the contract's order.
 using DepthKey = unsigned long long;
 
 VOYAGER_HD uint32_t slot_of(DepthKey key) {
@@ -37,16 +37,21 @@ struct alignas(128) StripRegion {
   uint32_t strips;
 };
 
+struct InstanceCounters {
+  uint32_t first_slot;
+  uint32_t candidates;  // of its places, that may reach the image
+};
+
 // Of one frame.
 struct SplatCounters {
   StripRegion regions[kStripRegions];
-  unsigned long long pairs, pairs_boxed;  // of the ellipses, and of their boxes
-  unsigned long long evaluated, blended;  // pixels, where they are counted
-  uint32_t places;                        // of the list that is drawn
-  uint32_t candidates;                    // of them, that may reach the image
-  uint32_t splats;                        // that reach it
-  unsigned long long strips;              // of them
-  unsigned long long strip_room;          // that they need in all regions
+  unsigned long long pairs, pairs_boxed;          // of the ellipses, and of their boxes
+  unsigned long long evaluated, blended;          // pixels, where they are counted
+  InstanceCounters instances[kMaxInstances + 1];  // by SplatFrame::instance
+  uint32_t places;                                // of the lists that are drawn
+  uint32_t splats;                                // that reach the image
+  unsigned long long strips;                      // of them
+  unsigned long long strip_room;                  // that they need in all regions
   unsigned long long strips_dropped;
   uint32_t long_lists, large_lists;  // the first tiles of tile_order
 };
@@ -69,7 +74,7 @@ struct TileList {
 // As kernels take it.
 struct SplatView {
   SplatRecord* records;  // by slot
-  uint32_t* candidates;  // places
+  uint32_t* candidates;  // places, of the instance that is being projected
   uint32_t slots;        // room
   TileStrip* strips;     // kStripRegions regions of equal room
   uint32_t strip_room;   // of all

@@ -21,7 +21,8 @@ inline std::unique_lock<std::mutex> claim(ViewObject& view) {
   auto lock = claim_object(view, "view");
   if (!view.view)
     throw ApiError(VOY_ERROR_SCENE_DESTROYED,
-                   "view: found one whose scene was destroyed, expected it to be destroyed too");
+                   "view: found one of which a scene was destroyed, expected it to be "
+                   "destroyed too");
   return lock;
 }
 

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <optional>
 
 #include "plugin/backend_choice.h"
 #include "plugin/call.h"
 #include "plugin/structs.h"
 #include "plugin/version.h"
+#include "plugin/vulkan_device.h"
 
 using namespace voyager;
 
@@ -58,6 +60,39 @@ void log_creation(const DeviceObject& device, const std::string& cuda_left_out) 
   write(device.backend->device_name());
 }
 
+// The UUID that the backend must have; NULL for any.
+const uint8_t* checked_uuid(const VoyDeviceDesc& desc, const vulkan::PhysicalDevice* physical,
+                            vulkan::Sharing sharing) {
+  if (physical == nullptr || sharing == vulkan::Sharing::host) return desc.deviceUuid;
+  const uint8_t* uuid = physical->uuid().data();
+  if (desc.deviceUuid != nullptr && !std::equal(uuid, uuid + 16, desc.deviceUuid))
+    refuse("desc.deviceUuid: found another than the Vulkan device's, expected NULL or the same");
+  const bool on_cpu = desc.backend == VOY_BACKEND_CPU || desc.backend == VOY_BACKEND_REFERENCE;
+  return on_cpu ? nullptr : uuid;
+}
+
+std::shared_ptr<DeviceObject> make_device(const VoyDeviceDesc& desc,
+                                          const VoyVulkanDeviceDesc* host) {
+  std::optional<vulkan::DeviceDesc> wanted;
+  std::optional<vulkan::PhysicalDevice> physical;
+  if (host != nullptr) {
+    wanted = vulkan_device_desc(*host);
+    physical.emplace(wanted->get, wanted->instance, wanted->physical_device);
+  }
+  const uint8_t* uuid =
+      checked_uuid(desc, physical ? &*physical : nullptr,
+                   wanted ? wanted->sharing : vulkan::Sharing::automatic);
+  BackendChoice choice = choose_backend(desc.backend, uuid);
+  const auto object = std::make_shared<DeviceObject>(desc, choice.kind, std::move(choice.backend));
+  if (wanted) {
+    ExternalSupport support = object->backend->external_support();
+    support.images &= object->backend->device_uuid() == physical->uuid();
+    object->vulkan = std::make_shared<vulkan::Device>(*wanted, support);
+  }
+  log_creation(*object, choice.cuda_left_out);
+  return object;
+}
+
 }  // namespace
 
 voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend kind,
@@ -82,18 +117,16 @@ VoyResult voyQueryBackend(VoyBackend backend) {
 
 VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device) {
   return guarded("voyCreateDevice", [&](Call&) {
-    check_structure(desc, VOY_STRUCTURE_TYPE_DEVICE_DESC, "VoyDeviceDesc");
+    const VoyVulkanDeviceDesc* host = nullptr;
+    check_structure(desc, VOY_STRUCTURE_TYPE_DEVICE_DESC, "VoyDeviceDesc",
+                    Extension{VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC, host});
     check_pointer(device, "device");
     check_version(desc->apiVersion);
     check_backend(desc->backend);
     check_count(desc->workerThreads, 0, kMaxWorkerThreads, "desc.workerThreads");
     check_enum(desc->logLevel, VOY_LOG_INFO, "desc.logLevel");
     check_allocator(desc->allocator);
-    BackendChoice choice = choose_backend(desc->backend, desc->deviceUuid);
-    const auto object =
-        std::make_shared<DeviceObject>(*desc, choice.kind, std::move(choice.backend));
-    log_creation(*object, choice.cuda_left_out);
-    *device = static_cast<VoyDevice>(HandleTable::instance().insert(object));
+    *device = static_cast<VoyDevice>(HandleTable::instance().insert(make_device(*desc, host)));
     return VOY_SUCCESS;
   });
 }
@@ -108,22 +141,31 @@ VoyResult voyDestroyDevice(VoyDevice device) {
 VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
   return guarded("voyGetCapabilities", [&](Call& call) {
     const auto object = call.use<DeviceObject>(device);
-    check_structure(capabilities, VOY_STRUCTURE_TYPE_CAPABILITIES, "VoyCapabilities");
+    VoyVulkanCapabilities* vulkan = nullptr;
+    check_structure(capabilities, VOY_STRUCTURE_TYPE_CAPABILITIES, "VoyCapabilities",
+                    Extension{VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES, vulkan});
+    if (vulkan != nullptr && object->vulkan == nullptr)
+      throw ApiError(VOY_ERROR_UNSUPPORTED,
+                     "capabilities.next: found a VoyVulkanCapabilities for a device that was made "
+                     "without a VoyVulkanDeviceDesc");
     VoyCapabilities found = VOY_CAPABILITIES_INIT;
+    found.next = capabilities->next;
     found.backend = object->backend_kind;
     found.workerThreads = static_cast<uint32_t>(object->workers.count());
     object->backend->device_name().copy(found.deviceName, sizeof found.deviceName - 1);
     const auto uuid = object->backend->device_uuid();
     std::copy(uuid.begin(), uuid.end(), found.deviceUuid);
-    found.maxInstances = 1;
+    found.maxInstances = kMaxInstances;
     found.maxEyes = 1;
     found.maxWidth = found.maxHeight = kMaxImageSide;
     found.searches = bits_up_to(VOY_SEARCH_TEMPORAL_VISIT);
     found.exponentials = exponentials_of(object->backend_kind);
     found.splattings = splattings_of(object->backend_kind);
-    found.targetKinds = bits_up_to(VOY_TARGET_KIND_HOST_MEMORY);
+    found.targetKinds =
+        bits_up_to(object->vulkan ? VOY_TARGET_KIND_VULKAN : VOY_TARGET_KIND_HOST_MEMORY);
     found.colorFormats = bits_up_to(VOY_COLOR_FORMAT_RGBA16F);
     *capabilities = found;
+    if (vulkan != nullptr) fill(*vulkan, *object->vulkan);
     return VOY_SUCCESS;
   });
 }

@@ -57,12 +57,32 @@ void fill(VoyFrameStats& out, const FrameStats& in) {
   out.millisecondsTotal = in.total_milliseconds;
 }
 
+// What the frame's target asks of it.
+vulkan::FrameSync checked_sync(const TargetObject& target, const VoyVulkanFrame* frame,
+                               uint32_t layer) {
+  if (target.ring == nullptr) {
+    if (frame != nullptr)
+      throw ApiError(VOY_ERROR_INVALID_STRUCTURE,
+                     "frame.next: found a VoyVulkanFrame for a target of HOST_MEMORY");
+    check_count(layer, 0, 0, "frame.eyes[0].layer");
+    return {};
+  }
+  if (frame == nullptr)
+    refuse("frame.next: found no VoyVulkanFrame, expected one for a target of VULKAN");
+  check_count(frame->imageIndex, 0, target.ring->desc().images - 1, "VoyVulkanFrame.imageIndex");
+  check_count(frame->reserved, 0, 0, "VoyVulkanFrame.reserved");
+  check_count(layer, 0, target.ring->desc().layers - 1, "frame.eyes[0].layer");
+  return {frame->waitValue, frame->signalValue};
+}
+
 }  // namespace
 
 VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
   return guarded("voyRenderFrame", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
-    check_structure(frame, VOY_STRUCTURE_TYPE_FRAME, "VoyFrame");
+    const VoyVulkanFrame* vulkan = nullptr;
+    check_structure(frame, VOY_STRUCTURE_TYPE_FRAME, "VoyFrame",
+                    Extension{VOY_STRUCTURE_TYPE_VULKAN_FRAME, vulkan});
     check_count(frame->eyeCount, 1, 1, "frame.eyeCount");
     check_pointer(frame->eyes, "frame.eyes");
     const VoyFrameEye& eye = frame->eyes[0];
@@ -71,12 +91,20 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
     if (target->parent() != object->parent())
       refuse("frame.eyes[0].target: found a target of another device, expected the view's");
     check_size(target->image, *object);
-    FrameInput input = frame_input(*frame, eye, target->image);
+    const vulkan::FrameSync sync = checked_sync(*target, vulkan, eye.layer);
+    FrameInput input = frame_input(*frame, eye, target->image, object->instances);
 
     const auto view_lock = claim(*object);
     const auto target_lock = claim_object(*target, "frame.eyes[0].target");
     input.tau = object->tau;
-    object->view->render(input, target->image);
+    if (target->ring == nullptr) {
+      object->view->render(input, target->image);
+      return VOY_SUCCESS;
+    }
+    const Image image = target->ring->begin_frame(vulkan->imageIndex, eye.layer, sync);
+    input.depth_wanted = target->ring->desc().depth;
+    object->view->render(input, image);
+    target->ring->end_frame(sync);
     return VOY_SUCCESS;
   });
 }

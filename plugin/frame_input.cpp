@@ -13,6 +13,8 @@ namespace {
 
 // METHOD §3: below this, squared distances stay finite in binary32.
 constexpr double kMaxCoordinate = 1e18;
+// Of an instance: depths in coordinates of METHOD §3 stay finite in binary32.
+constexpr double kMinInstanceScale = 1e-9, kMaxInstanceScale = 1e9;
 
 Vec3d checked_position(const double (&p)[3], const std::string& field) {
   for (const double x : p)
@@ -32,24 +34,42 @@ Quatd checked_orientation(const double (&q)[4], const std::string& field) {
   return normalise(Quatd{q[3] / largest, q[0] / largest, q[1] / largest, q[2] / largest});
 }
 
-void check_instance(const VoyInstancePose* instance) {
-  if (instance == nullptr) return;
-  check_structure(instance, VOY_STRUCTURE_TYPE_INSTANCE_POSE, "frame.instances[0]");
-  const Vec3d p = checked_position(instance->pose.position, "frame.instances[0].pose");
-  const Quatd q = checked_orientation(instance->pose.orientation, "frame.instances[0].pose");
-  if (!(instance->scale > 0) || !std::isfinite(instance->scale))
-    refuse_number("frame.instances[0].scale", instance->scale, "a finite number, > 0");
-  const bool identity =
-      p.x == 0 && p.y == 0 && p.z == 0 && q.x == 0 && q.y == 0 && q.z == 0 && instance->scale == 1;
-  if (!identity)
-    throw ApiError(VOY_ERROR_UNSUPPORTED,
-                   "frame.instances[0]: found a pose or scale that is not the identity, which is "
-                   "the only one that this version draws");
+InstancePose checked_instance(const VoyInstancePose& instance, const std::string& field) {
+  check_structure(&instance, VOY_STRUCTURE_TYPE_INSTANCE_POSE, field.c_str());
+  if (!(instance.scale >= kMinInstanceScale && instance.scale <= kMaxInstanceScale))
+    refuse_number(field + ".scale", instance.scale, "1e-9 to 1e9");
+  return {rotation(checked_orientation(instance.pose.orientation, field + ".pose")),
+          checked_position(instance.pose.position, field + ".pose"), instance.scale};
+}
+
+bool is_identity(const InstancePose& pose) {
+  const InstancePose identity;
+  bool same = pose.scale == identity.scale;
+  for (int i = 0; i < 3; ++i) {
+    same = same && pose.position[i] == identity.position[i];
+    for (int k = 0; k < 3; ++k)
+      same = same && pose.rotation.row[i][k] == identity.rotation.row[i][k];
+  }
+  return same;
+}
+
+// None where all are the identity, which then costs what no poses cost.
+std::vector<InstancePose> checked_instances(const VoyInstancePose* instances, uint32_t count) {
+  std::vector<InstancePose> poses;
+  if (instances == nullptr) return poses;
+  bool identity = true;
+  for (uint32_t i = 0; i < count; ++i) {
+    poses.push_back(checked_instance(instances[i], "frame.instances[" + std::to_string(i) + "]"));
+    identity = identity && is_identity(poses[i]);
+  }
+  if (identity) poses.clear();
+  return poses;
 }
 
 }  // namespace
 
-FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Image& image) {
+FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Image& image,
+                       uint32_t instances) {
   FrameInput input;
   if (!(frame.nearZ > 0) || !std::isfinite(frame.nearZ))
     refuse_number("frame.nearZ", frame.nearZ, "a finite number of metres, > 0");
@@ -60,8 +80,7 @@ FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Imag
     input.background[i] = frame.background[i];
   }
   check_count(frame.reserved, 0, 0, "frame.reserved");
-  check_instance(frame.instances);
-  check_count(eye.layer, 0, 0, "frame.eyes[0].layer");
+  input.instances = checked_instances(frame.instances, instances);
   check_count(eye.reserved, 0, 0, "frame.eyes[0].reserved");
 
   Camera& camera = input.camera;

@@ -27,6 +27,8 @@ const char* name(Kind kind) {
       return "view";
     case Kind::target:
       return "target";
+    case Kind::composite:
+      return "composite";
   }
   return "object";
 }
@@ -50,7 +52,7 @@ size_t HandleTable::find(const void* handle, Kind kind) const {
   const uint64_t value = reinterpret_cast<uintptr_t>(handle);
   const uint64_t found_kind = (value >> 4) & 0xf, index = (value >> 8) & (kMaxSlots - 1);
   const uint64_t generation = value >> 32;
-  const bool issued = (value & 0xf) == kMark && found_kind <= uint64_t(Kind::target) &&
+  const bool issued = (value & 0xf) == kMark && found_kind <= uint64_t(Kind::composite) &&
                       index < slots_.size() && generation != 0 &&
                       generation <= slots_[index].generation;
   if (!issued) fail(kind, hexadecimal(value) + ", which is no handle of this library");

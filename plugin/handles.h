@@ -10,7 +10,7 @@
 
 namespace voyager {
 
-enum class Kind : uint8_t { device, scene, view, target };
+enum class Kind : uint8_t { device, scene, view, target, composite };
 
 class HandleTable;
 

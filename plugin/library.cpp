@@ -58,6 +58,8 @@ const char* voyResultString(VoyResult result) {
     VOYAGER_NAME(VOY_ERROR_BUSY);
     VOYAGER_NAME(VOY_ERROR_SCENE_DESTROYED);
     VOYAGER_NAME(VOY_ERROR_INTERNAL);
+    VOYAGER_NAME(VOY_ERROR_DEVICE_LOST);
+    VOYAGER_NAME(VOY_ERROR_TIMEOUT);
 #undef VOYAGER_NAME
     default:
       return "unknown VoyResult";

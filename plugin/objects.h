@@ -4,6 +4,7 @@
 #include <memory_resource>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "plugin/handles.h"
 #include "plugin/memory.h"
@@ -11,7 +12,9 @@
 #include "runtime/frame/backend.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/view.h"
-#include "voyager/voyager.h"
+#include "vulkan_interop/composite.h"
+#include "vulkan_interop/ring.h"
+#include "voyager/voyager_vulkan.h"
 
 namespace voyager {
 
@@ -43,6 +46,7 @@ struct DeviceObject final : Object {
   Workers workers;
   VoyBackend backend_kind;
   std::unique_ptr<Backend> backend;
+  std::shared_ptr<const vulkan::Device> vulkan;  // or NULL
 };
 
 struct Child : Object {
@@ -63,15 +67,18 @@ struct SceneObject final : Child {
 struct ViewObject final : Child {
   using Handle = VoyView;
   static constexpr Kind kKind = Kind::view;
-  ViewObject(std::shared_ptr<DeviceObject> owner, std::shared_ptr<SceneObject> drawn)
-      : Child(kKind, std::move(owner)), scene(std::move(drawn)) {}
+  ViewObject(std::shared_ptr<DeviceObject> owner, std::vector<std::shared_ptr<SceneObject>> drawn)
+      : Child(kKind, std::move(owner)),
+        instances(static_cast<uint32_t>(drawn.size())),
+        scenes(std::move(drawn)) {}
 
+  const uint32_t instances;
   uint32_t max_width = 0, max_height = 0;
   std::mutex busy;  // guards what follows
   double tau = 0;
-  // Both NULL once the scene was destroyed. The view reads the scene's memory,
-  // so is declared after it.
-  std::shared_ptr<SceneObject> scene;
+  // One an instance. None, and no view, once one of them was destroyed. The view reads the
+  // scenes' memory, so is declared after them.
+  std::vector<std::shared_ptr<SceneObject>> scenes;
   std::unique_ptr<View> view;
 };
 
@@ -81,8 +88,18 @@ struct TargetObject final : Child {
   TargetObject(std::shared_ptr<DeviceObject> owner, const Image& pixels)
       : Child(kKind, std::move(owner)), image(pixels) {}
 
-  Image image;
-  std::mutex busy;  // held while a frame writes the host's memory
+  Image image;                         // of a ring: its size and format alone
+  std::mutex busy;                     // held while a frame writes, or commands are recorded
+  std::shared_ptr<vulkan::Ring> ring;  // of a Vulkan target
+};
+
+struct CompositeObject final : Child {
+  using Handle = VoyComposite;
+  static constexpr Kind kKind = Kind::composite;
+  CompositeObject(std::shared_ptr<DeviceObject> owner, const vulkan::CompositeDesc& desc)
+      : Child(kKind, std::move(owner)), composite(device().vulkan, desc) {}
+
+  const vulkan::Composite composite;
 };
 
 }  // namespace voyager

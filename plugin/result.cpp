@@ -30,6 +30,10 @@ VoyResult result_of(ErrorCode code) {
       return VOY_ERROR_OVER_BUDGET;
     case ErrorCode::no_device:
       return VOY_ERROR_NO_DEVICE;
+    case ErrorCode::device_lost:
+      return VOY_ERROR_DEVICE_LOST;
+    case ErrorCode::timeout:
+      return VOY_ERROR_TIMEOUT;
     case ErrorCode::internal:
       break;
   }

@@ -117,9 +117,10 @@ VoyResult voyDestroyScene(VoyScene scene) {
       for (const auto& child : HandleTable::instance().children(*object->parent(), Kind::view)) {
         auto& view = static_cast<ViewObject&>(*child);
         const std::lock_guard frame(view.busy);
-        if (view.scene != object) continue;
+        if (std::find(view.scenes.begin(), view.scenes.end(), object) == view.scenes.end())
+          continue;
         view.view.reset();
-        view.scene.reset();
+        view.scenes.clear();
       }
     }
     return VOY_SUCCESS;

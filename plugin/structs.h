@@ -2,6 +2,7 @@
 // Checks of what the host passes. They never load an enumerator that may be
 // out of range as its enum, which would be undefined.
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -19,19 +20,67 @@ int32_t number(const Enum& value) {
   return bits;
 }
 
-// An in- or out-structure: not NULL, its own type, and nothing chained to it
-// (no extension is known yet).
-template <class Struct>
-void check_structure(const Struct* s, VoyStructureType expected, const char* name) {
+// A structure that a call knows in another's chain, and where it is found.
+template <class T>
+struct Extension {
+  VoyStructureType type;
+  T*& found;  // NULL before the chain is read
+};
+template <class T>
+Extension(VoyStructureType, T*&) -> Extension<T>;
+
+// What all structures begin with.
+struct ChainLink {
+  VoyStructureType type;
+  const void* next;
+};
+static_assert(offsetof(ChainLink, type) == offsetof(VoyFrame, type) &&
+              offsetof(ChainLink, next) == offsetof(VoyFrame, next));
+
+// Whether it is this one. Found a second time, it is refused.
+template <class T>
+bool take_extension(const Extension<T>& known, int32_t type, const void* link,
+                    const std::string& name) {
+  if (type != known.type) return false;
+  if (known.found != nullptr)
+    throw ApiError(VOY_ERROR_INVALID_STRUCTURE, name + ".next: found two structures of type " +
+                                                    std::to_string(type) + ", expected one");
+  known.found = static_cast<T*>(const_cast<void*>(link));
+  return true;
+}
+
+// Finds the known structures of a chain. Each is taken once, so a ring of them ends
+// too. Where none is known nothing behind `next` is read.
+template <class... T>
+void find_extensions(const void* next, const std::string& name, const Extension<T>&... known) {
+  if (next != nullptr && sizeof...(known) == 0)
+    throw ApiError(VOY_ERROR_INVALID_STRUCTURE,
+                   name + ".next: found a pointer, expected NULL: no extension of it is known");
+  while (next != nullptr) {
+    ChainLink link;
+    std::memcpy(&link, next, sizeof link);
+    const int32_t type = number(link.type);
+    if (!(take_extension(known, type, next, name) || ...))
+      throw ApiError(VOY_ERROR_INVALID_STRUCTURE,
+                     name + ".next: found a structure of type " + std::to_string(type) +
+                         ", expected" +
+                         (std::string() + ... + (" " + std::to_string(int{known.type}))));
+    next = link.next;
+  }
+}
+
+// An in- or out-structure: not NULL, its own type, and nothing chained to it but what is
+// known. Example: check_structure(frame, VOY_STRUCTURE_TYPE_FRAME, "VoyFrame",
+// Extension{VOY_STRUCTURE_TYPE_X, x}), where x is a const VoyX* that is NULL.
+template <class Struct, class... T>
+void check_structure(const Struct* s, VoyStructureType expected, const char* name,
+                     const Extension<T>&... known) {
   if (s == nullptr) refuse(std::string(name) + ": found NULL, expected a structure");
   if (number(s->type) != expected)
     throw ApiError(VOY_ERROR_INVALID_STRUCTURE, std::string(name) + ".type: found " +
                                                     std::to_string(number(s->type)) +
                                                     ", expected " + std::to_string(expected));
-  if (s->next != nullptr)
-    throw ApiError(
-        VOY_ERROR_INVALID_STRUCTURE,
-        std::string(name) + ".next: found a pointer, expected NULL: no extension of it is known");
+  find_extensions(s->next, name, known...);
 }
 
 inline void check_pointer(const void* pointer, const char* name) {

@@ -2,12 +2,11 @@
 
 #include "plugin/call.h"
 #include "plugin/structs.h"
+#include "plugin/vulkan_target.h"
 
 using namespace voyager;
 
-namespace {
-
-ColorFormat format_of(VoyColorFormat format) {
+ColorFormat voyager::format_of(VoyColorFormat format) {
   switch (format) {
     case VOY_COLOR_FORMAT_RGBA8_UNORM:
       return ColorFormat::rgba8;
@@ -19,6 +18,8 @@ ColorFormat format_of(VoyColorFormat format) {
       return ColorFormat::none;
   }
 }
+
+namespace {
 
 struct Plane {
   const char* name;
@@ -44,10 +45,6 @@ size_t checked_pitch(const Plane& plane, uint32_t width, uint32_t height) {
 }
 
 Image checked_image(const VoyTargetDesc& desc) {
-  check_enum(desc.kind, VOY_TARGET_KIND_HOST_MEMORY, "desc.kind");
-  check_enum(desc.colorFormat, VOY_COLOR_FORMAT_RGBA16F, "desc.colorFormat");
-  check_count(desc.width, 1, kMaxImageSide, "desc.width");
-  check_count(desc.height, 1, kMaxImageSide, "desc.height");
   const bool has_color = desc.colorFormat != VOY_COLOR_FORMAT_NONE;
   if (has_color != (desc.color != nullptr))
     refuse(has_color ? "desc.color: found NULL, expected memory for colorFormat"
@@ -78,9 +75,20 @@ Image checked_image(const VoyTargetDesc& desc) {
 VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget* target) {
   return guarded("voyCreateTarget", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
-    check_structure(desc, VOY_STRUCTURE_TYPE_TARGET_DESC, "VoyTargetDesc");
+    const VoyVulkanTargetDesc* images = nullptr;
+    check_structure(desc, VOY_STRUCTURE_TYPE_TARGET_DESC, "VoyTargetDesc",
+                    Extension{VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC, images});
     check_pointer(target, "target");
-    const auto object = std::make_shared<TargetObject>(owner, checked_image(*desc));
+    check_enum(desc->kind, VOY_TARGET_KIND_VULKAN, "desc.kind");
+    check_enum(desc->colorFormat, VOY_COLOR_FORMAT_RGBA16F, "desc.colorFormat");
+    check_count(desc->width, 1, kMaxImageSide, "desc.width");
+    check_count(desc->height, 1, kMaxImageSide, "desc.height");
+    const bool vulkan = desc->kind == VOY_TARGET_KIND_VULKAN;
+    if (!vulkan && images != nullptr)
+      throw ApiError(VOY_ERROR_INVALID_STRUCTURE,
+                     "desc.next: found a VoyVulkanTargetDesc, expected it with kind VULKAN only");
+    const auto object = vulkan ? create_vulkan_target(owner, *desc, images)
+                               : std::make_shared<TargetObject>(owner, checked_image(*desc));
     *target = static_cast<VoyTarget>(HandleTable::instance().insert(object));
     return VOY_SUCCESS;
   });

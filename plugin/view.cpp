@@ -13,10 +13,11 @@ constexpr uint32_t kDefaultLutSize = 32, kMaxLutSize = 4096;
 // Counts come first: the arrays of a count that is refused are never read.
 void check_counts(const VoyViewDesc& desc) {
   check_count(desc.instanceCount, 1, UINT32_MAX, "desc.instanceCount");
-  if (desc.instanceCount > 1)
-    throw ApiError(VOY_ERROR_UNSUPPORTED, "desc.instanceCount: found " +
-                                              std::to_string(desc.instanceCount) +
-                                              ", this version draws 1 instance in a view");
+  if (desc.instanceCount > kMaxInstances)
+    throw ApiError(VOY_ERROR_UNSUPPORTED,
+                   "desc.instanceCount: found " + std::to_string(desc.instanceCount) +
+                       ", this version draws up to " + std::to_string(kMaxInstances) +
+                       " instances in a view");
   check_count(desc.eyeCount, 1, UINT32_MAX, "desc.eyeCount");
   if (desc.eyeCount > 1)
     throw ApiError(VOY_ERROR_UNSUPPORTED, "desc.eyeCount: found " + std::to_string(desc.eyeCount) +
@@ -74,6 +75,18 @@ PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   return choices;
 }
 
+std::vector<std::shared_ptr<SceneObject>> checked_scenes(Call& call, const VoyViewDesc& desc,
+                                                         const DeviceObject& owner) {
+  std::vector<std::shared_ptr<SceneObject>> scenes;
+  for (uint32_t i = 0; i < desc.instanceCount; ++i) {
+    scenes.push_back(call.use<SceneObject>(desc.scenes[i]));
+    if (scenes[i]->parent().get() != &owner)
+      refuse("desc.scenes[" + std::to_string(i) +
+             "]: found a scene of another device, expected one of this device");
+  }
+  return scenes;
+}
+
 }  // namespace
 
 VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view) {
@@ -83,15 +96,14 @@ VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view
     check_pointer(view, "view");
     check_counts(*desc);
     const PipelineDesc choices = checked_choices(*desc, owner->backend_kind);
-    const auto scene = call.use<SceneObject>(desc->scenes[0]);
-    if (scene->parent() != owner)
-      refuse("desc.scenes[0]: found a scene of another device, expected one of this device");
-    const auto object = std::make_shared<ViewObject>(owner, scene);
+    const auto object = std::make_shared<ViewObject>(owner, checked_scenes(call, *desc, *owner));
     object->max_width = desc->maxWidth;
     object->max_height = desc->maxHeight;
     object->tau = desc->tau;
-    object->view = std::make_unique<View>(scene->scene, *owner->backend, choices, owner->memory,
-                                          owner->workers);
+    Scenes scenes;
+    for (const auto& scene : object->scenes) scenes.push_back(scene->scene);
+    object->view = std::make_unique<View>(std::move(scenes), *owner->backend, choices,
+                                          owner->memory, owner->workers);
     *view = static_cast<VoyView>(HandleTable::instance().insert(object));
     return VOY_SUCCESS;
   });
@@ -118,15 +130,16 @@ VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint
                         uint32_t* count) {
   return guarded("voyGetViewCut", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
-    check_count(instance, 0, 0, "instance");
+    check_count(instance, 0, object->instances - 1, "instance");
     check_pointer(count, "count");
     if (capacity > 0) check_pointer(nodes, "nodes");
     const auto frame = claim(*object);
-    if (!object->view->draws_cut())
+    if (!object->view->draws_cut(instance))
       throw ApiError(VOY_ERROR_UNSUPPORTED,
-                     "view: found one that draws every leaf, expected one that draws a cut");
+                     "instance: found one of which the view draws every "
+                     "leaf, expected one of which it draws a cut");
     check_has_frame(*object);
-    const auto& cut = object->view->cut();
+    const auto& cut = object->view->cut(instance);
     const size_t written = std::min<size_t>(capacity, cut.size());
     std::copy_n(cut.begin(), written, nodes);
     *count = static_cast<uint32_t>(cut.size());

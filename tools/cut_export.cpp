@@ -34,13 +34,12 @@ void export_cut(const std::string& scene_path, const Camera& camera, double tau,
   Workers workers;
   const auto scene =
       load_scene(open_file_source(scene_path), std::pmr::get_default_resource(), workers);
-  FrameInput frame;
-  frame.camera.eye = {camera.pose.position[0], camera.pose.position[1], camera.pose.position[2]};
+  voyager::Camera seen;
+  seen.eye = {camera.pose.position[0], camera.pose.position[1], camera.pose.position[2]};
   const VoyFrustum f = camera.frustum();
-  frame.camera.fx = camera.width / (f.right - f.left);
-  frame.tau = tau;
+  seen.fx = camera.width / (f.right - f.left);
   DrawList draws(scene, Lod::cut, Search::exhaustive, std::pmr::get_default_resource());
-  draws.update(frame, workers);
+  draws.update(seen, tau, workers);
 
   GaussianCloud cloud;
   cloud.sh_degree = scene->sh_degree;

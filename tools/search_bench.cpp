@@ -64,7 +64,8 @@ void print_row(const nlohmann::ordered_json& row) {
 std::vector<CutQuery> cut_path(const std::vector<Camera>& cameras, double tau,
                                const Vec3d& origin) {
   std::vector<CutQuery> path;
-  for (const FrameInput& frame : frame_path(cameras, tau)) path.push_back(cut_query(frame, origin));
+  for (const FrameInput& frame : frame_path(cameras, tau))
+    path.push_back(cut_query(frame.camera, frame.tau, origin));
   return path;
 }
 

@@ -6,7 +6,7 @@
 #include "runtime/cpu/bin.h"
 #include "runtime/cpu/rasterize.h"
 #include "runtime/frame/depth_order.h"
-#include "runtime/frame/draw_list.h"
+#include "runtime/frame/host_instances.h"
 #include "runtime/frame/host_pipeline.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/frame/resolve.h"
@@ -21,12 +21,11 @@ constexpr size_t kProjectBlock = 4096;
 
 class CpuPipeline final : public HostPipeline {
  public:
-  CpuPipeline(std::shared_ptr<const Scene> scene, const PipelineDesc& desc,
-              std::pmr::memory_resource* memory, Workers& workers)
-      : scene_(std::move(scene)),
-        desc_(desc),
+  CpuPipeline(const Scenes& scenes, const PipelineDesc& desc, std::pmr::memory_resource* memory,
+              Workers& workers)
+      : desc_(desc),
         workers_(workers),
-        draws_(scene_, desc.lod, desc.search, memory),
+        instances_(scenes, desc, kProjectBlock, memory),
         lut_(memory),
         splats_(memory),
         visible_(memory),
@@ -40,8 +39,9 @@ class CpuPipeline final : public HostPipeline {
     fill_alpha_lut(desc.lut_size, lut_.data());
   }
 
-  void search(const FrameInput& frame) override { draws_.update(frame, workers_); }
+  void search(const FrameInput& frame) override { instances_.update(frame, workers_); }
   void project(const FrameInput& frame) override;
+  void project(const HostInstance& instance);
   void sort(const FrameInput& frame) override;
   void bin(const FrameInput& frame) override;
   void rasterize(const FrameInput& frame) override;
@@ -52,21 +52,22 @@ class CpuPipeline final : public HostPipeline {
   }
 
   void collect(FrameStats& stats) const override {
-    draws_.collect(stats);
+    instances_.collect(stats);
     stats.splats = order_.size();
     stats.pairs_before = bins_.pairs_before();
     stats.pairs_after = bins_.pairs_after();
   }
-  void read_cut(std::pmr::vector<uint32_t>& cut) const override { cut = draws_.cut(); }
+  void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
+    cut = instances_.cut(instance);
+  }
   bool cut_is_near() const override { return true; }
 
  private:
-  std::shared_ptr<const Scene> scene_;
   PipelineDesc desc_;
   Workers& workers_;
-  DrawList draws_;
+  HostInstances instances_;
   std::pmr::vector<float> lut_;
-  std::pmr::vector<Splat> splats_;      // of item i's block, from the block's first place on
+  std::pmr::vector<Splat> splats_;      // of a block of places, from its first on
   std::pmr::vector<uint32_t> visible_;  // splats of each block
   std::pmr::vector<uint64_t> keys_;
   std::pmr::vector<uint32_t> order_;  // splats by depth
@@ -75,17 +76,23 @@ class CpuPipeline final : public HostPipeline {
   std::pmr::vector<float> depth_;
 };
 
-void CpuPipeline::project(const FrameInput& frame) {
-  const auto& items = draws_.items();
-  const ProjectParams params = project_params(*scene_, frame.camera, desc_.exponential);
-  const GaussianArrays arrays = gaussian_arrays(*scene_);
-  if (splats_.size() < items.size()) splats_.resize(items.size());
-  visible_.assign((items.size() + kProjectBlock - 1) / kProjectBlock, 0);
+void CpuPipeline::project(const FrameInput&) {
+  const size_t places = instances_.places();
+  if (splats_.size() < places) splats_.resize(places);
+  visible_.assign((places + kProjectBlock - 1) / kProjectBlock, 0);
+  for (const HostInstance& instance : instances_.all()) project(instance);
+}
+
+void CpuPipeline::project(const HostInstance& instance) {
+  const auto& items = instance.draws.items();
+  const ProjectParams params = project_params(*instance.scene, instance.camera, desc_.exponential);
+  const GaussianArrays arrays = gaussian_arrays(*instance.scene);
   workers_.for_blocks(items.size(), kProjectBlock, [&](size_t begin, size_t end) {
-    size_t out = begin;
+    const size_t first = instance.first + begin;
+    size_t out = first;
     for (size_t i = begin; i < end; ++i)
       out += voyager::project(params, arrays, items[i], splats_[out]);
-    visible_[begin / kProjectBlock] = static_cast<uint32_t>(out - begin);
+    visible_[first / kProjectBlock] = static_cast<uint32_t>(out - first);
   });
 }
 
@@ -109,16 +116,17 @@ void CpuPipeline::bin(const FrameInput& frame) {
 void CpuPipeline::rasterize(const FrameInput& frame) {
   const size_t count = size_t{frame.camera.width} * frame.camera.height;
   if (pixels_.size() < count) pixels_.resize(count);
-  if (frame.depth_wanted && depth_.size() < count) depth_.resize(count);
+  const bool limits = frame.limits.values != nullptr, depth = frame.depth_wanted || limits;
+  if (depth && depth_.size() < count) depth_.resize(count);
   const RasterParams params{splats_.data(),
                             lut_.data(),
                             static_cast<float>(desc_.lut_size) / kLutRange,
                             frame.camera.width,
                             frame.camera.height,
                             pixels_.data(),
-                            frame.depth_wanted ? depth_.data() : nullptr};
-  const RasterizeTile run =
-      pick_rasterizer(desc_.exponential, desc_.alpha_filter, frame.depth_wanted);
+                            depth ? depth_.data() : nullptr,
+                            frame.limits};
+  const RasterizeTile run = pick_rasterizer(desc_.exponential, desc_.alpha_filter, depth, limits);
   const TileGrid grid = tile_grid(frame.camera.width, frame.camera.height);
   const auto columns = static_cast<uint32_t>(grid.columns);
   workers_.for_blocks(size_t{columns} * static_cast<size_t>(grid.rows), 1,
@@ -133,8 +141,7 @@ class CpuBackend final : public Backend {
   std::string device_name() const override {
     return std::string("CPU (") + rasterizers().back().name + ")";
   }
-  std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
-                                            const PipelineDesc& desc,
+  std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                             std::pmr::memory_resource* memory,
                                             Workers& workers) override {
     if (desc.splatting != Splatting::ours)
@@ -143,7 +150,7 @@ class CpuBackend final : public Backend {
     if (desc.exponential == Exponential::half2)
       throw Error(ErrorCode::unsupported,
                   "exponential: found half2, the CPU backend has exact, ex2 and lut");
-    return std::make_unique<CpuPipeline>(std::move(scene), desc, memory, workers);
+    return std::make_unique<CpuPipeline>(scenes, desc, memory, workers);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                              const SearchDesc& desc,

@@ -5,14 +5,14 @@
 namespace voyager::cpu {
 
 namespace generic {
-RasterizeTile pick(Exponential, bool, bool);
+RasterizeTile pick(Exponential, bool, bool, bool);
 }
 #if defined(VOYAGER_X86)
 namespace avx2 {
-RasterizeTile pick(Exponential, bool, bool);
+RasterizeTile pick(Exponential, bool, bool, bool);
 }
 namespace avx512 {
-RasterizeTile pick(Exponential, bool, bool);
+RasterizeTile pick(Exponential, bool, bool, bool);
 }
 #endif
 
@@ -32,8 +32,8 @@ std::span<const NamedRasterizer> rasterizers() {
   return std::span(all.first).first(all.second);
 }
 
-RasterizeTile pick_rasterizer(Exponential exponential, bool alpha_filter, bool depth) {
-  return rasterizers().back().pick(exponential, alpha_filter, depth);
+RasterizeTile pick_rasterizer(Exponential exponential, bool alpha_filter, bool depth, bool limits) {
+  return rasterizers().back().pick(exponential, alpha_filter, depth, limits);
 }
 
 }  // namespace voyager::cpu

@@ -22,6 +22,7 @@ struct RasterParams {
   uint32_t width, height;
   Pixel* pixels;  // width * height
   float* depth;   // width * height, or null
+  DepthLimits limits;
 };
 
 struct Tile {
@@ -31,13 +32,13 @@ struct Tile {
 
 using RasterizeTile = void (*)(const RasterParams&, const Tile&);
 
-// The specialisation for the widest instruction set of this machine.
-RasterizeTile pick_rasterizer(Exponential exponential, bool alpha_filter, bool depth);
+// limits: only with depth. The specialisation for the widest instruction set of this machine.
+RasterizeTile pick_rasterizer(Exponential exponential, bool alpha_filter, bool depth, bool limits);
 
 // Every instruction set that this machine can run, for the test that they agree.
 struct NamedRasterizer {
   const char* name;
-  RasterizeTile (*pick)(Exponential, bool alpha_filter, bool depth);
+  RasterizeTile (*pick)(Exponential, bool alpha_filter, bool depth, bool limits);
 };
 std::span<const NamedRasterizer> rasterizers();
 

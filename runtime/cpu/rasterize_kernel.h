@@ -31,10 +31,29 @@ inline float splat_alpha(const RasterParams& params, const Splat& s, float rho) 
   }
 }
 
-// Blends one splat into one row. Returns true if a pixel ended.
-template <Exponential E, bool kFilter, bool kDepth, bool kSiblings>
+// How far the pixels of a tile may be seen.
+struct Limits {
+  float z[kTile][kTile];
+  float farthest;
+};
+
+inline Limits tile_limits(const DepthLimits& limits, uint32_t x0, uint32_t y0, int columns,
+                          int rows) {
+  Limits found = {};
+  for (int y = 0; y < rows; ++y)
+    for (int x = 0; x < columns; ++x) {
+      const float z = limits.at(x0 + static_cast<size_t>(x), y0 + static_cast<size_t>(y));
+      found.z[y][x] = z;
+      found.farthest = z > found.farthest ? z : found.farthest;
+    }
+  return found;
+}
+
+// Blends one splat into one row; with kLimits only where it lies within `limit`. Returns
+// true if a pixel ended.
+template <Exponential E, bool kFilter, bool kDepth, bool kLimits, bool kSiblings>
 inline bool blend_row(const RasterParams& params, const Splat& s, const float* dx, float dy,
-                      Row& row) {
+                      const float* limit, Row& row) {
   float rho[kTile];
   int32_t hit[kTile];
   int32_t hits = 0;
@@ -43,6 +62,7 @@ inline bool blend_row(const RasterParams& params, const Splat& s, const float* d
     const float q = std::fma(-s.conic.skew, dx[i], dy) * s.conic.q_y;
     rho[i] = -std::fma(q, q, p * p);
     hit[i] = (rho[i] >= s.rho_min) & (rho[i] >= row.floor[i]);
+    if constexpr (kLimits) hit[i] &= s.depth <= limit[i];
     hits |= hit[i];
   }
   if (kFilter && hits == 0) return false;
@@ -82,7 +102,7 @@ inline TileRange splat_rows(const Splat& s, float y0, int rows) {
           last < static_cast<float>(rows) ? static_cast<int32_t>(last) : rows};
 }
 
-template <Exponential E, bool kFilter, bool kDepth>
+template <Exponential E, bool kFilter, bool kDepth, bool kLimits>
 void rasterize_tile(const RasterParams& params, const Tile& tile) {
   const uint32_t x0 = tile.column * kTile, y0 = tile.row * kTile;
   const int columns = static_cast<int>(std::min<uint32_t>(kTile, params.width - x0));
@@ -96,9 +116,12 @@ void rasterize_tile(const RasterParams& params, const Tile& tile) {
       row.floor[i] = i < columns ? kAlive : kEnded;
     }
 
+  Limits limits;
+  if constexpr (kLimits) limits = tile_limits(params.limits, x0, y0, columns, rows);
   uint32_t open_rows = (1u << rows) - 1u;
   for (const uint32_t index : tile.splats) {
     const Splat& s = params.splats[index];
+    if (kLimits && s.depth > limits.farthest) break;
     float dx[kTile];
     for (int i = 0; i < kTile; ++i)
       dx[i] = (static_cast<float>(x0) + static_cast<float>(i) + 0.5f) - s.x;
@@ -107,10 +130,12 @@ void rasterize_tile(const RasterParams& params, const Tile& tile) {
     for (int y = reach.begin; y < reach.end; ++y) {
       if (!(open_rows >> y & 1u)) continue;
       const float dy = (static_cast<float>(y0) + static_cast<float>(y) + 0.5f) - s.y;
-      const bool ended = s.t == 1.0f
-                             ? blend_row<E, kFilter, kDepth, false>(params, s, dx, dy, image[y])
-                             : blend_row<E, kFilter, kDepth, true>(params, s, dx, dy, image[y]);
-      if (ended && all_ended(image[y], columns)) open_rows &= ~(1u << y);
+      const float* limit = kLimits ? limits.z[y] : nullptr;
+      Row& row = image[y];
+      const bool ended =
+          s.t == 1.0f ? blend_row<E, kFilter, kDepth, kLimits, false>(params, s, dx, dy, limit, row)
+                      : blend_row<E, kFilter, kDepth, kLimits, true>(params, s, dx, dy, limit, row);
+      if (ended && all_ended(row, columns)) open_rows &= ~(1u << y);
     }
     if (open_rows == 0) break;
   }
@@ -127,24 +152,27 @@ void rasterize_tile(const RasterParams& params, const Tile& tile) {
 }
 
 template <Exponential E>
-RasterizeTile pick_for(bool filter, bool depth) {
-  if (filter) return depth ? rasterize_tile<E, true, true> : rasterize_tile<E, true, false>;
-  return depth ? rasterize_tile<E, false, true> : rasterize_tile<E, false, false>;
+RasterizeTile pick_for(bool filter, bool depth, bool limits) {
+  if (limits)
+    return filter ? rasterize_tile<E, true, true, true> : rasterize_tile<E, false, true, true>;
+  if (filter)
+    return depth ? rasterize_tile<E, true, true, false> : rasterize_tile<E, true, false, false>;
+  return depth ? rasterize_tile<E, false, true, false> : rasterize_tile<E, false, false, false>;
 }
 
 }  // namespace
 
-RasterizeTile pick(Exponential exponential, bool filter, bool depth) {
+RasterizeTile pick(Exponential exponential, bool filter, bool depth, bool limits) {
   switch (exponential) {
     case Exponential::ex2:
-      return pick_for<Exponential::ex2>(filter, depth);
+      return pick_for<Exponential::ex2>(filter, depth, limits);
     case Exponential::lut:
-      return pick_for<Exponential::lut>(filter, depth);
+      return pick_for<Exponential::lut>(filter, depth, limits);
     case Exponential::exact:
     case Exponential::half2:  // refused before a frame
       break;
   }
-  return pick_for<Exponential::exact>(filter, depth);
+  return pick_for<Exponential::exact>(filter, depth, limits);
 }
 
 }  // namespace voyager::cpu::VOYAGER_ISA

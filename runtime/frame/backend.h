@@ -7,10 +7,13 @@
 #include <memory>
 #include <memory_resource>
 #include <string>
+#include <vector>
 
 #include "runtime/base/workers.h"
+#include "runtime/frame/external_ring.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
+#include "runtime/math/host_depth.h"
 #include "runtime/math/vec.h"
 
 namespace voyager {
@@ -44,6 +47,15 @@ struct Camera {
   double cx = 0, cy = 0;  // pixels, from the top left corner
   uint32_t width = 0, height = 0;
   double near_z = 0.2;  // metres
+  // Where these are a scaled instance's coordinates: metres in the world a unit here.
+  double depth_scale = 1;
+};
+
+// Where an instance stands: x in its scene's axes is position + scale·rotation·x in the world.
+struct InstancePose {
+  Mat3d rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  Vec3d position{0, 0, 0};
+  double scale = 1;
 };
 
 enum class ColorFormat { none, rgba8, rgba16f, rgba32f };
@@ -62,7 +74,7 @@ constexpr size_t pixel_bytes(ColorFormat format) {
   return 16;
 }
 
-// Where color is null but format is not none, the frame is drawn and handed to nobody:
+// Where external.ring is set, the frame goes there. Where color is null but format is not none, the frame is drawn and handed to nobody:
 // for measurements.
 struct Image {
   ColorFormat format = ColorFormat::none;
@@ -71,13 +83,17 @@ struct Image {
   size_t color_pitch = 0;  // bytes
   float* depth = nullptr;
   size_t depth_pitch = 0;  // bytes
+  ExternalTarget external;
 };
 
 struct FrameInput {
   Camera camera;
+  std::vector<InstancePose> instances;  // one an instance of the view; none: all at the identity
   double tau = 3;
   Vec3f background{0, 0, 0};
   bool depth_wanted = false;
+  // In host memory, read by draw(). A splat whose z exceeds the pixel's is not blended there.
+  DepthLimits limits;
 };
 
 enum Stage { kSearch, kProject, kSort, kBin, kRasterize, kResolve, kStageCount };
@@ -85,10 +101,11 @@ enum Stage { kSearch, kProject, kSort, kBin, kRasterize, kResolve, kStageCount }
 struct FrameStats {
   uint64_t frame_index = 0;
   bool searched = false;
-  Search search = Search::exhaustive;  // the one that ran, where one did
-  bool changes_counted = false;        // entered and left are the search's own
+  Search search = Search::exhaustive;  // the one that ran, of the first instance with a tree
+  bool changes_counted = true;         // entered and left are the searches' own
   float tau_star = 0;
-  Vec3f cut_centre{0, 0, 0};
+  Vec3f cut_centre{0, 0, 0};  // the first instance's, in its scene's coordinates
+  // Sums over the instances, as all that follows.
   uint64_t nodes_total = 0, nodes_tested = 0, subtrees_visited = 0, chunks_read = 0, bytes_read = 0;
   uint64_t cut_size = 0, entered = 0, left = 0;
   uint64_t splats = 0, pairs_before = 0, pairs_after = 0;
@@ -96,13 +113,15 @@ struct FrameStats {
   uint64_t pairs_dropped = 0;
   // (pixel, splat) pairs: whose ρ was found, and that were blended.
   uint64_t pixels_evaluated = 0, pixels_blended = 0;
-  uint32_t gaussian_bytes = 0;  // stored, that a device reads of a visible Gaussian
+  uint32_t gaussian_bytes = 0;  // stored, that a device reads of a visible Gaussian, at most
   // What each stage has to move through a device's memory, from its layouts and the counters
   // above; 0 on a host.
   uint64_t bytes[kStageCount] = {};
   double milliseconds[kStageCount] = {};
   double total_milliseconds = 0;
 };
+
+using Scenes = std::vector<std::shared_ptr<const Scene>>;
 
 class Pipeline {
  public:
@@ -111,9 +130,9 @@ class Pipeline {
   // size and format; only resolve() writes to it, after all else that may fail.
   virtual void draw(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
   virtual void resolve(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
-  // Of the last frame, ascending; none where the view draws no cut.
-  virtual void read_cut(std::pmr::vector<uint32_t>& cut) const = 0;
-  // Reading the cut is a copy in memory, and waits for no device.
+  // An instance's of the last frame, ascending; none where it draws no cut.
+  virtual void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const = 0;
+  // Reading a cut is a copy in memory, and waits for no device.
   virtual bool cut_is_near() const = 0;
 };
 
@@ -130,9 +149,15 @@ class Backend {
   // As VkPhysicalDeviceIDProperties has it; zero for a CPU.
   virtual std::array<uint8_t, 16> device_uuid() const { return {}; }
   virtual DeviceRates rates() const { return {}; }
-  // Throws Error(unsupported) for a choice that the backend lacks.
-  virtual std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
-                                                    const PipelineDesc& desc,
+  // While the result lives, this thread's calls may change what is current to a device's
+  // driver; then all is as it was.
+  virtual std::shared_ptr<void> enter() const { return nullptr; }
+  virtual ExternalSupport external_support() const { return {}; }
+  // Only where external_support() has images. Memory and semaphores are the result's.
+  virtual std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc) const { return nullptr; }
+  // scenes: one an instance, from one to kMaxInstances; a scene may be several. Throws
+  // Error(unsupported) for a choice that the backend lacks.
+  virtual std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                                     std::pmr::memory_resource* memory,
                                                     Workers& workers) = 0;
   // The scene has a tree. Throws Error(unsupported) where the backend has no such search.
@@ -144,5 +169,7 @@ class Backend {
 
 inline constexpr uint32_t kMaxImageSide =
     16384;  // pixels; 2^20 tiles of 16 x 16 then fit a 32-bit key
+// Of a view. Each costs a search, a projection and their launches, however little it draws.
+inline constexpr uint32_t kMaxInstances = 64;
 
 }  // namespace voyager

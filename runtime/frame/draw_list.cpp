@@ -34,14 +34,14 @@ void DrawList::list_leaves() {
   for (const uint32_t node : scene_->leaves) leaves_.push_back({node, kNoNode, 1.0f, 1.0f});
 }
 
-void DrawList::update(const FrameInput& frame, Workers& workers) {
+void DrawList::update(const Camera& camera, double tau, Workers& workers) {
   if (leaves_missing_) throw Error(ErrorCode::damaged_chunk, scene_->damaged[0].message);
   if (!search_) return;
-  search_->run(cut_query(frame, scene_->origin), workers);
+  search_->run(cut_query(camera, tau, scene_->origin), workers);
 }
 
 void DrawList::collect(FrameStats& stats) const {
-  stats.cut_size = items().size();
+  stats.cut_size += items().size();
   if (search_) add_search(search_->stats(), search_->counts_changes(), stats);
 }
 

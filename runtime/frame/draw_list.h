@@ -1,5 +1,5 @@
 #pragma once
-// What a frame draws, in the order of ids: the cut with its weights, or every
+// What a frame draws of a scene, in the order of ids: the cut with its weights, or every
 // leaf. Shared by the backends that run on the host.
 #include <memory_resource>
 #include <optional>
@@ -16,14 +16,15 @@ class DrawList {
   DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
            std::pmr::memory_resource* memory);
 
-  // Throws Error(damaged_chunk) where the frame needs a node that is not there. After
-  // a call that threw, the next is right all the same.
-  void update(const FrameInput& frame, Workers& workers);
+  // camera: in the scene's coordinates. Throws Error(damaged_chunk) where the frame needs a node
+  // that is not there. After a call that threw, the next is right all the same.
+  void update(const Camera& camera, double tau, Workers& workers);
 
   // Index in items() is the tie-breaker of the sort: node ids ascend in a cut,
   // input indices where every leaf is drawn.
   const std::pmr::vector<DrawItem>& items() const { return search_ ? search_->items() : leaves_; }
   const std::pmr::vector<uint32_t>& cut() const { return search_ ? search_->cut() : no_cut_; }
+  // Adds its counters.
   void collect(FrameStats& stats) const;
 
  private:

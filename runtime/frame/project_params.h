@@ -5,6 +5,7 @@
 
 namespace voyager {
 
+// camera: in the scene's coordinates.
 inline ProjectParams project_params(const Scene& scene, const Camera& camera,
                                     Exponential exponential) {
   ProjectParams params;
@@ -13,6 +14,7 @@ inline ProjectParams project_params(const Scene& scene, const Camera& camera,
   params.view = view_projection<float>(camera.world_to_view, camera.fx, camera.fy, camera.cx,
                                        camera.cy, camera.width, camera.height);
   params.near_z = static_cast<float>(camera.near_z);
+  params.depth_scale = static_cast<float>(camera.depth_scale);
   params.width = static_cast<float>(camera.width);
   params.height = static_cast<float>(camera.height);
   params.log_scale = is_base_2(exponential) ? kLog2e : 1.0f;

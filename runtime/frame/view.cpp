@@ -1,16 +1,20 @@
 #include "runtime/frame/view.h"
 
+#include <cassert>
+
 #include "runtime/base/error.h"
 #include "runtime/frame/frame_search.h"
+#include "runtime/frame/instance.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager {
 namespace {
 
-void check_camera(const Camera& camera, const Scene& scene) {
+// camera: in the scene's coordinates. instance: by what messages call it.
+void check_camera(const Camera& camera, const Scene& scene, const std::string& instance) {
   for (int i = 0; i < 3; ++i)
     if (!(std::fabs(camera.eye[i] - scene.origin[i]) < kMaxCoordinate))
-      throw Error(ErrorCode::invalid_argument, "eye position: found " +
+      throw Error(ErrorCode::invalid_argument, "eye position" + instance + ": found " +
                                                    std::to_string(camera.eye[i]) +
                                                    ", expected a finite coordinate below 1e18 m");
 }
@@ -29,13 +33,14 @@ uint64_t count_missing(const std::pmr::vector<uint32_t>& from,
 
 }  // namespace
 
-View::View(std::shared_ptr<const Scene> scene, Backend& backend, const PipelineDesc& desc,
+View::View(Scenes scenes, Backend& backend, const PipelineDesc& desc,
            std::pmr::memory_resource* memory, Workers& workers)
-    : scene_(std::move(scene)),
+    : scenes_(std::move(scenes)),
       desc_(desc),
-      pipeline_(backend.create_pipeline(scene_, desc, memory, workers)),
-      cut_(memory),
-      last_cut_(memory) {}
+      pipeline_(backend.create_pipeline(scenes_, desc, memory, workers)) {
+  cuts_.reserve(scenes_.size());
+  for (size_t i = 0; i < scenes_.size(); ++i) cuts_.emplace_back(memory);
+}
 
 // A search that does not count what entered and left has its cuts compared. A cut that
 // is far is only read for that; where the one before it was not, the frame before failed,
@@ -43,43 +48,51 @@ View::View(std::shared_ptr<const Scene> scene, Backend& backend, const PipelineD
 bool View::read_changes(bool follows, FrameStats& stats) {
   const bool counted = stats.changes_counted && follows;
   if (counted && !pipeline_->cut_is_near()) return false;
-  pipeline_->read_cut(cut_);
-  if (!counted) {
-    stats.entered = count_missing(cut_, last_cut_);
-    stats.left = count_missing(last_cut_, cut_);
+  if (!counted) stats.entered = stats.left = 0;
+  for (size_t i = 0; i < cuts_.size(); ++i) {
+    InstanceCut& of = cuts_[i];
+    pipeline_->read_cut(i, of.cut);
+    if (counted) continue;
+    stats.entered += count_missing(of.cut, of.last);
+    stats.left += count_missing(of.last, of.cut);
   }
   return true;
 }
 
 void View::render(const FrameInput& frame, const Image& image) {
-  check_camera(frame.camera, *scene_);
+  assert(frame.instances.empty() || frame.instances.size() == scenes_.size());
+  for (size_t i = 0; i < scenes_.size(); ++i)
+    check_camera(instance_camera(frame, i), *scenes_[i],
+                 frame.instances.empty() ? "" : " in instance " + std::to_string(i));
   const bool follows = follows_;  // the search's last run was the last frame's
   follows_ = false;
   FrameStats stats;
-  stats.searched = draws_cut();
-  stats.nodes_total = scene_->tree.size();
-  const CutQuery query = cut_query(frame, scene_->origin);
+  for (const auto& scene : scenes_) stats.nodes_total += scene->tree.size();
+  const CutQuery query = cut_query(instance_camera(frame, 0), frame.tau, scenes_[0]->origin);
   stats.tau_star = query.target_size;
   stats.cut_centre = query.centre;
   pipeline_->draw(frame, image, stats);
   const bool read = read_changes(follows, stats);
   pipeline_->resolve(frame, image, stats);
   stats.frame_index = frames_++;
-  if (read) last_cut_.swap(cut_);
-  cut_read_ = read;
+  for (InstanceCut& of : cuts_) {
+    if (read) of.last.swap(of.cut);
+    of.read = read;
+  }
   stats_ = stats;
   follows_ = true;
 }
 
-const std::pmr::vector<uint32_t>& View::cut() {
-  if (cut_read_) return last_cut_;
+const std::pmr::vector<uint32_t>& View::cut(size_t instance) {
+  InstanceCut& of = cuts_[instance];
+  if (of.read) return of.last;
   if (!follows_)
     throw Error(ErrorCode::unsupported,
                 "cut: found one on a device after a frame that failed, expected a frame that was "
                 "drawn since");
-  pipeline_->read_cut(last_cut_);
-  cut_read_ = true;
-  return last_cut_;
+  pipeline_->read_cut(instance, of.last);
+  of.read = true;
+  return of.last;
 }
 
 }  // namespace voyager

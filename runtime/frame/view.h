@@ -1,6 +1,7 @@
 #pragma once
-// A view: one scene seen through one backend, with what it keeps between frames.
+// A view: instances of scenes seen through one backend, with what it keeps between frames.
 #include <memory>
+#include <vector>
 
 #include "runtime/frame/backend.h"
 
@@ -8,31 +9,44 @@ namespace voyager {
 
 class View {
  public:
+  // scenes: one an instance, from one to kMaxInstances.
+  View(Scenes scenes, Backend& backend, const PipelineDesc& desc, std::pmr::memory_resource* memory,
+       Workers& workers);
   View(std::shared_ptr<const Scene> scene, Backend& backend, const PipelineDesc& desc,
-       std::pmr::memory_resource* memory, Workers& workers);
+       std::pmr::memory_resource* memory, Workers& workers)
+      : View(Scenes{std::move(scene)}, backend, desc, memory, workers) {}
 
-  // Runs the stages and fills the image. Throws Error(damaged_chunk) where the
-  // frame needs one, Error(invalid_argument) for a camera that METHOD §3
-  // excludes; the image is untouched then.
+  // Runs the stages and fills the image. The frame has no pose, or one an instance. Throws
+  // Error(damaged_chunk) where the frame needs one, Error(invalid_argument) for a camera
+  // that METHOD §3 excludes in any scene's coordinates; the image is untouched then.
   void render(const FrameInput& frame, const Image& image);
 
-  bool draws_cut() const { return !scene_->flat() && desc_.lod == Lod::cut; }
+  size_t instances() const { return scenes_.size(); }
+  bool draws_cut(size_t instance) const {
+    return !scenes_[instance]->flat() && desc_.lod == Lod::cut;
+  }
   bool has_frame() const { return frames_ > 0; }
   const FrameStats& stats() const { return stats_; }
-  // Of the last frame that was drawn, as stats() is: a frame that threw leaves both.
+  // An instance's of the last frame that was drawn, as stats() is: a frame that threw leaves
+  // both.
   // Throws Error(unsupported) where the cut was on a device and a later frame threw.
-  const std::pmr::vector<uint32_t>& cut();
+  const std::pmr::vector<uint32_t>& cut(size_t instance = 0);
 
  private:
-  // Whether the frame's cut is now in cut_.
+  struct InstanceCut {
+    explicit InstanceCut(std::pmr::memory_resource* memory) : cut(memory), last(memory) {}
+    std::pmr::vector<uint32_t> cut;   // scratch
+    std::pmr::vector<uint32_t> last;  // of the last frame that succeeded, if it was read
+    bool read = true;
+  };
+
+  // Whether the frame's cuts are now in cuts_.
   bool read_changes(bool follows, FrameStats& stats);
 
-  std::shared_ptr<const Scene> scene_;
+  Scenes scenes_;
   PipelineDesc desc_;
   std::unique_ptr<Pipeline> pipeline_;
-  std::pmr::vector<uint32_t> cut_;       // scratch
-  std::pmr::vector<uint32_t> last_cut_;  // of the last frame that succeeded, if it was read
-  bool cut_read_ = true;
+  std::vector<InstanceCut> cuts_;
   FrameStats stats_;
   uint64_t frames_ = 0;
   bool follows_ = true;  // no frame has failed since the last that succeeded

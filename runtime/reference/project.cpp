@@ -19,8 +19,8 @@ std::optional<Splat> project(const Scene& scene, const Camera& camera, const Dra
   const GaussianArrays arrays = gaussian_arrays(scene);
   const Vec3f mean = interpolated_mean(arrays, item);
   const Vec3f key = camera_relative(mean, scene.origin, camera.eye);
-  const float depth = view_depth(key, to_float(camera.world_to_view.row[2]));
-  if (!(depth > static_cast<float>(camera.near_z))) return std::nullopt;
+  const float z = view_depth(key, to_float(camera.world_to_view.row[2]));
+  if (!(z > static_cast<float>(camera.near_z))) return std::nullopt;
 
   const Shape<double> shape = interpolated_shape<double>(arrays, item);
   const double rho = rho_min(std::log(shape.opacity));
@@ -47,7 +47,7 @@ std::optional<Splat> project(const Scene& scene, const Camera& camera, const Dra
   s.colour = interpolated_colour(arrays, item, (1 / std::sqrt(dot(d, d))) * d);
   s.t = item.t;
   s.inverse_k = item.inverse_k;
-  s.depth = depth;
+  s.depth = sort_depth(z, static_cast<float>(camera.depth_scale));
   if (s.x + s.half_width < 0 || s.x - s.half_width > camera.width || s.y + s.half_height < 0 ||
       s.y - s.half_height > camera.height)
     return std::nullopt;

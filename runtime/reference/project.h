@@ -19,6 +19,7 @@ struct Splat {
   float depth;
 };
 
+// camera: in the scene's coordinates.
 std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& item);
 
 }  // namespace voyager::reference

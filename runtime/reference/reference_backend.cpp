@@ -5,7 +5,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/frame/depth_order.h"
-#include "runtime/frame/draw_list.h"
+#include "runtime/frame/host_instances.h"
 #include "runtime/frame/host_pipeline.h"
 #include "runtime/frame/resolve.h"
 #include "runtime/reference/project.h"
@@ -21,12 +21,13 @@ constexpr size_t kBlock = 4096;
 struct Pixel {
   double r = 0, g = 0, b = 0, transmittance = 1;
   double depth = std::numeric_limits<double>::infinity();
+  double limit = std::numeric_limits<double>::infinity();
   bool ended = false;
 };
 
 // METHOD §6 at one pixel.
 void blend(const Splat& s, double x, double y, Pixel& pixel) {
-  if (pixel.ended) return;
+  if (pixel.ended || s.depth > pixel.limit) return;
   const double dx = x + 0.5 - s.x, dy = y + 0.5 - s.y;
   const double p = dx * s.conic.p_x, q = (dy - s.conic.skew * dx) * s.conic.q_y;
   const double rho = -(p * p + q * q);
@@ -48,30 +49,22 @@ void blend(const Splat& s, double x, double y, Pixel& pixel) {
 
 class ReferencePipeline final : public HostPipeline {
  public:
-  ReferencePipeline(std::shared_ptr<const Scene> scene, const PipelineDesc& desc,
+  ReferencePipeline(const Scenes& scenes, const PipelineDesc& desc,
                     std::pmr::memory_resource* memory, Workers& workers)
-      : scene_(std::move(scene)),
-        alpha_filter_(desc.alpha_filter),
+      : alpha_filter_(desc.alpha_filter),
         workers_(workers),
-        draws_(scene_, desc.lod, desc.search, memory),
+        instances_(scenes, desc, 1, memory),
         splats_(memory),
         visible_(memory),
         keys_(memory),
         pixels_(memory) {}
 
-  void search(const FrameInput& frame) override { draws_.update(frame, workers_); }
+  void search(const FrameInput& frame) override { instances_.update(frame, workers_); }
 
-  void project(const FrameInput& frame) override {
-    const auto& items = draws_.items();
-    splats_.resize(items.size());
-    visible_.assign(items.size(), 0);
-    workers_.for_blocks(items.size(), kBlock, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        if (const auto splat = reference::project(*scene_, frame.camera, items[i])) {
-          splats_[i] = *splat;
-          visible_[i] = 1;
-        }
-    });
+  void project(const FrameInput&) override {
+    splats_.resize(instances_.places());
+    visible_.assign(instances_.places(), 0);
+    for (const HostInstance& instance : instances_.all()) project(instance);
   }
 
   void sort(const FrameInput&) override {
@@ -86,6 +79,9 @@ class ReferencePipeline final : public HostPipeline {
   void rasterize(const FrameInput& frame) override {
     const size_t width = frame.camera.width;
     pixels_.assign(width * frame.camera.height, Pixel{});
+    if (frame.limits.values != nullptr)
+      for (size_t i = 0; i < pixels_.size(); ++i)
+        pixels_[i].limit = frame.limits.at(i % width, i / width);
     workers_.for_blocks(frame.camera.height, kBandRows, [&](size_t begin, size_t end) {
       for (const uint64_t key : keys_) {
         const Splat& s = splats_[depth_key_index(key)];
@@ -107,13 +103,26 @@ class ReferencePipeline final : public HostPipeline {
   }
 
   void collect(FrameStats& stats) const override {
-    draws_.collect(stats);
+    instances_.collect(stats);
     stats.splats = keys_.size();
   }
-  void read_cut(std::pmr::vector<uint32_t>& cut) const override { cut = draws_.cut(); }
+  void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
+    cut = instances_.cut(instance);
+  }
   bool cut_is_near() const override { return true; }
 
  private:
+  void project(const HostInstance& instance) {
+    const auto& items = instance.draws.items();
+    workers_.for_blocks(items.size(), kBlock, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        if (const auto splat = reference::project(*instance.scene, instance.camera, items[i])) {
+          splats_[instance.first + i] = *splat;
+          visible_[instance.first + i] = 1;
+        }
+    });
+  }
+
   // The pixels of [low, high) whose centres the support's box reaches.
   static std::pair<size_t, size_t> covered(double centre, double reach, size_t low, size_t high) {
     const double first = std::ceil(centre - reach - 0.5), last = std::floor(centre + reach - 0.5);
@@ -123,10 +132,9 @@ class ReferencePipeline final : public HostPipeline {
                      : std::pair(low, low);
   }
 
-  std::shared_ptr<const Scene> scene_;
   bool alpha_filter_;
   Workers& workers_;
-  DrawList draws_;
+  HostInstances instances_;
   std::pmr::vector<Splat> splats_;
   std::pmr::vector<uint8_t> visible_;
   std::pmr::vector<uint64_t> keys_;
@@ -136,8 +144,7 @@ class ReferencePipeline final : public HostPipeline {
 class ReferenceBackend final : public Backend {
  public:
   std::string device_name() const override { return "float64 reference"; }
-  std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Scene> scene,
-                                            const PipelineDesc& desc,
+  std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                             std::pmr::memory_resource* memory,
                                             Workers& workers) override {
     if (desc.exponential != Exponential::exact)
@@ -145,7 +152,7 @@ class ReferenceBackend final : public Backend {
     if (desc.splatting != Splatting::ours)
       throw Error(ErrorCode::unsupported,
                   "splatting: found 3dgs, the reference backend has ours only (CUDA has both)");
-    return std::make_unique<ReferencePipeline>(std::move(scene), desc, memory, workers);
+    return std::make_unique<ReferencePipeline>(scenes, desc, memory, workers);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                              const SearchDesc& desc,

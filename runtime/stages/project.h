@@ -8,9 +8,10 @@
 namespace voyager {
 
 struct ProjectParams {
-  Vec3d origin, eye;           // the scene's; world
+  Vec3d origin, eye;           // the scene's; in the scene's coordinates
   ViewProjection<float> view;  // view.world_to_view.row[2] is the view axis of the sort key
   float near_z;
+  float depth_scale;    // of the sort key
   float width, height;  // pixels
   float half;           // ½, or ½·log2(e) for a base-2 exponential
   float log_scale;      // what turns natural logarithms into the conic's: 1 or log2(e)
@@ -23,7 +24,7 @@ struct Splat {
   float rho_min;               // in the conic's logarithms
   float opacity, log_opacity;  // natural
   Vec3f colour;
-  float depth;                    // the sort key z, metres
+  float depth;                    // the sort key, metres
   float t, inverse_k;             // METHOD §4; t = 1 needs no sibling correction
   float half_width, half_height;  // of a box that holds the support, pixels
 };
@@ -98,7 +99,7 @@ VOYAGER_HD bool surely_outside(const ProjectParams& params, const ImageJacobian<
          misses(y, radius * std::sqrt(ss * dot(j.y, j.y) + low), params.height);
 }
 
-// The mean in view space; the last component is the sort key.
+// The mean in view space.
 VOYAGER_HD Vec3f to_view(const ProjectParams& params, const Vec3f& relative) {
   const Mat3f& w = params.view.world_to_view;
   return {dot(w.row[0], relative), dot(w.row[1], relative), view_depth(relative, w.row[2])};
@@ -153,7 +154,7 @@ VOYAGER_HD bool project_shape(const ProjectParams& params, const Arrays& arrays,
   splat.half_height = support.reach_y;
   splat.opacity = shape.opacity;
   splat.log_opacity = shape.log_opacity;
-  splat.depth = view.z;
+  splat.depth = sort_depth(view.z, params.depth_scale);
   splat.t = item.t;
   splat.inverse_k = item.inverse_k;
   return std::fabs(splat.x) < 1e30f && std::fabs(splat.y) < 1e30f && splat.half_width < 1e19f &&

@@ -92,7 +92,7 @@ std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const Fr
                              Exponential exponential) {
   Workers workers(1);
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
-  draws.update(input, workers);
+  draws.update(input.camera, input.tau, workers);
   const ProjectParams params = project_params(*scene, input.camera, exponential);
   const GaussianArrays arrays = gaussian_arrays(*scene);
   std::vector<Splat> splats;
@@ -115,7 +115,8 @@ struct Buffers {
 };
 
 Buffers rasterize(cpu::RasterizeTile run, const std::vector<Splat>& splats,
-                  const cpu::TileBins& bins, uint32_t width, uint32_t height, bool depth) {
+                  const cpu::TileBins& bins, uint32_t width, uint32_t height, bool depth,
+                  const DepthLimits& limits) {
   std::vector<float> lut(33);
   fill_alpha_lut(32, lut.data());
   Buffers out{std::vector<cpu::Pixel>(size_t{width} * height, {-1, -1, -1, -1}),
@@ -127,7 +128,8 @@ Buffers rasterize(cpu::RasterizeTile run, const std::vector<Splat>& splats,
                                  width,
                                  height,
                                  out.pixels.data(),
-                                 depth ? out.depth.data() : nullptr};
+                                 depth ? out.depth.data() : nullptr,
+                                 limits};
   for (uint32_t row = 0; row < static_cast<uint32_t>(grid.rows); ++row)
     for (uint32_t column = 0; column < static_cast<uint32_t>(grid.columns); ++column)
       run(params,
@@ -139,6 +141,10 @@ TEST(Backends, InstructionSetsAgreeToTheBit) {
   const auto scene = test::baked_scene(test::random_cloud(4000, 4, 1));
   Workers workers(1);
   const uint32_t width = 100, height = 55;
+  std::vector<float> values(size_t{width} * height);
+  for (size_t i = 0; i < values.size(); ++i) values[i] = static_cast<float>(i % 97) * 1e-3f;
+  const DepthLimits reversed{values.data(), width * sizeof(float),
+                             depth_encoding(DepthForm::reversed, 0.2, INFINITY)};
   for (const double tau : {0.0, 12.0})
     for (const Exponential e : {Exponential::exact, Exponential::ex2, Exponential::lut}) {
       const auto splats =
@@ -149,14 +155,16 @@ TEST(Backends, InstructionSetsAgreeToTheBit) {
       for (const bool filter : {false, true}) {
         cpu::TileBins bins(std::pmr::get_default_resource());
         bins.build(splats.data(), order, tile_grid(width, height), filter, workers);
-        for (const bool depth : {false, true}) {
+        for (const auto& [depth, limits] :
+             {std::pair(false, DepthLimits{}), {true, DepthLimits{}}, {true, reversed}}) {
+          const auto draw = [&, depth = depth, limits = limits](const cpu::NamedRasterizer& set) {
+            return rasterize(set.pick(e, filter, depth, limits.values != nullptr), splats, bins,
+                             width, height, depth, limits);
+          };
           const auto sets = cpu::rasterizers();
-          const Buffers expected =
-              rasterize(sets.front().pick(e, filter, depth), splats, bins, width, height, depth);
+          const Buffers expected = draw(sets.front());
           for (const cpu::NamedRasterizer& set : sets.subspan(1))
-            EXPECT_TRUE(expected ==
-                        rasterize(set.pick(e, filter, depth), splats, bins, width, height, depth))
-                << set.name << " filter " << filter;
+            EXPECT_TRUE(expected == draw(set)) << set.name << " filter " << filter;
         }
       }
     }

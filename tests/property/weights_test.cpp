@@ -36,7 +36,7 @@ TEST(Weights, FollowTheMethodInDouble) {
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
   size_t between = 0;
   for (const FrameInput& input : frames()) {
-    draws.update(input, workers);
+    draws.update(input.camera, input.tau, workers);
     ASSERT_EQ(draws.items().size(), draws.cut().size());
     const Vec3f eye = cut_centre(input.camera.eye, scene->origin);
     const double target = (2 * input.tau + 1) / input.camera.fx;
@@ -84,7 +84,7 @@ TEST(Weights, AllLeavesAreDrawnInTheInputsOrder) {
   const auto scene = test::baked_scene(cloud);
   Workers workers(2);
   DrawList draws(scene, Lod::all_leaves, Search::temporal, std::pmr::get_default_resource());
-  draws.update(frames()[0], workers);
+  draws.update(frames()[0].camera, frames()[0].tau, workers);
   ASSERT_EQ(draws.items().size(), cloud.size());
   for (size_t i = 0; i < cloud.size(); ++i) {
     const DrawItem& item = draws.items()[i];

@@ -65,8 +65,10 @@ typedef enum VoyResult {
   VOY_ERROR_DAMAGED_CHUNK = -11, /* a chunk that this frame needs is damaged; nothing was drawn */
   VOY_ERROR_NO_DEVICE = -12,
   VOY_ERROR_BUSY = -13,
-  VOY_ERROR_SCENE_DESTROYED = -14, /* the scene that the view draws is gone; destroy the view */
+  VOY_ERROR_SCENE_DESTROYED = -14, /* a scene that the view draws is gone; destroy the view */
   VOY_ERROR_INTERNAL = -15,        /* a bug of ours: please report the message */
+  VOY_ERROR_DEVICE_LOST = -16,     /* a GPU stopped working: destroy the device and what is on it */
+  VOY_ERROR_TIMEOUT = -17,         /* what the host promised to signal did not come */
   VOY_RESULT_MAX_ENUM = 0x7fffffff
 } VoyResult;
 
@@ -84,6 +86,21 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_ALLOCATOR = 11,
   VOY_STRUCTURE_TYPE_FRAME_EYE = 12,
   VOY_STRUCTURE_TYPE_INSTANCE_POSE = 13,
+  /* voyager_vulkan.h */
+  VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE = 15,
+  VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS = 16,
+  VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC = 17,
+  VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES = 18,
+  VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE = 19,
+  VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES = 20,
+  VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC = 21,
+  VOY_STRUCTURE_TYPE_VULKAN_IMAGE = 22,
+  VOY_STRUCTURE_TYPE_VULKAN_FRAME = 23,
+  VOY_STRUCTURE_TYPE_VULKAN_USE = 24,
+  VOY_STRUCTURE_TYPE_VULKAN_COPY = 25,
+  VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT = 26,
+  VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC = 27,
+  VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW = 28,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -185,7 +202,7 @@ typedef struct VoyCapabilities {
   uint32_t workerThreads;
   char deviceName[256];   /* UTF-8, terminated */
   uint8_t deviceUuid[16]; /* zero for a CPU */
-  uint32_t maxInstances;
+  uint32_t maxInstances;  /* of a view; 64 in this version */
   uint32_t maxEyes;
   uint32_t maxWidth, maxHeight; /* pixels */
   uint32_t searches;            /* of VoySearch */
@@ -236,8 +253,8 @@ typedef struct VoySceneDesc {
  * A damaged chunk of a .voy does not fail the opening: frames that need it do. */
 VOY_API VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* scene);
 
-/* Waits for frames that draw it, and frees its memory. Every call on a view of it
- * then returns VOY_ERROR_SCENE_DESTROYED, but for voyDestroyView. */
+/* Waits for frames that draw it, and frees its memory. Every call on a view with an
+ * instance of it then returns VOY_ERROR_SCENE_DESTROYED, but for voyDestroyView. */
 VOY_API VoyResult voyDestroyScene(VoyScene scene);
 
 typedef enum VoySceneStorage {
@@ -306,6 +323,7 @@ VOY_API VoyResult voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNo
 
 typedef enum VoyTargetKind {
   VOY_TARGET_KIND_HOST_MEMORY = 0,
+  VOY_TARGET_KIND_VULKAN = 1, /* images of a Vulkan host: voyager_vulkan.h */
   VOY_TARGET_KIND_MAX_ENUM = 0x7fffffff
 } VoyTargetKind;
 
@@ -391,11 +409,12 @@ typedef enum VoySplatting {
   VOY_SPLATTING_MAX_ENUM = 0x7fffffff
 } VoySplatting;
 
-/* A view draws scene instances and keeps their cuts between frames. */
+/* A view draws instances of scenes, sorted together, so that where they overlap the nearer
+ * hides the farther; and keeps the cut of each between frames. A scene may be several. */
 typedef struct VoyViewDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VIEW_DESC */
   const void* next;
-  uint32_t instanceCount;       /* 1 in this version; more are VOY_ERROR_UNSUPPORTED */
+  uint32_t instanceCount;       /* 1 to VoyCapabilities.maxInstances; more are UNSUPPORTED */
   const VoyScene* scenes;       /* one an instance, of the same device; copied */
   uint32_t eyeCount;            /* 1 in this version */
   uint32_t maxWidth, maxHeight; /* pixels: no target of a frame may be larger */
@@ -463,12 +482,17 @@ typedef struct VoyFrameEye {
 #define VOY_FRAME_EYE_INIT \
   { VOY_STRUCTURE_TYPE_FRAME_EYE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, {0, 0, 0, 0}, NULL, 0, 0 }
 
-/* Where an instance stands: scene axes to world. Element of an array, as VoyFrameEye is. */
+/* Where an instance stands: a point x of the scene (in its axes, its origin included, as
+ * VoySceneInfo.boundsMin has them) is at position + scale·R·x in the world, R being the
+ * orientation's rotation of the scene's own axes, whatever these are: VoyPose's (x right, y up)
+ * are a habit of eyes. Colours turn with the scene. Element of an array, as VoyFrameEye is.
+ * A frame is INVALID_ARGUMENT where the eye comes to lie 1e18 m or more from the origin of an
+ * instance's scene, in the scene's own metres. */
 typedef struct VoyInstancePose {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_INSTANCE_POSE */
   const void* next;
   VoyPose pose;
-  double scale; /* uniform, > 0 */
+  double scale; /* uniform, 1e-9 to 1e9 */
 } VoyInstancePose;
 /* The identity. */
 #define VOY_INSTANCE_POSE_INIT \
@@ -479,9 +503,8 @@ typedef struct VoyFrame {
   const void* next;
   uint32_t eyeCount; /* the view's */
   const VoyFrameEye* eyes;
-  const VoyInstancePose*
-      instances; /* one an instance, or NULL: all at the identity (the only pose in this version) */
-  double nearZ;  /* metres, > 0: splats with z <= nearZ are not drawn; 0.2 by default */
+  const VoyInstancePose* instances; /* one an instance, or NULL: all at the identity */
+  double nearZ; /* metres in the world, > 0: splats with z <= nearZ are not drawn; 0.2 by default */
   float background[3]; /* code values behind everything, finite */
   uint32_t reserved;   /* 0 */
 } VoyFrame;
@@ -494,11 +517,11 @@ typedef struct VoyFrame {
  * the frame), BUSY. */
 VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
 
-/* The last frame's cut of one instance (its index; 0 in this version): node ids in
+/* The last frame's cut of one instance (its index in VoyViewDesc.scenes): node ids in
  * ascending order.
  * capacity 0: only *count is set. Otherwise up to capacity ids are written, *count
  * is the size of the cut, and the result is VOY_INCOMPLETE if that is more.
- * VOY_ERROR_UNSUPPORTED where the view draws no cut (flat scene, ALL_LEAVES), and
+ * VOY_ERROR_UNSUPPORTED where the view draws no cut of it (flat scene, ALL_LEAVES), and
  * where CUDA drew it and a later frame failed, until the next that does not;
  * VOY_ERROR_INVALID_ARGUMENT before any frame, or for an instance that there is not. */
 VOY_API VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint32_t* nodes,
@@ -517,13 +540,15 @@ typedef enum VoyStage {
 /* Room for stages in VoyFrameStats, for good; how many there are is its stageCount. */
 #define VOY_MAX_STAGES 16
 
+/* Counters are sums over the view's instances. */
 typedef struct VoyFrameStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STATS */
   void* next;
   uint64_t frameIndex; /* of the view, from 0 */
-  VoySearch search; /* the one that ran, STREAMING where TEMPORAL fell back; AUTO where none did */
-  float tauStar;    /* instance 0's: the target size as used (METHOD §3) */
-  float cutCentre[3];  /* instance 0's: scene-local, as used */
+  VoySearch search;   /* the one that ran, STREAMING where TEMPORAL fell back, of the first instance
+                         that has a cut; AUTO where none has */
+  float tauStar;      /* instance 0's: the target size as used (METHOD §3) */
+  float cutCentre[3]; /* instance 0's: scene-local, as used */
   uint32_t stageCount; /* of this library: the entries of milliseconds that are in use */
   uint64_t nodesTotal;
   uint64_t nodesTested; /* evaluations of the predicate */

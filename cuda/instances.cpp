@@ -1,0 +1,51 @@
+#include "cuda/instances.h"
+
+#include <algorithm>
+
+#include "runtime/base/error.h"
+#include "runtime/frame/instance.h"
+
+namespace voyager::cuda {
+
+DeviceInstances::DeviceInstances(std::vector<DeviceInstance> all) : all_(std::move(all)) {
+  uint64_t room = 0;
+  for (const DeviceInstance& instance : all_) room += instance.draws->view().list.room;
+  if (room > UINT32_MAX)
+    throw Error(ErrorCode::unsupported, "instances: found lists of up to " + std::to_string(room) +
+                                            " Gaussians, expected fewer than 2^32");
+}
+
+void DeviceInstances::update(const FrameInput& frame, cudaStream_t stream) {
+  for (size_t i = 0; i < all_.size(); ++i)
+    all_[i].draws->update(instance_camera(frame, i), frame.tau, stream);
+}
+
+bool DeviceInstances::siblings() const {
+  return std::any_of(all_.begin(), all_.end(), [](const DeviceInstance& instance) {
+    return instance.draws->view().list.weights != nullptr;
+  });
+}
+
+uint32_t DeviceInstances::bytes_a_gaussian() const {
+  uint32_t most = 0;
+  for (const DeviceInstance& instance : all_)
+    most = std::max(most, instance.gaussians->bytes_a_gaussian());
+  return most;
+}
+
+uint32_t DeviceInstances::bytes_a_place() const {
+  uint32_t most = 0;
+  for (const DeviceInstance& instance : all_) {
+    const CutList list = instance.draws->view().list;
+    const size_t bytes = sizeof(float4) + (list.nodes != nullptr ? sizeof(uint32_t) : 0) +
+                         (list.weights != nullptr ? sizeof(float) : 0);
+    most = std::max(most, static_cast<uint32_t>(bytes));
+  }
+  return most;
+}
+
+void DeviceInstances::collect(FrameStats& stats) const {
+  for (const DeviceInstance& instance : all_) instance.draws->collect(stats);
+}
+
+}  // namespace voyager::cuda

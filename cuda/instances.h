@@ -1,0 +1,37 @@
+#pragma once
+// A view's instances on the device.
+#include <vector>
+
+#include "cuda/device_scene.h"
+#include "cuda/draws.h"
+
+namespace voyager::cuda {
+
+struct DeviceInstance {
+  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const DeviceScene> gaussians;  // shared by all instances of the scene
+  std::unique_ptr<Draws> draws;                  // its own, as its cut is
+};
+
+class DeviceInstances {
+ public:
+  // Throws Error(unsupported) where their lists together could outgrow 32-bit slots.
+  explicit DeviceInstances(std::vector<DeviceInstance> all);
+
+  // Each instance's draws, in its scene's coordinates. Throws as Draws does.
+  void update(const FrameInput& frame, cudaStream_t stream);
+
+  const std::vector<DeviceInstance>& all() const { return all_; }
+  // Whether one of them may draw nodes between their parent and themselves.
+  bool siblings() const;
+  // Of any of them, at most.
+  uint32_t bytes_a_gaussian() const;
+  uint32_t bytes_a_place() const;
+  // Of the last frame, whose work is done.
+  void collect(FrameStats& stats) const;
+
+ private:
+  std::vector<DeviceInstance> all_;
+};
+
+}  // namespace voyager::cuda

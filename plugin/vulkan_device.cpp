@@ -1,0 +1,134 @@
+#include "plugin/vulkan_device.h"
+
+#include <algorithm>
+
+#include "plugin/call.h"
+#include "plugin/structs.h"
+
+using namespace voyager;
+
+namespace {
+
+// What the hand-off can use, the most useful first.
+constexpr const char* kDeviceExtensions[] = {
+    VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME, VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME,
+    VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME};
+constexpr uint32_t kCount = std::size(kDeviceExtensions);
+
+// A list for each subset, so that what a call returned stays as it was.
+const char* const* extension_list(uint32_t subset) {
+  static const auto lists = [] {
+    std::array<std::array<const char*, kCount>, 1u << kCount> made{};
+    for (uint32_t bits = 0; bits < made.size(); ++bits) {
+      size_t count = 0;
+      for (uint32_t i = 0; i < kCount; ++i)
+        if ((bits >> i & 1) != 0) made[bits][count++] = kDeviceExtensions[i];
+    }
+    return made;
+  }();
+  return lists[subset].data();
+}
+
+template <class Desc>
+void check_vulkan(const Desc& desc) {
+  check_pointer(reinterpret_cast<const void*>(desc.getInstanceProcAddr), "getInstanceProcAddr");
+  check_pointer(desc.instance, "instance");
+  check_pointer(desc.physicalDevice, "physicalDevice");
+}
+
+void describe(const VoyVulkanPhysicalDevice& desc, VoyVulkanRequirements& out) {
+  const vulkan::PhysicalDevice device(desc.getInstanceProcAddr, desc.instance,
+                                      desc.physicalDevice);
+  uint32_t subset = 0;
+  for (uint32_t i = 0; i < kCount; ++i)
+    if (device.has(kDeviceExtensions[i])) subset |= 1u << i;
+  out.deviceExtensions = extension_list(subset);
+  out.deviceExtensionCount = static_cast<uint32_t>(__builtin_popcount(subset));
+  out.timelineSemaphore = device.has_timelines() ? VK_TRUE : VK_FALSE;
+}
+
+vulkan::Sharing sharing_of(VoyVulkanSharing sharing) {
+  switch (sharing) {
+    case VOY_VULKAN_SHARING_DEVICE:
+      return vulkan::Sharing::device;
+    case VOY_VULKAN_SHARING_HOST:
+      return vulkan::Sharing::host;
+    default:
+      return vulkan::Sharing::automatic;
+  }
+}
+
+vulkan::Sync sync_of(VoyVulkanSync sync) {
+  switch (sync) {
+    case VOY_VULKAN_SYNC_TIMELINE:
+      return vulkan::Sync::timeline;
+    case VOY_VULKAN_SYNC_BINARY:
+      return vulkan::Sync::binary;
+    case VOY_VULKAN_SYNC_HOST:
+      return vulkan::Sync::host;
+    default:
+      return vulkan::Sync::automatic;
+  }
+}
+
+VoyVulkanSync sync_of(vulkan::Sync sync) {
+  switch (sync) {
+    case vulkan::Sync::timeline:
+      return VOY_VULKAN_SYNC_TIMELINE;
+    case vulkan::Sync::binary:
+      return VOY_VULKAN_SYNC_BINARY;
+    default:
+      return VOY_VULKAN_SYNC_HOST;
+  }
+}
+
+}  // namespace
+
+vulkan::DeviceDesc voyager::vulkan_device_desc(const VoyVulkanDeviceDesc& desc) {
+  check_vulkan(desc);
+  check_pointer(desc.device, "device");
+  check_enum(desc.sharing, VOY_VULKAN_SHARING_HOST, "sharing");
+  check_enum(desc.sync, VOY_VULKAN_SYNC_HOST, "sync");
+  check_count(desc.deviceExtensionCount, 0, 4096, "deviceExtensionCount");
+  if (desc.deviceExtensionCount > 0) check_pointer(desc.deviceExtensions, "deviceExtensions");
+  vulkan::DeviceDesc out;
+  out.get = desc.getInstanceProcAddr;
+  out.instance = desc.instance;
+  out.physical_device = desc.physicalDevice;
+  out.device = desc.device;
+  out.version = desc.apiVersion;
+  for (uint32_t i = 0; i < desc.deviceExtensionCount; ++i) {
+    check_pointer(desc.deviceExtensions[i], "deviceExtensions[]");
+    out.extensions.emplace_back(desc.deviceExtensions[i]);
+  }
+  out.timelines = desc.timelineSemaphore == VK_TRUE;
+  out.sharing = sharing_of(desc.sharing);
+  out.sync = sync_of(desc.sync);
+  return out;
+}
+
+void voyager::fill(VoyVulkanCapabilities& out, const vulkan::Device& device) {
+  const bool shared = device.sharing() == vulkan::Sharing::device;
+  out.sharing = shared ? VOY_VULKAN_SHARING_DEVICE : VOY_VULKAN_SHARING_HOST;
+  out.sync = sync_of(device.sync());
+  out.hostMemoryImport = !shared && device.imports_host_memory() ? VK_TRUE : VK_FALSE;
+  std::fill(std::begin(out.why), std::end(out.why), '\0');
+  device.why().copy(out.why, sizeof out.why - 1);
+}
+
+VoyResult voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physicalDevice,
+                                   VoyVulkanRequirements* requirements) {
+  return guarded("voyGetVulkanRequirements", [&](Call&) {
+    check_structure(requirements, VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS, "VoyVulkanRequirements");
+    VoyVulkanRequirements found = VOY_VULKAN_REQUIREMENTS_INIT;
+    found.apiVersion = vulkan::kLeastVersion;
+    if (physicalDevice != nullptr) {
+      check_structure(physicalDevice, VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE,
+                      "VoyVulkanPhysicalDevice");
+      check_vulkan(*physicalDevice);
+      describe(*physicalDevice, found);
+    }
+    *requirements = found;
+    return VOY_SUCCESS;
+  });
+}

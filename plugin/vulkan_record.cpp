@@ -1,0 +1,108 @@
+// Commands that a target's ring, or a composite, records into the host's command buffers.
+#include <cmath>
+
+#include "plugin/call.h"
+#include "plugin/claim.h"
+#include "plugin/structs.h"
+#include "plugin/vulkan_target.h"
+
+using namespace voyager;
+
+namespace {
+
+void check_commands(VkCommandBuffer commands) {
+  check_pointer(commands, "commandBuffer");
+}
+
+void check_layer(const vulkan::Ring& ring, uint32_t image, uint32_t layer) {
+  check_count(image, 0, ring.desc().images - 1, "imageIndex");
+  check_count(layer, 0, ring.desc().layers - 1, "layer");
+}
+
+void check_layout(VkImageLayout found, VkImageLayout usual, const char* field) {
+  if (found != usual && found != VK_IMAGE_LAYOUT_GENERAL)
+    refuse(std::string(field) + ": found VkImageLayout " + std::to_string(found) + ", expected " +
+           std::to_string(usual) + " or GENERAL");
+}
+
+vulkan::Use use_of(const VoyVulkanUse& use) {
+  check_commands(use.commandBuffer);
+  if (use.layout != VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)
+    check_layout(use.layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "use.layout");
+  if (use.stages == 0) refuse("use.stages: found 0, expected those of the host's commands");
+  return {use.commandBuffer, use.queueFamily, use.layout, use.stages};
+}
+
+template <class Record>
+VoyResult record_use(const char* function, VoyTarget target, const VoyVulkanUse* use,
+                     const Record& record) {
+  return guarded(function, [&](Call& call) {
+    const auto object = call.use<TargetObject>(target);
+    check_structure(use, VOY_STRUCTURE_TYPE_VULKAN_USE, "VoyVulkanUse");
+    vulkan::Ring& ring = vulkan_ring(*object);
+    check_layer(ring, use->imageIndex, 0);
+    const vulkan::Use wanted = use_of(*use);
+    const auto lock = claim_object(*object, "target");
+    record(ring, wanted);
+    return VOY_SUCCESS;
+  });
+}
+
+void check_offset(const VkOffset2D& offset, const char* field) {
+  if (offset.x < 0 || offset.y < 0)
+    refuse(std::string(field) + ": found " + std::to_string(offset.x) + ", " +
+           std::to_string(offset.y) + ", expected none below 0");
+}
+
+}  // namespace
+
+VoyResult voyRecordVulkanRelease(VoyTarget target, const VoyVulkanUse* use) {
+  return record_use("voyRecordVulkanRelease", target, use,
+                    [&](vulkan::Ring& ring, const vulkan::Use& wanted) {
+                      ring.record_release(use->imageIndex, wanted);
+                    });
+}
+
+VoyResult voyRecordVulkanAcquire(VoyTarget target, const VoyVulkanUse* use) {
+  return record_use("voyRecordVulkanAcquire", target, use,
+                    [&](vulkan::Ring& ring, const vulkan::Use& wanted) {
+                      ring.record_acquire(use->imageIndex, wanted);
+                    });
+}
+
+VoyResult voyRecordVulkanCopy(VoyTarget target, const VoyVulkanCopy* copy) {
+  return guarded("voyRecordVulkanCopy", [&](Call& call) {
+    const auto object = call.use<TargetObject>(target);
+    check_structure(copy, VOY_STRUCTURE_TYPE_VULKAN_COPY, "VoyVulkanCopy");
+    const vulkan::Ring& ring = vulkan_ring(*object);
+    check_commands(copy->commandBuffer);
+    check_layer(ring, copy->imageIndex, copy->layer);
+    check_pointer(copy->into, "copy.into");
+    check_layout(copy->layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "copy.layout");
+    check_layout(copy->intoLayout, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, "copy.intoLayout");
+    check_offset(copy->intoOffset, "copy.intoOffset");
+    ring.record_copy(copy->imageIndex, copy->layer,
+                     {copy->commandBuffer, copy->layout, copy->into, copy->intoFormat,
+                      copy->intoLayout, copy->intoLayer, copy->intoOffset});
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDepthLimit* limit) {
+  return guarded("voyRecordVulkanDepthLimit", [&](Call& call) {
+    const auto object = call.use<TargetObject>(target);
+    check_structure(limit, VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT, "VoyVulkanDepthLimit");
+    const vulkan::Ring& ring = vulkan_ring(*object);
+    check_commands(limit->commandBuffer);
+    check_layer(ring, limit->imageIndex, limit->layer);
+    check_pointer(limit->depth, "limit.depth");
+    check_layout(limit->layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "limit.layout");
+    check_offset(limit->offset, "limit.offset");
+    if (!ring.desc().depth_limit)
+      refuse("target: found one without depthLimit, expected one that was made with it");
+    ring.record_depth_limit(limit->imageIndex, limit->layer,
+                            {limit->commandBuffer, limit->queueFamily, limit->depth, limit->format,
+                             limit->layout, limit->depthLayer, limit->offset});
+    return VOY_SUCCESS;
+  });
+}

@@ -1,0 +1,155 @@
+#include "plugin/vulkan_target.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "plugin/call.h"
+#include "plugin/structs.h"
+
+using namespace voyager;
+
+namespace {
+
+void check_no_memory(const VoyTargetDesc& desc) {
+  if (desc.color != nullptr || desc.depth != nullptr || desc.colorRowPitch != 0 ||
+      desc.depthRowPitch != 0)
+    refuse("desc: found memory or a pitch of the host's, expected none with kind VULKAN");
+}
+
+// Whether the host passed an image where the target has one, and only there.
+void check_image(bool wanted, bool passed, const std::string& field) {
+  if (wanted != passed)
+    refuse(field + (wanted ? ": found VK_NULL_HANDLE, expected an image"
+                           : ": found an image, expected VK_NULL_HANDLE"));
+}
+
+vulkan::ImportedMemory memory_of(const VoyVulkanMemory& memory) {
+  return {memory.fd, memory.size, memory.offset, memory.dedicated == VK_TRUE};
+}
+
+void check_memory(const VoyVulkanMemory& memory, bool shared, const std::string& field) {
+  if (!shared) return;
+  if (memory.fd < 0)
+    refuse(field + ".fd: found " + std::to_string(memory.fd) + ", expected a file descriptor");
+  if (memory.size == 0 || memory.offset >= memory.size)
+    refuse(field + ": found offset " + std::to_string(memory.offset) + " in " +
+           std::to_string(memory.size) + " bytes, expected an image within the memory");
+}
+
+void read_images(const VoyVulkanTargetDesc& from, bool shared, vulkan::RingDesc& into) {
+  if (from.images == nullptr) return;
+  for (uint32_t i = 0; i < from.imageCount; ++i) {
+    const VoyVulkanImportedImage& image = from.images[i];
+    const std::string field = "images[" + std::to_string(i) + "]";
+    check_structure(&image, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE, field.c_str());
+    const bool color = into.format != ColorFormat::none;
+    check_image(color, image.color != VK_NULL_HANDLE, field + ".color");
+    check_image(into.depth, image.depth != VK_NULL_HANDLE, field + ".depth");
+    if (color) check_memory(image.colorMemory, shared, field + ".colorMemory");
+    if (into.depth) check_memory(image.depthMemory, shared, field + ".depthMemory");
+    into.imported.push_back({image.color, image.depth, memory_of(image.colorMemory),
+                             memory_of(image.depthMemory), image.colorUsage, image.depthUsage});
+  }
+}
+
+uint32_t pairs_of(vulkan::Sync sync, uint32_t images) {
+  if (sync == vulkan::Sync::host) return 0;
+  return sync == vulkan::Sync::timeline ? 1 : images;
+}
+
+void read_semaphores(const VoyVulkanTargetDesc& from, const vulkan::Device& device,
+                     vulkan::RingDesc& into) {
+  if (from.semaphoreCount == 0) return;
+  const uint32_t expected = pairs_of(device.sync(), from.imageCount);
+  check_count(from.semaphoreCount, expected, expected, "semaphoreCount");
+  check_pointer(from.semaphores, "semaphores");
+  for (uint32_t i = 0; i < from.semaphoreCount; ++i) {
+    const VoyVulkanImportedSemaphores& pair = from.semaphores[i];
+    const std::string field = "semaphores[" + std::to_string(i) + "]";
+    check_structure(&pair, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES, field.c_str());
+    check_image(true, pair.released != VK_NULL_HANDLE && pair.rendered != VK_NULL_HANDLE, field);
+    if (device.sharing() == vulkan::Sharing::device && (pair.releasedFd < 0 || pair.renderedFd < 0))
+      refuse(field + ": found no file descriptor, expected one of each semaphore");
+    into.semaphores.push_back({pair.released, pair.rendered, pair.releasedFd, pair.renderedFd});
+  }
+}
+
+vulkan::RingDesc ring_desc(const VoyTargetDesc& desc, const VoyVulkanTargetDesc& images,
+                           const vulkan::Device& device) {
+  check_no_memory(desc);
+  check_count(images.imageCount, 1, VOY_MAX_VULKAN_IMAGES, "imageCount");
+  check_count(images.layerCount, 1, VOY_MAX_VULKAN_LAYERS, "layerCount");
+  vulkan::RingDesc out;
+  out.format = format_of(desc.colorFormat);
+  out.width = desc.width;
+  out.height = desc.height;
+  out.images = images.imageCount;
+  out.layers = images.layerCount;
+  out.depth = images.depth == VK_TRUE;
+  out.depth_limit = images.depthLimit == VK_TRUE;
+  if (out.format == ColorFormat::none && !out.depth)
+    refuse("desc: found neither color nor depth, expected at least one");
+  read_images(images, device.sharing() == vulkan::Sharing::device, out);
+  read_semaphores(images, device, out);
+  return out;
+}
+
+// They are the library's once the call has succeeded; it works with copies.
+void close_descriptors(const vulkan::RingDesc& desc) noexcept {
+  const auto close = [](int fd) {
+    if (fd >= 0) ::close(fd);
+  };
+  for (const vulkan::ImportedImage& image : desc.imported) {
+    if (image.color != VK_NULL_HANDLE) close(image.color_memory.fd);
+    if (image.depth != VK_NULL_HANDLE) close(image.depth_memory.fd);
+  }
+  for (const vulkan::ImportedSemaphores& pair : desc.semaphores)
+    close(pair.released_fd), close(pair.rendered_fd);
+}
+
+}  // namespace
+
+std::shared_ptr<TargetObject> voyager::create_vulkan_target(std::shared_ptr<DeviceObject> owner,
+                                                            const VoyTargetDesc& desc,
+                                                            const VoyVulkanTargetDesc* images) {
+  if (images == nullptr)
+    refuse("desc.next: found no VoyVulkanTargetDesc, expected one with kind VULKAN");
+  if (owner->vulkan == nullptr)
+    throw ApiError(VOY_ERROR_UNSUPPORTED,
+                   "desc.kind: found VULKAN for a device that was made without a "
+                   "VoyVulkanDeviceDesc, expected HOST_MEMORY");
+  const vulkan::RingDesc wanted = ring_desc(desc, *images, *owner->vulkan);
+  Image image;
+  image.format = wanted.format;
+  image.width = wanted.width;
+  image.height = wanted.height;
+  const Backend& backend = *owner->backend;
+  const auto object = std::make_shared<TargetObject>(owner, image);
+  object->ring = std::make_shared<vulkan::Ring>(
+      owner->vulkan, wanted,
+      [&](ExternalRingDesc shared) { return backend.import_ring(std::move(shared)); },
+      owner->memory);
+  close_descriptors(wanted);
+  return object;
+}
+
+VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVulkanImage* images,
+                             uint32_t* count) {
+  return guarded("voyGetVulkanImages", [&](Call& call) {
+    const auto object = call.use<TargetObject>(target);
+    check_pointer(count, "count");
+    if (capacity > 0) check_pointer(images, "images");
+    const vulkan::Ring& ring = vulkan_ring(*object);
+    const uint32_t there = ring.desc().images, written = std::min(capacity, there);
+    for (uint32_t i = 0; i < written; ++i) {
+      const vulkan::RingImage image = ring.image(i);
+      images[i] = {VOY_STRUCTURE_TYPE_VULKAN_IMAGE, nullptr,
+                   image.color,  image.color_view,
+                   image.depth,  image.depth_view,
+                   image.released, image.rendered};
+    }
+    *count = there;
+    return capacity > 0 && written < there ? VOY_INCOMPLETE : VOY_SUCCESS;
+  });
+}

@@ -1,0 +1,46 @@
+#pragma once
+// What a frame draws of each of a view's instances, on the host.
+#include <deque>
+
+#include "runtime/frame/draw_list.h"
+
+namespace voyager {
+
+struct HostInstance {
+  HostInstance(const std::shared_ptr<const Scene>& drawn, const PipelineDesc& desc,
+               std::pmr::memory_resource* memory)
+      : scene(drawn), draws(drawn, desc.lod, desc.search, memory) {}
+
+  std::shared_ptr<const Scene> scene;
+  DrawList draws;
+  // Of the frame.
+  Camera camera;     // in the scene's coordinates
+  size_t first = 0;  // the place of the first item
+};
+
+// Places are where items are projected to: they ascend with (instance, id), which breaks
+// ties of depth.
+class HostInstances {
+ public:
+  // grain: of places; an instance's first is a multiple of it.
+  HostInstances(const Scenes& scenes, const PipelineDesc& desc, size_t grain,
+                std::pmr::memory_resource* memory);
+
+  // Throws Error as DrawList does; the next call is right all the same.
+  void update(const FrameInput& frame, Workers& workers);
+
+  // In their order, as the last update left them.
+  const std::deque<HostInstance>& all() const { return all_; }
+  const std::pmr::vector<uint32_t>& cut(size_t instance) const {
+    return all_[instance].draws.cut();
+  }
+  // Of all instances.
+  size_t places() const { return places_; }
+  void collect(FrameStats& stats) const;
+
+ private:
+  std::deque<HostInstance> all_;  // which are never moved
+  size_t grain_, places_ = 0;
+};
+
+}  // namespace voyager

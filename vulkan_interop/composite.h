@@ -1,0 +1,49 @@
+#pragma once
+// Pipelines that draw an image of a ring over the host's, in the host's render pass.
+#include <array>
+#include <memory>
+
+#include "runtime/math/host_depth.h"
+#include "vulkan_interop/ring.h"
+
+namespace voyager::vulkan {
+
+struct CompositeDesc {
+  VkRenderPass render_pass = VK_NULL_HANDLE;  // none: dynamic rendering
+  uint32_t subpass = 0;
+  VkFormat color = VK_FORMAT_UNDEFINED, depth = VK_FORMAT_UNDEFINED;
+};
+
+enum class DepthUse { none, test, write };
+
+struct CompositeDraw {
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  VkRect2D area{};
+  DepthUse depth_use = DepthUse::none;
+  DepthEncoding encoding;  // of the attachment
+};
+
+class Composite {
+ public:
+  Composite(std::shared_ptr<const Device> device, const CompositeDesc& desc);
+
+  // Throws Error(invalid_argument) where the ring or the attachment lacks what is asked for.
+  void record(const Ring& ring, uint32_t index, uint32_t layer, const CompositeDraw& draw) const;
+
+ private:
+  enum Kind { kColor, kTested, kDepthOnly };
+  struct Modules {
+    Owned<VkShaderModule> vertex, color, depth;
+  };
+  Owned<VkPipeline> make_pipeline(const CompositeDesc& desc, const Modules& modules, Kind kind,
+                                  bool reversed) const;
+  void draw(const CompositeDraw& draw, VkPipeline pipeline) const;
+
+  std::shared_ptr<const Device> device_;
+  bool has_depth_;
+  Owned<VkPipelineLayout> layout_;
+  Owned<VkPipeline> color_;
+  std::array<Owned<VkPipeline>, 2> tested_, depth_only_;  // standard, reversed
+};
+
+}  // namespace voyager::vulkan
