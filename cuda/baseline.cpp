@@ -52,7 +52,9 @@ class BaselinePipeline final : public Pipeline {
   Buffer<uint32_t> splat_count_{1};
   Buffer<char> scratch_;
   FrameImage image_;
-  StageTimer timer_;
+  PinnedMemory report_{instances_.report_bytes()};
+  Stream stream_;
+  StageTimer timer_{stream_};
 };
 
 template <class T>
@@ -132,7 +134,7 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
   const TileGrid grid = tile_grid(image.width, image.height);
   fit(tiles_, static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));
   const RasterTarget target = image_.target(frame, image);
-  const cudaStream_t stream = timer_.stream();
+  const cudaStream_t stream = stream_.get();
   timer_.begin();
   instances_.update(frame, stream);
   const uint32_t places = read_places(stream);
@@ -159,13 +161,14 @@ void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameSt
   launch_baseline_rasterize(work, instances_.siblings(), target);
   timer_.end(kRasterize);
   launch_baseline_count(work);
+  instances_.report(report_.data(), stream);
   stats.splats = read_value(splat_count_.data(), stream);
   stats.gaussian_bytes = instances_.bytes_a_gaussian();
   collect(pairs, stats);
 }
 
 void BaselinePipeline::collect(unsigned long long pairs, FrameStats& stats) const {
-  instances_.collect(stats);
+  instances_.collect(report_.data(), stats);
   stats.pairs_before = stats.pairs_after = pairs;
   timer_.collect(stats);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cuda/baseline.h"
+#include "cuda/external_ring.h"
 #include "cuda/pipeline.h"
 #include "cuda/search.h"
 #include "cuda/shared_by_scene.h"
@@ -38,6 +39,11 @@ class CudaBackend final : public Backend {
   }
   std::array<uint8_t, 16> device_uuid() const override { return device_->uuid(); }
   DeviceRates rates() const override { return device_->rates(); }
+  std::shared_ptr<void> enter() const override { return keep_context(); }
+  ExternalSupport external_support() const override { return device_->external_support(); }
+  std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc desc) const override {
+    return cuda::import_ring(device_, std::move(desc));
+  }
 
   std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                             std::pmr::memory_resource*, Workers& workers) override {

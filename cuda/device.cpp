@@ -32,20 +32,21 @@ Device::Device(int ordinal, unsigned multiprocessors) : ordinal_(ordinal) {
     make_green_context(multiprocessors);
 }
 
-#if CUDART_VERSION >= 12050
 namespace {
-
-constexpr unsigned kGreenContextVersion = 12040;
 
 // The driver's functions by name: the module needs no libcuda to be linked or loaded.
 template <class Function>
-Function driver_function(const char* name, unsigned version = kGreenContextVersion) {
+Function driver_function(const char* name, [[maybe_unused]] unsigned version) {
   void* address = nullptr;
   cudaDriverEntryPointQueryResult found;
+#if CUDART_VERSION >= 12050
   check(cudaGetDriverEntryPointByVersion(name, &address, version, cudaEnableDefault, &found), name);
+#else
+  check(cudaGetDriverEntryPoint(name, &address, cudaEnableDefault, &found), name);
+#endif
   if (found != cudaDriverEntryPointSuccess)
-    throw Error(ErrorCode::unsupported, std::string("CUDA: ") + name +
-                                            ": found a driver without it, expected 12.4 or newer");
+    throw Error(ErrorCode::unsupported,
+                std::string("CUDA: ") + name + ": found a driver without it, expected a newer one");
   return reinterpret_cast<Function>(address);
 }
 
@@ -55,23 +56,44 @@ void check_driver(CUresult status, const char* what) {
                 std::string("CUDA: ") + what + ": driver error " + std::to_string(status));
 }
 
+void set_current(CUcontext context) {
+  static const auto set = driver_function<CUresult (*)(CUcontext)>("cuCtxSetCurrent", 4000);
+  check_driver(set(context), "context");
+}
+
 }  // namespace
 
+std::shared_ptr<void> keep_context() {
+  static const auto get = driver_function<CUresult (*)(CUcontext*)>("cuCtxGetCurrent", 4000);
+  CUcontext current = nullptr;
+  check_driver(get(&current), "context");
+  const auto set_back = [](void* context) {
+    try {
+      set_current(static_cast<CUcontext>(context));
+    } catch (const Error&) {
+      return;  // the host destroyed it meanwhile
+    }
+  };
+  return {static_cast<void*>(current), set_back};
+}
+
+#if CUDART_VERSION >= 12050
 void Device::make_green_context(unsigned multiprocessors) {
   check(cudaFree(nullptr), "context");  // the primary context, which green ones divide
+  constexpr unsigned kVersion = 12040;
   const auto get_resource =
       driver_function<CUresult (*)(CUdevice, CUdevResource*, CUdevResourceType)>(
-          "cuDeviceGetDevResource");
+          "cuDeviceGetDevResource", kVersion);
   const auto split =
       driver_function<CUresult (*)(CUdevResource*, unsigned*, const CUdevResource*, CUdevResource*,
-                                   unsigned, unsigned)>("cuDevSmResourceSplitByCount");
+                                   unsigned, unsigned)>("cuDevSmResourceSplitByCount", kVersion);
   const auto describe = driver_function<CUresult (*)(CUdevResourceDesc*, CUdevResource*, unsigned)>(
-      "cuDevResourceGenerateDesc");
+      "cuDevResourceGenerateDesc", kVersion);
   const auto create =
       driver_function<CUresult (*)(CUgreenCtx*, CUdevResourceDesc, CUdevice, unsigned)>(
-          "cuGreenCtxCreate");
+          "cuGreenCtxCreate", kVersion);
   const auto to_context =
-      driver_function<CUresult (*)(CUcontext*, CUgreenCtx)>("cuCtxFromGreenCtx");
+      driver_function<CUresult (*)(CUcontext*, CUgreenCtx)>("cuCtxFromGreenCtx", kVersion);
   CUdevResource all{}, part{}, rest{};
   check_driver(get_resource(ordinal_, &all, CU_DEV_RESOURCE_TYPE_SM), "multiprocessors");
   unsigned groups = 1;
@@ -91,7 +113,7 @@ Device::~Device() {
   if (green_ == nullptr) return;
   cudaSetDevice(ordinal_);
   try {
-    driver_function<CUresult (*)(CUgreenCtx)>("cuGreenCtxDestroy")(static_cast<CUgreenCtx>(green_));
+    driver_function<CUresult (*)(CUgreenCtx)>("cuGreenCtxDestroy", 12040)(static_cast<CUgreenCtx>(green_));
   } catch (const Error&) {
     return;  // it was there when the context was made
   }
@@ -99,8 +121,7 @@ Device::~Device() {
 
 void Device::use() const {
   if (context_ == nullptr) return check(cudaSetDevice(ordinal_), "device");
-  static const auto set_current = driver_function<CUresult (*)(CUcontext)>("cuCtxSetCurrent", 4000);
-  check_driver(set_current(static_cast<CUcontext>(context_)), "green context");
+  set_current(static_cast<CUcontext>(context_));
 }
 #else
 void Device::make_green_context(unsigned) {
@@ -115,6 +136,13 @@ void Device::use() const {
   check(cudaSetDevice(ordinal_), "device");
 }
 #endif
+
+ExternalSupport Device::external_support() const {
+  int timelines = 0;
+  check(cudaDeviceGetAttribute(&timelines, cudaDevAttrTimelineSemaphoreInteropSupported, ordinal_),
+        "device attribute");
+  return {true, timelines != 0, true};
+}
 
 DeviceRates Device::rates() const {
   const auto attribute = [&](cudaDeviceAttr name) {

@@ -2,11 +2,15 @@
 // The device that a backend works on: all of it, or a part of its multiprocessors.
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "runtime/frame/backend.h"
 
 namespace voyager::cuda {
+
+// The context that is current to this thread; it is so again once the result is gone.
+std::shared_ptr<void> keep_context();
 
 class Device {
  public:
@@ -26,6 +30,8 @@ class Device {
   const std::string& name() const { return name_; }
   unsigned multiprocessors() const { return multiprocessors_; }
   const std::array<uint8_t, 16>& uuid() const { return uuid_; }
+  // What it takes of another API's on the same card, as the driver says.
+  ExternalSupport external_support() const;
   // From its clocks: lane-instructions of the multiprocessors in use, bytes of the whole card.
   DeviceRates rates() const;
 

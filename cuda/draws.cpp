@@ -20,8 +20,11 @@ class CutDraws final : public Draws {
     search_->weigh(query, stream);
   }
   DrawView view() const override { return {search_->list(), nullptr}; }
-  void collect(FrameStats& stats) override {
-    const CutFound found = search_->found();
+  size_t report_bytes() const override { return search_->report_bytes(); }
+  void report(void* into, cudaStream_t stream) const override { search_->report(into, stream); }
+  bool counts_changes() const override { return search_->counts_changes(); }
+  void collect(const void* report, FrameStats& stats) const override {
+    const CutFound found = search_->found(report);
     add_search(found.stats, search_->counts_changes(), stats);
     stats.cut_size += found.cut_size;
     stats.bytes[kSearch] += found.stats.bytes_read;
@@ -67,7 +70,10 @@ class LeafDraws final : public Draws {
   DrawView view() const override {
     return {{nodes_.data(), nullptr, size_.data(), count_}, ids_.data()};
   }
-  void collect(FrameStats& stats) override { stats.cut_size += count_; }
+  size_t report_bytes() const override { return 0; }
+  void report(void*, cudaStream_t) const override {}
+  bool counts_changes() const override { return true; }
+  void collect(const void*, FrameStats& stats) const override { stats.cut_size += count_; }
   void read_cut(std::pmr::vector<uint32_t>& cut) override { cut.clear(); }
 
  private:

@@ -15,8 +15,14 @@ class Draws {
   // coordinates. Throws Error(damaged_chunk) where the frame needs a node that is not there.
   virtual void update(const Camera& camera, double tau, cudaStream_t stream) = 0;
   virtual DrawView view() const = 0;
-  // Adds the counters of the last frame, whose work is done.
-  virtual void collect(FrameStats& stats) = 0;
+  // What collect() needs of the last frame: report_bytes() in pinned memory, copied on the
+  // stream.
+  virtual size_t report_bytes() const = 0;
+  virtual void report(void* into, cudaStream_t stream) const = 0;
+  // Adds a frame's counters.
+  virtual void collect(const void* report, FrameStats& stats) const = 0;
+  virtual bool counts_changes() const = 0;
+  // Of the last frame, whose work is done.
   virtual void read_cut(std::pmr::vector<uint32_t>& cut) = 0;
 };
 

@@ -35,11 +35,16 @@ class ExhaustiveSearch final : public CutSearch {
     return {nodes_.data(), weights_.data(), count_.data(), tree_.size};
   }
   bool counts_changes() const override { return false; }
-  CutFound found() override {
+  size_t report_bytes() const override { return sizeof(uint32_t); }
+  void report(void* into, cudaStream_t stream) const override {
+    check(cudaMemcpyAsync(into, count_.data(), sizeof(uint32_t), cudaMemcpyDeviceToHost, stream),
+          "cut");
+  }
+  CutFound found(const void* report) const override {
     SearchStats stats;
     stats.nodes_tested = tree_.size;
     stats.bytes_read = tree_.size * (sizeof(NodeRecord) + sizeof(uint32_t));
-    return {stats, cut_size()};
+    return {stats, *static_cast<const uint32_t*>(report)};
   }
   uint32_t cut_size() const {
     uint32_t size = 0;

@@ -10,8 +10,14 @@ RasterTarget FrameImage::target(const FrameInput& frame, const Image& image) {
   if (color_.size() < bytes) color_ = {}, color_ = Buffer<unsigned char>(bytes);
   const bool depth = frame.depth_wanted || image.depth != nullptr;
   if (depth && depth_.size() < pixels) depth_ = {}, depth_ = Buffer<float>(pixels);
-  return {image.format, color_.data(), depth ? depth_.data() : nullptr,
-          image.width,  image.height,  frame.background};
+  RasterTarget target{};
+  target.format = image.format;
+  target.color = color_.data();
+  target.depth = depth ? depth_.data() : nullptr;
+  target.width = image.width;
+  target.height = image.height;
+  target.background = frame.background;
+  return target;
 }
 
 void FrameImage::resolve(const Image& image, FrameStats& stats) const {

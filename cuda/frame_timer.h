@@ -1,30 +1,27 @@
 #pragma once
-#include <cuda_runtime_api.h>
-
 #include <vector>
+
+#include "cuda/stream.h"
 
 namespace voyager::cuda {
 
-// A stream, and events between the parts of its work.
+// Events between the parts of a stream's work.
 class FrameTimer {
  public:
-  explicit FrameTimer(size_t marks);
-  ~FrameTimer();
-  FrameTimer(const FrameTimer&) = delete;
-  FrameTimer& operator=(const FrameTimer&) = delete;
+  FrameTimer(const Stream& stream, size_t marks) : stream_(stream.get()), events_(marks) {}
 
-  cudaStream_t stream() const { return stream_; }
-  void mark(size_t index);
-  // Until all that was launched is done.
-  void wait() const;
+  void mark(size_t index) { events_[index].record(stream_); }
   // Waits. Both marks must have been passed.
-  double milliseconds(size_t from, size_t to) const;
+  double milliseconds(size_t from, size_t to) const {
+    events_[to].wait();
+    float elapsed = 0;
+    check(cudaEventElapsedTime(&elapsed, events_[from].get(), events_[to].get()), "time");
+    return static_cast<double>(elapsed);
+  }
 
  private:
-  void release();
-
-  cudaStream_t stream_ = nullptr;
-  std::vector<cudaEvent_t> events_;
+  cudaStream_t stream_;
+  std::vector<Event> events_;
 };
 
 }  // namespace voyager::cuda

@@ -27,7 +27,13 @@ class HostCutSearch final : public CutSearch {
   CutList list() const override {
     return {nodes_.data(), weights_.data(), size_.data(), static_cast<uint32_t>(nodes_.size())};
   }
-  CutFound found() override { return {search_.stats(), host_size_}; }
+  size_t report_bytes() const override { return sizeof(CutFound); }
+  void report(void* into, cudaStream_t) const override {
+    *static_cast<CutFound*>(into) = {search_.stats(), host_size_};
+  }
+  CutFound found(const void* report) const override {
+    return *static_cast<const CutFound*>(report);
+  }
   bool counts_changes() const override { return search_.counts_changes(); }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
     cut.assign(search_.cut().begin(), search_.cut().end());

@@ -1,11 +1,21 @@
 #include "cuda/instances.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "runtime/base/error.h"
 #include "runtime/frame/instance.h"
 
 namespace voyager::cuda {
+namespace {
+
+// Reports lie one behind the other.
+size_t aligned(size_t bytes) {
+  constexpr size_t kAlign = alignof(std::max_align_t);
+  return (bytes + kAlign - 1) / kAlign * kAlign;
+}
+
+}  // namespace
 
 DeviceInstances::DeviceInstances(std::vector<DeviceInstance> all) : all_(std::move(all)) {
   uint64_t room = 0;
@@ -44,8 +54,30 @@ uint32_t DeviceInstances::bytes_a_place() const {
   return most;
 }
 
-void DeviceInstances::collect(FrameStats& stats) const {
-  for (const DeviceInstance& instance : all_) instance.draws->collect(stats);
+bool DeviceInstances::counts_changes() const {
+  return std::all_of(all_.begin(), all_.end(), [](const DeviceInstance& instance) {
+    return instance.draws->counts_changes();
+  });
+}
+
+size_t DeviceInstances::report_bytes() const {
+  size_t bytes = 0;
+  for (const DeviceInstance& instance : all_) bytes += aligned(instance.draws->report_bytes());
+  return bytes;
+}
+
+void DeviceInstances::report(unsigned char* into, cudaStream_t stream) const {
+  for (const DeviceInstance& instance : all_) {
+    instance.draws->report(into, stream);
+    into += aligned(instance.draws->report_bytes());
+  }
+}
+
+void DeviceInstances::collect(const unsigned char* report, FrameStats& stats) const {
+  for (const DeviceInstance& instance : all_) {
+    instance.draws->collect(report, stats);
+    report += aligned(instance.draws->report_bytes());
+  }
 }
 
 }  // namespace voyager::cuda

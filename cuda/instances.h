@@ -27,8 +27,11 @@ class DeviceInstances {
   // Of any of them, at most.
   uint32_t bytes_a_gaussian() const;
   uint32_t bytes_a_place() const;
-  // Of the last frame, whose work is done.
-  void collect(FrameStats& stats) const;
+  bool counts_changes() const;
+  // As Draws has them, of all instances.
+  size_t report_bytes() const;
+  void report(unsigned char* into, cudaStream_t stream) const;
+  void collect(const unsigned char* report, FrameStats& stats) const;
 
  private:
   std::vector<DeviceInstance> all_;

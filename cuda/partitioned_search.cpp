@@ -36,7 +36,9 @@ class PartitionedSearch final : public CutSearch {
   void find(const CutQuery& query, cudaStream_t stream) override;
   void weigh(const CutQuery& query, cudaStream_t stream) override;
   CutList list() const override;
-  CutFound found() override;
+  size_t report_bytes() const override { return sizeof(FrameCounters); }
+  void report(void* into, cudaStream_t stream) const override;
+  CutFound found(const void* report) const override;
   bool counts_changes() const override { return true; }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override;
 
@@ -102,8 +104,14 @@ FrameCounters PartitionedSearch::counters() const {
   return counters;
 }
 
-CutFound PartitionedSearch::found() {
-  const FrameCounters c = counters();
+void PartitionedSearch::report(void* into, cudaStream_t stream) const {
+  check(cudaMemcpyAsync(into, state_.view().work + 1, sizeof(FrameCounters),
+                        cudaMemcpyDeviceToHost, stream),
+        "counters");
+}
+
+CutFound PartitionedSearch::found(const void* report) const {
+  const FrameCounters& c = *static_cast<const FrameCounters*>(report);
   SearchStats stats;
   stats.ran = c.streamed != 0 ? Search::streaming : kind_;
   stats.nodes_tested = c.nodes_tested;

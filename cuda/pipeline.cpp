@@ -1,10 +1,13 @@
 #include "cuda/pipeline.h"
 
+#include <algorithm>
+#include <deque>
 #include <vector>
 
+#include "cuda/external_ring.h"
 #include "cuda/frame_image.h"
+#include "cuda/frame_report.h"
 #include "cuda/splat_state.h"
-#include "cuda/stage_timer.h"
 #include "runtime/frame/instance.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/math/alpha_lut.h"
@@ -36,6 +39,9 @@ class SplatPipeline final : public Pipeline {
   void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {
     image_.resolve(image, stats);
   }
+  void submit(const FrameInput& frame, const Image& image, bool checked) override;
+  bool finish(bool wait, FrameStats& stats) override;
+  bool counts_changes() const override { return instances_.counts_changes(); }
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
     device_->use();
     instances_.all()[instance].draws->read_cut(cut);
@@ -43,11 +49,20 @@ class SplatPipeline final : public Pipeline {
   bool cut_is_near() const override { return false; }
 
  private:
-  void launch_splatting(const FrameInput& frame, const TileGrid& grid, const RasterTarget& target);
+  using Report = std::unique_ptr<FrameReport>;
+
+  Report begin_frame(const FrameInput& frame, const Image& image);
+  SplatFrame work(const TileGrid& grid) const;
+  void launch_lists(const FrameInput& frame, FrameReport& report);
+  void launch_checked_lists(const FrameInput& frame, FrameReport& report);
   void launch_projections(const FrameInput& frame, SplatFrame& work);
-  SplatCounters counters() const;
-  void collect(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
-  void count_bytes(const SplatCounters& counted, const Image& image, FrameStats& stats) const;
+  void launch_image(const RasterTarget& target, FrameReport& report);
+  void copy(FrameReport& report) const {
+    report.copy(splats_.counters(), instances_, stream_.get());
+  }
+  void make_room();
+  void collect(const FrameReport& report, FrameStats& stats) const;
+  void count_bytes(const FrameReport& report, FrameStats& stats) const;
 
   std::shared_ptr<const Device> device_;
   DeviceInstances instances_;
@@ -55,7 +70,10 @@ class SplatPipeline final : public Pipeline {
   Buffer<float> lut_;
   SplatState splats_;
   FrameImage image_;
-  StageTimer timer_;
+  Stream stream_;
+  std::vector<Report> free_;      // made as many as were under way at once
+  std::deque<Report> under_way_;  // the oldest first
+  SplatRoom wanted_;              // by what frames that were under way have used
 };
 
 // One instance after the other, so that each finds on the device where its slots begin.
@@ -69,75 +87,143 @@ void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work
   }
 }
 
-void SplatPipeline::launch_splatting(const FrameInput& frame, const TileGrid& grid,
-                                     const RasterTarget& target) {
+SplatFrame SplatPipeline::work(const TileGrid& grid) const {
   SplatFrame work{};
   work.splats = splats_.view(grid);
   work.multiprocessors = device_->multiprocessors();
-  work.stream = timer_.stream();
-  splats_.begin_frame(grid, work.stream);
-  launch_projections(frame, work);
-  timer_.end(kProject);
-  launch_bin(work);
-  timer_.end(kBin);
-  launch_sort(work);
-  timer_.end(kSort);
-  launch_rasterize(work,
+  work.stream = stream_.get();
+  return work;
+}
+
+// Up to the tiles' lists.
+void SplatPipeline::launch_lists(const FrameInput& frame, FrameReport& report) {
+  report.room = splats_.room();
+  SplatFrame lists = work(report.grid);
+  splats_.begin_frame(report.grid, stream_.get());
+  launch_projections(frame, lists);
+  report.timer.end(kProject);
+  launch_bin(lists);
+  report.timer.end(kBin);
+  launch_sort(lists);
+  report.timer.end(kSort);
+}
+
+// Lists that found too little room are made again with more.
+void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& report) {
+  for (;;) {
+    launch_lists(frame, report);
+    copy(report);
+    report.wait();
+    if (!splats_.grow(room_for(report.counters()))) return;
+    report.timer.go_back_to(kSearch);
+  }
+}
+
+void SplatPipeline::launch_image(const RasterTarget& target, FrameReport& report) {
+  launch_rasterize(work(report.grid),
                    {desc_.exponential, desc_.alpha_filter, desc_.count_pixels,
                     instances_.siblings(), lut_.data(), desc_.lut_size},
                    target);
-  timer_.end(kRasterize);
+  report.timer.end(kRasterize);
 }
 
-SplatCounters SplatPipeline::counters() const {
-  timer_.wait();
-  SplatCounters counters;
-  check(cudaMemcpy(&counters, splats_.counters(), sizeof counters, cudaMemcpyDeviceToHost),
-        "counters");
-  return counters;
+SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, const Image& image) {
+  device_->use();
+  make_room();
+  Report report;
+  if (free_.empty()) {
+    report = std::make_unique<FrameReport>(stream_, instances_);
+  } else {
+    report = std::move(free_.back());
+    free_.pop_back();
+  }
+  report->grid = tile_grid(image.width, image.height);
+  report->target_bytes =
+      uint64_t{image.width} * image.height * pixel_bytes(image.format);
+  splats_.fit(report->grid);
+  report->timer.begin();
+  instances_.update(frame, stream_.get());
+  report->timer.end(kSearch);
+  return report;
+}
+
+// Frames that are left under way cannot be drawn again: they get room before they need it.
+void SplatPipeline::make_room() {
+  const SplatRoom wanted = std::exchange(wanted_, {}), room = splats_.room();
+  if (wanted.slots <= room.slots && wanted.strips <= room.strips && wanted.pairs <= room.pairs)
+    return;
+  stream_.wait();
+  splats_.grow(wanted);
 }
 
 void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
-  device_->use();
-  const TileGrid grid = tile_grid(image.width, image.height);
-  splats_.fit(grid);
+  Report report = begin_frame(frame, image);
   const RasterTarget target = image_.target(frame, image);
-  timer_.begin();
-  instances_.update(frame, timer_.stream());
-  timer_.end(kSearch);
-  launch_splatting(frame, grid, target);
-  SplatCounters counted = counters();
-  // A frame that found too little room is drawn again with more.
-  while (splats_.grow(counted)) {
-    timer_.go_back_to(kSearch);
-    launch_splatting(frame, grid, target);
-    counted = counters();
+  for (;;) {
+    launch_lists(frame, *report);
+    launch_image(target, *report);
+    copy(*report);
+    report->wait();
+    if (!splats_.grow(room_for(report->counters()))) break;
+    report->timer.go_back_to(kSearch);
   }
-  collect(counted, image, stats);
+  collect(*report, stats);
+  free_.push_back(std::move(report));
 }
 
-void SplatPipeline::collect(const SplatCounters& counted, const Image& image,
-                            FrameStats& stats) const {
-  instances_.collect(stats);
+void SplatPipeline::submit(const FrameInput& frame, const Image& image, bool checked) {
+  Report report = begin_frame(frame, image);
+  if (checked)
+    launch_checked_lists(frame, *report);
+  else
+    launch_lists(frame, *report);
+  wait_released(image.external, stream_.get());
+  launch_image(raster_target(image.external, frame.background), *report);
+  signal_rendered(image.external, stream_.get());
+  copy(*report);
+  under_way_.push_back(std::move(report));
+}
+
+bool SplatPipeline::finish(bool wait, FrameStats& stats) {
+  if (under_way_.empty()) return false;
+  device_->use();
+  FrameReport& oldest = *under_way_.front();
+  if (wait) oldest.wait();
+  if (!oldest.passed()) return false;
+  collect(oldest, stats);
+  const SplatRoom used = room_for(oldest.counters());
+  const auto ahead = [](size_t& wanted, size_t needed) {
+    wanted = std::max(wanted, needed + needed / 8);
+  };
+  ahead(wanted_.slots, used.slots), ahead(wanted_.strips, used.strips);
+  ahead(wanted_.pairs, used.pairs);
+  free_.push_back(std::move(under_way_.front()));
+  under_way_.pop_front();
+  return true;
+}
+
+void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const {
+  const SplatCounters& counted = report.counters();
+  instances_.collect(report.instances(), stats);
   stats.splats = counted.splats;
   stats.pairs_before = counted.pairs_boxed;
   stats.pairs_after = counted.pairs;
-  stats.pairs_dropped = splats_.dropped(counted);
+  stats.pairs_dropped = dropped(counted, report.room);
   stats.pixels_evaluated = counted.evaluated;
   stats.pixels_blended = counted.blended;
 
-  count_bytes(counted, image, stats);
-  timer_.collect(stats);
+  count_bytes(report, stats);
+  report.timer.collect(stats);
 }
 
 // What each stage reads and writes of its own arrays; what siblings share of their parents
 // is left out.
-void SplatPipeline::count_bytes(const SplatCounters& counted, const Image& image,
-                                FrameStats& stats) const {
-  const TileGrid grid = tile_grid(image.width, image.height);
+void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) const {
+  const SplatCounters& counted = report.counters();
+  const TileGrid& grid = report.grid;
   const uint64_t tiles = static_cast<uint64_t>(grid.columns) * static_cast<uint64_t>(grid.rows);
   const uint64_t offsets = tiles * bin_blocks(device_->multiprocessors()) * sizeof(uint32_t);
-  const uint64_t pixels = uint64_t{image.width} * image.height, pairs = counted.pairs;
+  const uint64_t pairs = counted.pairs;
   uint64_t candidates = 0;
   for (const InstanceCounters& instance : counted.instances) candidates += instance.candidates;
   constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
@@ -147,7 +233,7 @@ void SplatPipeline::count_bytes(const SplatCounters& counted, const Image& image
       counted.splats * (stats.gaussian_bytes + kRecord) + counted.strips * sizeof(TileStrip);
   stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
   stats.bytes[kSort] = 2 * pairs * kKey;
-  stats.bytes[kRasterize] = pairs * (kKey + kRecord) + pixels * pixel_bytes(image.format);
+  stats.bytes[kRasterize] = pairs * (kKey + kRecord) + report.target_bytes;
 }
 
 }  // namespace

@@ -19,9 +19,27 @@ __device__ inline uint32_t to_half_pair(float a, float b) {
   return *reinterpret_cast<const uint32_t*>(&pair);
 }
 
+// Surfaces are addressed in bytes along a row.
+template <class T>
+__device__ void write_surface(const RasterTarget& target, cudaSurfaceObject_t surface, uint32_t x,
+                              uint32_t y, const T& value) {
+  const int at = static_cast<int>(x * sizeof(T));
+  if (target.layered)
+    surf2DLayeredwrite(value, surface, at, y, target.layer);
+  else
+    surf2Dwrite(value, surface, at, y);
+}
+
+template <class T>
+__device__ void write_color(const RasterTarget& target, uint32_t x, uint32_t y, const T& value) {
+  if (target.color_surface != 0)
+    write_surface(target, target.color_surface, x, y, value);
+  else
+    static_cast<T*>(target.color)[size_t{y} * target.width + x] = value;
+}
+
 __device__ inline void write_pixel(const RasterTarget& target, uint32_t x, uint32_t y,
                                    const RasterPixel& pixel) {
-  const size_t i = size_t{y} * target.width + x;
   const float r = fmaf(pixel.transmittance, target.background.x, pixel.r);
   const float g = fmaf(pixel.transmittance, target.background.y, pixel.g);
   const float b = fmaf(pixel.transmittance, target.background.z, pixel.b);
@@ -30,17 +48,19 @@ __device__ inline void write_pixel(const RasterTarget& target, uint32_t x, uint3
     case ColorFormat::none:
       break;
     case ColorFormat::rgba8:
-      static_cast<uint32_t*>(target.color)[i] =
-          to_code(r) | to_code(g) << 8 | to_code(b) << 16 | to_code(a) << 24;
+      write_color(target, x, y, to_code(r) | to_code(g) << 8 | to_code(b) << 16 | to_code(a) << 24);
       break;
     case ColorFormat::rgba16f:
-      static_cast<uint2*>(target.color)[i] = {to_half_pair(r, g), to_half_pair(b, a)};
+      write_color(target, x, y, uint2{to_half_pair(r, g), to_half_pair(b, a)});
       break;
     case ColorFormat::rgba32f:
-      static_cast<float4*>(target.color)[i] = {r, g, b, a};
+      write_color(target, x, y, float4{r, g, b, a});
       break;
   }
-  if (target.depth != nullptr) target.depth[i] = pixel.depth;
+  if (target.depth_surface != 0)
+    write_surface(target, target.depth_surface, x, y, pixel.depth);
+  else if (target.depth != nullptr)
+    target.depth[size_t{y} * target.width + x] = pixel.depth;
 }
 
 }  // namespace voyager::cuda

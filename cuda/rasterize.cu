@@ -189,7 +189,7 @@ void launch(const SplatFrame& f, const RasterParams& params) {
 
 template <Exponential E, bool kFilter>
 void launch_for(const SplatFrame& f, bool siblings, const RasterParams& params) {
-  const bool depth = params.target.depth != nullptr;
+  const bool depth = params.target.has_depth();
   if (siblings && depth) return launch<Mode<E, kFilter, true, true, false>>(f, params);
   if (siblings) return launch<Mode<E, kFilter, true, false, false>>(f, params);
   if (depth) return launch<Mode<E, kFilter, false, true, false>>(f, params);

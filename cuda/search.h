@@ -33,9 +33,12 @@ class CutSearch {
   virtual void weigh(const CutQuery& query, cudaStream_t stream) = 0;
   virtual CutList list() const = 0;
 
-  // Of the last run; the stream has come to its end.
-  virtual CutFound found() = 0;
+  // What found() needs of the last run: report_bytes() in pinned memory, copied on the stream.
+  virtual size_t report_bytes() const = 0;
+  virtual void report(void* into, cudaStream_t stream) const = 0;
+  virtual CutFound found(const void* report) const = 0;
   virtual bool counts_changes() const = 0;
+  // Of the last run; the stream has come to its end.
   virtual void read(std::vector<uint32_t>& cut, std::vector<float>& weights) = 0;
 };
 

@@ -46,6 +46,12 @@ struct RasterTarget {
   float* depth;  // or null
   uint32_t width, height;
   Vec3f background;
+  // In place of color and depth, where they are not 0: an image of another API.
+  cudaSurfaceObject_t color_surface, depth_surface;
+  bool layered;
+  uint32_t layer;
+
+  VOYAGER_HD bool has_depth() const { return depth != nullptr || depth_surface != 0; }
 };
 struct RasterChoices {
   Exponential exponential;

@@ -32,6 +32,14 @@ bool grow_to(size_t wanted, size_t before, const Allocate& allocate) {
 
 }  // namespace
 
+uint64_t dropped(const SplatCounters& counters, const SplatRoom& room) {
+  const auto beyond = [](uint64_t counted, size_t there) {
+    return counted > there ? counted - there : 0;
+  };
+  return beyond(counters.places, room.slots) + counters.strips_dropped +
+         beyond(counters.pairs, room.pairs);
+}
+
 SplatState::SplatState(unsigned bin_blocks)
     : bin_blocks_(bin_blocks),
       records_(kFirstSlots),
@@ -51,7 +59,7 @@ void SplatState::fit(const TileGrid& grid) {
 
 // The old buffers go first: nothing in them outlives a frame.
 bool SplatState::grow_slots(size_t wanted) {
-  return grow_to(wanted, slots(), [&](size_t slots) {
+  return grow_to(wanted, room().slots, [&](size_t slots) {
     records_ = {}, candidates_ = {};
     records_ = Buffer<SplatRecord>(slots);
     candidates_ = Buffer<uint32_t>(slots);
@@ -66,37 +74,29 @@ bool SplatState::grow_strips(size_t wanted) {
 }
 
 bool SplatState::grow_pairs(size_t wanted) {
-  return grow_to(wanted, pairs(), [&](size_t pairs) {
+  return grow_to(wanted, room().pairs, [&](size_t pairs) {
     keys_ = {}, merge_keys_ = {};
     keys_ = Buffer<DepthKey>(pairs);
     merge_keys_ = Buffer<DepthKey>(pairs);
   });
 }
 
-bool SplatState::grow(const SplatCounters& counters) {
+bool SplatState::grow(const SplatRoom& wanted) {
   // All three, whatever becomes of one.
-  const bool slots = grow_slots(counters.places), strips = grow_strips(counters.strip_room),
-             pairs = grow_pairs(counters.pairs);
+  const bool slots = grow_slots(wanted.slots), strips = grow_strips(wanted.strips),
+             pairs = grow_pairs(wanted.pairs);
   return slots || strips || pairs;
-}
-
-uint64_t SplatState::dropped(const SplatCounters& counters) const {
-  const auto beyond = [](uint64_t counted, size_t room) {
-    return counted > room ? counted - room : 0;
-  };
-  return beyond(counters.places, slots()) + counters.strips_dropped +
-         beyond(counters.pairs, pairs());
 }
 
 SplatView SplatState::view(const TileGrid& grid) const {
   return {records_.data(),
           candidates_.data(),
-          static_cast<uint32_t>(slots()),
+          static_cast<uint32_t>(room().slots),
           strips_.data(),
           static_cast<uint32_t>(strips_.size()),
           keys_.data(),
           merge_keys_.data(),
-          static_cast<uint32_t>(pairs()),
+          static_cast<uint32_t>(room().pairs),
           reinterpret_cast<SplatCounters*>(counters_.data()),
           reinterpret_cast<uint32_t*>(counters_.data() + sizeof(SplatCounters)),
           tile_offsets_.data(),

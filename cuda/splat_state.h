@@ -7,6 +7,19 @@
 
 namespace voyager::cuda {
 
+// Of the buffers that the scene and the view decide.
+struct SplatRoom {
+  size_t slots = 0, strips = 0, pairs = 0;
+};
+
+// What a frame's lists would have needed.
+inline SplatRoom room_for(const SplatCounters& counters) {
+  return {counters.places, counters.strip_room, counters.pairs};
+}
+
+// Pairs, strips and places of a frame for which there was no room.
+uint64_t dropped(const SplatCounters& counters, const SplatRoom& room);
+
 class SplatState {
  public:
   // bin_blocks: of bin.cu.
@@ -14,11 +27,14 @@ class SplatState {
 
   // Makes room for the tiles of the grid; what is there already stays. Throws Error.
   void fit(const TileGrid& grid);
-  // Makes room for what a frame has counted, with some to spare. False where there is
-  // nothing to do, or no memory for it: the frame is then what it can be.
-  bool grow(const SplatCounters& counters);
-  // Pairs, strips and places of the frame for which there was no room.
-  uint64_t dropped(const SplatCounters& counters) const;
+  // Buffers that belong together may differ after an allocation that failed.
+  SplatRoom room() const {
+    return {std::min(records_.size(), candidates_.size()), strips_.size(),
+            std::min(keys_.size(), merge_keys_.size())};
+  }
+  // Makes so much room, with some to spare. False where there is nothing to do, or no
+  // memory for it: the frame is then what it can be. Nothing on the device uses them.
+  bool grow(const SplatRoom& wanted);
 
   SplatView view(const TileGrid& grid) const;
   // Clears what the kernels add to.
@@ -28,9 +44,6 @@ class SplatState {
   }
 
  private:
-  // Buffers that belong together may differ after an allocation that failed.
-  size_t slots() const { return std::min(records_.size(), candidates_.size()); }
-  size_t pairs() const { return std::min(keys_.size(), merge_keys_.size()); }
   bool grow_slots(size_t wanted);
   bool grow_strips(size_t wanted);
   bool grow_pairs(size_t wanted);

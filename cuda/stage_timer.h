@@ -7,15 +7,13 @@ namespace voyager::cuda {
 
 class StageTimer {
  public:
-  StageTimer() : timer_(kStageCount + 1) {}
+  explicit StageTimer(const Stream& stream) : timer_(stream, kStageCount + 1) {}
 
-  cudaStream_t stream() const { return timer_.stream(); }
   void begin();
   // The stages that have ended, in their order; each at most once.
   void end(Stage stage);
   // What ended after `stage` is done again, and its time is that of both.
   void go_back_to(Stage stage);
-  void wait() const { timer_.wait(); }
   // Waits. Sets the times of what has ended, and their sum.
   void collect(FrameStats& stats) const;
 

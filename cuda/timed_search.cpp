@@ -10,19 +10,24 @@ enum Mark : size_t { kBegin, kFound, kWeighed, kMarks };
 class TimedSearch final : public SceneSearch {
  public:
   TimedSearch(std::shared_ptr<const Device> device, std::unique_ptr<CutSearch> search, bool weights)
-      : device_(std::move(device)), search_(std::move(search)), weights_(weights), timer_(kMarks) {}
+      : device_(std::move(device)),
+        search_(std::move(search)),
+        weights_(weights),
+        timer_(stream_, kMarks),
+        report_(search_->report_bytes()) {}
 
   // What it frees belongs to the device's context.
   ~TimedSearch() override { device_->use_quietly(); }
 
   void run(const CutQuery& query) override {
     device_->use();
-    give_head_start(timer_.stream());
+    give_head_start(stream_.get());
     timer_.mark(kBegin);
-    search_->find(query, timer_.stream());
+    search_->find(query, stream_.get());
     timer_.mark(kFound);
-    if (weights_) search_->weigh(query, timer_.stream());
+    if (weights_) search_->weigh(query, stream_.get());
     timer_.mark(kWeighed);
+    search_->report(report_.data(), stream_.get());
   }
   SearchTimes times() override {
     device_->use();
@@ -30,12 +35,12 @@ class TimedSearch final : public SceneSearch {
   }
   SearchStats stats() override {
     device_->use();
-    timer_.wait();
-    return search_->found().stats;
+    stream_.wait();
+    return search_->found(report_.data()).stats;
   }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
     device_->use();
-    timer_.wait();
+    stream_.wait();
     search_->read(cut, weights);
   }
 
@@ -43,7 +48,9 @@ class TimedSearch final : public SceneSearch {
   std::shared_ptr<const Device> device_;
   std::unique_ptr<CutSearch> search_;
   bool weights_;
+  Stream stream_;
   FrameTimer timer_;
+  PinnedMemory report_;
 };
 
 }  // namespace

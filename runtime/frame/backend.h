@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/error.h"
 #include "runtime/base/workers.h"
 #include "runtime/frame/external_ring.h"
 #include "runtime/frame/scene.h"
@@ -74,8 +75,8 @@ constexpr size_t pixel_bytes(ColorFormat format) {
   return 16;
 }
 
-// Where external.ring is set, the frame goes there. Where color is null but format is not none, the frame is drawn and handed to nobody:
-// for measurements.
+// Where external.ring is set, the frame goes there. Where color is null but format is not
+// none, the frame is drawn and handed to nobody: for measurements.
 struct Image {
   ColorFormat format = ColorFormat::none;
   uint32_t width = 0, height = 0;
@@ -130,6 +131,19 @@ class Pipeline {
   // size and format; only resolve() writes to it, after all else that may fail.
   virtual void draw(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
   virtual void resolve(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
+  // As draw() and resolve(), into a ring of another API, but leaves the frame under way.
+  // checked: room that is too small is found out first; else the frame is what it can be.
+  // Where it throws, nothing is waited for and nothing signalled.
+  virtual void submit(const FrameInput&, const Image&, bool) {
+    throw Error(ErrorCode::unsupported,
+                "target: found another API's memory, expected the host's: this pipeline draws "
+                "into no other");
+  }
+  // Adds what is known of the oldest frame under way. False, and untouched stats, where
+  // there is none or, without `wait`, it has not ended.
+  virtual bool finish(bool, FrameStats&) { return false; }
+  // The search's own entered and left are right for each frame.
+  virtual bool counts_changes() const { return false; }
   // An instance's of the last frame, ascending; none where it draws no cut.
   virtual void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const = 0;
   // Reading a cut is a copy in memory, and waits for no device.

@@ -59,6 +59,58 @@ bool View::read_changes(bool follows, FrameStats& stats) {
   return true;
 }
 
+void View::keep_cuts(bool read) {
+  for (InstanceCut& of : cuts_) {
+    if (read) of.last.swap(of.cut);
+    of.read = read;
+  }
+}
+
+FrameStats View::known_stats(const FrameInput& frame) const {
+  FrameStats stats;
+  for (const auto& scene : scenes_) stats.nodes_total += scene->tree.size();
+  const CutQuery query = cut_query(instance_camera(frame, 0), frame.tau, scenes_[0]->origin);
+  stats.tau_star = query.target_size;
+  stats.cut_centre = query.centre;
+  return stats;
+}
+
+void View::draw(const FrameInput& frame, const Image& image, bool follows) {
+  while (finish_one(true)) continue;
+  FrameStats stats = known_stats(frame);
+  pipeline_->draw(frame, image, stats);
+  const bool read = read_changes(follows, stats);
+  pipeline_->resolve(frame, image, stats);
+  stats.frame_index = frames_++;
+  keep_cuts(read);
+  stats_ = stats;
+  ended_ = true;
+}
+
+// A frame whose changes are not counted has its cut read, once its search has ended.
+void View::submit(const FrameInput& frame, const Image& image, bool follows) {
+  while (finish_one(false)) continue;
+  const bool counted = follows && pipeline_->counts_changes();
+  UnderWay now{known_stats(frame), !counted};
+  pipeline_->submit(frame, image, frames_ == 0 || !counted);
+  const bool read = !counted && read_changes(false, now.stats);
+  now.stats.frame_index = frames_++;
+  keep_cuts(read);
+  under_way_.push_back(now);
+}
+
+bool View::finish_one(bool wait) {
+  if (under_way_.empty()) return false;
+  UnderWay& oldest = under_way_.front();
+  const uint64_t entered = oldest.stats.entered, left = oldest.stats.left;
+  if (!pipeline_->finish(wait, oldest.stats)) return false;
+  if (oldest.changes_known) oldest.stats.entered = entered, oldest.stats.left = left;
+  stats_ = oldest.stats;
+  ended_ = true;
+  under_way_.pop_front();
+  return true;
+}
+
 void View::render(const FrameInput& frame, const Image& image) {
   assert(frame.instances.empty() || frame.instances.size() == scenes_.size());
   for (size_t i = 0; i < scenes_.size(); ++i)
@@ -66,21 +118,17 @@ void View::render(const FrameInput& frame, const Image& image) {
                  frame.instances.empty() ? "" : " in instance " + std::to_string(i));
   const bool follows = follows_;  // the search's last run was the last frame's
   follows_ = false;
-  FrameStats stats;
-  for (const auto& scene : scenes_) stats.nodes_total += scene->tree.size();
-  const CutQuery query = cut_query(instance_camera(frame, 0), frame.tau, scenes_[0]->origin);
-  stats.tau_star = query.target_size;
-  stats.cut_centre = query.centre;
-  pipeline_->draw(frame, image, stats);
-  const bool read = read_changes(follows, stats);
-  pipeline_->resolve(frame, image, stats);
-  stats.frame_index = frames_++;
-  for (InstanceCut& of : cuts_) {
-    if (read) of.last.swap(of.cut);
-    of.read = read;
-  }
-  stats_ = stats;
+  if (image.external.ring != nullptr)
+    submit(frame, image, follows);
+  else
+    draw(frame, image, follows);
   follows_ = true;
+}
+
+const FrameStats& View::stats() {
+  while (finish_one(false)) continue;
+  if (!ended_) finish_one(true);
+  return stats_;
 }
 
 const std::pmr::vector<uint32_t>& View::cut(size_t instance) {
@@ -90,6 +138,7 @@ const std::pmr::vector<uint32_t>& View::cut(size_t instance) {
     throw Error(ErrorCode::unsupported,
                 "cut: found one on a device after a frame that failed, expected a frame that was "
                 "drawn since");
+  while (finish_one(true)) continue;
   pipeline_->read_cut(instance, of.last);
   of.read = true;
   return of.last;

@@ -1,5 +1,6 @@
 #pragma once
 // A view: instances of scenes seen through one backend, with what it keeps between frames.
+#include <deque>
 #include <memory>
 #include <vector>
 
@@ -26,9 +27,11 @@ class View {
     return !scenes_[instance]->flat() && desc_.lod == Lod::cut;
   }
   bool has_frame() const { return frames_ > 0; }
-  const FrameStats& stats() const { return stats_; }
-  // An instance's of the last frame that was drawn, as stats() is: a frame that threw leaves
-  // both.
+  // Of the last frame that has ended; a frame into another API's image may still be under way.
+  // Waits where none has.
+  const FrameStats& stats();
+  // An instance's of the last frame that was drawn, for which it waits. A frame that threw
+  // leaves both.
   // Throws Error(unsupported) where the cut was on a device and a later frame threw.
   const std::pmr::vector<uint32_t>& cut(size_t instance = 0);
 
@@ -40,14 +43,28 @@ class View {
     bool read = true;
   };
 
+  // Of a frame into another API's image.
+  struct UnderWay {
+    FrameStats stats;
+    bool changes_known = false;  // entered and left are there already
+  };
+
+  FrameStats known_stats(const FrameInput& frame) const;
+  void draw(const FrameInput& frame, const Image& image, bool follows);
+  void submit(const FrameInput& frame, const Image& image, bool follows);
+  // Whether one ended.
+  bool finish_one(bool wait);
   // Whether the frame's cuts are now in cuts_.
   bool read_changes(bool follows, FrameStats& stats);
+  void keep_cuts(bool read);
 
   Scenes scenes_;
   PipelineDesc desc_;
   std::unique_ptr<Pipeline> pipeline_;
   std::vector<InstanceCut> cuts_;
   FrameStats stats_;
+  std::deque<UnderWay> under_way_;  // the oldest first
+  bool ended_ = false;              // stats_ is a frame's
   uint64_t frames_ = 0;
   bool follows_ = true;  // no frame has failed since the last that succeeded
 };

@@ -1,0 +1,231 @@
+#include "cuda/external_ring.h"
+
+#include <utility>
+#include <vector>
+
+#include "runtime/base/error.h"
+#include "runtime/frame/backend.h"
+
+namespace voyager::cuda {
+namespace {
+
+template <class Handle, cudaError_t (*kDestroy)(Handle)>
+class Owned {
+ public:
+  Owned() = default;
+  explicit Owned(Handle handle) : handle_(handle) {}
+  Owned(Owned&& other) noexcept : handle_(std::exchange(other.handle_, Handle{})) {}
+  Owned& operator=(Owned&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~Owned() {
+    if (handle_ != Handle{}) kDestroy(handle_);
+  }
+  Handle get() const { return handle_; }
+
+ private:
+  Handle handle_{};
+};
+
+using Memory = Owned<cudaExternalMemory_t, cudaDestroyExternalMemory>;
+using Mipmaps = Owned<cudaMipmappedArray_t, cudaFreeMipmappedArray>;
+using Surface = Owned<cudaSurfaceObject_t, cudaDestroySurfaceObject>;
+using Semaphore = Owned<cudaExternalSemaphore_t, cudaDestroyExternalSemaphore>;
+using Mapped = Owned<void*, cudaFree>;
+
+// The driver owns the descriptor once it has taken it.
+Memory import_memory(ExternalMemory& from) {
+  cudaExternalMemoryHandleDesc desc{};
+  desc.type = cudaExternalMemoryHandleTypeOpaqueFd;
+  desc.handle.fd = from.fd.get();
+  desc.size = from.size;
+  desc.flags = from.dedicated ? cudaExternalMemoryDedicated : 0;
+  cudaExternalMemory_t memory = nullptr;
+  check(cudaImportExternalMemory(&memory, &desc), "memory of another API");
+  from.fd.release();
+  return Memory(memory);
+}
+
+Semaphore import_semaphore(FileDescriptor& from, bool timeline) {
+  cudaExternalSemaphoreHandleDesc desc{};
+  desc.type = timeline ? cudaExternalSemaphoreHandleTypeTimelineSemaphoreFd
+                       : cudaExternalSemaphoreHandleTypeOpaqueFd;
+  desc.handle.fd = from.get();
+  cudaExternalSemaphore_t semaphore = nullptr;
+  check(cudaImportExternalSemaphore(&semaphore, &desc), "a semaphore of another API");
+  from.release();
+  return Semaphore(semaphore);
+}
+
+cudaChannelFormatDesc channels(ColorFormat format) {
+  switch (format) {
+    case ColorFormat::rgba8:
+      return {8, 8, 8, 8, cudaChannelFormatKindUnsigned};
+    case ColorFormat::rgba16f:
+      return {16, 16, 16, 16, cudaChannelFormatKindFloat};
+    default:
+      return {32, 32, 32, 32, cudaChannelFormatKindFloat};
+  }
+}
+
+// A plane of a slot, all layers.
+struct SurfaceImage {
+  Memory memory;
+  Mipmaps mipmaps;
+  Surface surface;
+};
+
+SurfaceImage import_image(ExternalImage& from, const cudaChannelFormatDesc& format,
+                          const ExternalRingDesc& desc) {
+  SurfaceImage image;
+  image.memory = import_memory(from.memory);
+  cudaExternalMemoryMipmappedArrayDesc array{};
+  array.offset = from.memory.offset;
+  array.formatDesc = format;
+  array.extent = cudaExtent{desc.width, desc.height, desc.layers > 1 ? desc.layers : 0};
+  array.flags = cudaArraySurfaceLoadStore;
+  if (desc.layers > 1) array.flags |= cudaArrayLayered;
+  if (from.color_attachment) array.flags |= cudaArrayColorAttachment;
+  array.numLevels = 1;
+  cudaMipmappedArray_t mipmaps = nullptr;
+  check(cudaExternalMemoryGetMappedMipmappedArray(&mipmaps, image.memory.get(), &array),
+        "an image of another API");
+  image.mipmaps = Mipmaps(mipmaps);
+  cudaResourceDesc level{};
+  level.resType = cudaResourceTypeArray;
+  check(cudaGetMipmappedArrayLevel(&level.res.array.array, mipmaps, 0), "an image of another API");
+  cudaSurfaceObject_t surface = 0;
+  check(cudaCreateSurfaceObject(&surface, &level), "a surface");
+  image.surface = Surface(surface);
+  return image;
+}
+
+struct Slot {
+  SurfaceImage color, depth;
+  Memory limit_memory;
+  Mapped limits;
+  Semaphore released, rendered;
+};
+
+class Ring final : public ExternalRing {
+ public:
+  Ring(std::shared_ptr<const Device> device, ExternalRingDesc desc);
+  // What it frees belongs to the device's context.
+  ~Ring() override { device_->use_quietly(); }
+
+  bool idle() const override;
+
+  const ExternalRingDesc& desc() const { return desc_; }
+  const Slot& slot(uint32_t index) const { return slots_[index]; }
+  // Timelines serve the whole ring.
+  const Slot& semaphores(uint32_t index) const {
+    return slots_[desc_.sync == ExternalSync::timeline ? 0 : index];
+  }
+  const Event& last_frame() const { return last_frame_; }
+
+ private:
+  void import_slot(ExternalSlot& from, bool with_semaphores);
+
+  std::shared_ptr<const Device> device_;
+  ExternalRingDesc desc_;
+  std::vector<Slot> slots_;
+  Event last_frame_{cudaEventDisableTiming};
+};
+
+Ring::Ring(std::shared_ptr<const Device> device, ExternalRingDesc desc)
+    : device_(std::move(device)), desc_(std::move(desc)) {
+  slots_.reserve(desc_.slots.size());
+  for (ExternalSlot& slot : desc_.slots)
+    import_slot(slot, desc_.sync == ExternalSync::binary || slots_.empty());
+  desc_.slots.clear();
+}
+
+void Ring::import_slot(ExternalSlot& from, bool with_semaphores) {
+  Slot slot;
+  if (desc_.format != ColorFormat::none)
+    slot.color = import_image(from.color, channels(desc_.format), desc_);
+  if (desc_.depth)
+    slot.depth = import_image(
+        from.depth, {32, 0, 0, 0, cudaChannelFormatKindFloat}, desc_);
+  if (desc_.depth_limit) {
+    slot.limit_memory = import_memory(from.depth_limit);
+    cudaExternalMemoryBufferDesc buffer{};
+    buffer.offset = from.depth_limit.offset;
+    buffer.size = from.depth_limit.size;
+    void* mapped = nullptr;
+    check(cudaExternalMemoryGetMappedBuffer(&mapped, slot.limit_memory.get(), &buffer),
+          "a buffer of another API");
+    slot.limits = Mapped(mapped);
+  }
+  if (desc_.sync != ExternalSync::none && with_semaphores) {
+    const bool timeline = desc_.sync == ExternalSync::timeline;
+    slot.released = import_semaphore(from.released, timeline);
+    slot.rendered = import_semaphore(from.rendered, timeline);
+  }
+  slots_.push_back(std::move(slot));
+}
+
+bool Ring::idle() const {
+  device_->use_quietly();
+  // A device that is lost does nothing more.
+  return cudaEventQuery(last_frame_.get()) != cudaErrorNotReady;
+}
+
+const Ring& ring_of(const ExternalTarget& target) {
+  return static_cast<const Ring&>(*target.ring);
+}
+
+}  // namespace
+
+std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
+                                          ExternalRingDesc desc) {
+  device->use();
+  return std::make_unique<Ring>(std::move(device), std::move(desc));
+}
+
+RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background) {
+  const Ring& ring = ring_of(target);
+  const Slot& slot = ring.slot(target.slot);
+  RasterTarget out{};
+  out.format = ring.desc().format;
+  out.width = ring.desc().width;
+  out.height = ring.desc().height;
+  out.background = background;
+  out.color_surface = slot.color.surface.get();
+  out.depth_surface = slot.depth.surface.get();
+  out.layered = ring.desc().layers > 1;
+  out.layer = target.layer;
+  return out;
+}
+
+const float* depth_limits(const ExternalTarget& target) {
+  const Ring& ring = ring_of(target);
+  if (!ring.desc().depth_limit) return nullptr;
+  const size_t pixels = size_t{ring.desc().width} * ring.desc().height;
+  return static_cast<const float*>(ring.slot(target.slot).limits.get()) + target.layer * pixels;
+}
+
+void wait_released(const ExternalTarget& target, cudaStream_t stream) {
+  if (!target.waits) return;
+  const cudaExternalSemaphore_t semaphore =
+      ring_of(target).semaphores(target.slot).released.get();
+  cudaExternalSemaphoreWaitParams params{};
+  params.params.fence.value = target.wait_value;
+  check(cudaWaitExternalSemaphoresAsync(&semaphore, &params, 1, stream),
+        "waiting for a semaphore of another API");
+}
+
+void signal_rendered(const ExternalTarget& target, cudaStream_t stream) {
+  const Ring& ring = ring_of(target);
+  if (target.signals) {
+    const cudaExternalSemaphore_t semaphore = ring.semaphores(target.slot).rendered.get();
+    cudaExternalSemaphoreSignalParams params{};
+    params.params.fence.value = target.signal_value;
+    check(cudaSignalExternalSemaphoresAsync(&semaphore, &params, 1, stream),
+          "signalling a semaphore of another API");
+  }
+  ring.last_frame().record(stream);
+}
+
+}  // namespace voyager::cuda

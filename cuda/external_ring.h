@@ -1,0 +1,22 @@
+#pragma once
+// Another API's images and semaphores, imported by file descriptor.
+#include "cuda/device.h"
+#include "cuda/splat_launch.h"
+#include "cuda/stream.h"
+#include "runtime/frame/external_ring.h"
+
+namespace voyager::cuda {
+
+// Throws Error; what was imported before that is given back.
+std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
+                                          ExternalRingDesc desc);
+
+// Of a ring that import_ring made.
+RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background);
+// The host's depth for the target, on the device; null where the ring has none.
+const float* depth_limits(const ExternalTarget& target);
+// On the stream: until the image is there to be written; that it was written.
+void wait_released(const ExternalTarget& target, cudaStream_t stream);
+void signal_rendered(const ExternalTarget& target, cudaStream_t stream);
+
+}  // namespace voyager::cuda

@@ -1,0 +1,41 @@
+#pragma once
+// What the host learns of a frame once it has ended: its counters and times.
+#include "cuda/instances.h"
+#include "cuda/splat_state.h"
+#include "cuda/stage_timer.h"
+
+namespace voyager::cuda {
+
+class FrameReport {
+ public:
+  FrameReport(const Stream& stream, const DeviceInstances& instances)
+      : timer(stream), memory_(sizeof(SplatCounters) + instances.report_bytes()) {}
+
+  // On the stream, behind the frame's work so far.
+  void copy(const SplatCounters* counters, const DeviceInstances& instances, cudaStream_t stream) {
+    check(cudaMemcpyAsync(memory_.data(), counters, sizeof *counters, cudaMemcpyDeviceToHost,
+                          stream),
+          "counters");
+    instances.report(memory_.data() + sizeof *counters, stream);
+    copied_.record(stream);
+  }
+  bool passed() const { return copied_.passed(); }
+  void wait() const { copied_.wait(); }
+
+  const SplatCounters& counters() const {
+    return *reinterpret_cast<const SplatCounters*>(memory_.data());
+  }
+  const unsigned char* instances() const { return memory_.data() + sizeof(SplatCounters); }
+
+  StageTimer timer;
+  TileGrid grid{};
+  SplatRoom room;
+  uint64_t target_bytes = 0;  // of the image
+
+ private:
+  static_assert(sizeof(SplatCounters) % alignof(std::max_align_t) == 0);
+  PinnedMemory memory_;
+  Event copied_{cudaEventDisableTiming};
+};
+
+}  // namespace voyager::cuda
