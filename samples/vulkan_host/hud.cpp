@@ -13,7 +13,8 @@ namespace {
 
 UniqueDescriptorPool make_pool(VkDevice device) {
   const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
-  VkDescriptorPoolCreateInfo info = {VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
+  VkDescriptorPoolCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
   info.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
   info.maxSets = 1;
   info.poolSizeCount = 1;
@@ -97,7 +98,8 @@ void Hud::upload_fonts(const Device& device) {
                                             pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
   VkCommandBuffer commands = VK_NULL_HANDLE;
   check(vkAllocateCommandBuffers(device.get(), &info, &commands), "vkAllocateCommandBuffers");
-  const VkCommandBufferBeginInfo begin = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  VkCommandBufferBeginInfo begin = {};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
   ImGui_ImplVulkan_CreateFontsTexture(commands);
   check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");

@@ -36,10 +36,12 @@ Instance::Instance(Validation* validation, const Presentation* presentation) {
     extensions.insert(extensions.end(), presentation->instance_extensions.begin(),
                       presentation->instance_extensions.end());
 
-  VkApplicationInfo application = {VK_STRUCTURE_TYPE_APPLICATION_INFO};
+  VkApplicationInfo application = {};
+  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
   application.pApplicationName = "vulkan_host";
   application.apiVersion = api_version_;
-  VkInstanceCreateInfo info = {VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
+  VkInstanceCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;
   if (validation) {
     require_validation_layer();

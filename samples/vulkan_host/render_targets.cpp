@@ -43,7 +43,8 @@ UniqueRenderPass make_pass(VkDevice device, const VkAttachmentDescription (&atta
       {VK_SUBPASS_EXTERNAL, 0, outside, kAttachments, kAttachmentWrites, kAttachmentAccesses, 0},
       {0, VK_SUBPASS_EXTERNAL, kAttachments, outside, kAttachmentWrites,
        kAttachmentAccesses | VK_ACCESS_TRANSFER_READ_BIT, 0}};
-  VkRenderPassCreateInfo info = {VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO};
+  VkRenderPassCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
   info.attachmentCount = 2;
   info.pAttachments = attachments;
   info.subpassCount = 1;
@@ -57,7 +58,8 @@ UniqueRenderPass make_pass(VkDevice device, const VkAttachmentDescription (&atta
 
 UniqueFramebuffer make_framebuffer(VkDevice device, VkRenderPass pass, const RenderTargets& targets) {
   const VkImageView views[] = {targets.colour.view.get(), targets.depth.view.get()};
-  VkFramebufferCreateInfo info = {VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO};
+  VkFramebufferCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
   info.renderPass = pass;
   info.attachmentCount = 2;
   info.pAttachments = views;

@@ -18,7 +18,8 @@ void wait_for(VkDevice device, VkFence fence) {
 }
 
 void begin(VkCommandBuffer commands) {
-  VkCommandBufferBeginInfo info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  VkCommandBufferBeginInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
   check(vkBeginCommandBuffer(commands, &info), "vkBeginCommandBuffer");
 }
@@ -30,7 +31,8 @@ void begin_pass(VkCommandBuffer commands, VkRenderPass pass, VkFramebuffer frame
   VkClearValue clear[2] = {};
   clear[0].color = {{0, 0, 0, 1}};
   clear[1].depthStencil = {static_cast<float>(depth.far_plane()), 0};
-  VkRenderPassBeginInfo info = {VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO};
+  VkRenderPassBeginInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
   info.renderPass = pass;
   info.framebuffer = framebuffer;
   info.renderArea.extent = extent;

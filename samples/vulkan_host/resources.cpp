@@ -20,7 +20,8 @@ uint32_t memory_type(const Device& device, uint32_t allowed, VkMemoryPropertyFla
 
 UniqueMemory allocate(const Device& device, const VkMemoryRequirements& needs,
                       VkMemoryPropertyFlags wanted, VkMemoryPropertyFlags needed) {
-  VkMemoryAllocateInfo info = {VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
+  VkMemoryAllocateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
   info.allocationSize = needs.size;
   info.memoryTypeIndex = memory_type(device, needs.memoryTypeBits, wanted, needed);
   VkDeviceMemory memory = VK_NULL_HANDLE;
@@ -32,7 +33,8 @@ UniqueMemory allocate(const Device& device, const VkMemoryRequirements& needs,
 
 Image::Image(const Device& device, VkExtent2D extent, VkFormat format, VkImageUsageFlags usage,
              VkImageAspectFlags aspect) {
-  VkImageCreateInfo info = {VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
+  VkImageCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = format;
   info.extent = {extent.width, extent.height, 1};
@@ -50,7 +52,8 @@ Image::Image(const Device& device, VkExtent2D extent, VkFormat format, VkImageUs
   memory = allocate(device, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
   check(vkBindImageMemory(device.get(), made, memory.get(), 0), "vkBindImageMemory");
 
-  VkImageViewCreateInfo view_info = {VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+  VkImageViewCreateInfo view_info = {};
+  view_info.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
   view_info.image = made;
   view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
   view_info.format = format;
@@ -61,7 +64,8 @@ Image::Image(const Device& device, VkExtent2D extent, VkFormat format, VkImageUs
 }
 
 Buffer::Buffer(const Device& device, VkDeviceSize bytes, VkBufferUsageFlags usage) : size(bytes) {
-  VkBufferCreateInfo info = {VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
+  VkBufferCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.size = bytes;
   info.usage = usage;
   VkBuffer made = VK_NULL_HANDLE;

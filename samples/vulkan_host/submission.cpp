@@ -19,12 +19,14 @@ void Submission::wait(const SemaphoreUse& use, VkPipelineStageFlags at) {
 void Submission::signal(const SemaphoreUse& use) { add(signals_, use); }
 
 void Submission::submit(VkQueue queue, VkFence fence) const {
-  VkTimelineSemaphoreSubmitInfo values = {VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO};
+  VkTimelineSemaphoreSubmitInfo values = {};
+  values.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
   values.waitSemaphoreValueCount = static_cast<uint32_t>(waits_.values.size());
   values.pWaitSemaphoreValues = waits_.values.data();
   values.signalSemaphoreValueCount = static_cast<uint32_t>(signals_.values.size());
   values.pSignalSemaphoreValues = signals_.values.data();
-  VkSubmitInfo info = {VK_STRUCTURE_TYPE_SUBMIT_INFO};
+  VkSubmitInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
   if (timelines_) info.pNext = &values;  // binary semaphores' values are ignored
   info.waitSemaphoreCount = static_cast<uint32_t>(waits_.semaphores.size());
   info.pWaitSemaphores = waits_.semaphores.data();

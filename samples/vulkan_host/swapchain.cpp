@@ -27,7 +27,8 @@ VkSurfaceFormatKHR choose_format(VkPhysicalDevice physical, VkSurfaceKHR surface
 }
 
 UniqueSemaphore make_semaphore(VkDevice device) {
-  const VkSemaphoreCreateInfo info = {VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
+  VkSemaphoreCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
   VkSemaphore semaphore = VK_NULL_HANDLE;
   check(vkCreateSemaphore(device, &info, nullptr, &semaphore), "vkCreateSemaphore");
   return {device, semaphore};
@@ -59,7 +60,8 @@ bool Swapchain::resize(VkExtent2D wanted) {
                         surface.maxImageExtent.height)};
   if (extent_.width == 0 || extent_.height == 0) return false;
   const uint32_t most = surface.maxImageCount ? surface.maxImageCount : UINT32_MAX;
-  VkSwapchainCreateInfoKHR info = {VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR};
+  VkSwapchainCreateInfoKHR info = {};
+  info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
   info.surface = surface_;
   info.minImageCount = std::min(surface.minImageCount + 1, most);
   info.imageFormat = format_.format;
@@ -96,7 +98,8 @@ bool Swapchain::acquire(uint32_t slot) {
 }
 
 void Swapchain::record(VkCommandBuffer commands, const RenderTargets& targets) const {
-  VkImageMemoryBarrier barrier = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
+  VkImageMemoryBarrier barrier = {};
+  barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
   barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
   barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
   barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
@@ -123,7 +126,8 @@ void Swapchain::record(VkCommandBuffer commands, const RenderTargets& targets) c
 bool Swapchain::present() {
   const VkSemaphore ready = ready_[image_].get();
   const VkSwapchainKHR swapchain = swapchain_.get();
-  VkPresentInfoKHR info = {VK_STRUCTURE_TYPE_PRESENT_INFO_KHR};
+  VkPresentInfoKHR info = {};
+  info.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
   info.waitSemaphoreCount = 1;
   info.pWaitSemaphores = &ready;
   info.swapchainCount = 1;
