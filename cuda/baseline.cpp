@@ -130,6 +130,8 @@ void BaselinePipeline::launch_projections(const FrameInput& frame, BaselineFrame
 }
 
 void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
+  if (frame.limits.values != nullptr)
+    throw Error(ErrorCode::unsupported, "depth limits: found some, 3dgs splatting has none");
   device_->use();
   const TileGrid grid = tile_grid(image.width, image.height);
   fit(tiles_, static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));

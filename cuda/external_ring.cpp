@@ -199,11 +199,11 @@ RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background
   return out;
 }
 
-const float* depth_limits(const ExternalTarget& target) {
+DepthLimits depth_limits(const ExternalTarget& target, const DepthEncoding& encoding) {
   const Ring& ring = ring_of(target);
-  if (!ring.desc().depth_limit) return nullptr;
-  const size_t pixels = size_t{ring.desc().width} * ring.desc().height;
-  return static_cast<const float*>(ring.slot(target.slot).limits.get()) + target.layer * pixels;
+  const size_t row = ring.desc().width, pixels = row * ring.desc().height;
+  const auto* all = static_cast<const float*>(ring.slot(target.slot).limits.get());
+  return {all + target.layer * pixels, row * sizeof(float), encoding};
 }
 
 void wait_released(const ExternalTarget& target, cudaStream_t stream) {

@@ -13,8 +13,8 @@ std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
 
 // Of a ring that import_ring made.
 RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background);
-// The host's depth for the target, on the device; null where the ring has none.
-const float* depth_limits(const ExternalTarget& target);
+// The host's depth for the target, of a ring that has it.
+DepthLimits depth_limits(const ExternalTarget& target, const DepthEncoding& encoding);
 // On the stream: until the image is there to be written; that it was written.
 void wait_released(const ExternalTarget& target, cudaStream_t stream);
 void signal_rendered(const ExternalTarget& target, cudaStream_t stream);

@@ -6,8 +6,10 @@
 
 #include "cuda/external_ring.h"
 #include "cuda/frame_image.h"
+#include "cuda/frame_limits.h"
 #include "cuda/frame_report.h"
 #include "cuda/splat_state.h"
+#include "runtime/base/error.h"
 #include "runtime/frame/instance.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/math/alpha_lut.h"
@@ -56,7 +58,7 @@ class SplatPipeline final : public Pipeline {
   void launch_lists(const FrameInput& frame, FrameReport& report);
   void launch_checked_lists(const FrameInput& frame, FrameReport& report);
   void launch_projections(const FrameInput& frame, SplatFrame& work);
-  void launch_image(const RasterTarget& target, FrameReport& report);
+  void launch_image(const RasterTarget& target, const DepthLimits& limits, FrameReport& report);
   void copy(FrameReport& report) const {
     report.copy(splats_.counters(), instances_, stream_.get());
   }
@@ -70,6 +72,7 @@ class SplatPipeline final : public Pipeline {
   Buffer<float> lut_;
   SplatState splats_;
   FrameImage image_;
+  FrameLimits limits_;
   Stream stream_;
   std::vector<Report> free_;      // made as many as were under way at once
   std::deque<Report> under_way_;  // the oldest first
@@ -119,15 +122,19 @@ void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& r
   }
 }
 
-void SplatPipeline::launch_image(const RasterTarget& target, FrameReport& report) {
+void SplatPipeline::launch_image(const RasterTarget& target, const DepthLimits& limits,
+                                 FrameReport& report) {
   launch_rasterize(work(report.grid),
                    {desc_.exponential, desc_.alpha_filter, desc_.count_pixels,
-                    instances_.siblings(), lut_.data(), desc_.lut_size},
+                    instances_.siblings(), lut_.data(), desc_.lut_size, limits},
                    target);
   report.timer.end(kRasterize);
 }
 
 SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, const Image& image) {
+  if (desc_.count_pixels && (frame.limits.values != nullptr || image.external.limited))
+    throw Error(ErrorCode::unsupported,
+                "depth limits: found some, pixels are counted of frames without");
   device_->use();
   make_room();
   Report report;
@@ -141,6 +148,7 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, const 
   report->target_bytes =
       uint64_t{image.width} * image.height * pixel_bytes(image.format);
   splats_.fit(report->grid);
+  limits_.fit(frame);
   report->timer.begin();
   instances_.update(frame, stream_.get());
   report->timer.end(kSearch);
@@ -161,7 +169,7 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
   const RasterTarget target = image_.target(frame, image);
   for (;;) {
     launch_lists(frame, *report);
-    launch_image(target, *report);
+    launch_image(target, limits_.upload(frame, stream_.get()), *report);
     copy(*report);
     report->wait();
     if (!splats_.grow(room_for(report->counters()))) break;
@@ -178,7 +186,10 @@ void SplatPipeline::submit(const FrameInput& frame, const Image& image, bool che
   else
     launch_lists(frame, *report);
   wait_released(image.external, stream_.get());
-  launch_image(raster_target(image.external, frame.background), *report);
+  const DepthLimits limits = image.external.limited
+                                 ? depth_limits(image.external, frame.limits.encoding)
+                                 : limits_.upload(frame, stream_.get());
+  launch_image(raster_target(image.external, frame.background), limits, *report);
   signal_rendered(image.external, stream_.get());
   copy(*report);
   under_way_.push_back(std::move(report));

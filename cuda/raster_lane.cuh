@@ -12,11 +12,12 @@ inline constexpr int kLaneRows = 32 / kPartWidth;  // rows that lie so far apart
 inline constexpr int kRows = 2;                    // pixels a lane
 
 // What a kernel is compiled for.
-template <Exponential E, bool kFilterOn, bool kSiblingsIn, bool kDepthOut, bool kCounting>
+template <Exponential E, bool kFilterOn, bool kSiblingsIn, bool kDepthOut, bool kCounting,
+          bool kLimitsIn = false>
 struct Mode {
   static constexpr Exponential kExponential = E;
   static constexpr bool kFilter = kFilterOn, kSiblings = kSiblingsIn, kDepth = kDepthOut,
-                        kCount = kCounting;
+                        kCount = kCounting, kLimits = kLimitsIn;
 };
 
 struct Counts {
@@ -57,6 +58,8 @@ struct FloatLane {
   __device__ FloatLane(float centre_x, float centre_y) : x(centre_x), y(centre_y) {}
   __device__ void set_limit(int row, float limit) { pixels[row].limit = limit; }
   __device__ float limit(int row) const { return pixels[row].limit; }
+  __device__ void set_farthest(int row, float z) { pixels[row].farthest = z; }
+  __device__ float farthest(int row) const { return pixels[row].farthest; }
   __device__ RasterPixel pixel(int row) const { return pixels[row]; }
   static __device__ float4 prepare(const float4& colour) { return colour; }
 
@@ -70,7 +73,8 @@ struct FloatLane {
 #pragma unroll
     for (int row = 0; row < kRows; ++row) {
       RasterPixel& pixel = pixels[row];
-      const bool hit = minus_log[row] <= pixel.limit;
+      bool hit = minus_log[row] <= pixel.limit;
+      if constexpr (M::kLimits) hit = hit && middle.z <= pixel.farthest;
       float alpha = alpha_of<E>(-minus_log[row], lut.entries, lut.scale);
       alpha = blended_alpha<E, kMost>(alpha, middle.w, colour.w);
       const float before = pixel.transmittance, after = fmaf(-alpha, before, before);
@@ -99,11 +103,14 @@ struct HalfLane {
   float x, y;
   __half2 r{}, g{}, b{}, transmittance;
   float limits[kRows], depth[kRows] = {kInfinity, kInfinity}, halfway[kRows] = {0.5f, 0.5f};
+  float farthest_z[kRows];
 
   __device__ HalfLane(float centre_x, float centre_y)
       : x(centre_x), y(centre_y), transmittance(__float2half2_rn(1.0f)) {}
   __device__ void set_limit(int row, float limit) { limits[row] = limit; }
   __device__ float limit(int row) const { return limits[row]; }
+  __device__ void set_farthest(int row, float z) { farthest_z[row] = z; }
+  __device__ float farthest(int row) const { return farthest_z[row]; }
   __device__ RasterPixel pixel(int row) const {
     const auto of = [row](__half2 pair) {
       return row == 0 ? __low2float(pair) : __high2float(pair);
@@ -128,7 +135,9 @@ struct HalfLane {
     float minus_log[kRows];
     lane_logarithms(x, y, shape, middle, minus_log);
     // What does not contribute has an α of 2^-∞.
-    const bool hits[kRows] = {minus_log[0] <= limits[0], minus_log[1] <= limits[1]};
+    bool hits[kRows] = {minus_log[0] <= limits[0], minus_log[1] <= limits[1]};
+    if constexpr (M::kLimits)
+      for (int row = 0; row < kRows; ++row) hits[row] = hits[row] && middle.z <= farthest_z[row];
     const float exponents[kRows] = {hits[0] ? -minus_log[0] : -kInfinity,
                                     hits[1] ? -minus_log[1] : -kInfinity};
     __half2 alpha =

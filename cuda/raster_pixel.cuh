@@ -73,6 +73,7 @@ struct RasterPixel {
   float depth = kInfinity;
   float halfway = 0.5f;  // the T at which depth is found; below all T once it is
   float limit;           // splats contribute while their -log α is no more; -inf once it has ended
+  float farthest;        // and, where depth is limited, their z
 };
 
 }  // namespace voyager::cuda

@@ -50,6 +50,7 @@ struct RasterParams {
   RasterTarget target;
   const float* lut;
   uint32_t lut_size;
+  DepthLimits limits;
 };
 
 // A list's splats, 32 at a time, asked for before they are wanted.
@@ -91,6 +92,18 @@ __device__ bool all_ended(const Lane& lane) {
   return __all_sync(kAll, all);
 }
 
+// From how far the warp's pixels still take splats; -inf once all have ended.
+template <class Lane>
+__device__ float farthest_of(const Lane& lane) {
+  float z = -kInfinity;
+#pragma unroll
+  for (int row = 0; row < kRows; ++row)
+    if (lane.limit(row) != -kInfinity) z = fmaxf(z, lane.farthest(row));
+#pragma unroll
+  for (int other = 16; other > 0; other /= 2) z = fmaxf(z, __shfl_xor_sync(kAll, z, other));
+  return z;
+}
+
 // Of the splats that the warp blends.
 template <class M>
 __device__ Siblings most_siblings(bool touches, const RasterSplat& splat) {
@@ -113,10 +126,14 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
                                const Lut& lut, WarpSplats& chosen, Lane& lane, Counts& counts) {
   const uint32_t self = threadIdx.x % 32;
   Reader reader(splats, list, self);
+  float farthest = kInfinity;
+  if constexpr (M::kLimits) farthest = farthest_of(lane);
   for (uint32_t first = list.first; first < list.last; first += 32) {
     const RasterSplat splat = reader.take(first + self);
     const bool valid = first + self < list.last;
-    const bool touches = valid && (!M::kFilter || rasterize_touches<M::kExponential>(splat, part));
+    bool within = valid;
+    if constexpr (M::kLimits) within = valid && splat.middle.z <= farthest;
+    const bool touches = within && (!M::kFilter || rasterize_touches<M::kExponential>(splat, part));
     const unsigned lanes = __ballot_sync(kAll, touches);
     __syncwarp();
     if (touches) {
@@ -137,7 +154,13 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
       else
         blend_chosen<Siblings::many>(chosen, count, lut, lane, counts);
     }
-    if (all_ended(lane)) return;
+    if constexpr (M::kLimits) {
+      // Splats come front to back: behind one that is too far all are.
+      farthest = farthest_of(lane);
+      if (__any_sync(kAll, valid && splat.middle.z > farthest)) return;
+    } else {
+      if (all_ended(lane)) return;
+    }
   }
 }
 
@@ -166,6 +189,9 @@ __global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(RasterParams para
 #pragma unroll
   for (int row = 0; row < kRows; ++row)
     lane.set_limit(row, inside(row) ? -log_threshold<M::kExponential>() : -kInfinity);
+  if constexpr (M::kLimits)
+    for (int row = 0; row < kRows; ++row)
+      lane.set_farthest(row, inside(row) ? params.limits.at(x, y + row * kLaneRows) : -kInfinity);
   Counts counts;
   const Lut lut{lut_entries, static_cast<float>(params.lut_size) / kLutRange};
   rasterize_list<M>(params.splats, params.splats.tiles[tile], part, lut, chosen[warp], lane,
@@ -190,6 +216,10 @@ void launch(const SplatFrame& f, const RasterParams& params) {
 template <Exponential E, bool kFilter>
 void launch_for(const SplatFrame& f, bool siblings, const RasterParams& params) {
   const bool depth = params.target.has_depth();
+  if (params.limits.values != nullptr) {  // those kernels find depth, wanted or not
+    if (siblings) return launch<Mode<E, kFilter, true, true, false, true>>(f, params);
+    return launch<Mode<E, kFilter, false, true, false, true>>(f, params);
+  }
   if (siblings && depth) return launch<Mode<E, kFilter, true, true, false>>(f, params);
   if (siblings) return launch<Mode<E, kFilter, true, false, false>>(f, params);
   if (depth) return launch<Mode<E, kFilter, false, true, false>>(f, params);
@@ -209,7 +239,7 @@ void launch_for(const SplatFrame& f, const RasterChoices& choices, const RasterP
 
 void launch_rasterize(const SplatFrame& f, const RasterChoices& choices,
                       const RasterTarget& target) {
-  const RasterParams params{f.splats, target, choices.lut, choices.lut_size};
+  const RasterParams params{f.splats, target, choices.lut, choices.lut_size, choices.limits};
   switch (choices.exponential) {
     case Exponential::exact:
       launch_for<Exponential::exact>(f, choices, params);

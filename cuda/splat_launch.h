@@ -60,6 +60,7 @@ struct RasterChoices {
   bool siblings;     // some t may be below 1
   const float* lut;  // lut_size + 1 entries on the device
   uint32_t lut_size;
+  DepthLimits limits;  // on the device
 };
 void launch_rasterize(const SplatFrame& frame, const RasterChoices& choices,
                       const RasterTarget& target);

@@ -3,6 +3,7 @@
 
 #include "plugin/call.h"
 #include "plugin/claim.h"
+#include "plugin/depth_limit.h"
 #include "plugin/frame_input.h"
 #include "plugin/structs.h"
 
@@ -75,6 +76,22 @@ vulkan::FrameSync checked_sync(const TargetObject& target, const VoyVulkanFrame*
   return {frame->waitValue, frame->signalValue};
 }
 
+struct RingPlace {
+  uint32_t image, layer;
+};
+
+void render_into(vulkan::Ring& ring, View& view, FrameInput& input, const RingPlace& at,
+                 const vulkan::FrameSync& sync, bool limited) {
+  Image image = ring.begin_frame(at.image, at.layer, sync);
+  input.depth_wanted = ring.desc().depth;
+  if (limited && input.limits.values == nullptr) {
+    image.external.limited = image.external.ring != nullptr;
+    ring.set_limits(at.image, at.layer, input.limits);
+  }
+  view.render(input, image);
+  ring.end_frame(sync);
+}
+
 }  // namespace
 
 VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
@@ -86,25 +103,25 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
     check_count(frame->eyeCount, 1, 1, "frame.eyeCount");
     check_pointer(frame->eyes, "frame.eyes");
     const VoyFrameEye& eye = frame->eyes[0];
-    check_structure(&eye, VOY_STRUCTURE_TYPE_FRAME_EYE, "frame.eyes[0]");
+    const VoyEyeDepthLimit* limit = nullptr;
+    check_structure(&eye, VOY_STRUCTURE_TYPE_FRAME_EYE, "frame.eyes[0]",
+                    Extension{VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, limit});
     const auto target = call.use<TargetObject>(eye.target);
     if (target->parent() != object->parent())
       refuse("frame.eyes[0].target: found a target of another device, expected the view's");
     check_size(target->image, *object);
     const vulkan::FrameSync sync = checked_sync(*target, vulkan, eye.layer);
     FrameInput input = frame_input(*frame, eye, target->image, object->instances);
+    input.limits = depth_limits(limit, target->image, target->ring.get());
 
     const auto view_lock = claim(*object);
     const auto target_lock = claim_object(*target, "frame.eyes[0].target");
     input.tau = object->tau;
-    if (target->ring == nullptr) {
+    if (target->ring == nullptr)
       object->view->render(input, target->image);
-      return VOY_SUCCESS;
-    }
-    const Image image = target->ring->begin_frame(vulkan->imageIndex, eye.layer, sync);
-    input.depth_wanted = target->ring->desc().depth;
-    object->view->render(input, image);
-    target->ring->end_frame(sync);
+    else
+      render_into(*target->ring, *object->view, input, {vulkan->imageIndex, eye.layer}, sync,
+                  limit != nullptr);
     return VOY_SUCCESS;
   });
 }

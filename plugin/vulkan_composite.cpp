@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "plugin/call.h"
-#include "plugin/claim.h"
+#include "plugin/depth_limit.h"
 #include "plugin/structs.h"
 #include "plugin/vulkan_target.h"
 

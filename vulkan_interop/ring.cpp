@@ -221,8 +221,14 @@ Image Ring::begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync) {
   image.width = desc_.width;
   image.height = desc_.height;
   if (shared()) {
-    image.external = {external_.get(), index, layer, sync.wait_value != 0, sync.signal_value != 0,
-                      sync.wait_value, sync.signal_value};
+    ExternalTarget& external = image.external;
+    external.ring = external_.get();
+    external.slot = index;
+    external.layer = layer;
+    external.waits = sync.wait_value != 0;
+    external.signals = sync.signal_value != 0;
+    external.wait_value = sync.wait_value;
+    external.signal_value = sync.signal_value;
     last_wait_ = std::max(last_wait_, sync.wait_value);
     return image;
   }
@@ -236,6 +242,13 @@ Image Ring::begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync) {
     image.depth_pitch = size_t{desc_.width} * sizeof(float);
   }
   return image;
+}
+
+void Ring::set_limits(uint32_t index, uint32_t layer, DepthLimits& limits) const {
+  if (shared()) return;
+  limits.values =
+      reinterpret_cast<const float*>(staging_->mapped() + staging_->limit_at(index, layer));
+  limits.pitch = size_t{desc_.width} * sizeof(float);
 }
 
 void Ring::end_frame(const FrameSync& sync) {

@@ -69,6 +69,8 @@ class Ring {
   // Where the frame is drawn. Throws Error(invalid_argument) for values that the mode does
   // not have, Error(timeout), Error(device_lost).
   Image begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync);
+  // Where the host's depth is, if it is in host memory.
+  void set_limits(uint32_t index, uint32_t layer, DepthLimits& limits) const;
   // After a frame that was drawn, or is under way.
   void end_frame(const FrameSync& sync);
   // The backend's frames are done, or will be without the host.

@@ -55,6 +55,7 @@ class ExternalRing {
 struct ExternalTarget {
   ExternalRing* ring = nullptr;
   uint32_t slot = 0, layer = 0;
+  bool limited = false;  // by the ring's own depth limits, which FrameInput.limits encodes
   bool waits = false, signals = false;
   uint64_t wait_value = 0, signal_value = 0;  // of timelines
 };

@@ -37,12 +37,12 @@ TEST_F(Hostile, ViewSizesAndChoices) {
   EXPECT_EQ(with([](VoyViewDesc&) {}), VOY_SUCCESS) << voy.message();
   expect_invalid(with([](VoyViewDesc& d) { d.instanceCount = 0; }), "instanceCount");
   expect_invalid(with([](VoyViewDesc& d) { d.scenes = nullptr; }), "scenes");
-  for (const uint32_t count : {2u, UINT32_MAX}) {
+  for (const uint32_t count : {65u, UINT32_MAX})
     expect_refused(with([&](VoyViewDesc& d) { d.instanceCount = count, d.scenes = nullptr; }),
                    VOY_ERROR_UNSUPPORTED, "instanceCount");
+  for (const uint32_t count : {2u, UINT32_MAX})
     expect_refused(with([&](VoyViewDesc& d) { d.eyeCount = count; }), VOY_ERROR_UNSUPPORTED,
                    "eyeCount");
-  }
   expect_invalid(with([](VoyViewDesc& d) { d.eyeCount = 0; }), "eyeCount");
   for (const uint32_t size : {0u, 16385u, UINT32_MAX}) {
     expect_invalid(with([&](VoyViewDesc& d) { d.maxWidth = size; }), "maxWidth");
@@ -159,15 +159,29 @@ TEST_F(Hostile, Frames) {
   instance.pose.orientation[3] = -2;
   const auto with_instance = [&] { return with([&](VoyFrame& f) { f.instances = &instance; }); };
   EXPECT_EQ(with_instance(), VOY_SUCCESS) << voy.message();
-  for (const double scale : {0.0, -1.0, kNan, kInf}) {
+  for (const double scale : {0.0, -1.0, 9e-10, 1.1e9, kNan, kInf}) {
     instance.scale = scale;
-    expect_invalid(with_instance(), "scale");
+    expect_invalid(with_instance(), "frame.instances[0].scale");
   }
-  instance.scale = 2;
-  expect_refused(with_instance(), VOY_ERROR_UNSUPPORTED, "instances[0]");
   instance.scale = 1;
+  for (const double bad : {kNan, kInf, -1e18}) {
+    instance.pose.position[1] = bad;
+    expect_invalid(with_instance(), "frame.instances[0].pose.position");
+  }
   instance.pose.position[1] = 1e-300;
-  expect_refused(with_instance(), VOY_ERROR_UNSUPPORTED, "instances[0]");
+  instance.pose.orientation[0] = kNan;
+  expect_invalid(with_instance(), "frame.instances[0].pose.orientation");
+  instance.pose.orientation[0] = instance.pose.orientation[3] = 0;
+  expect_invalid(with_instance(), "frame.instances[0].pose.orientation");
+  instance.pose.orientation[3] = 5;
+  for (const double scale : {1e-9, 1e9}) {
+    instance.scale = scale;
+    EXPECT_EQ(with_instance(), VOY_SUCCESS) << voy.message();
+  }
+  // The eye would come to lie 1e26 m from the scene's middle.
+  instance.scale = 1e-9;
+  instance.pose.position[1] = 1e17;
+  expect_invalid(with_instance(), "in instance 0");
 }
 
 TEST_F(Hostile, TargetLargerThanTheView) {

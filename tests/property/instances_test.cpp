@@ -1,7 +1,6 @@
 // Several scenes in one view: what each is drawn as, and that they are one picture.
 #include "tests/support/instances.h"
 #include "runtime/base/error.h"
-#include "runtime/frame/instance.h"
 #include "runtime/scene/append.h"
 #include "tests/support/scene_files.h"
 

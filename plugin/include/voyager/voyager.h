@@ -86,6 +86,7 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_ALLOCATOR = 11,
   VOY_STRUCTURE_TYPE_FRAME_EYE = 12,
   VOY_STRUCTURE_TYPE_INSTANCE_POSE = 13,
+  VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT = 14,
   /* voyager_vulkan.h */
   VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE = 15,
   VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS = 16,
@@ -471,8 +472,8 @@ VOY_API VoyResult voyFovFromIntrinsics(double fx, double fy, double cx, double c
 /* Element of an array, so this size is for good: what is added later goes through next. */
 typedef struct VoyFrameEye {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_EYE */
-  const void* next;
-  VoyPose pose; /* in the world */
+  const void* next;      /* NULL or a VoyEyeDepthLimit */
+  VoyPose pose;          /* in the world */
   VoyFrustum frustum;
   VoyTarget target;  /* of the view's device; its size is the image's */
   uint32_t layer;    /* of the target's array; 0 in this version */
@@ -481,6 +482,36 @@ typedef struct VoyFrameEye {
 /* At the origin, looking along -z; frustum and target are the host's to set. */
 #define VOY_FRAME_EYE_INIT \
   { VOY_STRUCTURE_TYPE_FRAME_EYE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, {0, 0, 0, 0}, NULL, 0, 0 }
+
+/* What a value of a host's depth buffer says. METRES: view-space z, +inf where there is
+ * nothing. The others are a projection's depth, d = a + b / z, from 0 to 1: 0 at nearZ and 1
+ * at farZ (STANDARD), or 1 at nearZ and 0 at farZ (REVERSED). d is clamped to that range. d of
+ * farZ, which buffers are cleared to, is nothing; so is NaN in all of them. */
+typedef enum VoyDepthEncoding {
+  VOY_DEPTH_ENCODING_METRES = 0,
+  VOY_DEPTH_ENCODING_STANDARD = 1,
+  VOY_DEPTH_ENCODING_REVERSED = 2,
+  VOY_DEPTH_ENCODING_MAX_ENUM = 0x7fffffff
+} VoyDepthEncoding;
+
+/* In VoyFrameEye.next: how far the host's opaque geometry is at each pixel of the eye's
+ * target. Splats whose centre lies at a greater view-space z than that are not blended in
+ * the pixel, nor do they count for its depth: the image is what lies before the geometry,
+ * to be composited over the host's picture. The memory is read during voyRenderFrame only.
+ * VOY_SPLATTING_3DGS is VOY_ERROR_UNSUPPORTED with it. */
+typedef struct VoyEyeDepthLimit {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT */
+  const void* next;
+  const float* depth;     /* rows from the top, as the target's; aligned to 4 bytes. NULL: what
+                             voyRecordVulkanDepthLimit took in, for a target made for that */
+  uint64_t depthRowPitch; /* bytes, a multiple of 4; 0 is tightly packed */
+  VoyDepthEncoding encoding;
+  uint32_t reserved;  /* 0 */
+  double nearZ, farZ; /* metres, of the host's projection: 1e-18 <= nearZ <= 1e18, nearZ < farZ,
+                         which may be infinite; ignored for METRES */
+} VoyEyeDepthLimit;
+#define VOY_EYE_DEPTH_LIMIT_INIT \
+  { VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, NULL, NULL, 0, VOY_DEPTH_ENCODING_METRES, 0, 0.0, 0.0 }
 
 /* Where an instance stands: a point x of the scene (in its axes, its origin included, as
  * VoySceneInfo.boundsMin has them) is at position + scale·R·x in the world, R being the
@@ -512,9 +543,9 @@ typedef struct VoyFrame {
   { VOY_STRUCTURE_TYPE_FRAME, NULL, 0, NULL, NULL, 0.2, {0, 0, 0}, 0 }
 
 /* Renders into the targets and returns when they are written. On error no target
- * is changed. Errors: INVALID_ARGUMENT (values out of range), SCENE_DESTROYED,
- * DAMAGED_CHUNK, OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no room for
- * the frame), BUSY. */
+ * is changed. Errors: INVALID_ARGUMENT (values out of range), UNSUPPORTED (a depth limit
+ * where the view's splatting has none), SCENE_DESTROYED, DAMAGED_CHUNK, OUT_OF_HOST_MEMORY,
+ * OVER_BUDGET (CUDA: its own memory has no room for the frame), BUSY. */
 VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
 
 /* The last frame's cut of one instance (its index in VoyViewDesc.scenes): node ids in

@@ -1,0 +1,53 @@
+#include "plugin/depth_limit.h"
+
+#include "plugin/plane.h"
+#include "plugin/structs.h"
+
+namespace voyager {
+namespace {
+
+// Within them 1/z and its slope are binary32 numbers.
+constexpr double kLeastNear = 1e-18, kMostNear = 1e18;
+
+DepthForm form_of(VoyDepthEncoding encoding) {
+  switch (encoding) {
+    case VOY_DEPTH_ENCODING_STANDARD:
+      return DepthForm::standard;
+    case VOY_DEPTH_ENCODING_REVERSED:
+      return DepthForm::reversed;
+    default:
+      return DepthForm::metres;
+  }
+}
+
+}  // namespace
+
+DepthEncoding checked_encoding(VoyDepthEncoding encoding, double near_z, double far_z,
+                               const std::string& name) {
+  check_enum(encoding, VOY_DEPTH_ENCODING_REVERSED, (name + ".encoding").c_str());
+  if (encoding == VOY_DEPTH_ENCODING_METRES) return {};
+  if (!(near_z >= kLeastNear && near_z <= kMostNear))
+    refuse_number(name + ".nearZ", near_z, "metres from 1e-18 to 1e18");
+  if (!(far_z > near_z))
+    refuse_number(name + ".farZ", far_z, "metres beyond nearZ, or infinity");
+  return depth_encoding(form_of(encoding), near_z, far_z);
+}
+
+DepthLimits depth_limits(const VoyEyeDepthLimit* limit, const Image& image,
+                         const vulkan::Ring* ring) {
+  if (limit == nullptr) return {};
+  check_count(limit->reserved, 0, 0, "VoyEyeDepthLimit.reserved");
+  const DepthEncoding encoding =
+      checked_encoding(limit->encoding, limit->nearZ, limit->farZ, "VoyEyeDepthLimit");
+  if (limit->depth == nullptr && ring != nullptr && ring->desc().depth_limit) {
+    check_count(limit->depthRowPitch, 0, 0, "VoyEyeDepthLimit.depthRowPitch");
+    return {nullptr, 0, encoding};
+  }
+  check_pointer(limit->depth, "VoyEyeDepthLimit.depth");
+  const size_t pitch =
+      checked_pitch({"VoyEyeDepthLimit.depth", limit->depth, limit->depthRowPitch, 4u}, image.width,
+                    image.height);
+  return {limit->depth, pitch, encoding};
+}
+
+}  // namespace voyager

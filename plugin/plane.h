@@ -1,0 +1,33 @@
+#pragma once
+// The host's memory for one plane of an image.
+#include <cstdint>
+#include <string>
+
+#include "plugin/result.h"
+
+namespace voyager {
+
+struct Plane {
+  const char* name;  // of the field; that of its pitch is the same and RowPitch
+  const void* memory;
+  uint64_t pitch;
+  uint64_t pixel_bytes;
+};
+
+// The pitch in bytes, 0 replaced; throws where the plane could not lie in memory.
+inline size_t checked_pitch(const Plane& plane, uint32_t width, uint32_t height) {
+  const std::string name = plane.name;
+  const uintptr_t address = reinterpret_cast<uintptr_t>(plane.memory);
+  if (address % 4 != 0) refuse(name + ": found an address that is not aligned to 4 bytes");
+  const uint64_t packed = width * plane.pixel_bytes;
+  const uint64_t pitch = plane.pitch == 0 ? packed : plane.pitch;
+  if (pitch < packed || pitch % 4 != 0)
+    refuse(name + "RowPitch: found " + std::to_string(pitch) + ", expected a multiple of 4 of " +
+           std::to_string(packed) + " at least, or 0");
+  if (pitch > (UINTPTR_MAX - address) / height)
+    refuse(name + "RowPitch: found " + std::to_string(pitch) + ", which times the height of " +
+           std::to_string(height) + " goes beyond the address space");
+  return pitch;
+}
+
+}  // namespace voyager
