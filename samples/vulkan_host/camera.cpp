@@ -34,8 +34,7 @@ glm::dmat4 view_from_world(const VoyPose& pose) {
   const double* q = pose.orientation;
   const double* p = pose.position;
   const glm::dmat4 rotation = glm::mat4_cast(glm::normalize(glm::dquat(q[3], q[0], q[1], q[2])));
-  return glm::transpose(rotation) *
-         glm::translate(glm::dmat4(1), glm::dvec3(-p[0], -p[1], -p[2]));
+  return glm::transpose(rotation) * glm::translate(glm::dmat4(1), glm::dvec3(-p[0], -p[1], -p[2]));
 }
 
 }  // namespace host

@@ -109,9 +109,13 @@ void Device::create(bool with_swapchain) {
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }
 
-Device::~Device() { vkDestroyDevice(device_, nullptr); }
+Device::~Device() {
+  vkDestroyDevice(device_, nullptr);
+}
 
-void Device::wait_idle() const { check(vkDeviceWaitIdle(device_), "vkDeviceWaitIdle"); }
+void Device::wait_idle() const {
+  check(vkDeviceWaitIdle(device_), "vkDeviceWaitIdle");
+}
 
 VoyVulkanDeviceDesc Device::voyager_desc() const {
   VoyVulkanDeviceDesc desc = VOY_VULKAN_DEVICE_DESC_INIT;

@@ -29,8 +29,7 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
 void write_png(const std::string& path, uint32_t width, uint32_t height,
                std::span<const uint8_t> rgba) {
   std::vector<uint8_t> rgb(size_t{3} * width * height);
-  for (size_t i = 0; i < size_t{width} * height; ++i)
-    std::memcpy(&rgb[3 * i], &rgba[4 * i], 3);
+  for (size_t i = 0; i < size_t{width} * height; ++i) std::memcpy(&rgb[3 * i], &rgba[4 * i], 3);
   png_image image = {};
   image.version = PNG_IMAGE_VERSION;
   image.width = width;

@@ -11,7 +11,9 @@ namespace {
 
 constexpr double kSteepest = 1.55;  // radians, short of straight up
 
-glm::dquat upright() { return glm::quat_cast(glm::dmat3(scene_from_upright())); }
+glm::dquat upright() {
+  return glm::quat_cast(glm::dmat3(scene_from_upright()));
+}
 
 glm::dquat orientation(double yaw, double pitch) {
   return upright() * glm::angleAxis(yaw, glm::dvec3(0, 1, 0)) *

@@ -11,8 +11,8 @@ class FlyCamera {
  public:
   FlyCamera(const VoyPose& start, double metres_a_second);
 
-  void look_from(const VoyPose& pose);               // its roll is left out
-  void turn(const glm::dvec2& radians);              // to the left, up
+  void look_from(const VoyPose& pose);                // its roll is left out
+  void turn(const glm::dvec2& radians);               // to the left, up
   void move(const glm::dvec3& axes, double seconds);  // right, up, back: 1 is full speed
   void change_speed(double factor) { speed_ *= factor; }
   double speed() const { return speed_; }

@@ -108,8 +108,12 @@ void Hud::upload_fonts(const Device& device) {
   ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
-bool Hud::has_mouse() const { return ImGui::GetIO().WantCaptureMouse; }
-bool Hud::has_keyboard() const { return ImGui::GetIO().WantCaptureKeyboard; }
+bool Hud::has_mouse() const {
+  return ImGui::GetIO().WantCaptureMouse;
+}
+bool Hud::has_keyboard() const {
+  return ImGui::GetIO().WantCaptureKeyboard;
+}
 
 void Hud::build(HudState& state, const Device& device, const VoyagerLayer& voyager,
                 const VoyFrameStats* stats, const FlyCamera& camera) {

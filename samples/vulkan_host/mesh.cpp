@@ -46,7 +46,8 @@ class Reader {
   static glm::dmat4 transform(const tinygltf::Node& node) {
     if (node.matrix.size() == 16) return glm::make_mat4(node.matrix.data());
     glm::dmat4 m(1);
-    if (node.translation.size() == 3) m = glm::translate(m, glm::make_vec3(node.translation.data()));
+    if (node.translation.size() == 3)
+      m = glm::translate(m, glm::make_vec3(node.translation.data()));
     if (node.rotation.size() == 4) {
       const auto& q = node.rotation;
       m = m * glm::mat4_cast(glm::dquat(q[3], q[0], q[1], q[2]));
@@ -78,7 +79,8 @@ class Reader {
     for (size_t i = 0; i < positions->count; ++i) {
       const glm::dvec3 p = world * glm::dvec4(vector(*positions, i), 1);
       const glm::dvec3 n = normals ? normal_matrix * vector(*normals, i) : glm::dvec3(0);
-      mesh_.vertices.push_back({narrow(p), narrow(glm::length(n) > 0 ? glm::normalize(n) : n), colour});
+      mesh_.vertices.push_back(
+          {narrow(p), narrow(glm::length(n) > 0 ? glm::normalize(n) : n), colour});
     }
     add_indices(primitive, first, positions->count);
     if (!normals) add_face_normals(first);
@@ -157,11 +159,12 @@ class Reader {
     const tinygltf::BufferView& view =
         at(model_.bufferViews, static_cast<size_t>(accessor.bufferView), "bufferView");
     const auto& bytes = at(model_.buffers, static_cast<size_t>(view.buffer), "buffer").data;
-    const int component = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
+    const int component =
+        tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
     const int stride = accessor.ByteStride(view);
     if (component <= 0 || stride <= 0) refuse("accessor", "a type and stride that glTF knows");
-    const size_t element = static_cast<size_t>(component * tinygltf::GetNumComponentsInType(
-                                                               static_cast<uint32_t>(type)));
+    const size_t element = static_cast<size_t>(
+        component * tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
     const size_t step = static_cast<size_t>(stride);
     const size_t begin = view.byteOffset + accessor.byteOffset;
     if (accessor.count == 0 || begin > bytes.size() || element > bytes.size() - begin ||
@@ -186,7 +189,9 @@ class Reader {
   Mesh mesh_;
 };
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
 
 }  // namespace
 
@@ -201,8 +206,7 @@ Mesh read_mesh(const std::string& path) {
   const bool binary = path.size() > 4 && path.compare(path.size() - 4, 4, ".glb") == 0;
   const bool loaded = binary ? loader.LoadBinaryFromFile(&model, &error, &warning, path)
                              : loader.LoadASCIIFromFile(&model, &error, &warning, path);
-  if (!loaded)
-    throw Failure(kRefusedInput, path + ": expected glTF: " + first_line(error));
+  if (!loaded) throw Failure(kRefusedInput, path + ": expected glTF: " + first_line(error));
   return Reader(path, model).read();
 }
 

@@ -30,7 +30,8 @@ UniquePipelineLayout make_layout(VkDevice device) {
   return {device, layout};
 }
 
-VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, const UniqueShaderModule& shader) {
+VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which,
+                                      const UniqueShaderModule& shader) {
   VkPipelineShaderStageCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
   info.stage = which;

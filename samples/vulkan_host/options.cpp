@@ -9,9 +9,11 @@ namespace {
 
 // An option whose value is one of a few names.
 template <class T>
-void add_choice(CLI::App& app, const std::string& name, T& value, const std::map<std::string, T>& names,
-                const std::string& help) {
-  app.add_option(name, value, help)->transform(CLI::Transformer(names))->check(CLI::IsMember(names));
+void add_choice(CLI::App& app, const std::string& name, T& value,
+                const std::map<std::string, T>& names, const std::string& help) {
+  app.add_option_function<std::string>(
+         name, [&value, names](const std::string& chosen) { value = names.at(chosen); }, help)
+      ->check(CLI::IsMember(names));
 }
 
 std::string not_negative(const std::string& text) {
@@ -33,10 +35,10 @@ void add_choices(CLI::App& app, Options& o) {
       {{"limit", Composite::limit}, {"test", Composite::test}, {"none", Composite::none}},
       "How meshes and splats meet: the meshes' depth limits the splats, the finished image is "
       "depth-tested, or meshes alone");
-  add_choice<VoyDepthEncoding>(app, "--depth", o.depth,
-                               {{"standard", VOY_DEPTH_ENCODING_STANDARD},
-                                {"reversed", VOY_DEPTH_ENCODING_REVERSED}},
-                               "This host's depth: 0 near, or 1 near and infinitely far");
+  add_choice<VoyDepthEncoding>(
+      app, "--depth", o.depth,
+      {{"standard", VOY_DEPTH_ENCODING_STANDARD}, {"reversed", VOY_DEPTH_ENCODING_REVERSED}},
+      "This host's depth: 0 near, or 1 near and infinitely far");
   add_choice<VoyBackend>(
       app, "--backend", o.backend,
       {{"auto", VOY_BACKEND_AUTO}, {"cpu", VOY_BACKEND_CPU}, {"cuda", VOY_BACKEND_CUDA}},
@@ -55,7 +57,8 @@ void add_choices(CLI::App& app, Options& o) {
 }
 
 void add_mesh_options(CLI::App& app, Options& o) {
-  app.add_flag_callback("--no-mesh", [&o] { o.mesh = false; }, "The splats alone");
+  app.add_flag_callback(
+      "--no-mesh", [&o] { o.mesh = false; }, "The splats alone");
   app.add_option("--mesh", o.mesh_file, "A glTF scene in place of the sample's own")
       ->type_name("FILE");
   app.add_option_function<std::vector<double>>(
@@ -83,7 +86,8 @@ void check_together(const Options& o) {
 
 std::optional<Options> parse_options(int argc, char** argv) {
   Options o;
-  CLI::App app{"A small engine-like Vulkan host: glTF meshes with depth, and Voyager's splats among them"};
+  CLI::App app{
+      "A small engine-like Vulkan host: glTF meshes with depth, and Voyager's splats among them"};
   app.name("vulkan_host");
   app.add_option("SCENE", o.scene, ".voy, .ply or .spz")->required();
   app.add_flag("--offscreen", o.offscreen, "No window: a PNG a frame, 0000.png and so on");
@@ -94,7 +98,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("-o", o.output, "Where the PNGs go")->type_name("FOLDER");
   add_mesh_options(app, o);
   add_choices(app, o);
-  app.add_option("--tau", o.tau, "Granularity in pixels")->check(CLI::Validator(not_negative, "PX"));
+  app.add_option("--tau", o.tau, "Granularity in pixels")
+      ->check(CLI::Validator(not_negative, "PX"));
   app.add_option("--budget", o.budget_megabytes, "10^6 bytes that scene data may occupy")
       ->check(CLI::Validator(not_negative, "MB"));
   app.add_option("--device", o.device_name, "The Vulkan device whose name has this in it")
@@ -106,7 +111,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_flag("--validation", o.validation,
                "Run under the validation layer, synchronisation included; exit with 1 where it "
                "had anything to say");
-  app.footer("vulkan_host city.voy --offscreen --frames 12 --camera-file city.cameras.json -o walk");
+  app.footer(
+      "vulkan_host city.voy --offscreen --frames 12 --camera-file city.cameras.json -o walk");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& request) {

@@ -22,7 +22,9 @@ glm::dmat4 scene_from_upright() {
   return m;
 }
 
-double diagonal(const VoySceneInfo& scene) { return glm::length(high(scene) - low(scene)); }
+double diagonal(const VoySceneInfo& scene) {
+  return glm::length(high(scene) - low(scene));
+}
 
 glm::dmat4 place_mesh(const VoySceneInfo& scene, const std::optional<MeshPlace>& place) {
   glm::dvec3 at = (low(scene) + high(scene)) / 2.0;

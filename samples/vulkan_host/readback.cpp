@@ -17,9 +17,14 @@ void Readback::record(VkCommandBuffer commands, const RenderTargets& targets) co
         0, 0, 0, {aspect, 0, 0, 1}, {0, 0, 0}, {extent_.width, extent_.height, 1}};
     vkCmdCopyImageToBuffer(commands, image.image.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                            into.buffer.get(), 1, &region);
-    barriers[count++] = {VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER, nullptr,
-                         VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT,
-                         VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, into.buffer.get(), 0,
+    barriers[count++] = {VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER,
+                         nullptr,
+                         VK_ACCESS_TRANSFER_WRITE_BIT,
+                         VK_ACCESS_HOST_READ_BIT,
+                         VK_QUEUE_FAMILY_IGNORED,
+                         VK_QUEUE_FAMILY_IGNORED,
+                         into.buffer.get(),
+                         0,
                          VK_WHOLE_SIZE};
   };
   copy(targets.colour, VK_IMAGE_ASPECT_COLOR_BIT, colour_);

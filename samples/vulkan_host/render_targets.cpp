@@ -7,7 +7,8 @@ namespace {
 
 constexpr VkPipelineStageFlags kTests =
     VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
-constexpr VkPipelineStageFlags kAttachments = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | kTests;
+constexpr VkPipelineStageFlags kAttachments =
+    VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT | kTests;
 constexpr VkAccessFlags kAttachmentWrites =
     VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 constexpr VkAccessFlags kAttachmentAccesses = kAttachmentWrites |
@@ -56,7 +57,8 @@ UniqueRenderPass make_pass(VkDevice device, const VkAttachmentDescription (&atta
   return {device, pass};
 }
 
-UniqueFramebuffer make_framebuffer(VkDevice device, VkRenderPass pass, const RenderTargets& targets) {
+UniqueFramebuffer make_framebuffer(VkDevice device, VkRenderPass pass,
+                                   const RenderTargets& targets) {
   const VkImageView views[] = {targets.colour.view.get(), targets.depth.view.get()};
   VkFramebufferCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;

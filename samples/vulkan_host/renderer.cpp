@@ -24,7 +24,9 @@ void begin(VkCommandBuffer commands) {
   check(vkBeginCommandBuffer(commands, &info), "vkBeginCommandBuffer");
 }
 
-void end(VkCommandBuffer commands) { check(vkEndCommandBuffer(commands), "vkEndCommandBuffer"); }
+void end(VkCommandBuffer commands) {
+  check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+}
 
 void begin_pass(VkCommandBuffer commands, VkRenderPass pass, VkFramebuffer framebuffer,
                 VkExtent2D extent, const DepthConvention& depth) {
@@ -71,7 +73,9 @@ Renderer::Renderer(const Device& device, VoyagerLayer& voyager, VkFormat colour_
 }
 
 // Frames may be in flight where an error ends the program.
-Renderer::~Renderer() { vkDeviceWaitIdle(device_.get()); }
+Renderer::~Renderer() {
+  vkDeviceWaitIdle(device_.get());
+}
 
 void Renderer::resize(VkExtent2D extent) {
   device_.wait_idle();
@@ -135,9 +139,9 @@ void Renderer::record_after(const Slot& slot, const Look& look, const Delivery& 
   if (splats) voyager_.record_acquire(slot.after, slot_);
   begin_pass(slot.after, passes_.overlay(), targets_.overlay.get(), targets_.extent, depth_);
   if (splats)
-    voyager_.record_composite(slot.after, slot_,
-                              look.composite == Composite::test ? VOY_VULKAN_DEPTH_USE_TEST
-                                                                : VOY_VULKAN_DEPTH_USE_WRITE);
+    voyager_.record_composite(
+        slot.after, slot_,
+        look.composite == Composite::test ? VOY_VULKAN_DEPTH_USE_TEST : VOY_VULKAN_DEPTH_USE_WRITE);
   if (delivery.overlay) delivery.overlay(slot.after);
   vkCmdEndRenderPass(slot.after);
   delivery.record(slot.after, targets_);

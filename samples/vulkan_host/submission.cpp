@@ -16,7 +16,9 @@ void Submission::wait(const SemaphoreUse& use, VkPipelineStageFlags at) {
   if (add(waits_, use)) stages_.push_back(at);
 }
 
-void Submission::signal(const SemaphoreUse& use) { add(signals_, use); }
+void Submission::signal(const SemaphoreUse& use) {
+  add(signals_, use);
+}
 
 void Submission::submit(VkQueue queue, VkFence fence) const {
   VkTimelineSemaphoreSubmitInfo values = {};

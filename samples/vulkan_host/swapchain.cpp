@@ -55,9 +55,9 @@ bool Swapchain::resize(VkExtent2D wanted) {
         "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
   if (!(surface.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_DST_BIT))
     throw Failure(kMachine, "found a window that cannot be copied to, expected one that can");
-  extent_ = {std::clamp(wanted.width, surface.minImageExtent.width, surface.maxImageExtent.width),
-             std::clamp(wanted.height, surface.minImageExtent.height,
-                        surface.maxImageExtent.height)};
+  extent_ = {
+      std::clamp(wanted.width, surface.minImageExtent.width, surface.maxImageExtent.width),
+      std::clamp(wanted.height, surface.minImageExtent.height, surface.maxImageExtent.height)};
   if (extent_.width == 0 || extent_.height == 0) return false;
   const uint32_t most = surface.maxImageCount ? surface.maxImageCount : UINT32_MAX;
   VkSwapchainCreateInfoKHR info = {};

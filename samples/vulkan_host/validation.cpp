@@ -33,8 +33,7 @@ const void* Validation::instance_chain() {
   return &features_;
 }
 
-VkBool32 Validation::report(VkDebugUtilsMessageSeverityFlagBitsEXT,
-                            VkDebugUtilsMessageTypeFlagsEXT,
+VkBool32 Validation::report(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                             const VkDebugUtilsMessengerCallbackDataEXT* data, void* self) {
   ++static_cast<Validation*>(self)->messages_;
   std::fprintf(stderr, "validation: %s\n", data->pMessage);

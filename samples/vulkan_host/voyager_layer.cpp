@@ -55,8 +55,8 @@ void VoyagerLayer::resize(VkExtent2D extent) {
   target_ = {};
   // A view keeps its cut: another is made only where the image outgrows it.
   if (extent.width > view_extent_.width || extent.height > view_extent_.height)
-    create_view({std::max(extent.width, view_extent_.width),
-                 std::max(extent.height, view_extent_.height)});
+    create_view(
+        {std::max(extent.width, view_extent_.width), std::max(extent.height, view_extent_.height)});
   VoyVulkanTargetDesc vulkan = VOY_VULKAN_TARGET_DESC_INIT;
   vulkan.imageCount = images_;
   vulkan.depth = VK_TRUE;
@@ -98,6 +98,7 @@ void VoyagerLayer::record_depth_limit(VkCommandBuffer commands, uint32_t image,
                                       const HostDepth& depth) {
   VoyVulkanDepthLimit limit = VOY_VULKAN_DEPTH_LIMIT_INIT;
   limit.commandBuffer = commands;
+  limit.queueFamily = vulkan_device_.queue_family();
   limit.imageIndex = image;
   limit.depth = depth.image;
   limit.format = depth.format;
@@ -109,7 +110,9 @@ void VoyagerLayer::record_release(VkCommandBuffer commands, uint32_t image) {
   voy::check(voyRecordVulkanRelease(target_.get(), &released));
 }
 
-void VoyagerLayer::begin_frame() { ++frame_; }
+void VoyagerLayer::begin_frame() {
+  ++frame_;
+}
 
 uint64_t VoyagerLayer::timeline_value() const {
   return vulkan_.sync == VOY_VULKAN_SYNC_TIMELINE ? frame_ : 0;
@@ -156,7 +159,6 @@ void VoyagerLayer::record_composite(VkCommandBuffer commands, uint32_t image,
   draw.commandBuffer = commands;
   draw.target = target_.get();
   draw.imageIndex = image;
-  draw.layout = kLayout;
   draw.area = {{0, 0}, extent_};
   draw.depthUse = depth_use;
   draw.encoding = depth_.encoding;

@@ -78,9 +78,9 @@ void Window::fly(FlyCamera& camera, double seconds, bool ui_has_mouse, bool ui_h
   wheel_ = 0;
   if (ui_has_keyboard) return;
   const double faster = glfwGetKey(window_, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ? 5 : 1;
-  camera.move({key(GLFW_KEY_D, GLFW_KEY_A), key(GLFW_KEY_E, GLFW_KEY_Q),
-               key(GLFW_KEY_S, GLFW_KEY_W)},
-              seconds * faster);
+  camera.move(
+      {key(GLFW_KEY_D, GLFW_KEY_A), key(GLFW_KEY_E, GLFW_KEY_Q), key(GLFW_KEY_S, GLFW_KEY_W)},
+      seconds * faster);
 }
 
 }  // namespace host

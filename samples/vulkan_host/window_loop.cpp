@@ -40,7 +40,8 @@ void run_window(const Device& device, Window& window, Swapchain& swapchain, Rend
   Hud hud(device, window, renderer.overlay_pass());
   HudState state = options.hud;
   const VoySceneInfo& scene = voyager.scene();
-  FlyCamera camera(cameras.empty() ? overview(scene) : cameras.front().pose, 0.05 * diagonal(scene));
+  FlyCamera camera(cameras.empty() ? overview(scene) : cameras.front().pose,
+                   0.05 * diagonal(scene));
   Bookmarks bookmarks(cameras);
   std::optional<VoyFrameStats> stats;
   bool current = false;
