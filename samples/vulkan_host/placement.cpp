@@ -29,8 +29,7 @@ double diagonal(const VoySceneInfo& scene) {
 glm::dmat4 place_mesh(const VoySceneInfo& scene, const std::optional<MeshPlace>& place) {
   glm::dvec3 at = (low(scene) + high(scene)) / 2.0;
   const glm::dvec3 size = high(scene) - low(scene);
-  at.y = high(scene).y;
-  double scale = 0.2 * std::max(std::min(size.x, size.z), 1e-3);
+  double scale = 0.08 * std::max(std::min(size.x, size.z), 1e-3);
   if (place) {
     at = {place->position[0], place->position[1], place->position[2]};
     scale = place->scale;

@@ -10,7 +10,8 @@
 
 namespace host {
 
-// A mesh (glTF's axes, y up) that is about 2 units wide: in the middle, on the ground.
+// A mesh (glTF's axes, y up) that is about 2 units wide, on the ground. That is in the middle
+// of bounds that large Gaussians of the ground widen as much upwards as downwards.
 glm::dmat4 place_mesh(const VoySceneInfo& scene, const std::optional<MeshPlace>& place);
 // From behind and above, as a whole.
 VoyPose overview(const VoySceneInfo& scene);
