@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "cuda/cuda_backend.h"
+#include "cuda/device.h"
 #include "runtime/base/error.h"
 
 namespace voyager::cuda {
@@ -11,6 +12,7 @@ namespace {
 Backend* create(const BackendModuleOptions& options, ErrorCode* code, char* message, size_t size) {
   std::string what;
   try {
+    const std::shared_ptr<void> host_context = keep_context();
     return create_cuda_backend(options).release();
   } catch (const Error& error) {
     *code = error.code();

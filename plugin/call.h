@@ -27,6 +27,7 @@ class Call {
     in_use_.reserve(in_use_.size() + 1);
     std::shared_ptr<Object> object = HandleTable::instance().begin_call(handle, T::kKind);
     in_use_.push_back(object.get());
+    enter(*object);
     return std::static_pointer_cast<T>(std::move(object));
   }
 
@@ -38,19 +39,27 @@ class Call {
     in_use_.reserve(in_use_.size() + 1);
     auto removed = HandleTable::instance().remove(handle, T::kKind);
     if (Object* device = removed.back()->parent().get()) in_use_.push_back(device);
+    enter(*removed.back());
     return removed;
   }
 
   // To the log of the device whose objects the call uses, if any.
   void log_error(const char* message) const {
     if (in_use_.empty()) return;
-    Object* first = in_use_.front();
-    Object* device = first->parent() ? first->parent().get() : first;
-    static_cast<DeviceObject*>(device)->log.write(VOY_LOG_ERROR, message);
+    device_of(*in_use_.front()).log.write(VOY_LOG_ERROR, message);
   }
 
  private:
+  static DeviceObject& device_of(Object& object) {
+    return static_cast<DeviceObject&>(object.parent() ? *object.parent() : object);
+  }
+  // The device of the call's first object; all are of one.
+  void enter(Object& object) {
+    if (!context_) context_ = device_of(object).backend->enter();
+  }
+
   std::vector<Object*> in_use_;
+  std::shared_ptr<void> context_;  // the host's, restored at the end
 };
 
 // body(Call&) -> VoyResult.

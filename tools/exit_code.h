@@ -21,6 +21,8 @@ inline ExitCode exit_code(ErrorCode code) {
     case ErrorCode::io:
     case ErrorCode::over_budget:
     case ErrorCode::no_device:
+    case ErrorCode::device_lost:
+    case ErrorCode::timeout:
     case ErrorCode::internal:
       break;
   }
