@@ -12,6 +12,7 @@ void FrameLog::add(const VoyagerLayer* voyager) {
   last_ = now;
   if (voyager) {
     const VoyFrameStats stats = voyager->stats();
+    frame["frame"] = stats.frameIndex;  // the last that has ended, where frames overlap
     frame["tau"] = voyager->tau();
     frame["cut"] = stats.cutSize;
     frame["splats"] = stats.splats;

@@ -23,12 +23,13 @@ struct Elements {
 
 class Reader {
  public:
-  Reader(const std::string& path, const tinygltf::Model& model) : path_(path), model_(model) {}
+  Reader(const std::string& path, const tinygltf::Model& model)
+      : path_(path), model_(model), seen_(model.nodes.size()) {}
 
   Mesh read() {
     if (model_.scenes.empty()) refuse("scenes", "one at least");
     const size_t scene = model_.defaultScene < 0 ? 0 : static_cast<size_t>(model_.defaultScene);
-    for (const int node : at(model_.scenes, scene, "scene").nodes) add_node(node, glm::dmat4(1), 0);
+    for (const int node : at(model_.scenes, scene, "scene").nodes) add_node(node, glm::dmat4(1));
     if (mesh_.indices.empty()) refuse("scene", "a triangle at least");
     return std::move(mesh_);
   }
@@ -56,15 +57,16 @@ class Reader {
     return m;
   }
 
-  void add_node(int index, const glm::dmat4& parent, size_t depth) {
+  void add_node(int index, const glm::dmat4& parent) {
     const tinygltf::Node& node = at(model_.nodes, static_cast<size_t>(index), "node");
-    if (depth > model_.nodes.size()) refuse("nodes", "a tree");
+    if (seen_[static_cast<size_t>(index)]) refuse("nodes", "trees");
+    seen_[static_cast<size_t>(index)] = true;
     const glm::dmat4 world = parent * transform(node);
     if (node.mesh >= 0)
       for (const tinygltf::Primitive& primitive :
            at(model_.meshes, static_cast<size_t>(node.mesh), "mesh").primitives)
         add_primitive(primitive, world);
-    for (const int child : node.children) add_node(child, world, depth + 1);
+    for (const int child : node.children) add_node(child, world);
   }
 
   void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& world) {
@@ -163,8 +165,7 @@ class Reader {
         tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
     const int stride = accessor.ByteStride(view);
     if (component <= 0 || stride <= 0) refuse("accessor", "a type and stride that glTF knows");
-    const size_t element = static_cast<size_t>(
-        component * tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
+    const size_t element = static_cast<size_t>(component) * (type == TINYGLTF_TYPE_VEC3 ? 3 : 1);
     const size_t step = static_cast<size_t>(stride);
     const size_t begin = view.byteOffset + accessor.byteOffset;
     if (accessor.count == 0 || begin > bytes.size() || element > bytes.size() - begin ||
@@ -186,6 +187,7 @@ class Reader {
 
   const std::string& path_;
   const tinygltf::Model& model_;
+  std::vector<bool> seen_;  // nodes: each has one parent at most
   Mesh mesh_;
 };
 
