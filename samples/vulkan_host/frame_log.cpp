@@ -1,0 +1,78 @@
+#include "frame_log.h"
+
+#include "files.h"
+
+namespace host {
+
+void FrameLog::add(const VoyagerLayer* voyager) {
+  if (path_.empty()) return;
+  const auto now = std::chrono::steady_clock::now();
+  nlohmann::json frame = {
+      {"host_ms", std::chrono::duration<double, std::milli>(now - last_).count()}};
+  last_ = now;
+  if (voyager) {
+    const VoyFrameStats stats = voyager->stats();
+    frame["frame"] = stats.frameIndex;  // the last that has ended, where frames overlap
+    frame["tau"] = voyager->tau();
+    frame["cut"] = stats.cutSize;
+    frame["splats"] = stats.splats;
+    frame["nodes_tested"] = stats.nodesTested;
+    for (uint32_t i = 0; i < stats.stageCount; ++i)
+      frame["ms"][voyStageName(static_cast<VoyStage>(i))] = stats.milliseconds[i];
+    frame["total_ms"] = stats.millisecondsTotal;
+  }
+  frames_.push_back(std::move(frame));
+}
+
+void FrameLog::write(const Device& device, const VoyagerLayer& voyager) const {
+  if (path_.empty()) return;
+  const VoyVulkanCapabilities& vulkan = voyager.vulkan_capabilities();
+  const nlohmann::json log = {{"vulkan_device", device.name()},
+                              {"voyager_device", voyager.capabilities().deviceName},
+                              {"backend", backend_name(voyager.capabilities().backend)},
+                              {"sharing", sharing_name(vulkan.sharing)},
+                              {"sync", sync_name(vulkan.sync)},
+                              {"why", vulkan.why},
+                              {"frames", frames_}};
+  const std::string text = log.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  write_file(path_, std::as_bytes(std::span(text)));
+}
+
+const char* backend_name(VoyBackend backend) {
+  switch (backend) {
+    case VOY_BACKEND_CPU:
+      return "cpu";
+    case VOY_BACKEND_CUDA:
+      return "cuda";
+    case VOY_BACKEND_REFERENCE:
+      return "reference";
+    default:
+      return "auto";
+  }
+}
+
+const char* sharing_name(VoyVulkanSharing sharing) {
+  switch (sharing) {
+    case VOY_VULKAN_SHARING_DEVICE:
+      return "device";
+    case VOY_VULKAN_SHARING_HOST:
+      return "host";
+    default:
+      return "auto";
+  }
+}
+
+const char* sync_name(VoyVulkanSync sync) {
+  switch (sync) {
+    case VOY_VULKAN_SYNC_TIMELINE:
+      return "timeline";
+    case VOY_VULKAN_SYNC_BINARY:
+      return "binary";
+    case VOY_VULKAN_SYNC_HOST:
+      return "host";
+    default:
+      return "auto";
+  }
+}
+
+}  // namespace host

@@ -1,0 +1,155 @@
+// A small engine with Vulkan: glTF meshes with depth, a Gaussian city from Voyager composited
+// with them, a camera to fly and a HUD; or, offscreen, a PNG a frame.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <new>
+#include <optional>
+
+#include "camera_file.h"
+#include "failure.h"
+#include "offscreen.h"
+#include "options.h"
+#include "placement.h"
+#include "window_loop.h"
+
+namespace host {
+namespace {
+
+constexpr double kNear = 0.2;  // metres, as `voyager render` has it
+
+ExitStatus status_of(VoyResult result) {
+  switch (result) {
+    case VOY_ERROR_INVALID_ARGUMENT:
+    case VOY_ERROR_UNSUPPORTED:
+      return kBadUsage;
+    case VOY_ERROR_FILE_NOT_FOUND:
+    case VOY_ERROR_REFUSED_INPUT:
+      return kRefusedInput;
+    case VOY_ERROR_DAMAGED_CHUNK:
+      return kDamagedChunk;
+    default:
+      return kMachine;
+  }
+}
+
+DepthConvention convention(VoyDepthEncoding encoding) {
+  if (encoding == VOY_DEPTH_ENCODING_REVERSED)
+    return {encoding, kNear, std::numeric_limits<double>::infinity()};
+  return {encoding, kNear, 10000};
+}
+
+VoyagerOptions voyager_options(const Options& options) {
+  VoyagerOptions out;
+  out.scene = options.scene;
+  out.tau = options.tau;
+  out.memory_budget = static_cast<uint64_t>(options.budget_megabytes * 1e6);
+  out.backend = options.backend;
+  out.sharing = options.sharing;
+  out.sync = options.sync;
+  out.images = kFramesInFlight;
+  return out;
+}
+
+// The sample's own mesh lies beside the program, as it is built and as it is installed.
+std::string own_mesh() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return (program.parent_path().parent_path() / "share/voyager/landmarks.gltf").string();
+}
+
+void say_what_runs(const Device& device, const VoyagerLayer& voyager) {
+  const VoyVulkanCapabilities& vulkan = voyager.vulkan_capabilities();
+  std::printf("%s: backend %s, sharing %s, sync %s%s%s\n", device.name().c_str(),
+              backend_name(voyager.capabilities().backend), sharing_name(vulkan.sharing),
+              sync_name(vulkan.sync), vulkan.why[0] ? ": " : "", vulkan.why);
+  std::fflush(stdout);
+}
+
+void run(const Options& options, Validation* validation) {
+  // Files first: what is refused is refused before any device is made.
+  std::vector<Camera> cameras;
+  if (!options.camera_file.empty()) cameras = read_cameras(options.camera_file);
+  std::optional<Mesh> mesh;
+  if (options.mesh) mesh = read_mesh(options.mesh_file.empty() ? own_mesh() : options.mesh_file);
+
+  std::optional<Glfw> glfw;
+  std::optional<Presentation> presentation;
+  if (!options.offscreen) presentation = glfw.emplace().presentation();
+  const Presentation* presents = presentation ? &*presentation : nullptr;
+  const Instance instance(validation, presents);
+  const Device device(instance, presents, options.device_name);
+  const DepthConvention depth = convention(options.depth);
+  VoyagerLayer voyager(device, voyager_options(options), depth);
+  say_what_runs(device, voyager);
+
+  std::optional<Window> window;
+  std::optional<Swapchain> swapchain;
+  VkFormat colour = options.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
+  if (!options.offscreen) {
+    window.emplace(instance.get(), "Voyager", 1280, 720);
+    colour = swapchain.emplace(device, window->surface()).colour_format();
+  }
+  Renderer renderer(device, voyager, colour, depth, mesh ? &*mesh : nullptr,
+                    place_mesh(voyager.scene(), options.mesh_place));
+  const Look look = {options.composite, options.mesh};
+  FrameLog log(options.stats_file);
+  if (options.offscreen) {
+    run_offscreen(device, renderer, voyager, depth, cameras, look,
+                  {options.output, options.frames, options.write_depth}, log);
+  } else {
+    HudState hud = {look, static_cast<float>(options.tau)};
+    hud.budget_megabytes = options.budget_megabytes;
+    run_window(device, *window, *swapchain, renderer, voyager, cameras, {options.frames, hud}, log);
+  }
+  log.write(device, voyager);
+}
+
+int fail(int status, const std::string& message) noexcept {
+  std::fputs(("vulkan_host: " + message + "\n").c_str(), stderr);
+  return status;
+}
+
+int run_and_report(const Options& options, Validation* validation) {
+  try {
+    run(options, validation);
+    return kSuccess;
+  } catch (const Failure& failure) {
+    return fail(failure.status(), failure.what());
+  } catch (const voy::Error& error) {
+    return fail(status_of(error.result()), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kMachine, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(kMachine, error.what());
+  }
+}
+
+int parse_and_run(int argc, char** argv) {
+  std::optional<Options> options;
+  try {
+    options = parse_options(argc, argv);
+    if (!options) return kSuccess;  // --help
+  } catch (const CLI::ParseError& error) {
+    return fail(kBadUsage, std::string(error.what()) + " (see --help)");
+  }
+  Validation validation;
+  const int status = run_and_report(*options, options->validation ? &validation : nullptr);
+  // Counted once all is destroyed.
+  if (status == kSuccess && validation.messages() > 0)
+    return fail(kBadUsage, std::to_string(validation.messages()) + " validation messages");
+  return status;
+}
+
+}  // namespace
+}  // namespace host
+
+int main(int argc, char** argv) try {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is then an error that names itself
+  return host::parse_and_run(argc, argv);
+} catch (...) {
+  return host::kMachine;
+}

@@ -1,0 +1,143 @@
+#include "mesh_pipeline.h"
+
+#include <cstddef>
+
+#include "failure.h"
+#include "mesh.frag.h"
+#include "mesh.vert.h"
+
+namespace host {
+namespace {
+
+UniqueShaderModule make_shader(VkDevice device, std::span<const uint32_t> code) {
+  VkShaderModuleCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+  info.codeSize = code.size_bytes();
+  info.pCode = code.data();
+  VkShaderModule shader = VK_NULL_HANDLE;
+  check(vkCreateShaderModule(device, &info, nullptr, &shader), "vkCreateShaderModule");
+  return {device, shader};
+}
+
+UniquePipelineLayout make_layout(VkDevice device) {
+  const VkPushConstantRange range = {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(glm::mat4)};
+  VkPipelineLayoutCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &range;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  check(vkCreatePipelineLayout(device, &info, nullptr, &layout), "vkCreatePipelineLayout");
+  return {device, layout};
+}
+
+VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which,
+                                      const UniqueShaderModule& shader) {
+  VkPipelineShaderStageCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+  info.stage = which;
+  info.module = shader.get();
+  info.pName = "main";
+  return info;
+}
+
+UniquePipeline make_pipeline(VkDevice device, VkPipelineLayout layout, VkRenderPass render_pass,
+                             bool encode, VoyDepthEncoding encoding) {
+  const UniqueShaderModule vertex = make_shader(device, mesh_vert);
+  const UniqueShaderModule fragment = make_shader(device, mesh_frag);
+  const VkBool32 encode_value = encode;
+  const VkSpecializationMapEntry entry = {0, 0, sizeof encode_value};
+  const VkSpecializationInfo constants = {1, &entry, sizeof encode_value, &encode_value};
+  VkPipelineShaderStageCreateInfo stages[] = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex),
+                                              stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  stages[1].pSpecializationInfo = &constants;
+
+  const VkVertexInputBindingDescription binding = {0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
+  const VkVertexInputAttributeDescription attributes[] = {
+      {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+      {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+      {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, colour)}};
+  VkPipelineVertexInputStateCreateInfo input = {};
+  input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+  input.vertexBindingDescriptionCount = 1;
+  input.pVertexBindingDescriptions = &binding;
+  input.vertexAttributeDescriptionCount = 3;
+  input.pVertexAttributeDescriptions = attributes;
+  VkPipelineInputAssemblyStateCreateInfo assembly = {};
+  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+  VkPipelineViewportStateCreateInfo viewport = {};
+  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+  viewport.viewportCount = viewport.scissorCount = 1;
+  VkPipelineRasterizationStateCreateInfo raster = {};
+  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+  raster.lineWidth = 1;
+  VkPipelineMultisampleStateCreateInfo samples = {};
+  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+  VkPipelineDepthStencilStateCreateInfo depth = {};
+  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+  depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
+  depth.depthCompareOp = encoding == VOY_DEPTH_ENCODING_REVERSED ? VK_COMPARE_OP_GREATER_OR_EQUAL
+                                                                 : VK_COMPARE_OP_LESS_OR_EQUAL;
+  VkPipelineColorBlendAttachmentState write = {};
+  write.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                         VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+  VkPipelineColorBlendStateCreateInfo blend = {};
+  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+  blend.attachmentCount = 1;
+  blend.pAttachments = &write;
+  const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  VkPipelineDynamicStateCreateInfo dynamic = {};
+  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+  dynamic.dynamicStateCount = 2;
+  dynamic.pDynamicStates = dynamic_states;
+
+  VkGraphicsPipelineCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  info.stageCount = 2;
+  info.pStages = stages;
+  info.pVertexInputState = &input;
+  info.pInputAssemblyState = &assembly;
+  info.pViewportState = &viewport;
+  info.pRasterizationState = &raster;
+  info.pMultisampleState = &samples;
+  info.pDepthStencilState = &depth;
+  info.pColorBlendState = &blend;
+  info.pDynamicState = &dynamic;
+  info.layout = layout;
+  info.renderPass = render_pass;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateGraphicsPipelines");
+  return {device, pipeline};
+}
+
+}  // namespace
+
+MeshPipeline::MeshPipeline(const Device& device, VkRenderPass render_pass, VkFormat colour_format,
+                           VoyDepthEncoding encoding, const Mesh& mesh)
+    : vertices_(device, std::as_bytes(std::span(mesh.vertices)), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
+      indices_(device, std::as_bytes(std::span(mesh.indices)), VK_BUFFER_USAGE_INDEX_BUFFER_BIT),
+      index_count_(static_cast<uint32_t>(mesh.indices.size())),
+      layout_(make_layout(device.get())),
+      pipeline_(make_pipeline(device.get(), layout_.get(), render_pass,
+                              colour_format == VK_FORMAT_R8G8B8A8_UNORM, encoding)) {}
+
+void MeshPipeline::record(VkCommandBuffer commands, VkExtent2D extent,
+                          const glm::mat4& clip_from_mesh) const {
+  const VkViewport viewport = {
+      0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
+  const VkRect2D scissor = {{0, 0}, extent};
+  const VkBuffer vertices = vertices_.buffer.get();
+  const VkDeviceSize offset = 0;
+  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.get());
+  vkCmdSetViewport(commands, 0, 1, &viewport);
+  vkCmdSetScissor(commands, 0, 1, &scissor);
+  vkCmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof clip_from_mesh,
+                     &clip_from_mesh);
+  vkCmdBindVertexBuffers(commands, 0, 1, &vertices, &offset);
+  vkCmdBindIndexBuffer(commands, indices_.buffer.get(), 0, VK_INDEX_TYPE_UINT32);
+  vkCmdDrawIndexed(commands, index_count_, 1, 0, 0, 0);
+}
+
+}  // namespace host

@@ -1,0 +1,90 @@
+#pragma once
+// Voyager in this engine: the part to copy. It owns a device, a scene, a view, and a target
+// whose ring has an image for each frame in flight. The order of a frame:
+//   1. commands A: the host's meshes, record_depth_limit, record_release; their submission
+//      signals released()
+//   2. render()
+//   3. commands B: record_acquire, then record_composite in a render pass; their submission
+//      waits for rendered()
+#include <string>
+#include <voyager/voyager.hpp>
+
+#include "camera.h"
+#include "device.h"
+
+namespace host {
+
+struct VoyagerOptions {
+  std::string scene;
+  double tau = 3;
+  uint64_t memory_budget = 0;  // bytes of scene data; 0: no limit
+  VoyBackend backend = VOY_BACKEND_AUTO;
+  VoyVulkanSharing sharing = VOY_VULKAN_SHARING_AUTO;
+  VoyVulkanSync sync = VOY_VULKAN_SYNC_AUTO;
+  uint32_t images = 2;  // frames in flight
+};
+
+// What a submission waits for or signals.
+struct SemaphoreUse {
+  VkSemaphore semaphore = VK_NULL_HANDLE;  // NULL: nothing
+  uint64_t value = 0;                      // of a timeline semaphore, above 0; else 0
+};
+
+// The host's depth buffer, in TRANSFER_SRC_OPTIMAL.
+struct HostDepth {
+  VkImage image;
+  VkFormat format;
+};
+
+class VoyagerLayer {
+ public:
+  VoyagerLayer(const Device& device, const VoyagerOptions& options, const DepthConvention& depth);
+
+  const VoyCapabilities& capabilities() const { return capabilities_; }
+  const VoyVulkanCapabilities& vulkan_capabilities() const { return vulkan_; }
+  const VoySceneInfo& scene() const { return scene_info_; }
+  VoyFrameStats stats() const { return view_.stats(); }
+  double tau() const { return tau_; }
+  void set_tau(double pixels);
+
+  // The queue must be idle: the target's images are replaced.
+  void resize(VkExtent2D extent);
+  void create_composite(VkRenderPass render_pass, VkFormat colour, VkFormat depth);
+
+  void record_depth_limit(VkCommandBuffer commands, uint32_t image, const HostDepth& depth);
+  void record_release(VkCommandBuffer commands, uint32_t image);
+  void begin_frame();  // before the semaphores of this frame are asked for
+  SemaphoreUse released(uint32_t image) const;
+  // With VOY_VULKAN_SYNC_HOST the host has waited until commands A are done.
+  void render(const Camera& camera, uint32_t image, bool limited);
+  SemaphoreUse rendered(uint32_t image) const;
+  void record_acquire(VkCommandBuffer commands, uint32_t image);
+  void record_composite(VkCommandBuffer commands, uint32_t image, VoyVulkanDepthUse depth_use);
+
+  bool host_waits() const { return vulkan_.sync == VOY_VULKAN_SYNC_HOST; }
+
+ private:
+  void create_device(const VoyagerOptions& options);
+  void create_view(VkExtent2D largest);
+  VoyVulkanUse use(VkCommandBuffer commands, uint32_t image) const;
+  uint64_t timeline_value() const;
+
+  const Device& vulkan_device_;
+  const DepthConvention depth_;
+  const uint32_t images_;
+  voy::Device device_;
+  VoyCapabilities capabilities_ = VOY_CAPABILITIES_INIT;
+  VoyVulkanCapabilities vulkan_ = VOY_VULKAN_CAPABILITIES_INIT;
+  voy::Scene scene_;
+  VoySceneInfo scene_info_ = VOY_SCENE_INFO_INIT;
+  voy::View view_;
+  VkExtent2D view_extent_ = {0, 0};
+  double tau_;
+  voy::Handle<VoyComposite, voyDestroyVulkanComposite> composite_;
+  voy::Target target_;
+  VkExtent2D extent_ = {0, 0};
+  std::vector<VoyVulkanImage> ring_;
+  uint64_t frame_ = 0;  // of the target, from 1: what its timeline semaphores count
+};
+
+}  // namespace host

@@ -1,0 +1,91 @@
+#include "window_loop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "placement.h"
+
+namespace host {
+namespace {
+
+// Follows the last frame's time gently: the cut's size falls faster than τ rises.
+float steered(const HudState& state, const VoyFrameStats& stats) {
+  const double ratio = std::max(stats.millisecondsTotal, 0.1) / double{state.time_budget};
+  return std::clamp(state.tau * static_cast<float>(std::pow(ratio, 0.2)), 0.5f, 30.0f);
+}
+
+// Steps through the camera file with the key C.
+class Bookmarks {
+ public:
+  explicit Bookmarks(const std::vector<Camera>& cameras) : cameras_(cameras) {}
+  void update(GLFWwindow* window, FlyCamera& camera) {
+    const bool down = glfwGetKey(window, GLFW_KEY_C) == GLFW_PRESS;
+    if (down && !was_down_ && !cameras_.empty())
+      camera.look_from(cameras_[++index_ % cameras_.size()].pose);
+    was_down_ = down;
+  }
+
+ private:
+  const std::vector<Camera>& cameras_;
+  size_t index_ = 0;
+  bool was_down_ = false;
+};
+
+}  // namespace
+
+void run_window(const Device& device, Window& window, Swapchain& swapchain, Renderer& renderer,
+                VoyagerLayer& voyager, const std::vector<Camera>& cameras,
+                const WindowOptions& options, FrameLog& log) {
+  Hud hud(device, window, renderer.overlay_pass());
+  HudState state = options.hud;
+  const VoySceneInfo& scene = voyager.scene();
+  FlyCamera camera(cameras.empty() ? overview(scene) : cameras.front().pose,
+                   0.05 * diagonal(scene));
+  Bookmarks bookmarks(cameras);
+  std::optional<VoyFrameStats> stats;
+  bool current = false;
+  double last = glfwGetTime();
+  for (uint64_t frame = 0; !window.closed() && (options.frames == 0 || frame < options.frames);) {
+    glfwPollEvents();
+    const VkExtent2D wanted = window.extent();
+    if (!current || wanted.width != swapchain.extent().width ||
+        wanted.height != swapchain.extent().height) {
+      device.wait_idle();
+      if (!swapchain.resize(wanted)) {
+        glfwWaitEventsTimeout(0.1);  // minimised
+        continue;
+      }
+      renderer.resize(swapchain.extent());
+    }
+    const uint32_t slot = renderer.wait_for_slot();
+    if (!(current = swapchain.acquire(slot))) continue;
+
+    const double now = glfwGetTime();
+    window.fly(camera, now - last, hud.has_mouse(), hud.has_keyboard());
+    bookmarks.update(window.get(), camera);
+    last = now;
+    if (state.steer_tau && stats) state.tau = steered(state, *stats);
+    voyager.set_tau(double{state.tau});
+    hud.build(state, device, voyager, stats ? &*stats : nullptr, camera);
+
+    Delivery delivery;
+    delivery.overlay = [&](VkCommandBuffer commands) { hud.record(commands); };
+    delivery.record = [&](VkCommandBuffer commands, const RenderTargets& targets) {
+      swapchain.record(commands, targets);
+    };
+    delivery.wait = swapchain.acquired(slot);
+    delivery.signal = swapchain.ready();
+    renderer.draw(camera.camera(swapchain.extent().width, swapchain.extent().height), state.look,
+                  delivery);
+    current = swapchain.present();
+    const bool splats = state.look.composite != Composite::none;
+    stats.reset();
+    if (splats) stats = voyager.stats();
+    log.add(splats ? &voyager : nullptr);
+    ++frame;
+  }
+  device.wait_idle();
+}
+
+}  // namespace host
