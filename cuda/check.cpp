@@ -14,6 +14,13 @@ ErrorCode code_of(cudaError_t status) {
     case cudaErrorDevicesUnavailable:
     case cudaErrorNoKernelImageForDevice:
       return ErrorCode::no_device;
+    case cudaErrorIllegalAddress:
+    case cudaErrorLaunchFailure:
+    case cudaErrorLaunchTimeout:
+    case cudaErrorHardwareStackError:
+    case cudaErrorECCUncorrectable:
+    case cudaErrorContextIsDestroyed:
+      return ErrorCode::device_lost;
     default:
       return ErrorCode::internal;
   }

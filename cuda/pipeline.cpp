@@ -34,8 +34,11 @@ class SplatPipeline final : public Pipeline {
         lut_(upload_lut(desc)),
         splats_(bin_blocks(device_->multiprocessors())) {}
 
-  // What it frees belongs to the device's context.
-  ~SplatPipeline() override { device_->use_quietly(); }
+  // What it frees belongs to the device's context, and to frames that may be under way.
+  ~SplatPipeline() override {
+    device_->use_quietly();
+    cudaStreamSynchronize(stream_.get());
+  }
 
   void draw(const FrameInput& frame, const Image& image, FrameStats& stats) override;
   void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {

@@ -123,6 +123,7 @@ TEST_F(SplatLimit, EncodingsAreDecodedAsOnTheHost) {
 TEST_F(SplatLimit, IsOfOneFrameWhateverWasDrawnBefore) {
   const std::shared_ptr<const Scene> scene = flat_scene(random_cloud(400000, 6, 0));
   const auto own = view(scene);
+  size_t hidden = 0;
   for (const uint32_t width : {640u, 161u, 1283u, 33u})
     for (const bool with_limits : {true, false, true}) {
       FrameInput input = frame_input(look({3, -6, -24}, {0, 0, 0}, width, width / 2));
@@ -132,8 +133,10 @@ TEST_F(SplatLimit, IsOfOneFrameWhateverWasDrawnBefore) {
       const Frame found = render(*own, input);
       EXPECT_EQ(found.stats.pairs_dropped, 0u);
       expect_same_bits(found, draw(scene, {}, input));
-      EXPECT_EQ(different_bits(found.rgba, without.rgba) > 0, with_limits);
+      hidden += different_bits(found.rgba, without.rgba);
+      if (!with_limits) expect_same_bits(found, without);
     }
+  EXPECT_GT(hidden, 0u);
 }
 
 TEST_F(SplatLimit, MeasurementsOfFramesWithoutLimitsRefuseThem) {

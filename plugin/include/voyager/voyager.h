@@ -542,8 +542,8 @@ typedef struct VoyFrame {
 #define VOY_FRAME_INIT \
   { VOY_STRUCTURE_TYPE_FRAME, NULL, 0, NULL, NULL, 0.2, {0, 0, 0}, 0 }
 
-/* Renders into the targets and returns when they are written. On error no target
- * is changed. Errors: INVALID_ARGUMENT (values out of range), UNSUPPORTED (a depth limit
+/* Renders into the targets and returns when they are written; into Vulkan's images, as
+ * VoyVulkanFrame says. On error no target is changed. Errors: INVALID_ARGUMENT (values out of range), UNSUPPORTED (a depth limit
  * where the view's splatting has none), SCENE_DESTROYED, DAMAGED_CHUNK, OUT_OF_HOST_MEMORY,
  * OVER_BUDGET (CUDA: its own memory has no room for the frame), BUSY. */
 VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
@@ -599,7 +599,9 @@ typedef struct VoyFrameStats {
   double millisecondsTotal;
 } VoyFrameStats;
 
-/* Of the view's last successful frame; VOY_ERROR_INVALID_ARGUMENT before any.
+/* Of the view's last successful frame; VOY_ERROR_INVALID_ARGUMENT before any. Where frames are
+ * left under way (Vulkan's images), of the last that has ended: frameIndex says which. It
+ * waits for none but the first.
  * type must be set; the rest is written. */
 VOY_API VoyResult voyGetFrameStats(VoyView view, VoyFrameStats* stats);
 

@@ -219,11 +219,14 @@ VOY_API VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVul
  * once), and `rendered` becomes signalValue, which must be greater than in the target's
  * frame before. BINARY: waitValue 1 waits for the image's `released`, 0 does not;
  * signalValue is 1. HOST: both are 0.
- * Where voyRenderFrame fails, nothing is signalled and no wait is consumed. With TIMELINE
- * and HOST sharing voyRenderFrame itself waits, so the host must have submitted the signal.
- *
- * The image's contents are then the frame's. One that is larger than the frame's target
- * does not exist: a target has one size, and a resize is a new target. */
+ * The host has submitted the signal of what is waited for before the call (with HOST sharing
+ * it is the call that waits, VOY_ERROR_TIMEOUT after 10 s). Where voyRenderFrame fails, nothing
+ * is signalled and no wait is consumed, but for DEVICE_LOST.
+ * With DEVICE sharing the call returns while the frame is under way, after 0.1 ms or so of
+ * the host's time; the first of a view, and one after a failure, waits once for the device.
+ * Such a frame cannot be drawn again: where the view turned to far more splats than before, it
+ * may lack some, and VoyFrameStats.pairsDropped says so; the next has the room.
+ * A target has one size: a resize is a new target. */
 typedef struct VoyVulkanFrame {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_FRAME */
   const void* next;
