@@ -145,6 +145,10 @@ ExternalSupport Device::external_support() const {
   return {true, timelines != 0, true};
 }
 
+void Device::use_whole() const {
+  check(cudaSetDevice(ordinal_), "device");
+}
+
 DeviceRates Device::rates() const {
   const auto attribute = [&](cudaDeviceAttr name) {
     int value = 0;

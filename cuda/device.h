@@ -24,9 +24,13 @@ class Device {
 
   // What this thread calls from now on goes to this device. Cheap.
   void use() const;
+  // The same for what is the whole device's: other APIs' memory and semaphores.
+  void use_whole() const;
+  bool is_part() const { return context_ != nullptr; }
   // For destructors: what fails has failed before.
   void use_quietly() const noexcept;
 
+  int ordinal() const { return ordinal_; }
   const std::string& name() const { return name_; }
   unsigned multiprocessors() const { return multiprocessors_; }
   const std::array<uint8_t, 16>& uuid() const { return uuid_; }

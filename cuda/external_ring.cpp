@@ -1,5 +1,6 @@
 #include "cuda/external_ring.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -108,11 +109,22 @@ struct Slot {
   Semaphore released, rendered;
 };
 
+// Between the stream of a part of a device and the whole device's, which semaphores want.
+struct Bridge {
+  explicit Bridge(const Device& device) {
+    device.use();
+    of_part.emplace(cudaEventDisableTiming);
+    device.use_whole();
+  }
+  Stream whole;
+  Event of_whole{cudaEventDisableTiming};
+  std::optional<Event> of_part;
+};
+
 class Ring final : public ExternalRing {
  public:
   Ring(std::shared_ptr<const Device> device, ExternalRingDesc desc);
-  // What it frees belongs to the device's context.
-  ~Ring() override { device_->use_quietly(); }
+  ~Ring() override { cudaSetDevice(device_->ordinal()); }
 
   bool idle() const override;
 
@@ -121,6 +133,17 @@ class Ring final : public ExternalRing {
   // Timelines serve the whole ring.
   const Slot& semaphores(uint32_t index) const {
     return slots_[desc_.sync == ExternalSync::timeline ? 0 : index];
+  }
+  // work(stream), on a stream that takes semaphores, in the order of `stream`'s work.
+  template <class Work>
+  void on_whole(cudaStream_t stream, const Work& work) const {
+    if (!bridge_) return work(stream);
+    const cudaStream_t whole = bridge_->whole.get();
+    bridge_->of_part->record(stream);
+    check(cudaStreamWaitEvent(whole, bridge_->of_part->get(), 0), "a part of the device");
+    work(whole);
+    bridge_->of_whole.record(whole);
+    check(cudaStreamWaitEvent(stream, bridge_->of_whole.get(), 0), "a part of the device");
   }
   const Event& last_frame() const { return last_frame_; }
 
@@ -131,10 +154,12 @@ class Ring final : public ExternalRing {
   ExternalRingDesc desc_;
   std::vector<Slot> slots_;
   Event last_frame_{cudaEventDisableTiming};
+  std::optional<Bridge> bridge_;
 };
 
 Ring::Ring(std::shared_ptr<const Device> device, ExternalRingDesc desc)
     : device_(std::move(device)), desc_(std::move(desc)) {
+  if (device_->is_part()) bridge_.emplace(*device_);
   slots_.reserve(desc_.slots.size());
   for (ExternalSlot& slot : desc_.slots)
     import_slot(slot, desc_.sync == ExternalSync::binary || slots_.empty());
@@ -166,7 +191,7 @@ void Ring::import_slot(ExternalSlot& from, bool with_semaphores) {
 }
 
 bool Ring::idle() const {
-  device_->use_quietly();
+  cudaSetDevice(device_->ordinal());
   // A device that is lost does nothing more.
   return cudaEventQuery(last_frame_.get()) != cudaErrorNotReady;
 }
@@ -179,7 +204,7 @@ const Ring& ring_of(const ExternalTarget& target) {
 
 std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
                                           ExternalRingDesc desc) {
-  device->use();
+  device->use_whole();
   return std::make_unique<Ring>(std::move(device), std::move(desc));
 }
 
@@ -210,20 +235,23 @@ void wait_released(const ExternalTarget& target, cudaStream_t stream) {
   const cudaExternalSemaphore_t semaphore = ring_of(target).semaphores(target.slot).released.get();
   cudaExternalSemaphoreWaitParams params{};
   params.params.fence.value = target.wait_value;
-  check(cudaWaitExternalSemaphoresAsync(&semaphore, &params, 1, stream),
-        "waiting for a semaphore of another API");
+  ring_of(target).on_whole(stream, [&](cudaStream_t on) {
+    check(cudaWaitExternalSemaphoresAsync(&semaphore, &params, 1, on),
+          "waiting for a semaphore of another API");
+  });
 }
 
 void signal_rendered(const ExternalTarget& target, cudaStream_t stream) {
   const Ring& ring = ring_of(target);
-  if (target.signals) {
+  ring.on_whole(stream, [&](cudaStream_t on) {
+    ring.last_frame().record(on);
+    if (!target.signals) return;
     const cudaExternalSemaphore_t semaphore = ring.semaphores(target.slot).rendered.get();
     cudaExternalSemaphoreSignalParams params{};
     params.params.fence.value = target.signal_value;
-    check(cudaSignalExternalSemaphoresAsync(&semaphore, &params, 1, stream),
+    check(cudaSignalExternalSemaphoresAsync(&semaphore, &params, 1, on),
           "signalling a semaphore of another API");
-  }
-  ring.last_frame().record(stream);
+  });
 }
 
 }  // namespace voyager::cuda

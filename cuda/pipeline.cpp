@@ -182,12 +182,14 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
 }
 
 void SplatPipeline::submit(const FrameInput& frame, const Image& image, bool checked) {
+  static const bool first = getenv("VOY_WAIT_FIRST") != nullptr;
+  if (first) { device_->use(); wait_released(image.external, stream_.get()); }
   Report report = begin_frame(frame, image);
   if (checked)
     launch_checked_lists(frame, *report);
   else
     launch_lists(frame, *report);
-  wait_released(image.external, stream_.get());
+  if (!first) wait_released(image.external, stream_.get());
   const DepthLimits limits = image.external.limited
                                  ? depth_limits(image.external, frame.limits.encoding)
                                  : limits_.upload(frame, stream_.get());

@@ -95,17 +95,18 @@ vulkan::RingDesc ring_desc(const VoyTargetDesc& desc, const VoyVulkanTargetDesc&
   return out;
 }
 
-// They are the library's once the call has succeeded; it works with copies.
-void close_descriptors(const vulkan::RingDesc& desc) noexcept {
-  const auto close = [](int fd) {
-    if (fd >= 0) ::close(fd);
-  };
+// The host's, each once: images in the same memory may come with the same one.
+std::vector<int> descriptors_of(const vulkan::RingDesc& desc) {
+  std::vector<int> found;
   for (const vulkan::ImportedImage& image : desc.imported) {
-    if (image.color != VK_NULL_HANDLE) close(image.color_memory.fd);
-    if (image.depth != VK_NULL_HANDLE) close(image.depth_memory.fd);
+    if (image.color != VK_NULL_HANDLE) found.push_back(image.color_memory.fd);
+    if (image.depth != VK_NULL_HANDLE) found.push_back(image.depth_memory.fd);
   }
   for (const vulkan::ImportedSemaphores& pair : desc.semaphores)
-    close(pair.released_fd), close(pair.rendered_fd);
+    found.insert(found.end(), {pair.released_fd, pair.rendered_fd});
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
 }
 
 }  // namespace
@@ -120,6 +121,7 @@ std::shared_ptr<TargetObject> voyager::create_vulkan_target(std::shared_ptr<Devi
                    "desc.kind: found VULKAN for a device that was made without a "
                    "VoyVulkanDeviceDesc, expected HOST_MEMORY");
   const vulkan::RingDesc wanted = ring_desc(desc, *images, *owner->vulkan);
+  const std::vector<int> passed = descriptors_of(wanted);
   Image image;
   image.format = wanted.format;
   image.width = wanted.width;
@@ -130,7 +132,9 @@ std::shared_ptr<TargetObject> voyager::create_vulkan_target(std::shared_ptr<Devi
       owner->vulkan, wanted,
       [&](ExternalRingDesc shared) { return backend.import_ring(std::move(shared)); },
       owner->memory);
-  close_descriptors(wanted);
+  // They are the library's once the call has succeeded; it works with copies.
+  for (const int fd : passed)
+    if (fd >= 0) ::close(fd);
   return object;
 }
 

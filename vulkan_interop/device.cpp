@@ -47,7 +47,8 @@ std::string Device::why_not_shared(const ExternalSupport& backend) const {
 }
 
 std::string Device::why_no_timelines(const ExternalSupport& backend) const {
-  if (!timelines_ || vk_.WaitSemaphores == nullptr || vk_.SignalSemaphore == nullptr)
+  if (!timelines_ || vk_.WaitSemaphores == nullptr || vk_.SignalSemaphore == nullptr ||
+      vk_.GetSemaphoreCounterValue == nullptr)
     return "the feature timelineSemaphore is not enabled";
   if (sharing_ == Sharing::host) return "";
   if (!enabled(VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME) || vk_.GetSemaphoreFdKHR == nullptr)

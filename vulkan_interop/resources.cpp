@@ -150,9 +150,10 @@ BufferResource make_mapped_buffer(const Device& device, uint64_t bytes) {
 BufferResource make_imported_buffer(const Device& device, void* memory, uint64_t bytes) {
   VkMemoryHostPointerPropertiesEXT properties{VK_STRUCTURE_TYPE_MEMORY_HOST_POINTER_PROPERTIES_EXT,
                                               nullptr, 0};
-  check(device.functions().GetMemoryHostPointerPropertiesEXT(device.handle(), kHostPointer, memory,
-                                                             &properties),
-        "vkGetMemoryHostPointerPropertiesEXT");
+  const VkResult found = device.functions().GetMemoryHostPointerPropertiesEXT(
+      device.handle(), kHostPointer, memory, &properties);
+  if (found == VK_ERROR_INVALID_EXTERNAL_HANDLE) return {};
+  check(found, "vkGetMemoryHostPointerPropertiesEXT");
   const VkExternalMemoryBufferCreateInfo external{
       VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO, nullptr, kHostPointer};
   BufferResource made;
@@ -163,8 +164,14 @@ BufferResource make_imported_buffer(const Device& device, void* memory, uint64_t
   if (type == kNoType || needs.size > bytes) return {};
   const VkImportMemoryHostPointerInfoEXT import{
       VK_STRUCTURE_TYPE_IMPORT_MEMORY_HOST_POINTER_INFO_EXT, nullptr, kHostPointer, memory};
+  const VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &import, bytes, type};
+  VkDeviceMemory taken = VK_NULL_HANDLE;
+  const VkResult status =
+      device.functions().AllocateMemory(device.handle(), &info, nullptr, &taken);
+  if (status == VK_ERROR_INVALID_EXTERNAL_HANDLE) return {};
+  check(status, "vkAllocateMemory");
   made.bytes = bytes;
-  made.memory = allocate(device, bytes, type, &import);
+  made.memory = {device.handle(), taken, device.functions().FreeMemory};
   bind(device, made);
   made.mapped = memory;
   return made;

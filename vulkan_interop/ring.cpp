@@ -14,7 +14,6 @@ namespace {
 
 constexpr uint64_t kNanoseconds = 1'000'000'000;
 constexpr uint64_t kPatience = 10 * kNanoseconds;  // with a signal that the host promised
-constexpr auto kPatienceAtEnd = std::chrono::seconds(2);
 
 // The host keeps its own, whatever happens to this one.
 FileDescriptor copy_descriptor(int fd, const char* field) {
@@ -251,24 +250,34 @@ void Ring::set_limits(uint32_t index, uint32_t layer, DepthLimits& limits) const
 }
 
 void Ring::end_frame(const FrameSync& sync) {
+  if (!shared() && device_->sync() == Sync::timeline) {
+    const VkSemaphoreSignalInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr,
+                                     slots_[0].image.rendered, sync.signal_value};
+    check(device_->functions().SignalSemaphore(device_->handle(), &info), "vkSignalSemaphore");
+  }
   last_signal_ = sync.signal_value;
-  if (shared() || device_->sync() != Sync::timeline) return;
-  const VkSemaphoreSignalInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr,
-                                   slots_[0].image.rendered, sync.signal_value};
-  check(device_->functions().SignalSemaphore(device_->handle(), &info), "vkSignalSemaphore");
+}
+
+bool Ring::release_in_the_hosts_stead() const noexcept {
+  const DeviceFunctions& vk = device_->functions();
+  const VkSemaphore released = slots_[0].image.released;
+  uint64_t reached = 0;
+  if (vk.GetSemaphoreCounterValue(device_->handle(), released, &reached) != VK_SUCCESS)
+    return false;
+  if (reached >= last_wait_) return true;
+  const VkSemaphoreSignalInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr, released,
+                                   last_wait_};
+  return vk.SignalSemaphore(device_->handle(), &info) == VK_SUCCESS;
 }
 
 void Ring::finish() noexcept {
   if (!external_) return;
-  const auto deadline = std::chrono::steady_clock::now() + kPatienceAtEnd;
-  bool helped = device_->sync() != Sync::timeline;
+  const auto deadline = std::chrono::steady_clock::now() + desc_.patience_at_end;
+  bool released = device_->sync() != Sync::timeline;
   while (!external_->idle()) {
     std::this_thread::sleep_for(std::chrono::microseconds(200));
-    if (helped || std::chrono::steady_clock::now() < deadline) continue;
-    const VkSemaphoreSignalInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr,
-                                     slots_[0].image.released, last_wait_};
-    device_->functions().SignalSemaphore(device_->handle(), &info);
-    helped = true;
+    if (!released && std::chrono::steady_clock::now() >= deadline)
+      released = release_in_the_hosts_stead();
   }
 }
 

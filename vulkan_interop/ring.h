@@ -103,6 +103,8 @@ class Ring {
   ExternalSlot external_slot(uint32_t index) const;
   void check_values(const FrameSync& sync) const;
   void wait_for_host(const FrameSync& sync) const;
+  // Whether `released` has what frames wait for: a timeline must not be signalled twice.
+  bool release_in_the_hosts_stead() const noexcept;
   void transition(const Slot& slot, VkCommandBuffer commands, VkPipelineStageFlags from,
                   VkPipelineStageFlags to, VkImageMemoryBarrier barrier) const;
   void copy_from_staging(uint32_t index, const Use& use) const;

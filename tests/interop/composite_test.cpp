@@ -161,7 +161,7 @@ TEST_F(Composites, EqualTheOneMadeFromTheSameImages) {
       const Shot shot = expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target), 4);
 
       VkCommandBuffer commands = host->begin();
-      release(line, target, 0, commands);
+      release(line, target, 0, commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
       host->finish(commands, {}, line.released(0));
       ASSERT_EQ(render(line, 0, eye(target)), VOY_SUCCESS) << voyGetLastErrorMessage();
       commands = host->begin();

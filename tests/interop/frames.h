@@ -121,9 +121,12 @@ class Interop : public ::testing::Test {
   Line line_of(VoyTarget target) const { return {found.sync, images_of(target)}; }
 
   // The host's side before a frame: its commands and the release.
-  void release(Line& line, VoyTarget target, uint32_t image, VkCommandBuffer commands) {
+  // layout: that the image was last acquired in.
+  void release(Line& line, VoyTarget target, uint32_t image, VkCommandBuffer commands,
+               VkImageLayout layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL) {
     ++line.next;
-    const VoyVulkanUse wanted = use(commands, image);
+    VoyVulkanUse wanted = use(commands, image);
+    wanted.layout = layout;
     ASSERT_EQ(voyRecordVulkanRelease(target, &wanted), VOY_SUCCESS) << voyGetLastErrorMessage();
   }
   VoyResult render(const Line& line, uint32_t image, const VoyFrameEye& eye,

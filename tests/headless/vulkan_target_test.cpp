@@ -1,0 +1,208 @@
+// A Vulkan target on a device without CUDA, its Vulkan a mock: whose the passed descriptors
+// are after each call, and that a frame's wait has its signal.
+#include "tests/support/vulkan_mock.h"
+// Above: it declares Vulkan without prototypes.
+#include <voyager/voyager_vulkan.h>
+
+#include "host.h"
+#include "tests/support/descriptor_watch.h"
+
+namespace {
+
+using namespace voyager::test;
+
+VoyVulkanDeviceDesc vulkan_desc(const std::vector<const char*>& extensions) {
+  VoyVulkanDeviceDesc desc = VOY_VULKAN_DEVICE_DESC_INIT;
+  desc.getInstanceProcAddr = &VulkanMock::get_instance;
+  desc.instance = VulkanMock::instance();
+  desc.physicalDevice = VulkanMock::physical();
+  desc.device = VulkanMock::handle();
+  desc.apiVersion = VK_API_VERSION_1_2;
+  desc.deviceExtensionCount = static_cast<uint32_t>(extensions.size());
+  desc.deviceExtensions = extensions.data();
+  desc.timelineSemaphore = VK_TRUE;
+  return desc;
+}
+
+// Host's constructor takes it by value; the chain lives as long as the test.
+VoyDeviceDesc cpu_with(const VoyVulkanDeviceDesc& vulkan) {
+  VoyDeviceDesc desc = device_for(VOY_BACKEND_CPU);
+  desc.next = &vulkan;
+  return desc;
+}
+
+struct VulkanTarget : testing::Test {
+  static constexpr uint32_t kImages = 2;
+
+  VulkanTarget() : vulkan(vulkan_desc({})), host(voy, cpu_with(vulkan)) {
+    for (VoyVulkanImportedImage& image : images) {
+      image = VOY_VULKAN_IMPORTED_IMAGE_INIT;
+      image.color = mock.host_image(1);
+      image.colorMemory = {descriptor(), VK_TRUE, 4096, 0};
+      image.depth = mock.host_image(1);
+      image.depthMemory = {descriptor(), VK_TRUE, 4096, 0};
+      image.colorUsage = image.depthUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    }
+    semaphores.released = mock.host_semaphore(true);
+    semaphores.rendered = mock.host_semaphore(true);
+    semaphores.releasedFd = descriptor();
+    semaphores.renderedFd = descriptor();
+    ring.imageCount = kImages;
+    ring.depth = VK_TRUE;
+    ring.images = images;
+    ring.semaphoreCount = 1;
+    ring.semaphores = &semaphores;
+    of_host = mock.live();
+  }
+  ~VulkanTarget() override {
+    for (const auto& [fd, identity] : passed)
+      if (identity_of(fd) == identity) ::close(fd);
+  }
+
+  int descriptor() {
+    const int fd = new_descriptor();
+    passed[fd] = identity_of(fd);
+    return fd;
+  }
+  size_t still_open() const {
+    size_t open = 0;
+    for (const auto& [fd, identity] : passed) open += identity_of(fd) == identity;
+    return open;
+  }
+  VoyResult create() {
+    VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
+    desc.next = &ring;
+    desc.kind = VOY_TARGET_KIND_VULKAN;
+    desc.colorFormat = VOY_COLOR_FORMAT_RGBA8_UNORM;
+    desc.width = Host::kWidth;
+    desc.height = Host::kHeight;
+    return voy.CreateTarget(host.device, &desc, &target);
+  }
+  VoyResult render(uint64_t wait, uint64_t signal, uint32_t image = 0) {
+    VoyVulkanFrame sync = VOY_VULKAN_FRAME_INIT;
+    sync.imageIndex = image;
+    sync.waitValue = wait;
+    sync.signalValue = signal;
+    VoyFrameEye eye = host.eye();
+    eye.target = target;
+    VoyFrame frame = Host::frame(eye);
+    frame.next = &sync;
+    return voy.RenderFrame(host.view, &frame);
+  }
+
+  VulkanMock mock;
+  Library voy;
+  VoyVulkanDeviceDesc vulkan;
+  Host host;
+  VoyVulkanImportedImage images[kImages];
+  VoyVulkanImportedSemaphores semaphores = VOY_VULKAN_IMPORTED_SEMAPHORES_INIT;
+  VoyVulkanTargetDesc ring = VOY_VULKAN_TARGET_DESC_INIT;
+  VoyTarget target = nullptr;
+  std::map<int, FileIdentity> passed;
+  size_t of_host = 0;
+};
+
+TEST_F(VulkanTarget, TheDescriptorsAreTheLibrarysOnceTheCallSucceedsAndClosedOnce) {
+  const int bad = bad_closes, before = closes;
+  EXPECT_EQ(still_open(), passed.size());
+  ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(still_open(), 0u);
+  EXPECT_EQ(closes - before, static_cast<int>(passed.size()));
+  ASSERT_EQ(voy.DestroyTarget(target), VOY_SUCCESS);
+  EXPECT_EQ(closes - before, static_cast<int>(passed.size()));
+  EXPECT_EQ(bad_closes, bad);
+  EXPECT_EQ(mock.live(), of_host) << mock.live_kinds();
+}
+
+// Images in one memory: the host may have exported it once.
+TEST_F(VulkanTarget, ADescriptorThatIsPassedForSeveralImagesIsClosedOnce) {
+  for (VoyVulkanImportedImage& image : images) {
+    image.colorMemory.fd = images[0].colorMemory.fd;
+    image.depthMemory.fd = images[0].colorMemory.fd;
+  }
+  semaphores.releasedFd = semaphores.renderedFd = -1;
+  const int bad = bad_closes, before = closes;
+  ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(closes - before, 1);
+  EXPECT_EQ(bad_closes, bad);
+}
+
+TEST_F(VulkanTarget, WhateverCallFailsTheDescriptorsStayTheHosts) {
+  const std::pair<VkResult, VoyResult> failures[] = {
+      {VK_ERROR_OUT_OF_HOST_MEMORY, VOY_ERROR_OUT_OF_HOST_MEMORY},
+      {VK_ERROR_OUT_OF_DEVICE_MEMORY, VOY_ERROR_OVER_BUDGET},
+      {VK_ERROR_DEVICE_LOST, VOY_ERROR_DEVICE_LOST}};
+  const int bad = bad_closes;
+  for (const auto& [status, result] : failures) {
+    for (uint32_t call = 0;; ++call) {
+      mock.fail_at(call, status);
+      const VoyResult found = create();
+      const bool failed = mock.failed();
+      mock.fail_at(VulkanMock::kNever, VK_SUCCESS);
+      if (!failed) {
+        EXPECT_EQ(found, VOY_SUCCESS);
+        EXPECT_GT(call, 4u);
+        break;
+      }
+      EXPECT_EQ(found, result) << "call " << call;
+      EXPECT_EQ(still_open(), passed.size()) << "call " << call;
+      EXPECT_EQ(mock.live(), of_host) << "call " << call << ": " << mock.live_kinds();
+    }
+    ASSERT_EQ(voy.DestroyTarget(target), VOY_SUCCESS);
+    // The library has closed them: the next round has others.
+    passed.clear();
+    for (VoyVulkanImportedImage& image : images)
+      image.colorMemory.fd = descriptor(), image.depthMemory.fd = descriptor();
+    semaphores.releasedFd = descriptor();
+    semaphores.renderedFd = descriptor();
+  }
+  EXPECT_EQ(bad_closes, bad);
+}
+
+TEST_F(VulkanTarget, RefusedDescriptionsLeaveTheDescriptorsToTheHost) {
+  const VoyVulkanTargetDesc good = ring;
+  ring.imageCount = 0;
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  ring = good;
+  ring.semaphoreCount = 2;
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  ring = good;
+  ring.depth = VK_FALSE;
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  ring = good;
+  images[1].colorUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(still_open(), passed.size());
+  EXPECT_EQ(mock.live(), of_host) << mock.live_kinds();
+}
+
+TEST_F(VulkanTarget, AFrameWaitsForReleasedAndSignalsRenderedOnce) {
+  ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(render(1, 1), VOY_ERROR_TIMEOUT);
+  EXPECT_TRUE(mock.signals.empty());
+  mock.signal(semaphores.released, 1);
+  EXPECT_EQ(render(1, 1), VOY_SUCCESS) << voy.message();
+  ASSERT_EQ(mock.signals.size(), 1u);
+  EXPECT_EQ(mock.signals[0].semaphore, semaphores.rendered);
+  EXPECT_EQ(mock.signals[0].value, 1u);
+  EXPECT_EQ(render(1, 1), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(render(1, 2, kImages), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(mock.signals.size(), 1u);
+}
+
+TEST_F(VulkanTarget, TheModeIsTold) {
+  VoyVulkanCapabilities found = VOY_VULKAN_CAPABILITIES_INIT;
+  VoyCapabilities capabilities = VOY_CAPABILITIES_INIT;
+  capabilities.next = &found;
+  ASSERT_EQ(voy.GetCapabilities(host.device, &capabilities), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(found.sharing, VOY_VULKAN_SHARING_HOST);
+  EXPECT_EQ(found.sync, VOY_VULKAN_SYNC_TIMELINE);
+  EXPECT_STREQ(found.why, "the backend does not draw on this device");
+  vulkan.sharing = VOY_VULKAN_SHARING_DEVICE;
+  const VoyDeviceDesc desc = cpu_with(vulkan);
+  VoyDevice refused = nullptr;
+  EXPECT_EQ(voy.CreateDevice(&desc, &refused), VOY_ERROR_UNSUPPORTED);
+  EXPECT_NE(voy.message().find(found.why), std::string::npos) << voy.message();
+}
+
+}  // namespace
