@@ -4,7 +4,7 @@
 // Above: it declares Vulkan without prototypes.
 #include <voyager/voyager_vulkan.h>
 
-#include "host.h"
+#include "tests/headless/host.h"
 #include "tests/support/descriptor_watch.h"
 
 namespace {
