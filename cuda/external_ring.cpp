@@ -107,6 +107,7 @@ struct Slot {
   Memory limit_memory;
   Mapped limits;
   Semaphore released, rendered;
+  bool waited = false;  // for `released`, by a frame that was not drawn yet
 };
 
 // Between the stream of a part of a device and the whole device's, which semaphores want.
@@ -129,7 +130,7 @@ class Ring final : public ExternalRing {
   bool idle() const override;
 
   const ExternalRingDesc& desc() const { return desc_; }
-  const Slot& slot(uint32_t index) const { return slots_[index]; }
+  Slot& slot(uint32_t index) { return slots_[index]; }
   // Timelines serve the whole ring.
   const Slot& semaphores(uint32_t index) const {
     return slots_[desc_.sync == ExternalSync::timeline ? 0 : index];
@@ -196,8 +197,8 @@ bool Ring::idle() const {
   return cudaEventQuery(last_frame_.get()) != cudaErrorNotReady;
 }
 
-const Ring& ring_of(const ExternalTarget& target) {
-  return static_cast<const Ring&>(*target.ring);
+Ring& ring_of(const ExternalTarget& target) {
+  return static_cast<Ring&>(*target.ring);
 }
 
 }  // namespace
@@ -209,7 +210,7 @@ std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
 }
 
 RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background) {
-  const Ring& ring = ring_of(target);
+  Ring& ring = ring_of(target);
   const Slot& slot = ring.slot(target.slot);
   RasterTarget out{};
   out.format = ring.desc().format;
@@ -224,34 +225,40 @@ RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background
 }
 
 DepthLimits depth_limits(const ExternalTarget& target, const DepthEncoding& encoding) {
-  const Ring& ring = ring_of(target);
+  Ring& ring = ring_of(target);
   const size_t row = ring.desc().width, pixels = row * ring.desc().height;
   const auto* all = static_cast<const float*>(ring.slot(target.slot).limits.get());
   return {all + target.layer * pixels, row * sizeof(float), encoding};
 }
 
+// A binary semaphore's signal is there once: where the frame that waited was not drawn, the
+// next has waited already.
 void wait_released(const ExternalTarget& target, cudaStream_t stream) {
-  if (!target.waits) return;
-  const cudaExternalSemaphore_t semaphore = ring_of(target).semaphores(target.slot).released.get();
+  Ring& ring = ring_of(target);
+  bool& waited = ring.slot(target.slot).waited;
+  if (!target.waits || (waited && ring.desc().sync == ExternalSync::binary)) return;
+  const cudaExternalSemaphore_t semaphore = ring.semaphores(target.slot).released.get();
   cudaExternalSemaphoreWaitParams params{};
   params.params.fence.value = target.wait_value;
-  ring_of(target).on_whole(stream, [&](cudaStream_t on) {
+  ring.on_whole(stream, [&](cudaStream_t on) {
     check(cudaWaitExternalSemaphoresAsync(&semaphore, &params, 1, on),
           "waiting for a semaphore of another API");
   });
+  waited = true;
 }
 
 void signal_rendered(const ExternalTarget& target, cudaStream_t stream) {
-  const Ring& ring = ring_of(target);
+  Ring& ring = ring_of(target);
+  const cudaExternalSemaphore_t semaphore = ring.semaphores(target.slot).rendered.get();
+  cudaExternalSemaphoreSignalParams params{};
+  params.params.fence.value = target.signal_value;
   ring.on_whole(stream, [&](cudaStream_t on) {
+    if (target.signals)
+      check(cudaSignalExternalSemaphoresAsync(&semaphore, &params, 1, on),
+            "signalling a semaphore of another API");
     ring.last_frame().record(on);
-    if (!target.signals) return;
-    const cudaExternalSemaphore_t semaphore = ring.semaphores(target.slot).rendered.get();
-    cudaExternalSemaphoreSignalParams params{};
-    params.params.fence.value = target.signal_value;
-    check(cudaSignalExternalSemaphoresAsync(&semaphore, &params, 1, on),
-          "signalling a semaphore of another API");
   });
+  ring.slot(target.slot).waited = false;
 }
 
 }  // namespace voyager::cuda

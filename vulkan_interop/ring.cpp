@@ -1,9 +1,12 @@
 #include "vulkan_interop/ring.h"
 
-#include <unistd.h>
+#include <fcntl.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstring>
+#include <string>
 #include <thread>
 
 #include "runtime/base/error.h"
@@ -17,12 +20,13 @@ constexpr uint64_t kPatience = 10 * kNanoseconds;  // with a signal that the hos
 
 // The host keeps its own, whatever happens to this one.
 FileDescriptor copy_descriptor(int fd, const char* field) {
-  const int copy = ::dup(fd);
-  if (copy < 0)
-    throw Error(ErrorCode::invalid_argument, std::string(field) + ".fd: found " +
-                                                 std::to_string(fd) +
-                                                 ", expected an open file descriptor");
-  return FileDescriptor(copy);
+  const int copy = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
+  if (copy >= 0) return FileDescriptor(copy);
+  const std::string where = std::string(field) + ".fd: ";
+  if (errno == EBADF)
+    throw Error(ErrorCode::invalid_argument,
+                where + "found " + std::to_string(fd) + ", expected an open file descriptor");
+  throw Error(ErrorCode::io, where + "cannot be copied: " + std::strerror(errno));
 }
 
 ExternalMemory external_memory(const ImportedMemory& memory, const char* field) {

@@ -50,9 +50,11 @@ TEST_F(Interop, DevicesComeAndGoWithoutATrace) {
   int descriptors = 0;
   for (int cycle = 0; cycle < 10; ++cycle) {
     ASSERT_TRUE(create());
-    if (cycle == 4) descriptors = open_descriptors();  // a driver has set up what it keeps
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
     make_target(target_desc(VOY_COLOR_FORMAT_RGBA16F, &images));  // goes with its device
+    ASSERT_EQ(voyDestroyDevice(device), VOY_SUCCESS);
+    device = nullptr;
+    if (cycle == 4) descriptors = open_descriptors();  // a driver has set up what it keeps
   }
   EXPECT_EQ(open_descriptors(), descriptors);
 }
