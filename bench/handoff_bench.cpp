@@ -105,8 +105,11 @@ struct Host {
               bool timelines, VkFence fence) const {
     check(vkEndCommandBuffer(commands));
     const VkTimelineSemaphoreSubmitInfo values{VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,
-                                               nullptr, wait != VK_NULL_HANDLE, &value,
-                                               signal != VK_NULL_HANDLE, &value};
+                                               nullptr,
+                                               wait != VK_NULL_HANDLE,
+                                               &value,
+                                               signal != VK_NULL_HANDLE,
+                                               &value};
     const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
     VkSubmitInfo info{};
     info.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
@@ -158,9 +161,10 @@ class HandOff {
     ring.width = work.width;
     ring.height = work.height;
     ring.images = 2;
-    ring_.emplace(std::make_shared<vulkan::Device>(desc, backend.external_support()), ring,
-                  [&](ExternalRingDesc shared) { return backend.import_ring(std::move(shared)); },
-                  std::pmr::get_default_resource());
+    ring_.emplace(
+        std::make_shared<vulkan::Device>(desc, backend.external_support()), ring,
+        [&](ExternalRingDesc shared) { return backend.import_ring(std::move(shared)); },
+        std::pmr::get_default_resource());
     for (Slot& slot : slots_) {
       slot.before = host.allocate();
       slot.after = host.allocate();

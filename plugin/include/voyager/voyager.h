@@ -543,9 +543,10 @@ typedef struct VoyFrame {
   { VOY_STRUCTURE_TYPE_FRAME, NULL, 0, NULL, NULL, 0.2, {0, 0, 0}, 0 }
 
 /* Renders into the targets and returns when they are written; into Vulkan's images, as
- * VoyVulkanFrame says. On error no target is changed. Errors: INVALID_ARGUMENT (values out of range), UNSUPPORTED (a depth limit
- * where the view's splatting has none), SCENE_DESTROYED, DAMAGED_CHUNK, OUT_OF_HOST_MEMORY,
- * OVER_BUDGET (CUDA: its own memory has no room for the frame), BUSY. */
+ * VoyVulkanFrame says. On error no target is changed. Errors: INVALID_ARGUMENT (values out of
+ * range), UNSUPPORTED (a depth limit where the view's splatting has none), SCENE_DESTROYED,
+ * DAMAGED_CHUNK, OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no room for the frame),
+ * BUSY. */
 VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
 
 /* The last frame's cut of one instance (its index in VoyViewDesc.scenes): node ids in
