@@ -1,4 +1,5 @@
-// Both headers as C++17; every inline function of voyager.hpp is instantiated.
+// The headers as C++17; every inline function of voyager.hpp is instantiated.
+#include <voyager/voyager_vulkan.h>
 #include <voyager/voyager.hpp>
 
 #include <type_traits>

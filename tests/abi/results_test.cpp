@@ -34,25 +34,47 @@ TEST(Results, NumbersAndNamesArePinned) {
                         VOYAGER_PIN(-12, VOY_ERROR_NO_DEVICE),
                         VOYAGER_PIN(-13, VOY_ERROR_BUSY),
                         VOYAGER_PIN(-14, VOY_ERROR_SCENE_DESTROYED),
-                        VOYAGER_PIN(-15, VOY_ERROR_INTERNAL)};
+                        VOYAGER_PIN(-15, VOY_ERROR_INTERNAL),
+                        VOYAGER_PIN(-16, VOY_ERROR_DEVICE_LOST),
+                        VOYAGER_PIN(-17, VOY_ERROR_TIMEOUT)};
   for (const Pinned& pinned : all) {
     EXPECT_EQ(int{pinned.result}, pinned.number);
     EXPECT_STREQ(voyResultString(pinned.result), pinned.name);
   }
   // None that the list above lacks: the header's next number has no name.
-  EXPECT_STREQ(voyResultString(static_cast<VoyResult>(-16)), "unknown VoyResult");
+  EXPECT_STREQ(voyResultString(static_cast<VoyResult>(-18)), "unknown VoyResult");
   EXPECT_STREQ(voyResultString(static_cast<VoyResult>(2)), "unknown VoyResult");
 }
 
 TEST(Results, StructureTypesArePinned) {
-  const VoyStructureType all[] = {
-      VOY_STRUCTURE_TYPE_DEVICE_DESC,   VOY_STRUCTURE_TYPE_CAPABILITIES,
-      VOY_STRUCTURE_TYPE_SCENE_DESC,    VOY_STRUCTURE_TYPE_BYTE_SOURCE,
-      VOY_STRUCTURE_TYPE_SCENE_INFO,    VOY_STRUCTURE_TYPE_SCENE_NOTE,
-      VOY_STRUCTURE_TYPE_VIEW_DESC,     VOY_STRUCTURE_TYPE_TARGET_DESC,
-      VOY_STRUCTURE_TYPE_FRAME,         VOY_STRUCTURE_TYPE_FRAME_STATS,
-      VOY_STRUCTURE_TYPE_ALLOCATOR,     VOY_STRUCTURE_TYPE_FRAME_EYE,
-      VOY_STRUCTURE_TYPE_INSTANCE_POSE, VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT};
+  const VoyStructureType all[] = {VOY_STRUCTURE_TYPE_DEVICE_DESC,
+                                  VOY_STRUCTURE_TYPE_CAPABILITIES,
+                                  VOY_STRUCTURE_TYPE_SCENE_DESC,
+                                  VOY_STRUCTURE_TYPE_BYTE_SOURCE,
+                                  VOY_STRUCTURE_TYPE_SCENE_INFO,
+                                  VOY_STRUCTURE_TYPE_SCENE_NOTE,
+                                  VOY_STRUCTURE_TYPE_VIEW_DESC,
+                                  VOY_STRUCTURE_TYPE_TARGET_DESC,
+                                  VOY_STRUCTURE_TYPE_FRAME,
+                                  VOY_STRUCTURE_TYPE_FRAME_STATS,
+                                  VOY_STRUCTURE_TYPE_ALLOCATOR,
+                                  VOY_STRUCTURE_TYPE_FRAME_EYE,
+                                  VOY_STRUCTURE_TYPE_INSTANCE_POSE,
+                                  VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT,
+                                  VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE,
+                                  VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS,
+                                  VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC,
+                                  VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES,
+                                  VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE,
+                                  VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES,
+                                  VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC,
+                                  VOY_STRUCTURE_TYPE_VULKAN_IMAGE,
+                                  VOY_STRUCTURE_TYPE_VULKAN_FRAME,
+                                  VOY_STRUCTURE_TYPE_VULKAN_USE,
+                                  VOY_STRUCTURE_TYPE_VULKAN_COPY,
+                                  VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT,
+                                  VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC,
+                                  VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW};
   int number = 0;
   for (const VoyStructureType type : all) EXPECT_EQ(int{type}, ++number);
 }
