@@ -65,9 +65,11 @@ VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget
     if (!vulkan && images != nullptr)
       throw ApiError(VOY_ERROR_INVALID_STRUCTURE,
                      "desc.next: found a VoyVulkanTargetDesc, expected it with kind VULKAN only");
-    const auto object = vulkan ? create_vulkan_target(owner, *desc, images)
+    std::vector<int> passed;
+    const auto object = vulkan ? create_vulkan_target(owner, *desc, images, passed)
                                : std::make_shared<TargetObject>(owner, checked_image(*desc));
     *target = static_cast<VoyTarget>(HandleTable::instance().insert(object));
+    close_all(passed);
     return VOY_SUCCESS;
   });
 }

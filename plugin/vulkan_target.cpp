@@ -113,7 +113,8 @@ std::vector<int> descriptors_of(const vulkan::RingDesc& desc) {
 
 std::shared_ptr<TargetObject> voyager::create_vulkan_target(std::shared_ptr<DeviceObject> owner,
                                                             const VoyTargetDesc& desc,
-                                                            const VoyVulkanTargetDesc* images) {
+                                                            const VoyVulkanTargetDesc* images,
+                                                            std::vector<int>& passed) {
   if (images == nullptr)
     refuse("desc.next: found no VoyVulkanTargetDesc, expected one with kind VULKAN");
   if (owner->vulkan == nullptr)
@@ -121,7 +122,7 @@ std::shared_ptr<TargetObject> voyager::create_vulkan_target(std::shared_ptr<Devi
                    "desc.kind: found VULKAN for a device that was made without a "
                    "VoyVulkanDeviceDesc, expected HOST_MEMORY");
   const vulkan::RingDesc wanted = ring_desc(desc, *images, *owner->vulkan);
-  const std::vector<int> passed = descriptors_of(wanted);
+  passed = descriptors_of(wanted);
   Image image;
   image.format = wanted.format;
   image.width = wanted.width;
@@ -132,10 +133,12 @@ std::shared_ptr<TargetObject> voyager::create_vulkan_target(std::shared_ptr<Devi
       owner->vulkan, wanted,
       [&](ExternalRingDesc shared) { return backend.import_ring(std::move(shared)); },
       owner->memory);
-  // They are the library's once the call has succeeded; it works with copies.
-  for (const int fd : passed)
-    if (fd >= 0) ::close(fd);
   return object;
+}
+
+void voyager::close_all(const std::vector<int>& descriptors) noexcept {
+  for (const int fd : descriptors)
+    if (fd >= 0) ::close(fd);
 }
 
 VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVulkanImage* images,

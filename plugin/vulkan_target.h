@@ -1,13 +1,19 @@
 #pragma once
+#include <vector>
+
 #include "plugin/objects.h"
 #include "plugin/result.h"
 
 namespace voyager {
 
-// A target whose images are a Vulkan host's. desc: of kind VULKAN; checked here.
+// A target whose images are a Vulkan host's. desc: of kind VULKAN; checked here. It works with
+// copies of the descriptors that the host passed: these are to be closed once the call has
+// succeeded, and with it become the library's.
 std::shared_ptr<TargetObject> create_vulkan_target(std::shared_ptr<DeviceObject> owner,
                                                    const VoyTargetDesc& desc,
-                                                   const VoyVulkanTargetDesc* images);
+                                                   const VoyVulkanTargetDesc* images,
+                                                   std::vector<int>& passed);
+void close_all(const std::vector<int>& descriptors) noexcept;
 
 ColorFormat format_of(VoyColorFormat format);
 

@@ -87,7 +87,8 @@ class Ring {
     RingImage image;
     Owned<VkImageView> color_view, depth_view;
     BufferResource depth_limit;  // of a ring that is shared
-    bool in_general = false;     // released before
+    bool released = false;       // in GENERAL, Voyager's; before that UNDEFINED
+    bool acquired = false;       // the host's since
     VkPipelineStageFlags last_stages = 0;
   };
   struct Semaphores {

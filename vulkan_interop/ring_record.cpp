@@ -71,19 +71,23 @@ void Ring::transition(const Slot& slot, VkCommandBuffer commands, VkPipelineStag
 void Ring::record_release(uint32_t index, const Use& use) {
   Slot& slot = slots_[index];
   slot.last_stages = use.stages;
-  if (!shared()) return;  // the next acquisition overwrites it
+  // Staging memory needs nothing; an image that the host did not take is here still.
+  if (!shared() || (slot.released && !slot.acquired)) return;
   VkImageMemoryBarrier barrier = image_barrier(
-      slot.in_general ? use.layout : VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+      slot.released ? use.layout : VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   barrier.srcQueueFamilyIndex = use.queue_family;
   barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_EXTERNAL;
-  slot.in_general = true;
+  slot.released = true;
+  slot.acquired = false;
   transition(slot, use.commands, use.stages, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, barrier);
 }
 
 void Ring::record_acquire(uint32_t index, const Use& use) {
+  Slot& slot = slots_[index];
+  slot.acquired = true;
   if (!shared()) {
     copy_from_staging(index, use);
-    slots_[index].last_stages = use.stages;
+    slot.last_stages = use.stages;
     return;
   }
   VkImageMemoryBarrier barrier = image_barrier(VK_IMAGE_LAYOUT_GENERAL, use.layout);
@@ -91,8 +95,7 @@ void Ring::record_acquire(uint32_t index, const Use& use) {
   barrier.dstQueueFamilyIndex = use.queue_family;
   barrier.dstAccessMask = reads_of(use.stages);
   // The stages at which the submission waits for `rendered`.
-  transition(slots_[index], use.commands, VK_PIPELINE_STAGE_TRANSFER_BIT | use.stages, use.stages,
-             barrier);
+  transition(slot, use.commands, VK_PIPELINE_STAGE_TRANSFER_BIT | use.stages, use.stages, barrier);
 }
 
 void Ring::copy_from_staging(uint32_t index, const Use& use) const {

@@ -259,7 +259,8 @@ typedef struct VoyVulkanUse {
   }
 
 /* The image goes from the host to Voyager: once for each image of a new ring before its
- * first frame, and after each use. The submission signals `released`. */
+ * first frame, and after each use; use.layout is that of its last acquisition. The submission
+ * signals `released`. As all recording, BUSY while another thread draws into the target. */
 VOY_API VoyResult voyRecordVulkanRelease(VoyTarget target, const VoyVulkanUse* use);
 
 /* The image, with its depth, goes from Voyager to the host: before its first use in a frame.
