@@ -41,7 +41,7 @@ class CudaBackend final : public Backend {
   DeviceRates rates() const override { return device_->rates(); }
   std::shared_ptr<void> enter() const override { return keep_context(); }
   ExternalSupport external_support() const override { return device_->external_support(); }
-  std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc desc) const override {
+  std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc&& desc) const override {
     return cuda::import_ring(device_, std::move(desc));
   }
 

@@ -236,15 +236,19 @@ DepthLimits depth_limits(const ExternalTarget& target, const DepthEncoding& enco
 void wait_released(const ExternalTarget& target, cudaStream_t stream) {
   Ring& ring = ring_of(target);
   bool& waited = ring.slot(target.slot).waited;
-  if (!target.waits || (waited && ring.desc().sync == ExternalSync::binary)) return;
+  const bool waits = target.waits && !(waited && ring.desc().sync == ExternalSync::binary);
   const cudaExternalSemaphore_t semaphore = ring.semaphores(target.slot).released.get();
   cudaExternalSemaphoreWaitParams params{};
   params.params.fence.value = target.wait_value;
   ring.on_whole(stream, [&](cudaStream_t on) {
+    // Frames of other views, on other streams, into the ring.
+    check(cudaStreamWaitEvent(on, ring.last_frame().get(), 0), "a ring's frames");
+    if (!waits) return;
     check(cudaWaitExternalSemaphoresAsync(&semaphore, &params, 1, on),
           "waiting for a semaphore of another API");
+    ring.last_frame().record(on);
   });
-  waited = true;
+  waited = waited || waits;
 }
 
 void signal_rendered(const ExternalTarget& target, cudaStream_t stream) {

@@ -57,6 +57,7 @@ class SplatPipeline final : public Pipeline {
   using Report = std::unique_ptr<FrameReport>;
 
   Report begin_frame(const FrameInput& frame, const Image& image);
+  void launch_search(const FrameInput& frame, FrameReport& report);
   SplatFrame work(const TileGrid& grid) const;
   void launch_lists(const FrameInput& frame, FrameReport& report);
   void launch_checked_lists(const FrameInput& frame, FrameReport& report);
@@ -151,10 +152,13 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, const 
   report->target_bytes = uint64_t{image.width} * image.height * pixel_bytes(image.format);
   splats_.fit(report->grid);
   limits_.fit(frame);
-  report->timer.begin();
-  instances_.update(frame, stream_.get());
-  report->timer.end(kSearch);
   return report;
+}
+
+void SplatPipeline::launch_search(const FrameInput& frame, FrameReport& report) {
+  report.timer.begin();
+  instances_.update(frame, stream_.get());
+  report.timer.end(kSearch);
 }
 
 // Frames that are left under way cannot be drawn again: they get room before they need it.
@@ -169,6 +173,7 @@ void SplatPipeline::make_room() {
 void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
   Report report = begin_frame(frame, image);
   const RasterTarget target = image_.target(frame, image);
+  launch_search(frame, *report);
   for (;;) {
     launch_lists(frame, *report);
     launch_image(target, limits_.upload(frame, stream_.get()), *report);
@@ -182,21 +187,28 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
 }
 
 void SplatPipeline::submit(const FrameInput& frame, const Image& image, bool checked) {
-  // In front of the frame's own work: the two APIs take turns on the device, and so take fewer.
-  device_->use();
-  wait_released(image.external, stream_.get());
-  Report report = begin_frame(frame, image);
-  if (checked)
-    launch_checked_lists(frame, *report);
-  else
-    launch_lists(frame, *report);
-  const DepthLimits limits = image.external.limited
-                                 ? depth_limits(image.external, frame.limits.encoding)
-                                 : limits_.upload(frame, stream_.get());
-  launch_image(raster_target(image.external, frame.background), limits, *report);
-  signal_rendered(image.external, stream_.get());
-  copy(*report);
-  under_way_.push_back(std::move(report));
+  under_way_.push_back(begin_frame(frame, image));
+  FrameReport& report = *under_way_.back();
+  try {
+    // In front of the frame's own work, so that the two APIs take fewer turns on the device.
+    // Lists that the host waits for come first: it would wait for its own queue.
+    if (!checked) wait_released(image.external, stream_.get());
+    launch_search(frame, report);
+    if (checked) {
+      launch_checked_lists(frame, report);
+      wait_released(image.external, stream_.get());
+    } else {
+      launch_lists(frame, report);
+    }
+    DepthLimits limits;
+    if (image.external.limited) limits = depth_limits(image.external, frame.limits.encoding);
+    launch_image(raster_target(image.external, frame.background), limits, report);
+    copy(report);
+    signal_rendered(image.external, stream_.get());
+  } catch (...) {
+    under_way_.pop_back();
+    throw;
+  }
 }
 
 bool SplatPipeline::finish(bool wait, FrameStats& stats) {

@@ -43,6 +43,10 @@ DepthLimits depth_limits(const VoyEyeDepthLimit* limit, const Image& image,
     return {nullptr, 0, encoding};
   }
   check_pointer(limit->depth, "VoyEyeDepthLimit.depth");
+  if (ring != nullptr && ring->device().sharing() == vulkan::Sharing::device)
+    throw ApiError(VOY_ERROR_UNSUPPORTED,
+                   "VoyEyeDepthLimit.depth: found host memory for an image that is drawn where it "
+                   "is, expected NULL and voyRecordVulkanDepthLimit");
   const size_t pitch =
       checked_pitch({"VoyEyeDepthLimit.depth", limit->depth, limit->depthRowPitch, 4u}, image.width,
                     image.height);

@@ -82,7 +82,7 @@ std::shared_ptr<DeviceObject> make_device(const VoyDeviceDesc& desc,
   const uint8_t* uuid = checked_uuid(desc, physical ? &*physical : nullptr,
                                      wanted ? wanted->sharing : vulkan::Sharing::automatic);
   BackendChoice choice = choose_backend(desc.backend, uuid);
-  const auto object = std::make_shared<DeviceObject>(desc, choice.kind, std::move(choice.backend));
+  auto object = std::make_shared<DeviceObject>(desc, choice.kind, std::move(choice.backend));
   if (wanted) {
     ExternalSupport support = object->backend->external_support();
     support.images &= object->backend->device_uuid() == physical->uuid();

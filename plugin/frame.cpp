@@ -76,6 +76,13 @@ vulkan::FrameSync checked_sync(const TargetObject& target, const VoyVulkanFrame*
   return {frame->waitValue, frame->signalValue};
 }
 
+// Rings that are gone make room for others.
+void keep_ring(std::vector<std::weak_ptr<vulkan::Ring>>& rings,
+               const std::shared_ptr<vulkan::Ring>& ring) {
+  std::erase_if(rings, [&](const auto& kept) { return kept.expired() || kept.lock() == ring; });
+  rings.push_back(ring);
+}
+
 struct RingPlace {
   uint32_t image, layer;
 };
@@ -120,8 +127,9 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
     if (target->ring == nullptr)
       object->view->render(input, target->image);
     else
-      render_into(*target->ring, *object->view, input, {vulkan->imageIndex, eye.layer}, sync,
-                  limit != nullptr);
+      keep_ring(object->rings, target->ring),
+          render_into(*target->ring, *object->view, input, {vulkan->imageIndex, eye.layer}, sync,
+                      limit != nullptr);
     return VOY_SUCCESS;
   });
 }

@@ -73,8 +73,18 @@ struct ViewObject final : Child {
         scenes(std::move(drawn)) {}
 
   const uint32_t instances;
+  ~ViewObject() override { finish_frames(); }
+  // A view waits for its frames under way, which may wait for the host: so rings first see
+  // to it that they end.
+  void finish_frames() noexcept {
+    for (const auto& used : rings)
+      if (const auto ring = used.lock()) ring->finish();
+    rings.clear();
+  }
+
   uint32_t max_width = 0, max_height = 0;
-  std::mutex busy;  // guards what follows
+  std::mutex busy;                                 // guards what follows
+  std::vector<std::weak_ptr<vulkan::Ring>> rings;  // that it has drawn into
   double tau = 0;
   // One an instance. None, and no view, once one of them was destroyed. The view reads the
   // scenes' memory, so is declared after them.

@@ -111,10 +111,9 @@ std::vector<int> descriptors_of(const vulkan::RingDesc& desc) {
 
 }  // namespace
 
-std::shared_ptr<TargetObject> voyager::create_vulkan_target(std::shared_ptr<DeviceObject> owner,
-                                                            const VoyTargetDesc& desc,
-                                                            const VoyVulkanTargetDesc* images,
-                                                            std::vector<int>& passed) {
+std::shared_ptr<TargetObject> voyager::create_vulkan_target(
+    const std::shared_ptr<DeviceObject>& owner, const VoyTargetDesc& desc,
+    const VoyVulkanTargetDesc* images, std::vector<int>& passed) {
   if (images == nullptr)
     refuse("desc.next: found no VoyVulkanTargetDesc, expected one with kind VULKAN");
   if (owner->vulkan == nullptr)
@@ -128,7 +127,7 @@ std::shared_ptr<TargetObject> voyager::create_vulkan_target(std::shared_ptr<Devi
   image.width = wanted.width;
   image.height = wanted.height;
   const Backend& backend = *owner->backend;
-  const auto object = std::make_shared<TargetObject>(owner, image);
+  auto object = std::make_shared<TargetObject>(owner, image);
   object->ring = std::make_shared<vulkan::Ring>(
       owner->vulkan, wanted,
       [&](ExternalRingDesc shared) { return backend.import_ring(std::move(shared)); },

@@ -9,7 +9,7 @@ namespace voyager {
 // A target whose images are a Vulkan host's. desc: of kind VULKAN; checked here. It works with
 // copies of the descriptors that the host passed: these are to be closed once the call has
 // succeeded, and with it become the library's.
-std::shared_ptr<TargetObject> create_vulkan_target(std::shared_ptr<DeviceObject> owner,
+std::shared_ptr<TargetObject> create_vulkan_target(const std::shared_ptr<DeviceObject>& owner,
                                                    const VoyTargetDesc& desc,
                                                    const VoyVulkanTargetDesc* images,
                                                    std::vector<int>& passed);

@@ -61,6 +61,10 @@ constexpr VkPipelineColorBlendAttachmentState over(bool writes) {
 Composite::Composite(std::shared_ptr<const Device> device, const CompositeDesc& desc)
     : device_(std::move(device)), has_depth_(desc.depth != VK_FORMAT_UNDEFINED) {
   const DeviceFunctions& vk = device_->functions();
+  if (desc.render_pass == VK_NULL_HANDLE && !device_->has_dynamic_rendering())
+    throw Error(ErrorCode::unsupported,
+                "desc.renderPass: found VK_NULL_HANDLE, expected a render pass: neither "
+                "VK_KHR_dynamic_rendering nor Vulkan 1.3 is there");
   const Owned<VkDescriptorSetLayout> set = make_ring_layout(*device_);
   const VkDescriptorSetLayout sets[] = {set.get()};
   const VkPushConstantRange push{kFragment, 0, sizeof(Push)};

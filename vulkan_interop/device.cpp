@@ -23,6 +23,7 @@ Device::Device(const DeviceDesc& desc, const ExternalSupport& backend)
       device_(desc.device),
       vk_(load_device_functions(physical_.functions().GetDeviceProcAddr, desc.device)),
       extensions_(desc.extensions),
+      version_(desc.version),
       timelines_(desc.timelines),
       imports_host_memory_(enabled(VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME) &&
                            vk_.GetMemoryHostPointerPropertiesEXT != nullptr &&

@@ -33,6 +33,11 @@ class Device {
   const PhysicalDevice& physical() const { return physical_; }
   Sharing sharing() const { return sharing_; }
   Sync sync() const { return sync_; }
+  // A pipeline without a render pass can be made.
+  bool has_dynamic_rendering() const {
+    return enabled(VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME) ||
+           (version_ >= VK_API_VERSION_1_3 && physical_.version() >= VK_API_VERSION_1_3);
+  }
   bool imports_host_memory() const { return imports_host_memory_; }
   // What keeps it from sharing images, or from timelines; "" if nothing.
   const std::string& why() const { return why_; }
@@ -49,6 +54,7 @@ class Device {
   VkDevice device_;
   DeviceFunctions vk_;
   std::vector<std::string> extensions_;
+  uint32_t version_;  // of the instance
   bool timelines_;
   bool imports_host_memory_;
   Sharing sharing_ = Sharing::host;

@@ -9,7 +9,7 @@ namespace voyager::vulkan {
 #define VOYAGER_VULKAN_INSTANCE_FUNCTIONS(X) \
   X(EnumerateDeviceExtensionProperties) X(GetPhysicalDeviceProperties2) \
   X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceMemoryProperties) \
-  X(GetPhysicalDeviceExternalSemaphoreProperties) X(GetPhysicalDeviceImageFormatProperties2) \
+  X(GetPhysicalDeviceExternalSemaphoreProperties) \
   X(GetDeviceProcAddr)
 
 #define VOYAGER_VULKAN_DEVICE_FUNCTIONS(X) \

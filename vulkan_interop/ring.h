@@ -74,7 +74,8 @@ class Ring {
   // After a frame that was drawn, or is under way.
   void end_frame(const FrameSync& sync);
   // The backend's frames are done, or will be without the host.
-  void finish() noexcept;
+  // False where they do not end within a few times the patience: a lost device, say.
+  bool finish() noexcept;
 
   void record_release(uint32_t index, const Use& use);
   void record_acquire(uint32_t index, const Use& use);

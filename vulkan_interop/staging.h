@@ -22,7 +22,6 @@ class Staging {
     return at(image, layer) + color_bytes_ + depth_bytes_;
   }
   uint8_t* mapped() const { return static_cast<uint8_t*>(buffer_.mapped); }
-  bool imported() const { return block_.size != 0; }
 
  private:
   // Memory of the host's allocator.

@@ -168,7 +168,7 @@ class Backend {
   virtual std::shared_ptr<void> enter() const { return nullptr; }
   virtual ExternalSupport external_support() const { return {}; }
   // Only where external_support() has images. Memory and semaphores are the result's.
-  virtual std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc) const { return nullptr; }
+  virtual std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc&&) const { return nullptr; }
   // scenes: one an instance, from one to kMaxInstances; a scene may be several. Throws
   // Error(unsupported) for a choice that the backend lacks.
   virtual std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,

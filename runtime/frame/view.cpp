@@ -91,12 +91,26 @@ void View::draw(const FrameInput& frame, const Image& image, bool follows) {
 void View::submit(const FrameInput& frame, const Image& image, bool follows) {
   while (finish_one(false)) continue;
   const bool counted = follows && pipeline_->counts_changes();
-  UnderWay now{known_stats(frame), !counted};
-  pipeline_->submit(frame, image, frames_ == 0 || !counted);
-  const bool read = !counted && read_changes(false, now.stats);
+  under_way_.push_back({known_stats(frame), !counted});
+  UnderWay& now = under_way_.back();
+  try {
+    pipeline_->submit(frame, image, frames_ == 0 || !counted);
+  } catch (...) {
+    under_way_.pop_back();
+    throw;
+  }
   now.stats.frame_index = frames_++;
-  keep_cuts(read);
-  under_way_.push_back(now);
+  keep_cuts(!counted && try_read_changes(now.stats));
+}
+
+// The frame is on its way, so what cannot be read fails no call.
+bool View::try_read_changes(FrameStats& stats) {
+  try {
+    return read_changes(false, stats);
+  } catch (const std::exception&) {
+    stats.entered = stats.left = 0;
+    return false;
+  }
 }
 
 bool View::finish_one(bool wait) {

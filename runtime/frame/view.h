@@ -56,6 +56,7 @@ class View {
   bool finish_one(bool wait);
   // Whether the frame's cuts are now in cuts_.
   bool read_changes(bool follows, FrameStats& stats);
+  bool try_read_changes(FrameStats& stats);
   void keep_cuts(bool read);
 
   Scenes scenes_;

@@ -23,7 +23,8 @@ struct MockDevice {
   // That it has, and that the host enabled.
   std::vector<std::string> extensions = {
       VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME, VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME,
-      VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME};
+      VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME,
+      VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME};
   bool timelines = true, exports_timelines = true, exports_binaries = true;
   uint64_t host_pointer_alignment = 4096;
   // Of host memory: what vkGetMemoryHostPointerPropertiesEXT says, and vkAllocateMemory.

@@ -77,9 +77,4 @@ inline void get_external_semaphores(VkPhysicalDevice,
     out->externalSemaphoreFeatures = VK_EXTERNAL_SEMAPHORE_FEATURE_EXPORTABLE_BIT;
 }
 
-inline VkResult get_image_format(VkPhysicalDevice, const VkPhysicalDeviceImageFormatInfo2*,
-                                 VkImageFormatProperties2*) {
-  return VulkanMock::current->next();
-}
-
 }  // namespace voyager::test::mock

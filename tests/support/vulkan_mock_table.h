@@ -40,7 +40,6 @@ inline const Table& table() {
       VULKAN_MOCK_ENTRY(GetPhysicalDeviceFeatures2, get_features)
       VULKAN_MOCK_ENTRY(GetPhysicalDeviceMemoryProperties, get_memory)
       VULKAN_MOCK_ENTRY(GetPhysicalDeviceExternalSemaphoreProperties, get_external_semaphores)
-      VULKAN_MOCK_ENTRY(GetPhysicalDeviceImageFormatProperties2, get_image_format)
       VULKAN_MOCK_ENTRY(GetDeviceProcAddr, get_device)
       VULKAN_MOCK_PAIR(Image)
       VULKAN_MOCK_PAIR(ImageView)

@@ -273,5 +273,14 @@ TEST(VulkanFailures, OfAComposite) {
   }
 }
 
+TEST(VulkanFailures, ACompositeWithoutARenderPassNeedsDynamicRendering) {
+  VulkanMock mock;
+  mock.device.remove(VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME);
+  const auto device = make_device(mock, kModes[0]);
+  vulkan::CompositeDesc desc;
+  desc.color = VK_FORMAT_R8G8B8A8_SRGB;
+  EXPECT_THROW(vulkan::Composite(device, desc), Error);
+}
+
 }  // namespace
 }  // namespace voyager::test

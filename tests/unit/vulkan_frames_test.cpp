@@ -128,7 +128,7 @@ TEST(VulkanFrames, SignalValuesThatDoNotGrowAreRefusedBeforeAnythingIsWaitedFor)
 TEST(VulkanFrames, ValuesThatAModeDoesNotHaveAreRefused) {
   {
     Rig rig(Sharing::device, Sync::binary);
-    for (const FrameSync& sync : {FrameSync{2, 1}, FrameSync{0, 0}, FrameSync{1, 2}})
+    for (const FrameSync& sync : {FrameSync{2, 1}, FrameSync{2, 0}, FrameSync{1, 2}})
       rig.expect_refused(sync);
     rig.ring->begin_frame(0, 0, {1, 1});
     rig.ring->begin_frame(0, 0, {0, 1});
@@ -225,6 +225,17 @@ TEST(VulkanFrames, AReleaseThatTheHostLeftIsSignalledAtTheEndAfterAWhile) {
   EXPECT_EQ(rig.mock.signals[0].semaphore, rig.released);
   EXPECT_EQ(rig.mock.signals[0].value, 3u);
   EXPECT_EQ(rig.mock.live(), 0u) << rig.mock.live_kinds();
+}
+
+// A lost device, say: nobody hangs.
+TEST(VulkanFrames, FramesThatNeverEndAreGivenUp) {
+  for (const Sync sync : {Sync::timeline, Sync::binary, Sync::host}) {
+    Rig rig(Sharing::device, sync);
+    rig.backend.idle = [] { return false; };
+    EXPECT_FALSE(rig.ring->finish());
+    rig.backend.idle = [] { return true; };
+    EXPECT_TRUE(rig.ring->finish());
+  }
 }
 
 // Slow frames are no reason to signal what the host has signalled: a timeline must grow.

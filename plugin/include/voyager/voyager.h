@@ -476,7 +476,7 @@ typedef struct VoyFrameEye {
   VoyPose pose;          /* in the world */
   VoyFrustum frustum;
   VoyTarget target;  /* of the view's device; its size is the image's */
-  uint32_t layer;    /* of the target's array; 0 in this version */
+  uint32_t layer;    /* of the target's array (voyager_vulkan.h); 0 in host memory */
   uint32_t reserved; /* 0 */
 } VoyFrameEye;
 /* At the origin, looking along -z; frustum and target are the host's to set. */

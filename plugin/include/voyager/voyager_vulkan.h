@@ -111,11 +111,12 @@ typedef struct VoyVulkanDeviceDesc {
 typedef struct VoyVulkanCapabilities {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES */
   void* next;
-  VoyVulkanSharing sharing;  /* DEVICE or HOST */
-  VoyVulkanSync sync;        /* TIMELINE, BINARY or HOST */
-  VkBool32 hostMemoryImport; /* HOST sharing: frames are drawn into memory that Vulkan imports
-                                (VK_EXT_external_memory_host), not into memory that it maps */
-  char why[192];             /* what keeps the device from DEVICE and TIMELINE; "" if nothing */
+  VoyVulkanSharing sharing; /* DEVICE or HOST */
+  VoyVulkanSync sync;       /* TIMELINE, BINARY or HOST */
+  VkBool32
+      hostMemoryImport; /* HOST sharing: frames are drawn into memory that Vulkan imports, where it
+                           takes it (VK_EXT_external_memory_host), not into memory that it maps */
+  char why[192];        /* what keeps the device from DEVICE and TIMELINE; "" if nothing */
 } VoyVulkanCapabilities;
 #define VOY_VULKAN_CAPABILITIES_INIT                                                             \
   {                                                                                              \
@@ -218,12 +219,13 @@ VOY_API VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVul
  * TIMELINE: drawing into the image begins once `released` has reached waitValue (0: at
  * once), and `rendered` becomes signalValue, which must be greater than in the target's
  * frame before. BINARY: waitValue 1 waits for the image's `released`, 0 does not;
- * signalValue is 1. HOST: both are 0.
- * The host has submitted the signal of what is waited for before the call (with HOST sharing
+ * signalValue 1 signals its `rendered`, 0 does not: of several layers the last one does. HOST: both
+ * are 0. The host has submitted the signal of what is waited for before the call (with HOST sharing
  * it is the call that waits, VOY_ERROR_TIMEOUT after 10 s). Where voyRenderFrame fails, nothing
  * is signalled and no wait is consumed, but for DEVICE_LOST.
  * With DEVICE sharing the call returns while the frame is under way, after 0.1 ms or so of
- * the host's time; the first of a view, and one after a failure, waits once for the device.
+ * the host's time; the first of a view, one after a failure, and one that needs larger
+ * buffers wait once for the device.
  * Such a frame cannot be drawn again: where the view turned to far more splats than before, it
  * may lack some, and VoyFrameStats.pairsDropped says so; the next has the room.
  * A target has one size: a resize is a new target. */
@@ -325,8 +327,9 @@ typedef struct VoyComposite_T* VoyComposite;
 
 /* A pipeline that draws a target's image over the host's. Into the host's render pass, or,
  * where renderPass is NULL, into dynamic rendering (VK_KHR_dynamic_rendering or Vulkan 1.3)
- * with these formats. One sample. Into an _SRGB format the colours are decoded first, so
- * that code values come out where the image is opaque; there the blend is linear. */
+ * with these formats and no stencil attachment. One sample. Into an _SRGB format the colours are
+ * decoded first, so that code values come out where the image is opaque; there the blend is linear.
+ */
 typedef struct VoyVulkanCompositeDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC */
   const void* next;
