@@ -203,8 +203,8 @@ void SplatPipeline::submit(const FrameInput& frame, const Image& image, bool che
     DepthLimits limits;
     if (image.external.limited) limits = depth_limits(image.external, frame.limits.encoding);
     launch_image(raster_target(image.external, frame.background), limits, report);
-    copy(report);
     signal_rendered(image.external, stream_.get());
+    copy(report);  // the host that waits for the image does not wait for this
   } catch (...) {
     under_way_.pop_back();
     throw;
