@@ -22,7 +22,7 @@ DepthForm form_of(VoyDepthEncoding encoding) {
 
 }  // namespace
 
-DepthEncoding checked_encoding(VoyDepthEncoding encoding, double near_z, double far_z,
+DepthEncoding checked_encoding(const VoyDepthEncoding& encoding, double near_z, double far_z,
                                const std::string& name) {
   check_enum(encoding, VOY_DEPTH_ENCODING_REVERSED, (name + ".encoding").c_str());
   if (encoding == VOY_DEPTH_ENCODING_METRES) return {};

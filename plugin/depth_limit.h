@@ -8,7 +8,7 @@
 namespace voyager {
 
 // name: of the structure that has them, in messages. Throws ApiError, as the next does.
-DepthEncoding checked_encoding(VoyDepthEncoding encoding, double near_z, double far_z,
+DepthEncoding checked_encoding(const VoyDepthEncoding& encoding, double near_z, double far_z,
                                const std::string& name);
 
 // What the host says of its own geometry's depth (NULL: nothing), checked. ring: of the

@@ -44,9 +44,9 @@ vulkan::CompositeDraw checked(const VoyVulkanCompositeDraw& draw, const vulkan::
   out.area = draw.area;
   out.depth_use = depth_use_of(draw.depthUse);
   if (out.depth_use == vulkan::DepthUse::none) return out;
-  if (draw.encoding == VOY_DEPTH_ENCODING_METRES)
-    refuse("draw.encoding: found METRES, expected STANDARD or REVERSED");
   out.encoding = checked_encoding(draw.encoding, draw.nearZ, draw.farZ, "draw");
+  if (out.encoding.form == DepthForm::metres)
+    refuse("draw.encoding: found METRES, expected STANDARD or REVERSED");
   return out;
 }
 

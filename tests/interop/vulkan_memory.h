@@ -30,7 +30,7 @@ struct MappedBuffer {
   template <class T>
   std::vector<T> read(size_t count) const {
     std::vector<T> values(count);
-    std::memcpy(values.data(), data, count * sizeof(T));
+    if (count != 0) std::memcpy(values.data(), data, count * sizeof(T));
     return values;
   }
 
