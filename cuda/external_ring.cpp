@@ -128,6 +128,10 @@ class Ring final : public ExternalRing {
   ~Ring() override { cudaSetDevice(device_->ordinal()); }
 
   bool idle() const override;
+  void wait() const override {
+    device_->use_whole();
+    last_frame_.wait();
+  }
 
   const ExternalRingDesc& desc() const { return desc_; }
   Slot& slot(uint32_t index) { return slots_[index]; }
@@ -256,13 +260,17 @@ void signal_rendered(const ExternalTarget& target, cudaStream_t stream) {
   const cudaExternalSemaphore_t semaphore = ring.semaphores(target.slot).rendered.get();
   cudaExternalSemaphoreSignalParams params{};
   params.params.fence.value = target.signal_value;
-  ring.on_whole(stream, [&](cudaStream_t on) {
-    if (target.signals)
+  if (target.signals)
+    ring.on_whole(stream, [&](cudaStream_t on) {
       check(cudaSignalExternalSemaphoresAsync(&semaphore, &params, 1, on),
             "signalling a semaphore of another API");
-    ring.last_frame().record(on);
-  });
+    });
   ring.slot(target.slot).waited = false;
+}
+
+void mark_end(const ExternalTarget& target, cudaStream_t stream) {
+  const Ring& ring = ring_of(target);
+  ring.on_whole(stream, [&](cudaStream_t on) { ring.last_frame().record(on); });
 }
 
 }  // namespace voyager::cuda

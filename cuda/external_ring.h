@@ -18,5 +18,7 @@ DepthLimits depth_limits(const ExternalTarget& target, const DepthEncoding& enco
 // On the stream: until the image is there to be written; that it was written.
 void wait_released(const ExternalTarget& target, cudaStream_t stream);
 void signal_rendered(const ExternalTarget& target, cudaStream_t stream);
+// The frame's last work is on the stream: its end is what ExternalRing waits for.
+void mark_end(const ExternalTarget& target, cudaStream_t stream);
 
 }  // namespace voyager::cuda

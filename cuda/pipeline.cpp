@@ -205,6 +205,7 @@ void SplatPipeline::submit(const FrameInput& frame, const Image& image, bool che
     launch_image(raster_target(image.external, frame.background), limits, report);
     signal_rendered(image.external, stream_.get());
     copy(report);  // the host that waits for the image does not wait for this
+    mark_end(image.external, stream_.get());
   } catch (...) {
     under_way_.pop_back();
     throw;

@@ -124,12 +124,13 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
     const auto view_lock = claim(*object);
     const auto target_lock = claim_object(*target, "frame.eyes[0].target");
     input.tau = object->tau;
-    if (target->ring == nullptr)
+    if (target->ring == nullptr) {
       object->view->render(input, target->image);
-    else
-      keep_ring(object->rings, target->ring),
-          render_into(*target->ring, *object->view, input, {vulkan->imageIndex, eye.layer}, sync,
-                      limit != nullptr);
+      return VOY_SUCCESS;
+    }
+    keep_ring(object->rings, target->ring);
+    render_into(*target->ring, *object->view, input, {vulkan->imageIndex, eye.layer}, sync,
+                limit != nullptr);
     return VOY_SUCCESS;
   });
 }

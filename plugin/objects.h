@@ -72,7 +72,6 @@ struct ViewObject final : Child {
         instances(static_cast<uint32_t>(drawn.size())),
         scenes(std::move(drawn)) {}
 
-  const uint32_t instances;
   ~ViewObject() override { finish_frames(); }
   // A view waits for its frames under way, which may wait for the host: so rings first see
   // to it that they end.
@@ -82,6 +81,7 @@ struct ViewObject final : Child {
     rings.clear();
   }
 
+  const uint32_t instances;
   uint32_t max_width = 0, max_height = 0;
   std::mutex busy;                                 // guards what follows
   std::vector<std::weak_ptr<vulkan::Ring>> rings;  // that it has drawn into

@@ -233,7 +233,7 @@ Image Ring::begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync) {
     external.signals = sync.signal_value != 0;
     external.wait_value = sync.wait_value;
     external.signal_value = sync.signal_value;
-    last_wait_ = std::max(last_wait_, sync.wait_value);
+    last_wait_ = std::max(last_wait_.load(), sync.wait_value);
     return image;
   }
   if (desc_.format != ColorFormat::none) {
@@ -255,6 +255,8 @@ void Ring::set_limits(uint32_t index, uint32_t layer, DepthLimits& limits) const
 }
 
 void Ring::end_frame(const FrameSync& sync) {
+  // Without semaphores the host takes the image as soon as the call returns.
+  if (shared() && device_->sync() == Sync::host) external_->wait();
   if (!shared() && device_->sync() == Sync::timeline) {
     const VkSemaphoreSignalInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr,
                                      slots_[0].image.rendered, sync.signal_value};
@@ -269,9 +271,10 @@ bool Ring::release_in_the_hosts_stead() const noexcept {
   uint64_t reached = 0;
   if (vk.GetSemaphoreCounterValue(device_->handle(), released, &reached) != VK_SUCCESS)
     return false;
-  if (reached >= last_wait_) return true;
+  const uint64_t wanted = last_wait_;
+  if (reached >= wanted) return true;
   const VkSemaphoreSignalInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr, released,
-                                   last_wait_};
+                                   wanted};
   return vk.SignalSemaphore(device_->handle(), &info) == VK_SUCCESS;
 }
 

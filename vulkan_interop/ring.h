@@ -1,6 +1,7 @@
 #pragma once
 // A target's images: shared with the backend, or filled from staging memory; the semaphores
 // around each frame; and the commands that the host has recorded.
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <memory_resource>
@@ -118,7 +119,8 @@ class Ring {
   RingDescriptors descriptors_;
   std::optional<Staging> staging_;
   std::unique_ptr<ExternalRing> external_;
-  uint64_t last_signal_ = 0, last_wait_ = 0;
+  uint64_t last_signal_ = 0;
+  std::atomic<uint64_t> last_wait_{0};  // finish() may run beside a frame
 };
 
 }  // namespace voyager::vulkan

@@ -49,6 +49,8 @@ class ExternalRing {
   virtual ~ExternalRing() = default;
   // No frame into it is under way.
   virtual bool idle() const = 0;
+  // Until it is. Throws Error(device_lost).
+  virtual void wait() const = 0;
 };
 
 // Where a frame goes, and what it waits for and signals, where the ring has semaphores.

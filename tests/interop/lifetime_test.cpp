@@ -120,6 +120,27 @@ TEST_F(Interop, StatisticsFollowFramesUnderWay) {
   });
 }
 
+// No semaphore says so: its statistics do.
+TEST_F(Interop, WithoutSemaphoresAFrameHasEndedWhenItsCallReturns) {
+  for (const VoyVulkanSharing sharing : kSharings) {
+    if (!create(sharing, VOY_VULKAN_SYNC_HOST)) continue;
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    const VoyTarget target =
+        make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images, 512, 512));
+    Line line = line_of(target);
+    for (uint32_t frame = 0; frame < 20; ++frame) {
+      VkCommandBuffer commands = host->begin();
+      release(line, target, frame % 2, commands);
+      host->finish(commands);
+      ASSERT_EQ(render(line, frame % 2, eye(target)), VOY_SUCCESS) << voyGetLastErrorMessage();
+      VoyFrameStats stats = {};
+      stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+      ASSERT_EQ(voyGetFrameStats(view, &stats), VOY_SUCCESS) << voyGetLastErrorMessage();
+      EXPECT_EQ(stats.frameIndex, frame);
+    }
+  }
+}
+
 // Images of the host's own, by descriptor.
 struct Imported {
   Imported(const VulkanHost& host, uint32_t width, uint32_t height, bool exported) {

@@ -90,6 +90,7 @@ class Backend final {
   ExternalRingDesc got;                  // without its descriptors
   std::vector<FileIdentity> identities;  // of those
   std::function<bool()> idle = [] { return true; };
+  int waits = 0;  // for frames under way
   int rings = 0;  // that live
 
  private:
@@ -101,6 +102,7 @@ class Backend final {
       --backend.rings;
     }
     bool idle() const override { return backend.idle(); }
+    void wait() const override { ++backend.waits; }
     Backend& backend;
     std::vector<FileDescriptor> descriptors;
   };

@@ -227,6 +227,16 @@ TEST(VulkanFrames, AReleaseThatTheHostLeftIsSignalledAtTheEndAfterAWhile) {
   EXPECT_EQ(rig.mock.live(), 0u) << rig.mock.live_kinds();
 }
 
+TEST(VulkanFrames, WithoutSemaphoresTheCallWaitsForItsFrame) {
+  for (const Sync sync : {Sync::timeline, Sync::binary, Sync::host}) {
+    Rig rig(Sharing::device, sync);
+    const uint64_t signal = sync == Sync::host ? 0 : 1;
+    rig.ring->begin_frame(0, 0, {0, signal});
+    rig.ring->end_frame({0, signal});
+    EXPECT_EQ(rig.backend.waits, sync == Sync::host ? 1 : 0);
+  }
+}
+
 // A lost device, say: nobody hangs.
 TEST(VulkanFrames, FramesThatNeverEndAreGivenUp) {
   for (const Sync sync : {Sync::timeline, Sync::binary, Sync::host}) {
