@@ -73,10 +73,10 @@ void render_frames(benchmark::State& state, const RenderChoices& choices) {
   const std::vector<Camera> cameras = bench_cameras();
   Renderer renderer(setting("VOYAGER_BENCH_SCENE", "demo/city.voy"), choices, cameras[0].width,
                     cameras[0].height);
-  renderer.render(cameras[0]);  // warm
+  renderer.render({&cameras[0], 1});  // warm
   Totals totals;
   for (auto _ : state) {
-    renderer.render(cameras[totals.frame_ms.size() % cameras.size()]);
+    renderer.render({&cameras[totals.frame_ms.size() % cameras.size()], 1});
     totals.add(renderer.stats());
     state.SetIterationTime(totals.frame_ms.back() / 1000);
   }

@@ -176,7 +176,7 @@ void run(int argc, char** argv) {
   work.count = argc > 5 ? static_cast<size_t>(std::atoi(argv[5])) : 400;
   for (const tools::Camera& from : tools::read_cameras(argv[2])) {
     FrameInput frame;
-    Camera& camera = frame.camera;
+    Camera& camera = frame.eyes[0].camera;
     camera.width = work.width;
     camera.height = work.height;
     const tools::Camera sized = from.resized(work.width, work.height);

@@ -14,15 +14,15 @@ class BaselinePipeline final : public Pipeline {
  public:
   BaselinePipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances)
       : device_(std::move(device)),
-        instances_(std::move(instances)),
+        instances_(std::move(instances), 1),
         places_(instances_.all().size()) {}
 
   // What it frees belongs to the device's context.
   ~BaselinePipeline() override { device_->use_quietly(); }
 
-  void draw(const FrameInput& frame, const Image& image, FrameStats& stats) override;
-  void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {
-    image_.resolve(image, stats);
+  void draw(const FrameInput& frame, FrameStats& stats) override;
+  void resolve(const FrameInput& frame, FrameStats& stats) override {
+    image_.resolve(frame.eyes[0].image, stats);
   }
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
     device_->use();
@@ -123,19 +123,21 @@ void BaselinePipeline::launch_projections(const FrameInput& frame, BaselineFrame
     work.places = places_[i];
     work.gaussians = instance.gaussians->view();
     work.draws = instance.draws->view();
-    work.params = project_params(*instance.scene, instance_camera(frame, i), Exponential::exact);
+    work.params = project_params(*instance.scene, instance_camera(frame, frame.eyes[0], i),
+                                 Exponential::exact);
     launch_baseline_project(work);
     work.first += work.places;
   }
 }
 
-void BaselinePipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
-  if (frame.limits.values != nullptr)
+void BaselinePipeline::draw(const FrameInput& frame, FrameStats& stats) {
+  const FrameEye& eye = frame.eyes[0];
+  if (eye.limits.values != nullptr)
     throw Error(ErrorCode::unsupported, "depth limits: found some, 3dgs splatting has none");
   device_->use();
-  const TileGrid grid = tile_grid(image.width, image.height);
+  const TileGrid grid = tile_grid(eye.camera.width, eye.camera.height);
   fit(tiles_, static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));
-  const RasterTarget target = image_.target(frame, image);
+  const RasterTarget target = image_.target(eye, frame.background);
   const cudaStream_t stream = stream_.get();
   timer_.begin();
   instances_.update(frame, stream);
@@ -180,6 +182,9 @@ void BaselinePipeline::collect(unsigned long long pairs, FrameStats& stats) cons
 std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device> device,
                                                    std::vector<DeviceInstance> instances,
                                                    const PipelineDesc& desc) {
+  if (desc.eyes != 1)
+    throw Error(ErrorCode::unsupported, "eyes: found " + std::to_string(desc.eyes) +
+                                            ", 3dgs splatting draws one in a view");
   if (desc.exponential != Exponential::exact)
     throw Error(ErrorCode::unsupported,
                 "exponential: found one other than exact, 3dgs splatting has expf only");

@@ -30,7 +30,7 @@ __device__ Share bin_share(const SplatView& splats) {
   const uint32_t each = (count + parts - 1) / parts, first = min(part * each, count);
   const uint32_t tile = blockIdx.y * kBandTiles;
   return {splats.strips + region * room + first, min(each, count - first), tile,
-          min(kBandTiles, splats.tile_count() - tile)};
+          min(kBandTiles, splats.frame.count - tile)};
 }
 
 // The part of a strip that lies in the band, from the band's first tile on.
@@ -44,7 +44,7 @@ __device__ TileRange bin_band(const TileStrip& strip, const Share& share) {
 
 // Where this block's pairs of a tile begin in its list, from the list's first.
 __device__ uint32_t* bin_offsets(const SplatView& splats, const Share& share) {
-  return splats.tile_offsets + size_t{blockIdx.x} * splats.tile_count() + share.first_tile;
+  return splats.tile_offsets + size_t{blockIdx.x} * splats.frame.count + share.first_tile;
 }
 
 __global__ void __launch_bounds__(kBinThreads, 2) bin_count(SplatView splats) {
@@ -92,7 +92,7 @@ __global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats) {
   __shared__ uint32_t counts[kChunk];
   __shared__ uint32_t firsts[kChunk + 1];
   __shared__ BinOrder order;
-  const uint32_t tiles = splats.tile_count();
+  const uint32_t tiles = splats.frame.count;
   const auto room = static_cast<unsigned long long>(splats.pairs);
   unsigned long long total = 0;
   order.clear();
@@ -176,7 +176,7 @@ unsigned bin_blocks(unsigned multiprocessors) {
 
 void launch_bin(const SplatFrame& f) {
   const dim3 blocks(bin_blocks(f.multiprocessors),
-                    (f.splats.tile_count() + kBandTiles - 1) / kBandTiles);
+                    (f.splats.frame.count + kBandTiles - 1) / kBandTiles);
   bin_count<<<blocks, kBinThreads, 0, f.stream>>>(f.splats);
   check(cudaGetLastError(), "bin_count");
   bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats);

@@ -70,7 +70,7 @@ class CudaBackend final : public Backend {
         scene, [&](const Scene& s) { return std::make_shared<DeviceScene>(s, workers); });
     const bool draws_cut = !scene->flat() && desc.lod == Lod::cut;
     auto search = draws_cut ? search_for(scene, desc.search, true, workers) : nullptr;
-    return {scene, std::move(gaussians), create_draws(scene, desc.lod, std::move(search))};
+    return {scene, std::move(gaussians), create_draws(*scene, desc.lod, std::move(search))};
   }
 
   std::unique_ptr<CutSearch> search_for(const std::shared_ptr<const Scene>& scene, Search kind,

@@ -11,11 +11,9 @@ namespace {
 
 class CutDraws final : public Draws {
  public:
-  CutDraws(std::shared_ptr<const Scene> scene, std::unique_ptr<CutSearch> search)
-      : scene_(std::move(scene)), search_(std::move(search)) {}
+  explicit CutDraws(std::unique_ptr<CutSearch> search) : search_(std::move(search)) {}
 
-  void update(const Camera& camera, double tau, cudaStream_t stream) override {
-    const CutQuery query = cut_query(camera, tau, scene_->origin);
+  void update(const CutQuery& query, cudaStream_t stream) override {
     search_->find(query, stream);
     search_->weigh(query, stream);
   }
@@ -37,7 +35,6 @@ class CutDraws final : public Draws {
   }
 
  private:
-  std::shared_ptr<const Scene> scene_;
   std::unique_ptr<CutSearch> search_;
 };
 
@@ -64,7 +61,7 @@ class LeafDraws final : public Draws {
     ids_ = upload(std::span<const uint32_t>(order));
   }
 
-  void update(const Camera&, double, cudaStream_t) override {
+  void update(const CutQuery&, cudaStream_t) override {
     if (!damage_.empty()) throw Error(ErrorCode::damaged_chunk, damage_);
   }
   DrawView view() const override {
@@ -84,10 +81,10 @@ class LeafDraws final : public Draws {
 
 }  // namespace
 
-std::unique_ptr<Draws> create_draws(std::shared_ptr<const Scene> scene, Lod lod,
+std::unique_ptr<Draws> create_draws(const Scene& scene, Lod lod,
                                     std::unique_ptr<CutSearch> search) {
-  if (scene->flat() || lod == Lod::all_leaves) return std::make_unique<LeafDraws>(*scene);
-  return std::make_unique<CutDraws>(std::move(scene), std::move(search));
+  if (scene.flat() || lod == Lod::all_leaves) return std::make_unique<LeafDraws>(scene);
+  return std::make_unique<CutDraws>(std::move(search));
 }
 
 }  // namespace voyager::cuda

@@ -11,9 +11,9 @@ namespace voyager::cuda {
 class Draws {
  public:
   virtual ~Draws() = default;
-  // Launches the search and the weights, where there are any. camera: in the scene's
-  // coordinates. Throws Error(damaged_chunk) where the frame needs a node that is not there.
-  virtual void update(const Camera& camera, double tau, cudaStream_t stream) = 0;
+  // Launches the search and the weights, where there are any. Throws Error(damaged_chunk)
+  // where the frame needs a node that is not there.
+  virtual void update(const CutQuery& query, cudaStream_t stream) = 0;
   virtual DrawView view() const = 0;
   // What collect() needs of the last frame: report_bytes() in pinned memory, copied on the
   // stream.
@@ -27,7 +27,6 @@ class Draws {
 };
 
 // search: of a scene with a tree whose cut is drawn.
-std::unique_ptr<Draws> create_draws(std::shared_ptr<const Scene> scene, Lod lod,
-                                    std::unique_ptr<CutSearch> search);
+std::unique_ptr<Draws> create_draws(const Scene& scene, Lod lod, std::unique_ptr<CutSearch> search);
 
 }  // namespace voyager::cuda

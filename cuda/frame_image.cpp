@@ -4,11 +4,12 @@
 
 namespace voyager::cuda {
 
-RasterTarget FrameImage::target(const FrameInput& frame, const Image& image) {
+RasterTarget FrameImage::target(const FrameEye& eye, const Vec3f& background) {
+  const Image& image = eye.image;
   const size_t pixels = size_t{image.width} * image.height;
   const size_t bytes = pixels * pixel_bytes(image.format);
   if (color_.size() < bytes) color_ = {}, color_ = Buffer<unsigned char>(bytes);
-  const bool depth = frame.depth_wanted || image.depth != nullptr;
+  const bool depth = eye.depth_wanted || image.depth != nullptr;
   if (depth && depth_.size() < pixels) depth_ = {}, depth_ = Buffer<float>(pixels);
   RasterTarget target{};
   target.format = image.format;
@@ -16,7 +17,7 @@ RasterTarget FrameImage::target(const FrameInput& frame, const Image& image) {
   target.depth = depth ? depth_.data() : nullptr;
   target.width = image.width;
   target.height = image.height;
-  target.background = frame.background;
+  target.background = background;
   return target;
 }
 

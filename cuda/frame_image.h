@@ -1,5 +1,5 @@
 #pragma once
-// A frame's image on the device, and its way to the host.
+// An eye's image on the device, and its way to the host.
 #include "cuda/buffer.h"
 #include "cuda/splat_launch.h"
 #include "runtime/frame/backend.h"
@@ -9,7 +9,7 @@ namespace voyager::cuda {
 class FrameImage {
  public:
   // The target of a frame, of the image's size and format. May allocate.
-  RasterTarget target(const FrameInput& frame, const Image& image);
+  RasterTarget target(const FrameEye& eye, const Vec3f& background);
   // The last stage: into the image's memory, where it has any. The stream's work is done.
   void resolve(const Image& image, FrameStats& stats) const;
 

@@ -1,5 +1,5 @@
 #pragma once
-// A frame's depth limits on their way from the host.
+// An eye's depth limits on their way from the host.
 #include <cuda_runtime_api.h>
 
 #include "cuda/buffer.h"
@@ -9,10 +9,10 @@ namespace voyager::cuda {
 
 class FrameLimits {
  public:
-  // Makes room for the frame's, if it has any. May allocate.
-  void fit(const FrameInput& frame);
+  // Makes room for them, if there are any. May allocate.
+  void fit(const FrameEye& eye);
   // As kernels on the stream take them; there is room.
-  DepthLimits upload(const FrameInput& frame, cudaStream_t stream) const;
+  DepthLimits upload(const FrameEye& eye, cudaStream_t stream) const;
 
  private:
   Buffer<float> values_;  // as the host encodes them, tightly packed

@@ -28,9 +28,9 @@ class FrameReport {
   const unsigned char* instances() const { return memory_.data() + sizeof(SplatCounters); }
 
   StageTimer timer;
-  TileGrid grid{};
+  FrameTiles tiles{};
   SplatRoom room;
-  uint64_t target_bytes = 0;  // of the image
+  uint64_t target_bytes = 0;  // of the images
 
  private:
   static_assert(sizeof(SplatCounters) % alignof(std::max_align_t) == 0);

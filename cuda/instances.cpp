@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "runtime/base/error.h"
-#include "runtime/frame/instance.h"
+#include "runtime/frame/frame_search.h"
 
 namespace voyager::cuda {
 namespace {
@@ -17,17 +17,19 @@ size_t aligned(size_t bytes) {
 
 }  // namespace
 
-DeviceInstances::DeviceInstances(std::vector<DeviceInstance> all) : all_(std::move(all)) {
+DeviceInstances::DeviceInstances(std::vector<DeviceInstance> all, uint32_t eyes)
+    : all_(std::move(all)) {
   uint64_t room = 0;
   for (const DeviceInstance& instance : all_) room += instance.draws->view().list.room;
-  if (room > UINT32_MAX)
+  if (room * eyes > UINT32_MAX)
     throw Error(ErrorCode::unsupported, "instances: found lists of up to " + std::to_string(room) +
-                                            " Gaussians, expected fewer than 2^32");
+                                            " Gaussians for each of " + std::to_string(eyes) +
+                                            " eyes, expected fewer than 2^32 in all");
 }
 
 void DeviceInstances::update(const FrameInput& frame, cudaStream_t stream) {
   for (size_t i = 0; i < all_.size(); ++i)
-    all_[i].draws->update(instance_camera(frame, i), frame.tau, stream);
+    all_[i].draws->update(cut_query(frame, i, all_[i].scene->origin), stream);
 }
 
 bool DeviceInstances::siblings() const {

@@ -15,8 +15,9 @@ struct DeviceInstance {
 
 class DeviceInstances {
  public:
-  // Throws Error(unsupported) where their lists together could outgrow 32-bit slots.
-  explicit DeviceInstances(std::vector<DeviceInstance> all);
+  // Throws Error(unsupported) where their lists together, for each eye, could outgrow 32-bit
+  // slots.
+  DeviceInstances(std::vector<DeviceInstance> all, uint32_t eyes);
 
   // Each instance's draws, in its scene's coordinates. Throws as Draws does.
   void update(const FrameInput& frame, cudaStream_t stream);

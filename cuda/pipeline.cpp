@@ -1,6 +1,7 @@
 #include "cuda/pipeline.h"
 
 #include <algorithm>
+#include <array>
 #include <deque>
 #include <vector>
 
@@ -29,10 +30,12 @@ class SplatPipeline final : public Pipeline {
   SplatPipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances,
                 const PipelineDesc& desc)
       : device_(std::move(device)),
-        instances_(std::move(instances)),
+        instances_(std::move(instances), desc.eyes),
         desc_(desc),
         lut_(upload_lut(desc)),
-        splats_(bin_blocks(device_->multiprocessors())) {}
+        splats_(bin_blocks(device_->multiprocessors()), desc.eyes),
+        images_(desc.eyes),
+        limits_(desc.eyes) {}
 
   // What it frees belongs to the device's context, and to frames that may be under way.
   ~SplatPipeline() override {
@@ -40,11 +43,12 @@ class SplatPipeline final : public Pipeline {
     cudaStreamSynchronize(stream_.get());
   }
 
-  void draw(const FrameInput& frame, const Image& image, FrameStats& stats) override;
-  void resolve(const FrameInput&, const Image& image, FrameStats& stats) override {
-    image_.resolve(image, stats);
+  void draw(const FrameInput& frame, FrameStats& stats) override;
+  void resolve(const FrameInput& frame, FrameStats& stats) override {
+    for (size_t eye = 0; eye < images_.size(); ++eye)
+      images_[eye].resolve(frame.eyes[eye].image, stats);
   }
-  void submit(const FrameInput& frame, const Image& image, bool checked) override;
+  void submit(const FrameInput& frame, bool checked) override;
   bool finish(bool wait, FrameStats& stats) override;
   bool counts_changes() const override { return instances_.counts_changes(); }
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
@@ -56,13 +60,16 @@ class SplatPipeline final : public Pipeline {
  private:
   using Report = std::unique_ptr<FrameReport>;
 
-  Report begin_frame(const FrameInput& frame, const Image& image);
+  using Eyes = std::array<RasterEye, kMaxEyes>;
+
+  Report begin_frame(const FrameInput& frame);
   void launch_search(const FrameInput& frame, FrameReport& report);
-  SplatFrame work(const TileGrid& grid) const;
+  SplatFrame work(const FrameTiles& tiles) const;
   void launch_lists(const FrameInput& frame, FrameReport& report);
   void launch_checked_lists(const FrameInput& frame, FrameReport& report);
   void launch_projections(const FrameInput& frame, SplatFrame& work);
-  void launch_image(const RasterTarget& target, const DepthLimits& limits, FrameReport& report);
+  static Eyes external_eyes(const FrameInput& frame);
+  void launch_image(const Eyes& eyes, FrameReport& report);
   void copy(FrameReport& report) const {
     report.copy(splats_.counters(), instances_, stream_.get());
   }
@@ -75,8 +82,8 @@ class SplatPipeline final : public Pipeline {
   PipelineDesc desc_;
   Buffer<float> lut_;
   SplatState splats_;
-  FrameImage image_;
-  FrameLimits limits_;
+  std::vector<FrameImage> images_;  // of each eye, as limits
+  std::vector<FrameLimits> limits_;
   Stream stream_;
   std::vector<Report> free_;      // made as many as were under way at once
   std::deque<Report> under_way_;  // the oldest first
@@ -89,14 +96,17 @@ void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work
     const DeviceInstance& instance = instances_.all()[i];
     work.gaussians = instance.gaussians->view();
     work.draws = instance.draws->view();
-    work.params = project_params(*instance.scene, instance_camera(frame, i), desc_.exponential);
+    for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
+      work.params[eye] = project_params(
+          *instance.scene, instance_camera(frame, frame.eyes[eye], i), desc_.exponential);
     if (launch_project(work, desc_.alpha_filter)) ++work.instance;
   }
 }
 
-SplatFrame SplatPipeline::work(const TileGrid& grid) const {
+SplatFrame SplatPipeline::work(const FrameTiles& tiles) const {
   SplatFrame work{};
-  work.splats = splats_.view(grid);
+  work.eyes = desc_.eyes;
+  work.splats = splats_.view(tiles);
   work.multiprocessors = device_->multiprocessors();
   work.stream = stream_.get();
   return work;
@@ -105,8 +115,8 @@ SplatFrame SplatPipeline::work(const TileGrid& grid) const {
 // Up to the tiles' lists.
 void SplatPipeline::launch_lists(const FrameInput& frame, FrameReport& report) {
   report.room = splats_.room();
-  SplatFrame lists = work(report.grid);
-  splats_.begin_frame(report.grid, stream_.get());
+  SplatFrame lists = work(report.tiles);
+  splats_.begin_frame(report.tiles, stream_.get());
   launch_projections(frame, lists);
   report.timer.end(kProject);
   launch_bin(lists);
@@ -126,19 +136,19 @@ void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& r
   }
 }
 
-void SplatPipeline::launch_image(const RasterTarget& target, const DepthLimits& limits,
-                                 FrameReport& report) {
-  launch_rasterize(work(report.grid),
+void SplatPipeline::launch_image(const Eyes& eyes, FrameReport& report) {
+  launch_rasterize(work(report.tiles),
                    {desc_.exponential, desc_.alpha_filter, desc_.count_pixels,
-                    instances_.siblings(), lut_.data(), desc_.lut_size, limits},
-                   target);
+                    instances_.siblings(), lut_.data(), desc_.lut_size},
+                   eyes.data());
   report.timer.end(kRasterize);
 }
 
-SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, const Image& image) {
-  if (desc_.count_pixels && (frame.limits.values != nullptr || image.external.limited))
-    throw Error(ErrorCode::unsupported,
-                "depth limits: found some, pixels are counted of frames without");
+SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
+  for (const FrameEye& eye : frame.eyes)
+    if (desc_.count_pixels && (eye.limits.values != nullptr || eye.image.external.limited))
+      throw Error(ErrorCode::unsupported,
+                  "depth limits: found some, pixels are counted of frames without");
   device_->use();
   make_room();
   Report report;
@@ -148,10 +158,13 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, const 
     report = std::move(free_.back());
     free_.pop_back();
   }
-  report->grid = tile_grid(image.width, image.height);
-  report->target_bytes = uint64_t{image.width} * image.height * pixel_bytes(image.format);
-  splats_.fit(report->grid);
-  limits_.fit(frame);
+  report->tiles = frame_tiles(frame);
+  report->target_bytes = 0;
+  for (const FrameEye& eye : frame.eyes)
+    report->target_bytes +=
+        uint64_t{eye.image.width} * eye.image.height * pixel_bytes(eye.image.format);
+  splats_.fit(report->tiles);
+  for (size_t eye = 0; eye < limits_.size(); ++eye) limits_[eye].fit(frame.eyes[eye]);
   return report;
 }
 
@@ -164,19 +177,23 @@ void SplatPipeline::launch_search(const FrameInput& frame, FrameReport& report) 
 // Frames that are left under way cannot be drawn again: they get room before they need it.
 void SplatPipeline::make_room() {
   const SplatRoom wanted = std::exchange(wanted_, {}), room = splats_.room();
-  if (wanted.slots <= room.slots && wanted.strips <= room.strips && wanted.pairs <= room.pairs)
+  if (wanted.places <= room.places && wanted.strips <= room.strips && wanted.pairs <= room.pairs)
     return;
   stream_.wait();
   splats_.grow(wanted);
 }
 
-void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats& stats) {
-  Report report = begin_frame(frame, image);
-  const RasterTarget target = image_.target(frame, image);
+void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
+  Report report = begin_frame(frame);
+  Eyes eyes{};
+  for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
+    eyes[eye].target = images_[eye].target(frame.eyes[eye], frame.background);
   launch_search(frame, *report);
   for (;;) {
     launch_lists(frame, *report);
-    launch_image(target, limits_.upload(frame, stream_.get()), *report);
+    for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
+      eyes[eye].limits = limits_[eye].upload(frame.eyes[eye], stream_.get());
+    launch_image(eyes, *report);
     copy(*report);
     report->wait();
     if (!splats_.grow(room_for(report->counters()))) break;
@@ -186,26 +203,47 @@ void SplatPipeline::draw(const FrameInput& frame, const Image& image, FrameStats
   free_.push_back(std::move(report));
 }
 
-void SplatPipeline::submit(const FrameInput& frame, const Image& image, bool checked) {
-  under_way_.push_back(begin_frame(frame, image));
+// The eyes' targets may be layers of one image.
+template <class Work>
+void each_ring(const FrameInput& frame, const Work& work) {
+  const ExternalRing* before = nullptr;
+  for (const FrameEye& eye : frame.eyes) {
+    if (eye.image.external.ring != before) work(eye.image.external);
+    before = eye.image.external.ring;
+  }
+}
+
+SplatPipeline::Eyes SplatPipeline::external_eyes(const FrameInput& frame) {
+  Eyes eyes{};
+  for (size_t i = 0; i < frame.eyes.size(); ++i) {
+    const FrameEye& eye = frame.eyes[i];
+    const ExternalTarget& external = eye.image.external;
+    eyes[i].target = raster_target(external, frame.background);
+    if (external.limited) eyes[i].limits = depth_limits(external, eye.limits.encoding);
+  }
+  return eyes;
+}
+
+void SplatPipeline::submit(const FrameInput& frame, bool checked) {
+  under_way_.push_back(begin_frame(frame));
+  const cudaStream_t stream = stream_.get();
+  const auto wait = [&](const ExternalTarget& target) { wait_released(target, stream); };
   FrameReport& report = *under_way_.back();
   try {
     // In front of the frame's own work, so that the two APIs take fewer turns on the device.
     // Lists that the host waits for come first: it would wait for its own queue.
-    if (!checked) wait_released(image.external, stream_.get());
+    if (!checked) each_ring(frame, wait);
     launch_search(frame, report);
     if (checked) {
       launch_checked_lists(frame, report);
-      wait_released(image.external, stream_.get());
+      each_ring(frame, wait);
     } else {
       launch_lists(frame, report);
     }
-    DepthLimits limits;
-    if (image.external.limited) limits = depth_limits(image.external, frame.limits.encoding);
-    launch_image(raster_target(image.external, frame.background), limits, report);
-    signal_rendered(image.external, stream_.get());
+    launch_image(external_eyes(frame), report);
+    each_ring(frame, [&](const ExternalTarget& target) { signal_rendered(target, stream); });
     copy(report);  // the host that waits for the image does not wait for this
-    mark_end(image.external, stream_.get());
+    each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
   } catch (...) {
     under_way_.pop_back();
     throw;
@@ -223,7 +261,7 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   const auto ahead = [](size_t& wanted, size_t needed) {
     wanted = std::max(wanted, needed + needed / 8);
   };
-  ahead(wanted_.slots, used.slots), ahead(wanted_.strips, used.strips);
+  ahead(wanted_.places, used.places), ahead(wanted_.strips, used.strips);
   ahead(wanted_.pairs, used.pairs);
   free_.push_back(std::move(under_way_.front()));
   under_way_.pop_front();
@@ -245,12 +283,10 @@ void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const 
 }
 
 // What each stage reads and writes of its own arrays; what siblings share of their parents
-// is left out.
+// is left out, and a Gaussian is read once for all eyes, which see about the same ones.
 void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) const {
   const SplatCounters& counted = report.counters();
-  const TileGrid& grid = report.grid;
-  const uint64_t tiles = static_cast<uint64_t>(grid.columns) * static_cast<uint64_t>(grid.rows);
-  const uint64_t offsets = tiles * bin_blocks(device_->multiprocessors()) * sizeof(uint32_t);
+  const uint64_t offsets = uint64_t{report.tiles.count} * bin_blocks(device_->multiprocessors()) * sizeof(uint32_t);
   const uint64_t pairs = counted.pairs;
   uint64_t candidates = 0;
   for (const InstanceCounters& instance : counted.instances) candidates += instance.candidates;
@@ -258,7 +294,7 @@ void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) co
   stats.gaussian_bytes = instances_.bytes_a_gaussian();
   stats.bytes[kProject] =
       uint64_t{counted.places} * instances_.bytes_a_place() + 2 * sizeof(uint32_t) * candidates +
-      counted.splats * (stats.gaussian_bytes + kRecord) + counted.strips * sizeof(TileStrip);
+      counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) + counted.strips * sizeof(TileStrip);
   stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
   stats.bytes[kSort] = 2 * pairs * kKey;
   stats.bytes[kRasterize] = pairs * (kKey + kRecord) + report.target_bytes;

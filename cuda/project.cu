@@ -24,7 +24,8 @@ __device__ Hull hull_at(const GaussianView& gaussians, uint32_t i) {
   return {{h.x, h.y, h.z}, __uint_as_float(bounds & 0xffff0000u), __uint_as_float(bounds << 16)};
 }
 
-template <bool kLod>
+// In the image of any eye.
+template <bool kLod, int kEyes>
 __device__ bool project_may_reach(const SplatFrame& f, uint32_t place) {
   const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
   if (item.gaussian == kNoNode) return false;
@@ -34,19 +35,22 @@ __device__ bool project_may_reach(const SplatFrame& f, uint32_t place) {
     hull = {lerp_rn(parent.mean, hull.mean, item.t), fmaxf(parent.max_scale, hull.max_scale),
             fmaxf(parent.radius, hull.radius)};
   }
-  return hull.radius > 0.0f && may_reach(f.params, hull.mean, hull.max_scale, hull.radius);
+  bool reaches = false;
+  for (int eye = 0; eye < kEyes; ++eye)
+    reaches = reaches || may_reach(f.params[eye], hull.mean, hull.max_scale, hull.radius);
+  return hull.radius > 0.0f && reaches;
 }
 
 // The order of the candidates depends on scheduling; nothing that is made of them does.
-template <bool kLod>
+template <bool kLod, int kEyes>
 __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
   __shared__ uint32_t found, first;
   const uint32_t places = *f.draws.list.size, lane = threadIdx.x % 32;
   InstanceCounters* const counters = f.splats.counters->instances + f.instance;
-  const uint32_t first_slot = counters->first_slot;
+  const uint32_t first_place = counters->first_place;
   if (blockIdx.x == 0 && threadIdx.x == 0)
-    f.splats.counters->places = counters[1].first_slot = first_slot + places;
-  const uint32_t end = min(places, f.splats.slots - min(first_slot, f.splats.slots));
+    f.splats.counters->places = counters[1].first_place = first_place + places;
+  const uint32_t end = min(places, f.splats.places - min(first_place, f.splats.places));
   constexpr uint32_t kChunk = kCullThreads * kCullItems;
   for (uint32_t base = blockIdx.x * kChunk; base < end; base += gridDim.x * kChunk) {
     if (threadIdx.x == 0) found = 0;
@@ -55,7 +59,7 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
 #pragma unroll
     for (unsigned k = 0; k < kCullItems; ++k) {
       const uint32_t place = base + k * kCullThreads + threadIdx.x;
-      lanes[k] = __ballot_sync(kAll, place < end && project_may_reach<kLod>(f, place));
+      lanes[k] = __ballot_sync(kAll, place < end && project_may_reach<kLod, kEyes>(f, place));
     }
 #pragma unroll
     for (unsigned k = 0; k < kCullItems; ++k)
@@ -78,11 +82,11 @@ __device__ SplatRecord record_of(const Splat& s, float log_scale) {
           s.depth, s.t, s.colour.x,  s.colour.y,  s.colour.z,   s.inverse_k};
 }
 
-template <class Sh, bool kLod>
+template <class Sh, bool kLod, int kEyes>
 __global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, bool boxes) {
   const DeviceArrays<Sh> arrays{f.gaussians};
   const InstanceCounters& counters = f.splats.counters->instances[f.instance];
-  const uint32_t count = counters.candidates, first_slot = counters.first_slot;
+  const uint32_t count = counters.candidates, first_place = counters.first_place;
   uint32_t visible = 0;
   unsigned long long boxed = 0;
   const uint32_t first = blockIdx.x * kProjectThreads + threadIdx.x / 32 * 32;
@@ -90,28 +94,37 @@ __global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, 
   // Whole warps together: they share the strips of their splats.
   for (uint32_t base = first; base < count; base += gridDim.x * kProjectThreads) {
     const uint32_t at = base + threadIdx.x % 32;
-    TileExtent extent{};
-    float depth = 0.0f;
-    uint32_t slot = 0;
+    TileExtent extent[kEyes] = {};
+    float depth[kEyes] = {};
+    uint32_t rank = 0;  // among the places of all instances
     if (at < count) {
       const uint32_t place = f.splats.candidates[at];
       const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
-      Splat splat;
-      Vec3f relative;
-      slot = first_slot + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
-      // A slot beyond the room is that of a place that is, too: counted there.
-      if (slot < f.splats.slots && project_shape(f.params, arrays, item, splat, relative)) {
-        const float inverse_length = 1.0f / std::sqrt(dot(relative, relative));
-        splat.colour = interpolated_colour(arrays, item, inverse_length * relative);
-        const SplatRecord record = record_of(splat, f.params.log_scale);
-        f.splats.records[slot] = record;
-        extent = tile_extent(support_of(record, f.params.log_scale), f.splats.grid);
-        depth = splat.depth;
+      Splat splats[kEyes];
+      Vec3f relative[kEyes];
+      rank = first_place + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
+      // A rank beyond the room is that of a place that is, too: counted there.
+      const unsigned seen =
+          rank < f.splats.places
+              ? project_shapes<kEyes>(f.params, arrays, item, splats, relative)
+              : 0;
+      if (seen != 0) project_colours<kEyes>(arrays, item, relative, splats);
+#pragma unroll
+      for (int eye = 0; eye < kEyes; ++eye) {
+        if ((seen >> eye & 1u) == 0) continue;
+        const float log_scale = f.params[eye].log_scale;
+        const SplatRecord record = record_of(splats[eye], log_scale);
+        f.splats.records[rank * kEyes + eye] = record;
+        extent[eye] = tile_extent(support_of(record, log_scale), f.splats.frame.grids[eye]);
+        depth[eye] = splats[eye].depth;
         ++visible;
-        boxed += extent.boxed();
+        boxed += extent[eye].boxed();
       }
     }
-    write_strips(extents[threadIdx.x / 32], extent, f.splats, depth, slot, boxes);
+#pragma unroll
+    for (int eye = 0; eye < kEyes; ++eye)
+      write_strips(extents[threadIdx.x / 32], extent[eye], f.splats, eye, depth[eye],
+                   rank * kEyes + eye, boxes);
   }
   visible = __reduce_add_sync(kAll, visible);
   for (int step = 16; step != 0; step /= 2) boxed += __shfl_xor_sync(kAll, boxed, step);
@@ -120,39 +133,47 @@ __global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, 
   atomicAdd(&f.splats.counters->pairs_boxed, boxed);
 }
 
-template <class Sh, bool kLod>
+template <class Sh, bool kLod, int kEyes>
 void launch(const SplatFrame& f, bool boxes) {
-  const auto kernel = project_splats<Sh, kLod>;
+  const auto kernel = project_splats<Sh, kLod, kEyes>;
   static const unsigned resident = resident_blocks(kernel, kProjectThreads, 1);
   kernel<<<f.multiprocessors * resident, kProjectThreads, 0, f.stream>>>(f, boxes);
 }
 
-template <bool kLod>
+template <bool kLod, int kEyes>
 void launch_for(const SplatFrame& f, bool boxes) {
-  static const unsigned resident = resident_blocks(project_cull<kLod>, kCullThreads, 1);
-  project_cull<kLod><<<f.multiprocessors * resident, kCullThreads, 0, f.stream>>>(f);
+  const auto cull = project_cull<kLod, kEyes>;
+  static const unsigned resident = resident_blocks(cull, kCullThreads, 1);
+  cull<<<f.multiprocessors * resident, kCullThreads, 0, f.stream>>>(f);
   check(cudaGetLastError(), "project_cull");
-  if (!f.gaussians.half_sh) return launch<FloatSh, kLod>(f, boxes);
+  if (!f.gaussians.half_sh) return launch<FloatSh, kLod, kEyes>(f, boxes);
   switch (f.gaussians.sh_degree) {
     case 0:
-      return launch<HalfSh<0>, kLod>(f, boxes);
+      return launch<HalfSh<0>, kLod, kEyes>(f, boxes);
     case 1:
-      return launch<HalfSh<1>, kLod>(f, boxes);
+      return launch<HalfSh<1>, kLod, kEyes>(f, boxes);
     case 2:
-      return launch<HalfSh<2>, kLod>(f, boxes);
+      return launch<HalfSh<2>, kLod, kEyes>(f, boxes);
     default:
-      return launch<HalfSh<3>, kLod>(f, boxes);
+      return launch<HalfSh<3>, kLod, kEyes>(f, boxes);
   }
+}
+
+template <int kEyes>
+void launch_for(const SplatFrame& f, bool boxes) {
+  if (f.draws.list.weights != nullptr) return launch_for<true, kEyes>(f, boxes);
+  launch_for<false, kEyes>(f, boxes);
 }
 
 }  // namespace
 
 bool launch_project(const SplatFrame& frame, bool alpha_filter) {
   if (frame.draws.list.room == 0) return false;
-  if (frame.draws.list.weights != nullptr)
-    launch_for<true>(frame, !alpha_filter);
+  static_assert(kMaxEyes == 2);
+  if (frame.eyes == 1)
+    launch_for<1>(frame, !alpha_filter);
   else
-    launch_for<false>(frame, !alpha_filter);
+    launch_for<2>(frame, !alpha_filter);
   check(cudaGetLastError(), "project_splats");
   return true;
 }

@@ -2,6 +2,8 @@
 // several of its pixels. The warp takes 32 splats of the list at a time, a lane each, drops
 // those that miss its part, and blends the others one after the other. Warps wait for
 // nobody.
+#include <algorithm>
+
 #include "cuda/raster_lane.cuh"
 #include "cuda/raster_output.cuh"
 #include "cuda/splat_launch.h"
@@ -47,10 +49,9 @@ __device__ bool rasterize_touches(const RasterSplat& s, const Part& part) {
 
 struct RasterParams {
   SplatView splats;
-  RasterTarget target;
+  RasterEye eyes[kMaxEyes];
   const float* lut;
   uint32_t lut_size;
-  DepthLimits limits;
 };
 
 // A list's splats, 32 at a time, asked for before they are wanted.
@@ -164,8 +165,13 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
   }
 }
 
+// Where one eye has limits and another has none.
+__device__ float limit_at(const DepthLimits& limits, uint32_t x, uint32_t y) {
+  return limits.values == nullptr ? kInfinity : limits.at(x, y);
+}
+
 template <class M>
-__global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(RasterParams params) {
+__global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(const __grid_constant__ RasterParams params) {
   __shared__ WarpSplats chosen[kWarps];
   extern __shared__ float lut_entries[];
   if constexpr (M::kExponential == Exponential::lut) {
@@ -173,14 +179,17 @@ __global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(RasterParams para
       lut_entries[i] = params.lut[i];
     __syncthreads();
   }
-  const uint32_t tile = params.splats.tile_order[blockIdx.x];
-  const auto columns = static_cast<uint32_t>(params.splats.grid.columns);
+  const uint32_t list = params.splats.tile_order[blockIdx.x];
+  const uint32_t index = params.splats.frame.eye(list);
+  const RasterEye& eye = params.eyes[index];
+  const uint32_t tile = list - params.splats.frame.first[index];
+  const auto columns = static_cast<uint32_t>(params.splats.frame.grids[index].columns);
   const unsigned warp = threadIdx.x / 32, self = threadIdx.x % 32;
   const uint32_t part_x = tile % columns * kTile + warp % (kTile / kPartWidth) * kPartWidth;
   const uint32_t part_y = tile / columns * kTile + warp / (kTile / kPartWidth) * kPartHeight;
   const uint32_t x = part_x + self % kPartWidth, y = part_y + self / kPartWidth;
   const auto inside = [&](int row) {
-    return x < params.target.width && y + row * kLaneRows < params.target.height;
+    return x < eye.target.width && y + row * kLaneRows < eye.target.height;
   };
   const Part part{static_cast<float>(part_x) + 0.5f, static_cast<float>(part_x + kPartWidth) - 0.5f,
                   static_cast<float>(part_y) + 0.5f,
@@ -191,14 +200,14 @@ __global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(RasterParams para
     lane.set_limit(row, inside(row) ? -log_threshold<M::kExponential>() : -kInfinity);
   if constexpr (M::kLimits)
     for (int row = 0; row < kRows; ++row)
-      lane.set_farthest(row, inside(row) ? params.limits.at(x, y + row * kLaneRows) : -kInfinity);
+      lane.set_farthest(row, inside(row) ? limit_at(eye.limits, x, y + row * kLaneRows) : -kInfinity);
   Counts counts;
   const Lut lut{lut_entries, static_cast<float>(params.lut_size) / kLutRange};
-  rasterize_list<M>(params.splats, params.splats.tiles[tile], part, lut, chosen[warp], lane,
+  rasterize_list<M>(params.splats, params.splats.tiles[list], part, lut, chosen[warp], lane,
                     counts);
 #pragma unroll
   for (int row = 0; row < kRows; ++row)
-    if (inside(row)) write_pixel(params.target, x, y + row * kLaneRows, lane.pixel(row));
+    if (inside(row)) write_pixel(eye.target, x, y + row * kLaneRows, lane.pixel(row));
   if constexpr (M::kCount) {
     SplatCounters& sum = *params.splats.counters;
     atomicAdd(&sum.evaluated, static_cast<unsigned long long>(counts.evaluated));
@@ -210,13 +219,17 @@ template <class M>
 void launch(const SplatFrame& f, const RasterParams& params) {
   const bool lut = M::kExponential == Exponential::lut;
   const size_t lut_bytes = lut ? (params.lut_size + 1) * sizeof(float) : 0;
-  rasterize_tiles<M><<<f.splats.tile_count(), kThreads, lut_bytes, f.stream>>>(params);
+  rasterize_tiles<M><<<f.splats.frame.count, kThreads, lut_bytes, f.stream>>>(params);
 }
 
 template <Exponential E, bool kFilter>
 void launch_for(const SplatFrame& f, bool siblings, const RasterParams& params) {
-  const bool depth = params.target.has_depth();
-  if (params.limits.values != nullptr) {  // those kernels find depth, wanted or not
+  bool depth = false, limits = false;
+  for (uint32_t eye = 0; eye < f.eyes; ++eye) {
+    depth = depth || params.eyes[eye].target.has_depth();
+    limits = limits || params.eyes[eye].limits.values != nullptr;
+  }
+  if (limits) {  // those kernels find depth, wanted or not
     if (siblings) return launch<Mode<E, kFilter, true, true, false, true>>(f, params);
     return launch<Mode<E, kFilter, false, true, false, true>>(f, params);
   }
@@ -237,9 +250,9 @@ void launch_for(const SplatFrame& f, const RasterChoices& choices, const RasterP
 
 }  // namespace
 
-void launch_rasterize(const SplatFrame& f, const RasterChoices& choices,
-                      const RasterTarget& target) {
-  const RasterParams params{f.splats, target, choices.lut, choices.lut_size, choices.limits};
+void launch_rasterize(const SplatFrame& f, const RasterChoices& choices, const RasterEye* eyes) {
+  RasterParams params{f.splats, {}, choices.lut, choices.lut_size};
+  std::copy_n(eyes, f.eyes, params.eyes);
   switch (choices.exponential) {
     case Exponential::exact:
       launch_for<Exponential::exact>(f, choices, params);

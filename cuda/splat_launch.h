@@ -17,12 +17,14 @@ struct DrawView {
                         // once. Null: the places themselves.
 };
 
-// What a frame's kernels share. The first four are an instance's, and projection's alone.
+// What a frame's kernels share. The first four are an instance's, and projection's alone;
+// params are of each eye.
 struct SplatFrame {
   uint32_t instance;  // those projected before it in this frame
   GaussianView gaussians;
   DrawView draws;
-  ProjectParams params;
+  ProjectParams params[kMaxEyes];
+  uint32_t eyes;
   SplatView splats;
   unsigned multiprocessors;
   cudaStream_t stream;
@@ -60,9 +62,13 @@ struct RasterChoices {
   bool siblings;     // some t may be below 1
   const float* lut;  // lut_size + 1 entries on the device
   uint32_t lut_size;
-  DepthLimits limits;  // on the device
 };
-void launch_rasterize(const SplatFrame& frame, const RasterChoices& choices,
-                      const RasterTarget& target);
+// An eye's image, and how far it may be seen: on the device.
+struct RasterEye {
+  RasterTarget target;
+  DepthLimits limits;
+};
+// eyes: the frame's.
+void launch_rasterize(const SplatFrame& frame, const RasterChoices& choices, const RasterEye* eyes);
 
 }  // namespace voyager::cuda

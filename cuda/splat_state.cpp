@@ -7,7 +7,7 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr size_t kFirstSlots = size_t{1} << 18;
+constexpr size_t kFirstPlaces = size_t{1} << 18;
 constexpr size_t kFirstStrips = size_t{1} << 19, kFirstPairs = size_t{1} << 20;
 // Indices of 32 bits, and sums of two of them.
 constexpr size_t kMostIndices = size_t{1} << 31;
@@ -32,24 +32,38 @@ bool grow_to(size_t wanted, size_t before, const Allocate& allocate) {
 
 }  // namespace
 
+FrameTiles frame_tiles(const FrameInput& frame) {
+  FrameTiles tiles{};
+  for (size_t eye = 0; eye < kMaxEyes; ++eye) {
+    tiles.first[eye] = tiles.count;
+    if (eye >= frame.eyes.size()) continue;
+    const TileGrid grid =
+        tile_grid(frame.eyes[eye].camera.width, frame.eyes[eye].camera.height);
+    tiles.grids[eye] = grid;
+    tiles.count += static_cast<uint32_t>(grid.columns) * static_cast<uint32_t>(grid.rows);
+  }
+  return tiles;
+}
+
 uint64_t dropped(const SplatCounters& counters, const SplatRoom& room) {
   const auto beyond = [](uint64_t counted, size_t there) {
     return counted > there ? counted - there : 0;
   };
-  return beyond(counters.places, room.slots) + counters.strips_dropped +
+  return beyond(counters.places, room.places) + counters.strips_dropped +
          beyond(counters.pairs, room.pairs);
 }
 
-SplatState::SplatState(unsigned bin_blocks)
+SplatState::SplatState(unsigned bin_blocks, uint32_t eyes)
     : bin_blocks_(bin_blocks),
-      records_(kFirstSlots),
-      candidates_(kFirstSlots),
+      eyes_(eyes),
+      records_(kFirstPlaces * eyes),
+      candidates_(kFirstPlaces),
       keys_(kFirstPairs),
       merge_keys_(kFirstPairs),
       strips_(kFirstStrips) {}
 
-void SplatState::fit(const TileGrid& grid) {
-  const size_t tiles = static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows);
+void SplatState::fit(const FrameTiles& of) {
+  const size_t tiles = of.count;
   if (tiles <= tiles_.size()) return;
   counters_ = Buffer<unsigned char>(sizeof(SplatCounters) + tiles * sizeof(uint32_t));
   tile_offsets_ = Buffer<uint32_t>(tiles * bin_blocks_);
@@ -58,11 +72,11 @@ void SplatState::fit(const TileGrid& grid) {
 }
 
 // The old buffers go first: nothing in them outlives a frame.
-bool SplatState::grow_slots(size_t wanted) {
-  return grow_to(wanted, room().slots, [&](size_t slots) {
+bool SplatState::grow_places(size_t wanted) {
+  return grow_to(wanted, room().places, [&](size_t places) {
     records_ = {}, candidates_ = {};
-    records_ = Buffer<SplatRecord>(slots);
-    candidates_ = Buffer<uint32_t>(slots);
+    records_ = Buffer<SplatRecord>(places * eyes_);
+    candidates_ = Buffer<uint32_t>(places);
   });
 }
 
@@ -83,15 +97,15 @@ bool SplatState::grow_pairs(size_t wanted) {
 
 bool SplatState::grow(const SplatRoom& wanted) {
   // All three, whatever becomes of one.
-  const bool slots = grow_slots(wanted.slots), strips = grow_strips(wanted.strips),
+  const bool places = grow_places(wanted.places), strips = grow_strips(wanted.strips),
              pairs = grow_pairs(wanted.pairs);
-  return slots || strips || pairs;
+  return places || strips || pairs;
 }
 
-SplatView SplatState::view(const TileGrid& grid) const {
+SplatView SplatState::view(const FrameTiles& tiles) const {
   return {records_.data(),
           candidates_.data(),
-          static_cast<uint32_t>(room().slots),
+          static_cast<uint32_t>(room().places),
           strips_.data(),
           static_cast<uint32_t>(strips_.size()),
           keys_.data(),
@@ -102,12 +116,11 @@ SplatView SplatState::view(const TileGrid& grid) const {
           tile_offsets_.data(),
           tiles_.data(),
           tile_order_.data(),
-          grid};
+          tiles};
 }
 
-void SplatState::begin_frame(const TileGrid& grid, cudaStream_t stream) const {
-  const size_t tiles = static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows);
-  check(cudaMemsetAsync(counters_.data(), 0, sizeof(SplatCounters) + tiles * sizeof(uint32_t),
+void SplatState::begin_frame(const FrameTiles& tiles, cudaStream_t stream) const {
+  check(cudaMemsetAsync(counters_.data(), 0, sizeof(SplatCounters) + tiles.count * sizeof(uint32_t),
                         stream),
         "a frame's counters");
 }

@@ -9,7 +9,7 @@ namespace voyager::cuda {
 
 // Of the buffers that the scene and the view decide.
 struct SplatRoom {
-  size_t slots = 0, strips = 0, pairs = 0;
+  size_t places = 0, strips = 0, pairs = 0;
 };
 
 // What a frame's lists would have needed.
@@ -17,38 +17,42 @@ inline SplatRoom room_for(const SplatCounters& counters) {
   return {counters.places, counters.strip_room, counters.pairs};
 }
 
+// The eyes' tiles, one grid behind the other.
+FrameTiles frame_tiles(const FrameInput& frame);
+
 // Pairs, strips and places of a frame for which there was no room.
 uint64_t dropped(const SplatCounters& counters, const SplatRoom& room);
 
 class SplatState {
  public:
   // bin_blocks: of bin.cu.
-  explicit SplatState(unsigned bin_blocks);
+  SplatState(unsigned bin_blocks, uint32_t eyes);
 
-  // Makes room for the tiles of the grid; what is there already stays. Throws Error.
-  void fit(const TileGrid& grid);
+  // Makes room for the tiles; what is there already stays. Throws Error.
+  void fit(const FrameTiles& tiles);
   // Buffers that belong together may differ after an allocation that failed.
   SplatRoom room() const {
-    return {std::min(records_.size(), candidates_.size()), strips_.size(),
+    return {std::min(records_.size() / eyes_, candidates_.size()), strips_.size(),
             std::min(keys_.size(), merge_keys_.size())};
   }
   // Makes so much room, with some to spare. False where there is nothing to do, or no
   // memory for it: the frame is then what it can be. Nothing on the device uses them.
   bool grow(const SplatRoom& wanted);
 
-  SplatView view(const TileGrid& grid) const;
+  SplatView view(const FrameTiles& tiles) const;
   // Clears what the kernels add to.
-  void begin_frame(const TileGrid& grid, cudaStream_t stream) const;
+  void begin_frame(const FrameTiles& tiles, cudaStream_t stream) const;
   const SplatCounters* counters() const {
     return reinterpret_cast<const SplatCounters*>(counters_.data());
   }
 
  private:
-  bool grow_slots(size_t wanted);
+  bool grow_places(size_t wanted);
   bool grow_strips(size_t wanted);
   bool grow_pairs(size_t wanted);
 
   unsigned bin_blocks_;
+  uint32_t eyes_;
   Buffer<SplatRecord> records_;
   Buffer<uint32_t> candidates_;
   Buffer<DepthKey> keys_, merge_keys_;

@@ -23,8 +23,8 @@ VOYAGER_HD SupportEllipse support_of(const SplatRecord& r, float log_scale) {
   return support_ellipse(r.x, r.y, {r.p_x, r.skew, r.q_y}, (threshold - r.log_opacity).value);
 }
 
-// A (tile, splat) pair in its tile's list: the bits of z > 0 above the splat's slot. Slots
-// ascend with (instance, id), so that keys are in the contract's order.
+// A (tile, splat) pair in its tile's list: the bits of z > 0 above the splat's slot. An eye's
+// slots ascend with (instance, id), so that keys are in the contract's order.
 using DepthKey = unsigned long long;
 
 VOYAGER_HD uint32_t slot_of(DepthKey key) {
@@ -38,7 +38,7 @@ struct alignas(128) StripRegion {
 };
 
 struct InstanceCounters {
-  uint32_t first_slot;
+  uint32_t first_place;
   uint32_t candidates;  // of its places, that may reach the image
 };
 
@@ -71,11 +71,24 @@ struct TileList {
   uint32_t first, last;
 };
 
+// The tiles of a frame: those of an eye behind those of the eye before it.
+struct FrameTiles {
+  TileGrid grids[kMaxEyes];
+  uint32_t first[kMaxEyes];  // that of an eye that there is not: behind the last
+  uint32_t count;
+
+  VOYAGER_HD uint32_t eye(uint32_t tile) const {
+    uint32_t eye = 0;
+    for (uint32_t other = 1; other < kMaxEyes; ++other) eye += tile >= first[other];
+    return eye;
+  }
+};
+
 // As kernels take it.
 struct SplatView {
-  SplatRecord* records;  // by slot
+  SplatRecord* records;  // by slot: a place's for all eyes one behind the other
   uint32_t* candidates;  // places, of the instance that is being projected
-  uint32_t slots;        // room
+  uint32_t places;       // room
   TileStrip* strips;     // kStripRegions regions of equal room
   uint32_t strip_room;   // of all
   DepthKey* keys;
@@ -86,11 +99,7 @@ struct SplatView {
   uint32_t* tile_offsets;  // [block of bin_count][tile]
   TileList* tiles;
   uint32_t* tile_order;  // longest lists first
-  TileGrid grid;
-
-  VOYAGER_HD uint32_t tile_count() const {
-    return static_cast<uint32_t>(grid.columns) * static_cast<uint32_t>(grid.rows);
-  }
+  FrameTiles frame;
 };
 
 VOYAGER_HD uint32_t* strip_count(const SplatView& splats, uint32_t region) {

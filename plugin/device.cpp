@@ -155,7 +155,7 @@ VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
     const auto uuid = object->backend->device_uuid();
     std::copy(uuid.begin(), uuid.end(), found.deviceUuid);
     found.maxInstances = kMaxInstances;
-    found.maxEyes = 1;
+    found.maxEyes = kMaxEyes;
     found.maxWidth = found.maxHeight = kMaxImageSide;
     found.searches = bits_up_to(VOY_SEARCH_TEMPORAL_VISIT);
     found.exponentials = exponentials_of(object->backend_kind);

@@ -68,8 +68,7 @@ std::vector<InstancePose> checked_instances(const VoyInstancePose* instances, ui
 
 }  // namespace
 
-FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Image& image,
-                       uint32_t instances) {
+FrameInput frame_input(const VoyFrame& frame, uint32_t instances) {
   FrameInput input;
   if (!(frame.nearZ > 0) || !std::isfinite(frame.nearZ))
     refuse_number("frame.nearZ", frame.nearZ, "a finite number of metres, > 0");
@@ -81,20 +80,26 @@ FrameInput frame_input(const VoyFrame& frame, const VoyFrameEye& eye, const Imag
   }
   check_count(frame.reserved, 0, 0, "frame.reserved");
   input.instances = checked_instances(frame.instances, instances);
-  check_count(eye.reserved, 0, 0, "frame.eyes[0].reserved");
+  input.eyes.clear();
+  return input;
+}
 
-  Camera& camera = input.camera;
-  camera.eye = checked_position(eye.pose.position, "frame.eyes[0].pose");
-  camera.world_to_view =
-      world_to_view(checked_orientation(eye.pose.orientation, "frame.eyes[0].pose"));
+FrameEye frame_eye(const VoyFrame& frame, const VoyFrameEye& eye, const Image& image,
+                   const std::string& field) {
+  check_count(eye.reserved, 0, 0, (field + ".reserved").c_str());
+  FrameEye out;
+  out.image = image;
+  out.depth_wanted = image.depth != nullptr;
+  Camera& camera = out.camera;
+  camera.eye = checked_position(eye.pose.position, field + ".pose");
+  camera.world_to_view = world_to_view(checked_orientation(eye.pose.orientation, field + ".pose"));
   const VoyFrustum& f = eye.frustum;
-  check_frustum(f, "frame.eyes[0].frustum");
+  check_frustum(f, field + ".frustum");
   camera.width = image.width;
   camera.height = image.height;
   set_frustum(camera, f.left, f.right, f.up, f.down);
   camera.near_z = frame.nearZ;
-  input.depth_wanted = image.depth != nullptr;
-  return input;
+  return out;
 }
 
 }  // namespace voyager

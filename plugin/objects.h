@@ -67,8 +67,10 @@ struct SceneObject final : Child {
 struct ViewObject final : Child {
   using Handle = VoyView;
   static constexpr Kind kKind = Kind::view;
-  ViewObject(std::shared_ptr<DeviceObject> owner, std::vector<std::shared_ptr<SceneObject>> drawn)
+  ViewObject(std::shared_ptr<DeviceObject> owner, std::vector<std::shared_ptr<SceneObject>> drawn,
+             uint32_t drawn_eyes)
       : Child(kKind, std::move(owner)),
+        eyes(drawn_eyes),
         instances(static_cast<uint32_t>(drawn.size())),
         scenes(std::move(drawn)) {}
 
@@ -81,7 +83,7 @@ struct ViewObject final : Child {
     rings.clear();
   }
 
-  const uint32_t instances;
+  const uint32_t eyes, instances;
   uint32_t max_width = 0, max_height = 0;
   std::mutex busy;                                 // guards what follows
   std::vector<std::weak_ptr<vulkan::Ring>> rings;  // that it has drawn into

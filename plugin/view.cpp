@@ -19,9 +19,10 @@ void check_counts(const VoyViewDesc& desc) {
                        ", this version draws up to " + std::to_string(kMaxInstances) +
                        " instances in a view");
   check_count(desc.eyeCount, 1, UINT32_MAX, "desc.eyeCount");
-  if (desc.eyeCount > 1)
-    throw ApiError(VOY_ERROR_UNSUPPORTED, "desc.eyeCount: found " + std::to_string(desc.eyeCount) +
-                                              ", this version draws 1 eye in a view");
+  if (desc.eyeCount > kMaxEyes)
+    throw ApiError(VOY_ERROR_UNSUPPORTED,
+                   "desc.eyeCount: found " + std::to_string(desc.eyeCount) +
+                       ", this version draws up to " + std::to_string(kMaxEyes) + " eyes in a view");
   check_pointer(desc.scenes, "desc.scenes");
   check_count(desc.maxWidth, 1, kMaxImageSide, "desc.maxWidth");
   check_count(desc.maxHeight, 1, kMaxImageSide, "desc.maxHeight");
@@ -66,6 +67,7 @@ PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   check_count(desc.lutSize, 0, kMaxLutSize, "desc.lutSize");
   check_enum(desc.splatting, VOY_SPLATTING_3DGS, "desc.splatting");
   PipelineDesc choices;
+  choices.eyes = desc.eyeCount;
   choices.lod = desc.lod == VOY_LOD_CUT ? Lod::cut : Lod::all_leaves;
   choices.search = search_of(desc.search);
   choices.alpha_filter = desc.alphaFilter == VOY_ALPHA_FILTER_ON;
@@ -96,7 +98,8 @@ VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view
     check_pointer(view, "view");
     check_counts(*desc);
     const PipelineDesc choices = checked_choices(*desc, owner->backend_kind);
-    const auto object = std::make_shared<ViewObject>(owner, checked_scenes(call, *desc, *owner));
+    const auto object = std::make_shared<ViewObject>(
+        owner, checked_scenes(call, *desc, *owner), desc->eyeCount);
     object->max_width = desc->maxWidth;
     object->max_height = desc->maxHeight;
     object->tau = desc->tau;

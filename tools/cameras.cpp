@@ -175,4 +175,10 @@ std::vector<Camera> read_cameras(const std::string& path) {
   return cameras;
 }
 
+void require_pairs(bool stereo, size_t count, const std::string& path) {
+  if (stereo && count % 2 != 0)
+    throw Error(ErrorCode::refused_input,
+                fmt::format("{}: found {} cameras, expected pairs with --stereo", path, count));
+}
+
 }  // namespace voyager::tools

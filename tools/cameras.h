@@ -24,4 +24,7 @@ struct Camera {
 // Throws Error(refused_input) naming file, camera, field, found, expected.
 std::vector<Camera> read_cameras(const std::string& path);
 
+// Stereo takes cameras two by two. Throws Error(refused_input) where one is left over.
+void require_pairs(bool stereo, size_t count, const std::string& path);
+
 }  // namespace voyager::tools

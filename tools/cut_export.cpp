@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/frame_search.h"
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/sanitise.h"
 
@@ -39,7 +40,7 @@ void export_cut(const std::string& scene_path, const Camera& camera, double tau,
   const VoyFrustum f = camera.frustum();
   seen.fx = camera.width / (f.right - f.left);
   DrawList draws(scene, Lod::cut, Search::exhaustive, std::pmr::get_default_resource());
-  draws.update(seen, tau, workers);
+  draws.update(cut_query(seen, tau, scene->origin), workers);
 
   GaussianCloud cloud;
   cloud.sh_degree = scene->sh_degree;

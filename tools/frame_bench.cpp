@@ -17,12 +17,17 @@ View make_view(const FrameMaker& maker, const PipelineDesc& desc) {
   return View(maker.scene, maker.backend, desc, std::pmr::get_default_resource(), maker.workers);
 }
 
-Image unseen_image(const FrameInput& frame) {
+Image unseen_image(const FrameEye& eye) {
   Image image;
   image.format = ColorFormat::rgba8;
-  image.width = frame.camera.width;
-  image.height = frame.camera.height;
+  image.width = eye.camera.width;
+  image.height = eye.camera.height;
   return image;
+}
+
+FrameInput unseen(FrameInput frame) {
+  for (FrameEye& eye : frame.eyes) eye.image = unseen_image(eye);
+  return frame;
 }
 
 // The first frame tells whether the backend counts pixels at all.
@@ -41,7 +46,7 @@ FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const Fra
   FrameRun run;
   size_t drawn = 0;
   const auto draw = [&](View& view, const FrameInput& frame) -> const FrameStats& {
-    view.render(frame, unseen_image(frame));
+    view.render(unseen(frame));
     frame_done(++drawn);
     return view.stats();
   };
@@ -72,7 +77,7 @@ std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& 
   View view = make_view(maker, desc);
   std::vector<RgbaImage> images;
   for (const size_t i : chosen) {
-    Image image = unseen_image(frames[i]);
+    Image image = unseen_image(frames[i].eyes[0]);
     RgbaImage& pixels = images.emplace_back(size_t{4} * image.width * image.height);
     image.format = ColorFormat::rgba32f;
     image.color = pixels.data();

@@ -67,33 +67,38 @@ Json to_json(const VoyFrameStats& s) {
 
 }  // namespace
 
-FrameFiles::Output FrameFiles::open(const std::string& path, bool walk) {
-  if (path.empty() || !walk) return {path, nullptr};
+FrameFiles::Output FrameFiles::open(const std::string& path, bool folder) {
+  if (path.empty() || !folder) return {path, nullptr};
   return {"", std::make_unique<OutputFolder>(path)};
 }
 
 FrameFiles::FrameFiles(OutputPaths paths)
     : floats_(paths.floats),
       stats_(std::move(paths.stats)),
-      image_(open(paths.image, paths.walk)),
-      depth_(open(paths.depth, paths.walk)),
-      cut_(open(paths.cut, paths.walk)) {}
+      image_(open(paths.image, paths.images_in)),
+      depth_(open(paths.depth, paths.images_in)),
+      cut_(open(paths.cut, paths.cuts_in)) {}
 
 std::string FrameFiles::Output::place(size_t index, const char* extension) const {
   return folder ? folder->place(fmt::format("{:04}{}", index, extension)) : file;
 }
 
-void FrameFiles::write(size_t index, const Camera& camera, const Renderer& renderer) {
+void FrameFiles::write_image(size_t index, const Camera& camera, const RenderedImage& image) {
   const uint32_t width = camera.width, height = camera.height;
   if (floats_)
-    write_pfm_rgb(image_.place(index, ".pfm"), width, height, renderer.rgba32f());
+    write_pfm_rgb(image_.place(index, ".pfm"), width, height, image.rgba32f);
   else
-    write_png(image_.place(index, ".png"), width, height, renderer.rgba8());
-  if (depth_.wanted()) write_pfm_grey(depth_.place(index, ".pfm"), width, height, renderer.depth());
+    write_png(image_.place(index, ".png"), width, height, image.rgba8);
+  if (depth_.wanted()) write_pfm_grey(depth_.place(index, ".pfm"), width, height, image.depth);
+}
+
+void FrameFiles::write(size_t first, std::span<const Camera> cameras, const Renderer& renderer) {
+  for (size_t eye = 0; eye < cameras.size(); ++eye)
+    write_image(first + eye, cameras[eye], renderer.image(eye));
   if (cut_.wanted()) {
     std::string text;
     for (const uint32_t node : renderer.cut()) text += fmt::format("{}\n", node);
-    write_text(cut_.place(index, ".txt"), text);
+    write_text(cut_.place(first / cameras.size(), ".txt"), text);
   }
   if (!stats_.empty()) frames_.push_back(to_json(renderer.stats()));
 }

@@ -11,11 +11,12 @@
 namespace voyager::tools {
 
 struct OutputPaths {
-  std::string image;  // a .png or .pfm, or a folder for a walk
-  std::string depth;  // "", a .pfm, or a folder
-  std::string cut;    // "", a .txt, or a folder
-  std::string stats;  // "" or a .json
-  bool walk = false;  // the first three are folders; files are 0000.png, ...
+  std::string image;       // a .png or .pfm, or a folder
+  std::string depth;       // "", a .pfm, or a folder
+  std::string cut;         // "", a .txt, or a folder
+  std::string stats;       // "" or a .json
+  bool images_in = false;  // folders: image and depth; files are 0000.png, ...
+  bool cuts_in = false;    // a folder: cut
   bool floats = false;
 };
 
@@ -23,20 +24,22 @@ class FrameFiles {
  public:
   explicit FrameFiles(OutputPaths paths);
 
-  // Writes camera `index`'s image, depth and cut, and keeps its statistics.
-  void write(size_t index, const Camera& camera, const Renderer& renderer);
-  // Puts a walk's files in their places, and writes the statistics.
+  // Writes a frame's images and depths, numbered by camera from `first` on, and its cut, numbered
+  // by frame; and keeps its statistics.
+  void write(size_t first, std::span<const Camera> cameras, const Renderer& renderer);
+  // Puts the files of folders in their places, and writes the statistics.
   void finish(const Renderer& renderer);
 
  private:
-  // One of the outputs: a file, or a folder of a walk.
+  // One of the outputs: a file, or a folder.
   struct Output {
     std::string file;
     std::unique_ptr<OutputFolder> folder;
     bool wanted() const { return !file.empty() || folder; }
     std::string place(size_t index, const char* extension) const;
   };
-  static Output open(const std::string& path, bool walk);
+  static Output open(const std::string& path, bool folder);
+  void write_image(size_t index, const Camera& camera, const RenderedImage& image);
   void write_stats(const Renderer& renderer) const;
 
   bool floats_;

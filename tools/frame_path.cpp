@@ -12,7 +12,7 @@ FrameInput frame_input(const Camera& camera, double tau) {
   const VoyFrustum frustum = camera.frustum();
   FrameInput input;
   input.tau = tau;
-  voyager::Camera& view = input.camera;
+  voyager::Camera& view = input.eyes[0].camera;
   view.eye = {p[0], p[1], p[2]};
   view.world_to_view = world_to_view(normalise(Quatd{q[3], q[0], q[1], q[2]}));
   view.width = camera.width;
@@ -25,6 +25,15 @@ std::vector<FrameInput> frame_path(const std::vector<Camera>& cameras, double ta
   std::vector<FrameInput> path;
   path.reserve(cameras.size());
   for (const Camera& camera : cameras) path.push_back(frame_input(camera, tau));
+  return path;
+}
+
+std::vector<FrameInput> stereo_path(const std::vector<Camera>& cameras, double tau) {
+  std::vector<FrameInput> path;
+  for (size_t i = 0; i + 1 < cameras.size(); i += 2) {
+    path.push_back(frame_input(cameras[i], tau));
+    path.back().eyes.push_back(frame_input(cameras[i + 1], tau).eyes[0]);
+  }
   return path;
 }
 

@@ -89,8 +89,9 @@ FrameWork work_of(const FrameRun& run, const ReportContext& context) {
   work.pairs = mean(run.timed, &FrameStats::pairs_after);
   work.pixels_blended = mean(run.counted, &FrameStats::pixels_blended);
   for (const FrameInput& frame : context.path.frames)
-    work.pixels += double{1} * frame.camera.width * frame.camera.height /
-                   static_cast<double>(context.path.frames.size());
+    for (const FrameEye& eye : frame.eyes)
+      work.pixels += double{1} * eye.camera.width * eye.camera.height /
+                     static_cast<double>(context.path.frames.size());
   work.pixel_bytes = static_cast<double>(pixel_bytes(ColorFormat::rgba8));
   work.attribute_bytes =
       attribute_bytes(mean(run.timed, [](const FrameStats& stats) { return stats.gaussian_bytes; }),

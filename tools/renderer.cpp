@@ -16,6 +16,7 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
   VoyViewDesc desc = VOY_VIEW_DESC_INIT;
   desc.instanceCount = 1;
   desc.scenes = &scene;
+  desc.eyeCount = choices.eyes;
   desc.maxWidth = max_width;
   desc.maxHeight = max_height;
   desc.lod = choices.lod;
@@ -36,41 +37,45 @@ Renderer::Renderer(const std::string& scene, const RenderChoices& choices, uint3
     : choices_(choices),
       device_(create_device(choices.backend)),
       scene_(device_.open_scene(scene)),
-      view_(create_view(device_, scene_.get(), choices, max_width, max_height)) {}
+      view_(create_view(device_, scene_.get(), choices, max_width, max_height)),
+      images_(choices.eyes) {}
 
 bool Renderer::draws_cut() const {
   return choices_.lod == VOY_LOD_CUT && scene_.info().storage != VOY_SCENE_STORAGE_FLAT;
 }
 
-voy::Target Renderer::create_target(const Camera& camera) {
+voy::Target Renderer::create_target(const Camera& camera, RenderedImage& image) const {
   const size_t pixels = size_t{camera.width} * camera.height;
   VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
   desc.width = camera.width;
   desc.height = camera.height;
   if (choices_.floats) {
-    rgba32f_.resize(4 * pixels);
+    image.rgba32f.resize(4 * pixels);
     desc.colorFormat = VOY_COLOR_FORMAT_RGBA32F;
-    desc.color = rgba32f_.data();
+    desc.color = image.rgba32f.data();
   } else {
-    rgba8_.resize(4 * pixels);
-    desc.color = rgba8_.data();
+    image.rgba8.resize(4 * pixels);
+    desc.color = image.rgba8.data();
   }
   if (choices_.depth) {
-    depth_.resize(pixels);
-    desc.depth = depth_.data();
+    image.depth.resize(pixels);
+    desc.depth = image.depth.data();
   }
   return device_.create_target(desc);
 }
 
-void Renderer::render(const Camera& camera) {
-  const voy::Target target = create_target(camera);
-  VoyFrameEye eye = VOY_FRAME_EYE_INIT;
-  eye.pose = camera.pose;
-  eye.frustum = camera.frustum();
-  eye.target = target.get();
+void Renderer::render(std::span<const Camera> cameras) {
+  std::vector<voy::Target> targets;
+  std::vector<VoyFrameEye> eyes(cameras.size(), VoyFrameEye VOY_FRAME_EYE_INIT);
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    targets.push_back(create_target(cameras[i], images_[i]));
+    eyes[i].pose = cameras[i].pose;
+    eyes[i].frustum = cameras[i].frustum();
+    eyes[i].target = targets[i].get();
+  }
   VoyFrame frame = VOY_FRAME_INIT;
-  frame.eyeCount = 1;
-  frame.eyes = &eye;
+  frame.eyeCount = static_cast<uint32_t>(eyes.size());
+  frame.eyes = eyes.data();
   std::copy_n(choices_.background, 3, frame.background);
   view_.render(frame);
 }

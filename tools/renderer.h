@@ -1,5 +1,6 @@
 #pragma once
 // One view of one scene through the public ABI, with the images it renders to.
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,14 @@ struct RenderChoices {
   float background[3] = {0, 0, 0};  // code values, 0 to 1
   bool floats = false;              // RGBA32F instead of RGBA8
   bool depth = false;
+  uint32_t eyes = 1;  // of each frame
+};
+
+// Of an eye.
+struct RenderedImage {
+  std::vector<uint8_t> rgba8;  // or, with RenderChoices::floats,
+  std::vector<float> rgba32f;
+  std::vector<float> depth;
 };
 
 class Renderer {
@@ -29,12 +38,11 @@ class Renderer {
   Renderer(const std::string& scene, const RenderChoices& choices, uint32_t max_width,
            uint32_t max_height);
 
-  void render(const Camera& camera);
+  // One an eye.
+  void render(std::span<const Camera> cameras);
 
   // Of the last frame.
-  const std::vector<uint8_t>& rgba8() const { return rgba8_; }
-  const std::vector<float>& rgba32f() const { return rgba32f_; }
-  const std::vector<float>& depth() const { return depth_; }
+  const RenderedImage& image(size_t eye) const { return images_[eye]; }
   bool draws_cut() const;
   std::vector<uint32_t> cut() const { return view_.cut(); }
   VoyFrameStats stats() const { return view_.stats(); }
@@ -42,14 +50,13 @@ class Renderer {
   std::string device_name() const { return device_.capabilities().deviceName; }
 
  private:
-  voy::Target create_target(const Camera& camera);
+  voy::Target create_target(const Camera& camera, RenderedImage& image) const;
 
   RenderChoices choices_;
   voy::Device device_;
   voy::Scene scene_;
   voy::View view_;
-  std::vector<uint8_t> rgba8_;
-  std::vector<float> rgba32f_, depth_;
+  std::vector<RenderedImage> images_;
 };
 
 }  // namespace voyager::tools

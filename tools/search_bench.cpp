@@ -65,7 +65,7 @@ std::vector<CutQuery> cut_path(const std::vector<Camera>& cameras, double tau,
                                const Vec3d& origin) {
   std::vector<CutQuery> path;
   for (const FrameInput& frame : frame_path(cameras, tau))
-    path.push_back(cut_query(frame.camera, frame.tau, origin));
+    path.push_back(cut_query(frame, 0, origin));
   return path;
 }
 

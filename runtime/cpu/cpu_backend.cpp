@@ -1,6 +1,6 @@
 #include "runtime/cpu/cpu_backend.h"
 
-#include <numeric>
+#include <deque>
 
 #include "runtime/base/error.h"
 #include "runtime/cpu/bin.h"
@@ -26,14 +26,11 @@ class CpuPipeline final : public HostPipeline {
       : desc_(desc),
         workers_(workers),
         instances_(scenes, desc, kProjectBlock, memory),
-        lut_(memory),
-        splats_(memory),
-        visible_(memory),
         keys_(memory),
         order_(memory),
         bins_(memory),
-        pixels_(memory),
-        depth_(memory) {
+        lut_(memory) {
+    for (uint32_t eye = 0; eye < desc.eyes; ++eye) eyes_.emplace_back(memory);
     if (desc.exponential != Exponential::lut) return;
     lut_.resize(desc.lut_size + 1);
     fill_alpha_lut(desc.lut_size, lut_.data());
@@ -41,93 +38,121 @@ class CpuPipeline final : public HostPipeline {
 
   void search(const FrameInput& frame) override { instances_.update(frame, workers_); }
   void project(const FrameInput& frame) override;
-  void project(const HostInstance& instance);
-  void sort(const FrameInput& frame) override;
-  void bin(const FrameInput& frame) override;
-  void rasterize(const FrameInput& frame) override;
-  void write(const FrameInput& frame, const Image& image) override {
+  void sort(size_t eye) override;
+  void bin(const FrameInput& frame, size_t eye) override;
+  void rasterize(const FrameInput& frame, size_t eye) override;
+  void write(const FrameInput& frame, size_t eye) override {
+    const Eye& of = eyes_[eye];
     resolve_image(
-        frame, image, workers_, [&](size_t i) -> const Pixel& { return pixels_[i]; },
-        [&](size_t i) { return depth_[i]; });
+        frame.eyes[eye].image, frame.background, workers_,
+        [&](size_t i) -> const Pixel& { return of.pixels[i]; },
+        [&](size_t i) { return of.depth[i]; });
   }
 
-  void collect(FrameStats& stats) const override {
-    instances_.collect(stats);
-    stats.splats = order_.size();
-    stats.pairs_before = bins_.pairs_before();
-    stats.pairs_after = bins_.pairs_after();
+  void collect_eye(FrameStats& stats) const override {
+    stats.splats += order_.size();
+    stats.pairs_before += bins_.pairs_before();
+    stats.pairs_after += bins_.pairs_after();
   }
+  void collect(FrameStats& stats) const override { instances_.collect(stats); }
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
     cut = instances_.cut(instance);
   }
   bool cut_is_near() const override { return true; }
 
  private:
+  struct Eye {
+    explicit Eye(std::pmr::memory_resource* memory)
+        : splats(memory), visible(memory), pixels(memory), depth(memory) {}
+    std::pmr::vector<Splat> splats;      // of a block of places, from its first on
+    std::pmr::vector<uint32_t> visible;  // splats of each block
+    std::pmr::vector<Pixel> pixels;
+    std::pmr::vector<float> depth;
+  };
+
+  template <int kEyes>
+  void project_instance(const HostInstance& instance);
+
   PipelineDesc desc_;
   Workers& workers_;
   HostInstances instances_;
-  std::pmr::vector<float> lut_;
-  std::pmr::vector<Splat> splats_;      // of a block of places, from its first on
-  std::pmr::vector<uint32_t> visible_;  // splats of each block
+  std::deque<Eye> eyes_;  // which are never moved
+  // Of the eye in turn.
   std::pmr::vector<uint64_t> keys_;
   std::pmr::vector<uint32_t> order_;  // splats by depth
   TileBins bins_;
-  std::pmr::vector<Pixel> pixels_;
-  std::pmr::vector<float> depth_;
+  std::pmr::vector<float> lut_;
 };
 
 void CpuPipeline::project(const FrameInput&) {
   const size_t places = instances_.places();
-  if (splats_.size() < places) splats_.resize(places);
-  visible_.assign((places + kProjectBlock - 1) / kProjectBlock, 0);
-  for (const HostInstance& instance : instances_.all()) project(instance);
+  for (Eye& eye : eyes_) {
+    if (eye.splats.size() < places) eye.splats.resize(places);
+    eye.visible.assign((places + kProjectBlock - 1) / kProjectBlock, 0);
+  }
+  for (const HostInstance& instance : instances_.all())
+    eyes_.size() == 1 ? project_instance<1>(instance) : project_instance<2>(instance);
 }
 
-void CpuPipeline::project(const HostInstance& instance) {
+template <int kEyes>
+void CpuPipeline::project_instance(const HostInstance& instance) {
   const auto& items = instance.draws.items();
-  const ProjectParams params = project_params(*instance.scene, instance.camera, desc_.exponential);
+  ProjectParams params[kEyes];
+  for (size_t eye = 0; eye < kEyes; ++eye)
+    params[eye] = project_params(*instance.scene, instance.cameras[eye], desc_.exponential);
   const GaussianArrays arrays = gaussian_arrays(*instance.scene);
   workers_.for_blocks(items.size(), kProjectBlock, [&](size_t begin, size_t end) {
     const size_t first = instance.first + begin;
-    size_t out = first;
-    for (size_t i = begin; i < end; ++i)
-      out += voyager::project(params, arrays, items[i], splats_[out]);
-    visible_[first / kProjectBlock] = static_cast<uint32_t>(out - first);
+    size_t out[kEyes];
+    for (size_t& at : out) at = first;
+    for (size_t i = begin; i < end; ++i) {
+      Splat splats[kEyes];
+      const unsigned seen = voyager::project<kEyes>(params, arrays, items[i], splats);
+      for (size_t eye = 0; eye < kEyes; ++eye)
+        if ((seen >> eye & 1u) != 0) eyes_[eye].splats[out[eye]++] = splats[eye];
+    }
+    for (size_t eye = 0; eye < kEyes; ++eye)
+      eyes_[eye].visible[first / kProjectBlock] = static_cast<uint32_t>(out[eye] - first);
   });
 }
 
-void CpuPipeline::sort(const FrameInput&) {
+void CpuPipeline::sort(size_t eye) {
+  const Eye& of = eyes_[eye];
   keys_.clear();
-  for (size_t block = 0; block < visible_.size(); ++block)
-    for (size_t i = 0; i < visible_[block]; ++i) {
+  for (size_t block = 0; block < of.visible.size(); ++block)
+    for (size_t i = 0; i < of.visible[block]; ++i) {
       const auto index = static_cast<uint32_t>(block * kProjectBlock + i);
-      keys_.push_back(depth_key(splats_[index].depth, index));
+      keys_.push_back(depth_key(of.splats[index].depth, index));
     }
   sort_by_depth(keys_, workers_);
   order_.resize(keys_.size());
   for (size_t i = 0; i < keys_.size(); ++i) order_[i] = depth_key_index(keys_[i]);
 }
 
-void CpuPipeline::bin(const FrameInput& frame) {
-  bins_.build(splats_.data(), order_, tile_grid(frame.camera.width, frame.camera.height),
+void CpuPipeline::bin(const FrameInput& frame, size_t eye) {
+  const Camera& camera = frame.eyes[eye].camera;
+  bins_.build(eyes_[eye].splats.data(), order_, tile_grid(camera.width, camera.height),
               desc_.alpha_filter, workers_);
 }
 
-void CpuPipeline::rasterize(const FrameInput& frame) {
-  const size_t count = size_t{frame.camera.width} * frame.camera.height;
-  if (pixels_.size() < count) pixels_.resize(count);
-  const bool limits = frame.limits.values != nullptr, depth = frame.depth_wanted || limits;
-  if (depth && depth_.size() < count) depth_.resize(count);
-  const RasterParams params{splats_.data(),
+void CpuPipeline::rasterize(const FrameInput& frame, size_t eye) {
+  Eye& of = eyes_[eye];
+  const FrameEye& wanted = frame.eyes[eye];
+  const uint32_t width = wanted.camera.width, height = wanted.camera.height;
+  const size_t count = size_t{width} * height;
+  if (of.pixels.size() < count) of.pixels.resize(count);
+  const bool limits = wanted.limits.values != nullptr, depth = wanted.depth_wanted || limits;
+  if (depth && of.depth.size() < count) of.depth.resize(count);
+  const RasterParams params{of.splats.data(),
                             lut_.data(),
                             static_cast<float>(desc_.lut_size) / kLutRange,
-                            frame.camera.width,
-                            frame.camera.height,
-                            pixels_.data(),
-                            depth ? depth_.data() : nullptr,
-                            frame.limits};
+                            width,
+                            height,
+                            of.pixels.data(),
+                            depth ? of.depth.data() : nullptr,
+                            wanted.limits};
   const RasterizeTile run = pick_rasterizer(desc_.exponential, desc_.alpha_filter, depth, limits);
-  const TileGrid grid = tile_grid(frame.camera.width, frame.camera.height);
+  const TileGrid grid = tile_grid(width, height);
   const auto columns = static_cast<uint32_t>(grid.columns);
   workers_.for_blocks(size_t{columns} * static_cast<size_t>(grid.rows), 1,
                       [&](size_t index, size_t) {

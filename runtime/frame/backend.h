@@ -37,6 +37,7 @@ struct PipelineDesc {
   Exponential exponential = Exponential::exact;
   uint32_t lut_size = 32;
   Splatting splatting = Splatting::ours;
+  uint32_t eyes = 1;          // of each frame, up to kMaxEyes
   bool count_pixels = false;  // fill FrameStats::pixels_..., at a cost; for measurements
 };
 
@@ -87,14 +88,20 @@ struct Image {
   ExternalTarget external = {};
 };
 
-struct FrameInput {
+struct FrameEye {
   Camera camera;
-  std::vector<InstancePose> instances;  // one an instance of the view; none: all at the identity
-  double tau = 3;
-  Vec3f background{0, 0, 0};
+  Image image;  // of the camera's size
   bool depth_wanted = false;
   // In host memory, read by draw(). A splat whose z exceeds the pixel's is not blended there.
   DepthLimits limits;
+};
+
+// The eyes share the search: their cut is that of the point amid them, at the smallest τ*.
+struct FrameInput {
+  std::vector<FrameEye> eyes{1};        // as many as the view has
+  std::vector<InstancePose> instances;  // one an instance of the view; none: all at the identity
+  double tau = 3;
+  Vec3f background{0, 0, 0};
 };
 
 enum Stage { kSearch, kProject, kSort, kBin, kRasterize, kResolve, kStageCount };
@@ -106,7 +113,7 @@ struct FrameStats {
   bool changes_counted = true;         // entered and left are the searches' own
   float tau_star = 0;
   Vec3f cut_centre{0, 0, 0};  // the first instance's, in its scene's coordinates
-  // Sums over the instances, as all that follows.
+  // Sums over the instances, as all that follows; from splats on over the eyes, too.
   uint64_t nodes_total = 0, nodes_tested = 0, subtrees_visited = 0, chunks_read = 0, bytes_read = 0;
   uint64_t cut_size = 0, entered = 0, left = 0;
   uint64_t splats = 0, pairs_before = 0, pairs_after = 0;
@@ -127,14 +134,14 @@ using Scenes = std::vector<std::shared_ptr<const Scene>>;
 class Pipeline {
  public:
   virtual ~Pipeline() = default;
-  // Runs the stages but for the last and sets what it knows of stats. Reads the image's
-  // size and format; only resolve() writes to it, after all else that may fail.
-  virtual void draw(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
-  virtual void resolve(const FrameInput& frame, const Image& image, FrameStats& stats) = 0;
-  // As draw() and resolve(), into a ring of another API, but leaves the frame under way.
+  // Runs the stages but for the last and sets what it knows of stats. Reads the images'
+  // sizes and formats; only resolve() writes to them, after all else that may fail.
+  virtual void draw(const FrameInput& frame, FrameStats& stats) = 0;
+  virtual void resolve(const FrameInput& frame, FrameStats& stats) = 0;
+  // As draw() and resolve(), into rings of another API, but leaves the frame under way.
   // checked: room that is too small is found out first; else the frame is what it can be.
   // Where it throws, nothing is waited for and nothing signalled.
-  virtual void submit(const FrameInput&, const Image&, bool) {
+  virtual void submit(const FrameInput&, bool) {
     throw Error(ErrorCode::unsupported,
                 "target: found another API's memory, expected the host's: this pipeline draws "
                 "into no other");
@@ -185,5 +192,6 @@ inline constexpr uint32_t kMaxImageSide =
     16384;  // pixels; 2^20 tiles of 16 x 16 then fit a 32-bit key
 // Of a view. Each costs a search, a projection and their launches, however little it draws.
 inline constexpr uint32_t kMaxInstances = 64;
+inline constexpr uint32_t kMaxEyes = 2;
 
 }  // namespace voyager

@@ -34,10 +34,9 @@ void DrawList::list_leaves() {
   for (const uint32_t node : scene_->leaves) leaves_.push_back({node, kNoNode, 1.0f, 1.0f});
 }
 
-void DrawList::update(const Camera& camera, double tau, Workers& workers) {
+void DrawList::update(const CutQuery& query, Workers& workers) {
   if (leaves_missing_) throw Error(ErrorCode::damaged_chunk, scene_->damaged[0].message);
-  if (!search_) return;
-  search_->run(cut_query(camera, tau, scene_->origin), workers);
+  if (search_) search_->run(query, workers);
 }
 
 void DrawList::collect(FrameStats& stats) const {

@@ -16,9 +16,9 @@ class DrawList {
   DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
            std::pmr::memory_resource* memory);
 
-  // camera: in the scene's coordinates. Throws Error(damaged_chunk) where the frame needs a node
-  // that is not there. After a call that threw, the next is right all the same.
-  void update(const Camera& camera, double tau, Workers& workers);
+  // Throws Error(damaged_chunk) where the frame needs a node that is not there. After a call
+  // that threw, the next is right all the same.
+  void update(const CutQuery& query, Workers& workers);
 
   // Index in items() is the tie-breaker of the sort: node ids ascend in a cut,
   // input indices where every leaf is drawn.

@@ -1,6 +1,7 @@
 #include "runtime/frame/host_instances.h"
 
 #include "runtime/base/error.h"
+#include "runtime/frame/frame_search.h"
 #include "runtime/frame/instance.h"
 
 namespace voyager {
@@ -15,8 +16,9 @@ void HostInstances::update(const FrameInput& frame, Workers& workers) {
   places_ = 0;
   for (size_t i = 0; i < all_.size(); ++i) {
     HostInstance& instance = all_[i];
-    instance.camera = instance_camera(frame, i);
-    instance.draws.update(instance.camera, frame.tau, workers);
+    for (size_t eye = 0; eye < frame.eyes.size(); ++eye)
+      instance.cameras[eye] = instance_camera(frame, frame.eyes[eye], i);
+    instance.draws.update(cut_query(frame, i, instance.scene->origin), workers);
     instance.first = (places_ + grain_ - 1) / grain_ * grain_;
     places_ = instance.first + instance.draws.items().size();
   }

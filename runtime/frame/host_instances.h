@@ -1,5 +1,6 @@
 #pragma once
 // What a frame draws of each of a view's instances, on the host.
+#include <array>
 #include <deque>
 
 #include "runtime/frame/draw_list.h"
@@ -14,7 +15,7 @@ struct HostInstance {
   std::shared_ptr<const Scene> scene;
   DrawList draws;
   // Of the frame.
-  Camera camera;     // in the scene's coordinates
+  std::array<Camera, kMaxEyes> cameras;  // in the scene's coordinates
   size_t first = 0;  // the place of the first item
 };
 

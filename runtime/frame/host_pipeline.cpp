@@ -4,21 +4,24 @@
 
 namespace voyager {
 
-void HostPipeline::draw(const FrameInput& frame, const Image&, FrameStats& stats) {
+void HostPipeline::draw(const FrameInput& frame, FrameStats& stats) {
   Stopwatch total, stage;
-  const auto lap = [&](Stage s) { stats.milliseconds[s] = stage.lap(); };
+  const auto lap = [&](Stage s) { stats.milliseconds[s] += stage.lap(); };
   search(frame), lap(kSearch);
   project(frame), lap(kProject);
-  sort(frame), lap(kSort);
-  bin(frame), lap(kBin);
-  rasterize(frame), lap(kRasterize);
+  for (size_t eye = 0; eye < frame.eyes.size(); ++eye) {
+    sort(eye), lap(kSort);
+    bin(frame, eye), lap(kBin);
+    rasterize(frame, eye), lap(kRasterize);
+    collect_eye(stats);
+  }
   stats.total_milliseconds = total.milliseconds();
   collect(stats);
 }
 
-void HostPipeline::resolve(const FrameInput& frame, const Image& image, FrameStats& stats) {
+void HostPipeline::resolve(const FrameInput& frame, FrameStats& stats) {
   const Stopwatch stage;
-  write(frame, image);
+  for (size_t eye = 0; eye < frame.eyes.size(); ++eye) write(frame, eye);
   stats.milliseconds[kResolve] = stage.milliseconds();
   stats.total_milliseconds += stats.milliseconds[kResolve];
 }

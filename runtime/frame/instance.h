@@ -22,10 +22,10 @@ inline Camera camera_in_scene(const Camera& camera, const InstancePose& pose) {
   return moved;
 }
 
-// Of the view's instance with that index.
-inline Camera instance_camera(const FrameInput& frame, size_t instance) {
-  if (frame.instances.empty()) return frame.camera;
-  return camera_in_scene(frame.camera, frame.instances[instance]);
+// An eye's, of the view's instance with that index.
+inline Camera instance_camera(const FrameInput& frame, const FrameEye& eye, size_t instance) {
+  if (frame.instances.empty()) return eye.camera;
+  return camera_in_scene(eye.camera, frame.instances[instance]);
 }
 
 }  // namespace voyager

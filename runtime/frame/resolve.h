@@ -36,16 +36,16 @@ inline void store_color(ColorFormat format, const float (&rgba)[4], uint8_t* row
 // pixel(i) gives the i-th pixel's premultiplied r, g, b and its transmittance
 // as members; depth(i) its depth. Any type that converts to float.
 template <class PixelAt, class DepthAt>
-void resolve_image(const FrameInput& frame, const Image& image, Workers& workers,
+void resolve_image(const Image& image, const Vec3f& background, Workers& workers,
                    const PixelAt& pixel, const DepthAt& depth) {
   auto* const color = static_cast<uint8_t*>(image.color);
   const auto row = [&](size_t y) {
     for (size_t x = 0; x < image.width; ++x) {
       const size_t i = y * image.width + x;
       const auto& p = pixel(i);
-      const float rgba[4] = {static_cast<float>(p.r + p.transmittance * frame.background.x),
-                             static_cast<float>(p.g + p.transmittance * frame.background.y),
-                             static_cast<float>(p.b + p.transmittance * frame.background.z),
+      const float rgba[4] = {static_cast<float>(p.r + p.transmittance * background.x),
+                             static_cast<float>(p.g + p.transmittance * background.y),
+                             static_cast<float>(p.b + p.transmittance * background.z),
                              static_cast<float>(1 - p.transmittance)};
       if (color != nullptr) store_color(image.format, rgba, color + y * image.color_pitch, x);
       if (image.depth != nullptr)

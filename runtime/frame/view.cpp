@@ -69,18 +69,18 @@ void View::keep_cuts(bool read) {
 FrameStats View::known_stats(const FrameInput& frame) const {
   FrameStats stats;
   for (const auto& scene : scenes_) stats.nodes_total += scene->tree.size();
-  const CutQuery query = cut_query(instance_camera(frame, 0), frame.tau, scenes_[0]->origin);
+  const CutQuery query = cut_query(frame, 0, scenes_[0]->origin);
   stats.tau_star = query.target_size;
   stats.cut_centre = query.centre;
   return stats;
 }
 
-void View::draw(const FrameInput& frame, const Image& image, bool follows) {
+void View::draw(const FrameInput& frame, bool follows) {
   while (finish_one(true)) continue;
   FrameStats stats = known_stats(frame);
-  pipeline_->draw(frame, image, stats);
+  pipeline_->draw(frame, stats);
   const bool read = read_changes(follows, stats);
-  pipeline_->resolve(frame, image, stats);
+  pipeline_->resolve(frame, stats);
   stats.frame_index = frames_++;
   keep_cuts(read);
   stats_ = stats;
@@ -88,13 +88,13 @@ void View::draw(const FrameInput& frame, const Image& image, bool follows) {
 }
 
 // A frame whose changes are not counted has its cut read, once its search has ended.
-void View::submit(const FrameInput& frame, const Image& image, bool follows) {
+void View::submit(const FrameInput& frame, bool follows) {
   while (finish_one(false)) continue;
   const bool counted = follows && pipeline_->counts_changes();
   under_way_.push_back({known_stats(frame), !counted});
   UnderWay& now = under_way_.back();
   try {
-    pipeline_->submit(frame, image, frames_ == 0 || !counted);
+    pipeline_->submit(frame, frames_ == 0 || !counted);
   } catch (...) {
     under_way_.pop_back();
     throw;
@@ -125,17 +125,19 @@ bool View::finish_one(bool wait) {
   return true;
 }
 
-void View::render(const FrameInput& frame, const Image& image) {
+void View::render(const FrameInput& frame) {
   assert(frame.instances.empty() || frame.instances.size() == scenes_.size());
-  for (size_t i = 0; i < scenes_.size(); ++i)
-    check_camera(instance_camera(frame, i), *scenes_[i],
-                 frame.instances.empty() ? "" : " in instance " + std::to_string(i));
+  assert(frame.eyes.size() == desc_.eyes);
+  for (const FrameEye& eye : frame.eyes)
+    for (size_t i = 0; i < scenes_.size(); ++i)
+      check_camera(instance_camera(frame, eye, i), *scenes_[i],
+                   frame.instances.empty() ? "" : " in instance " + std::to_string(i));
   const bool follows = follows_;  // the search's last run was the last frame's
   follows_ = false;
-  if (image.external.ring != nullptr)
-    submit(frame, image, follows);
+  if (frame.eyes[0].image.external.ring != nullptr)
+    submit(frame, follows);
   else
-    draw(frame, image, follows);
+    draw(frame, follows);
   follows_ = true;
 }
 

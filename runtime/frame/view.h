@@ -17,10 +17,16 @@ class View {
        std::pmr::memory_resource* memory, Workers& workers)
       : View(Scenes{std::move(scene)}, backend, desc, memory, workers) {}
 
-  // Runs the stages and fills the image. The frame has no pose, or one an instance. Throws
-  // Error(damaged_chunk) where the frame needs one, Error(invalid_argument) for a camera
-  // that METHOD §3 excludes in any scene's coordinates; the image is untouched then.
-  void render(const FrameInput& frame, const Image& image);
+  // Runs the stages and fills the images, all in host memory or all of another API. The frame
+  // has no pose, or one an instance. Throws Error(damaged_chunk) where the frame needs one,
+  // Error(invalid_argument) for a camera that METHOD §3 excludes in any scene's coordinates;
+  // the images are untouched then.
+  void render(const FrameInput& frame);
+  // Of one eye.
+  void render(FrameInput frame, const Image& image) {
+    frame.eyes[0].image = image;
+    render(frame);
+  }
 
   size_t instances() const { return scenes_.size(); }
   bool draws_cut(size_t instance) const {
@@ -50,8 +56,8 @@ class View {
   };
 
   FrameStats known_stats(const FrameInput& frame) const;
-  void draw(const FrameInput& frame, const Image& image, bool follows);
-  void submit(const FrameInput& frame, const Image& image, bool follows);
+  void draw(const FrameInput& frame, bool follows);
+  void submit(const FrameInput& frame, bool follows);
   // Whether one ended.
   bool finish_one(bool wait);
   // Whether the frame's cuts are now in cuts_.

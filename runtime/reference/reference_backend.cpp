@@ -1,6 +1,7 @@
 #include "runtime/reference/reference_backend.h"
 
 #include <cmath>
+#include <deque>
 #include <limits>
 
 #include "runtime/base/error.h"
@@ -54,71 +55,86 @@ class ReferencePipeline final : public HostPipeline {
       : alpha_filter_(desc.alpha_filter),
         workers_(workers),
         instances_(scenes, desc, 1, memory),
-        splats_(memory),
-        visible_(memory),
-        keys_(memory),
-        pixels_(memory) {}
+        keys_(memory) {
+    for (uint32_t eye = 0; eye < desc.eyes; ++eye) eyes_.emplace_back(memory);
+  }
 
   void search(const FrameInput& frame) override { instances_.update(frame, workers_); }
 
   void project(const FrameInput&) override {
-    splats_.resize(instances_.places());
-    visible_.assign(instances_.places(), 0);
-    for (const HostInstance& instance : instances_.all()) project(instance);
+    for (size_t eye = 0; eye < eyes_.size(); ++eye) {
+      eyes_[eye].splats.resize(instances_.places());
+      eyes_[eye].visible.assign(instances_.places(), 0);
+      for (const HostInstance& instance : instances_.all()) project(instance, eye);
+    }
   }
 
-  void sort(const FrameInput&) override {
+  void sort(size_t eye) override {
+    const Eye& of = eyes_[eye];
     keys_.clear();
-    for (size_t i = 0; i < splats_.size(); ++i)
-      if (visible_[i]) keys_.push_back(depth_key(splats_[i].depth, static_cast<uint32_t>(i)));
+    for (size_t i = 0; i < of.splats.size(); ++i)
+      if (of.visible[i])
+        keys_.push_back(depth_key(of.splats[i].depth, static_cast<uint32_t>(i)));
     sort_by_depth(keys_, workers_);
   }
 
-  void bin(const FrameInput&) override {}
+  void bin(const FrameInput&, size_t) override {}
 
-  void rasterize(const FrameInput& frame) override {
-    const size_t width = frame.camera.width;
-    pixels_.assign(width * frame.camera.height, Pixel{});
-    if (frame.limits.values != nullptr)
-      for (size_t i = 0; i < pixels_.size(); ++i)
-        pixels_[i].limit = frame.limits.at(i % width, i / width);
-    workers_.for_blocks(frame.camera.height, kBandRows, [&](size_t begin, size_t end) {
+  void rasterize(const FrameInput& frame, size_t eye) override {
+    const FrameEye& wanted = frame.eyes[eye];
+    const size_t width = wanted.camera.width, height = wanted.camera.height;
+    const std::pmr::vector<Splat>& splats = eyes_[eye].splats;
+    std::pmr::vector<Pixel>& pixels = eyes_[eye].pixels;
+    pixels.assign(width * height, Pixel{});
+    if (wanted.limits.values != nullptr)
+      for (size_t i = 0; i < pixels.size(); ++i)
+        pixels[i].limit = wanted.limits.at(i % width, i / width);
+    workers_.for_blocks(height, kBandRows, [&](size_t begin, size_t end) {
       for (const uint64_t key : keys_) {
-        const Splat& s = splats_[depth_key_index(key)];
+        const Splat& s = splats[depth_key_index(key)];
         const auto rows =
             alpha_filter_ ? covered(s.y, s.half_height, begin, end) : std::pair(begin, end);
         const auto columns =
             alpha_filter_ ? covered(s.x, s.half_width, 0, width) : std::pair(size_t{0}, width);
         for (size_t y = rows.first; y < rows.second; ++y)
           for (size_t x = columns.first; x < columns.second; ++x)
-            blend(s, static_cast<double>(x), static_cast<double>(y), pixels_[y * width + x]);
+            blend(s, static_cast<double>(x), static_cast<double>(y), pixels[y * width + x]);
       }
     });
   }
 
-  void write(const FrameInput& frame, const Image& image) override {
+  void write(const FrameInput& frame, size_t eye) override {
+    const std::pmr::vector<Pixel>& pixels = eyes_[eye].pixels;
     resolve_image(
-        frame, image, workers_, [&](size_t i) -> const Pixel& { return pixels_[i]; },
-        [&](size_t i) { return pixels_[i].depth; });
+        frame.eyes[eye].image, frame.background, workers_,
+        [&](size_t i) -> const Pixel& { return pixels[i]; },
+        [&](size_t i) { return pixels[i].depth; });
   }
 
-  void collect(FrameStats& stats) const override {
-    instances_.collect(stats);
-    stats.splats = keys_.size();
-  }
+  void collect_eye(FrameStats& stats) const override { stats.splats += keys_.size(); }
+  void collect(FrameStats& stats) const override { instances_.collect(stats); }
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
     cut = instances_.cut(instance);
   }
   bool cut_is_near() const override { return true; }
 
  private:
-  void project(const HostInstance& instance) {
+  struct Eye {
+    explicit Eye(std::pmr::memory_resource* memory)
+        : splats(memory), visible(memory), pixels(memory) {}
+    std::pmr::vector<Splat> splats;
+    std::pmr::vector<uint8_t> visible;
+    std::pmr::vector<Pixel> pixels;
+  };
+
+  void project(const HostInstance& instance, size_t eye) {
+    Eye& of = eyes_[eye];
     const auto& items = instance.draws.items();
     workers_.for_blocks(items.size(), kBlock, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
-        if (const auto splat = reference::project(*instance.scene, instance.camera, items[i])) {
-          splats_[instance.first + i] = *splat;
-          visible_[instance.first + i] = 1;
+        if (const auto splat = reference::project(*instance.scene, instance.cameras[eye], items[i])) {
+          of.splats[instance.first + i] = *splat;
+          of.visible[instance.first + i] = 1;
         }
     });
   }
@@ -135,10 +151,8 @@ class ReferencePipeline final : public HostPipeline {
   bool alpha_filter_;
   Workers& workers_;
   HostInstances instances_;
-  std::pmr::vector<Splat> splats_;
-  std::pmr::vector<uint8_t> visible_;
-  std::pmr::vector<uint64_t> keys_;
-  std::pmr::vector<Pixel> pixels_;
+  std::deque<Eye> eyes_;  // which are never moved
+  std::pmr::vector<uint64_t> keys_;  // of the eye in turn
 };
 
 class ReferenceBackend final : public Backend {

@@ -61,7 +61,7 @@ TEST_F(SplatExtreme, FacadesAndTheNearPlane) {
   EXPECT_EQ(expect_sound(near_plane_shot(false)).stats.splats, 0u);
   ExtremeShot shot = near_plane_shot(true);
   EXPECT_EQ(expect_sound(shot).stats.splats, 1u);
-  shot.input.camera.near_z = 1e-4;
+  shot.input.eyes[0].camera.near_z = 1e-4;
   EXPECT_GT(expect_sound(shot).at(9, 9)[0], 0.9f);
 }
 
@@ -91,7 +91,7 @@ TEST_F(SplatExtreme, EarthCentredWithMillimetreSteps) {
     const FrameInput near =
         frame_input(look({0.001 * step, -1, -14}, {0.001 * step, 0, 0}, 160, 120));
     FrameInput far = near;
-    far.camera.eye = far.camera.eye + there->origin;
+    far.eyes[0].camera.eye = far.eyes[0].camera.eye + there->origin;
     const Frame a = render(*near_view, near), b = render(*far_view, far);
     const Difference d = compare(a, b);
     EXPECT_GT(d.psnr, 70);
@@ -111,7 +111,7 @@ TEST_F(SplatExtreme, EarthCentredTreesWithMillimetreSteps) {
   for (int step = 0; step < 8; ++step) {
     FrameInput input =
         frame_input(look({0.001 * step, -1, -24}, {0.001 * step, 0, 0}, 160, 120), 6);
-    input.camera.eye = input.camera.eye + Vec3d{cloud.origin[0], cloud.origin[1], cloud.origin[2]};
+    input.eyes[0].camera.eye = input.eyes[0].camera.eye + Vec3d{cloud.origin[0], cloud.origin[1], cloud.origin[2]};
     with_reference.add(render(*own, input), render(*exact, input));
   }
   with_reference.expect();

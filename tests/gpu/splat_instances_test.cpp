@@ -159,7 +159,7 @@ TEST_F(SplatInstances, ADamagedChunkFailsTheFramesThatNeedIt) {
   good.instances = {InstancePose{}, pose_of({0, 0, 1e7})};
   FrameInput bad = good;
   bad.instances[1] = InstancePose{};
-  bad.tau = 0, bad.camera = look({0, 1, 0}, {1, 0, 0}, 60, 40);
+  bad.tau = 0, bad.eyes[0].camera = look({0, 1, 0}, {1, 0, 0}, 60, 40);
   const auto view = view_of(*cuda, scenes);
   const Frame before = render(*view, good);
   GuardedImage image(ColorFormat::rgba8, 60, 40);

@@ -64,10 +64,10 @@ TEST_F(SplatLimit, InfinityAndNanAreNoneWithAnyExponential) {
         for (const bool filter : {true, false}) {
           SCOPED_TRACE(named.name + ", filter " + std::to_string(filter));
           named.desc.alpha_filter = filter;
-          input.depth_wanted = filter;
+          input.eyes[0].depth_wanted = filter;
           const Frame without = draw(scene, named.desc, input);
           for (const float none : {INFINITY, NAN}) {
-            const LimitImage limits(input.camera, none);
+            const LimitImage limits(input.eyes[0].camera, none);
             expect_same_bits(without, draw(scene, named.desc, limited(input, limits)));
           }
         }
@@ -88,7 +88,7 @@ TEST_F(SplatLimit, EndsPixelsAndChangesNothingBefore) {
           ASSERT_LE(frame.rgba[4 * i + 3], whole.rgba[4 * i + 3]);
           ASSERT_EQ(frame.depth[i], reached ? whole.depth[i] : INFINITY) << limit;
         }
-        const LimitImage nothing(input.camera, 0.0f);
+        const LimitImage nothing(input.eyes[0].camera, 0.0f);
         const Frame hidden = draw(scene, named.desc, limited(input, nothing));
         for (const float value : hidden.rgba) ASSERT_EQ(value, 0.0f);
         for (const float z : hidden.depth) ASSERT_EQ(z, INFINITY);
@@ -102,18 +102,18 @@ TEST_F(SplatLimit, EncodingsAreDecodedAsOnTheHost) {
     for (const DepthForm form : {DepthForm::standard, DepthForm::reversed})
       for (const double far : {100.0, double{INFINITY}}) {
         const DepthEncoding encoding = depth_encoding(form, 0.1, far);
-        LimitImage raw(input.camera, 0), metres(input.camera, 0);
+        LimitImage raw(input.eyes[0].camera, 0), metres(input.eyes[0].camera, 0);
         std::mt19937 random(5);
-        for (size_t y = 0; y < input.camera.height; ++y)
-          for (size_t x = 0; x < input.camera.width; ++x) {
+        for (size_t y = 0; y < input.eyes[0].camera.height; ++y)
+          for (size_t x = 0; x < input.eyes[0].camera.width; ++x) {
             const float d = static_cast<float>(random() % 4096) / 4096 * 0.02f;
             raw.at(x, y) = form == DepthForm::reversed ? d : 1 - d;
             if (random() % 16 == 0) raw.at(x, y) = static_cast<float>(random() % 8) - 3;
             metres.at(x, y) = depth_limit(encoding, raw.at(x, y));
           }
-        input.limits = raw.limits(encoding);
+        input.eyes[0].limits = raw.limits(encoding);
         const Frame found = draw(scene, {}, input);
-        input.limits = metres.limits();
+        input.eyes[0].limits = metres.limits();
         expect_same_bits(found, draw(scene, {}, input));
       }
 }
@@ -128,8 +128,8 @@ TEST_F(SplatLimit, IsOfOneFrameWhateverWasDrawnBefore) {
     for (const bool with_limits : {true, false, true}) {
       FrameInput input = frame_input(look({3, -6, -24}, {0, 0, 0}, width, width / 2));
       const Frame without = draw(scene, {}, input);
-      const LimitImage limits(input.camera, 18);
-      if (with_limits) input.limits = limits.limits();
+      const LimitImage limits(input.eyes[0].camera, 18);
+      if (with_limits) input.eyes[0].limits = limits.limits();
       const Frame found = render(*own, input);
       EXPECT_EQ(found.stats.pairs_dropped, 0u);
       expect_same_bits(found, draw(scene, {}, input));
@@ -142,7 +142,7 @@ TEST_F(SplatLimit, IsOfOneFrameWhateverWasDrawnBefore) {
 TEST_F(SplatLimit, MeasurementsOfFramesWithoutLimitsRefuseThem) {
   const auto scene = scenes(500, 7)[0];
   const FrameInput input = varied_frames()[1];
-  const LimitImage limits(input.camera, 20);
+  const LimitImage limits(input.eyes[0].camera, 20);
   for (const PipelineDesc& desc :
        {PipelineDesc{.splatting = Splatting::baseline_3dgs}, PipelineDesc{.count_pixels = true}}) {
     const auto own = view(scene, desc);

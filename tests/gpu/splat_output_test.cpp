@@ -37,7 +37,7 @@ constexpr ColorFormat kFormats[] = {ColorFormat::none, ColorFormat::rgba8, Color
                                     ColorFormat::rgba32f};
 
 GuardedImage render_guarded(View& view, const FrameInput& input, ColorFormat format) {
-  GuardedImage image(format, input.camera.width, input.camera.height);
+  GuardedImage image(format, input.eyes[0].camera.width, input.eyes[0].camera.height);
   view.render(input, image.image());
   return image;
 }
@@ -80,8 +80,8 @@ TEST_F(SplatOutput, DepthIsTheSameBesideEveryFormatAndNothingElseIsWritten) {
   const auto scene = baked_scene(random_cloud(6000, 3, 1));
   const auto own = view(scene);
   for (FrameInput input : varied_frames())
-    for (const uint32_t width : {input.camera.width, 1u, 16u, 47u}) {
-      input.camera.width = width;
+    for (const uint32_t width : {input.eyes[0].camera.width, 1u, 16u, 47u}) {
+      input.eyes[0].camera.width = width;
       const Frame frame = render(*own, input);
       for (const ColorFormat format : kFormats) {
         const GuardedImage image = render_guarded(*own, input, format);
@@ -99,7 +99,7 @@ TEST_F(SplatOutput, AnImageWithoutMemoryIsDrawnAndHandedToNobody) {
       const Frame frame = render(*own, input);
       Image nowhere;
       nowhere.format = format;
-      nowhere.width = input.camera.width, nowhere.height = input.camera.height;
+      nowhere.width = input.eyes[0].camera.width, nowhere.height = input.eyes[0].camera.height;
       own->render(input, nowhere);
       EXPECT_EQ(own->stats().pairs_after, frame.stats.pairs_after);
       expect_same_bits(frame, render(*own, input));

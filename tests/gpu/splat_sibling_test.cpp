@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/frame_search.h"
 #include "runtime/lod/merge.h"
 #include "tests/gpu/agreement.h"
 #include "tests/gpu/splat_test.h"
@@ -65,13 +66,13 @@ class SplatSibling : public SplatTest {
   static FrameInput at_share(const Scene& scene, double share) {
     FrameInput input = frame_input(look(kEye, {0, 0, 0}, 200, 160));
     const double size = scene.tree.screen_size(0, cut_centre(kEye, scene.origin));
-    input.tau = (share * size * input.camera.fx - 1) / 2;
+    input.tau = (share * size * input.eyes[0].camera.fx - 1) / 2;
     return input;
   }
   // Of the nodes that a frame draws, those between their parent and themselves.
   double interpolated_share(const std::shared_ptr<const Scene>& scene, const FrameInput& input) {
     DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
-    draws.update(input.camera, input.tau, workers);
+    draws.update(cut_query(input, 0, scene->origin), workers);
     size_t count = 0;
     for (const DrawItem& item : draws.items()) count += item.t < 1;
     return static_cast<double>(count) / static_cast<double>(draws.items().size());

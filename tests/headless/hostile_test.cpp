@@ -40,7 +40,7 @@ TEST_F(Hostile, ViewSizesAndChoices) {
   for (const uint32_t count : {65u, UINT32_MAX})
     expect_refused(with([&](VoyViewDesc& d) { d.instanceCount = count, d.scenes = nullptr; }),
                    VOY_ERROR_UNSUPPORTED, "instanceCount");
-  for (const uint32_t count : {2u, UINT32_MAX})
+  for (const uint32_t count : {3u, UINT32_MAX})
     expect_refused(with([&](VoyViewDesc& d) { d.eyeCount = count; }), VOY_ERROR_UNSUPPORTED,
                    "eyeCount");
   expect_invalid(with([](VoyViewDesc& d) { d.eyeCount = 0; }), "eyeCount");

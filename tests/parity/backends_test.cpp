@@ -7,6 +7,7 @@
 #include "runtime/cpu/rasterize.h"
 #include "runtime/frame/depth_order.h"
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/frame_search.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/math/alpha_lut.h"
 #include "tests/support/render_scene.h"
@@ -92,13 +93,13 @@ std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const Fr
                              Exponential exponential) {
   Workers workers(1);
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
-  draws.update(input.camera, input.tau, workers);
-  const ProjectParams params = project_params(*scene, input.camera, exponential);
+  draws.update(cut_query(input, 0, scene->origin), workers);
+  const ProjectParams params = project_params(*scene, input.eyes[0].camera, exponential);
   const GaussianArrays arrays = gaussian_arrays(*scene);
   std::vector<Splat> splats;
   Splat splat;
   for (const DrawItem& item : draws.items())
-    if (project(params, arrays, item, splat)) splats.push_back(splat);
+    if (project<1>(&params, arrays, item, &splat) != 0) splats.push_back(splat);
   std::stable_sort(splats.begin(), splats.end(),
                    [](const Splat& a, const Splat& b) { return a.depth < b.depth; });
   return splats;

@@ -23,7 +23,7 @@ TEST(DepthLimitParity, CpuAgreesWithTheReference) {
         FrameInput input = frame_input(look(eye, {0.1, 0.2, 5}, 160, 100), tau);
         const LimitImage limits =
             test::random_limits(input, render(*reference, scene, {}, input), seed);
-        input.limits = limits.limits();
+        input.eyes[0].limits = limits.limits();
         const Frame a = render(*cpu, scene, {}, input), b = render(*reference, scene, {}, input);
         const test::Difference d = compare(a, b);
         EXPECT_GE(d.psnr, 60) << tau;
@@ -47,10 +47,10 @@ TEST(DepthLimitParity, EncodingsAgree) {
   for (const DepthForm form : {DepthForm::standard, DepthForm::reversed})
     for (const double far : {1000.0, double{INFINITY}}) {
       const DepthEncoding encoding = depth_encoding(form, 0.1, far);
-      LimitImage raw(input.camera, 0), metres(input.camera, 0);
+      LimitImage raw(input.eyes[0].camera, 0), metres(input.eyes[0].camera, 0);
       std::mt19937 random(7);
-      for (size_t y = 0; y < input.camera.height; ++y)
-        for (size_t x = 0; x < input.camera.width; ++x) {
+      for (size_t y = 0; y < input.eyes[0].camera.height; ++y)
+        for (size_t x = 0; x < input.eyes[0].camera.width; ++x) {
           const double z = 10 + static_cast<double>(random() % 30000) * 1e-3;
           const double t = (1 / z - 1 / far) / (1 / 0.1 - 1 / far);
           raw.at(x, y) = static_cast<float>(form == DepthForm::reversed ? t : 1 - t);
@@ -58,9 +58,9 @@ TEST(DepthLimitParity, EncodingsAgree) {
           metres.at(x, y) = depth_limit(encoding, raw.at(x, y));
         }
       for (Backend* backend : {cpu.get(), reference.get()}) {
-        input.limits = raw.limits(encoding);
+        input.eyes[0].limits = raw.limits(encoding);
         const Frame found = render(*backend, scene, {}, input);
-        input.limits = metres.limits();
+        input.eyes[0].limits = metres.limits();
         test::expect_same_bits(found, render(*backend, scene, {}, input));
       }
     }

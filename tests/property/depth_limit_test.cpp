@@ -53,9 +53,9 @@ TEST(DepthLimit, InfinityAndNanAreNone) {
     for (FrameInput input : frames())
       for (const float none : {INFINITY, NAN}) {
         SCOPED_TRACE(drawer.name);
-        const LimitImage limits(input.camera, none);
+        const LimitImage limits(input.eyes[0].camera, none);
         expect_same_bits(drawer.draw(scene, input), drawer.draw(scene, limited(input, limits)));
-        input.depth_wanted = false;
+        input.eyes[0].depth_wanted = false;
         expect_same_bits(drawer.draw(scene, input), drawer.draw(scene, limited(input, limits)));
       }
 }
@@ -67,7 +67,7 @@ TEST(DepthLimit, BeforeEverySplatLeavesTheBackground) {
       for (const float z : {1e-45f, 0.0f, -3.0f, -INFINITY, 0.2f}) {
         SCOPED_TRACE(drawer.name + " " + std::to_string(z));
         input.background = {0.25f, 0.5f, 2};
-        const LimitImage limits(input.camera, z);
+        const LimitImage limits(input.eyes[0].camera, z);
         const Frame frame = drawer.draw(scene, limited(input, limits));
         for (size_t i = 0; i < frame.depth.size(); ++i) {
           ASSERT_EQ(frame.rgba[4 * i], 0.25f);
@@ -115,7 +115,7 @@ TEST(DepthLimit, TheAlphaFilterAndThreadsChangeNoBit) {
       const Frame on = render(*cpu, scene, {.exponential = e}, with, 1);
       expect_same_bits(on, render(*cpu, scene, {.alpha_filter = false, .exponential = e}, with));
       FrameInput without_depth = with;
-      without_depth.depth_wanted = false;
+      without_depth.eyes[0].depth_wanted = false;
       EXPECT_EQ(test::different_bits(on.rgba,
                                      render(*cpu, scene, {.exponential = e}, without_depth).rgba),
                 0u);
@@ -130,7 +130,7 @@ TEST(DepthLimit, IsOfOneFrame) {
     View view(scene, *drawer.backend, drawer.desc, std::pmr::get_default_resource(), workers);
     for (const FrameInput& input : frames()) {
       const Frame before = render(view, input);
-      const LimitImage limits(input.camera, 8);
+      const LimitImage limits(input.eyes[0].camera, 8);
       EXPECT_GT(test::different_bits(before.rgba, render(view, limited(input, limits)).rgba), 0u);
       expect_same_bits(before, render(view, input));
     }
@@ -178,12 +178,12 @@ TEST(DepthLimit, APlaneHidesTheSplatsBehindIt) {
   const auto scene = test::flat_scene(cloud);
   for (const Drawer& drawer : drawers())
     for (const FrameInput& input : frames()) {
-      const float key = middle_key(cloud, input.camera);
+      const float key = middle_key(cloud, input.eyes[0].camera);
       for (const float z : {key, std::nextafter(key, 0.0f), std::nextafter(key, INFINITY)}) {
         SCOPED_TRACE(drawer.name);
-        const LimitImage limits(input.camera, z);
+        const LimitImage limits(input.eyes[0].camera, z);
         expect_same_bits(drawer.draw(scene, limited(input, limits)),
-                         drawer.draw(part_of(cloud, input.camera, z, true), input));
+                         drawer.draw(part_of(cloud, input.eyes[0].camera, z, true), input));
       }
     }
 }
@@ -196,11 +196,11 @@ TEST(DepthLimit, WhatLiesBeforeOverWhatLiesBehindIsTheWhole) {
     if (drawer.desc.exponential == Exponential::lut) continue;  // α as elsewhere
     for (const FrameInput& input : frames()) {
       SCOPED_TRACE(drawer.name);
-      const float z = middle_key(cloud, input.camera);
-      const LimitImage limits(input.camera, z);
+      const float z = middle_key(cloud, input.eyes[0].camera);
+      const LimitImage limits(input.eyes[0].camera, z);
       const Frame whole = drawer.draw(scene, input),
                   before = drawer.draw(scene, limited(input, limits)),
-                  behind = drawer.draw(part_of(cloud, input.camera, z, false), input);
+                  behind = drawer.draw(part_of(cloud, input.eyes[0].camera, z, false), input);
       for (size_t i = 0; i < whole.rgba.size(); ++i) {
         const float left = 1 - before.rgba[i / 4 * 4 + 3];
         // A pixel ends where a splat, with at most 0.99, would bring T below 1e-4.

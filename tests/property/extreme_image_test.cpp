@@ -59,7 +59,7 @@ TEST(ExtremeImage, AnEmptySceneIsTransparentBlackOverTheBackground) {
 TEST(ExtremeImage, ASingleGaussianIsItsFormula) {
   const ExtremeShot shot = test::single_gaussian_shot();
   const Frame frame = expect_sound(shot);
-  const double f = shot.input.camera.fx;
+  const double f = shot.input.eyes[0].camera.fx;
   const double xx = std::pow(f * double{0.2f} / 4, 2) + 0.3,
                yy = std::pow(f * double{0.1f} / 4, 2) + 0.3;
   for (size_t y = 0; y < 48; ++y)
@@ -110,7 +110,7 @@ TEST(ExtremeImage, TheNearPlane) {
   const Frame frame = expect_sound(shot);
   EXPECT_EQ(frame.stats.splats, 1u);
   EXPECT_GT(frame.at(9, 9)[1], 0.4f);
-  shot.input.camera.near_z = 1e-4;
+  shot.input.eyes[0].camera.near_z = 1e-4;
   EXPECT_GT(expect_sound(shot).at(9, 9)[0], 0.9f);
 }
 
@@ -159,7 +159,7 @@ TEST(ExtremeImage, EarthCentredWithMillimetreSteps) {
     const Vec3d eye{0.001 * step, -1, -14}, target{0.001 * step, 0, 0};
     const FrameInput at_origin = frame_input(look(eye, target, 80, 60));
     FrameInput far = at_origin;
-    far.camera.eye = far.camera.eye + there->origin;
+    far.eyes[0].camera.eye = far.eyes[0].camera.eye + there->origin;
     const Frame a = render(*cpu, here, {}, at_origin), b = render(*cpu, there, {}, far);
     EXPECT_GT(compare(a, b).psnr, 70);
     EXPECT_LE(compare(a, b).rough, 2u);
@@ -177,7 +177,7 @@ TEST(ExtremeImage, CamerasAtTheEndOfTheWorld) {
   const auto cpu = create_cpu_backend();
   for (const double beyond : {1e18, -1e18, 1e300, static_cast<double>(kInfinity), std::nan("")}) {
     FrameInput input = frame_input(look({0, 0, -5}, {0, 0, 0}, 8, 8));
-    input.camera.eye.y = beyond;
+    input.eyes[0].camera.eye.y = beyond;
     EXPECT_THROW(render(*cpu, shots[0].scene, {}, input), Error);
   }
 }

@@ -43,8 +43,8 @@ std::vector<FrameInput> frames() {
 size_t count_interpolated(const Scene& scene, const FrameInput& input) {
   Workers workers(1);
   size_t count = 0;
-  const float target = target_size(input.tau, input.camera.fx);
-  const Vec3f c = cut_centre(input.camera.eye, scene.origin);
+  const float target = target_size(input.tau, input.eyes[0].camera.fx);
+  const Vec3f c = cut_centre(input.eyes[0].camera.eye, scene.origin);
   ExhaustiveSearch search;
   search.run(scene.tree, {}, {c, target}, workers);
   for (const uint32_t n : search.cut()) {

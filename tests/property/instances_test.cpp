@@ -251,7 +251,7 @@ TEST_F(Instances, ADamagedChunkFailsTheFramesThatNeedIt) {
   good.instances = {InstancePose{}, pose_of({0, 0, 1e7})};  // far: a single node
   FrameInput bad = good;
   bad.instances[1] = InstancePose{};
-  bad.tau = 0, bad.camera = look({0, 1, 0}, {1, 0, 0}, 60, 40);
+  bad.tau = 0, bad.eyes[0].camera = look({0, 1, 0}, {1, 0, 0}, 60, 40);
   for (const auto* backend : backends) {
     View view = this->view(**backend, {whole, damaged});
     const Frame before = render(view, good);

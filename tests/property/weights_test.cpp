@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/frame_search.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 
@@ -36,10 +37,10 @@ TEST(Weights, FollowTheMethodInDouble) {
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
   size_t between = 0;
   for (const FrameInput& input : frames()) {
-    draws.update(input.camera, input.tau, workers);
+    draws.update(cut_query(input, 0, scene->origin), workers);
     ASSERT_EQ(draws.items().size(), draws.cut().size());
-    const Vec3f eye = cut_centre(input.camera.eye, scene->origin);
-    const double target = (2 * input.tau + 1) / input.camera.fx;
+    const Vec3f eye = cut_centre(input.eyes[0].camera.eye, scene->origin);
+    const double target = (2 * input.tau + 1) / input.eyes[0].camera.fx;
     for (size_t i = 0; i < draws.items().size(); ++i) {
       const DrawItem& item = draws.items()[i];
       ASSERT_EQ(item.gaussian, draws.cut()[i]);
@@ -70,7 +71,7 @@ TEST(Weights, BothBackendsDrawTheSameCut) {
   const auto scene = test::baked_scene(test::random_cloud(5000, 2, 0));
   const auto cpu = create_cpu_backend(), reference = create_reference_backend();
   for (FrameInput input : frames()) {
-    input.camera.width = input.camera.height = 8;
+    input.eyes[0].camera.width = input.eyes[0].camera.height = 8;
     const test::Frame a = test::render(*cpu, scene, {}, input),
                       b = test::render(*reference, scene, {}, input);
     EXPECT_EQ(a.cut, b.cut);
@@ -84,7 +85,7 @@ TEST(Weights, AllLeavesAreDrawnInTheInputsOrder) {
   const auto scene = test::baked_scene(cloud);
   Workers workers(2);
   DrawList draws(scene, Lod::all_leaves, Search::temporal, std::pmr::get_default_resource());
-  draws.update(frames()[0].camera, frames()[0].tau, workers);
+  draws.update(cut_query(frames()[0], 0, scene->origin), workers);
   ASSERT_EQ(draws.items().size(), cloud.size());
   for (size_t i = 0; i < cloud.size(); ++i) {
     const DrawItem& item = draws.items()[i];

@@ -28,7 +28,7 @@ class LimitImage {
 };
 
 inline FrameInput limited(FrameInput input, const LimitImage& image) {
-  input.limits = image.limits();
+  input.eyes[0].limits = image.limits();
   return input;
 }
 
@@ -37,7 +37,7 @@ inline FrameInput limited(FrameInput input, const LimitImage& image) {
 // end early. `frame` is the same without limits.
 inline LimitImage random_limits(const FrameInput& input, const Frame& frame, uint32_t seed) {
   std::mt19937 random(seed);
-  LimitImage image(input.camera, 0);
+  LimitImage image(input.eyes[0].camera, 0);
   const auto any = [&](size_t i) {
     switch (random() % 8) {
       case 0:

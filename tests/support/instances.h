@@ -21,9 +21,9 @@ inline Vec3d to_world(const InstancePose& pose, const Vec3d& x) {
 // that other one, with the pose. (frame/instance.h goes the other way.)
 inline FrameInput seen_posed(const FrameInput& input, const InstancePose& pose) {
   FrameInput moved = input;
-  moved.camera.eye = to_world(pose, input.camera.eye);
-  for (Vec3d& axis : moved.camera.world_to_view.row) axis = pose.rotation * axis;
-  moved.camera.near_z = pose.scale * input.camera.near_z;
+  moved.eyes[0].camera.eye = to_world(pose, input.eyes[0].camera.eye);
+  for (Vec3d& axis : moved.eyes[0].camera.world_to_view.row) axis = pose.rotation * axis;
+  moved.eyes[0].camera.near_z = pose.scale * input.eyes[0].camera.near_z;
   moved.instances = {pose};
   return moved;
 }

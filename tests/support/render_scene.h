@@ -84,18 +84,18 @@ struct Frame {
 
 inline Frame render(View& view, const FrameInput& input) {
   Frame frame;
-  frame.width = input.camera.width;
-  frame.height = input.camera.height;
+  frame.width = input.eyes[0].camera.width;
+  frame.height = input.eyes[0].camera.height;
   const size_t pixels = size_t{frame.width} * frame.height;
   frame.rgba.assign(4 * pixels, NAN);  // what is left unwritten shows
-  if (input.depth_wanted) frame.depth.assign(pixels, NAN);
+  if (input.eyes[0].depth_wanted) frame.depth.assign(pixels, NAN);
   Image image;
   image.format = ColorFormat::rgba32f;
   image.width = frame.width;
   image.height = frame.height;
   image.color = frame.rgba.data();
   image.color_pitch = size_t{16} * frame.width;
-  image.depth = input.depth_wanted ? frame.depth.data() : nullptr;
+  image.depth = input.eyes[0].depth_wanted ? frame.depth.data() : nullptr;
   image.depth_pitch = size_t{4} * frame.width;
   view.render(input, image);
   frame.stats = view.stats();
@@ -112,9 +112,9 @@ inline Frame render(Backend& backend, std::shared_ptr<const Scene> scene, const 
 
 inline FrameInput frame_input(const Camera& camera, double tau = 3, bool depth = true) {
   FrameInput input;
-  input.camera = camera;
+  input.eyes[0].camera = camera;
   input.tau = tau;
-  input.depth_wanted = depth;
+  input.eyes[0].depth_wanted = depth;
   return input;
 }
 

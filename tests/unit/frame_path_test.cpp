@@ -24,27 +24,27 @@ void expect_row(const Vec3d& row, const Vec3d& expected) {
 
 TEST(FramePath, AxesAreRightDownForward) {
   const auto frame = frame_input(camera_of(0, 0, 0, 1), 3);  // OpenXR's identity looks along -z
-  expect_row(frame.camera.world_to_view.row[0], {1, 0, 0});
-  expect_row(frame.camera.world_to_view.row[1], {0, -1, 0});
-  expect_row(frame.camera.world_to_view.row[2], {0, 0, -1});
+  expect_row(frame.eyes[0].camera.world_to_view.row[0], {1, 0, 0});
+  expect_row(frame.eyes[0].camera.world_to_view.row[1], {0, -1, 0});
+  expect_row(frame.eyes[0].camera.world_to_view.row[2], {0, 0, -1});
 
   const double half = std::sqrt(0.5);  // a quarter turn to the left, about y
   const auto turned = frame_input(camera_of(0, half, 0, half), 3);
-  expect_row(turned.camera.world_to_view.row[0], {0, 0, -1});
-  expect_row(turned.camera.world_to_view.row[1], {0, -1, 0});
-  expect_row(turned.camera.world_to_view.row[2], {-1, 0, 0});
+  expect_row(turned.eyes[0].camera.world_to_view.row[0], {0, 0, -1});
+  expect_row(turned.eyes[0].camera.world_to_view.row[1], {0, -1, 0});
+  expect_row(turned.eyes[0].camera.world_to_view.row[2], {-1, 0, 0});
 }
 
 TEST(FramePath, IntrinsicsAreTheFilesOwn) {
   const auto frame = frame_input(camera_of(0, 0, 0, 2), 6);
   EXPECT_EQ(frame.tau, 6);
-  EXPECT_EQ(frame.camera.eye.y, 2);
-  EXPECT_EQ(frame.camera.width, 640u);
-  EXPECT_EQ(frame.camera.height, 480u);
-  EXPECT_NEAR(frame.camera.fx, 700, 1e-9);
-  EXPECT_NEAR(frame.camera.fy, 710, 1e-9);
-  EXPECT_NEAR(frame.camera.cx, 300, 1e-9);
-  EXPECT_NEAR(frame.camera.cy, 250, 1e-9);
+  EXPECT_EQ(frame.eyes[0].camera.eye.y, 2);
+  EXPECT_EQ(frame.eyes[0].camera.width, 640u);
+  EXPECT_EQ(frame.eyes[0].camera.height, 480u);
+  EXPECT_NEAR(frame.eyes[0].camera.fx, 700, 1e-9);
+  EXPECT_NEAR(frame.eyes[0].camera.fy, 710, 1e-9);
+  EXPECT_NEAR(frame.eyes[0].camera.cx, 300, 1e-9);
+  EXPECT_NEAR(frame.eyes[0].camera.cy, 250, 1e-9);
 }
 
 TEST(FramePath, IndicesAreSpreadFromFirstToLast) {

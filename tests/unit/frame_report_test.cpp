@@ -17,8 +17,8 @@ FramePath two_cameras() {
   FramePath path;
   path.frames.resize(2);
   for (FrameInput& frame : path.frames) {
-    frame.camera.width = 100;
-    frame.camera.height = 50;
+    frame.eyes[0].camera.width = 100;
+    frame.eyes[0].camera.height = 50;
   }
   path.repeats = 3;
   return path;

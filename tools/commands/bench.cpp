@@ -31,6 +31,8 @@ void refuse_misplaced(const BenchArguments& arguments) {
                 ": found it with --stages search, expected --stages splat or all");
   if (arguments.verify && frames)
     bad_usage("--verify: found it with whole frames, expected --stages search");
+  if (arguments.stereo && arguments.stages != BenchStages::all)
+    bad_usage("--stereo: found it with a part of the frame, expected --stages all");
 }
 
 std::unique_ptr<Backend> create_backend(const BenchArguments& arguments) {
@@ -50,6 +52,7 @@ std::unique_ptr<Backend> create_backend(const BenchArguments& arguments) {
 
 std::vector<Camera> read_walk(const BenchArguments& arguments) {
   std::vector<Camera> cameras = read_cameras(arguments.cameras);
+  require_pairs(arguments.stereo, cameras.size(), arguments.cameras);
   if (arguments.size.width != 0)
     for (Camera& camera : cameras)
       camera = camera.resized(arguments.size.width, arguments.size.height);
@@ -77,7 +80,8 @@ void bench(const BenchArguments& arguments) {
                  {"device", backend->device_name()},
                  {"multiprocessors_asked", arguments.multiprocessors},
                  {"tau", arguments.tau}};
-  report.update(search ? bench_searches(arguments, subject) : bench_frames(arguments, subject));
+  const auto run = search ? bench_searches : arguments.stereo ? bench_stereo : bench_frames;
+  report.update(run(arguments, subject));
   const std::string text = report.dump(2) + "\n";
   file.write(std::as_bytes(std::span(text)));
   file.commit();
@@ -133,6 +137,9 @@ void add_conditions(CLI::App& command, BenchArguments& arguments) {
                   "Time the path so often (default: until 100 frames are timed)")
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
+  command.add_flag("--stereo", arguments.stereo,
+                   "Cameras two by two, left then right: what both eyes cost against one, with "
+                   "--stages all");
   command.add_flag("--verify", arguments.verify,
                    "Also compare every frame's cut and weights with the exhaustive search's");
 }

@@ -27,7 +27,7 @@ struct BenchArguments {
   std::optional<Exponential> exponential;
   std::optional<uint32_t> lut_size;
   std::optional<size_t> repeat;
-  bool verify = false;
+  bool verify = false, stereo = false;
   double tau = 3;
   unsigned multiprocessors = 0;
   ImageSize size;
@@ -40,8 +40,14 @@ struct BenchSubject {
   Workers& workers;
 };
 
+// Of whole frames; what is not chosen is as in the row "ours".
+PipelineDesc chosen_desc(const BenchArguments& arguments);
+// How often a path of so many frames is timed: enough that a median means something.
+size_t chosen_repeats(const BenchArguments& arguments, size_t frames);
+
 // Each prints a table and gives its part of the report.
 nlohmann::ordered_json bench_searches(const BenchArguments& arguments, const BenchSubject& subject);
 nlohmann::ordered_json bench_frames(const BenchArguments& arguments, const BenchSubject& subject);
+nlohmann::ordered_json bench_stereo(const BenchArguments& arguments, const BenchSubject& subject);
 
 }  // namespace voyager::tools

@@ -13,7 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kFewestFrames = 100;  // timed, so that a median means something
 constexpr size_t kComparedImages = 8;  // for the error of an exponential
 
 struct Plan {
@@ -21,35 +20,6 @@ struct Plan {
   bool compares = false;  // rows with one another; one that the backend lacks is left out then
   bool images = false;    // also their images with the exact row's
 };
-
-Search chosen_search(const BenchArguments& arguments) {
-  switch (arguments.search.value_or(SearchChoice::temporal)) {
-    case SearchChoice::exhaustive:
-      return Search::exhaustive;
-    case SearchChoice::streaming:
-      return Search::streaming;
-    case SearchChoice::temporal:
-      break;
-    case SearchChoice::all:
-      throw Error(ErrorCode::invalid_argument,
-                  "--search: found all, expected one search (--stages all without another choice "
-                  "compares them)");
-  }
-  return arguments.slack.value_or(true) ? Search::temporal : Search::temporal_visit;
-}
-
-// What is not chosen is as in the row "ours"; 3DGS has expf only.
-PipelineDesc chosen_desc(const BenchArguments& arguments) {
-  PipelineDesc desc;
-  desc.lod = arguments.lod.value_or(Lod::cut);
-  desc.search = chosen_search(arguments);
-  desc.splatting = arguments.splatting.value_or(Splatting::ours);
-  const bool ours = desc.splatting == Splatting::ours;
-  desc.alpha_filter = ours && arguments.filter.value_or(true);  // 3DGS has none
-  desc.exponential = arguments.exponential.value_or(ours ? Exponential::ex2 : Exponential::exact);
-  desc.lut_size = arguments.lut_size.value_or(desc.lut_size);
-  return desc;
-}
 
 bool has_choice(const BenchArguments& arguments) {
   const bool one_search = arguments.search.has_value() && *arguments.search != SearchChoice::all;
@@ -70,16 +40,16 @@ Plan make_plan(const BenchArguments& arguments, bool flat) {
 FramePath make_path(const BenchArguments& arguments, const BenchSubject& subject) {
   FramePath path;
   path.frames = frame_path(subject.cameras, arguments.tau);
-  const size_t count = path.frames.size();
-  path.repeats = arguments.repeat.value_or((kFewestFrames + count - 1) / count);
+  path.repeats = chosen_repeats(arguments, path.frames.size());
   return path;
 }
 
 // "WxH" where all frames have one size.
 Json size_of(const FramePath& path) {
-  const auto& first = path.frames[0].camera;
+  const auto& first = path.frames[0].eyes[0].camera;
   for (const FrameInput& frame : path.frames)
-    if (frame.camera.width != first.width || frame.camera.height != first.height) return nullptr;
+    if (frame.eyes[0].camera.width != first.width || frame.eyes[0].camera.height != first.height)
+      return nullptr;
   return fmt::format("{}x{}", first.width, first.height);
 }
 

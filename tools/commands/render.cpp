@@ -17,7 +17,7 @@ namespace {
 struct Arguments {
   std::string scene, cameras;
   size_t camera = 0;
-  bool all = false;
+  bool all = false, stereo = false;
   ImageSize size;
   RenderChoices choices;
   OutputPaths outputs;
@@ -27,14 +27,20 @@ struct Arguments {
   throw Error(ErrorCode::invalid_argument, message);
 }
 
+// Those of one frame, or of all.
 std::vector<Camera> choose_cameras(const Arguments& arguments) {
   std::vector<Camera> cameras = read_cameras(arguments.cameras);
-  if (!arguments.all) {
-    if (arguments.camera >= cameras.size())
-      bad_usage(fmt::format("--camera: found {}, expected at most {} ({} has {} cameras)",
-                            arguments.camera, cameras.size() - 1, arguments.cameras,
+  const size_t eyes = arguments.choices.eyes;
+  if (arguments.all) {
+    require_pairs(arguments.stereo, cameras.size(), arguments.cameras);
+  } else {
+    if (cameras.size() < eyes || arguments.camera > cameras.size() - eyes)
+      bad_usage(fmt::format("--camera: found {}, expected at most {}{} ({} has {} cameras)",
+                            arguments.camera, cameras.size() - std::min(eyes, cameras.size()),
+                            arguments.stereo ? " with --stereo" : "", arguments.cameras,
                             cameras.size()));
-    cameras = {cameras[arguments.camera]};
+    const auto first = cameras.begin() + static_cast<std::ptrdiff_t>(arguments.camera);
+    cameras = {first, first + static_cast<std::ptrdiff_t>(eyes)};
   }
   if (arguments.size.width != 0)
     for (Camera& camera : cameras)
@@ -42,10 +48,15 @@ std::vector<Camera> choose_cameras(const Arguments& arguments) {
   return cameras;
 }
 
-void refuse_file_name(const std::string& option, const std::string& path) {
+bool is_file_name(const std::string& path) {
   const auto extension = std::filesystem::path(path).extension();
-  if (extension == ".png" || extension == ".pfm" || extension == ".txt")
-    bad_usage(fmt::format("{}: found {}, expected a folder with --all", option, path));
+  return extension == ".png" || extension == ".pfm" || extension == ".txt";
+}
+
+void refuse_file_name(const std::string& option, const std::string& path, bool all) {
+  if (is_file_name(path))
+    bad_usage(fmt::format("{}: found {}, expected a folder with {}", option, path,
+                          all ? "--all" : "--stereo"));
 }
 
 // Settles what the names of the outputs say: image format, or folders.
@@ -53,12 +64,14 @@ void settle_outputs(Arguments& arguments) {
   OutputPaths& outputs = arguments.outputs;
   require_distinct({outputs.image, outputs.depth, outputs.cut, outputs.stats},
                    {arguments.scene, arguments.cameras});
-  outputs.walk = arguments.all;
+  outputs.images_in = arguments.all || arguments.stereo;
+  // A pair has one cut.
+  outputs.cuts_in = arguments.all || (arguments.stereo && !is_file_name(outputs.cut));
   arguments.choices.depth = !outputs.depth.empty();
-  if (outputs.walk) {
-    refuse_file_name("-o", outputs.image);
-    refuse_file_name("--depth", outputs.depth);
-    refuse_file_name("--dump-cut", outputs.cut);
+  if (outputs.images_in) {
+    refuse_file_name("-o", outputs.image, arguments.all);
+    refuse_file_name("--depth", outputs.depth, arguments.all);
+    if (arguments.all) refuse_file_name("--dump-cut", outputs.cut, true);
   } else {
     const bool floats = arguments.choices.floats;
     require_extension(
@@ -71,6 +84,7 @@ void settle_outputs(Arguments& arguments) {
 }
 
 void render(Arguments& arguments) {
+  arguments.choices.eyes = arguments.stereo ? 2 : 1;
   settle_outputs(arguments);
   const std::vector<Camera> cameras = choose_cameras(arguments);
   uint32_t width = 0, height = 0;
@@ -83,10 +97,13 @@ void render(Arguments& arguments) {
     bad_usage("--dump-cut: found a scene drawn without a cut, expected a .voy with --lod on");
   FrameFiles files(arguments.outputs);
   const Progress progress = progress_bar();
-  for (size_t i = 0; i < cameras.size(); ++i) {
-    renderer.render(cameras[i]);
-    files.write(i, cameras[i], renderer);
-    if (cameras.size() > 1) progress("rendering", i + 1, cameras.size());
+  const size_t eyes = arguments.choices.eyes;
+  const size_t number = arguments.stereo && !arguments.all ? arguments.camera : 0;
+  for (size_t i = 0; i < cameras.size(); i += eyes) {
+    const auto frame = std::span(cameras).subspan(i, eyes);
+    renderer.render(frame);
+    files.write(number + i, frame, renderer);
+    if (cameras.size() > eyes) progress("rendering", i + eyes, cameras.size());
   }
   files.finish(renderer);
   fmt::print("{}\n", arguments.outputs.image);
@@ -153,11 +170,12 @@ void add_choices(CLI::App& command, RenderChoices& choices) {
 
 void add_outputs(CLI::App& command, OutputPaths& outputs, bool& floats) {
   command
-      .add_option("-o", outputs.image, "out.png (8-bit), out.pfm (float), or a folder with --all")
+      .add_option("-o", outputs.image,
+                  "out.png (8-bit), out.pfm (float), or a folder with --all or --stereo")
       ->required();
   command.add_flag("--float", floats, "Float images (.pfm), before clamping");
   command.add_option("--depth", outputs.depth,
-                     "Also depth, d.pfm (or a folder with --all): metres, +inf where none");
+                     "Also depth, d.pfm (or a folder, as -o): metres, +inf where none");
   command.add_option("--dump-cut", outputs.cut,
                      "Also the cut's node ids, cut.txt (or a folder with --all)");
   command.add_option("--stats", outputs.stats, "Also counters and times, stats.json");
@@ -173,6 +191,9 @@ void add_render(CLI::App& app) {
   CLI::Option* one = command->add_option("--camera", arguments->camera, "Index in the file")
                          ->capture_default_str();
   command->add_flag("--all", arguments->all, "Every camera, as one walk")->excludes(one);
+  command->add_flag("--stereo", arguments->stereo,
+                    "Cameras two by two, left then right, as the eyes of one view with one cut; "
+                    "with --camera I, I and I + 1. Images are numbered by camera, cuts by pair");
   add_size_option(*command, arguments->size);
   add_choices(*command, arguments->choices);
   add_outputs(*command, arguments->outputs, arguments->choices.floats);

@@ -1,0 +1,43 @@
+#include "runtime/base/error.h"
+#include "tools/commands/bench_arguments.h"
+
+namespace voyager::tools {
+namespace {
+
+Search chosen_search(const BenchArguments& arguments) {
+  switch (arguments.search.value_or(SearchChoice::temporal)) {
+    case SearchChoice::exhaustive:
+      return Search::exhaustive;
+    case SearchChoice::streaming:
+      return Search::streaming;
+    case SearchChoice::temporal:
+      break;
+    case SearchChoice::all:
+      throw Error(ErrorCode::invalid_argument,
+                  "--search: found all, expected one search (--stages all without another choice "
+                  "compares them)");
+  }
+  return arguments.slack.value_or(true) ? Search::temporal : Search::temporal_visit;
+}
+
+}  // namespace
+
+// 3DGS has expf only.
+PipelineDesc chosen_desc(const BenchArguments& arguments) {
+  PipelineDesc desc;
+  desc.lod = arguments.lod.value_or(Lod::cut);
+  desc.search = chosen_search(arguments);
+  desc.splatting = arguments.splatting.value_or(Splatting::ours);
+  const bool ours = desc.splatting == Splatting::ours;
+  desc.alpha_filter = ours && arguments.filter.value_or(true);  // 3DGS has none
+  desc.exponential = arguments.exponential.value_or(ours ? Exponential::ex2 : Exponential::exact);
+  desc.lut_size = arguments.lut_size.value_or(desc.lut_size);
+  return desc;
+}
+
+size_t chosen_repeats(const BenchArguments& arguments, size_t frames) {
+  constexpr size_t kFewestFrames = 100;
+  return arguments.repeat.value_or((kFewestFrames + frames - 1) / frames);
+}
+
+}  // namespace voyager::tools
