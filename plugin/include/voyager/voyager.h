@@ -201,10 +201,10 @@ typedef struct VoyCapabilities {
   void* next;
   VoyBackend backend; /* CPU, CUDA or REFERENCE: the one that AUTO chose */
   uint32_t workerThreads;
-  char deviceName[256];   /* UTF-8, terminated */
-  uint8_t deviceUuid[16]; /* zero for a CPU */
-  uint32_t maxInstances;  /* of a view; 64 in this version */
-  uint32_t maxEyes;
+  char deviceName[256];         /* UTF-8, terminated */
+  uint8_t deviceUuid[16];       /* zero for a CPU */
+  uint32_t maxInstances;        /* of a view; 64 in this version */
+  uint32_t maxEyes;             /* of a view; 2 in this version */
   uint32_t maxWidth, maxHeight; /* pixels */
   uint32_t searches;            /* of VoySearch */
   uint32_t exponentials;        /* of VoyExponential */
@@ -410,14 +410,19 @@ typedef enum VoySplatting {
   VOY_SPLATTING_MAX_ENUM = 0x7fffffff
 } VoySplatting;
 
-/* A view draws instances of scenes, sorted together, so that where they overlap the nearer
+/* The eyes of a view see one cut: that of the point amid them, as fine as the finest of them
+ * wants it. Of a scene's data each is read once for both; covariance, colour, order and
+ * blending are each eye's own, so that an eye's image is what it would be alone with that cut:
+ * to the bit on the CPU and on CUDA. VOY_SPLATTING_3DGS draws one eye.
+ *
+ * A view draws instances of scenes, sorted together, so that where they overlap the nearer
  * hides the farther; and keeps the cut of each between frames. A scene may be several. */
 typedef struct VoyViewDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VIEW_DESC */
   const void* next;
-  uint32_t instanceCount;       /* 1 to VoyCapabilities.maxInstances; more are UNSUPPORTED */
-  const VoyScene* scenes;       /* one an instance, of the same device; copied */
-  uint32_t eyeCount;            /* 1 in this version */
+  uint32_t instanceCount; /* 1 to VoyCapabilities.maxInstances; more are UNSUPPORTED */
+  const VoyScene* scenes; /* one an instance, of the same device; copied */
+  uint32_t eyeCount;      /* 1 to VoyCapabilities.maxEyes, of each frame; more are UNSUPPORTED */
   uint32_t maxWidth, maxHeight; /* pixels: no target of a frame may be larger */
   VoyLod lod;
   double tau; /* granularity in pixels, finite, >= 0 */
@@ -475,7 +480,8 @@ typedef struct VoyFrameEye {
   const void* next;      /* NULL or a VoyEyeDepthLimit */
   VoyPose pose;          /* in the world */
   VoyFrustum frustum;
-  VoyTarget target;  /* of the view's device; its size is the image's */
+  VoyTarget target;  /* of the view's device; its size is the image's. No two eyes have one image:
+                        they have targets of one kind, or layers of one target */
   uint32_t layer;    /* of the target's array (voyager_vulkan.h); 0 in host memory */
   uint32_t reserved; /* 0 */
 } VoyFrameEye;
@@ -572,7 +578,7 @@ typedef enum VoyStage {
 /* Room for stages in VoyFrameStats, for good; how many there are is its stageCount. */
 #define VOY_MAX_STAGES 16
 
-/* Counters are sums over the view's instances. */
+/* Counters are sums over the view's instances; splats and pairs over its eyes, too. */
 typedef struct VoyFrameStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STATS */
   void* next;

@@ -219,7 +219,8 @@ VOY_API VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVul
  * TIMELINE: drawing into the image begins once `released` has reached waitValue (0: at
  * once), and `rendered` becomes signalValue, which must be greater than in the target's
  * frame before. BINARY: waitValue 1 waits for the image's `released`, 0 does not;
- * signalValue 1 signals its `rendered`, 0 does not: of several layers the last one does. HOST: both
+ * signalValue 1 signals its `rendered`, 0 does not: of layers that are drawn by frames of their
+ * own, the last one does. HOST: both
  * are 0. The host has submitted the signal of what is waited for before the call (with HOST sharing
  * it is the call that waits, VOY_ERROR_TIMEOUT after 10 s). Where voyRenderFrame fails, nothing
  * is signalled and no wait is consumed, but for DEVICE_LOST.
@@ -228,6 +229,8 @@ VOY_API VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVul
  * buffers wait once for the device.
  * Such a frame cannot be drawn again: where the view turned to far more splats than before, it
  * may lack some, and VoyFrameStats.pairsDropped says so; the next has the room.
+ * The eyes of one frame are layers of one image, or go to a target each: the image and the values
+ * then are those of either target.
  * A target has one size: a resize is a new target. */
 typedef struct VoyVulkanFrame {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_FRAME */
