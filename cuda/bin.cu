@@ -16,7 +16,7 @@ constexpr unsigned kBinThreads = 768;
 constexpr uint32_t kNarrow = 4;         // tiles of a strip that a lane places by itself
 constexpr uint32_t kBandTiles = 12288;  // of which a block counts in shared memory at a time
 
-// The strips of a block, and the tiles that it sees to.
+// The strips of a block, and the tiles that it sees to: a band of those of its region's eye.
 struct Share {
   const TileStrip* strips;
   uint32_t count;
@@ -28,9 +28,11 @@ __device__ Share bin_share(const SplatView& splats) {
   const uint32_t part = blockIdx.x / kStripRegions, parts = gridDim.x / kStripRegions;
   const uint32_t count = min(*strip_count(splats, region), room);
   const uint32_t each = (count + parts - 1) / parts, first = min(part * each, count);
-  const uint32_t tile = blockIdx.y * kBandTiles;
+  const FrameTiles& frame = splats.frame;
+  const uint32_t eye = region / (kStripRegions / frame.eyes);
+  const uint32_t tile = min(frame.first[eye] + blockIdx.y * kBandTiles, frame.first[eye + 1]);
   return {splats.strips + region * room + first, min(each, count - first), tile,
-          min(kBandTiles, splats.frame.count - tile)};
+          min(kBandTiles, frame.first[eye + 1] - tile)};
 }
 
 // The part of a strip that lies in the band, from the band's first tile on.
@@ -44,7 +46,7 @@ __device__ TileRange bin_band(const TileStrip& strip, const Share& share) {
 
 // Where this block's pairs of a tile begin in its list, from the list's first.
 __device__ uint32_t* bin_offsets(const SplatView& splats, const Share& share) {
-  return splats.tile_offsets + size_t{blockIdx.x} * splats.frame.count + share.first_tile;
+  return splats.tile_offsets + size_t{blockIdx.x} * splats.frame.count() + share.first_tile;
 }
 
 __global__ void __launch_bounds__(kBinThreads, 2) bin_count(SplatView splats) {
@@ -92,7 +94,7 @@ __global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats) {
   __shared__ uint32_t counts[kChunk];
   __shared__ uint32_t firsts[kChunk + 1];
   __shared__ BinOrder order;
-  const uint32_t tiles = splats.frame.count;
+  const uint32_t tiles = splats.frame.count();
   const auto room = static_cast<unsigned long long>(splats.pairs);
   unsigned long long total = 0;
   order.clear();
@@ -175,8 +177,10 @@ unsigned bin_blocks(unsigned multiprocessors) {
 }
 
 void launch_bin(const SplatFrame& f) {
-  const dim3 blocks(bin_blocks(f.multiprocessors),
-                    (f.splats.frame.count + kBandTiles - 1) / kBandTiles);
+  uint32_t most = 0;  // tiles of an eye
+  for (uint32_t eye = 0; eye < f.eyes; ++eye)
+    most = std::max(most, f.splats.frame.first[eye + 1] - f.splats.frame.first[eye]);
+  const dim3 blocks(bin_blocks(f.multiprocessors), (most + kBandTiles - 1) / kBandTiles);
   bin_count<<<blocks, kBinThreads, 0, f.stream>>>(f.splats);
   check(cudaGetLastError(), "bin_count");
   bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats);

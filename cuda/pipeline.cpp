@@ -97,8 +97,8 @@ void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work
     work.gaussians = instance.gaussians->view();
     work.draws = instance.draws->view();
     for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
-      work.params[eye] = project_params(
-          *instance.scene, instance_camera(frame, frame.eyes[eye], i), desc_.exponential);
+      work.params[eye] = project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i),
+                                        desc_.exponential);
     if (launch_project(work, desc_.alpha_filter)) ++work.instance;
   }
 }
@@ -286,15 +286,17 @@ void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const 
 // is left out, and a Gaussian is read once for all eyes, which see about the same ones.
 void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) const {
   const SplatCounters& counted = report.counters();
-  const uint64_t offsets = uint64_t{report.tiles.count} * bin_blocks(device_->multiprocessors()) * sizeof(uint32_t);
+  const uint64_t offsets =
+      uint64_t{report.tiles.count()} * bin_blocks(device_->multiprocessors()) * sizeof(uint32_t);
   const uint64_t pairs = counted.pairs;
   uint64_t candidates = 0;
   for (const InstanceCounters& instance : counted.instances) candidates += instance.candidates;
   constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
   stats.gaussian_bytes = instances_.bytes_a_gaussian();
-  stats.bytes[kProject] =
-      uint64_t{counted.places} * instances_.bytes_a_place() + 2 * sizeof(uint32_t) * candidates +
-      counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) + counted.strips * sizeof(TileStrip);
+  stats.bytes[kProject] = uint64_t{counted.places} * instances_.bytes_a_place() +
+                          2 * sizeof(uint32_t) * candidates +
+                          counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) +
+                          counted.strips * sizeof(TileStrip);
   stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
   stats.bytes[kSort] = 2 * pairs * kKey;
   stats.bytes[kRasterize] = pairs * (kKey + kRecord) + report.target_bytes;

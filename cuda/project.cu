@@ -12,6 +12,9 @@ namespace {
 constexpr unsigned kAll = 0xffffffffu;
 constexpr unsigned kCullThreads = 256, kCullItems = 4;
 constexpr unsigned kProjectThreads = 128;
+// That a multiprocessor holds where there are two eyes: the compiler would rather have
+// registers, which costs more than the few that it then spills.
+constexpr unsigned kPairBlocks = 6;
 
 struct Hull {
   Vec3f mean;
@@ -82,8 +85,16 @@ __device__ SplatRecord record_of(const Splat& s, float log_scale) {
           s.depth, s.t, s.colour.x,  s.colour.y,  s.colour.z,   s.inverse_k};
 }
 
+// The item as another eye reads it: a compiler that sees that it is the same would keep its
+// coefficients in registers from eye to eye, which costs more than it saves.
+__device__ DrawItem read_again(DrawItem item) {
+  asm volatile("" : "+r"(item.gaussian), "+r"(item.parent));
+  return item;
+}
+
 template <class Sh, bool kLod, int kEyes>
-__global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, bool boxes) {
+__global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
+    project_splats(SplatFrame f, bool boxes) {
   const DeviceArrays<Sh> arrays{f.gaussians};
   const InstanceCounters& counters = f.splats.counters->instances[f.instance];
   const uint32_t count = counters.candidates, first_place = counters.first_place;
@@ -100,31 +111,29 @@ __global__ void __launch_bounds__(kProjectThreads) project_splats(SplatFrame f, 
     if (at < count) {
       const uint32_t place = f.splats.candidates[at];
       const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
-      Splat splats[kEyes];
-      Vec3f relative[kEyes];
       rank = first_place + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
+      DrawnGaussian drawn;
       // A rank beyond the room is that of a place that is, too: counted there.
-      const unsigned seen =
-          rank < f.splats.places
-              ? project_shapes<kEyes>(f.params, arrays, item, splats, relative)
-              : 0;
-      if (seen != 0) project_colours<kEyes>(arrays, item, relative, splats);
+      if (rank < f.splats.places && read_gaussian(arrays, item, drawn)) {
 #pragma unroll
-      for (int eye = 0; eye < kEyes; ++eye) {
-        if ((seen >> eye & 1u) == 0) continue;
-        const float log_scale = f.params[eye].log_scale;
-        const SplatRecord record = record_of(splats[eye], log_scale);
-        f.splats.records[rank * kEyes + eye] = record;
-        extent[eye] = tile_extent(support_of(record, log_scale), f.splats.frame.grids[eye]);
-        depth[eye] = splats[eye].depth;
-        ++visible;
-        boxed += extent[eye].boxed();
+        for (int eye = 0; eye < kEyes; ++eye) {
+          Splat splat;
+          const ProjectParams& params = f.params[eye];
+          if (!project(params, arrays, read_again(item), drawn, splat)) continue;
+          const SplatRecord record = record_of(splat, params.log_scale);
+          f.splats.records[rank * kEyes + eye] = record;
+          extent[eye] =
+              tile_extent(support_of(record, params.log_scale), f.splats.frame.grids[eye]);
+          depth[eye] = splat.depth;
+          ++visible;
+          boxed += extent[eye].boxed();
+        }
       }
     }
 #pragma unroll
     for (int eye = 0; eye < kEyes; ++eye)
-      write_strips(extents[threadIdx.x / 32], extent[eye], f.splats, eye, depth[eye],
-                   rank * kEyes + eye, boxes);
+      write_strips<kEyes>(extents[threadIdx.x / 32], extent[eye], f.splats, eye, depth[eye],
+                          rank * kEyes + eye, boxes);
   }
   visible = __reduce_add_sync(kAll, visible);
   for (int step = 16; step != 0; step /= 2) boxed += __shfl_xor_sync(kAll, boxed, step);

@@ -171,7 +171,8 @@ __device__ float limit_at(const DepthLimits& limits, uint32_t x, uint32_t y) {
 }
 
 template <class M>
-__global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(const __grid_constant__ RasterParams params) {
+__global__ void __launch_bounds__(kThreads, 8)
+    rasterize_tiles(const __grid_constant__ RasterParams params) {
   __shared__ WarpSplats chosen[kWarps];
   extern __shared__ float lut_entries[];
   if constexpr (M::kExponential == Exponential::lut) {
@@ -200,7 +201,8 @@ __global__ void __launch_bounds__(kThreads, 8) rasterize_tiles(const __grid_cons
     lane.set_limit(row, inside(row) ? -log_threshold<M::kExponential>() : -kInfinity);
   if constexpr (M::kLimits)
     for (int row = 0; row < kRows; ++row)
-      lane.set_farthest(row, inside(row) ? limit_at(eye.limits, x, y + row * kLaneRows) : -kInfinity);
+      lane.set_farthest(row,
+                        inside(row) ? limit_at(eye.limits, x, y + row * kLaneRows) : -kInfinity);
   Counts counts;
   const Lut lut{lut_entries, static_cast<float>(params.lut_size) / kLutRange};
   rasterize_list<M>(params.splats, params.splats.tiles[list], part, lut, chosen[warp], lane,
@@ -219,7 +221,7 @@ template <class M>
 void launch(const SplatFrame& f, const RasterParams& params) {
   const bool lut = M::kExponential == Exponential::lut;
   const size_t lut_bytes = lut ? (params.lut_size + 1) * sizeof(float) : 0;
-  rasterize_tiles<M><<<f.splats.frame.count, kThreads, lut_bytes, f.stream>>>(params);
+  rasterize_tiles<M><<<f.splats.frame.count(), kThreads, lut_bytes, f.stream>>>(params);
 }
 
 template <Exponential E, bool kFilter>

@@ -149,7 +149,7 @@ union Storage {
 // Nine blocks: with fewer registers a thread the sorts spill, with more too few run at once.
 __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) {
   __shared__ Storage storage;
-  const uint32_t tiles = splats.frame.count, long_lists = splats.counters->long_lists;
+  const uint32_t tiles = splats.frame.count(), long_lists = splats.counters->long_lists;
   for (uint32_t i = splats.counters->large_lists + blockIdx.x; i < long_lists; i += gridDim.x) {
     const TileList list = splats.tiles[splats.tile_order[i]];
     MediumLists::sort(storage.block, splats.keys + list.first, list.last - list.first, threadIdx.x);

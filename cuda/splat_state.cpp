@@ -34,13 +34,13 @@ bool grow_to(size_t wanted, size_t before, const Allocate& allocate) {
 
 FrameTiles frame_tiles(const FrameInput& frame) {
   FrameTiles tiles{};
+  tiles.eyes = static_cast<uint32_t>(frame.eyes.size());
   for (size_t eye = 0; eye < kMaxEyes; ++eye) {
-    tiles.first[eye] = tiles.count;
-    if (eye >= frame.eyes.size()) continue;
-    const TileGrid grid =
-        tile_grid(frame.eyes[eye].camera.width, frame.eyes[eye].camera.height);
-    tiles.grids[eye] = grid;
-    tiles.count += static_cast<uint32_t>(grid.columns) * static_cast<uint32_t>(grid.rows);
+    if (eye < tiles.eyes)
+      tiles.grids[eye] = tile_grid(frame.eyes[eye].camera.width, frame.eyes[eye].camera.height);
+    const TileGrid& grid = tiles.grids[eye];
+    tiles.first[eye + 1] =
+        tiles.first[eye] + static_cast<uint32_t>(grid.columns) * static_cast<uint32_t>(grid.rows);
   }
   return tiles;
 }
@@ -63,7 +63,7 @@ SplatState::SplatState(unsigned bin_blocks, uint32_t eyes)
       strips_(kFirstStrips) {}
 
 void SplatState::fit(const FrameTiles& of) {
-  const size_t tiles = of.count;
+  const size_t tiles = of.count();
   if (tiles <= tiles_.size()) return;
   counters_ = Buffer<unsigned char>(sizeof(SplatCounters) + tiles * sizeof(uint32_t));
   tile_offsets_ = Buffer<uint32_t>(tiles * bin_blocks_);
@@ -120,8 +120,8 @@ SplatView SplatState::view(const FrameTiles& tiles) const {
 }
 
 void SplatState::begin_frame(const FrameTiles& tiles, cudaStream_t stream) const {
-  check(cudaMemsetAsync(counters_.data(), 0, sizeof(SplatCounters) + tiles.count * sizeof(uint32_t),
-                        stream),
+  check(cudaMemsetAsync(counters_.data(), 0,
+                        sizeof(SplatCounters) + tiles.count() * sizeof(uint32_t), stream),
         "a frame's counters");
 }
 

@@ -31,7 +31,8 @@ VOYAGER_HD uint32_t slot_of(DepthKey key) {
   return static_cast<uint32_t>(key);
 }
 
-// Strips are appended in as many places, or all warps would wait for one counter.
+// Strips are appended in as many places, or all warps would wait for one counter. Each eye has as
+// many of them, the first eye the first ones.
 inline constexpr uint32_t kStripRegions = 32;
 struct alignas(128) StripRegion {
   uint32_t strips;
@@ -74,14 +75,15 @@ struct TileList {
 // The tiles of a frame: those of an eye behind those of the eye before it.
 struct FrameTiles {
   TileGrid grids[kMaxEyes];
-  uint32_t first[kMaxEyes];  // that of an eye that there is not: behind the last
-  uint32_t count;
+  uint32_t first[kMaxEyes + 1];  // behind the last: as many as there are in all
+  uint32_t eyes;
 
   VOYAGER_HD uint32_t eye(uint32_t tile) const {
     uint32_t eye = 0;
     for (uint32_t other = 1; other < kMaxEyes; ++other) eye += tile >= first[other];
     return eye;
   }
+  VOYAGER_HD uint32_t count() const { return first[kMaxEyes]; }
 };
 
 // As kernels take it.

@@ -32,16 +32,18 @@ struct WarpExtents {
 
 // Writes the strips of a whole warp's splats in the image of one eye, one splat a lane. boxes:
 // whole rows of each box, in place of what the ellipse touches.
-__device__ inline void write_strips(WarpExtents& shared, const TileExtent& own,
-                                    const SplatView& splats, int eye, float depth, uint32_t slot,
-                                    bool boxes) {
+template <int kEyes>
+__device__ void write_strips(WarpExtents& shared, const TileExtent& own, const SplatView& splats,
+                             int eye, float depth, uint32_t slot, bool boxes) {
   constexpr unsigned kAll = 0xffffffffu;
   const uint32_t lane = threadIdx.x % 32;
   const WarpShares shares(own.strips());
   const uint32_t strips = shares.total();
   if (strips == 0) return;
   const TileGrid& grid = splats.frame.grids[eye];
-  const uint32_t region = blockIdx.x % kStripRegions, room = splats.strip_room / kStripRegions;
+  constexpr uint32_t kRegions = kStripRegions / kEyes;
+  const uint32_t region = eye * kRegions + blockIdx.x % kRegions;
+  const uint32_t room = splats.strip_room / kStripRegions;
   uint32_t first = 0;
   if (lane == 0) first = atomicAdd(strip_count(splats, region), strips);
   first = __shfl_sync(kAll, first, 0);
@@ -56,8 +58,7 @@ __device__ inline void write_strips(WarpExtents& shared, const TileExtent& own,
     if (strip >= strips) continue;
     const TileExtent& extent = shared.extent[owner];
     const int32_t row = extent.rows.begin + static_cast<int32_t>(strip - owner_before);
-    const TileRange columns =
-        boxes ? extent.columns : strip_columns(extent.ellipse, row, grid);
+    const TileRange columns = boxes ? extent.columns : strip_columns(extent.ellipse, row, grid);
     if (first + strip < room)
       splats.strips[region * room + first + strip] = {
           shared.slot[owner], shared.depth[owner],

@@ -1,5 +1,6 @@
 #include "runtime/cpu/cpu_backend.h"
 
+#include <algorithm>
 #include <deque>
 
 #include "runtime/base/error.h"
@@ -106,10 +107,14 @@ void CpuPipeline::project_instance(const HostInstance& instance) {
     size_t out[kEyes];
     for (size_t& at : out) at = first;
     for (size_t i = begin; i < end; ++i) {
-      Splat splats[kEyes];
-      const unsigned seen = voyager::project<kEyes>(params, arrays, items[i], splats);
+      const Vec3f mean = interpolated_mean(arrays, items[i]);
+      const auto sees = [&](const ProjectParams& eye) { return before_near_plane(eye, mean); };
+      DrawnGaussian drawn;
+      if (std::none_of(params, params + kEyes, sees) || !read_gaussian(arrays, items[i], drawn))
+        continue;
       for (size_t eye = 0; eye < kEyes; ++eye)
-        if ((seen >> eye & 1u) != 0) eyes_[eye].splats[out[eye]++] = splats[eye];
+        out[eye] +=
+            voyager::project(params[eye], arrays, items[i], drawn, eyes_[eye].splats[out[eye]]);
     }
     for (size_t eye = 0; eye < kEyes; ++eye)
       eyes_[eye].visible[first / kProjectBlock] = static_cast<uint32_t>(out[eye] - first);

@@ -21,8 +21,7 @@ inline CutQuery cut_query(const FrameInput& frame, size_t instance, const Vec3d&
   if (frame.eyes.size() == 1) return query;
   const Camera second = instance_camera(frame, frame.eyes[1], instance);
   query.centre = cut_centre(0.5 * (first.eye + second.eye), origin);
-  query.target_size =
-      std::min(query.target_size, cut_query(second, frame.tau, origin).target_size);
+  query.target_size = std::min(query.target_size, cut_query(second, frame.tau, origin).target_size);
   return query;
 }
 

@@ -16,7 +16,7 @@ struct HostInstance {
   DrawList draws;
   // Of the frame.
   std::array<Camera, kMaxEyes> cameras;  // in the scene's coordinates
-  size_t first = 0;  // the place of the first item
+  size_t first = 0;                      // the place of the first item
 };
 
 // Places are where items are projected to: they ascend with (instance, id), which breaks

@@ -13,7 +13,7 @@ class HostPipeline : public Pipeline {
   virtual void search(const FrameInput& frame) = 0;   // and interpolation weights
   virtual void project(const FrameInput& frame) = 0;  // for all eyes; and the α-filter's culling
   // Of an eye, one after the other.
-  virtual void sort(size_t eye) = 0;                            // splats by depth
+  virtual void sort(size_t eye) = 0;                          // splats by depth
   virtual void bin(const FrameInput& frame, size_t eye) = 0;  // splats to tiles, in that order
   virtual void rasterize(const FrameInput& frame, size_t eye) = 0;
   virtual void write(const FrameInput& frame, size_t eye) = 0;  // the host's image

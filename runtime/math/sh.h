@@ -42,39 +42,21 @@ VOYAGER_HD void sh_basis(int degree, const Vec3<T>& d, T* basis) {
 // the blended weights is at most 1, so a pixel stays finite too.
 inline constexpr double kMaxColour = 3e38;
 
-template <class T>
-VOYAGER_HD void clamp_colour(Vec3<T>& c) {
+// Coefficient(k, channel) is called for k in order; sums run in that order.
+template <class T, class Coefficient>
+VOYAGER_HD Vec3<T> sh_colour(int degree, const Vec3<T>& direction, const Coefficient& coefficient) {
+  T basis[16];
+  sh_basis(degree, direction, basis);
+  Vec3<T> c{T(0), T(0), T(0)};
+  const int count = sh_coefficients(degree);
+  for (int k = 0; k < count; ++k)
+    for (int channel = 0; channel < 3; ++channel) c[channel] += basis[k] * coefficient(k, channel);
   for (int channel = 0; channel < 3; ++channel) {
     c[channel] += T(0.5);
     c[channel] = c[channel] > T(0) ? c[channel] : T(0);
     c[channel] = c[channel] < T(kMaxColour) ? c[channel] : T(kMaxColour);
   }
-}
-
-// The colours in kCount unit directions. coefficient(k, channel) is called once for each, for k
-// in order; sums run in that order.
-template <int kCount, class T, class Coefficient>
-VOYAGER_HD void sh_colours(int degree, const Vec3<T>* directions, const Coefficient& coefficient,
-                           Vec3<T>* colours) {
-  T basis[kCount][16];
-  for (int i = 0; i < kCount; ++i) {
-    sh_basis(degree, directions[i], basis[i]);
-    colours[i] = {T(0), T(0), T(0)};
-  }
-  const int count = sh_coefficients(degree);
-  for (int k = 0; k < count; ++k)
-    for (int channel = 0; channel < 3; ++channel) {
-      const T c = coefficient(k, channel);
-      for (int i = 0; i < kCount; ++i) colours[i][channel] += basis[i][k] * c;
-    }
-  for (int i = 0; i < kCount; ++i) clamp_colour(colours[i]);
-}
-
-template <class T, class Coefficient>
-VOYAGER_HD Vec3<T> sh_colour(int degree, const Vec3<T>& direction, const Coefficient& coefficient) {
-  Vec3<T> colour;
-  sh_colours<1>(degree, &direction, coefficient, &colour);
-  return colour;
+  return c;
 }
 
 }  // namespace voyager

@@ -73,8 +73,7 @@ class ReferencePipeline final : public HostPipeline {
     const Eye& of = eyes_[eye];
     keys_.clear();
     for (size_t i = 0; i < of.splats.size(); ++i)
-      if (of.visible[i])
-        keys_.push_back(depth_key(of.splats[i].depth, static_cast<uint32_t>(i)));
+      if (of.visible[i]) keys_.push_back(depth_key(of.splats[i].depth, static_cast<uint32_t>(i)));
     sort_by_depth(keys_, workers_);
   }
 
@@ -132,7 +131,8 @@ class ReferencePipeline final : public HostPipeline {
     const auto& items = instance.draws.items();
     workers_.for_blocks(items.size(), kBlock, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
-        if (const auto splat = reference::project(*instance.scene, instance.cameras[eye], items[i])) {
+        if (const auto splat =
+                reference::project(*instance.scene, instance.cameras[eye], items[i])) {
           of.splats[instance.first + i] = *splat;
           of.visible[instance.first + i] = 1;
         }
@@ -151,7 +151,7 @@ class ReferencePipeline final : public HostPipeline {
   bool alpha_filter_;
   Workers& workers_;
   HostInstances instances_;
-  std::deque<Eye> eyes_;  // which are never moved
+  std::deque<Eye> eyes_;             // which are never moved
   std::pmr::vector<uint64_t> keys_;  // of the eye in turn
 };
 

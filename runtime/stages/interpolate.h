@@ -90,29 +90,19 @@ VOYAGER_HD Shape<T> interpolated_shape(const Arrays& arrays, const DrawItem& ite
   return shape;
 }
 
-// directions: kCount, unit, from each camera to the interpolated mean, world axes.
-template <int kCount, class T, class Arrays>
-VOYAGER_HD void interpolated_colours(const Arrays& arrays, const DrawItem& item,
-                                     const Vec3<T>* directions, Vec3<T>* colours) {
-  const auto own = arrays.sh(item.gaussian);
-  if (item.t == 1.0f)
-    return sh_colours<kCount>(
-        arrays.sh_degree(), directions, [&](int k, int channel) { return T(own(k, channel)); },
-        colours);
-  const auto parent = arrays.sh(item.parent);
-  const T t = T(item.t);
-  sh_colours<kCount>(
-      arrays.sh_degree(), directions,
-      [&](int k, int channel) { return lerp(T(parent(k, channel)), T(own(k, channel)), t); },
-      colours);
-}
-
+// direction: unit, from the camera to the interpolated mean, world axes.
 template <class T, class Arrays>
 VOYAGER_HD Vec3<T> interpolated_colour(const Arrays& arrays, const DrawItem& item,
                                        const Vec3<T>& direction) {
-  Vec3<T> colour;
-  interpolated_colours<1>(arrays, item, &direction, &colour);
-  return colour;
+  const auto own = arrays.sh(item.gaussian);
+  if (item.t == 1.0f)
+    return sh_colour(arrays.sh_degree(), direction,
+                     [&](int k, int channel) { return T(own(k, channel)); });
+  const auto parent = arrays.sh(item.parent);
+  const T t = T(item.t);
+  return sh_colour(arrays.sh_degree(), direction, [&](int k, int channel) {
+    return lerp(T(parent(k, channel)), T(own(k, channel)), t);
+  });
 }
 
 }  // namespace voyager

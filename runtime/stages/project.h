@@ -125,21 +125,47 @@ VOYAGER_HD bool may_reach(const ProjectParams& params, const Vec3f& mean, float 
                                  detail::image_x(params, view), detail::image_y(params, view));
 }
 
-// All of the splat but its colour, of a Gaussian at `view` before the near plane; rho: its
-// threshold. False where nothing of it can reach the image.
-VOYAGER_HD bool place_splat(const ProjectParams& params, const DrawItem& item,
-                            const Shape<float>& shape, float rho, const Vec3f& view,
-                            Splat& splat) {
+// What a Gaussian's splats in the images of several eyes have in common.
+struct DrawnGaussian {
+  Vec3f mean;
+  Shape<float> shape;
+  float rho_min;  // in natural logarithms
+};
+
+// False where it is under the α threshold everywhere (METHOD §7a).
+template <class Arrays>
+VOYAGER_HD bool read_gaussian(const Arrays& arrays, const DrawItem& item, DrawnGaussian& drawn) {
+  drawn.mean = interpolated_mean(arrays, item);
+  drawn.shape = interpolated_shape<float>(arrays, item);
+  drawn.rho_min = rho_min(drawn.shape.log_opacity);
+  return drawn.rho_min <= 0.0f;
+}
+
+VOYAGER_HD bool before_near_plane(const ProjectParams& params, const Vec3f& mean) {
+  return view_depth(camera_relative(mean, params.origin, params.eye),
+                    params.view.world_to_view.row[2]) > params.near_z;
+}
+
+// All of the splat but its colour. False where nothing of it can reach the image: behind the
+// near plane, or outside the image.
+// relative: where its mean is from the eye, in world axes.
+VOYAGER_HD bool project_shape(const ProjectParams& params, const DrawItem& item,
+                              const DrawnGaussian& drawn, Splat& splat, Vec3f& relative) {
+  relative = camera_relative(drawn.mean, params.origin, params.eye);
+  const Vec3f view = detail::to_view(params, relative);
+  if (!(view.z > params.near_z)) return false;
+
   splat.x = detail::image_x(params, view);
   splat.y = detail::image_y(params, view);
+  const Shape<float>& shape = drawn.shape;
   const ImageJacobian<float> jacobian = image_jacobian(params.view, view);
   if (detail::surely_outside(params, jacobian, detail::largest(shape.scale),
-                             std::sqrt(2.0f * (kRhoMargin - rho)), splat.x, splat.y))
+                             std::sqrt(2.0f * (kRhoMargin - drawn.rho_min)), splat.x, splat.y))
     return false;
 
   const ImageCovariance<float> covariance = image_covariance(jacobian, shape.rotation, shape.scale);
   splat.conic = conic(covariance, params.half);
-  splat.rho_min = rho * params.log_scale;
+  splat.rho_min = drawn.rho_min * params.log_scale;
   const SupportEllipse support = support_ellipse(splat);
   splat.half_width = support.reach_x;
   splat.half_height = support.reach_y;
@@ -153,52 +179,14 @@ VOYAGER_HD bool place_splat(const ProjectParams& params, const DrawItem& item,
          !detail::misses(splat.y, splat.half_height, params.height);
 }
 
-// All of a Gaussian's splats but their colours, in the images of kEyes, which share what is read
-// of it. A bit for each eye: clear where nothing of it can reach the image, being behind the near
-// plane, under the α threshold everywhere (METHOD §7a), or outside the image.
-// relative: where its mean is from each eye, in world axes.
-template <int kEyes, class Arrays>
-VOYAGER_HD unsigned project_shapes(const ProjectParams* params, const Arrays& arrays,
-                                   const DrawItem& item, Splat* splats, Vec3f* relative) {
-  const Vec3f mean = interpolated_mean(arrays, item);
-  Vec3f view[kEyes];
-  unsigned seen = 0;
-  for (int eye = 0; eye < kEyes; ++eye) {
-    relative[eye] = camera_relative(mean, params[eye].origin, params[eye].eye);
-    view[eye] = detail::to_view(params[eye], relative[eye]);
-    seen |= static_cast<unsigned>(view[eye].z > params[eye].near_z) << eye;
-  }
-  if (seen == 0) return 0;
-  const Shape<float> shape = interpolated_shape<float>(arrays, item);
-  const float rho = rho_min(shape.log_opacity);
-  if (!(rho <= 0.0f)) return 0;
-  for (int eye = 0; eye < kEyes; ++eye)
-    if ((seen >> eye & 1u) != 0 &&
-        !place_splat(params[eye], item, shape, rho, view[eye], splats[eye]))
-      seen &= ~(1u << eye);
-  return seen;
-}
-
-// Of the Gaussians that project_shapes() lets through. SH are evaluated for each eye: what an eye
-// sees does not depend on the other.
-template <int kEyes, class Arrays>
-VOYAGER_HD void project_colours(const Arrays& arrays, const DrawItem& item, const Vec3f* relative,
-                                Splat* splats) {
-  Vec3f directions[kEyes], colours[kEyes];
-  for (int eye = 0; eye < kEyes; ++eye)
-    directions[eye] =
-        (1.0f / std::sqrt(dot(relative[eye], relative[eye]))) * relative[eye];
-  interpolated_colours<kEyes>(arrays, item, directions, colours);
-  for (int eye = 0; eye < kEyes; ++eye) splats[eye].colour = colours[eye];
-}
-
-template <int kEyes, class Arrays>
-VOYAGER_HD unsigned project(const ProjectParams* params, const Arrays& arrays, const DrawItem& item,
-                            Splat* splats) {
-  Vec3f relative[kEyes];
-  const unsigned seen = project_shapes<kEyes>(params, arrays, item, splats, relative);
-  if (seen != 0) project_colours<kEyes>(arrays, item, relative, splats);
-  return seen;
+// SH are evaluated for each eye: what an eye sees does not depend on the other.
+template <class Arrays>
+VOYAGER_HD bool project(const ProjectParams& params, const Arrays& arrays, const DrawItem& item,
+                        const DrawnGaussian& drawn, Splat& splat) {
+  Vec3f d;
+  if (!project_shape(params, item, drawn, splat, d)) return false;
+  splat.colour = interpolated_colour(arrays, item, (1.0f / std::sqrt(dot(d, d))) * d);
+  return true;
 }
 
 }  // namespace voyager

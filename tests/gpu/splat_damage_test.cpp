@@ -32,7 +32,8 @@ class SplatDamage : public SplatTest {
       expected = render(host, input);
     } catch (const Error& error) {
       ASSERT_EQ(error.code(), ErrorCode::damaged_chunk);
-      GuardedImage image(ColorFormat::rgba8, input.eyes[0].camera.width, input.eyes[0].camera.height);
+      GuardedImage image(ColorFormat::rgba8, input.eyes[0].camera.width,
+                         input.eyes[0].camera.height);
       EXPECT_EQ(error_code([&] { own.render(input, image.image()); }), ErrorCode::damaged_chunk);
       EXPECT_TRUE(image.untouched());
       ++refused;

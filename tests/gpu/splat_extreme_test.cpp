@@ -111,7 +111,8 @@ TEST_F(SplatExtreme, EarthCentredTreesWithMillimetreSteps) {
   for (int step = 0; step < 8; ++step) {
     FrameInput input =
         frame_input(look({0.001 * step, -1, -24}, {0.001 * step, 0, 0}, 160, 120), 6);
-    input.eyes[0].camera.eye = input.eyes[0].camera.eye + Vec3d{cloud.origin[0], cloud.origin[1], cloud.origin[2]};
+    input.eyes[0].camera.eye =
+        input.eyes[0].camera.eye + Vec3d{cloud.origin[0], cloud.origin[1], cloud.origin[2]};
     with_reference.add(render(*own, input), render(*exact, input));
   }
   with_reference.expect();

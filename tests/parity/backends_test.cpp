@@ -98,8 +98,11 @@ std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const Fr
   const GaussianArrays arrays = gaussian_arrays(*scene);
   std::vector<Splat> splats;
   Splat splat;
-  for (const DrawItem& item : draws.items())
-    if (project<1>(&params, arrays, item, &splat) != 0) splats.push_back(splat);
+  for (const DrawItem& item : draws.items()) {
+    DrawnGaussian drawn;
+    if (read_gaussian(arrays, item, drawn) && project(params, arrays, item, drawn, splat))
+      splats.push_back(splat);
+  }
   std::stable_sort(splats.begin(), splats.end(),
                    [](const Splat& a, const Splat& b) { return a.depth < b.depth; });
   return splats;
