@@ -1,5 +1,5 @@
 #pragma once
-#include "runtime/frame/backend.h"
+#include "runtime/frame/image.h"
 #include "vulkan_interop/functions.h"
 
 namespace voyager::vulkan {

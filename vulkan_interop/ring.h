@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "runtime/frame/image.h"
+#include "runtime/math/host_depth.h"
 #include "vulkan_interop/ring_descriptors.h"
 #include "vulkan_interop/staging.h"
 
