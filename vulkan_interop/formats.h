@@ -20,4 +20,9 @@ constexpr VkFormat vk_format(ColorFormat format) {
   return VK_FORMAT_UNDEFINED;
 }
 
+// All that a ring's images may have.
+inline constexpr VkFormat kRingFormats[] = {vk_format(ColorFormat::rgba8),
+                                            vk_format(ColorFormat::rgba16f),
+                                            vk_format(ColorFormat::rgba32f), kDepthFormat};
+
 }  // namespace voyager::vulkan
