@@ -15,6 +15,21 @@ void check_usage(VkImageUsageFlags usage, const char* field) {
                     ", expected VK_IMAGE_USAGE_TRANSFER_DST_BIT among it for HOST sharing");
 }
 
+// That the image can lie where the host says that it does.
+void check_room(const Device& device, VkImage image, const ImportedMemory& memory,
+                const char* field) {
+  VkMemoryRequirements needs;
+  device.functions().GetImageMemoryRequirements(device.handle(), image, &needs);
+  if (memory.offset % needs.alignment == 0 && memory.offset <= memory.size &&
+      needs.size <= memory.size - memory.offset)
+    return;
+  throw Error(ErrorCode::invalid_argument,
+              std::string(field) + ": found offset " + std::to_string(memory.offset) + " in " +
+                  std::to_string(memory.size) + " bytes, expected a multiple of " +
+                  std::to_string(needs.alignment) + " with the image's " +
+                  std::to_string(needs.size) + " bytes from there");
+}
+
 }  // namespace
 
 Ring::Ring(std::shared_ptr<const Device> device, const RingDesc& desc, const ImportRing& import,
@@ -38,10 +53,17 @@ Ring::~Ring() {
 }
 
 void Ring::check_imported() const {
-  if (shared()) return;
-  for (const ImportedImage& image : desc_.imported) {
-    if (image.color != VK_NULL_HANDLE) check_usage(image.color_usage, "colorUsage");
-    if (image.depth != VK_NULL_HANDLE) check_usage(image.depth_usage, "depthUsage");
+  const auto check = [&](VkImage image, const ImportedMemory& memory, const char* memory_field,
+                         VkImageUsageFlags usage, const char* usage_field) {
+    if (image == VK_NULL_HANDLE) return;
+    if (shared())
+      check_room(*device_, image, memory, memory_field);
+    else
+      check_usage(usage, usage_field);
+  };
+  for (const ImportedImage& passed : desc_.imported) {
+    check(passed.color, passed.color_memory, "colorMemory", passed.color_usage, "colorUsage");
+    check(passed.depth, passed.depth_memory, "depthMemory", passed.depth_usage, "depthUsage");
   }
 }
 

@@ -38,6 +38,16 @@ void Ring::check_values(const FrameSync& sync) const {
   }
 }
 
+void Ring::check_released(uint32_t index, const char* field) const {
+  const Holder holder = slots_[index].holder;
+  if (holder == Holder::voyager) return;
+  throw Error(ErrorCode::invalid_argument,
+              std::string(field) + ": found image " + std::to_string(index) +
+                  (holder == Holder::host ? ", which the host has acquired and not released since"
+                                          : ", which the host has never released") +
+                  ", expected voyRecordVulkanRelease of it first");
+}
+
 void Ring::wait_for_host(const FrameSync& sync) const {
   if (shared() || device_->sync() != Sync::timeline || sync.wait_value == 0) return;
   const VkSemaphore semaphore = slots_[0].image.released;
@@ -53,6 +63,7 @@ void Ring::wait_for_host(const FrameSync& sync) const {
 
 Image Ring::begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync) {
   check_values(sync);
+  check_released(index, "VoyVulkanFrame.imageIndex");
   wait_for_host(sync);
   Image image;
   image.format = desc_.format;
