@@ -49,7 +49,7 @@ Ring::Ring(std::shared_ptr<const Device> device, const RingDesc& desc, const Imp
 
 Ring::~Ring() {
   // What a frame may still write to is better left than freed.
-  if (!finish()) static_cast<void>(external_.release());
+  if (abandoned_ || !finish()) static_cast<void>(external_.release());
 }
 
 void Ring::check_imported() const {

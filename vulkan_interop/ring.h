@@ -80,6 +80,8 @@ class Ring {
   // The backend's frames are done, or will be without the host.
   // False where they do not end within a few times the patience: a lost device, say.
   bool finish() noexcept;
+  // The ring goes without a wait, and leaves what frames may still write to.
+  void abandon() noexcept { abandoned_ = true; }
 
   // Throw Error(invalid_argument), and record nothing, for a layout or a family that cannot be
   // the image's, stages that read no image, or an image that is not there to be taken.
@@ -128,6 +130,7 @@ class Ring {
   RingDescriptors descriptors_;
   std::optional<Staging> staging_;
   std::unique_ptr<ExternalRing> external_;
+  bool abandoned_ = false;
   uint64_t last_signal_ = 0;
   std::atomic<uint64_t> last_wait_{0};  // finish() may run beside a frame
 };

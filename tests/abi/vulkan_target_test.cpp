@@ -1,35 +1,10 @@
 // A Vulkan target on a device without CUDA, its Vulkan a mock: whose the passed descriptors
 // are after each call, and that a frame's wait has its signal.
-#include "tests/support/vulkan_mock.h"
-// Above: it declares Vulkan without prototypes.
-#include <voyager/voyager_vulkan.h>
-
-#include "tests/headless/host.h"
-#include "tests/support/descriptor_watch.h"
+#include "mock_vulkan_host.h"
 
 namespace {
 
 using namespace voyager::test;
-
-VoyVulkanDeviceDesc vulkan_desc(const std::vector<const char*>& extensions) {
-  VoyVulkanDeviceDesc desc = VOY_VULKAN_DEVICE_DESC_INIT;
-  desc.getInstanceProcAddr = &VulkanMock::get_instance;
-  desc.instance = VulkanMock::instance();
-  desc.physicalDevice = VulkanMock::physical();
-  desc.device = VulkanMock::handle();
-  desc.apiVersion = VK_API_VERSION_1_2;
-  desc.deviceExtensionCount = static_cast<uint32_t>(extensions.size());
-  desc.deviceExtensions = extensions.data();
-  desc.timelineSemaphore = VK_TRUE;
-  return desc;
-}
-
-// Host's constructor takes it by value; the chain lives as long as the test.
-VoyDeviceDesc cpu_with(const VoyVulkanDeviceDesc& vulkan) {
-  VoyDeviceDesc desc = device_for(VOY_BACKEND_CPU);
-  desc.next = &vulkan;
-  return desc;
-}
 
 struct VulkanTarget : testing::Test {
   static constexpr uint32_t kImages = 2;
