@@ -21,12 +21,16 @@ class Call {
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;
 
-  // Throws ApiError(VOY_ERROR_INVALID_HANDLE).
+  // Throws ApiError(VOY_ERROR_INVALID_HANDLE), ApiError(VOY_ERROR_DEVICE_LOST).
   template <class T>
   std::shared_ptr<T> use(typename T::Handle handle) {
     in_use_.reserve(in_use_.size() + 1);
     std::shared_ptr<Object> object = HandleTable::instance().begin_call(handle, T::kKind);
     in_use_.push_back(object.get());
+    if (device_of(*object).abandoned)
+      throw ApiError(VOY_ERROR_DEVICE_LOST,
+                     "device: found one on which a frame never ended, expected it to be destroyed "
+                     "with all that is on it");
     enter(*object);
     return std::static_pointer_cast<T>(std::move(object));
   }

@@ -1,5 +1,6 @@
 #pragma once
 // What stands behind each handle.
+#include <atomic>
 #include <memory>
 #include <memory_resource>
 #include <mutex>
@@ -38,6 +39,10 @@ struct DeviceObject final : Object {
   using Handle = VoyDevice;
   static constexpr Kind kKind = Kind::device;
   DeviceObject(const VoyDeviceDesc& desc, VoyBackend kind, std::unique_ptr<Backend> chosen);
+  ~DeviceObject() override;
+  // A frame never ends: it waits for a host that does not come, or its device is lost. To free
+  // anything on the backend would be to wait for it, so all of it is left to the process.
+  void abandon() noexcept;
 
   Log log;
   std::optional<HostMemory> host_memory;
@@ -46,6 +51,7 @@ struct DeviceObject final : Object {
   Workers workers;
   VoyBackend backend_kind;
   std::unique_ptr<Backend> backend;
+  std::atomic<bool> abandoned{false};
   std::shared_ptr<const vulkan::Device> vulkan;  // or NULL
 };
 
@@ -74,14 +80,10 @@ struct ViewObject final : Child {
         instances(static_cast<uint32_t>(drawn.size())),
         scenes(std::move(drawn)) {}
 
-  ~ViewObject() override { finish_frames(); }
+  ~ViewObject() override { drop_view(); }
   // A view waits for its frames under way, which may wait for the host: so rings first see
   // to it that they end.
-  void finish_frames() noexcept {
-    for (const auto& used : rings)
-      if (const auto ring = used.lock()) ring->finish();
-    rings.clear();
-  }
+  void drop_view() noexcept;
 
   const uint32_t eyes, instances;
   uint32_t max_width = 0, max_height = 0;
@@ -99,6 +101,7 @@ struct TargetObject final : Child {
   static constexpr Kind kKind = Kind::target;
   TargetObject(std::shared_ptr<DeviceObject> owner, const Image& pixels)
       : Child(kKind, std::move(owner)), image(pixels) {}
+  ~TargetObject() override;
 
   Image image;                         // of a ring: its size and format alone
   std::mutex busy;                     // held while a frame writes, or commands are recorded

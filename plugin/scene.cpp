@@ -119,9 +119,7 @@ VoyResult voyDestroyScene(VoyScene scene) {
         const std::lock_guard frame(view.busy);
         if (std::find(view.scenes.begin(), view.scenes.end(), object) == view.scenes.end())
           continue;
-        view.finish_frames();
-        view.view.reset();
-        view.scenes.clear();
+        view.drop_view();
       }
     }
     return VOY_SUCCESS;

@@ -33,7 +33,9 @@ vulkan::CompositeDraw checked(const VoyVulkanCompositeDraw& draw, const vulkan::
   check_enum(draw.depthUse, VOY_VULKAN_DEPTH_USE_WRITE, "draw.depthUse");
   const VkExtent2D& extent = draw.area.extent;
   if (draw.area.offset.x < 0 || draw.area.offset.y < 0 || extent.width == 0 || extent.height == 0 ||
-      extent.width > ring.desc().width || extent.height > ring.desc().height)
+      extent.width > ring.desc().width || extent.height > ring.desc().height ||
+      int64_t{draw.area.offset.x} + extent.width > INT32_MAX ||
+      int64_t{draw.area.offset.y} + extent.height > INT32_MAX)
     refuse("draw.area: found " + std::to_string(extent.width) + " x " +
            std::to_string(extent.height) + " pixels at " + std::to_string(draw.area.offset.x) +
            ", " + std::to_string(draw.area.offset.y) + ", expected up to the target's " +

@@ -100,7 +100,7 @@ vulkan::DeviceDesc voyager::vulkan_device_desc(const VoyVulkanDeviceDesc& desc) 
     check_pointer(desc.deviceExtensions[i], "deviceExtensions[]");
     out.extensions.emplace_back(desc.deviceExtensions[i]);
   }
-  out.timelines = desc.timelineSemaphore == VK_TRUE;
+  out.timelines = desc.timelineSemaphore != VK_FALSE;
   out.sharing = sharing_of(desc.sharing);
   out.sync = sync_of(desc.sync);
   return out;
@@ -110,7 +110,7 @@ void voyager::fill(VoyVulkanCapabilities& out, const vulkan::Device& device) {
   const bool shared = device.sharing() == vulkan::Sharing::device;
   out.sharing = shared ? VOY_VULKAN_SHARING_DEVICE : VOY_VULKAN_SHARING_HOST;
   out.sync = sync_of(device.sync());
-  out.hostMemoryImport = !shared && device.imports_host_memory() ? VK_TRUE : VK_FALSE;
+  out.hostMemoryImport = device.imports_host_memory() ? VK_TRUE : VK_FALSE;
   std::fill(std::begin(out.why), std::end(out.why), '\0');
   device.why().copy(out.why, sizeof out.why - 1);
 }

@@ -48,10 +48,15 @@ VoyResult record_use(const char* function, VoyTarget target, const VoyVulkanUse*
   });
 }
 
-void check_offset(const VkOffset2D& offset, const char* field) {
-  if (offset.x < 0 || offset.y < 0)
+// Of the target's rectangle in an image of the host's.
+void check_offset(const VkOffset2D& offset, const vulkan::RingDesc& target, const char* field) {
+  const auto fits = [](int32_t first, uint32_t size) {
+    return first >= 0 && int64_t{first} + size <= INT32_MAX;
+  };
+  if (!fits(offset.x, target.width) || !fits(offset.y, target.height))
     refuse(std::string(field) + ": found " + std::to_string(offset.x) + ", " +
-           std::to_string(offset.y) + ", expected none below 0");
+           std::to_string(offset.y) + ", expected the target's " + std::to_string(target.width) +
+           " x " + std::to_string(target.height) + " pixels to lie within an image from there");
 }
 
 }  // namespace
@@ -80,7 +85,7 @@ VoyResult voyRecordVulkanCopy(VoyTarget target, const VoyVulkanCopy* copy) {
     check_pointer(copy->into, "copy.into");
     check_layout(copy->layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "copy.layout");
     check_layout(copy->intoLayout, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, "copy.intoLayout");
-    check_offset(copy->intoOffset, "copy.intoOffset");
+    check_offset(copy->intoOffset, ring.desc(), "copy.intoOffset");
     ring.record_copy(copy->imageIndex, copy->layer,
                      {copy->commandBuffer, copy->layout, copy->into, copy->intoFormat,
                       copy->intoLayout, copy->intoLayer, copy->intoOffset});
@@ -97,7 +102,7 @@ VoyResult voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDepthLimit*
     check_layer(ring, limit->imageIndex, limit->layer);
     check_pointer(limit->depth, "limit.depth");
     check_layout(limit->layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "limit.layout");
-    check_offset(limit->offset, "limit.offset");
+    check_offset(limit->offset, ring.desc(), "limit.offset");
     if (!ring.desc().depth_limit)
       refuse("target: found one without depthLimit, expected one that was made with it");
     ring.record_depth_limit(limit->imageIndex, limit->layer,

@@ -1,8 +1,10 @@
 #include "plugin/vulkan_target.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <set>
 
 #include "plugin/call.h"
 #include "plugin/structs.h"
@@ -25,20 +27,29 @@ void check_image(bool wanted, bool passed, const std::string& field) {
 }
 
 vulkan::ImportedMemory memory_of(const VoyVulkanMemory& memory) {
-  return {memory.fd, memory.size, memory.offset, memory.dedicated == VK_TRUE};
+  return {memory.fd, memory.size, memory.offset, memory.dedicated != VK_FALSE};
+}
+
+// What is passed is the library's to close: so it must be a descriptor, wanted or not.
+void check_descriptor(int fd, bool wanted, const std::string& field) {
+  const bool is_open = fd >= 0 && ::fcntl(fd, F_GETFD) >= 0;
+  if (is_open || (!wanted && fd == -1)) return;
+  refuse(field + ": found " + std::to_string(fd) + ", expected an open file descriptor" +
+         (wanted ? "" : " or -1"));
 }
 
 void check_memory(const VoyVulkanMemory& memory, bool shared, const std::string& field) {
-  if (!shared) return;
-  if (memory.fd < 0)
-    refuse(field + ".fd: found " + std::to_string(memory.fd) + ", expected a file descriptor");
+  check_descriptor(memory.fd, shared, field + ".fd");
+  if (memory.fd == -1) return;
   if (memory.size == 0 || memory.offset >= memory.size)
     refuse(field + ": found offset " + std::to_string(memory.offset) + " in " +
-           std::to_string(memory.size) + " bytes, expected an image within the memory");
+           std::to_string(memory.size) + " bytes, expected an image within the memory" +
+           (shared ? "" : ", or fd -1"));
 }
 
 void read_images(const VoyVulkanTargetDesc& from, bool shared, vulkan::RingDesc& into) {
   if (from.images == nullptr) return;
+  std::set<VkImage> seen;
   for (uint32_t i = 0; i < from.imageCount; ++i) {
     const VoyVulkanImportedImage& image = from.images[i];
     const std::string field = "images[" + std::to_string(i) + "]";
@@ -48,6 +59,9 @@ void read_images(const VoyVulkanTargetDesc& from, bool shared, vulkan::RingDesc&
     check_image(into.depth, image.depth != VK_NULL_HANDLE, field + ".depth");
     if (color) check_memory(image.colorMemory, shared, field + ".colorMemory");
     if (into.depth) check_memory(image.depthMemory, shared, field + ".depthMemory");
+    for (const VkImage each : {image.color, image.depth})
+      if (each != VK_NULL_HANDLE && !seen.insert(each).second)
+        refuse(field + ": found an image that was passed before, expected one of its own");
     into.imported.push_back({image.color, image.depth, memory_of(image.colorMemory),
                              memory_of(image.depthMemory), image.colorUsage, image.depthUsage});
   }
@@ -69,8 +83,12 @@ void read_semaphores(const VoyVulkanTargetDesc& from, const vulkan::Device& devi
     const std::string field = "semaphores[" + std::to_string(i) + "]";
     check_structure(&pair, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES, field.c_str());
     check_image(true, pair.released != VK_NULL_HANDLE && pair.rendered != VK_NULL_HANDLE, field);
-    if (device.sharing() == vulkan::Sharing::device && (pair.releasedFd < 0 || pair.renderedFd < 0))
-      refuse(field + ": found no file descriptor, expected one of each semaphore");
+    const bool shared = device.sharing() == vulkan::Sharing::device;
+    check_descriptor(pair.releasedFd, shared, field + ".releasedFd");
+    check_descriptor(pair.renderedFd, shared, field + ".renderedFd");
+    if (pair.released == pair.rendered ||
+        (pair.releasedFd == pair.renderedFd && pair.releasedFd != -1))
+      refuse(field + ": found the same for released and rendered, expected two semaphores");
     into.semaphores.push_back({pair.released, pair.rendered, pair.releasedFd, pair.renderedFd});
   }
 }
@@ -86,8 +104,8 @@ vulkan::RingDesc ring_desc(const VoyTargetDesc& desc, const VoyVulkanTargetDesc&
   out.height = desc.height;
   out.images = images.imageCount;
   out.layers = images.layerCount;
-  out.depth = images.depth == VK_TRUE;
-  out.depth_limit = images.depthLimit == VK_TRUE;
+  out.depth = images.depth != VK_FALSE;
+  out.depth_limit = images.depthLimit != VK_FALSE;
   if (out.format == ColorFormat::none && !out.depth)
     refuse("desc: found neither color nor depth, expected at least one");
   read_images(images, device.sharing() == vulkan::Sharing::device, out);

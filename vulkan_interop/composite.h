@@ -4,15 +4,10 @@
 #include <memory>
 
 #include "runtime/math/host_depth.h"
+#include "vulkan_interop/composite_pipeline.h"
 #include "vulkan_interop/ring.h"
 
 namespace voyager::vulkan {
-
-struct CompositeDesc {
-  VkRenderPass render_pass = VK_NULL_HANDLE;  // none: dynamic rendering
-  uint32_t subpass = 0;
-  VkFormat color = VK_FORMAT_UNDEFINED, depth = VK_FORMAT_UNDEFINED;
-};
 
 enum class DepthUse { none, test, write };
 
@@ -25,18 +20,13 @@ struct CompositeDraw {
 
 class Composite {
  public:
+  // Throws Error(unsupported) for attachments that the device cannot draw to like this.
   Composite(std::shared_ptr<const Device> device, const CompositeDesc& desc);
 
   // Throws Error(invalid_argument) where the ring or the attachment lacks what is asked for.
   void record(const Ring& ring, uint32_t index, uint32_t layer, const CompositeDraw& draw) const;
 
  private:
-  enum Kind { kColor, kTested, kDepthOnly };
-  struct Modules {
-    Owned<VkShaderModule> vertex, color, depth;
-  };
-  Owned<VkPipeline> make_pipeline(const CompositeDesc& desc, const Modules& modules, Kind kind,
-                                  bool reversed) const;
   void draw(const CompositeDraw& draw, VkPipeline pipeline) const;
 
   std::shared_ptr<const Device> device_;

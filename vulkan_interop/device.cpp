@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "runtime/base/error.h"
+#include "vulkan_interop/formats.h"
+#include "vulkan_interop/resources.h"
 
 namespace voyager::vulkan {
 namespace {
@@ -24,16 +26,17 @@ Device::Device(const DeviceDesc& desc, const ExternalSupport& backend)
       vk_(load_device_functions(physical_.functions().GetDeviceProcAddr, desc.device)),
       extensions_(desc.extensions),
       version_(desc.version),
-      timelines_(desc.timelines),
-      imports_host_memory_(enabled(VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME) &&
-                           vk_.GetMemoryHostPointerPropertiesEXT != nullptr &&
-                           physical_.host_pointer_alignment() != 0) {
+      timelines_(desc.timelines) {
   if (desc.version < kLeastVersion)
     throw Error(
         ErrorCode::unsupported,
         "VoyVulkanDeviceDesc.apiVersion: found one below Vulkan 1.1, expected 1.1 or newer");
   choose_sharing(desc.sharing, backend);
   choose_sync(desc.sync, backend);
+  imports_host_memory_ = sharing_ == Sharing::host &&
+                         enabled(VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME) &&
+                         vk_.GetMemoryHostPointerPropertiesEXT != nullptr &&
+                         physical_.host_pointer_alignment() != 0 && takes_host_memory(*this);
 }
 
 bool Device::enabled(const char* extension) const {
@@ -44,7 +47,10 @@ std::string Device::why_not_shared(const ExternalSupport& backend) const {
   if (!backend.images) return "the backend does not draw on this device";
   if (!enabled(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME) || vk_.GetMemoryFdKHR == nullptr)
     return not_enabled(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
-  return "";
+  for (const VkFormat format : kRingFormats)
+    if (!physical_.exports_images(format))
+      return "the device exports no images of VkFormat " + std::to_string(format);
+  return physical_.exports_buffers() ? "" : "the device exports no buffers";
 }
 
 std::string Device::why_no_timelines(const ExternalSupport& backend) const {

@@ -38,6 +38,7 @@ class Device {
     return enabled(VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME) ||
            (version_ >= VK_API_VERSION_1_3 && physical_.version() >= VK_API_VERSION_1_3);
   }
+  // With HOST sharing: it takes memory of the host's, as a page that was tried has shown.
   bool imports_host_memory() const { return imports_host_memory_; }
   // What keeps it from sharing images, or from timelines; "" if nothing.
   const std::string& why() const { return why_; }
@@ -56,7 +57,7 @@ class Device {
   std::vector<std::string> extensions_;
   uint32_t version_;  // of the instance
   bool timelines_;
-  bool imports_host_memory_;
+  bool imports_host_memory_ = false;
   Sharing sharing_ = Sharing::host;
   Sync sync_ = Sync::host;
   std::string why_;

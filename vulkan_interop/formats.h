@@ -1,5 +1,5 @@
 #pragma once
-#include "runtime/frame/backend.h"
+#include "runtime/frame/image.h"
 #include "vulkan_interop/functions.h"
 
 namespace voyager::vulkan {
@@ -19,5 +19,10 @@ constexpr VkFormat vk_format(ColorFormat format) {
   }
   return VK_FORMAT_UNDEFINED;
 }
+
+// All that a ring's images may have.
+inline constexpr VkFormat kRingFormats[] = {vk_format(ColorFormat::rgba8),
+                                            vk_format(ColorFormat::rgba16f),
+                                            vk_format(ColorFormat::rgba32f), kDepthFormat};
 
 }  // namespace voyager::vulkan

@@ -9,6 +9,8 @@ namespace voyager::vulkan {
 #define VOYAGER_VULKAN_INSTANCE_FUNCTIONS(X) \
   X(EnumerateDeviceExtensionProperties) X(GetPhysicalDeviceProperties2) \
   X(GetPhysicalDeviceFeatures2) X(GetPhysicalDeviceMemoryProperties) \
+  X(GetPhysicalDeviceQueueFamilyProperties) X(GetPhysicalDeviceFormatProperties) \
+  X(GetPhysicalDeviceImageFormatProperties2) X(GetPhysicalDeviceExternalBufferProperties) \
   X(GetPhysicalDeviceExternalSemaphoreProperties) \
   X(GetDeviceProcAddr)
 

@@ -48,6 +48,7 @@ PhysicalDevice::PhysicalDevice(PFN_vkGetInstanceProcAddr get, VkInstance instanc
   std::copy_n(identity.deviceUUID, uuid_.size(), uuid_.begin());
   host_pointer_alignment_ = host_memory.minImportedHostPointerAlignment;
   vk_.GetPhysicalDeviceMemoryProperties(device, &memory_);
+  vk_.GetPhysicalDeviceQueueFamilyProperties(device, &queue_families_, nullptr);
   if (version_ < VK_API_VERSION_1_2 && !has(VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME)) return;
   VkPhysicalDeviceTimelineSemaphoreFeatures timelines{
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES, nullptr, VK_FALSE};
@@ -55,7 +56,47 @@ PhysicalDevice::PhysicalDevice(PFN_vkGetInstanceProcAddr get, VkInstance instanc
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
   features.pNext = &timelines;
   vk_.GetPhysicalDeviceFeatures2(device, &features);
-  timelines_ = timelines.timelineSemaphore == VK_TRUE;
+  timelines_ = timelines.timelineSemaphore != VK_FALSE;
+}
+
+bool PhysicalDevice::exports_images(VkFormat format) const {
+  const VkPhysicalDeviceExternalImageFormatInfo external{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_IMAGE_FORMAT_INFO, nullptr,
+      VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT};
+  VkPhysicalDeviceImageFormatInfo2 info{};
+  info.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_IMAGE_FORMAT_INFO_2;
+  info.pNext = &external;
+  info.format = format;
+  info.type = VK_IMAGE_TYPE_2D;
+  info.tiling = VK_IMAGE_TILING_OPTIMAL;
+  info.usage = kImageUsage;
+  VkExternalImageFormatProperties shared{};
+  shared.sType = VK_STRUCTURE_TYPE_EXTERNAL_IMAGE_FORMAT_PROPERTIES;
+  VkImageFormatProperties2 found{};
+  found.sType = VK_STRUCTURE_TYPE_IMAGE_FORMAT_PROPERTIES_2;
+  found.pNext = &shared;
+  const VkResult status = vk_.GetPhysicalDeviceImageFormatProperties2(device_, &info, &found);
+  if (status == VK_ERROR_FORMAT_NOT_SUPPORTED) return false;
+  check(status, "vkGetPhysicalDeviceImageFormatProperties2");
+  return (shared.externalMemoryProperties.externalMemoryFeatures &
+          VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT) != 0;
+}
+
+bool PhysicalDevice::exports_buffers() const {
+  const VkPhysicalDeviceExternalBufferInfo info{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_BUFFER_INFO, nullptr, 0, kBufferUsage,
+      VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT};
+  VkExternalBufferProperties found{};
+  found.sType = VK_STRUCTURE_TYPE_EXTERNAL_BUFFER_PROPERTIES;
+  vk_.GetPhysicalDeviceExternalBufferProperties(device_, &info, &found);
+  return (found.externalMemoryProperties.externalMemoryFeatures &
+          VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT) != 0;
+}
+
+bool PhysicalDevice::draws_to(VkFormat format, VkFormatFeatureFlags features) const {
+  VkFormatProperties found{};
+  vk_.GetPhysicalDeviceFormatProperties(device_, format, &found);
+  return (found.optimalTilingFeatures & features) == features;
 }
 
 bool PhysicalDevice::exports_semaphores(bool timeline) const {

@@ -1,5 +1,7 @@
 #include "vulkan_interop/resources.h"
 
+#include <new>
+
 #include "runtime/base/error.h"
 
 namespace voyager::vulkan {
@@ -53,7 +55,7 @@ Owned<VkBuffer> make_buffer(const Device& device, uint64_t bytes, const void* ne
   info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
   info.pNext = next;
   info.size = bytes;
-  info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  info.usage = kBufferUsage;
   return make<VkBuffer>(device, device.functions().CreateBuffer, device.functions().DestroyBuffer,
                         info, "vkCreateBuffer");
 }
@@ -87,8 +89,7 @@ ImageResource make_image(const Device& device, VkFormat format, uint32_t width, 
   info.arrayLayers = layers;
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
-  info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-               VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  info.usage = kImageUsage;
   info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
   ImageResource made;
   made.image = make<VkImage>(device, vk.CreateImage, vk.DestroyImage, info, "vkCreateImage");
@@ -175,6 +176,14 @@ BufferResource make_imported_buffer(const Device& device, void* memory, uint64_t
   bind(device, made);
   made.mapped = memory;
   return made;
+}
+
+bool takes_host_memory(const Device& device) {
+  const uint64_t page = device.physical().host_pointer_alignment();
+  const auto release = [&](void* memory) { ::operator delete(memory, std::align_val_t(page)); };
+  const std::unique_ptr<void, decltype(release)> memory(
+      ::operator new(page, std::align_val_t(page)), release);
+  return make_imported_buffer(device, memory.get(), page).mapped != nullptr;
 }
 
 FileDescriptor export_memory(const Device& device, VkDeviceMemory memory) {

@@ -71,6 +71,8 @@ BufferResource make_mapped_buffer(const Device& device, uint64_t bytes);
 // Over memory of the host's, aligned to host_pointer_alignment() in address and size. Its
 // `buffer` is none where the device takes no such memory after all.
 BufferResource make_imported_buffer(const Device& device, void* memory, uint64_t bytes);
+// Tried with the least memory that can be.
+bool takes_host_memory(const Device& device);
 
 FileDescriptor export_memory(const Device& device, VkDeviceMemory memory);
 

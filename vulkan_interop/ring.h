@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "runtime/frame/image.h"
+#include "runtime/math/host_depth.h"
 #include "vulkan_interop/ring_descriptors.h"
 #include "vulkan_interop/staging.h"
 
@@ -68,7 +70,8 @@ class Ring {
   VkDescriptorSet descriptors(uint32_t index) const { return descriptors_.of(index); }
 
   // Where the frame is drawn. Throws Error(invalid_argument) for values that the mode does
-  // not have, Error(timeout), Error(device_lost).
+  // not have, and for an image that the host did not release; Error(timeout),
+  // Error(device_lost).
   Image begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync);
   // Where the host's depth is, if it is in host memory.
   void set_limits(uint32_t index, uint32_t layer, DepthLimits& limits) const;
@@ -77,20 +80,26 @@ class Ring {
   // The backend's frames are done, or will be without the host.
   // False where they do not end within a few times the patience: a lost device, say.
   bool finish() noexcept;
+  // The ring goes without a wait, and leaves what frames may still write to.
+  void abandon() noexcept { abandoned_ = true; }
 
+  // Throw Error(invalid_argument), and record nothing, for a layout or a family that cannot be
+  // the image's, stages that read no image, or an image that is not there to be taken.
   void record_release(uint32_t index, const Use& use);
   void record_acquire(uint32_t index, const Use& use);
   void record_copy(uint32_t index, uint32_t layer, const CopyTo& to) const;
   void record_depth_limit(uint32_t index, uint32_t layer, const LimitFrom& from) const;
 
  private:
+  // Who may use an image: the host takes it by an acquire, and gives it by a release.
+  enum class Holder { nobody_yet, voyager, host };
   struct Slot {
     ImageResource color, depth;  // none where the host passed its own
     RingImage image;
     Owned<VkImageView> color_view, depth_view;
     BufferResource depth_limit;  // of a ring that is shared
-    bool released = false;       // in GENERAL, Voyager's; before that UNDEFINED
-    bool acquired = false;       // the host's since
+    Holder holder = Holder::nobody_yet;
+    VkImageLayout layout = VK_IMAGE_LAYOUT_UNDEFINED;  // that the host acquired it in
     VkPipelineStageFlags last_stages = 0;
   };
   struct Semaphores {
@@ -105,6 +114,8 @@ class Ring {
   void share(const ImportRing& import);
   ExternalSlot external_slot(uint32_t index) const;
   void check_values(const FrameSync& sync) const;
+  void check_released(uint32_t index, const char* field) const;
+  void check_family(uint32_t family) const;
   void wait_for_host(const FrameSync& sync) const;
   // Whether `released` has what frames wait for: a timeline must not be signalled twice.
   bool release_in_the_hosts_stead() const noexcept;
@@ -119,6 +130,7 @@ class Ring {
   RingDescriptors descriptors_;
   std::optional<Staging> staging_;
   std::unique_ptr<ExternalRing> external_;
+  bool abandoned_ = false;
   uint64_t last_signal_ = 0;
   std::atomic<uint64_t> last_wait_{0};  // finish() may run beside a frame
 };

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <vector>
 
-#include "runtime/frame/backend.h"
+#include "runtime/frame/image.h"
 #include "vulkan_interop/functions.h"
 
 namespace voyager::vulkan {

@@ -1,6 +1,7 @@
 // What a ring records into the host's command buffers.
 #include <array>
 #include <string>
+#include <utility>
 
 #include "runtime/base/error.h"
 #include "vulkan_interop/formats.h"
@@ -9,7 +10,17 @@
 namespace voyager::vulkan {
 namespace {
 
-constexpr VkAccessFlags kReads = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT;
+// Those that can read an image in a layout that a host may ask for.
+constexpr VkPipelineStageFlags kShaders =
+    VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_TESSELLATION_CONTROL_SHADER_BIT |
+    VK_PIPELINE_STAGE_TESSELLATION_EVALUATION_SHADER_BIT | VK_PIPELINE_STAGE_GEOMETRY_SHADER_BIT |
+    VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT |
+    VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_TASK_SHADER_BIT_NV |
+    VK_PIPELINE_STAGE_MESH_SHADER_BIT_NV | VK_PIPELINE_STAGE_RAY_TRACING_SHADER_BIT_KHR;
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorCode::invalid_argument, what);
+}
 
 VkImageMemoryBarrier image_barrier(VkImageLayout from, VkImageLayout to) {
   VkImageMemoryBarrier barrier{};
@@ -24,10 +35,12 @@ VkImageMemoryBarrier image_barrier(VkImageLayout from, VkImageLayout to) {
 VkAccessFlags reads_of(VkPipelineStageFlags stages) {
   if ((stages & VK_PIPELINE_STAGE_ALL_COMMANDS_BIT) != 0) return VK_ACCESS_MEMORY_READ_BIT;
   VkAccessFlags access = 0;
-  if ((stages & ~VkPipelineStageFlags{VK_PIPELINE_STAGE_TRANSFER_BIT}) != 0)
-    access |= VK_ACCESS_SHADER_READ_BIT;
+  if ((stages & kShaders) != 0) access |= VK_ACCESS_SHADER_READ_BIT;
   if ((stages & VK_PIPELINE_STAGE_TRANSFER_BIT) != 0) access |= VK_ACCESS_TRANSFER_READ_BIT;
-  return access & kReads;
+  if (access == 0)
+    refuse("use.stages: found " + std::to_string(stages) +
+           ", expected one that reads images: a shader's, TRANSFER, ALL_GRAPHICS or ALL_COMMANDS");
+  return access;
 }
 
 VkImageSubresourceLayers layer_of(uint32_t layer, VkImageAspectFlags aspect) {
@@ -54,6 +67,13 @@ VkImageAspectFlags limit_aspect(VkFormat format) {
 
 }  // namespace
 
+void Ring::check_family(uint32_t family) const {
+  const uint32_t families = device_->physical().queue_families();
+  if (family >= families)
+    refuse("queueFamily: found " + std::to_string(family) + ", expected one of the device's " +
+           std::to_string(families) + " queue families");
+}
+
 void Ring::transition(const Slot& slot, VkCommandBuffer commands, VkPipelineStageFlags from,
                       VkPipelineStageFlags to, VkImageMemoryBarrier barrier) const {
   std::array<VkImageMemoryBarrier, 2> barriers;
@@ -69,22 +89,30 @@ void Ring::transition(const Slot& slot, VkCommandBuffer commands, VkPipelineStag
 }
 
 void Ring::record_release(uint32_t index, const Use& use) {
+  check_family(use.queue_family);
   Slot& slot = slots_[index];
+  if (slot.holder == Holder::host && use.layout != slot.layout)
+    refuse("use.layout: found VkImageLayout " + std::to_string(use.layout) + " for image " +
+           std::to_string(index) + ", expected that of its last acquire, " +
+           std::to_string(slot.layout));
+  const Holder from = std::exchange(slot.holder, Holder::voyager);
   slot.last_stages = use.stages;
   // Staging memory needs nothing; an image that the host did not take is here still.
-  if (!shared() || (slot.released && !slot.acquired)) return;
+  if (!shared() || from == Holder::voyager) return;
   VkImageMemoryBarrier barrier = image_barrier(
-      slot.released ? use.layout : VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+      from == Holder::host ? use.layout : VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
   barrier.srcQueueFamilyIndex = use.queue_family;
   barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_EXTERNAL;
-  slot.released = true;
-  slot.acquired = false;
   transition(slot, use.commands, use.stages, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, barrier);
 }
 
 void Ring::record_acquire(uint32_t index, const Use& use) {
+  check_family(use.queue_family);
+  check_released(index, "use.imageIndex");
+  const VkAccessFlags reads = reads_of(use.stages);
   Slot& slot = slots_[index];
-  slot.acquired = true;
+  slot.holder = Holder::host;
+  slot.layout = use.layout;
   if (!shared()) {
     copy_from_staging(index, use);
     slot.last_stages = use.stages;
@@ -93,7 +121,7 @@ void Ring::record_acquire(uint32_t index, const Use& use) {
   VkImageMemoryBarrier barrier = image_barrier(VK_IMAGE_LAYOUT_GENERAL, use.layout);
   barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_EXTERNAL;
   barrier.dstQueueFamilyIndex = use.queue_family;
-  barrier.dstAccessMask = reads_of(use.stages);
+  barrier.dstAccessMask = reads;
   // The stages at which the submission waits for `rendered`.
   transition(slot, use.commands, VK_PIPELINE_STAGE_TRANSFER_BIT | use.stages, use.stages, barrier);
 }
@@ -159,6 +187,7 @@ void Ring::record_copy(uint32_t index, uint32_t layer, const CopyTo& to) const {
 }
 
 void Ring::record_depth_limit(uint32_t index, uint32_t layer, const LimitFrom& from) const {
+  check_family(from.queue_family);
   const DeviceFunctions& vk = device_->functions();
   const VkImageAspectFlags aspect = limit_aspect(from.format);
   const uint64_t plane = uint64_t{desc_.width} * desc_.height * sizeof(float);

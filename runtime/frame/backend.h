@@ -12,6 +12,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/workers.h"
 #include "runtime/frame/external_ring.h"
+#include "runtime/frame/image.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
 #include "runtime/math/host_depth.h"
@@ -58,34 +59,6 @@ struct InstancePose {
   Mat3d rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   Vec3d position{0, 0, 0};
   double scale = 1;
-};
-
-enum class ColorFormat { none, rgba8, rgba16f, rgba32f };
-
-constexpr size_t pixel_bytes(ColorFormat format) {
-  switch (format) {
-    case ColorFormat::none:
-      return 0;
-    case ColorFormat::rgba8:
-      return 4;
-    case ColorFormat::rgba16f:
-      return 8;
-    case ColorFormat::rgba32f:
-      break;
-  }
-  return 16;
-}
-
-// Where external.ring is set, the frame goes there. Where color is null but format is not
-// none, the frame is drawn and handed to nobody: for measurements.
-struct Image {
-  ColorFormat format = ColorFormat::none;
-  uint32_t width = 0, height = 0;
-  void* color = nullptr;
-  size_t color_pitch = 0;  // bytes
-  float* depth = nullptr;
-  size_t depth_pitch = 0;  // bytes
-  ExternalTarget external = {};
 };
 
 struct FrameEye {

@@ -89,6 +89,27 @@ TEST(ImportDirection, OnlyTheModuleIncludesCuda) {
   }
 }
 
+// The hand-off knows file descriptors, Vulkan and what an image is: no scene, no backend.
+TEST(ImportDirection, VulkanInteropKnowsNoScenesAndNoBackend) {
+  const std::vector<std::string> images = {"runtime/frame/image.h",
+                                           "runtime/frame/external_ring.h"};
+  std::vector<std::string> allowed = {"runtime/base/", "runtime/math/"};
+  allowed.insert(allowed.end(), images.begin(), images.end());
+  expect_no_include("vulkan_interop", {"plugin/", "voyager/", "tools/", "samples/", "tests/",
+                                       "bench/", "cuda", "openxr"});
+  size_t seen = 0;
+  for (const char* folder : {"vulkan_interop", "runtime/frame"})
+    for (const Include& include : includes_below(folder)) {
+      const bool counts =
+          include.file.rfind("vulkan_interop/", 0) == 0 || starts_with_any(include.file, images);
+      if (!counts || include.name.rfind("runtime/", 0) != 0) continue;
+      ++seen;
+      EXPECT_TRUE(starts_with_any(include.name, allowed))
+          << include.file << " includes " << include.name;
+    }
+  EXPECT_GT(seen, 10u);
+}
+
 // A host has voyager/*.h, and so do our examples of hosts.
 TEST(ImportDirection, HostsIncludeOnlyThePublicHeaders) {
   for (const char* folder : {"samples", "tests/headless"}) {

@@ -1,35 +1,10 @@
 // A Vulkan target on a device without CUDA, its Vulkan a mock: whose the passed descriptors
 // are after each call, and that a frame's wait has its signal.
-#include "tests/support/vulkan_mock.h"
-// Above: it declares Vulkan without prototypes.
-#include <voyager/voyager_vulkan.h>
-
-#include "tests/headless/host.h"
-#include "tests/support/descriptor_watch.h"
+#include "mock_vulkan_host.h"
 
 namespace {
 
 using namespace voyager::test;
-
-VoyVulkanDeviceDesc vulkan_desc(const std::vector<const char*>& extensions) {
-  VoyVulkanDeviceDesc desc = VOY_VULKAN_DEVICE_DESC_INIT;
-  desc.getInstanceProcAddr = &VulkanMock::get_instance;
-  desc.instance = VulkanMock::instance();
-  desc.physicalDevice = VulkanMock::physical();
-  desc.device = VulkanMock::handle();
-  desc.apiVersion = VK_API_VERSION_1_2;
-  desc.deviceExtensionCount = static_cast<uint32_t>(extensions.size());
-  desc.deviceExtensions = extensions.data();
-  desc.timelineSemaphore = VK_TRUE;
-  return desc;
-}
-
-// Host's constructor takes it by value; the chain lives as long as the test.
-VoyDeviceDesc cpu_with(const VoyVulkanDeviceDesc& vulkan) {
-  VoyDeviceDesc desc = device_for(VOY_BACKEND_CPU);
-  desc.next = &vulkan;
-  return desc;
-}
 
 struct VulkanTarget : testing::Test {
   static constexpr uint32_t kImages = 2;
@@ -77,6 +52,12 @@ struct VulkanTarget : testing::Test {
     desc.width = Host::kWidth;
     desc.height = Host::kHeight;
     return voy.CreateTarget(host.device, &desc, &target);
+  }
+  void release(uint32_t image) {
+    VoyVulkanUse use = VOY_VULKAN_USE_INIT;
+    use.commandBuffer = VulkanMock::commands_at(0);
+    use.imageIndex = image;
+    EXPECT_EQ(voyRecordVulkanRelease(target, &use), VOY_SUCCESS) << voy.message();
   }
   VoyResult render(uint64_t wait, uint64_t signal, uint32_t image = 0) {
     VoyVulkanFrame sync = VOY_VULKAN_FRAME_INIT;
@@ -176,8 +157,107 @@ TEST_F(VulkanTarget, RefusedDescriptionsLeaveTheDescriptorsToTheHost) {
   EXPECT_EQ(mock.live(), of_host) << mock.live_kinds();
 }
 
+// Zeroed structures name the host's standard input.
+TEST_F(VulkanTarget, WhatIsNoDescriptorIsRefusedThoughItHasNoUse) {
+  const auto expect_refused = [&](int& fd, int found, const char* field) {
+    const int kept = std::exchange(fd, found);
+    EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT) << field;
+    EXPECT_NE(voy.message().find(field), std::string::npos) << voy.message();
+    fd = kept;
+  };
+  const int closed = new_descriptor();
+  ::close(closed);
+  for (const int found : {closed, -2}) {
+    expect_refused(images[1].colorMemory.fd, found, "images[1].colorMemory");
+    expect_refused(images[0].depthMemory.fd, found, "images[0].depthMemory");
+    expect_refused(semaphores.releasedFd, found, "semaphores[0].releasedFd");
+    expect_refused(semaphores.renderedFd, found, "semaphores[0].renderedFd");
+  }
+  ASSERT_TRUE(is_open(0));
+  const VoyVulkanMemory kept = std::exchange(images[0].colorMemory, VoyVulkanMemory{});
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  images[0].colorMemory = kept;
+  const int fds[] = {semaphores.releasedFd, semaphores.renderedFd};
+  semaphores.releasedFd = semaphores.renderedFd = 0;
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  semaphores.releasedFd = fds[0], semaphores.renderedFd = fds[1];
+  EXPECT_TRUE(is_open(0));
+  EXPECT_EQ(still_open(), passed.size());
+  EXPECT_EQ(create(), VOY_SUCCESS) << voy.message();
+}
+
+TEST_F(VulkanTarget, AnImageThatIsPassedTwiceIsRefused) {
+  for (VkImage* image : {&images[1].color, &images[1].depth, &images[0].depth}) {
+    const VkImage kept = std::exchange(*image, images[0].color);
+    EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(voy.message().find("passed before"), std::string::npos) << voy.message();
+    *image = kept;
+  }
+  EXPECT_EQ(still_open(), passed.size());
+}
+
+// As in Vulkan and C: what is not 0 is true.
+TEST_F(VulkanTarget, ABooleanIsWhatIsNotZero) {
+  ring.depth = 2;
+  ring.depthLimit = 0x100;
+  ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  VoyVulkanDepthLimit limit = VOY_VULKAN_DEPTH_LIMIT_INIT;
+  limit.commandBuffer = VulkanMock::commands_at(0);
+  limit.depth = images[0].depth;
+  EXPECT_EQ(voyRecordVulkanDepthLimit(target, &limit), VOY_SUCCESS) << voy.message();
+  vulkan.timelineSemaphore = 4;
+  vulkan.sync = VOY_VULKAN_SYNC_TIMELINE;
+  const VoyDeviceDesc desc = cpu_with(vulkan);
+  VoyDevice device = nullptr;
+  EXPECT_EQ(voy.CreateDevice(&desc, &device), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(voy.DestroyDevice(device), VOY_SUCCESS);
+}
+
+// Their sum with the target's size would be no int32_t.
+TEST_F(VulkanTarget, OffsetsFromWhichTheTargetReachesNoPixelAreRefused) {
+  ring.depthLimit = VK_TRUE;
+  ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  const VkOffset2D offsets[] = {{INT32_MAX, 0}, {0, INT32_MAX}, {INT32_MAX - 10, 3}, {-1, 0}};
+  VoyVulkanCopy copy = VOY_VULKAN_COPY_INIT;
+  copy.commandBuffer = VulkanMock::commands_at(0);
+  copy.into = images[0].color;
+  copy.intoFormat = VK_FORMAT_B8G8R8A8_UNORM;
+  VoyVulkanDepthLimit limit = VOY_VULKAN_DEPTH_LIMIT_INIT;
+  limit.commandBuffer = copy.commandBuffer;
+  limit.depth = images[0].depth;
+  VoyVulkanCompositeDesc composite_desc = VOY_VULKAN_COMPOSITE_DESC_INIT;
+  composite_desc.renderPass = VulkanMock::as<VkRenderPass>(7);
+  composite_desc.colorFormat = VK_FORMAT_B8G8R8A8_UNORM;
+  VoyComposite composite = nullptr;
+  ASSERT_EQ(voyCreateVulkanComposite(host.device, &composite_desc, &composite), VOY_SUCCESS)
+      << voy.message();
+  VoyVulkanCompositeDraw draw = VOY_VULKAN_COMPOSITE_DRAW_INIT;
+  draw.commandBuffer = copy.commandBuffer;
+  draw.target = target;
+  draw.area.extent = {Host::kWidth, Host::kHeight};
+  for (const VkOffset2D& offset : offsets) {
+    copy.intoOffset = limit.offset = draw.area.offset = offset;
+    EXPECT_EQ(voyRecordVulkanCopy(target, &copy), VOY_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(voyRecordVulkanDepthLimit(target, &limit), VOY_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(voyRecordVulkanComposite(composite, &draw), VOY_ERROR_INVALID_ARGUMENT);
+  }
+  EXPECT_TRUE(mock.commands.empty());
+  copy.intoOffset = {INT32_MAX - static_cast<int32_t>(Host::kWidth), 0};
+  EXPECT_EQ(voyRecordVulkanCopy(target, &copy), VOY_SUCCESS) << voy.message();
+}
+
+TEST_F(VulkanTarget, AFrameIntoAnImageThatTheHostDidNotReleaseIsRefused) {
+  ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(render(0, 1), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(voy.message().find("never released"), std::string::npos) << voy.message();
+  release(0);
+  EXPECT_EQ(render(0, 1, 1), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(render(0, 1), VOY_SUCCESS) << voy.message();
+}
+
 TEST_F(VulkanTarget, AFrameWaitsForReleasedAndSignalsRenderedOnce) {
   ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  release(0);
   EXPECT_EQ(render(1, 1), VOY_ERROR_TIMEOUT);
   EXPECT_TRUE(mock.signals.empty());
   mock.signal(semaphores.released, 1);

@@ -20,7 +20,8 @@
 
 class Library {
  public:
-  Library() : handle_(dlopen(VOYAGER_LIBRARY, RTLD_NOW | RTLD_LOCAL)) {
+  explicit Library(const char* file = VOYAGER_LIBRARY)
+      : handle_(dlopen(file, RTLD_NOW | RTLD_LOCAL)) {
     if (handle_ == nullptr) {
       ADD_FAILURE() << dlerror();
       return;
@@ -51,7 +52,6 @@ class Library {
     return false;
   }
 
- private:
   template <class Function>
   Function find(const char* name) {
     void* symbol = dlsym(handle_, name);
@@ -59,5 +59,6 @@ class Library {
     return reinterpret_cast<Function>(symbol);
   }
 
+ private:
   void* handle_;
 };

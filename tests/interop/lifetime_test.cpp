@@ -1,9 +1,9 @@
 // What a host may do to targets, and what it leaves behind: nothing.
 #include <dirent.h>
-#include <fcntl.h>
 
 #include <fstream>
 
+#include "cuda_driver.h"
 #include "frames.h"
 
 namespace {
@@ -22,6 +22,30 @@ long resident_pages() {
   return resident;
 }
 
+// Of the GPU that draws, as its driver counts it for all of its APIs; none where there is no CUDA.
+class DeviceMemory {
+ public:
+  explicit DeviceMemory(const VoyCapabilities& capabilities) {
+    std::string why;
+    if (capabilities.backend == VOY_BACKEND_CUDA) driver_ = CudaDriver::load(why);
+    if (driver_) context_ = driver_->create_on(capabilities.deviceUuid);
+    EXPECT_EQ(context_ != nullptr, capabilities.backend == VOY_BACKEND_CUDA);
+  }
+  ~DeviceMemory() {
+    if (context_ != nullptr) driver_->destroy_it(context_);
+  }
+  DeviceMemory(const DeviceMemory&) = delete;
+  DeviceMemory& operator=(const DeviceMemory&) = delete;
+
+  int64_t free_bytes() const {
+    return context_ == nullptr ? 0 : static_cast<int64_t>(driver_->free_bytes());
+  }
+
+ private:
+  std::optional<CudaDriver> driver_;
+  CudaDriver::Context context_ = nullptr;
+};
+
 int wanted_cycles() {
   const char* wanted = std::getenv("VOYAGER_INTEROP_CYCLES");
   return wanted == nullptr ? 60 : std::atoi(wanted);
@@ -31,11 +55,16 @@ TEST_F(Interop, TargetsComeAndGoWithoutATrace) {
   FOR_EACH_MODE({
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
     images.depth = images.depthLimit = VK_TRUE;
+    const DeviceMemory memory(capabilities);
     int descriptors = 0;
     long pages = 0;
+    int64_t free_bytes = 0;
     const int cycles = wanted_cycles();
     for (int cycle = 0; cycle < cycles; ++cycle) {
-      if (cycle == cycles / 2) descriptors = open_descriptors(), pages = resident_pages();
+      if (cycle == cycles / 2) {
+        descriptors = open_descriptors(), pages = resident_pages();
+        free_bytes = memory.free_bytes();
+      }
       const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
       Line line = line_of(target);
       if (cycle % 8 == 0) shoot(line, target, 0, eye(target), 4);
@@ -43,6 +72,7 @@ TEST_F(Interop, TargetsComeAndGoWithoutATrace) {
     }
     EXPECT_EQ(open_descriptors(), descriptors);
     EXPECT_LT(resident_pages() - pages, 4096) << "16 MB in " << cycles / 2 << " cycles";
+    EXPECT_LT(free_bytes - memory.free_bytes(), 4 << 20) << "of the device's memory";
   });
 }
 
@@ -139,63 +169,6 @@ TEST_F(Interop, WithoutSemaphoresAFrameHasEndedWhenItsCallReturns) {
       EXPECT_EQ(stats.frameIndex, frame);
     }
   }
-}
-
-// Images of the host's own, by descriptor.
-struct Imported {
-  Imported(const VulkanHost& host, uint32_t width, uint32_t height, bool exported) {
-    ImageDesc desc;
-    desc.width = width, desc.height = height;
-    desc.usage |= VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-    desc.exported = exported;
-    for (auto& image : images) {
-      image = std::make_unique<HostImage>(host, desc);
-      VoyVulkanImportedImage& out = passed.emplace_back();
-      out = VOY_VULKAN_IMPORTED_IMAGE_INIT;
-      out.color = image->image;
-      out.colorUsage = desc.usage;
-      out.colorMemory = {exported ? image->export_fd() : -1, exported ? VK_TRUE : VK_FALSE,
-                         image->bytes, 0};
-    }
-  }
-  std::unique_ptr<HostImage> images[2];
-  std::vector<VoyVulkanImportedImage> passed;
-};
-
-TEST_F(Interop, ImagesOfTheHostsAreFilled) {
-  FOR_EACH_MODE({
-    const bool shared = found.sharing == VOY_VULKAN_SHARING_DEVICE;
-    Imported imported(*host, kWidth, kHeight, shared);
-    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
-    images.images = imported.passed.data();
-    const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
-    for (const VoyVulkanImportedImage& image : imported.passed)
-      if (shared) {
-        EXPECT_EQ(::fcntl(image.colorMemory.fd, F_GETFD), -1) << "it is the library's now";
-      }
-    Line line = line_of(target);
-    for (uint32_t frame = 0; frame < 4; ++frame) {
-      EXPECT_EQ(line.images[frame % 2].color, imported.images[frame % 2]->image);
-      EXPECT_EQ(shoot(line, target, frame % 2, eye(target, frame), 4).color,
-                expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target, frame), 4).color);
-    }
-    EXPECT_EQ(voyDestroyTarget(target), VOY_SUCCESS);
-  });
-}
-
-TEST_F(Interop, ADescriptorThatIsRefusedStaysTheHosts) {
-  if (!create(VOY_VULKAN_SHARING_DEVICE)) GTEST_SKIP() << voyGetLastErrorMessage();
-  Imported imported(*host, kWidth, kHeight, true);
-  const int second =
-      std::exchange(imported.passed[1].colorMemory.fd, ::open("/dev/null", O_RDONLY));
-  VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
-  images.images = imported.passed.data();
-  const VoyTargetDesc desc = target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images);
-  VoyTarget target = nullptr;
-  EXPECT_NE(voyCreateTarget(device, &desc, &target), VOY_SUCCESS);
-  for (const VoyVulkanImportedImage& image : imported.passed)
-    EXPECT_EQ(::close(image.colorMemory.fd), 0) << voyGetLastErrorMessage();
-  EXPECT_EQ(::close(second), 0);
 }
 
 }  // namespace

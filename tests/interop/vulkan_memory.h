@@ -48,22 +48,39 @@ struct ImageDesc {
   bool exported = false;
 };
 
+// Without memory.
+inline VkImage make_host_image(const VulkanHost& host, const ImageDesc& desc) {
+  const VkExternalMemoryImageCreateInfo external{
+      VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_IMAGE_CREATE_INFO, nullptr,
+      VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT};
+  VkImageCreateInfo info{};
+  info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+  info.pNext = desc.exported ? &external : nullptr;
+  info.imageType = VK_IMAGE_TYPE_2D;
+  info.format = desc.format;
+  info.extent = {desc.width, desc.height, 1};
+  info.mipLevels = 1;
+  info.arrayLayers = desc.layers;
+  info.samples = VK_SAMPLE_COUNT_1_BIT;
+  info.usage = desc.usage;
+  VkImage image = VK_NULL_HANDLE;
+  VK(vkCreateImage(host.device, &info, nullptr, &image));
+  return image;
+}
+
+inline int export_memory_fd(const VulkanHost& host, VkDeviceMemory memory) {
+  const auto get =
+      reinterpret_cast<PFN_vkGetMemoryFdKHR>(vkGetDeviceProcAddr(host.device, "vkGetMemoryFdKHR"));
+  const VkMemoryGetFdInfoKHR info{VK_STRUCTURE_TYPE_MEMORY_GET_FD_INFO_KHR, nullptr, memory,
+                                  VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT};
+  int fd = -1;
+  VK(get(host.device, &info, &fd));
+  return fd;
+}
+
 struct HostImage {
-  HostImage(const VulkanHost& owner, const ImageDesc& from) : host(owner), desc(from) {
-    const VkExternalMemoryImageCreateInfo external{
-        VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_IMAGE_CREATE_INFO, nullptr,
-        VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT};
-    VkImageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    info.pNext = desc.exported ? &external : nullptr;
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = desc.format;
-    info.extent = {desc.width, desc.height, 1};
-    info.mipLevels = 1;
-    info.arrayLayers = desc.layers;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = desc.usage;
-    VK(vkCreateImage(host.device, &info, nullptr, &image));
+  HostImage(const VulkanHost& owner, const ImageDesc& from)
+      : host(owner), desc(from), image(make_host_image(owner, from)) {
     VkMemoryRequirements needs;
     vkGetImageMemoryRequirements(host.device, image, &needs);
     bytes = needs.size;
@@ -85,15 +102,7 @@ struct HostImage {
   HostImage(const HostImage&) = delete;
   HostImage& operator=(const HostImage&) = delete;
 
-  int export_fd() const {
-    const auto get = reinterpret_cast<PFN_vkGetMemoryFdKHR>(
-        vkGetDeviceProcAddr(host.device, "vkGetMemoryFdKHR"));
-    const VkMemoryGetFdInfoKHR info{VK_STRUCTURE_TYPE_MEMORY_GET_FD_INFO_KHR, nullptr, memory,
-                                    VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT};
-    int fd = -1;
-    VK(get(host.device, &info, &fd));
-    return fd;
-  }
+  int export_fd() const { return export_memory_fd(host, memory); }
 
   void barrier(VkCommandBuffer commands, VkImageLayout from, VkImageLayout to) const {
     VkImageMemoryBarrier barrier{};

@@ -26,6 +26,10 @@ struct MockDevice {
       VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME, VK_EXT_EXTERNAL_MEMORY_HOST_EXTENSION_NAME,
       VK_KHR_DYNAMIC_RENDERING_EXTENSION_NAME};
   bool timelines = true, exports_timelines = true, exports_binaries = true;
+  bool exports_buffers = true;
+  // Formats of which it shares no images, and of which it exports none.
+  VkFormat not_shared = VK_FORMAT_UNDEFINED, not_exported = VK_FORMAT_UNDEFINED;
+  uint32_t queue_families = 4;
   uint64_t host_pointer_alignment = 4096;
   // Of host memory: what vkGetMemoryHostPointerPropertiesEXT says, and vkAllocateMemory.
   VkResult host_pointer_status = VK_SUCCESS, host_import_status = VK_SUCCESS;
@@ -113,10 +117,11 @@ class VulkanMock {
     made.timeline = timeline;
     return add<VkSemaphore>(made);
   }
-  VkImage host_image(uint32_t layers) {
+  VkImage host_image(uint32_t layers, uint64_t bytes = 0) {
     Object made;
     made.kind = "VkImage";
     made.layers = layers;
+    made.bytes = bytes;
     return add<VkImage>(made);
   }
 

@@ -66,6 +66,62 @@ inline void get_memory(VkPhysicalDevice, VkPhysicalDeviceMemoryProperties* out) 
   out->memoryHeapCount = 1;
 }
 
+inline void get_queue_families(VkPhysicalDevice, uint32_t* count, VkQueueFamilyProperties* out) {
+  EXPECT_EQ(out, nullptr);
+  *count = VulkanMock::current->device.queue_families;
+}
+
+// What drivers have of the formats that tests name; none of those that they make up.
+inline void get_format(VkPhysicalDevice, VkFormat format, VkFormatProperties* out) {
+  EXPECT_LE(format, VK_FORMAT_ASTC_12x12_SRGB_BLOCK) << "no driver knows it";
+  constexpr VkFormatFeatureFlags kDraws = VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT;
+  *out = {};
+  switch (format) {
+    case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_R8G8B8A8_SRGB:
+    case VK_FORMAT_B8G8R8A8_UNORM:
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+      out->optimalTilingFeatures = kDraws | VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT;
+      break;
+    case VK_FORMAT_R8G8B8A8_UINT:
+      out->optimalTilingFeatures = kDraws;
+      break;
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_D24_UNORM_S8_UINT:
+    case VK_FORMAT_S8_UINT:
+      out->optimalTilingFeatures = VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT;
+      break;
+    default:
+      break;
+  }
+}
+
+inline VkResult get_image_format(VkPhysicalDevice, const VkPhysicalDeviceImageFormatInfo2* info,
+                                 VkImageFormatProperties2* out) {
+  VulkanMock& mock = *VulkanMock::current;
+  if (const VkResult status = mock.next()) return status;
+  const auto* wanted = find_in_chain<VkPhysicalDeviceExternalImageFormatInfo>(
+      info->pNext, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_EXTERNAL_IMAGE_FORMAT_INFO);
+  auto* external = find_in_chain<VkExternalImageFormatProperties>(
+      out->pNext, VK_STRUCTURE_TYPE_EXTERNAL_IMAGE_FORMAT_PROPERTIES);
+  EXPECT_NE(wanted, nullptr);
+  EXPECT_NE(external, nullptr);
+  EXPECT_EQ(wanted->handleType, VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT);
+  if (info->format == mock.device.not_shared) return VK_ERROR_FORMAT_NOT_SUPPORTED;
+  if (info->format != mock.device.not_exported)
+    external->externalMemoryProperties.externalMemoryFeatures =
+        VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT;
+  return VK_SUCCESS;
+}
+
+inline void get_external_buffers(VkPhysicalDevice, const VkPhysicalDeviceExternalBufferInfo* info,
+                                 VkExternalBufferProperties* out) {
+  EXPECT_EQ(info->handleType, VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT);
+  if (VulkanMock::current->device.exports_buffers)
+    out->externalMemoryProperties.externalMemoryFeatures =
+        VK_EXTERNAL_MEMORY_FEATURE_EXPORTABLE_BIT;
+}
+
 inline void get_external_semaphores(VkPhysicalDevice,
                                     const VkPhysicalDeviceExternalSemaphoreInfo* info,
                                     VkExternalSemaphoreProperties* out) {

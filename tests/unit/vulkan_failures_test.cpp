@@ -239,24 +239,63 @@ TEST(VulkanFailures, StagingMemoryComesBackToItsAllocator) {
   EXPECT_EQ(mock.live(), live);
 }
 
-// A device that has the extension may take no memory of this host's: then it maps its own.
+// A device that has the extension may take no memory of this host's, which it says, or take
+// none of a ring's size: then it maps its own.
 TEST(VulkanFailures, HostPointersThatAreNotTakenAreMappedMemory) {
   MockDevice no_type, no_pointer, no_import;
   no_type.host_pointer_types = 1;
   no_pointer.host_pointer_status = VK_ERROR_INVALID_EXTERNAL_HANDLE;
   no_import.host_import_status = VK_ERROR_INVALID_EXTERNAL_HANDLE;
-  for (const MockDevice& having : {no_type, no_pointer, no_import}) {
-    VulkanMock mock(having);
-    Backend backend(mock);
-    Counted memory;
-    const auto device = make_device(mock, kModes[3]);
-    EXPECT_TRUE(device->imports_host_memory());
-    {
-      const vulkan::Ring ring(device, ring_desc(), backend.import(), &memory);
-      EXPECT_EQ(memory.calls, 1u);
-      EXPECT_EQ(memory.live, 0u);
+  for (const MockDevice& having : {no_type, no_pointer, no_import})
+    for (const bool found_late : {false, true}) {
+      VulkanMock mock(found_late ? MockDevice() : having);
+      Backend backend(mock);
+      Counted memory;
+      const auto device = make_device(mock, kModes[3]);
+      EXPECT_EQ(device->imports_host_memory(), found_late);
+      EXPECT_EQ(mock.live(), 0u) << mock.live_kinds();
+      mock.device = having;
+      {
+        const vulkan::Ring ring(device, ring_desc(), backend.import(), &memory);
+        EXPECT_EQ(memory.calls, found_late ? 1u : 0u);
+        EXPECT_EQ(memory.live, 0u);
+      }
+      EXPECT_EQ(mock.live(), 0u) << mock.live_kinds();
     }
-    EXPECT_EQ(mock.live(), 0u) << mock.live_kinds();
+}
+
+// The backend would write past the memory's end.
+TEST(VulkanFailures, ImportedMemoryThatHasNoRoomForItsImageIsRefused) {
+  const Mode& mode = kModes[0];
+  VulkanMock mock;
+  Backend backend(mock);
+  const auto device = make_device(mock, mode);
+  vulkan::RingDesc desc = ring_desc();
+  const Passed passed(mock, mode, desc);
+  for (const vulkan::ImportedImage& image : desc.imported)
+    mock.object(image.color).bytes = mock.object(image.depth).bytes = 1024;
+  const auto thrown = [&] {
+    return thrown_by(
+        [&] { vulkan::Ring(device, desc, backend.import(), std::pmr::new_delete_resource()); });
+  };
+  const size_t live = mock.live();
+  for (vulkan::ImportedMemory* memory :
+       {&desc.imported[0].color_memory, &desc.imported[1].depth_memory}) {
+    const vulkan::ImportedMemory kept = *memory;
+    struct Case {
+      uint64_t size, offset;
+      bool fits;
+    };
+    for (const Case& c : {Case{1024, 0, true}, Case{1280, 256, true}, Case{1279, 256, false},
+                          Case{1023, 0, false}, Case{4096, 100, false}, Case{4096, 3328, false},
+                          Case{1024, 2048, false}, Case{UINT64_MAX, UINT64_MAX - 255, false}}) {
+      memory->size = c.size;
+      memory->offset = c.offset;
+      EXPECT_EQ(thrown(), c.fits ? "" : error_of(ErrorCode::invalid_argument))
+          << c.size << " bytes, " << c.offset;
+      EXPECT_EQ(mock.live(), live);
+    }
+    *memory = kept;
   }
 }
 
@@ -271,6 +310,27 @@ TEST(VulkanFailures, OfAComposite) {
         fail_each_call(mock, [&] { const vulkan::Composite composite(device, desc); });
     EXPECT_EQ(calls, depth == VK_FORMAT_UNDEFINED ? 6u : 10u);
   }
+}
+
+TEST(VulkanFailures, ACompositesAttachmentsMustBeDrawableAndBlend) {
+  VulkanMock mock;
+  const auto device = make_device(mock, kModes[0]);
+  const auto thrown = [&](VkFormat color, VkFormat depth) {
+    vulkan::CompositeDesc desc;
+    desc.color = color;
+    desc.depth = depth;
+    return thrown_by([&] { const vulkan::Composite composite(device, desc); });
+  };
+  const auto made_up = static_cast<VkFormat>(123456);
+  for (const VkFormat color : {VK_FORMAT_R8G8B8A8_UINT, VK_FORMAT_D32_SFLOAT,
+                               VK_FORMAT_BC7_UNORM_BLOCK, VK_FORMAT_UNDEFINED, made_up})
+    EXPECT_EQ(thrown(color, VK_FORMAT_UNDEFINED), error_of(ErrorCode::unsupported)) << color;
+  for (const VkFormat depth :
+       {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_S8_UINT, VK_FORMAT_X8_D24_UNORM_PACK32, made_up})
+    EXPECT_EQ(thrown(VK_FORMAT_B8G8R8A8_UNORM, depth), error_of(ErrorCode::unsupported)) << depth;
+  for (const VkFormat depth : {VK_FORMAT_D32_SFLOAT, VK_FORMAT_D24_UNORM_S8_UINT})
+    EXPECT_EQ(thrown(VK_FORMAT_R16G16B16A16_SFLOAT, depth), "") << depth;
+  EXPECT_EQ(mock.live(), 0u) << mock.live_kinds();
 }
 
 TEST(VulkanFailures, ACompositeWithoutARenderPassNeedsDynamicRendering) {

@@ -31,7 +31,11 @@ struct Rig {
         ring(std::make_unique<vulkan::Ring>(device, desc, backend.import(),
                                             std::pmr::new_delete_resource())),
         released(ring->image(0).released),
-        rendered(ring->image(0).rendered) {}
+        rendered(ring->image(0).rendered) {
+    for (uint32_t i = 0; i < desc.images; ++i)
+      ring->record_release(i, {VulkanMock::commands_at(0), 0, VK_IMAGE_LAYOUT_GENERAL,
+                               VK_PIPELINE_STAGE_TRANSFER_BIT});
+  }
 
   void expect_refused(const FrameSync& sync, ErrorCode code = ErrorCode::invalid_argument) {
     EXPECT_EQ(thrown_by([&] { ring->begin_frame(0, 0, sync); }), error_of(code))

@@ -15,11 +15,12 @@ constexpr const char kSemaphoreFd[] = VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAM
 struct Having {
   bool memory_fd, semaphore_fd, timelines, exports_timelines, exports_binaries;
   ExternalSupport backend;
+  bool exports_images;
 };
-constexpr uint32_t kHavings = 1u << 8;
+constexpr uint32_t kHavings = 1u << 9;
 Having having_of(uint32_t bits) {
   const auto bit = [&](int i) { return (bits >> i & 1) != 0; };
-  return {bit(0), bit(1), bit(2), bit(3), bit(4), {bit(5), bit(6), bit(7)}};
+  return {bit(0), bit(1), bit(2), bit(3), bit(4), {bit(5), bit(6), bit(7)}, bit(8)};
 }
 MockDevice device_of(const Having& having) {
   MockDevice device;
@@ -28,6 +29,7 @@ MockDevice device_of(const Having& having) {
   device.timelines = having.timelines;
   device.exports_timelines = having.exports_timelines;
   device.exports_binaries = having.exports_binaries;
+  if (!having.exports_images) device.not_exported = VK_FORMAT_R16G16B16A16_SFLOAT;
   return device;
 }
 
@@ -35,7 +37,8 @@ MockDevice device_of(const Having& having) {
 std::string why_not(const Having& having, Sharing sharing) {
   if (sharing == Sharing::host) return "";
   if (!having.backend.images) return "the backend does not draw on this device";
-  return having.memory_fd ? "" : std::string(kMemoryFd) + " is not enabled";
+  if (!having.memory_fd) return std::string(kMemoryFd) + " is not enabled";
+  return having.exports_images ? "" : "the device exports no images of VkFormat 97";
 }
 std::string why_not(const Having& having, Sharing sharing, Sync sync) {
   const bool shared = sharing == Sharing::device;
@@ -103,6 +106,29 @@ TEST(VulkanModes, TheBestThatThereIsIsTakenAndWhatIsForcedIsTakenOrRefused) {
   }
 }
 
+// A driver may have the extension and share none of the images that a target can have.
+TEST(VulkanModes, ADeviceIsAskedForAllThatATargetMayShare) {
+  const Mode any{Sharing::automatic, Sync::automatic, ""}, forced{Sharing::device, Sync::host, ""};
+  const auto expect_host = [&](const MockDevice& having, const std::string& why) {
+    const VulkanMock mock(having);
+    const vulkan::Device device(device_desc(mock, any), kAllSupport);
+    EXPECT_EQ(device.sharing(), Sharing::host);
+    EXPECT_EQ(device.why(), why);
+    EXPECT_EQ(thrown_by([&] { make_device(mock, forced); }), error_of(ErrorCode::unsupported));
+  };
+  for (const VkFormat format : {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R16G16B16A16_SFLOAT,
+                                VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_SFLOAT}) {
+    const std::string why = "the device exports no images of VkFormat " + std::to_string(format);
+    MockDevice not_shared, not_exported;
+    not_shared.not_shared = not_exported.not_exported = format;
+    expect_host(not_shared, why);
+    expect_host(not_exported, why);
+  }
+  MockDevice no_buffers;
+  no_buffers.exports_buffers = false;
+  expect_host(no_buffers, "the device exports no buffers");
+}
+
 // What the host did not enable is not used, though the device has it.
 TEST(VulkanModes, OnlyWhatTheHostEnabledCounts) {
   const VulkanMock mock;
@@ -114,7 +140,10 @@ TEST(VulkanModes, OnlyWhatTheHostEnabledCounts) {
   std::erase(desc.extensions, kSemaphoreFd);
   EXPECT_EQ(vulkan::Device(desc, kAllSupport).sync(), Sync::host);
   EXPECT_EQ(vulkan::Device(desc, kAllSupport).sharing(), Sharing::device);
+  desc.sharing = Sharing::host;
   EXPECT_TRUE(vulkan::Device(desc, kAllSupport).imports_host_memory());
+  desc.sharing = Sharing::automatic;
+  EXPECT_FALSE(vulkan::Device(desc, kAllSupport).imports_host_memory());
   desc.extensions.clear();
   EXPECT_EQ(vulkan::Device(desc, kAllSupport).sharing(), Sharing::host);
   EXPECT_FALSE(vulkan::Device(desc, kAllSupport).imports_host_memory());

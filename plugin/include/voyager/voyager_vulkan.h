@@ -111,12 +111,12 @@ typedef struct VoyVulkanDeviceDesc {
 typedef struct VoyVulkanCapabilities {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES */
   void* next;
-  VoyVulkanSharing sharing; /* DEVICE or HOST */
-  VoyVulkanSync sync;       /* TIMELINE, BINARY or HOST */
-  VkBool32
-      hostMemoryImport; /* HOST sharing: frames are drawn into memory that Vulkan imports, where it
-                           takes it (VK_EXT_external_memory_host), not into memory that it maps */
-  char why[192];        /* what keeps the device from DEVICE and TIMELINE; "" if nothing */
+  VoyVulkanSharing sharing;  /* DEVICE or HOST */
+  VoyVulkanSync sync;        /* TIMELINE, BINARY or HOST */
+  VkBool32 hostMemoryImport; /* HOST sharing: frames are drawn into memory that Vulkan imports,
+                                where it takes it (VK_EXT_external_memory_host; a page was tried),
+                                not into memory that it maps */
+  char why[192];             /* what keeps the device from DEVICE and TIMELINE; "" if nothing */
 } VoyVulkanCapabilities;
 #define VOY_VULKAN_CAPABILITIES_INIT                                                             \
   {                                                                                              \
@@ -130,10 +130,10 @@ typedef struct VoyVulkanCapabilities {
 
 /* Memory that the host exported as an opaque file descriptor, and where in it the image is. */
 typedef struct VoyVulkanMemory {
-  int fd;             /* -1 is allowed with HOST sharing, which has no use for it */
+  int fd;             /* open; or -1 with HOST sharing, which has no use for it */
   VkBool32 dedicated; /* the memory was allocated for this image alone */
   uint64_t size;      /* of the VkDeviceMemory, bytes */
-  uint64_t offset;    /* of the image in it, bytes */
+  uint64_t offset;    /* of the image in it, bytes: vkGetImageMemoryRequirements must hold there */
 } VoyVulkanMemory;
 
 /* An image of a ring that the host made: 2D, optimal tiling, one sample, one mip level, as
@@ -142,7 +142,8 @@ typedef struct VoyVulkanMemory {
 typedef struct VoyVulkanImportedImage {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE */
   const void* next;
-  VkImage color; /* VK_NULL_HANDLE exactly where colorFormat is NONE */
+  VkImage color; /* VK_NULL_HANDLE exactly where colorFormat is NONE. Images are
+                    VK_SHARING_MODE_EXCLUSIVE, and each is passed once */
   VoyVulkanMemory colorMemory;
   VkImageUsageFlags colorUsage;
   VkImage depth; /* VK_FORMAT_R32_SFLOAT; VK_NULL_HANDLE exactly where the target has no depth */
@@ -235,8 +236,8 @@ VOY_API VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVul
 typedef struct VoyVulkanFrame {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_FRAME */
   const void* next;
-  uint32_t imageIndex;
-  uint32_t reserved; /* 0 */
+  uint32_t imageIndex; /* released, and not acquired since; else INVALID_ARGUMENT */
+  uint32_t reserved;   /* 0 */
   uint64_t waitValue;
   uint64_t signalValue;
 } VoyVulkanFrame;
@@ -254,14 +255,19 @@ typedef struct VoyVulkanUse {
   uint32_t queueFamily;          /* of the queue that it will be submitted to */
   uint32_t imageIndex;
   VkImageLayout layout;        /* the host's: SHADER_READ_ONLY_OPTIMAL, TRANSFER_SRC_OPTIMAL or
-                                  GENERAL */
-  VkPipelineStageFlags stages; /* of the host's commands that use the image */
+                                  GENERAL; a release's is that of the acquire before it */
+  VkPipelineStageFlags stages; /* of the host's commands that use the image; an acquire's have
+                                  one that reads images: a shader's, TRANSFER, ALL_... */
 } VoyVulkanUse;
 #define VOY_VULKAN_USE_INIT                                                             \
   {                                                                                     \
     VOY_STRUCTURE_TYPE_VULKAN_USE, NULL, VK_NULL_HANDLE, 0, 0,                          \
         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT \
   }
+
+/* The two take turns: a release of what is not acquired says nothing new, an acquire of what is
+ * not released is INVALID_ARGUMENT, and so is a layout or a family that the image cannot have.
+ * What is refused records nothing. */
 
 /* The image goes from the host to Voyager: once for each image of a new ring before its
  * first frame, and after each use; use.layout is that of its last acquisition. The submission
@@ -284,7 +290,7 @@ typedef struct VoyVulkanCopy {
   VkFormat intoFormat;      /* see voyRecordVulkanCopy */
   VkImageLayout intoLayout; /* TRANSFER_DST_OPTIMAL or GENERAL */
   uint32_t intoLayer;
-  VkOffset2D intoOffset; /* the whole layer must fit there */
+  VkOffset2D intoOffset; /* not below 0; the whole layer must fit there */
 } VoyVulkanCopy;
 #define VOY_VULKAN_COPY_INIT                                                                       \
   {                                                                                                \
@@ -338,8 +344,9 @@ typedef struct VoyVulkanCompositeDesc {
   const void* next;
   VkRenderPass renderPass;
   uint32_t subpass;
-  VkFormat colorFormat; /* of the attachment that is drawn to, the first of the subpass */
-  VkFormat depthFormat; /* UNDEFINED: no depth attachment */
+  VkFormat colorFormat; /* of the attachment that is drawn to, the first of the subpass; the device
+                           can blend it, else UNSUPPORTED */
+  VkFormat depthFormat; /* with depth, or UNDEFINED: no depth attachment; else UNSUPPORTED */
 } VoyVulkanCompositeDesc;
 #define VOY_VULKAN_COMPOSITE_DESC_INIT                                                      \
   {                                                                                         \

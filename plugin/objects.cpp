@@ -1,0 +1,40 @@
+// How objects go while frames are under way.
+#include "plugin/objects.h"
+
+namespace voyager {
+
+DeviceObject::~DeviceObject() {
+  if (abandoned) static_cast<void>(backend.release());
+}
+
+void DeviceObject::abandon() noexcept {
+  if (abandoned.exchange(true)) return;
+  log.write(VOY_LOG_ERROR,
+            "a frame into a Vulkan target did not end, expected its `released` to be signalled: "
+            "what it may still use is left behind, and the device takes no more frames");
+}
+
+namespace {
+
+void finish(vulkan::Ring& ring, DeviceObject& device) noexcept {
+  if (!device.abandoned && !ring.finish()) device.abandon();
+}
+
+}  // namespace
+
+void ViewObject::drop_view() noexcept {
+  for (const auto& used : rings)
+    if (const auto ring = used.lock()) finish(*ring, device());
+  rings.clear();
+  if (device().abandoned) static_cast<void>(view.release());
+  view.reset();
+  scenes.clear();
+}
+
+TargetObject::~TargetObject() {
+  if (ring == nullptr) return;
+  finish(*ring, device());
+  if (device().abandoned) ring->abandon();
+}
+
+}  // namespace voyager

@@ -1,0 +1,144 @@
+// Frames on a device that never end, because the host's signal does not come or a device is
+// lost: nothing that the host destroys then hangs.
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include "mock_vulkan_host.h"
+#include "stuck_module.h"
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/lsan_interface.h>
+#endif
+
+namespace {
+
+using namespace voyager::test;
+namespace fs = std::filesystem;
+
+// A copy of the library, in a folder with the module that it takes for CUDA's.
+struct Folder {
+  Folder() {
+    fs::create_directories(path);
+    fs::copy_file(VOYAGER_LIBRARY, library, fs::copy_options::overwrite_existing);
+    fs::create_symlink(VOYAGER_STUCK_MODULE, module);
+  }
+  ~Folder() { fs::remove_all(path); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+
+  const fs::path path = fs::temp_directory_path() / ("voyager_stuck." + std::to_string(::getpid()));
+  const fs::path library = path / "libvoyager.so", module = path / "libvoyager_cuda.so";
+};
+
+struct StuckFrame : testing::Test {
+  static constexpr const char* kExtensions[] = {VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME,
+                                                VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME};
+
+  StuckFrame() : voy(folder.library.c_str()), vulkan(vulkan_desc({})) {
+    vulkan.deviceExtensionCount = std::size(kExtensions);
+    vulkan.deviceExtensions = kExtensions;
+    vulkan.sharing = VOY_VULKAN_SHARING_DEVICE;
+    vulkan.sync = VOY_VULKAN_SYNC_BINARY;
+    VoyDeviceDesc desc = device_for(VOY_BACKEND_CUDA);
+    desc.next = &vulkan;
+    desc.log = [](void* user, VoyLogLevel, const char* message) {
+      *static_cast<int*>(user) += std::string(message).find("did not end") != std::string::npos;
+    };
+    desc.logUser = &logged;
+    host.emplace(voy, desc);
+    void* file = ::dlopen(folder.module.c_str(), RTLD_NOW | RTLD_NOLOAD);
+    module = static_cast<StuckModule*>(::dlsym(file, kStuckModuleSymbol));
+    draw();
+  }
+  ~StuckFrame() override {
+    host.reset();
+    EXPECT_EQ(mock.live(), 0u) << mock.live_kinds();
+  }
+
+  // A frame that waits for a signal of the host's.
+  void draw() {
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
+    desc.next = &images;
+    desc.kind = VOY_TARGET_KIND_VULKAN;
+    desc.width = Host::kWidth;
+    desc.height = Host::kHeight;
+    ASSERT_EQ(voy.CreateTarget(host->device, &desc, &target), VOY_SUCCESS) << voy.message();
+    VoyVulkanUse use = VOY_VULKAN_USE_INIT;
+    use.commandBuffer = VulkanMock::commands_at(0);
+    const auto release = voy.find<decltype(&::voyRecordVulkanRelease)>("voyRecordVulkanRelease");
+    ASSERT_EQ(release(target, &use), VOY_SUCCESS) << voy.message();
+    VoyVulkanFrame sync = VOY_VULKAN_FRAME_INIT;
+    sync.waitValue = sync.signalValue = 1;
+    VoyFrameEye eye = host->eye();
+    eye.target = target;
+    VoyFrame frame = Host::frame(eye);
+    frame.next = &sync;
+    ASSERT_EQ(voy.RenderFrame(host->view, &frame), VOY_SUCCESS) << voy.message();
+  }
+  // The device takes part in nothing more, and goes with what is left on it.
+  void expect_abandoned() {
+    EXPECT_EQ(logged, 1);
+    const VoyViewDesc desc = host->view_desc();
+    VoyView view = nullptr;
+    EXPECT_EQ(voy.CreateView(host->device, &desc, &view), VOY_ERROR_DEVICE_LOST);
+    expect_gone();
+  }
+  void expect_gone() {
+    host.reset();
+    EXPECT_EQ(module->hangs, 0);
+    EXPECT_EQ(logged, 1);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
+  }
+
+#if defined(__SANITIZE_ADDRESS__)
+  __lsan::ScopedDisabler what_is_left;  // on purpose
+#endif
+  Folder folder;
+  VulkanMock mock;
+  Library voy;
+  VoyVulkanDeviceDesc vulkan;
+  int logged = 0;
+  std::optional<Host> host;
+  StuckModule* module = nullptr;
+  VoyTarget target = nullptr;
+  const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+};
+
+TEST_F(StuckFrame, NothingIsLeftWhereFramesEnd) {
+  EXPECT_EQ(module->pipelines, 1);
+  EXPECT_EQ(module->rings, 1);
+  host.reset();
+  EXPECT_EQ(module->pipelines, 0);
+  EXPECT_EQ(module->rings, 0);
+  EXPECT_EQ(module->backends, 0);
+  EXPECT_EQ(module->hangs, 0);
+  EXPECT_EQ(logged, 0);
+}
+
+TEST_F(StuckFrame, AViewMayGo) {
+  module->idle = false;
+  EXPECT_EQ(voy.DestroyView(host->view), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(voy.DestroyTarget(target), VOY_SUCCESS) << voy.message();
+  expect_abandoned();
+}
+
+TEST_F(StuckFrame, ATargetMayGoBeforeTheViewThatDrewIntoIt) {
+  module->idle = false;
+  EXPECT_EQ(voy.DestroyTarget(target), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(voy.DestroyView(host->view), VOY_SUCCESS) << voy.message();
+  expect_abandoned();
+}
+
+TEST_F(StuckFrame, ASceneMayGo) {
+  module->idle = false;
+  EXPECT_EQ(voy.DestroyScene(host->scene), VOY_SUCCESS) << voy.message();
+  expect_abandoned();
+}
+
+TEST_F(StuckFrame, ADeviceMayGoWithAll) {
+  module->idle = false;
+  expect_gone();
+}
+
+}  // namespace
