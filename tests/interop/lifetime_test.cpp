@@ -2,6 +2,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "frames.h"
@@ -139,6 +140,24 @@ TEST_F(Interop, WithoutSemaphoresAFrameHasEndedWhenItsCallReturns) {
       EXPECT_EQ(stats.frameIndex, frame);
     }
   }
+}
+
+// A host's mistake that must not cost it its exit: the Vulkan device goes, the VoyDevice stays.
+TEST_F(Interop, AHostThatForgetsItsDeviceExits) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto forget = [&](VoyVulkanSharing sharing, VoyVulkanSync sync) {
+    if (!create(sharing, sync)) std::exit(0);
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+    Line line = line_of(target);
+    shoot(line, target, 0, eye(target), 4);
+    host.reset();
+    std::exit(0);
+  };
+  for (const VoyVulkanSharing sharing : kSharings)
+    for (const VoyVulkanSync sync : kSyncs)
+      EXPECT_EXIT(forget(sharing, sync), testing::ExitedWithCode(0), "")
+          << "sharing " << sharing << ", sync " << sync;
 }
 
 // Images of the host's own, by descriptor.
