@@ -17,7 +17,7 @@ TEST_F(Interop, ValidationSeesAHazardBetweenSubmissions) {
     host->wait_for(fence);
     vkDestroyFence(host->device, fence, nullptr);
   }
-  ASSERT_EQ(host->messages.text.size(), 1u);
+  ASSERT_FALSE(host->messages.text.empty());
   EXPECT_NE(host->messages.text[0].find("SYNC-HAZARD-WRITE-AFTER-WRITE"), std::string::npos)
       << host->messages.text[0];
   host->messages.text.clear();
