@@ -42,6 +42,11 @@ DepthLimits depth_limits(const VoyEyeDepthLimit* limit, const Image& image,
     check_count(limit->depthRowPitch, 0, 0, "VoyEyeDepthLimit.depthRowPitch");
     return {nullptr, 0, encoding};
   }
+  if (limit->depth == nullptr && ring != nullptr)
+    refuse(
+        "VoyEyeDepthLimit.depth: found NULL for a target that was made without depthLimit, "
+        "expected "
+        "VoyVulkanTargetDesc.depthLimit");
   check_pointer(limit->depth, "VoyEyeDepthLimit.depth");
   if (ring != nullptr && ring->device().sharing() == vulkan::Sharing::device)
     throw ApiError(VOY_ERROR_UNSUPPORTED,

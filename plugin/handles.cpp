@@ -1,6 +1,7 @@
 #include "plugin/handles.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <new>
 #include <string>
@@ -46,6 +47,20 @@ std::string hexadecimal(uint64_t value) {
 }
 
 }  // namespace
+
+HandleTable::~HandleTable() {
+  bool left = false;
+  for (Slot& slot : slots_) {
+    if (!slot.object) continue;
+    if (slot.object->stays_at_unload())
+      left = true;
+    else
+      slot.object.reset();
+  }
+  // Here nobody destroys them, and a leak checker still finds them.
+  alignas(decltype(slots_)) static std::byte stay[sizeof slots_];
+  if (left) new (stay) decltype(slots_)(std::move(slots_));
+}
 
 size_t HandleTable::find(const void* handle, Kind kind) const {
   if (handle == nullptr) fail(kind, "NULL");

@@ -28,6 +28,10 @@ class Object {
   const std::shared_ptr<Object>& parent() const { return device_; }
 
  private:
+  // The library is unloaded and the host left the object: whether it must stay as it is,
+  // because its destructor would use what may be gone.
+  virtual bool stays_at_unload() noexcept { return false; }
+
   friend class HandleTable;
   const Kind kind_;
   const std::shared_ptr<Object> device_;
@@ -39,8 +43,11 @@ class Object {
 // All functions are thread-safe. Failures are ApiError(VOY_ERROR_INVALID_HANDLE).
 class HandleTable {
  public:
-  // The library's; destroyed, with every object that the host left, at unload.
+  // The library's; destroyed, with what the host left and need not stay, at unload.
   static HandleTable& instance();
+
+  HandleTable() = default;
+  ~HandleTable();
 
   // Throws where the object's device was destroyed meanwhile.
   void* insert(std::shared_ptr<Object> object);

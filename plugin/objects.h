@@ -53,11 +53,22 @@ struct DeviceObject final : Object {
   std::unique_ptr<Backend> backend;
   std::atomic<bool> abandoned{false};
   std::shared_ptr<const vulkan::Device> vulkan;  // or NULL
+
+ private:
+  // Its VkDevice may be destroyed, and frames may wait for the host's queue.
+  bool stays_at_unload() noexcept override {
+    if (vulkan == nullptr) return false;
+    std::destroy_at(&workers);  // oneTBB's threads leave the library's code; the rest stays
+    return true;
+  }
 };
 
 struct Child : Object {
   Child(Kind kind, std::shared_ptr<DeviceObject> device) : Object(kind, std::move(device)) {}
   DeviceObject& device() const { return static_cast<DeviceObject&>(*parent()); }
+
+ private:
+  bool stays_at_unload() noexcept override { return device().vulkan != nullptr; }
 };
 
 struct SceneObject final : Child {

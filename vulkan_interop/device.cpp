@@ -88,7 +88,8 @@ void Device::choose_sync(Sync wanted, const ExternalSupport& backend) {
   sync_ = wanted;
   if (wanted != Sync::automatic) return;
   sync_ = no_timelines.empty() ? Sync::timeline : (no_binaries.empty() ? Sync::binary : Sync::host);
-  if (why_.empty()) why_ = no_timelines;
+  if (!why_.empty() && !no_timelines.empty()) why_ += "; ";
+  why_ += no_timelines;
 }
 
 }  // namespace voyager::vulkan

@@ -1,11 +1,11 @@
 #include "camera_file.h"
 
 #include <cmath>
-#include <fstream>
 #include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 
 #include "failure.h"
+#include "files.h"
 
 namespace host {
 namespace {
@@ -93,9 +93,7 @@ class Reader {
 }  // namespace
 
 std::vector<Camera> read_cameras(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Failure(kRefusedInput, path + ": cannot be opened");
-  const Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
+  const Json json = Json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
   if (!json.is_array() || json.empty())
     throw Failure(kRefusedInput, path + ": expected JSON, an array of at least one camera");
   std::vector<Camera> cameras;

@@ -12,6 +12,19 @@
 
 namespace host {
 
+std::string read_file(const std::string& path) {
+  const auto fail = [&] { throw Failure(kRefusedInput, path + ": " + std::strerror(errno)); };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
+                                                             std::fclose);
+  if (!file) fail();
+  std::string bytes;
+  char block[65536];
+  for (size_t got = 0; (got = std::fread(block, 1, sizeof block, file.get())) > 0;)
+    bytes.append(block, got);
+  if (std::ferror(file.get()) != 0) fail();
+  return bytes;
+}
+
 void write_file(const std::string& path, std::span<const std::byte> bytes) {
   const std::string temporary = path + ".part";
   const auto fail = [&] {

@@ -1,10 +1,13 @@
 #pragma once
-// Images to files. Each appears under its name only when complete.
+// Files whole, and images to files: each appears under its name only when complete.
 #include <cstdint>
 #include <span>
 #include <string>
 
 namespace host {
+
+// All of it. Throws Failure(kRefusedInput) with the path.
+std::string read_file(const std::string& path);
 
 void write_file(const std::string& path, std::span<const std::byte> bytes);
 // RGB from rows of RGBA.

@@ -1,7 +1,5 @@
 #include "mesh.h"
 
-#include <tiny_gltf.h>
-
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -9,8 +7,10 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <optional>
+#include <utility>
 
 #include "failure.h"
+#include "gltf_file.h"
 
 namespace host {
 namespace {
@@ -29,7 +29,7 @@ class Reader {
   Mesh read() {
     if (model_.scenes.empty()) refuse("scenes", "one at least");
     const size_t scene = model_.defaultScene < 0 ? 0 : static_cast<size_t>(model_.defaultScene);
-    for (const int node : at(model_.scenes, scene, "scene").nodes) add_node(node, glm::dmat4(1));
+    for (const int node : at(model_.scenes, scene, "scene").nodes) add_tree(node);
     if (mesh_.indices.empty()) refuse("scene", "a triangle at least");
     return std::move(mesh_);
   }
@@ -57,16 +57,23 @@ class Reader {
     return m;
   }
 
-  void add_node(int index, const glm::dmat4& parent) {
-    const tinygltf::Node& node = at(model_.nodes, static_cast<size_t>(index), "node");
-    if (seen_[static_cast<size_t>(index)]) refuse("nodes", "trees");
-    seen_[static_cast<size_t>(index)] = true;
-    const glm::dmat4 world = parent * transform(node);
-    if (node.mesh >= 0)
-      for (const tinygltf::Primitive& primitive :
-           at(model_.meshes, static_cast<size_t>(node.mesh), "mesh").primitives)
-        add_primitive(primitive, world);
-    for (const int child : node.children) add_node(child, world);
+  // As deep as it may be; children in their order.
+  void add_tree(int root) {
+    std::vector<std::pair<int, glm::dmat4>> next = {{root, glm::dmat4(1)}};
+    while (!next.empty()) {
+      const auto [index, parent] = next.back();
+      next.pop_back();
+      const tinygltf::Node& node = at(model_.nodes, static_cast<size_t>(index), "node");
+      if (seen_[static_cast<size_t>(index)]) refuse("nodes", "trees");
+      seen_[static_cast<size_t>(index)] = true;
+      const glm::dmat4 world = parent * transform(node);
+      if (node.mesh >= 0)
+        for (const tinygltf::Primitive& primitive :
+             at(model_.meshes, static_cast<size_t>(node.mesh), "mesh").primitives)
+          add_primitive(primitive, world);
+      for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+        next.emplace_back(*child, world);
+    }
   }
 
   void add_primitive(const tinygltf::Primitive& primitive, const glm::dmat4& world) {
@@ -77,7 +84,7 @@ class Reader {
     if (normals && normals->count != positions->count) refuse("NORMAL", "as many as POSITION");
     const std::array<float, 3> colour = base_colour(primitive.material);
     const glm::dmat3 normal_matrix = glm::inverseTranspose(glm::dmat3(world));
-    const size_t first = mesh_.vertices.size();
+    const size_t first = mesh_.vertices.size(), first_index = mesh_.indices.size();
     for (size_t i = 0; i < positions->count; ++i) {
       const glm::dvec3 p = world * glm::dvec4(vector(*positions, i), 1);
       const glm::dvec3 n = normals ? normal_matrix * vector(*normals, i) : glm::dvec3(0);
@@ -85,7 +92,7 @@ class Reader {
           {narrow(p), narrow(glm::length(n) > 0 ? glm::normalize(n) : n), colour});
     }
     add_indices(primitive, first, positions->count);
-    if (!normals) add_face_normals(first);
+    if (!normals) add_face_normals(first_index);
   }
 
   void add_indices(const tinygltf::Primitive& primitive, size_t first, size_t count) {
@@ -123,12 +130,11 @@ class Reader {
     }
   }
 
-  // Of vertices that came without: the sum over their triangles.
-  void add_face_normals(size_t first) {
+  // Of the last primitive's vertices, which came without: the sum over their triangles.
+  void add_face_normals(size_t first_index) {
     const auto point = [&](size_t i) { return glm::make_vec3(mesh_.vertices[i].position.data()); };
-    for (size_t i = 0; i + 2 < mesh_.indices.size(); i += 3) {
+    for (size_t i = first_index; i + 2 < mesh_.indices.size(); i += 3) {
       const uint32_t* corner = &mesh_.indices[i];
-      if (corner[0] < first) continue;
       const glm::vec3 origin = point(corner[0]);
       const glm::vec3 normal = glm::cross(point(corner[1]) - origin, point(corner[2]) - origin);
       for (int c = 0; c < 3; ++c)
@@ -191,24 +197,10 @@ class Reader {
   Mesh mesh_;
 };
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
-
 }  // namespace
 
 Mesh read_mesh(const std::string& path) {
-  tinygltf::TinyGLTF loader;
-  tinygltf::Model model;
-  std::string error, warning;
-  // Images are never looked at.
-  loader.SetImageLoader([](tinygltf::Image*, const int, std::string*, std::string*, int, int,
-                           const unsigned char*, int, void*) { return true; },
-                        nullptr);
-  const bool binary = path.size() > 4 && path.compare(path.size() - 4, 4, ".glb") == 0;
-  const bool loaded = binary ? loader.LoadBinaryFromFile(&model, &error, &warning, path)
-                             : loader.LoadASCIIFromFile(&model, &error, &warning, path);
-  if (!loaded) throw Failure(kRefusedInput, path + ": expected glTF: " + first_line(error));
+  const tinygltf::Model model = read_gltf(path);
   return Reader(path, model).read();
 }
 

@@ -1,6 +1,7 @@
 #include "mesh_pipeline.h"
 
 #include <cstddef>
+#include <iterator>
 
 #include "failure.h"
 #include "mesh.frag.h"
@@ -40,6 +41,71 @@ VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which,
   return info;
 }
 
+constexpr VkVertexInputBindingDescription kBinding = {0, sizeof(Vertex),
+                                                      VK_VERTEX_INPUT_RATE_VERTEX};
+constexpr VkVertexInputAttributeDescription kAttributes[] = {
+    {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
+    {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
+    {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, colour)}};
+constexpr VkDynamicState kDynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+
+// The states of the pipeline that neither shaders nor the render pass change.
+struct FixedStates {
+  explicit FixedStates(VoyDepthEncoding encoding) {
+    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+    input.vertexBindingDescriptionCount = 1;
+    input.pVertexBindingDescriptions = &kBinding;
+    input.vertexAttributeDescriptionCount = std::size(kAttributes);
+    input.pVertexAttributeDescriptions = kAttributes;
+    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
+    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
+    viewport.viewportCount = viewport.scissorCount = 1;
+    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
+    raster.lineWidth = 1;
+    samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
+    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
+    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
+    dynamic.dynamicStateCount = std::size(kDynamic);
+    dynamic.pDynamicStates = kDynamic;
+    set_output(encoding);
+  }
+  FixedStates(const FixedStates&) = delete;
+  FixedStates& operator=(const FixedStates&) = delete;
+
+  void set_output(VoyDepthEncoding encoding) {
+    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
+    depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
+    depth.depthCompareOp = encoding == VOY_DEPTH_ENCODING_REVERSED ? VK_COMPARE_OP_GREATER_OR_EQUAL
+                                                                   : VK_COMPARE_OP_LESS_OR_EQUAL;
+    write.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                           VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
+    blend.attachmentCount = 1;
+    blend.pAttachments = &write;
+  }
+  void give_to(VkGraphicsPipelineCreateInfo& info) const {
+    info.pVertexInputState = &input;
+    info.pInputAssemblyState = &assembly;
+    info.pViewportState = &viewport;
+    info.pRasterizationState = &raster;
+    info.pMultisampleState = &samples;
+    info.pDepthStencilState = &depth;
+    info.pColorBlendState = &blend;
+    info.pDynamicState = &dynamic;
+  }
+
+  VkPipelineVertexInputStateCreateInfo input = {};
+  VkPipelineInputAssemblyStateCreateInfo assembly = {};
+  VkPipelineViewportStateCreateInfo viewport = {};
+  VkPipelineRasterizationStateCreateInfo raster = {};
+  VkPipelineMultisampleStateCreateInfo samples = {};
+  VkPipelineDepthStencilStateCreateInfo depth = {};
+  VkPipelineColorBlendAttachmentState write = {};
+  VkPipelineColorBlendStateCreateInfo blend = {};
+  VkPipelineDynamicStateCreateInfo dynamic = {};
+};
+
 UniquePipeline make_pipeline(VkDevice device, VkPipelineLayout layout, VkRenderPass render_pass,
                              bool encode, VoyDepthEncoding encoding) {
   const UniqueShaderModule vertex = make_shader(device, mesh_vert);
@@ -50,60 +116,12 @@ UniquePipeline make_pipeline(VkDevice device, VkPipelineLayout layout, VkRenderP
   VkPipelineShaderStageCreateInfo stages[] = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex),
                                               stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
   stages[1].pSpecializationInfo = &constants;
-
-  const VkVertexInputBindingDescription binding = {0, sizeof(Vertex), VK_VERTEX_INPUT_RATE_VERTEX};
-  const VkVertexInputAttributeDescription attributes[] = {
-      {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
-      {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
-      {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, colour)}};
-  VkPipelineVertexInputStateCreateInfo input = {};
-  input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-  input.vertexBindingDescriptionCount = 1;
-  input.pVertexBindingDescriptions = &binding;
-  input.vertexAttributeDescriptionCount = 3;
-  input.pVertexAttributeDescriptions = attributes;
-  VkPipelineInputAssemblyStateCreateInfo assembly = {};
-  assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  VkPipelineViewportStateCreateInfo viewport = {};
-  viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-  viewport.viewportCount = viewport.scissorCount = 1;
-  VkPipelineRasterizationStateCreateInfo raster = {};
-  raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-  raster.lineWidth = 1;
-  VkPipelineMultisampleStateCreateInfo samples = {};
-  samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  VkPipelineDepthStencilStateCreateInfo depth = {};
-  depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-  depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
-  depth.depthCompareOp = encoding == VOY_DEPTH_ENCODING_REVERSED ? VK_COMPARE_OP_GREATER_OR_EQUAL
-                                                                 : VK_COMPARE_OP_LESS_OR_EQUAL;
-  VkPipelineColorBlendAttachmentState write = {};
-  write.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                         VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-  VkPipelineColorBlendStateCreateInfo blend = {};
-  blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-  blend.attachmentCount = 1;
-  blend.pAttachments = &write;
-  const VkDynamicState dynamic_states[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  VkPipelineDynamicStateCreateInfo dynamic = {};
-  dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-  dynamic.dynamicStateCount = 2;
-  dynamic.pDynamicStates = dynamic_states;
-
+  const FixedStates states(encoding);
   VkGraphicsPipelineCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-  info.stageCount = 2;
+  info.stageCount = std::size(stages);
   info.pStages = stages;
-  info.pVertexInputState = &input;
-  info.pInputAssemblyState = &assembly;
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples;
-  info.pDepthStencilState = &depth;
-  info.pColorBlendState = &blend;
-  info.pDynamicState = &dynamic;
+  states.give_to(info);
   info.layout = layout;
   info.renderPass = render_pass;
   VkPipeline pipeline = VK_NULL_HANDLE;

@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -22,9 +23,21 @@ std::string not_negative(const std::string& text) {
   return "found " + text + ", expected a number, 0 or more";
 }
 
-MeshPlace parse_place(const std::vector<double>& v) {
-  for (const double x : v)
-    if (!std::isfinite(x)) throw CLI::ValidationError("--mesh-at", "expected finite numbers");
+// What 64 bits of bytes can hold.
+std::string megabytes(const std::string& text) {
+  constexpr double kMost = 1e12;
+  double value = 0;
+  if (CLI::detail::lexical_cast(text, value) && value >= 0 && value <= kMost) return {};
+  return "found " + text + ", expected a number from 0 to 10^12";
+}
+
+MeshPlace parse_place(const std::string& text) {
+  const std::vector<std::string> parts = CLI::detail::split(text, ',');
+  std::array<double, 4> v = {};
+  if (parts.size() != v.size()) throw CLI::ValidationError("--mesh-at", "expected four numbers");
+  for (size_t i = 0; i < v.size(); ++i)
+    if (!CLI::detail::lexical_cast(parts[i], v[i]) || !std::isfinite(v[i]))
+      throw CLI::ValidationError("--mesh-at", "found " + parts[i] + ", expected a finite number");
   if (!(v[3] > 0)) throw CLI::ValidationError("--mesh-at", "expected a scale above 0");
   return {{v[0], v[1], v[2]}, v[3]};
 }
@@ -60,13 +73,13 @@ void add_mesh_options(CLI::App& app, Options& o) {
   app.add_flag_callback(
       "--no-mesh", [&o] { o.mesh = false; }, "The splats alone");
   app.add_option("--mesh", o.mesh_file, "A glTF scene in place of the sample's own")
-      ->type_name("FILE");
-  app.add_option_function<std::vector<double>>(
-         "--mesh-at", [&o](const std::vector<double>& v) { o.mesh_place = parse_place(v); },
+      ->type_name("FILE")
+      ->excludes("--no-mesh");
+  app.add_option_function<std::string>(
+         "--mesh-at", [&o](const std::string& text) { o.mesh_place = parse_place(text); },
          "Where its origin stands, in the scene's axes, and metres a unit")
       ->type_name("X,Y,Z,SCALE")
-      ->delimiter(',')
-      ->expected(4);
+      ->excludes("--no-mesh");
 }
 
 void check_together(const Options& o) {
@@ -80,6 +93,8 @@ void check_together(const Options& o) {
     throw CLI::ValidationError("-o", "expected --offscreen with it");
   if (!o.offscreen && o.write_depth)
     throw CLI::ValidationError("--write-depth", "expected --offscreen with it");
+  if (!o.offscreen && o.srgb)
+    throw CLI::ValidationError("--srgb", "expected --offscreen with it: a window has its format");
 }
 
 }  // namespace
@@ -101,7 +116,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--tau", o.tau, "Granularity in pixels")
       ->check(CLI::Validator(not_negative, "PX"));
   app.add_option("--budget", o.budget_megabytes, "10^6 bytes that scene data may occupy")
-      ->check(CLI::Validator(not_negative, "MB"));
+      ->check(CLI::Validator(megabytes, "MB"));
   app.add_option("--device", o.device_name, "The Vulkan device whose name has this in it")
       ->type_name("NAME");
   app.add_flag("--srgb", o.srgb, "Draw into an _SRGB image");

@@ -1,6 +1,7 @@
 #include "validation.h"
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "failure.h"
 
@@ -18,6 +19,9 @@ Function find(VkInstance instance, const char* name) {
 }  // namespace
 
 const void* Validation::instance_chain() {
+  // Hazards between submissions are an option of its own; later layers always look for them.
+  ::setenv("VK_LAYER_ENABLES", "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT",
+           0);
   messenger_.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
   messenger_.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
                                VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;

@@ -12,7 +12,7 @@ inline constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 class Validation {
  public:
   // To be chained to VkInstanceCreateInfo, so that the instance's own making and unmaking
-  // are watched too. Synchronisation validation is on.
+  // are watched too. Synchronisation validation is on, across submissions too.
   const void* instance_chain();
   const VkDebugUtilsMessengerCreateInfoEXT& messenger() const { return messenger_; }
   uint64_t messages() const { return messages_; }

@@ -45,13 +45,14 @@ void run_window(const Device& device, Window& window, Swapchain& swapchain, Rend
   Bookmarks bookmarks(cameras);
   std::optional<VoyFrameStats> stats;
   bool current = false;
+  VkExtent2D asked = {0, 0};  // the surface may have given another
   double last = glfwGetTime();
   for (uint64_t frame = 0; !window.closed() && (options.frames == 0 || frame < options.frames);) {
     glfwPollEvents();
     const VkExtent2D wanted = window.extent();
-    if (!current || wanted.width != swapchain.extent().width ||
-        wanted.height != swapchain.extent().height) {
+    if (!current || wanted.width != asked.width || wanted.height != asked.height) {
       device.wait_idle();
+      asked = wanted;
       if (!swapchain.resize(wanted)) {
         glfwWaitEventsTimeout(0.1);  // minimised
         continue;

@@ -2,6 +2,8 @@
 // are after each call, and that a frame's wait has its signal.
 #include "mock_vulkan_host.h"
 
+#include <cstdlib>
+
 namespace {
 
 using namespace voyager::test;
@@ -270,6 +272,19 @@ TEST_F(VulkanTarget, AFrameWaitsForReleasedAndSignalsRenderedOnce) {
   EXPECT_EQ(mock.signals.size(), 1u);
 }
 
+// A host that forgot its VoyDevice: what it had of Vulkan is gone when the process ends.
+TEST_F(VulkanTarget, WhatAHostForgetsCallsNoVulkanAtUnload) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  mock.signal(semaphores.released, 1);
+  ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  ASSERT_EQ(render(1, 1), VOY_SUCCESS) << voy.message();
+  const auto leave = [] {
+    VulkanMock::current = nullptr;  // whatever is called now crashes
+    std::exit(0);
+  };
+  EXPECT_EXIT(leave(), testing::ExitedWithCode(0), "");
+}
+
 TEST_F(VulkanTarget, TheModeIsTold) {
   VoyVulkanCapabilities found = VOY_VULKAN_CAPABILITIES_INIT;
   VoyCapabilities capabilities = VOY_CAPABILITIES_INIT;
@@ -278,6 +293,16 @@ TEST_F(VulkanTarget, TheModeIsTold) {
   EXPECT_EQ(found.sharing, VOY_VULKAN_SHARING_HOST);
   EXPECT_EQ(found.sync, VOY_VULKAN_SYNC_TIMELINE);
   EXPECT_STREQ(found.why, "the backend does not draw on this device");
+  // Where both are missing, both are named.
+  vulkan.timelineSemaphore = VK_FALSE;
+  const VoyDeviceDesc without = cpu_with(vulkan);
+  VoyDevice other = nullptr;
+  ASSERT_EQ(voy.CreateDevice(&without, &other), VOY_SUCCESS) << voy.message();
+  VoyVulkanCapabilities lacking = VOY_VULKAN_CAPABILITIES_INIT;
+  capabilities.next = &lacking;
+  ASSERT_EQ(voy.GetCapabilities(other, &capabilities), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(lacking.why, std::string(found.why) + "; the feature timelineSemaphore is not enabled");
+  EXPECT_EQ(voy.DestroyDevice(other), VOY_SUCCESS);
   vulkan.sharing = VOY_VULKAN_SHARING_DEVICE;
   const VoyDeviceDesc desc = cpu_with(vulkan);
   VoyDevice refused = nullptr;

@@ -18,14 +18,16 @@ class CommandLineBench : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = new TempFolder;
     const std::string city = file("city.ply");
-    ASSERT_EQ(run("voyager synth city --gaussians 10000 --sh-degree 1 -o " + city).exit_code, 0);
-    ASSERT_EQ(run("voyager bake " + city + " -o " + file("city.voy")).exit_code, 0);
+    set_up_failure_ = failure_of({"voyager synth city --gaussians 10000 --sh-degree 1 -o " + city,
+                                  "voyager bake " + city + " -o " + file("city.voy")});
+    if (!set_up_failure_.empty()) return;
     const Json walk = Json::parse(file_bytes(file("city.cameras.json")));
     Json stills = Json::array();
     for (const size_t i : {0u, 30u, 60u}) stills.push_back(walk[i]);
     write_bytes(file("stills.json"), stills.dump());
   }
   static void TearDownTestSuite() { delete folder_; }
+  void SetUp() override { ASSERT_EQ(set_up_failure_, ""); }
 
   static std::string file(const std::string& name) { return folder_->file(name); }
   static std::string bench(const std::string& scene, const std::string& rest) {
@@ -48,6 +50,7 @@ class CommandLineBench : public ::testing::Test {
   }
 
   static TempFolder* folder_;
+  static inline std::string set_up_failure_;
 };
 TempFolder* CommandLineBench::folder_ = nullptr;
 

@@ -18,15 +18,13 @@ class CommandLine : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TempFolder;
-    ASSERT_EQ(
-        run("voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("city.ply")).exit_code,
-        0);
-    ASSERT_EQ(run("voyager bake " + file("city.ply") + " -o " + file("city.voy") +
-                  " --quality lossless --verify")
-                  .exit_code,
-              0);
+    set_up_failure_ =
+        failure_of({"voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("city.ply"),
+                    "voyager bake " + file("city.ply") + " -o " + file("city.voy") +
+                        " --quality lossless --verify"});
   }
   static void TearDownTestSuite() { delete folder_; }
+  void SetUp() override { ASSERT_EQ(set_up_failure_, ""); }
 
   static std::string file(const std::string& name) { return folder_->file(name); }
   static std::string render(const std::string& scene, const std::string& rest) {
@@ -42,6 +40,7 @@ class CommandLine : public ::testing::Test {
   }
 
   static TempFolder* folder_;
+  static inline std::string set_up_failure_;
 };
 TempFolder* CommandLine::folder_ = nullptr;
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace voyager::test {
 
@@ -28,6 +29,16 @@ inline Outcome run(const std::string& command_line) {
   const int status = ::pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+// Runs them until one fails: that one and what it said, "" where none does. For what a suite sets
+// up: to be asserted in SetUp, for tests of a suite that fails to set up count as skipped.
+inline std::string failure_of(const std::vector<std::string>& steps) {
+  for (const std::string& step : steps) {
+    const Outcome result = run(step);
+    if (result.exit_code != 0) return step + "\n" + result.output;
+  }
+  return "";
 }
 
 inline std::string file_bytes(const std::string& path) {

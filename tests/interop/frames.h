@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "../headless/scene_bytes.h"
+#include "../support/needs_vulkan.h"
 #include "vulkan_memory.h"
 
 inline VkExtent2D extent(uint32_t width, uint32_t height) {
@@ -19,7 +20,7 @@ class Interop : public ::testing::Test {
 
   void SetUp() override {
     host = std::make_unique<VulkanHost>();
-    if (!host->exists()) GTEST_SKIP() << "no Vulkan device";
+    if (!host->exists()) VOYAGER_SKIP_WITHOUT_VULKAN("no Vulkan device");
   }
   void TearDown() override {
     EXPECT_EQ(voyDestroyDevice(device), VOY_SUCCESS) << voyGetLastErrorMessage();

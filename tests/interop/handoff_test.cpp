@@ -61,8 +61,9 @@ TEST_F(Interop, LayersKeepToThemselves) {
   });
 }
 
-// Every frame is a mark: nothing but its own background. With two in flight and a host that
-// takes its time at random, each image must be all of one frame, and of the right one.
+// Half of the frames are marks, nothing but their own background; half are the splats from
+// one of a few places. With two in flight and a host that takes its time at random, each image
+// must be all of one frame, and of the right one.
 TEST_F(Interop, NoFrameIsTornOrStale) {
   const char* wanted = std::getenv("VOYAGER_INTEROP_FRAMES");
   const int frames = wanted == nullptr ? 60 : std::atoi(wanted);
@@ -72,21 +73,34 @@ TEST_F(Interop, NoFrameIsTornOrStale) {
     images.imageCount = kRing;
     const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
     Line line = line_of(target);
+    std::mt19937 random(5);
+    // Drawn before, so that buffers have room for each: a frame under way cannot be drawn again.
+    std::vector<VoyFrameEye> places;
+    std::vector<std::vector<uint8_t>> pictures;
+    for (int i = 0; i < 5; ++i) {
+      places.push_back(eye(target, static_cast<double>(random() % 6000) / 1000 - 3));
+      pictures.push_back(expected(VOY_COLOR_FORMAT_RGBA8_UNORM, places.back(), 4).color);
+      shoot(line, target, 0, places.back(), 4);
+    }
     struct InFlight {
       VkFence fence = VK_NULL_HANDLE;
       VkCommandBuffer before = VK_NULL_HANDLE, after = VK_NULL_HANDLE;
       std::unique_ptr<MappedBuffer> read;
+      const std::vector<uint8_t>* picture = nullptr;  // or the mark
       uint32_t mark = 0;
     } flight[kRing];
     for (InFlight& f : flight) f.read = std::make_unique<MappedBuffer>(*host, kWidth * kHeight * 4);
-    std::mt19937 random(5);
     const auto dawdle = [&] { ::usleep(random() % 4 == 0 ? random() % 3000 : 0); };
     int wrong = 0;
     const auto check = [&](InFlight& f) {
       if (f.fence == VK_NULL_HANDLE) return;
       host->wait_for(f.fence);
-      for (const uint32_t pixel : f.read->read<uint32_t>(kWidth * kHeight))
-        wrong += (pixel & 0xffffff) != f.mark;
+      const std::vector<uint32_t> pixels = f.read->read<uint32_t>(kWidth * kHeight);
+      for (size_t i = 0; i < pixels.size(); ++i) {
+        uint32_t right = f.mark | (pixels[i] & 0xff000000);
+        if (f.picture != nullptr) std::memcpy(&right, &(*f.picture)[4 * i], sizeof right);
+        wrong += pixels[i] != right;
+      }
       vkDestroyFence(host->device, f.fence, nullptr);
       vkFreeCommandBuffers(host->device, host->pool, 1, &f.before);
       vkFreeCommandBuffers(host->device, host->pool, 1, &f.after);
@@ -111,9 +125,13 @@ TEST_F(Interop, NoFrameIsTornOrStale) {
       const float background[] = {static_cast<float>(f.mark & 255) / 255.0f,
                                   static_cast<float>(f.mark >> 8 & 255) / 255.0f,
                                   static_cast<float>(f.mark >> 16) / 255.0f};
-      VoyFrameEye away = eye(target, 0);
-      away.pose.orientation[1] = 1, away.pose.orientation[3] = 0;  // turned round
-      ASSERT_EQ(render(line, image, away, background), VOY_SUCCESS) << voyGetLastErrorMessage();
+      const size_t place = random() % (2 * places.size());
+      const bool marked = place >= places.size();
+      VoyFrameEye at = marked ? eye(target) : places[place];
+      if (marked) at.pose.orientation[1] = 1, at.pose.orientation[3] = 0;  // turned round
+      f.picture = marked ? nullptr : &pictures[place];
+      ASSERT_EQ(render(line, image, at, marked ? background : nullptr), VOY_SUCCESS)
+          << voyGetLastErrorMessage();
       dawdle();
       f.after = host->begin();
       const VoyVulkanUse used = use(f.after, image);

@@ -1,6 +1,7 @@
 // What a host may do to targets, and what it leaves behind: nothing.
 #include <dirent.h>
 
+#include <cstdlib>
 #include <fstream>
 
 #include "cuda_driver.h"
@@ -169,6 +170,27 @@ TEST_F(Interop, WithoutSemaphoresAFrameHasEndedWhenItsCallReturns) {
       EXPECT_EQ(stats.frameIndex, frame);
     }
   }
+}
+
+// A host's mistake that must not cost it its exit: the Vulkan device goes, the VoyDevice stays.
+TEST_F(Interop, AHostThatForgetsItsDeviceExits) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto forget = [&](VoyVulkanSharing sharing, VoyVulkanSync sync) {
+    // After the library's own end, which comes to be later; before a leak checker's, which would
+    // find what a driver keeps of objects that nobody destroyed.
+    std::atexit([] { ::_exit(0); });
+    if (!create(sharing, sync)) std::exit(0);
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+    Line line = line_of(target);
+    shoot(line, target, 0, eye(target), 4);
+    host.reset();
+    std::exit(0);
+  };
+  for (const VoyVulkanSharing sharing : kSharings)
+    for (const VoyVulkanSync sync : kSyncs)
+      EXPECT_EXIT(forget(sharing, sync), testing::ExitedWithCode(0), "")
+          << "sharing " << sharing << ", sync " << sync;
 }
 
 }  // namespace

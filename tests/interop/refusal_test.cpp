@@ -137,7 +137,7 @@ TEST_F(Interop, AFrameIsRefusedByWhatIsWrongAndTheNextIsRight) {
     }
     VoyEyeDepthLimit limit = VOY_EYE_DEPTH_LIMIT_INIT;
     at.next = &limit;
-    expect_refused(voyRenderFrame(view, &frame), VOY_ERROR_INVALID_ARGUMENT, "depth");
+    expect_refused(voyRenderFrame(view, &frame), VOY_ERROR_INVALID_ARGUMENT, "without depthLimit");
     EXPECT_EQ(shoot(line, target, 0, eye(target, 1), 4).color,
               expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target, 1), 4).color);
   });

@@ -4,6 +4,7 @@
 #include <voyager/voyager_vulkan.h>
 #include <vulkan/vulkan.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -57,6 +58,7 @@ class VulkanHost {
   VulkanHost& operator=(const VulkanHost&) = delete;
 
   bool exists() const { return device != VK_NULL_HANDLE; }
+  bool validates() const { return messenger_ != VK_NULL_HANDLE; }
 
   VoyVulkanDeviceDesc desc(VoyVulkanSharing sharing = VOY_VULKAN_SHARING_AUTO,
                            VoyVulkanSync sync = VOY_VULKAN_SYNC_AUTO) const {
@@ -177,6 +179,9 @@ class VulkanHost {
     info.pApplicationInfo = &application;
     const bool validation = has_validation();
     if (validation) {
+      // Hazards between submissions are an option of its own; later layers always look for them.
+      ::setenv("VK_LAYER_ENABLES",
+               "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT", 0);
       info.pNext = &debug;
       info.enabledLayerCount = 1;
       info.ppEnabledLayerNames = &layer;

@@ -4,15 +4,21 @@
 namespace voyager::test {
 namespace {
 
-TEST_F(VulkanHost, WithoutMeshesEachFrameIsWhatVoyagerRenders) {
-  ASSERT_EQ(run("voyager render " + file("city.voy") + " --cameras " + file("cameras.json") +
-                " --all -o " + file("reference"))
-                .exit_code,
-            0);
+// With cameras of one size two frames are in flight; else each frame is of a new target.
+class Frames : public VulkanHost, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(
+    Of, Frames, ::testing::Values("cameras.json", "steady.json"), [](const auto& each) {
+      return std::string(each.param == std::string("steady.json") ? "OneSize" : "ChangingSizes");
+    });
+
+TEST_P(Frames, WithoutMeshesEachIsWhatVoyagerRenders) {
+  expect_success("voyager render " + file("city.voy") + " --cameras " + file(GetParam()) +
+                 " --all -o " + file("reference"));
   for (const std::string modes :
        {"--sync auto", "--sync host", "--sharing host", "--depth standard", "--composite test"}) {
     expect_success(host("--no-mesh --frames " + std::to_string(kCameras + 2) + " -o " +
-                        file("frames") + " " + modes));
+                            file("frames") + " " + modes,
+                        GetParam()));
     for (int i = 0; i < kCameras + 2; ++i)
       EXPECT_LE(largest_difference(read_png(numbered("frames", i, "png")),
                                    read_png(numbered("reference", i % kCameras, "png"))),
@@ -21,21 +27,41 @@ TEST_F(VulkanHost, WithoutMeshesEachFrameIsWhatVoyagerRenders) {
   }
 }
 
-// Each frame has another size than the one before: a new target, from the first to the last.
-TEST_F(VulkanHost, ValidationHasNothingToSay) {
+TEST_P(Frames, ValidationHasNothingToSay) {
   const Outcome probe = run(host("--frames 1 --validation -o " + file("validated")));
   if (probe.output.find("found no VK_LAYER_KHRONOS_validation") != std::string::npos)
-    GTEST_SKIP() << probe.output;
+    VOYAGER_SKIP_WITHOUT_VULKAN(probe.output);
+  const std::string longest =
+      GetParam() == std::string("steady.json") ? "--frames 50" : "--frames 200";
   for (const std::string modes :
-       {"--frames 200", "--frames 25 --sync host", "--frames 25 --sharing host",
+       {longest.c_str(), "--frames 25 --sync host", "--frames 25 --sharing host",
         "--frames 25 --composite test --depth standard", "--frames 25 --no-mesh",
         "--frames 25 --srgb --depth standard"}) {
     const Outcome result =
-        run(host("--validation --write-depth -o " + file("validated") + " " + modes));
+        run(host("--validation --write-depth -o " + file("validated") + " " + modes, GetParam()));
     EXPECT_EQ(result.exit_code, 0) << modes << "\n" << result.output;
     EXPECT_EQ(result.output.find("validation: "), std::string::npos) << modes << "\n"
                                                                      << result.output;
   }
+}
+
+// The same triangle below so many nodes as no stack has room for.
+TEST_F(VulkanHost, ADeepTreeOfNodesIsDrawn) {
+  constexpr int kDeep = 300000;
+  const std::string front = R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "buffers": [{"byteLength": 36, "uri": "triangle.bin"}], "nodes": [)";
+  const float corners[9] = {-9, 0, -9, 9, 0, -9, 0, 9, 9};
+  write_bytes(file("triangle.bin"), {reinterpret_cast<const char*>(corners), sizeof corners});
+  write_bytes(file("flat.gltf"), front + R"({"mesh": 0}]})");
+  std::string nodes;
+  for (int i = 1; i < kDeep; ++i) nodes += R"({"children": [)" + std::to_string(i) + "]},\n";
+  write_bytes(file("deep.gltf"), front + nodes + R"({"mesh": 0}]})");
+  for (const std::string name : {"flat", "deep"})
+    expect_success(host("--frames 1 --mesh " + file(name + ".gltf") + " -o " + file(name)));
+  EXPECT_EQ(file_bytes(numbered("deep", 0, "png")), file_bytes(numbered("flat", 0, "png")));
 }
 
 TEST_F(VulkanHost, StatsSayWhatRan) {
@@ -51,11 +77,25 @@ TEST_F(VulkanHost, StatsSayWhatRan) {
   EXPECT_NE(stats["sharing"], "auto");
 }
 
+// A binary glTF of this JSON alone.
+std::string glb(const std::string& json) {
+  const uint32_t length = static_cast<uint32_t>(json.size());
+  const uint32_t head[5] = {0x46546c67, 2, 20 + length, length, 0x4e4f534a};
+  return std::string(reinterpret_cast<const char*>(head), sizeof head) + json;
+}
+
 // With the exit code, on one line that names what is wrong.
 TEST_F(VulkanHost, RefusalsAreOneLine) {
   write_bytes(file("bad.json"), "[{\"width\": 8, \"height\": 8}]");
   write_bytes(file("bad.gltf"), R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
       "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 7}}]}]})");
+  const std::string deep(300000, '['), asset = R"({"asset": {"version": "2.0"}, "extras": )";
+  write_bytes(file("deep.json"), deep);
+  write_bytes(file("deep.gltf"), asset + deep + std::string(deep.size(), ']') + "}");
+  write_bytes(file("deep.glb"), glb(asset + deep));
+  std::filesystem::create_directory(file("folder.gltf"));
+  write_bytes(file("folder_inside.gltf"), R"({"asset": {"version": "2.0"},
+      "buffers": [{"byteLength": 36, "uri": "folder.gltf"}]})");
   const std::string out = " -o " + file("refused");
   const struct {
     std::string command;
@@ -68,11 +108,23 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       {host("--frames 1 --composite over" + out), 1, "--composite"},
       {host("--frames 1 --tau -1" + out), 1, "--tau"},
       {host("--frames 1 --mesh-at 0,0,0,0" + out), 1, "--mesh-at"},
+      {host("--frames 1 --mesh-at 0,0,1" + out), 1, "--mesh-at"},
+      {host("--frames 1 --mesh-at 0,0,x,1" + out), 1, "--mesh-at"},
+      {host("--frames 1 --no-mesh --mesh " + file("bad.gltf") + out), 1, "--no-mesh"},
+      {host("--frames 1 --budget 1e30" + out), 1, "--budget"},
+      {host("--frames 1 --budget nan" + out), 1, "--budget"},
+      {"vulkan_host " + file("city.voy") + " --srgb", 1, "--srgb"},
       {host("--frames 1 --sharing host --sync binary" + out), 1, "sync"},
       {host("--frames 1" + out, "absent.json"), 2, "absent.json"},
       {host("--frames 1" + out, "bad.json"), 2, "bad.json: camera 0"},
+      {host("--frames 1" + out, "deep.json"), 2, "deep.json"},
+      {host("--frames 1" + out, "folder.gltf"), 2, "folder.gltf: Is a directory"},
       {host("--frames 1 --mesh " + file("absent.gltf") + out), 2, "absent.gltf"},
       {host("--frames 1 --mesh " + file("bad.gltf") + out), 2, "bad.gltf: POSITION"},
+      {host("--frames 1 --mesh " + file("deep.gltf") + out), 2, "deep.gltf: JSON"},
+      {host("--frames 1 --mesh " + file("deep.glb") + out), 2, "deep.glb: JSON"},
+      {host("--frames 1 --mesh " + file("folder.gltf") + out), 2, "folder.gltf: Is a directory"},
+      {host("--frames 1 --mesh " + file("folder_inside.gltf") + out), 2, "folder_inside.gltf"},
       {"vulkan_host " + file("absent.voy") + " --offscreen --frames 1 --camera-file " +
            file("cameras.json") + out,
        2, "absent.voy"},

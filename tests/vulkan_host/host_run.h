@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tests/command_line/program.h"
+#include "tests/support/needs_vulkan.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
@@ -66,15 +67,11 @@ inline float largest_difference(const Picture& a, const Picture& b) {
 
 class VulkanHost : public ::testing::Test {
  protected:
-  // What fails here is asserted in SetUp: a suite that does not set up skips its tests.
   static void SetUpTestSuite() {
     folder_ = new TempFolder;
-    for (const std::string& step :
-         {"voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("city.ply"),
-          "voyager bake " + file("city.ply") + " -o " + file("city.voy")}) {
-      const Outcome result = run(step);
-      if (result.exit_code != 0) set_up_failure_ += step + "\n" + result.output;
-    }
+    set_up_failure_ =
+        failure_of({"voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("city.ply"),
+                    "voyager bake " + file("city.ply") + " -o " + file("city.voy")});
     if (set_up_failure_.empty()) write_cameras();
   }
   static void TearDownTestSuite() { delete folder_; }
@@ -83,7 +80,7 @@ class VulkanHost : public ::testing::Test {
     ASSERT_EQ(set_up_failure_, "");
     const Outcome result = run(host("--frames 1 -o " + file("probe")));
     if (result.exit_code == 4 && result.output.find("found no Vulkan") != std::string::npos)
-      GTEST_SKIP() << result.output;
+      VOYAGER_SKIP_WITHOUT_VULKAN(result.output);
     ASSERT_EQ(result.exit_code, 0) << result.output;
   }
 
@@ -109,21 +106,28 @@ class VulkanHost : public ::testing::Test {
  private:
   static std::string set_up_failure_;
 
-  // Out of the walk and the flight; no two after one another of one size, odd ones among them.
+  // Out of the walk and the flight. cameras.json: no two after one another of one size, odd ones
+  // among them, so that each frame is of a new target. steady.json: all of one size, so that
+  // frames are in flight together.
   static void write_cameras() {
     constexpr uint32_t kSizes[][2] = {{96, 54}, {61, 47}, {1, 1}, {128, 40}, {33, 97}, {80, 64}};
     std::ifstream source(file("city.cameras.json"));
     const nlohmann::json all = nlohmann::json::parse(source);
-    nlohmann::json some = nlohmann::json::array();
+    nlohmann::json changing = nlohmann::json::array(), steady = changing;
     for (size_t i = 0; i < kCameras; ++i) {
-      nlohmann::json camera = all[i * (all.size() - 1) / (kCameras - 1)];
-      const double scale = kSizes[i][0] / camera["width"].get<double>();
-      for (const char* focal : {"fx", "fy"}) camera[focal] = camera[focal].get<double>() * scale;
-      camera["width"] = kSizes[i][0];
-      camera["height"] = kSizes[i][1];
-      some.push_back(camera);
+      const nlohmann::json& camera = all[i * (all.size() - 1) / (kCameras - 1)];
+      changing.push_back(resized(camera, kSizes[i]));
+      steady.push_back(resized(camera, kSizes[0]));
     }
-    std::ofstream(file("cameras.json")) << some;
+    std::ofstream(file("cameras.json")) << changing;
+    std::ofstream(file("steady.json")) << steady;
+  }
+  static nlohmann::json resized(nlohmann::json camera, const uint32_t (&size)[2]) {
+    const double scale = size[0] / camera["width"].get<double>();
+    for (const char* focal : {"fx", "fy"}) camera[focal] = camera[focal].get<double>() * scale;
+    camera["width"] = size[0];
+    camera["height"] = size[1];
+    return camera;
   }
 };
 inline TempFolder* VulkanHost::folder_ = nullptr;

@@ -552,7 +552,8 @@ typedef struct VoyFrame {
  * VoyVulkanFrame says. On error no target is changed. Errors: INVALID_ARGUMENT (values out of
  * range), UNSUPPORTED (a depth limit where the view's splatting has none), SCENE_DESTROYED,
  * DAMAGED_CHUNK, OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no room for the frame),
- * BUSY. */
+ * BUSY, TIMEOUT (a Vulkan target: what the frame waits for was not signalled within 10 s),
+ * DEVICE_LOST (CUDA's or Vulkan's device no longer works). */
 VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
 
 /* The last frame's cut of one instance (its index in VoyViewDesc.scenes): node ids in

@@ -15,7 +15,12 @@
  * File descriptors: those that the host passes become the library's where a call succeeds,
  * and stay the host's where it fails, all of them. Those that the library makes never
  * leave it. Vulkan handles that the host passes stay the host's; they must outlive what
- * was made with them.
+ * was made with them: the VoyDevice is destroyed before the VkDevice. One that is still there
+ * when the library is unloaded stays as it is, with what is on it, and no Vulkan is called.
+ *
+ * Errors: besides those that a function lists, INVALID_HANDLE and INVALID_STRUCTURE
+ * (voyager.h) and, where a Vulkan call of ours failed, OUT_OF_HOST_MEMORY, OVER_BUDGET (device
+ * memory), DEVICE_LOST and INTERNAL (any other VkResult, which the message has).
  *
  * Thread-safety: as voyager.h says. Recording uses the host's command buffer, which must be
  * externally synchronised as Vulkan asks. vkDestroy... and vkFree... of what a target or a
@@ -78,15 +83,19 @@ typedef struct VoyVulkanRequirements {
 /* physicalDevice NULL, before there is an instance: apiVersion and instanceExtensions, and
  * no device extensions. Else: what this physical device has of what Voyager can use. None
  * of it is a must: what the host leaves out costs a mode (VoyVulkanCapabilities).
- * Errors: INVALID_ARGUMENT, UNSUPPORTED (a device older than Vulkan 1.1), DEVICE_LOST. */
+ * Errors: INVALID_ARGUMENT (NULL, or a getInstanceProcAddr that lacks what Vulkan 1.1 has),
+ * UNSUPPORTED (a device older than Vulkan 1.1). */
 VOY_API VoyResult voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physicalDevice,
                                            VoyVulkanRequirements* requirements);
 
 /* ------------------------------------------------------------------- device */
 
 /* Chained to VoyDeviceDesc: the Vulkan device that the host draws with. The UUID comes from
- * it; VoyDeviceDesc.deviceUuid must be NULL or the same. AUTO is then CUDA where the CUDA
- * device is this one, and the CPU elsewhere. All handles must outlive the VoyDevice. */
+ * it; VoyDeviceDesc.deviceUuid must be NULL or the same, and the backend AUTO is CUDA where the
+ * CUDA device is this one, the CPU elsewhere. With sharing HOST any device may draw: there
+ * deviceUuid and AUTO are what they are without Vulkan. All handles must outlive the VoyDevice.
+ * voyCreateDevice's errors are then also UNSUPPORTED (a sharing or sync that cannot be, which the
+ * message explains; a device or apiVersion older than 1.1) and DEVICE_LOST. */
 typedef struct VoyVulkanDeviceDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC */
   const void* next;
@@ -116,7 +125,7 @@ typedef struct VoyVulkanCapabilities {
   VkBool32 hostMemoryImport; /* HOST sharing: frames are drawn into memory that Vulkan imports,
                                 where it takes it (VK_EXT_external_memory_host; a page was tried),
                                 not into memory that it maps */
-  char why[192];             /* what keeps the device from DEVICE and TIMELINE; "" if nothing */
+  char why[192];             /* what keeps it from DEVICE and from TIMELINE, both; "" if nothing */
 } VoyVulkanCapabilities;
 #define VOY_VULKAN_CAPABILITIES_INIT                                                             \
   {                                                                                              \
@@ -138,7 +147,7 @@ typedef struct VoyVulkanMemory {
 
 /* An image of a ring that the host made: 2D, optimal tiling, one sample, one mip level, as
  * many layers as the target has, in the target's format, with VK_IMAGE_USAGE_TRANSFER_DST
- * for HOST sharing. usage and flags are those it was made with. */
+ * for HOST sharing. colorUsage and depthUsage are those it was made with. */
 typedef struct VoyVulkanImportedImage {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE */
   const void* next;
@@ -177,7 +186,10 @@ typedef struct VoyVulkanImportedSemaphores {
  * layer for each eye. RGBA8 is VK_FORMAT_R8G8B8A8_UNORM, RGBA16F and RGBA32F are
  * VK_FORMAT_R16G16B16A16_SFLOAT and VK_FORMAT_R32G32B32A32_SFLOAT, depth is
  * VK_FORMAT_R32_SFLOAT, metres.
- * Images that Voyager makes can be sampled and copied from. */
+ * Images that Voyager makes can be sampled and copied from.
+ * voyCreateTarget's errors are then INVALID_ARGUMENT (a count, an image or a semaphore that the
+ * mode does not have, a descriptor that is not open), UNSUPPORTED (a device made without
+ * VoyVulkanDeviceDesc), INTERNAL (what CUDA cannot import) and those of Vulkan. */
 typedef struct VoyVulkanTargetDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC */
   const void* next;
@@ -209,7 +221,8 @@ typedef struct VoyVulkanImage {
 
 /* capacity 0: only *count is set. Otherwise up to capacity images are written (their type
  * and next are set by the call), *count is how many there are, and the result is
- * VOY_INCOMPLETE if that is more. */
+ * VOY_INCOMPLETE if that is more. They stay the same for the target's life.
+ * Errors: INVALID_ARGUMENT (NULL, a target of HOST_MEMORY). */
 VOY_API VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVulkanImage* images,
                                      uint32_t* count);
 
@@ -219,12 +232,13 @@ VOY_API VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVul
  * frame waits for and signals.
  * TIMELINE: drawing into the image begins once `released` has reached waitValue (0: at
  * once), and `rendered` becomes signalValue, which must be greater than in the target's
- * frame before. BINARY: waitValue 1 waits for the image's `released`, 0 does not;
- * signalValue 1 signals its `rendered`, 0 does not: of layers that are drawn by frames of their
- * own, the last one does. HOST: both
- * are 0. The host has submitted the signal of what is waited for before the call (with HOST sharing
+ * frame before, in its first than what an imported semaphore has reached. BINARY: waitValue 1
+ * waits for the image's `released`, 0 does not; signalValue 1 signals its `rendered`, 0 does
+ * not: of layers that are drawn by frames of their own, the last one does. HOST: both are 0.
+ * The host has submitted the signal of what is waited for before the call (with HOST sharing
  * it is the call that waits, VOY_ERROR_TIMEOUT after 10 s). Where voyRenderFrame fails, nothing
- * is signalled and no wait is consumed, but for DEVICE_LOST.
+ * is signalled and no wait is consumed, but for DEVICE_LOST. A view of VOY_SPLATTING_3DGS draws
+ * with HOST sharing only: UNSUPPORTED.
  * With DEVICE sharing the call returns while the frame is under way, after 0.1 ms or so of
  * the host's time; the first of a view, one after a failure, and one that needs larger
  * buffers wait once for the device.
@@ -250,8 +264,8 @@ typedef struct VoyVulkanFrame {
 typedef struct VoyVulkanUse {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_USE */
   const void* next;
-  VkCommandBuffer commandBuffer; /* recording, outside a render pass; its queue has graphics or
-                                    compute */
+  VkCommandBuffer commandBuffer; /* recording, outside a render pass; its queue has graphics,
+                                    or compute where use.stages are compute's and transfer's */
   uint32_t queueFamily;          /* of the queue that it will be submitted to */
   uint32_t imageIndex;
   VkImageLayout layout;        /* the host's: SHADER_READ_ONLY_OPTIMAL, TRANSFER_SRC_OPTIMAL or
@@ -271,12 +285,16 @@ typedef struct VoyVulkanUse {
 
 /* The image goes from the host to Voyager: once for each image of a new ring before its
  * first frame, and after each use; use.layout is that of its last acquisition. The submission
- * signals `released`. As all recording, BUSY while another thread draws into the target. */
+ * signals `released`. What is recorded here and in voyRecordVulkanAcquire is submitted exactly
+ * once, in the order of the calls: each call counts as the hand-over, and the next one is recorded
+ * for what it left.
+ * Errors: INVALID_ARGUMENT (values out of range, a target of HOST_MEMORY), BUSY (another thread
+ * draws into the target, or records one of these two). */
 VOY_API VoyResult voyRecordVulkanRelease(VoyTarget target, const VoyVulkanUse* use);
 
 /* The image, with its depth, goes from Voyager to the host: before its first use in a frame.
  * The submission waits for `rendered`, at VK_PIPELINE_STAGE_ALL_COMMANDS or at TRANSFER
- * and use.stages. The image is then in use.layout. */
+ * and use.stages. The image is then in use.layout. Errors: as voyRecordVulkanRelease. */
 VOY_API VoyResult voyRecordVulkanAcquire(VoyTarget target, const VoyVulkanUse* use);
 
 typedef struct VoyVulkanCopy {
@@ -300,9 +318,11 @@ typedef struct VoyVulkanCopy {
     }                                                                                              \
   }
 
-/* Code values as they are: RGBA8 into R8G8B8A8 UNORM or SRGB and (swizzled) B8G8R8A8 UNORM,
- * 16F and 32F into their like. Others are VOY_ERROR_UNSUPPORTED: composite into those. The
- * host synchronises its image. */
+/* Code values as they are: RGBA8 into R8G8B8A8 UNORM or SRGB and (swizzled, by a blit, so on a
+ * queue with graphics; the others on any) B8G8R8A8 UNORM, 16F and 32F into their like. The host
+ * synchronises its image.
+ * Errors: INVALID_ARGUMENT (values out of range, a target of HOST_MEMORY), UNSUPPORTED (another
+ * format: composite into that; a target without colour). Never BUSY. */
 VOY_API VoyResult voyRecordVulkanCopy(VoyTarget target, const VoyVulkanCopy* copy);
 
 /* The host's depth, to hide splats before they are blended: recorded and submitted before
@@ -328,6 +348,8 @@ typedef struct VoyVulkanDepthLimit {
       0, 0                                                                                \
     }                                                                                     \
   }
+/* Errors: INVALID_ARGUMENT (values out of range, a target without depthLimit), UNSUPPORTED
+ * (another format). Never BUSY. */
 VOY_API VoyResult voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDepthLimit* limit);
 
 /* ---------------------------------------------------------------- composite */
@@ -335,8 +357,9 @@ VOY_API VoyResult voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDep
 typedef struct VoyComposite_T* VoyComposite;
 
 /* A pipeline that draws a target's image over the host's. Into the host's render pass, or,
- * where renderPass is NULL, into dynamic rendering (VK_KHR_dynamic_rendering or Vulkan 1.3)
- * with these formats and no stencil attachment. One sample. Into an _SRGB format the colours are
+ * where renderPass is NULL, into dynamic rendering with these formats and no stencil attachment:
+ * the host has enabled VK_KHR_dynamic_rendering, or has Vulkan 1.3, and in both cases the feature
+ * dynamicRendering. One sample. Into an _SRGB format the colours are
  * decoded first, so that code values come out where the image is opaque; there the blend is linear.
  */
 typedef struct VoyVulkanCompositeDesc {
@@ -353,8 +376,11 @@ typedef struct VoyVulkanCompositeDesc {
     VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC, NULL, VK_NULL_HANDLE, 0, VK_FORMAT_UNDEFINED, \
         VK_FORMAT_UNDEFINED                                                                 \
   }
+/* Errors: INVALID_ARGUMENT (no colorFormat), UNSUPPORTED (a device made without Vulkan; no render
+ * pass where there is no dynamic rendering) and those of Vulkan. */
 VOY_API VoyResult voyCreateVulkanComposite(VoyDevice device, const VoyVulkanCompositeDesc* desc,
                                            VoyComposite* composite);
+/* NULL is a no-op. The device must have finished all commands with it. */
 VOY_API VoyResult voyDestroyVulkanComposite(VoyComposite composite);
 
 typedef enum VoyVulkanDepthUse {
@@ -387,7 +413,9 @@ typedef struct VoyVulkanCompositeDraw {
         VOY_VULKAN_DEPTH_USE_NONE, VOY_DEPTH_ENCODING_STANDARD, 0.1, 1000.0                       \
   }
 
-/* Sets pipeline, descriptor set 0, push constants, viewport and scissor. */
+/* Sets pipeline, descriptor set 0, push constants, viewport and scissor.
+ * Errors: INVALID_ARGUMENT (values out of range, a target of another device, one that cannot be
+ * sampled, depth where target or composite has none). Never BUSY. */
 VOY_API VoyResult voyRecordVulkanComposite(VoyComposite composite,
                                            const VoyVulkanCompositeDraw* draw);
 
