@@ -70,11 +70,12 @@ class VulkanClient {
     const VkCommandBufferBeginInfo begin = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO, nullptr,
                                             VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT, nullptr};
     vkBeginCommandBuffer(commands, &begin);
-    const VkImageLayout home = depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
-                                     : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    move(commands, image, depth, layers, home, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+    const VkImageLayout given = depth ? VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+                                      : VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    move(commands, image, depth, layers, given, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
     clear(commands);
-    move(commands, image, depth, layers, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, home);
+    move(commands, image, depth, layers, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+         home == VK_IMAGE_LAYOUT_UNDEFINED ? given : home);
     vkEndCommandBuffer(commands);
     VkSubmitInfo submit = {};
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
@@ -87,7 +88,8 @@ class VulkanClient {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;
   VkQueue queue = VK_NULL_HANDLE;
-  int messages = 0;  // of the validation layer
+  int messages = 0;                                // of the validation layer
+  VkImageLayout home = VK_IMAGE_LAYOUT_UNDEFINED;  // to leave images in, not OpenXR's
 
  private:
   static VKAPI_ATTR VkBool32 VKAPI_CALL report(VkDebugUtilsMessageSeverityFlagBitsEXT,
