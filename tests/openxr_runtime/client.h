@@ -38,6 +38,7 @@ inline const std::vector<const char*> kAllExtensions = {
     XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME, XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME,
     XR_KHR_VISIBILITY_MASK_EXTENSION_NAME};
 
+// Keeps pointers to both.
 inline XrInstanceCreateInfo instance_info(const std::vector<const char*>& extensions,
                                           const std::vector<const char*>& layers = {}) {
   auto info = typed<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);

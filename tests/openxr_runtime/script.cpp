@@ -112,13 +112,20 @@ void read_images(const Reader& json, Script& script) {
     json.refuse("image_order", "ascending, descending or shuffled");
 }
 
+Motion motion_file(const Reader& json, const std::string& script) {
+  try {
+    return read_motion(beside(script, json.text("motion")));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(json.where() + ": motion: " + error.what());
+  }
+}
+
 // Motion in a file is in the scene's world; LOCAL's origin there is told, or is the first head's
 // place, in the scene's axes turned to OpenXR's (y up).
 void read_motion_in_local(const Reader& json, Script& script) {
   script.local_in_scene.orientation = {0, 1, 0, 0};
   const bool built_in = !json.has("motion") || json.text("motion") == "built-in";
-  script.motion =
-      built_in ? built_in_motion() : read_motion(beside(script.path, json.text("motion")));
+  script.motion = built_in ? built_in_motion() : motion_file(json, script.path);
   if (!built_in) script.local_in_scene.position = script.motion[0].centre().position;
   if (json.has("local_in_scene")) {
     const Reader pose(json.where() + ": local_in_scene", json.field("local_in_scene"));

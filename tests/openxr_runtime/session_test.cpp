@@ -1,6 +1,7 @@
 // Whole sessions through the real loader, under both validation layers.
 #include <algorithm>
 #include <chrono>
+#include <thread>
 
 #include "tests/openxr_runtime/client.h"
 
@@ -88,7 +89,7 @@ TEST(Session, ALostOneIsMadeAgainAndFramesGoOn) {
     VOYAGER_NEEDS_VULKAN(client);
     client.create_session();
     client.create_swapchains();
-    EXPECT_TRUE(client.run(6));
+    EXPECT_TRUE(client.run(7));
     EXPECT_EQ(client.state, XR_SESSION_STATE_LOSS_PENDING);
     EXPECT_EQ(client.whole_frame(), XR_SESSION_LOSS_PENDING);
     EXPECT_EQ(client.whole_frame(), XR_ERROR_SESSION_LOST);
@@ -195,6 +196,29 @@ TEST(Session, DisplayTimesKeepThePeriodUnlessLate) {
     }
     last = client.frame.predictedDisplayTime;
   }
+}
+
+// A pipelined application waits for the next frame on a thread of its own.
+TEST(Session, AnotherThreadWaitsUntilTheFrameIsBegun) {
+  const Stage stage(Json::object());
+  {
+    Client client;
+    VOYAGER_NEEDS_VULKAN(client);
+    client.start();
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_EQ(client.wait(), XR_SUCCESS);
+      std::thread next([&] {
+        auto state = typed<XrFrameState>(XR_TYPE_FRAME_STATE);
+        EXPECT_EQ(xrWaitFrame(client.session, nullptr, &state), XR_SUCCESS);
+      });
+      EXPECT_EQ(client.begin(), XR_SUCCESS);
+      EXPECT_EQ(client.end(false), XR_SUCCESS);
+      next.join();
+      EXPECT_EQ(client.begin(), XR_SUCCESS);
+      EXPECT_EQ(client.end(false), XR_SUCCESS);
+    }
+  }
+  EXPECT_EQ(stage.report()["violations"], Json::array());
 }
 
 TEST(Session, RealTimeWaitsForThePeriod) {
