@@ -7,18 +7,16 @@
 
 namespace test_runtime {
 
-#define TEST_RUNTIME_DEVICE_FUNCTIONS(X)                                                         \
-  X(AllocateCommandBuffers)                                                                      \
-  X(AllocateMemory)                                                                              \
-  X(BeginCommandBuffer)                                                                          \
-  X(BindBufferMemory)                                                                            \
-  X(BindImageMemory)                                                                             \
-  X(CmdCopyImageToBuffer)                                                                        \
-  X(CmdPipelineBarrier) X(CreateBuffer) X(CreateCommandPool) X(CreateFence) X(CreateImage)       \
-      X(DestroyBuffer) X(DestroyCommandPool) X(DestroyFence) X(DestroyImage) X(EndCommandBuffer) \
-          X(FreeMemory) X(GetBufferMemoryRequirements) X(GetDeviceQueue)                         \
-              X(GetImageMemoryRequirements) X(InvalidateMappedMemoryRanges) X(MapMemory)         \
-                  X(QueueSubmit) X(ResetCommandPool) X(ResetFences) X(WaitForFences)
+// clang-format off
+#define TEST_RUNTIME_DEVICE_FUNCTIONS(X) \
+  X(AllocateCommandBuffers) X(AllocateMemory) X(BeginCommandBuffer) X(BindBufferMemory) \
+  X(BindImageMemory) X(CmdCopyImageToBuffer) X(CmdPipelineBarrier) X(CreateBuffer) \
+  X(CreateCommandPool) X(CreateFence) X(CreateImage) X(DestroyBuffer) X(DestroyCommandPool) \
+  X(DestroyFence) X(DestroyImage) X(EndCommandBuffer) X(FreeMemory) \
+  X(GetBufferMemoryRequirements) X(GetDeviceQueue) X(GetImageMemoryRequirements) \
+  X(InvalidateMappedMemoryRanges) X(MapMemory) X(QueueSubmit) X(ResetCommandPool) \
+  X(ResetFences) X(WaitForFences)
+// clang-format on
 #define TEST_RUNTIME_INSTANCE_FUNCTIONS(X) \
   X(GetPhysicalDeviceImageFormatProperties) X(GetPhysicalDeviceMemoryProperties)
 
