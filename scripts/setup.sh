@@ -11,6 +11,8 @@ packages=(
   libpng-dev libfmt-dev nlohmann-json3-dev libcli11-dev  # tools and samples
   libvulkan-dev glslang-tools                            # Vulkan: headers, loader, shaders
   libtinygltf-dev libglm-dev libglfw3-dev libimgui-dev   # the Vulkan sample
+  libopenxr-dev libopenxr-loader1                        # OpenXR: headers, loader
+  openxr-layer-corevalidation                            # tests with OpenXR: its rules watched by another eye
   mesa-vulkan-drivers vulkan-validationlayers xvfb       # tests with Vulkan: a CPU that has it, validation, a window's display
   libgtest-dev libbenchmark-dev                          # tests and benchmarks
   clang-format clang-tidy                                # checks
