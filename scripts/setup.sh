@@ -11,7 +11,9 @@ packages=(
   libpng-dev libfmt-dev nlohmann-json3-dev libcli11-dev  # tools and samples
   libvulkan-dev glslang-tools                            # Vulkan: headers, loader, shaders
   libtinygltf-dev libglm-dev libglfw3-dev libimgui-dev   # the Vulkan sample
+  libopenxr-dev libopenxr-loader1                        # the OpenXR sample: headers, loader
   mesa-vulkan-drivers vulkan-validationlayers            # tests with Vulkan: a CPU that has it, and validation
+  openxr-layer-corevalidation                            # tests with OpenXR: validation
   libgtest-dev libbenchmark-dev libvulkan-volk-dev       # tests and benchmarks
   clang-format clang-tidy                                # checks
   python3
