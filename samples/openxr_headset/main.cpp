@@ -51,7 +51,9 @@ std::string say_what_runs(const Runtime& runtime, const Graphics& graphics,
 bool visit(Journey& journey, Validations* validations) try {
   Runtime runtime(validations ? &validations->xr : nullptr);
   const Graphics graphics(runtime, validations ? &validations->vulkan : nullptr);
+  const auto opening = std::chrono::steady_clock::now();
   VoyagerLayer voyager(graphics, journey.options.scene, journey.options.tau);
+  journey.patience.excuse(std::chrono::steady_clock::now() - opening);
   const Input input(runtime);
   journey.modes = say_what_runs(runtime, graphics, voyager);
   if (!journey.traveller) journey.traveller.emplace(voyager.scene(), journey.cameras);
@@ -121,8 +123,9 @@ int parse_and_run(int argc, char** argv) {
   return status;
 }
 
-void interrupt(int) {
+void interrupt(int number) {
   host::interrupted = 1;
+  std::signal(number, SIG_DFL);  // the next one does not wait for the runtime
 }
 
 }  // namespace
