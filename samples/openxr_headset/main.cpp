@@ -8,6 +8,7 @@
 #include <new>
 #include <thread>
 
+#include "ground.h"
 #include "mode_names.h"
 #include "visit.h"
 
@@ -46,6 +47,11 @@ std::string say_what_runs(const Runtime& runtime, const Graphics& graphics,
   return modes;
 }
 
+Traveller start(const Journey& journey, const VoyagerLayer& voyager) {
+  return journey.cameras.empty() ? Traveller(stand_on_ground(voyager.device(), voyager.scene()))
+                                 : Traveller(journey.cameras);
+}
+
 // Sessions of one instance, one after the other as they are lost. True: the last one ended well.
 // False: what hangs on the instance, or on its headset, is of no use any more.
 bool visit(Journey& journey, Validations* validations) try {
@@ -56,7 +62,7 @@ bool visit(Journey& journey, Validations* validations) try {
   journey.patience.excuse(std::chrono::steady_clock::now() - opening);
   const Input input(runtime);
   journey.modes = say_what_runs(runtime, graphics, voyager);
-  if (!journey.traveller) journey.traveller.emplace(voyager.scene(), journey.cameras);
+  if (!journey.traveller) journey.traveller = start(journey, voyager);
   for (;;) {
     try {
       Visit(runtime, graphics, input, voyager, journey).run();

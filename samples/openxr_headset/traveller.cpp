@@ -2,17 +2,18 @@
 
 #include <algorithm>
 
+#include "ground.h"
+
 namespace host {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kEyeHeight = 1.6;               // metres above the ground
 constexpr double kSpeed = 3, kClimb = 2;         // metres a second
 constexpr double kSnap = kPi / 6;                // one flick of the stick turns so far
 constexpr double kFlick = 0.7, kReleased = 0.4;  // of the stick's way
 constexpr double kLongestStep = 0.1;             // seconds: a pause is no journey
 
-// The axis of the scene that is up: the nearest to the cameras' own; captured scenes have y down.
+// The axis of the scene that is up: the nearest to the cameras' own.
 glm::dvec3 up_axis(const std::vector<Camera>& cameras) {
   glm::dvec3 sum(0);
   for (const Camera& camera : cameras)
@@ -30,26 +31,23 @@ glm::dvec3 up_axis(const std::vector<Camera>& cameras) {
 Pose stand_up(const glm::dvec3& up) {
   const glm::dvec3 y(0, 1, 0);
   if (up == y) return {};
-  if (up == -y) return {{0, 0, 0}, glm::angleAxis(kPi, glm::dvec3(1, 0, 0))};
+  if (up == -y) return scene_from_upright();
   return {{0, 0, 0}, glm::angleAxis(kPi / 2, glm::cross(y, up))};
-}
-
-// The ground is in the middle of bounds that its large Gaussians widen as much upwards as
-// downwards. Along the longer side there is more to see.
-Pose in_the_middle(const VoySceneInfo& scene) {
-  const glm::dvec3 low(scene.boundsMin[0], scene.boundsMin[1], scene.boundsMin[2]);
-  const glm::dvec3 high(scene.boundsMax[0], scene.boundsMax[1], scene.boundsMax[2]);
-  Pose pose = turned(high.x - low.x > high.z - low.z ? -kPi / 2 : 0);
-  pose.position = {0, kEyeHeight, 0};
-  return Pose{(low + high) / 2.0, stand_up({0, -1, 0}).orientation} * pose;
 }
 
 }  // namespace
 
-Traveller::Traveller(const VoySceneInfo& scene, const std::vector<Camera>& cameras)
-    : world_from_upright_(stand_up(up_axis(cameras))),
-      start_(cameras.empty() ? in_the_middle(scene) : from_voyager(cameras.front().pose)) {
-  const Pose upright = inverse(world_from_upright_) * start_;
+Traveller::Traveller(const std::vector<Camera>& cameras)
+    : world_from_upright_(stand_up(up_axis(cameras))), start_(from_voyager(cameras.front().pose)) {
+  stand(inverse(world_from_upright_) * start_);
+}
+
+Traveller::Traveller(const Pose& upright)
+    : world_from_upright_(scene_from_upright()), start_(world_from_upright_ * upright) {
+  stand(upright);
+}
+
+void Traveller::stand(const Pose& upright) {
   place_ = turned(yaw(upright));
   place_.position = upright.position;
 }

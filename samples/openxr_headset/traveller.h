@@ -17,8 +17,10 @@ struct Steering {
 
 class Traveller {
  public:
-  // At the first camera, upright; with no cameras, on the ground in the middle of the scene.
-  Traveller(const VoySceneInfo& scene, const std::vector<Camera>& cameras);
+  // At the first camera, upright.
+  explicit Traveller(const std::vector<Camera>& cameras);
+  // In the frame of scene_from_upright.
+  explicit Traveller(const Pose& upright);
 
   // The scene's world from OpenXR's LOCAL space.
   Pose world_from_local() const { return world_from_upright_ * place_ * centre_; }
@@ -31,10 +33,11 @@ class Traveller {
   void recentred() { centre_ = {}; }
 
  private:
+  void stand(const Pose& upright);
   void walk(const Steering& steering, double heading, double seconds);
   void turn(const Steering& steering, const Pose& head);
 
-  Pose world_from_upright_;  // a frame with y up, as OpenXR's spaces have it
+  Pose world_from_upright_;  // from a frame with y up, as OpenXR's spaces have it
   Pose start_;
   Pose place_;   // of the player's origin in the upright frame: level
   Pose centre_;  // of LOCAL space in the player's: level

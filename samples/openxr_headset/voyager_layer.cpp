@@ -17,7 +17,6 @@ VoyagerLayer::VoyagerLayer(const Graphics& graphics, const std::string& scene, d
     : graphics_(graphics), tau_(tau) {
   create_device();
   scene_ = device_.open_scene(scene);
-  scene_info_ = scene_.info();
 }
 
 void VoyagerLayer::create_device() {

@@ -25,7 +25,8 @@ class VoyagerLayer {
 
   const VoyCapabilities& capabilities() const { return capabilities_; }
   const VoyVulkanCapabilities& vulkan_capabilities() const { return vulkan_; }
-  const VoySceneInfo& scene() const { return scene_info_; }
+  const voy::Device& device() const { return device_; }
+  const voy::Scene& scene() const { return scene_; }
   double tau() const { return tau_; }
   VkExtent2D largest() const { return {capabilities_.maxWidth, capabilities_.maxHeight}; }
 
@@ -58,7 +59,6 @@ class VoyagerLayer {
   VoyCapabilities capabilities_ = VOY_CAPABILITIES_INIT;
   VoyVulkanCapabilities vulkan_ = VOY_VULKAN_CAPABILITIES_INIT;
   voy::Scene scene_;
-  VoySceneInfo scene_info_ = VOY_SCENE_INFO_INIT;
   voy::View view_;
   VkExtent2D view_extent_ = {0, 0};
   voy::Target target_;

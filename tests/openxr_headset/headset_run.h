@@ -57,7 +57,8 @@ class Headset : public ::testing::Test {
 
   static Json read_json(const std::string& name) {
     std::ifstream source(file(name));
-    return Json::parse(source, nullptr, false);
+    const Json json = Json::parse(source, nullptr, false);
+    return json.is_discarded() ? Json::object() : json;
   }
 
   // Runs to its end, and the runtime saw no rule broken; what it printed.

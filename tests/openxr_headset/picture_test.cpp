@@ -31,8 +31,9 @@ TEST_F(Headset, AMinimalRuntimeIsEnough) {
     expect_rendered("minimal", 4, 1, size.dump());
   }
   for (const Json& formats :
-       {Json{"D32_SFLOAT", "R8G8B8A8_UNORM", "B8G8R8A8_UNORM", "B8G8R8A8_SRGB"},
-        Json{"R8G8B8A8_UNORM", "R16G16B16A16_SFLOAT"}, Json{"R16G16B16A16_SFLOAT"}}) {
+       {Json::array({"D32_SFLOAT", "R8G8B8A8_UNORM", "B8G8R8A8_UNORM", "B8G8R8A8_SRGB"}),
+        Json::array({"R8G8B8A8_UNORM", "R16G16B16A16_SFLOAT"}),
+        Json::array({"R16G16B16A16_SFLOAT"})}) {
     Json script = minimal;
     script["formats"] = formats;
     expect_well_behaved(script, "--frames 4" + readback(file("formats")));
@@ -102,7 +103,7 @@ TEST_F(Headset, ThumbsticksWalkInMetres) {
     expect_well_behaved({{"hz", 90}, {"input", input}}, "--frames 40" + readback(file("walk")));
     return read_json("walk/cameras.json");
   };
-  const Json still = walk({touch}), walked = walk({touch, pressed});
+  const Json still = walk(Json::array({touch})), walked = walk(Json::array({touch, pressed}));
   double squared = 0;
   for (size_t axis = 0; axis < 3; ++axis) {
     const double way =
