@@ -13,8 +13,8 @@ uint32_t clamped(uint32_t recommended, std::initializer_list<uint32_t> limits) {
   return side;
 }
 
-std::array<VkExtent2D, kEyes> extents(const Runtime& runtime, const Graphics& graphics,
-                                      VkExtent2D largest) {
+std::array<VkExtent2D, kEyes> recommended(const Runtime& runtime, const Graphics& graphics,
+                                          VkExtent2D largest) {
   XrSystemProperties system = xr_struct<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
   check(xrGetSystemProperties(runtime.get(), runtime.system(), &system), "xrGetSystemProperties");
   const XrSystemGraphicsProperties& most = system.graphicsProperties;
@@ -36,7 +36,7 @@ EyeImages::EyeImages(const Session& session, const Runtime& runtime, const Graph
                      VkExtent2D largest, bool readable) {
   const std::vector<int64_t> formats = session.swapchain_formats();
   colour_format_ = choose_colour(graphics, formats);
-  const auto sizes = extents(runtime, graphics, largest);
+  const auto sizes = recommended(runtime, graphics, largest);
   for (size_t i = 0; i < kEyes; ++i) eyes_[i].extent = sizes[i];
   const bool same = sizes[0].width == sizes[1].width && sizes[0].height == sizes[1].height;
 
@@ -77,11 +77,6 @@ bool EyeImages::create(const Session& session, const Graphics& graphics, bool ar
     into.push_back(std::move(*made));
   }
   return true;
-}
-
-VkExtent2D EyeImages::bounds() const {
-  return {std::max(eyes_[0].extent.width, eyes_[1].extent.width),
-          std::max(eyes_[0].extent.height, eyes_[1].extent.height)};
 }
 
 bool EyeImages::ready(XrDuration patience) {

@@ -27,7 +27,7 @@ class EyeImages {
   ColourFormat colour_format() const { return colour_format_; }
   std::optional<VkFormat> depth_format() const { return depth_format_; }
   const EyeImage& eye(size_t i) const { return eyes_[i]; }
-  VkExtent2D bounds() const;  // in which either eye fits
+  std::array<VkExtent2D, kEyes> extents() const { return {eyes_[0].extent, eyes_[1].extent}; }
 
   bool ready(XrDuration patience);
   void release();

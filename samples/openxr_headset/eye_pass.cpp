@@ -6,10 +6,10 @@ namespace host {
 namespace {
 
 UniqueDescriptorPool make_pool(VkDevice device) {
-  const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * kFramesInFlight};
+  const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 2 * kEyes * kFramesInFlight};
   VkDescriptorPoolCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-  info.maxSets = kFramesInFlight;
+  info.maxSets = kEyes * kFramesInFlight;
   info.poolSizeCount = 1;
   info.pPoolSizes = &size;
   VkDescriptorPool pool = VK_NULL_HANDLE;
@@ -44,6 +44,7 @@ VkDescriptorSet make_set(VkDevice device, VkDescriptorPool pool, VkDescriptorSet
 EyePass::EyePass(const Graphics& graphics, VkFormat colour, std::optional<VkFormat> depth,
                  const VoyagerLayer& voyager, const DepthConvention& convention)
     : graphics_(graphics),
+      voyager_(voyager),
       convention_(convention),
       pass_(make_eye_render_pass(graphics.get(), colour, depth)),
       set_layout_(make_eye_set_layout(graphics.get(), depth.has_value())),
@@ -51,8 +52,9 @@ EyePass::EyePass(const Graphics& graphics, VkFormat colour, std::optional<VkForm
       pipeline_(make_eye_pipeline(graphics.get(), layout_.get(), pass_.get(), depth.has_value())),
       pool_(make_pool(graphics.get())) {
   for (uint32_t slot = 0; slot < kFramesInFlight; ++slot)
-    sets_[slot] = make_set(graphics.get(), pool_.get(), set_layout_.get(), voyager.image(slot),
-                           depth.has_value());
+    for (size_t eye = 0; eye < kEyes; ++eye)
+      sets_[slot][eye] = make_set(graphics.get(), pool_.get(), set_layout_.get(),
+                                  voyager.image(slot, eye), depth.has_value());
 }
 
 VkFramebuffer EyePass::framebuffer(size_t eye, const EyeImage& image) {
@@ -95,14 +97,14 @@ void EyePass::record(VkCommandBuffer commands, uint32_t slot, size_t eye, const 
   const VkRect2D scissor = {{0, 0}, image.extent};
   vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.get());
   vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1,
-                          &sets_[slot], 0, nullptr);
+                          &sets_[slot][eye], 0, nullptr);
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &scissor);
   const ToClip clip = area.to_clip(frustum);
   const double range = convention_.far_z - convention_.near_z;
   const EyePush push = {{clip.scale[0], clip.scale[1]},
                         {clip.offset[0], clip.offset[1]},
-                        static_cast<int32_t>(eye),
+                        static_cast<int32_t>(voyager_.layer(eye)),
                         static_cast<float>(convention_.far_z / range),
                         static_cast<float>(-convention_.far_z * convention_.near_z / range)};
   vkCmdPushConstants(commands, layout_.get(),

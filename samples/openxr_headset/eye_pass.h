@@ -27,13 +27,14 @@ class EyePass {
   VkFramebuffer framebuffer(size_t eye, const EyeImage& image);
 
   const Graphics& graphics_;
+  const VoyagerLayer& voyager_;
   const DepthConvention convention_;
   UniqueRenderPass pass_;
   UniqueDescriptorSetLayout set_layout_;
   UniquePipelineLayout layout_;
   UniquePipeline pipeline_;
   UniqueDescriptorPool pool_;
-  std::array<VkDescriptorSet, kFramesInFlight> sets_ = {};
+  std::array<std::array<VkDescriptorSet, kEyes>, kFramesInFlight> sets_ = {};
   std::map<std::array<size_t, 3>, UniqueFramebuffer> framebuffers_;
 };
 

@@ -26,7 +26,7 @@ void end(VkCommandBuffer commands) {
 }
 
 const VoyagerLayer& sized(VoyagerLayer& voyager, const EyeImages& images) {
-  voyager.resize(images.bounds(), images.depth_format().has_value());
+  voyager.resize(images.extents(), images.depth_format().has_value());
   return voyager;
 }
 
@@ -103,7 +103,7 @@ void Renderer::submit_before(const Slot& slot) {
   voyager_.record_release(slot.before, slot_);
   end(slot.before);
   Submission submission(slot.before);
-  submission.signal(voyager_.released(slot_));
+  voyager_.signal_released(submission, slot_);
   if (!voyager_.host_waits()) {
     submission.submit(graphics_.queue(), VK_NULL_HANDLE);
     return;
@@ -125,7 +125,7 @@ void Renderer::record_after(const Slot& slot, const std::array<Camera, kEyes>& e
 
 void Renderer::submit_after(const Slot& slot) {
   Submission submission(slot.after);
-  submission.wait(voyager_.rendered(slot_), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+  voyager_.wait_for_rendered(submission, slot_);
   const VkFence fence = slot.after_done.get();
   check(vkResetFences(graphics_.get(), 1, &fence), "vkResetFences");
   submission.submit(graphics_.queue(), fence);

@@ -46,26 +46,36 @@ void VoyagerLayer::create_view(VkExtent2D largest) {
   view_extent_ = largest;
 }
 
-void VoyagerLayer::resize(VkExtent2D extent, bool depth) {
-  target_ = {};
-  // A view keeps its cut: another is made only where the image outgrows it.
-  if (extent.width > view_extent_.width || extent.height > view_extent_.height)
-    create_view(
-        {std::max(extent.width, view_extent_.width), std::max(extent.height, view_extent_.height)});
+void VoyagerLayer::resize(const std::array<VkExtent2D, kEyes>& extents, bool depth) {
+  rings_.clear();
+  const VkExtent2D largest = {
+      std::max({extents[0].width, extents[1].width, view_extent_.width}),
+      std::max({extents[0].height, extents[1].height, view_extent_.height})};
+  // A view keeps its cut: another is made only where an image outgrows it.
+  if (largest.width > view_extent_.width || largest.height > view_extent_.height)
+    create_view(largest);
+  if (extents[0].width == extents[1].width && extents[0].height == extents[1].height) {
+    rings_.push_back(make_ring(extents[0], kEyes, depth));
+  } else {
+    for (const VkExtent2D extent : extents) rings_.push_back(make_ring(extent, 1, depth));
+  }
+  frame_ = 0;
+}
+
+VoyagerLayer::Ring VoyagerLayer::make_ring(VkExtent2D extent, uint32_t layers, bool depth) const {
   VoyVulkanTargetDesc vulkan = VOY_VULKAN_TARGET_DESC_INIT;
   vulkan.imageCount = kFramesInFlight;
-  vulkan.layerCount = kEyes;
+  vulkan.layerCount = layers;
   vulkan.depth = depth;
   VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
   desc.next = &vulkan;
   desc.kind = VOY_TARGET_KIND_VULKAN;
   desc.width = extent.width;
   desc.height = extent.height;
-  target_ = device_.create_target(desc);
-  extent_ = extent;
+  Ring ring = {device_.create_target(desc), {}};
   uint32_t count = 0;
-  voy::check(voyGetVulkanImages(target_.get(), kFramesInFlight, ring_.data(), &count));
-  frame_ = 0;
+  voy::check(voyGetVulkanImages(ring.target.get(), kFramesInFlight, ring.images.data(), &count));
+  return ring;
 }
 
 VoyVulkanUse VoyagerLayer::use(VkCommandBuffer commands, uint32_t slot) const {
@@ -80,36 +90,30 @@ VoyVulkanUse VoyagerLayer::use(VkCommandBuffer commands, uint32_t slot) const {
 
 void VoyagerLayer::record_release(VkCommandBuffer commands, uint32_t slot) const {
   const VoyVulkanUse released = use(commands, slot);
-  voy::check(voyRecordVulkanRelease(target_.get(), &released));
+  for (const Ring& ring : rings_) voy::check(voyRecordVulkanRelease(ring.target.get(), &released));
 }
 
 uint64_t VoyagerLayer::timeline_value() const {
   return vulkan_.sync == VOY_VULKAN_SYNC_TIMELINE ? frame_ : 0;
 }
 
-// Both are NULL with VOY_VULKAN_SYNC_HOST.
-SemaphoreUse VoyagerLayer::released(uint32_t slot) const {
-  return {ring_[slot].released, timeline_value()};
+// The semaphores are NULL with VOY_VULKAN_SYNC_HOST.
+void VoyagerLayer::signal_released(Submission& submission, uint32_t slot) const {
+  for (const Ring& ring : rings_) submission.signal({ring.images[slot].released, timeline_value()});
 }
-SemaphoreUse VoyagerLayer::rendered(uint32_t slot) const {
-  return {ring_[slot].rendered, timeline_value()};
-}
-
-// Of the whole target, so that the eye's pixels are where they would be without the rest.
-VoyFrustum VoyagerLayer::widened(const Camera& eye) const {
-  VoyFrustum f = eye.frustum;
-  if (eye.width < extent_.width) f.right = f.left + (f.right - f.left) * extent_.width / eye.width;
-  if (eye.height < extent_.height) f.down = f.up - (f.up - f.down) * extent_.height / eye.height;
-  return f;
+void VoyagerLayer::wait_for_rendered(Submission& submission, uint32_t slot) const {
+  for (const Ring& ring : rings_)
+    submission.wait({ring.images[slot].rendered, timeline_value()},
+                    VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
 }
 
 void VoyagerLayer::render(const std::array<Camera, kEyes>& cameras, double near_z, uint32_t slot) {
   VoyFrameEye eyes[kEyes] = {VOY_FRAME_EYE_INIT, VOY_FRAME_EYE_INIT};
   for (uint32_t i = 0; i < kEyes; ++i) {
     eyes[i].pose = cameras[i].pose;
-    eyes[i].frustum = widened(cameras[i]);
-    eyes[i].target = target_.get();
-    eyes[i].layer = i;
+    eyes[i].frustum = cameras[i].frustum;
+    eyes[i].target = ring(i).target.get();
+    eyes[i].layer = layer(i);
   }
   VoyVulkanFrame vulkan = VOY_VULKAN_FRAME_INIT;
   vulkan.imageIndex = slot;
@@ -125,7 +129,7 @@ void VoyagerLayer::render(const std::array<Camera, kEyes>& cameras, double near_
 
 void VoyagerLayer::record_acquire(VkCommandBuffer commands, uint32_t slot) const {
   const VoyVulkanUse acquired = use(commands, slot);
-  voy::check(voyRecordVulkanAcquire(target_.get(), &acquired));
+  for (const Ring& ring : rings_) voy::check(voyRecordVulkanAcquire(ring.target.get(), &acquired));
 }
 
 }  // namespace host

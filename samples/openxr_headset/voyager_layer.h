@@ -1,11 +1,11 @@
 #pragma once
 // Voyager in this headset: the part to copy. It owns a device, a scene, a view of two eyes, and
-// a target whose ring has an image for each frame in flight, with a layer for each eye. The
-// order of a frame:
-//   1. commands A: record_release; their submission signals released()
+// a target whose ring has an image for each frame in flight, with a layer for each eye; or,
+// where the eyes' images differ in size, a target an eye. The order of a frame:
+//   1. commands A: record_release; their submission does signal_released
 //   2. render()
-//   3. commands B: record_acquire, then draws that sample the image; their submission waits for
-//      rendered()
+//   3. commands B: record_acquire, then draws that sample the images; their submission does
+//      wait_for_rendered
 #include <array>
 #include <string>
 #include <voyager/voyager.hpp>
@@ -30,27 +30,33 @@ class VoyagerLayer {
   double tau() const { return tau_; }
   VkExtent2D largest() const { return {capabilities_.maxWidth, capabilities_.maxHeight}; }
 
-  // The queue must be idle: the target's images are replaced.
-  void resize(VkExtent2D extent, bool depth);
-  // What the draws sample: arrays with a layer for each eye.
-  const VoyVulkanImage& image(uint32_t slot) const { return ring_[slot]; }
+  // The queue must be idle: the targets' images are replaced.
+  void resize(const std::array<VkExtent2D, kEyes>& extents, bool depth);
+  // What the draws of an eye sample: arrays, of which the eye has this layer.
+  const VoyVulkanImage& image(uint32_t slot, size_t eye) const { return ring(eye).images[slot]; }
+  uint32_t layer(size_t eye) const { return rings_.size() == 1 ? static_cast<uint32_t>(eye) : 0; }
 
   void begin_frame() { ++frame_; }  // before the semaphores of this frame are asked for
   void record_release(VkCommandBuffer commands, uint32_t slot) const;
-  SemaphoreUse released(uint32_t slot) const;
-  // With VOY_VULKAN_SYNC_HOST the host has waited until commands A are done. An eye that is
-  // smaller than the target is drawn into its upper left part.
+  void signal_released(Submission& submission, uint32_t slot) const;
+  // With VOY_VULKAN_SYNC_HOST the host has waited until commands A are done.
   void render(const std::array<Camera, kEyes>& eyes, double near_z, uint32_t slot);
-  SemaphoreUse rendered(uint32_t slot) const;
   void record_acquire(VkCommandBuffer commands, uint32_t slot) const;
+  void wait_for_rendered(Submission& submission, uint32_t slot) const;
 
   bool host_waits() const { return vulkan_.sync == VOY_VULKAN_SYNC_HOST; }
 
  private:
+  struct Ring {
+    voy::Target target;
+    std::array<VoyVulkanImage, kFramesInFlight> images;
+  };
+
   void create_device();
   void create_view(VkExtent2D largest);
+  Ring make_ring(VkExtent2D extent, uint32_t layers, bool depth) const;
+  const Ring& ring(size_t eye) const { return rings_[rings_.size() == 1 ? 0 : eye]; }
   VoyVulkanUse use(VkCommandBuffer commands, uint32_t slot) const;
-  VoyFrustum widened(const Camera& eye) const;
   uint64_t timeline_value() const;
 
   const Graphics& graphics_;
@@ -61,10 +67,8 @@ class VoyagerLayer {
   voy::Scene scene_;
   voy::View view_;
   VkExtent2D view_extent_ = {0, 0};
-  voy::Target target_;
-  VkExtent2D extent_ = {0, 0};
-  std::array<VoyVulkanImage, kFramesInFlight> ring_;
-  uint64_t frame_ = 0;  // of the target, from 1: what its timeline semaphores count
+  std::vector<Ring> rings_;  // one, or one an eye
+  uint64_t frame_ = 0;       // of the rings, from 1: what their timeline semaphores count
 };
 
 }  // namespace host

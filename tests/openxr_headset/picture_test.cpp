@@ -21,6 +21,77 @@ TEST_F(Headset, EyesSeeWhatVoyagerRenders) {
   EXPECT_NE(cameras[0]["position"], cameras[2]["position"]);  // and so do the poses
 }
 
+// The runtime's own account: what it was shown, and where it had the eyes then.
+class Shown : public Headset {
+ protected:
+  // The city's first camera looks along z, so LOCAL space lies in the scene as this says.
+  void show(Json script) const {
+    const Json start = read_json("city.cameras.json")[0];
+    script["local_in_scene"] = {{"position", start["position"]}, {"orientation", {1, 0, 0, 0}}};
+    script["output"] = file("shown");
+    expect_well_behaved(script, "--frames 3");
+    const Outcome result = run("voyager render " + file("city.voy") + " --cameras " +
+                               file("shown/cameras.json") + " --stereo --all -o " + file("exact"));
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+  }
+  static Picture exact(int image) {
+    char text[32];
+    std::snprintf(text, sizeof text, "exact/%04d.png", image);
+    return read_png(file(text));
+  }
+};
+
+TEST_F(Shown, TheCompositorGetsTheEyesItAskedFor) {
+  show({{"extensions", {"XR_KHR_composition_layer_depth"}}});
+  for (int image = 0; image < 6; ++image)
+    EXPECT_LE(largest_difference(eye_picture("shown", image / 2, image % 2 == 0 ? 'L' : 'R'),
+                                 exact(image)),
+              1)
+        << image;
+}
+
+// What is out of sight is black, and not much; all else is as it is without a mask.
+TEST_F(Shown, TheVisibilityMaskHidesNothingThatIsSeen) {
+  show(Json::object());
+  for (int image = 0; image < 6; ++image) {
+    const Picture found = eye_picture("shown", image / 2, image % 2 == 0 ? 'L' : 'R');
+    const Picture whole = exact(image);
+    ASSERT_EQ(found.values.size(), whole.values.size());
+    size_t masked = 0;
+    for (size_t i = 0; i < found.values.size(); i += 3) {
+      const bool equal = std::abs(found.values[i] - whole.values[i]) <= 1 &&
+                         std::abs(found.values[i + 1] - whole.values[i + 1]) <= 1 &&
+                         std::abs(found.values[i + 2] - whole.values[i + 2]) <= 1;
+      if (equal) continue;
+      ++masked;
+      EXPECT_EQ(found.values[i] + found.values[i + 1] + found.values[i + 2], 0);
+    }
+    EXPECT_GT(masked, found.values.size() / 3 / 100);
+    EXPECT_LT(masked, found.values.size() / 3 / 4);
+  }
+}
+
+// In metres, as the compositor works them out from near and far.
+TEST_F(Shown, TheDepthLayerHoldsVoyagersDepth) {
+  show({{"extensions", {"XR_KHR_composition_layer_depth"}}});
+  const Outcome result =
+      run("voyager render " + file("city.voy") + " --cameras " + file("shown/cameras.json") +
+          " --camera 0 -o " + file("left.png") + " --depth " + file("left.pfm"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const Picture found = read_pfm(file("shown/0000_L.pfm")), expected = read_pfm(file("left.pfm"));
+  ASSERT_EQ(found.values.size(), expected.values.size());
+  size_t with_depth = 0, outliers = 0;
+  for (size_t i = 0; i < found.values.size(); ++i) {
+    const float z = expected.values[i];
+    with_depth += std::isfinite(z);
+    outliers += std::isfinite(z) ? std::abs(found.values[i] - z) > 0.01f * z
+                                 : std::abs(found.values[i] - 10000) > 1000;
+  }
+  EXPECT_GT(with_depth, found.values.size() / 4);
+  // One eye's cut is not quite two eyes'.
+  EXPECT_LE(outliers, found.values.size() / 50);
+}
+
 // No depth layer, no visibility mask, formats and sizes as they come.
 TEST_F(Headset, AMinimalRuntimeIsEnough) {
   const Json minimal = {{"extensions", Json::array()}};

@@ -45,6 +45,8 @@ TEST_F(Headset, AMinimalRuntimeLeavesValidationNothingToSay) {
     GTEST_SKIP() << probe.output;
   expect_silence(expect_well_behaved(script, "--frames 20 --validation --readback " + file("v")));
   expect_silence(expect_well_behaved(script, "--frames 20 --validation"));
+  expect_silence(
+      expect_well_behaved({{"recommended", {{31, 17}, {20, 24}}}}, "--frames 20 --validation"));
 }
 
 TEST_F(Headset, AStoppedSessionIsBegunAgain) {
