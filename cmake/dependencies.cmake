@@ -10,10 +10,11 @@ find_package(nlohmann_json REQUIRED)
 find_package(CLI11 REQUIRED)
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 find_package(VulkanHeaders REQUIRED CONFIG)
-if(NOT CMAKE_CROSSCOMPILING)  # the Vulkan sample is for the machine that builds
+if(NOT CMAKE_CROSSCOMPILING)  # the Vulkan samples are for the machine that builds
   find_package(Vulkan REQUIRED)
   find_package(TinyGLTF REQUIRED)
   find_package(glm REQUIRED)
+  find_package(OpenXR REQUIRED)
   find_package(glfw3 REQUIRED)
   find_path(IMGUI_INCLUDE_DIR imgui.h PATH_SUFFIXES imgui REQUIRED)
   find_library(IMGUI_LIBRARY imgui REQUIRED)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu.h"
 #include "instance.h"
 
 namespace host {
@@ -21,6 +22,7 @@ class Device {
   VkDevice get() const { return device_; }
   VkInstance instance() const { return instance_.get(); }
   VkPhysicalDevice physical() const { return physical_; }
+  operator Gpu() const { return {physical_, device_}; }
   VkQueue queue() const { return queue_; }
   uint32_t queue_family() const { return queue_family_; }
   const std::string& name() const { return name_; }

@@ -22,8 +22,4 @@ class FrameLog {
   nlohmann::json frames_ = nlohmann::json::array();
 };
 
-const char* backend_name(VoyBackend backend);
-const char* sharing_name(VoyVulkanSharing sharing);
-const char* sync_name(VoyVulkanSync sync);
-
 }  // namespace host

@@ -6,6 +6,7 @@
 
 #include "failure.h"
 #include "frame_log.h"
+#include "mode_names.h"
 #include "submission.h"
 
 namespace host {

@@ -3,27 +3,11 @@
 #include <voyager/voyager_vulkan.h>
 
 #include <algorithm>
-#include <cstring>
 #include <voyager/voyager.hpp>
 
 #include "failure.h"
 
 namespace host {
-namespace {
-
-void require_validation_layer() {
-  uint32_t count = 0;
-  check(vkEnumerateInstanceLayerProperties(&count, nullptr), "vkEnumerateInstanceLayerProperties");
-  std::vector<VkLayerProperties> layers(count);
-  check(vkEnumerateInstanceLayerProperties(&count, layers.data()),
-        "vkEnumerateInstanceLayerProperties");
-  for (const VkLayerProperties& layer : layers)
-    if (std::strcmp(layer.layerName, kValidationLayer) == 0) return;
-  throw Failure(kMachine, std::string("--validation: found no ") + kValidationLayer +
-                              ", expected it installed");
-}
-
-}  // namespace
 
 Instance::Instance(Validation* validation, const Presentation* presentation) {
   // Asked before there is an instance: what any device may need of one.

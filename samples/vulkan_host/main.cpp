@@ -11,6 +11,7 @@
 
 #include "camera_file.h"
 #include "failure.h"
+#include "mode_names.h"
 #include "offscreen.h"
 #include "options.h"
 #include "placement.h"

@@ -3,6 +3,7 @@
 #include <glm/mat4x4.hpp>
 
 #include "camera.h"
+#include "device.h"
 #include "mesh.h"
 #include "resources.h"
 

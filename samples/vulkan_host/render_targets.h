@@ -1,6 +1,7 @@
 #pragma once
 // The host's colour and depth attachments and the two render passes over them: meshes, then
 // what lies over them (Voyager's image, the HUD).
+#include "device.h"
 #include "resources.h"
 
 namespace host {

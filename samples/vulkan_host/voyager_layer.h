@@ -11,6 +11,7 @@
 
 #include "camera.h"
 #include "device.h"
+#include "submission.h"
 
 namespace host {
 
@@ -22,12 +23,6 @@ struct VoyagerOptions {
   VoyVulkanSharing sharing = VOY_VULKAN_SHARING_AUTO;
   VoyVulkanSync sync = VOY_VULKAN_SYNC_AUTO;
   uint32_t images = 2;  // frames in flight
-};
-
-// What a submission waits for or signals.
-struct SemaphoreUse {
-  VkSemaphore semaphore = VK_NULL_HANDLE;  // NULL: nothing
-  uint64_t value = 0;                      // of a timeline semaphore, above 0; else 0
 };
 
 // The host's depth buffer, in TRANSFER_SRC_OPTIMAL.

@@ -1,8 +1,9 @@
 #pragma once
 // Images and buffers with their memory.
+#include <cstddef>
 #include <span>
 
-#include "device.h"
+#include "gpu.h"
 #include "unique.h"
 
 namespace host {
@@ -10,7 +11,7 @@ namespace host {
 struct Image {
   Image() = default;
   // A colour or depth attachment that can be copied from; `aspect` is its view's.
-  Image(const Device& device, VkExtent2D extent, VkFormat format, VkImageUsageFlags usage,
+  Image(const Gpu& gpu, VkExtent2D extent, VkFormat format, VkImageUsageFlags usage,
         VkImageAspectFlags aspect);
 
   UniqueMemory memory;
@@ -21,9 +22,9 @@ struct Image {
 struct Buffer {
   Buffer() = default;
   // Mapped for as long as it lives, and coherent.
-  Buffer(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage);
+  Buffer(const Gpu& gpu, VkDeviceSize size, VkBufferUsageFlags usage);
   // With these contents.
-  Buffer(const Device& device, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
+  Buffer(const Gpu& gpu, std::span<const std::byte> bytes, VkBufferUsageFlags usage);
 
   UniqueMemory memory;
   UniqueBuffer buffer;

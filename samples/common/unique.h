@@ -31,6 +31,7 @@ class Unique {
 
 using UniqueCommandPool = Unique<VkCommandPool, vkDestroyCommandPool>;
 using UniqueDescriptorPool = Unique<VkDescriptorPool, vkDestroyDescriptorPool>;
+using UniqueDescriptorSetLayout = Unique<VkDescriptorSetLayout, vkDestroyDescriptorSetLayout>;
 using UniqueFence = Unique<VkFence, vkDestroyFence>;
 using UniqueFramebuffer = Unique<VkFramebuffer, vkDestroyFramebuffer>;
 using UniqueImageView = Unique<VkImageView, vkDestroyImageView>;

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <vector>
 
 #include "failure.h"
 
@@ -55,6 +57,18 @@ ValidationMessenger::ValidationMessenger(VkInstance instance, const Validation& 
 ValidationMessenger::~ValidationMessenger() {
   find<PFN_vkDestroyDebugUtilsMessengerEXT>(instance_, "vkDestroyDebugUtilsMessengerEXT")(
       instance_, messenger_, nullptr);
+}
+
+void require_validation_layer() {
+  uint32_t count = 0;
+  check(vkEnumerateInstanceLayerProperties(&count, nullptr), "vkEnumerateInstanceLayerProperties");
+  std::vector<VkLayerProperties> layers(count);
+  check(vkEnumerateInstanceLayerProperties(&count, layers.data()),
+        "vkEnumerateInstanceLayerProperties");
+  for (const VkLayerProperties& layer : layers)
+    if (std::strcmp(layer.layerName, kValidationLayer) == 0) return;
+  throw Failure(kMachine, std::string("--validation: found no ") + kValidationLayer +
+                              ", expected it installed");
 }
 
 }  // namespace host

@@ -1,8 +1,16 @@
 #pragma once
 // One command buffer's submission, with semaphores of either kind.
-#include "voyager_layer.h"
+#include <vulkan/vulkan.h>
+
+#include <vector>
 
 namespace host {
+
+// What a submission waits for or signals.
+struct SemaphoreUse {
+  VkSemaphore semaphore = VK_NULL_HANDLE;  // NULL: nothing
+  uint64_t value = 0;                      // of a timeline semaphore, above 0; else 0
+};
 
 class Submission {
  public:

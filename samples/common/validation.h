@@ -9,6 +9,9 @@ namespace host {
 
 inline constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
+// Throws Failure where it is not installed.
+void require_validation_layer();
+
 class Validation {
  public:
   // To be chained to VkInstanceCreateInfo, so that the instance's own making and unmaking

@@ -1,0 +1,148 @@
+// A Gaussian city on an OpenXR headset: both eyes of every frame from one cut, walked through
+// with thumbsticks.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <thread>
+
+#include "ground.h"
+#include "mode_names.h"
+#include "visit.h"
+
+namespace host {
+namespace {
+
+ExitStatus status_of(VoyResult result) {
+  switch (result) {
+    case VOY_ERROR_INVALID_ARGUMENT:
+    case VOY_ERROR_UNSUPPORTED:
+      return kBadUsage;
+    case VOY_ERROR_FILE_NOT_FOUND:
+    case VOY_ERROR_REFUSED_INPUT:
+      return kRefusedInput;
+    case VOY_ERROR_DAMAGED_CHUNK:
+      return kDamagedChunk;
+    default:
+      return kMachine;
+  }
+}
+
+struct Validations {
+  Validation vulkan;
+  XrValidation xr;
+};
+
+std::string say_what_runs(const Runtime& runtime, const Graphics& graphics,
+                          const VoyagerLayer& voyager) {
+  const VoyVulkanCapabilities& vulkan = voyager.vulkan_capabilities();
+  const std::string modes = std::string("backend ") + backend_name(voyager.capabilities().backend) +
+                            ", sharing " + sharing_name(vulkan.sharing) + ", sync " +
+                            sync_name(vulkan.sync);
+  std::printf("%s, %s: %s%s%s\n", runtime.name().c_str(), graphics.name().c_str(), modes.c_str(),
+              vulkan.why[0] ? ": " : "", vulkan.why);
+  std::fflush(stdout);
+  return modes;
+}
+
+Traveller start(const Journey& journey, const VoyagerLayer& voyager) {
+  return journey.cameras.empty() ? Traveller(stand_on_ground(voyager.device(), voyager.scene()))
+                                 : Traveller(journey.cameras);
+}
+
+// Sessions of one instance, one after the other as they are lost. True: the last one ended well.
+// False: what hangs on the instance, or on its headset, is of no use any more.
+bool visit(Journey& journey, Validations* validations) try {
+  Runtime runtime(validations ? &validations->xr : nullptr);
+  const Graphics graphics(runtime, validations ? &validations->vulkan : nullptr);
+  const auto opening = std::chrono::steady_clock::now();
+  VoyagerLayer voyager(graphics, journey.options.scene, journey.options.tau);
+  journey.patience.excuse(std::chrono::steady_clock::now() - opening);
+  const Input input(runtime);
+  journey.modes = say_what_runs(runtime, graphics, voyager);
+  if (!journey.traveller) journey.traveller = start(journey, voyager);
+  for (;;) {
+    try {
+      Visit(runtime, graphics, input, voyager, journey).run();
+      return true;
+    } catch (const Lost& lost) {
+      journey.statistics.lost();
+      if (journey.finished() || interrupted) return true;
+      std::fprintf(stderr, "%s: starting again\n", lost.what());
+      journey.patience.check(lost.what());
+      if (lost.kind() == Lost::instance || !runtime.find_headset_again()) return false;
+    }
+  }
+} catch (const Lost& lost) {
+  if (!journey.traveller) throw Failure(kMachine, lost.what());  // there never was one
+  journey.patience.check(lost.what());
+  return false;
+}
+
+void run(const Options& options, Validations* validations) {
+  Journey journey(options);
+  while (!visit(journey, validations) && !interrupted)
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  if (journey.recorder) journey.recorder->write_cameras();
+  std::printf("%s; tau %g; %s\n", journey.statistics.summary().c_str(), options.tau,
+              journey.modes.c_str());
+}
+
+int fail(int status, const std::string& message) noexcept {
+  std::fputs(("openxr_headset: " + message + "\n").c_str(), stderr);
+  return status;
+}
+
+int run_and_report(const Options& options, Validations* validations) {
+  try {
+    run(options, validations);
+    return kSuccess;
+  } catch (const Failure& failure) {
+    return fail(failure.status(), failure.what());
+  } catch (const voy::Error& error) {
+    return fail(status_of(error.result()), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(kMachine, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(kMachine, error.what());
+  }
+}
+
+int parse_and_run(int argc, char** argv) {
+  std::optional<Options> options;
+  try {
+    options = parse_options(argc, argv);
+    if (!options) return kSuccess;  // --help
+  } catch (const CLI::ParseError& error) {
+    return fail(kBadUsage, std::string(error.what()) + " (see --help)");
+  }
+  std::optional<Validations> validations;
+  if (options->validation) validations.emplace();
+  const int status = run_and_report(*options, validations ? &*validations : nullptr);
+  // Counted once all is destroyed.
+  const uint64_t messages =
+      validations ? validations->vulkan.messages() + validations->xr.messages() : 0;
+  if (status == kSuccess && messages > 0)
+    return fail(kBadUsage, std::to_string(messages) + " validation messages");
+  return status;
+}
+
+void interrupt(int number) {
+  host::interrupted = 1;
+  std::signal(number, SIG_DFL);  // the next one does not wait for the runtime
+}
+
+}  // namespace
+}  // namespace host
+
+int main(int argc, char** argv) try {
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is then an error that names itself
+  std::signal(SIGINT, host::interrupt);
+  std::signal(SIGTERM, host::interrupt);
+  setenv("XR_LOADER_DEBUG", "none", 0);  // what fails is said once, here
+  return host::parse_and_run(argc, argv);
+} catch (...) {
+  return host::kMachine;
+}

@@ -1,0 +1,22 @@
+#pragma once
+// The command line.
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace host {
+
+struct Options {
+  std::string scene;
+  std::string camera_file;  // or empty: the start is in the middle of the scene
+  std::string readback;     // a folder, or empty
+  bool fixed_pose = false;
+  bool validation = false;
+  uint64_t frames = 0;  // 0: until the player leaves
+  double tau = 3;
+};
+
+// Nothing where --help was printed. Throws CLI::ParseError.
+std::optional<Options> parse_options(int argc, char** argv);
+
+}  // namespace host

@@ -1,0 +1,103 @@
+#include "readback.h"
+
+namespace host {
+namespace {
+
+constexpr VkFormat kEncoded = VK_FORMAT_R8G8B8A8_SRGB;
+
+struct Use {
+  VkImageLayout layout;
+  VkAccessFlags access;
+  VkPipelineStageFlags stages;
+};
+constexpr Use kNew = {VK_IMAGE_LAYOUT_UNDEFINED, 0, VK_PIPELINE_STAGE_TRANSFER_BIT};
+constexpr Use kAttachment = {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                             VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT,
+                             VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT};
+constexpr Use kCopiedFrom = {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_ACCESS_TRANSFER_READ_BIT,
+                             VK_PIPELINE_STAGE_TRANSFER_BIT};
+constexpr Use kCopiedTo = {VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_ACCESS_TRANSFER_WRITE_BIT,
+                           VK_PIPELINE_STAGE_TRANSFER_BIT};
+
+void change(VkCommandBuffer commands, VkImage image, uint32_t layer, const Use& from,
+            const Use& to) {
+  const VkImageMemoryBarrier barrier = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+                                        nullptr,
+                                        from.access,
+                                        to.access,
+                                        from.layout,
+                                        to.layout,
+                                        VK_QUEUE_FAMILY_IGNORED,
+                                        VK_QUEUE_FAMILY_IGNORED,
+                                        image,
+                                        {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, layer, 1}};
+  vkCmdPipelineBarrier(commands, from.stages, to.stages, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+}
+
+void blit(VkCommandBuffer commands, const EyeImage& from, VkImage to) {
+  const VkOffset3D corner = {static_cast<int32_t>(from.extent.width),
+                             static_cast<int32_t>(from.extent.height), 1};
+  const VkImageBlit region = {{VK_IMAGE_ASPECT_COLOR_BIT, 0, from.layer, 1},
+                              {{0, 0, 0}, corner},
+                              {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                              {{0, 0, 0}, corner}};
+  vkCmdBlitImage(commands, from.colour->image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to,
+                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_NEAREST);
+}
+
+void copy(VkCommandBuffer commands, VkImage from, VkExtent2D extent, VkBuffer to) {
+  const VkBufferImageCopy region = {
+      0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, {0, 0, 0}, {extent.width, extent.height, 1}};
+  vkCmdCopyImageToBuffer(commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, 1, &region);
+  const VkBufferMemoryBarrier barrier = {VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER,
+                                         nullptr,
+                                         VK_ACCESS_TRANSFER_WRITE_BIT,
+                                         VK_ACCESS_HOST_READ_BIT,
+                                         VK_QUEUE_FAMILY_IGNORED,
+                                         VK_QUEUE_FAMILY_IGNORED,
+                                         to,
+                                         0,
+                                         VK_WHOLE_SIZE};
+  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 0,
+                       nullptr, 1, &barrier, 0, nullptr);
+}
+
+}  // namespace
+
+Readback::Readback(const Graphics& graphics, const EyeImages& images) {
+  const ColourFormat format = images.colour_format();
+  VkFormatProperties properties;
+  vkGetPhysicalDeviceFormatProperties(graphics.physical(), format.format, &properties);
+  if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_BLIT_SRC_BIT))
+    throw Failure(kMachine, std::string("--readback: found ") + format.name +
+                                ", which this device cannot blit from, expected one that it can");
+  for (size_t i = 0; i < kEyes; ++i) {
+    const VkExtent2D extent = images.eye(i).extent;
+    eyes_[i].extent = extent;
+    eyes_[i].encoded = Image(graphics, extent, kEncoded,
+                             VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                             VK_IMAGE_ASPECT_COLOR_BIT);
+    eyes_[i].buffer = Buffer(graphics, VkDeviceSize{4} * extent.width * extent.height,
+                             VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  }
+}
+
+void Readback::record(VkCommandBuffer commands, const EyeImages& images) const {
+  for (size_t i = 0; i < kEyes; ++i) {
+    const EyeImage& from = images.eye(i);
+    const VkImage encoded = eyes_[i].encoded.image.get();
+    change(commands, from.colour->image(), from.layer, kAttachment, kCopiedFrom);
+    change(commands, encoded, 0, kNew, kCopiedTo);
+    blit(commands, from, encoded);
+    change(commands, from.colour->image(), from.layer, kCopiedFrom, kAttachment);
+    change(commands, encoded, 0, kCopiedTo, kCopiedFrom);
+    copy(commands, encoded, eyes_[i].extent, eyes_[i].buffer.buffer.get());
+  }
+}
+
+std::span<const uint8_t> Readback::rgba(size_t eye) const {
+  const Buffer& buffer = eyes_[eye].buffer;
+  return {reinterpret_cast<const uint8_t*>(buffer.mapped), buffer.size};
+}
+
+}  // namespace host

@@ -1,0 +1,68 @@
+#include "recorder.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <glm/mat3x3.hpp>
+#include <system_error>
+
+#include "failure.h"
+#include "files.h"
+#include "pose.h"
+
+namespace host {
+namespace {
+
+std::string picture_name(uint64_t frame, size_t eye) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%04llu_%c.png", static_cast<unsigned long long>(frame),
+                eye == 0 ? 'L' : 'R');
+  return name;
+}
+
+// As INRIA's cameras.json has it: pixels, and axes x right, y down, z forward.
+nlohmann::json to_json(const Camera& camera, uint64_t id, const std::string& name) {
+  const VoyFrustum& f = camera.frustum;
+  const double fx = camera.width / (f.right - f.left), fy = camera.height / (f.up - f.down);
+  const glm::dquat q = glm::normalize(from_voyager(camera.pose).orientation);
+  const glm::dvec3 columns[] = {q * glm::dvec3(1, 0, 0), q * glm::dvec3(0, -1, 0),
+                                q * glm::dvec3(0, 0, -1)};
+  nlohmann::json rotation = nlohmann::json::array();
+  for (int row = 0; row < 3; ++row)
+    rotation.push_back({columns[0][row], columns[1][row], columns[2][row]});
+  return {{"id", id},
+          {"img_name", name},
+          {"width", camera.width},
+          {"height", camera.height},
+          {"position", camera.pose.position},
+          {"rotation", rotation},
+          {"fx", fx},
+          {"fy", fy},
+          {"cx", -f.left * fx},
+          {"cy", f.up * fy}};
+}
+
+}  // namespace
+
+Recorder::Recorder(std::string folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) throw Failure(kMachine, folder_ + ": " + error.message());
+}
+
+void Recorder::add(uint64_t frame, const std::array<Camera, kEyes>& eyes) {
+  while (cameras_.size() > kEyes * frame) cameras_.erase(cameras_.size() - 1);
+  for (size_t i = 0; i < kEyes; ++i)
+    cameras_.push_back(to_json(eyes[i], cameras_.size(), picture_name(frame, i)));
+}
+
+void Recorder::write_picture(uint64_t frame, size_t eye, VkExtent2D extent,
+                             std::span<const uint8_t> rgba) const {
+  write_png(folder_ + "/" + picture_name(frame, eye), extent.width, extent.height, rgba);
+}
+
+void Recorder::write_cameras() const {
+  const std::string text = cameras_.dump(1) + "\n";
+  write_file(folder_ + "/cameras.json", std::as_bytes(std::span(text)));
+}
+
+}  // namespace host

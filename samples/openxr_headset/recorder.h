@@ -1,0 +1,30 @@
+#pragma once
+// --readback: NNNN_L.png and NNNN_R.png of each frame shown, and cameras.json with the poses and
+// frusta they were drawn with, left and right by turns, for `voyager render --stereo --all`.
+#include <array>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "camera.h"
+#include "runtime.h"
+
+namespace host {
+
+class Recorder {
+ public:
+  // Makes the folder.
+  explicit Recorder(std::string folder);
+
+  // Its pictures may come later. A frame that was lost before it was shown is added again.
+  void add(uint64_t frame, const std::array<Camera, kEyes>& eyes);
+  void write_picture(uint64_t frame, size_t eye, VkExtent2D extent,
+                     std::span<const uint8_t> rgba) const;
+  void write_cameras() const;
+
+ private:
+  std::string folder_;
+  nlohmann::json cameras_ = nlohmann::json::array();
+};
+
+}  // namespace host

@@ -1,0 +1,45 @@
+#pragma once
+// One session from its making to its end: events, frames, what is shown in them.
+#include <csignal>
+
+#include "journey.h"
+#include "renderer.h"
+
+namespace host {
+
+class Visit {
+ public:
+  Visit(const Runtime& runtime, const Graphics& graphics, const Input& input, VoyagerLayer& voyager,
+        Journey& journey);
+
+  // Until the session exits, be it that the journey is finished or that the runtime or the
+  // player ends it. Throws Lost.
+  void run();
+
+ private:
+  void handle_events();
+  void handle(const XrEventDataBuffer& event);
+  void read_visible_area(uint32_t eye);
+  void leave_when_finished();
+  void frame();
+  void steer(const XrFrameState& state, const Views& views);
+  bool draw(const Views& views);
+  std::optional<std::array<Camera, kEyes>> cameras(const Views& views) const;
+  void submit(const XrFrameState& state, const Views& views);
+
+  const Runtime& runtime_;
+  const Graphics& graphics_;
+  const Input& input_;
+  Journey& journey_;
+  Session session_;
+  EyeImages images_;
+  Renderer renderer_;
+  std::optional<Views> views_;  // the last that were known
+  std::optional<XrTime> recentre_at_, steered_at_;
+  bool leaving_ = false;
+};
+
+// Set by SIGINT and SIGTERM: leave as if the frames were done.
+extern volatile std::sig_atomic_t interrupted;
+
+}  // namespace host

@@ -1,0 +1,113 @@
+#pragma once
+// A small city, and samples/openxr_headset in it on the test runtime, which a script drives.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/command_line/program.h"
+#include "tests/support/pictures.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::test {
+
+using Json = nlohmann::json;
+
+class Headset : public ::testing::Test {
+ protected:
+  // What fails here is asserted in SetUp: a suite that does not set up skips its tests.
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    for (const std::string& step :
+         {"voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("city.ply"),
+          "voyager bake " + file("city.ply") + " -o " + file("city.voy")}) {
+      const Outcome result = run(step);
+      if (result.exit_code != 0) set_up_failure_ += step + "\n" + result.output;
+    }
+  }
+  static void TearDownTestSuite() { delete folder_; }
+
+  void SetUp() override {
+    ASSERT_EQ(set_up_failure_, "");
+    setenv("XR_RUNTIME_JSON", VOYAGER_BIN_DIR "/../lib/voyager_test_runtime.json", 1);
+    write_script({});
+    const Outcome result = run(headset("--frames 1"));
+    if (result.exit_code == 4 && result.output.find("found no Vulkan") != std::string::npos)
+      GTEST_SKIP() << result.output;
+    ASSERT_EQ(result.exit_code, 0) << result.output;
+  }
+
+  static std::string file(const std::string& name) { return folder_->file(name); }
+  static std::string headset(const std::string& rest) {
+    return "openxr_headset " + file("city.voy") + " --camera-file " + file("city.cameras.json") +
+           " " + rest;
+  }
+
+  // What the runtime does; small images and a report unless it says otherwise.
+  static void write_script(Json script) {
+    if (!script.contains("recommended")) script["recommended"] = {96, 72};
+    script["report"] = file("report.json");
+    write_bytes(file("script.json"), script.dump());
+    setenv("VOYAGER_TEST_RUNTIME_SCRIPT", file("script.json").c_str(), 1);
+  }
+
+  static Json read_json(const std::string& name) {
+    std::ifstream source(file(name));
+    const Json json = Json::parse(source, nullptr, false);
+    return json.is_discarded() ? Json::object() : json;
+  }
+
+  // Runs to its end, and the runtime saw no rule broken; what it printed.
+  static std::string expect_well_behaved(const Json& script, const std::string& options) {
+    write_script(script);
+    std::remove(file("report.json").c_str());
+    const Outcome result = run(headset(options));
+    EXPECT_EQ(result.exit_code, 0) << script << " " << options << "\n" << result.output;
+    const Json report = read_json("report.json");
+    EXPECT_EQ(report.value("violations", Json()), Json::array()) << script << " " << options;
+    const Json states = report.value("states", Json::array());
+    EXPECT_EQ(states.empty() ? Json() : states.back()["state"], "XR_SESSION_STATE_EXITING")
+        << script;
+    return result.output;
+  }
+  static uint64_t counted(const std::string& what) {
+    return read_json("report.json")["counts"].value(what, uint64_t{0});
+  }
+
+  static Picture eye_picture(const std::string& name, int frame, char eye) {
+    char text[32];
+    std::snprintf(text, sizeof text, "/%04d_%c.png", frame, eye);
+    return read_png(file(name) + text);
+  }
+
+  // Each of these frames is what `voyager render` makes of the cameras that were written with
+  // them, within `most` of 255.
+  static void expect_rendered(const std::string& name, int frames, float most,
+                              const std::string& what) {
+    ASSERT_EQ(read_json(name + "/cameras.json").size(), 2 * static_cast<size_t>(frames)) << what;
+    const Outcome result = run("voyager render " + file("city.voy") + " --cameras " + file(name) +
+                               "/cameras.json --stereo --all -o " + file("reference"));
+    ASSERT_EQ(result.exit_code, 0) << what << result.output;
+    for (int i = 0; i < 2 * frames; ++i) {
+      char text[32];
+      std::snprintf(text, sizeof text, "/%04d.png", i);
+      EXPECT_LE(largest_difference(eye_picture(name, i / 2, i % 2 == 0 ? 'L' : 'R'),
+                                   read_png(file("reference") + text)),
+                most)
+          << what << ", image " << i;
+    }
+  }
+
+  static TempFolder* folder_;
+
+ private:
+  static std::string set_up_failure_;
+};
+inline TempFolder* Headset::folder_ = nullptr;
+inline std::string Headset::set_up_failure_;
+
+}  // namespace voyager::test
