@@ -14,6 +14,6 @@ packages=(
   mesa-vulkan-drivers vulkan-validationlayers            # tests with Vulkan: a CPU that has it, and validation
   libgtest-dev libbenchmark-dev libvulkan-volk-dev       # tests and benchmarks
   clang-format clang-tidy                                # checks
-  python3
+  python3 python3-matplotlib                             # bench/: scripts, plots
 )
 exec scripts/install_packages.sh "${packages[@]}"
