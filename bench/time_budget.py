@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """`voyager bench --time-budget` over scenes, rates and multiprocessors, as a Markdown table and plots:
-time_budget.py FOLDER [--voyager PATH --scene SCENE=CAMERAS [...] [--hz F ...] [--ms MS ...] [--size WxH ...] [--sms N ...]]
+time_budget.py FOLDER [--voyager PATH --scene SCENE=CAMERAS [...] [--hz F ...] [--ms MS ...] [--size WxH ...]
+               [--sms N ...] [--stereo]]
 
 The budget is 1000 / F milliseconds less --reserve, what a host's own work takes of a frame, or MS.
 Reports go to FOLDER, one JSON a run, each with a plot beside it: milliseconds and τ over the frames.
@@ -26,12 +27,14 @@ def stem(path):
 
 def run(arguments, scene, cameras, budget, size, multiprocessors):
     """Times one setting, unless its report is there."""
-    name = f"{os.path.basename(scene)}_{stem(cameras)}_{size}_{budget:.3f}ms_sms{multiprocessors}.json"
+    name = f"{os.path.basename(scene)}_{stem(cameras)}_{size}_{budget:.3f}ms_sms{multiprocessors}{'_stereo' * arguments.stereo}.json"
     report = os.path.join(arguments.folder, name)
     if os.path.exists(report):
         return
     command = [arguments.voyager, "bench", scene, "--cameras", cameras, "--stages", "all", "--time-budget", f"{budget:.6g}",
                "--backend", arguments.backend, "--repeat", str(arguments.repeat), "--json", report]
+    if arguments.stereo:
+        command.append("--stereo")
     if size != "own":
         command += ["--size", size]
     if multiprocessors:
@@ -105,6 +108,7 @@ def main():
     parser.add_argument("--sms", nargs="+", type=int, default=[0], metavar="N", help="0: the whole device")
     parser.add_argument("--backend", default="cuda", choices=["auto", "cpu", "cuda"])
     parser.add_argument("--repeat", type=int, default=1, metavar="N")
+    parser.add_argument("--stereo", action="store_true", help="cameras two by two; PSNR is the left eyes'")
     arguments = parser.parse_args()
     os.makedirs(arguments.folder, exist_ok=True)
     budgets = arguments.ms + [1000 / rate - arguments.reserve for rate in arguments.hz]

@@ -87,7 +87,9 @@ std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& 
     image.format = ColorFormat::rgba32f;
     image.color = pixels.data();
     image.color_pitch = pixel_bytes(image.format) * image.width;
-    view.render(frames[i], image);
+    FrameInput frame = unseen(frames[i]);
+    frame.eyes[0].image = image;
+    view.render(frame);
   }
   return images;
 }

@@ -38,7 +38,7 @@ struct FrameMaker {
 FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const FramePath& path,
                     const std::function<void(size_t)>& frame_done);
 
-// The chosen frames as floats, before clamping.
+// The chosen frames, of two eyes the left, as floats before clamping.
 std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& desc,
                                    const std::vector<FrameInput>& frames,
                                    const std::vector<size_t>& chosen);

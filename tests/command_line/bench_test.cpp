@@ -180,6 +180,20 @@ TEST_F(CommandLineBench, ATimeBudgetSteersTauAndTellsEachFrames) {
   EXPECT_EQ(held["path"]["tau"].back(), 1);
 }
 
+TEST_F(CommandLineBench, ATimeBudgetIsForBothEyes) {
+  const Json cameras = Json::parse(file_bytes(file("stills.json")));
+  write_bytes(file("pair.json"), Json{cameras[0], cameras[1]}.dump());
+  const Outcome result = run(
+      "voyager bench " + file("city.voy") + " --cameras " + file("pair.json") +
+      " --size 96x54 --backend cpu --stages all --stereo --time-budget 1e-6 --repeat 12 --json " +
+      file("pair_bench.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const Json budget = Json::parse(file_bytes(file("pair_bench.json")))["rows"][0]["time_budget"];
+  EXPECT_EQ(budget["path"]["tau"].size(), 12u);
+  EXPECT_EQ(budget["psnr"].size(), 1u);
+  EXPECT_GT(budget["path"]["tau"].back(), 3);
+}
+
 TEST_F(CommandLineBench, Refusals) {
   expect_refusal("--stages all --time-budget 5 --tau 3", "--time-budget");
   expect_refusal("--stages all --time-budget 0", "found 0, expected a number of milliseconds");

@@ -31,7 +31,8 @@ bool has_choice(const BenchArguments& arguments) {
 Plan make_plan(const BenchArguments& arguments, bool flat) {
   if (arguments.stages == BenchStages::all && !has_choice(arguments))
     return {ablation_rows(), true, false};
-  const PipelineDesc desc = chosen_desc(arguments);
+  PipelineDesc desc = chosen_desc(arguments);
+  if (arguments.stereo) desc.eyes = 2;
   if (arguments.stages == BenchStages::splat && !arguments.exponential &&
       desc.splatting == Splatting::ours)
     return {exponential_rows(desc), true, true};
@@ -40,7 +41,8 @@ Plan make_plan(const BenchArguments& arguments, bool flat) {
 
 FramePath make_path(const BenchArguments& arguments, const BenchSubject& subject) {
   FramePath path;
-  path.frames = frame_path(subject.cameras, arguments.tau);
+  path.frames = arguments.stereo ? stereo_path(subject.cameras, arguments.tau)
+                                 : frame_path(subject.cameras, arguments.tau);
   path.repeats = chosen_repeats(arguments, path.frames.size());
   if (arguments.time_budget > 0) path.time_budget = TimeBudgetDesc{arguments.time_budget};
   return path;
