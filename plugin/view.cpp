@@ -21,9 +21,9 @@ void check_counts(const VoyViewDesc& desc) {
                        " instances in a view");
   check_count(desc.eyeCount, 1, UINT32_MAX, "desc.eyeCount");
   if (desc.eyeCount > kMaxEyes)
-    throw ApiError(VOY_ERROR_UNSUPPORTED,
-                   "desc.eyeCount: found " + std::to_string(desc.eyeCount) +
-                       ", this version draws up to " + std::to_string(kMaxEyes) + " eyes in a view");
+    throw ApiError(VOY_ERROR_UNSUPPORTED, "desc.eyeCount: found " + std::to_string(desc.eyeCount) +
+                                              ", this version draws up to " +
+                                              std::to_string(kMaxEyes) + " eyes in a view");
   check_pointer(desc.scenes, "desc.scenes");
   check_count(desc.maxWidth, 1, kMaxImageSide, "desc.maxWidth");
   check_count(desc.maxHeight, 1, kMaxImageSide, "desc.maxHeight");
@@ -102,8 +102,8 @@ VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view
     check_counts(*desc);
     const PipelineDesc choices = checked_choices(*desc, owner->backend_kind);
     if (budget != nullptr) check_time_budget(*budget);
-    const auto object = std::make_shared<ViewObject>(
-        owner, checked_scenes(call, *desc, *owner), desc->eyeCount);
+    const auto object =
+        std::make_shared<ViewObject>(owner, checked_scenes(call, *desc, *owner), desc->eyeCount);
     object->max_width = desc->maxWidth;
     object->max_height = desc->maxHeight;
     object->tau = desc->tau;

@@ -12,9 +12,10 @@
 namespace voyager::tools {
 
 struct FramePath {
-  std::vector<FrameInput> frames;             // not empty
-  size_t repeats = 1;                         // how often the path is timed, end to start at once
-  std::optional<TimeBudgetDesc> time_budget;  // it chooses timed frames' tau, from the first's on
+  std::vector<FrameInput> frames;  // not empty
+  size_t repeats = 1;              // how often the path is timed, end to start at once
+  std::optional<TimeBudgetDesc> time_budget =
+      {};  // it chooses timed frames' tau, from the first's on
 
   // Frames that run_frames() draws, at most.
   size_t frames_drawn() const;

@@ -435,7 +435,7 @@ typedef struct VoyTimeBudget {
  * A view draws instances of scenes, sorted together, so that where they overlap the nearer
  * hides the farther; and keeps the cut of each between frames. A scene may be several. */
 typedef struct VoyViewDesc {
-  VoyStructureType type; /* VOY_STRUCTURE_TYPE_VIEW_DESC */
+  VoyStructureType type;  /* VOY_STRUCTURE_TYPE_VIEW_DESC */
   const void* next;       /* NULL or a VoyTimeBudget */
   uint32_t instanceCount; /* 1 to VoyCapabilities.maxInstances; more are UNSUPPORTED */
   const VoyScene* scenes; /* one an instance, of the same device; copied */
