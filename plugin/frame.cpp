@@ -30,6 +30,12 @@ VoySearch search_of(const FrameStats& stats) {
   return VOY_SEARCH_TEMPORAL_VISIT;
 }
 
+VoyBudgetState budget_of(const FrameStats& stats) {
+  if (stats.time_budget == 0) return VOY_BUDGET_STATE_NONE;
+  if (stats.total_milliseconds <= stats.time_budget) return VOY_BUDGET_STATE_HELD;
+  return stats.tau_is_greatest ? VOY_BUDGET_STATE_UNREACHABLE : VOY_BUDGET_STATE_LATE;
+}
+
 void fill(VoyFrameStats& out, const FrameStats& in) {
   out.frameIndex = in.frame_index;
   out.search = search_of(in);
@@ -50,6 +56,9 @@ void fill(VoyFrameStats& out, const FrameStats& in) {
   out.pairsDropped = in.pairs_dropped;
   std::copy(std::begin(in.milliseconds), std::end(in.milliseconds), out.milliseconds);
   out.millisecondsTotal = in.total_milliseconds;
+  out.tau = in.tau;
+  out.timeBudget = in.time_budget;
+  out.budgetState = budget_of(in);
 }
 
 }  // namespace
@@ -73,7 +82,7 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
 
     const auto view_lock = claim(*object);
     const auto target_locks = claim(targets);
-    input.tau = object->tau;
+    input.tau = object->view->next_tau(object->tau);
     if (vulkan == nullptr)
       object->view->render(input);
     else

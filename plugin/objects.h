@@ -100,7 +100,7 @@ struct ViewObject final : Child {
   uint32_t max_width = 0, max_height = 0;
   std::mutex busy;                                 // guards what follows
   std::vector<std::weak_ptr<vulkan::Ring>> rings;  // that it has drawn into
-  double tau = 0;
+  double tau = 0;                                  // without a time budget
   // One an instance. None, and no view, once one of them was destroyed. The view reads the
   // scenes' memory, so is declared after them.
   std::vector<std::shared_ptr<SceneObject>> scenes;

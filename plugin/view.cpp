@@ -3,6 +3,7 @@
 #include "plugin/call.h"
 #include "plugin/claim.h"
 #include "plugin/structs.h"
+#include "plugin/time_budget.h"
 
 using namespace voyager;
 
@@ -94,10 +95,13 @@ std::vector<std::shared_ptr<SceneObject>> checked_scenes(Call& call, const VoyVi
 VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view) {
   return guarded("voyCreateView", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
-    check_structure(desc, VOY_STRUCTURE_TYPE_VIEW_DESC, "VoyViewDesc");
+    const VoyTimeBudget* budget = nullptr;
+    check_structure(desc, VOY_STRUCTURE_TYPE_VIEW_DESC, "VoyViewDesc",
+                    Extension{VOY_STRUCTURE_TYPE_TIME_BUDGET, budget});
     check_pointer(view, "view");
     check_counts(*desc);
     const PipelineDesc choices = checked_choices(*desc, owner->backend_kind);
+    if (budget != nullptr) check_time_budget(*budget);
     const auto object =
         std::make_shared<ViewObject>(owner, checked_scenes(call, *desc, *owner), desc->eyeCount);
     object->max_width = desc->maxWidth;
@@ -107,6 +111,7 @@ VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view
     for (const auto& scene : object->scenes) scenes.push_back(scene->scene);
     object->view = std::make_unique<View>(std::move(scenes), *owner->backend, choices,
                                           owner->memory, owner->workers);
+    if (budget != nullptr) set_time_budget(*object, *budget);
     *view = static_cast<VoyView>(HandleTable::instance().insert(object));
     return VOY_SUCCESS;
   });
@@ -125,6 +130,18 @@ VoyResult voySetViewTau(VoyView view, double tau) {
     check_tau(tau);
     const auto frame = claim(*object);
     object->tau = tau;
+    object->view->end_time_budget();
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voySetViewTimeBudget(VoyView view, const VoyTimeBudget* budget) {
+  return guarded("voySetViewTimeBudget", [&](Call& call) {
+    const auto object = call.use<ViewObject>(view);
+    check_structure(budget, VOY_STRUCTURE_TYPE_TIME_BUDGET, "VoyTimeBudget");
+    check_time_budget(*budget);
+    const auto frame = claim(*object);
+    set_time_budget(*object, *budget);
     return VOY_SUCCESS;
   });
 }

@@ -16,6 +16,6 @@ packages=(
   mesa-vulkan-drivers vulkan-validationlayers xvfb       # tests with Vulkan: a CPU that has it, validation, a window's display
   libgtest-dev libbenchmark-dev                          # tests and benchmarks
   clang-format clang-tidy                                # checks
-  python3
+  python3 python3-matplotlib                             # bench/: scripts, plots
 )
 exec scripts/install_packages.sh "${packages[@]}"

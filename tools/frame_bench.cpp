@@ -54,9 +54,14 @@ FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const Fra
     View view = make_view(maker, desc);
     for (size_t i = 0; i < warm_up_frames(path); ++i) draw(view, path.frames[i]);
     draw(view, path.frames[0]);
-    for (size_t i = 0; i < path.repeats * path.frames.size(); ++i)
-      run.timed.push_back(draw(view, path.frames[i % path.frames.size()]));
+    if (path.time_budget) view.set_time_budget(*path.time_budget, path.frames[0].tau);
+    for (size_t i = 0; i < path.repeats * path.frames.size(); ++i) {
+      FrameInput frame = path.frames[i % path.frames.size()];
+      frame.tau = view.next_tau(frame.tau);
+      run.timed.push_back(draw(view, frame));
+    }
   }
+  if (path.time_budget) return run;
   PipelineDesc counting = desc;
   counting.count_pixels = true;
   View view = make_view(maker, counting);
@@ -82,7 +87,9 @@ std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& 
     image.format = ColorFormat::rgba32f;
     image.color = pixels.data();
     image.color_pitch = pixel_bytes(image.format) * image.width;
-    view.render(frames[i], image);
+    FrameInput frame = unseen(frames[i]);
+    frame.eyes[0].image = image;
+    view.render(frame);
   }
   return images;
 }

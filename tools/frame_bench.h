@@ -2,9 +2,11 @@
 // Runs one configuration of a frame along a camera path.
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "runtime/frame/backend.h"
+#include "runtime/frame/time_budget.h"
 #include "tools/image_error.h"
 
 namespace voyager::tools {
@@ -12,14 +14,17 @@ namespace voyager::tools {
 struct FramePath {
   std::vector<FrameInput> frames;  // not empty
   size_t repeats = 1;              // how often the path is timed, end to start at once
+  std::optional<TimeBudgetDesc> time_budget =
+      {};  // it chooses timed frames' tau, from the first's on
 
   // Frames that run_frames() draws, at most.
   size_t frames_drawn() const;
 };
 
 struct FrameRun {
-  std::vector<FrameStats> timed;    // path after path
-  std::vector<FrameStats> counted;  // the path once, with pixel counts; none where not counted
+  std::vector<FrameStats> timed;  // path after path
+  // The path once, with pixel counts; none where not counted, and under a time budget.
+  std::vector<FrameStats> counted;
 };
 
 struct FrameMaker {
@@ -34,7 +39,7 @@ struct FrameMaker {
 FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const FramePath& path,
                     const std::function<void(size_t)>& frame_done);
 
-// The chosen frames as floats, before clamping.
+// The chosen frames, of two eyes the left, as floats before clamping.
 std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& desc,
                                    const std::vector<FrameInput>& frames,
                                    const std::vector<size_t>& chosen);

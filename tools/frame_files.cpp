@@ -37,6 +37,19 @@ const char* name_of(VoySearch search) {
   }
 }
 
+const char* name_of(VoyBudgetState state) {
+  switch (state) {
+    case VOY_BUDGET_STATE_HELD:
+      return "held";
+    case VOY_BUDGET_STATE_LATE:
+      return "late";
+    case VOY_BUDGET_STATE_UNREACHABLE:
+      return "unreachable";
+    default:
+      return "none";
+  }
+}
+
 Json to_json(const VoyFrameStats& s) {
   Json ms;
   for (uint32_t stage = 0; stage < s.stageCount; ++stage)
@@ -53,6 +66,9 @@ Json to_json(const VoyFrameStats& s) {
       {"cut_centre",
        {binary32_hex(s.cutCentre[0]), binary32_hex(s.cutCentre[1]), binary32_hex(s.cutCentre[2])}},
       {"tau_star", binary32_hex(s.tauStar)},
+      {"tau", s.tau},
+      {"time_budget", s.timeBudget > 0 ? Json(s.timeBudget) : Json()},
+      {"budget", name_of(s.budgetState)},
       {"entered", s.entered},
       {"left", s.left},
       {"splats", s.splats},

@@ -33,16 +33,31 @@ void add_size_option(CLI::App& command, ImageSize& size) {
       ->type_name("WxH");
 }
 
-void add_tau_option(CLI::App& command, double& tau) {
+CLI::Option* add_tau_option(CLI::App& command, double& tau) {
   const auto check = [](const std::string& text) -> std::string {
     double value = 0;
     if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return {};
     return "found " + text + ", expected a number of pixels, 0 or more";
   };
-  command.add_option("--tau", tau, "Granularity in pixels")
+  return command.add_option("--tau", tau, "Granularity in pixels")
       ->type_name("PX")
       ->check(CLI::Validator(check, ""))
       ->capture_default_str();
+}
+
+void add_tau_or_budget_options(CLI::App& command, double& tau, double& milliseconds) {
+  const auto check = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return {};
+    return "found " + text + ", expected a number of milliseconds above 0";
+  };
+  CLI::Option* fixed = add_tau_option(command, tau);
+  command
+      .add_option("--time-budget", milliseconds,
+                  "Milliseconds a frame, which tau follows from frame to frame, from 1 to 60")
+      ->type_name("MS")
+      ->check(CLI::Validator(check, ""))
+      ->excludes(fixed);
 }
 
 }  // namespace voyager::tools

@@ -14,7 +14,9 @@ struct ImageSize {
 // "--size WxH"
 void add_size_option(CLI::App& command, ImageSize& size);
 // "--tau PX"
-void add_tau_option(CLI::App& command, double& tau);
+CLI::Option* add_tau_option(CLI::App& command, double& tau);
+// "--tau PX" and "--time-budget MS", of which one may be given; 0 milliseconds: none was.
+void add_tau_or_budget_options(CLI::App& command, double& tau, double& milliseconds);
 
 // One of several names; the first is the default. Another is refused, with the list.
 template <class T>

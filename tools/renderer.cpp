@@ -27,6 +27,9 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
   desc.exponential = choices.exponential;
   desc.lutSize = choices.lut_size;
   desc.splatting = choices.splatting;
+  VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
+  budget.milliseconds = choices.time_budget;
+  if (choices.time_budget > 0) desc.next = &budget;
   return device.create_view(desc);
 }
 

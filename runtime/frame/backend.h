@@ -84,6 +84,9 @@ struct FrameStats {
   bool searched = false;
   Search search = Search::exhaustive;  // the one that ran, of the first instance with a tree
   bool changes_counted = true;         // entered and left are the searches' own
+  double tau = 0;                      // the frame's
+  double time_budget = 0;              // milliseconds; 0 where there is none
+  bool tau_is_greatest = false;        // as far as the budget may raise it
   float tau_star = 0;
   Vec3f cut_centre{0, 0, 0};  // the first instance's, in its scene's coordinates
   // Sums over the instances, as all that follows; from splats on over the eyes, too.

@@ -69,10 +69,35 @@ void View::keep_cuts(bool read) {
 FrameStats View::known_stats(const FrameInput& frame) const {
   FrameStats stats;
   for (const auto& scene : scenes_) stats.nodes_total += scene->tree.size();
+  stats.tau = frame.tau;
+  if (budget_) {
+    stats.time_budget = budget_->desc().milliseconds;
+    stats.tau_is_greatest = frame.tau >= budget_->desc().greatest_tau;
+  }
   const CutQuery query = cut_query(frame, 0, scenes_[0]->origin);
   stats.tau_star = query.target_size;
   stats.cut_centre = query.centre;
   return stats;
+}
+
+void View::set_time_budget(const TimeBudgetDesc& desc, double tau) {
+  if (budget_)
+    budget_->set(desc);
+  else
+    budget_.emplace(desc, tau);
+}
+
+// Frames that have ended meanwhile are heard first.
+double View::next_tau(double chosen) {
+  while (finish_one(false)) continue;
+  return budget_ ? budget_->next_tau() : chosen;
+}
+
+// Of a frame that has ended, in the frames' order.
+void View::keep_stats(const FrameStats& stats) {
+  stats_ = stats;
+  ended_ = true;
+  if (budget_) budget_->measure(stats.tau, stats.total_milliseconds);
 }
 
 void View::draw(const FrameInput& frame, bool follows) {
@@ -83,8 +108,7 @@ void View::draw(const FrameInput& frame, bool follows) {
   pipeline_->resolve(frame, stats);
   stats.frame_index = frames_++;
   keep_cuts(read);
-  stats_ = stats;
-  ended_ = true;
+  keep_stats(stats);
 }
 
 // A frame whose changes are not counted has its cut read, once its search has ended.
@@ -119,8 +143,7 @@ bool View::finish_one(bool wait) {
   const uint64_t entered = oldest.stats.entered, left = oldest.stats.left;
   if (!pipeline_->finish(wait, oldest.stats)) return false;
   if (oldest.changes_known) oldest.stats.entered = entered, oldest.stats.left = left;
-  stats_ = oldest.stats;
-  ended_ = true;
+  keep_stats(oldest.stats);
   under_way_.pop_front();
   return true;
 }

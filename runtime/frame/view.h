@@ -2,9 +2,11 @@
 // A view: instances of scenes seen through one backend, with what it keeps between frames.
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "runtime/frame/backend.h"
+#include "runtime/frame/time_budget.h"
 
 namespace voyager {
 
@@ -27,6 +29,12 @@ class View {
     frame.eyes[0].image = image;
     render(frame);
   }
+
+  // The times of frames steer τ from now on. A first budget starts at tau.
+  void set_time_budget(const TimeBudgetDesc& desc, double tau);
+  void end_time_budget() { budget_.reset(); }
+  // What the next frame's tau is to be: `chosen` without a budget. Once a frame.
+  double next_tau(double chosen);
 
   size_t instances() const { return scenes_.size(); }
   bool draws_cut(size_t instance) const {
@@ -57,6 +65,7 @@ class View {
 
   FrameStats known_stats(const FrameInput& frame) const;
   void draw(const FrameInput& frame, bool follows);
+  void keep_stats(const FrameStats& stats);
   void submit(const FrameInput& frame, bool follows);
   // Whether one ended.
   bool finish_one(bool wait);
@@ -69,6 +78,7 @@ class View {
   PipelineDesc desc_;
   std::unique_ptr<Pipeline> pipeline_;
   std::vector<InstanceCut> cuts_;
+  std::optional<TimeBudget> budget_;
   FrameStats stats_;
   std::deque<UnderWay> under_way_;  // the oldest first
   bool ended_ = false;              // stats_ is a frame's

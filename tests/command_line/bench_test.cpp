@@ -161,7 +161,48 @@ TEST_F(CommandLineBench, AFlatSceneIsDrawnWithoutASearch) {
   EXPECT_EQ(leaves["rows"][0]["counters"]["cut"], 10000);
 }
 
+// A budget that no frame can hold, and one that every frame does.
+TEST_F(CommandLineBench, ATimeBudgetSteersTauAndTellsEachFrames) {
+  const Json late = report_of("city.voy", "--stages all --time-budget 1e-6 --repeat 10");
+  const Json& budget = late["rows"][0]["time_budget"];
+  EXPECT_EQ(late["rows"].size(), 1u);
+  EXPECT_EQ(budget["milliseconds"], 1e-6);
+  EXPECT_EQ(budget["on_time"], 0);
+  EXPECT_GT(budget["unreachable"], 0);
+  for (const char* values : {"tau", "ms", "cut"}) EXPECT_EQ(budget["path"][values].size(), 30u);
+  EXPECT_EQ(budget["path"]["tau"].front(), 3);
+  EXPECT_EQ(budget["path"]["tau"].back(), 60);
+  EXPECT_LT(budget["path"]["cut"].back(), budget["path"]["cut"][2]);
+  ASSERT_EQ(budget["psnr"].size(), 3u);
+  EXPECT_EQ(budget["psnr"][2]["fixed_tau"], 3);
+  EXPECT_EQ(budget["psnr"][0]["budget"], budget["psnr"][0]["fixed"]) << "both are at 3 still";
+
+  const Json held =
+      report_of("city.voy", "--stages all --time-budget 1e6 --repeat 10")["rows"][0]["time_budget"];
+  EXPECT_EQ(held["on_time"], 1);
+  EXPECT_EQ(held["path"]["tau"].back(), 1);
+}
+
+TEST_F(CommandLineBench, ATimeBudgetIsForBothEyes) {
+  const Json cameras = Json::parse(file_bytes(file("stills.json")));
+  write_bytes(file("pair.json"), Json{cameras[0], cameras[1]}.dump());
+  const Outcome result = run(
+      "voyager bench " + file("city.voy") + " --cameras " + file("pair.json") +
+      " --size 96x54 --backend cpu --stages all --stereo --time-budget 1e-6 --repeat 12 --json " +
+      file("pair_bench.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const Json budget = Json::parse(file_bytes(file("pair_bench.json")))["rows"][0]["time_budget"];
+  EXPECT_EQ(budget["path"]["tau"].size(), 12u);
+  EXPECT_EQ(budget["psnr"].size(), 1u);
+  EXPECT_GT(budget["path"]["tau"].back(), 3);
+}
+
 TEST_F(CommandLineBench, Refusals) {
+  expect_refusal("--stages all --time-budget 5 --tau 3", "--time-budget");
+  expect_refusal("--stages all --time-budget 0", "found 0, expected a number of milliseconds");
+  expect_refusal("--stages all --time-budget 5 --lod off", "--lod off");
+  expect_refusal("--stages splat --time-budget 5", "--time-budget");
+  expect_refusal("--stages search --time-budget 5", "--time-budget");
   expect_refusal("--stages all --splat 3dgs", "3dgs");
   expect_refusal("--stages splat --sms 16", "--sms");
   expect_refusal("--stages splat --search all", "--search");

@@ -91,6 +91,37 @@ TEST_F(CommandLine, FilterOffGivesTheSameImage) {
   }
 }
 
+// Each frame under a budget is the one that `--tau` gives at the τ that stats.json tells.
+TEST_F(CommandLine, ATimeBudgetRaisesTauAndStatsTellIt) {
+  const std::string walk = "--all --backend cpu -o " + file("steered") + " --stats " +
+                           file("steered.json") + " --time-budget ";
+  ASSERT_EQ(run(render("city.voy", walk + "0.001")).exit_code, 0);
+  const auto frames = nlohmann::json::parse(file_bytes(file("steered.json")))["frames"];
+  EXPECT_EQ(frames[0]["tau"], 3);
+  EXPECT_EQ(frames[0]["time_budget"], 0.001);
+  EXPECT_EQ(frames[0]["budget"], "late");
+  EXPECT_EQ(frames[119]["tau"], 60);
+  EXPECT_EQ(frames[119]["budget"], "unreachable");
+  for (const int i : {0, 6, 119}) {
+    const std::string frame = std::to_string(i), index = std::string(4 - frame.size(), '0') + frame;
+    ASSERT_EQ(run(render("city.voy", "--backend cpu --camera " + frame + " --tau " +
+                                         frames[i]["tau"].dump() + " -o " + file("fixed.png")))
+                  .exit_code,
+              0);
+    EXPECT_TRUE(file_bytes(file("fixed.png")) == file_bytes(file("steered/" + index + ".png")))
+        << i;
+  }
+}
+
+TEST_F(CommandLine, ATimeBudgetIsRefusedWhereThereIsNothingToSteer) {
+  const std::string out = " -o " + file("refused.png");
+  expect_refusal(render("city.voy", "--time-budget 5 --tau 3" + out), 1, "--time-budget");
+  expect_refusal(render("city.voy", "--time-budget 5 --lod off" + out), 1, "--lod off");
+  expect_refusal(render("city.ply", "--backend cpu --time-budget 5" + out), 1, "draws every leaf");
+  for (const std::string bad : {"0", "-1", "nan", "inf", "soon"})
+    expect_refusal(render("city.voy", "--time-budget " + bad + out), 1, "found " + bad);
+}
+
 TEST_F(CommandLine, AWalkWritesAFileAFrame) {
   const Outcome result = run(
       render("city.voy", "--all -o " + file("walk") + " --depth " + file("walk_depth") +

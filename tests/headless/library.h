@@ -13,7 +13,7 @@
   X(GetVersion) X(ResultString) X(GetLastErrorMessage) X(QueryBackend) \
   X(CreateDevice) X(DestroyDevice) X(GetCapabilities) X(OpenScene) \
   X(DestroyScene) X(GetSceneInfo) X(GetSceneNotes) X(CreateTarget) \
-  X(DestroyTarget) X(CreateView) X(DestroyView) X(SetViewTau) \
+  X(DestroyTarget) X(CreateView) X(DestroyView) X(SetViewTau) X(SetViewTimeBudget) \
   X(FovFromAngles) X(FovFromIntrinsics) X(RenderFrame) X(GetViewCut) \
   X(GetFrameStats) X(StageName)
 // clang-format on

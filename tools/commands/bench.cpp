@@ -18,6 +18,14 @@ using Json = nlohmann::ordered_json;
   throw Error(ErrorCode::invalid_argument, message);
 }
 
+// It is whole frames of one configuration that a budget is for.
+void refuse_misplaced_budget(const BenchArguments& arguments) {
+  if (arguments.stages != BenchStages::all)
+    bad_usage("--time-budget: found it with --stages search or splat, expected --stages all");
+  if (arguments.lod == Lod::all_leaves)
+    bad_usage("--time-budget: found it with --lod off, expected --lod on: tau is what it changes");
+}
+
 // An option that the chosen stages make nothing of would be a figure misread.
 void refuse_misplaced(const BenchArguments& arguments) {
   const bool frames = arguments.stages != BenchStages::search;
@@ -29,6 +37,7 @@ void refuse_misplaced(const BenchArguments& arguments) {
     if (given && !frames)
       bad_usage(std::string(option) +
                 ": found it with --stages search, expected --stages splat or all");
+  if (arguments.time_budget > 0) refuse_misplaced_budget(arguments);
   if (arguments.verify && frames)
     bad_usage("--verify: found it with whole frames, expected --stages search");
   if (arguments.stereo && arguments.stages != BenchStages::all)
@@ -72,6 +81,10 @@ void bench(const BenchArguments& arguments) {
     throw Error(
         ErrorCode::refused_input,
         arguments.scene + ": found a scene without a tree, expected a .voy that is not empty");
+  if (arguments.time_budget > 0 && scene->flat())
+    throw Error(ErrorCode::refused_input, arguments.scene +
+                                              ": found a scene without a tree, "
+                                              "expected a .voy with --time-budget");
   const auto backend = create_backend(arguments);
   const BenchSubject subject{scene, *backend, read_walk(arguments), workers};
   Json report = {{"scene", arguments.scene},
@@ -80,7 +93,8 @@ void bench(const BenchArguments& arguments) {
                  {"device", backend->device_name()},
                  {"multiprocessors_asked", arguments.multiprocessors},
                  {"tau", arguments.tau}};
-  const auto run = search ? bench_searches : arguments.stereo ? bench_stereo : bench_frames;
+  const bool costs = arguments.stereo && arguments.time_budget == 0;  // against one eye's
+  const auto run = search ? bench_searches : costs ? bench_stereo : bench_frames;
   report.update(run(arguments, subject));
   const std::string text = report.dump(2) + "\n";
   file.write(std::as_bytes(std::span(text)));
@@ -125,7 +139,7 @@ void add_conditions(CLI::App& command, BenchArguments& arguments) {
       command, "--backend", arguments.backend,
       {{"auto", BenchBackend::automatic}, {"cpu", BenchBackend::cpu}, {"cuda", BenchBackend::cuda}},
       "Where; auto is CUDA where there is a device");
-  add_tau_option(command, arguments.tau);
+  add_tau_or_budget_options(command, arguments.tau, arguments.time_budget);
   add_size_option(command, arguments.size);
   command
       .add_option("--sms", arguments.multiprocessors,

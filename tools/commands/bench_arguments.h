@@ -29,6 +29,7 @@ struct BenchArguments {
   std::optional<size_t> repeat;
   bool verify = false, stereo = false;
   double tau = 3;
+  double time_budget = 0;  // milliseconds; 0: tau is fixed
   unsigned multiprocessors = 0;
   ImageSize size;
 };

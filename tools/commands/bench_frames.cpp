@@ -2,6 +2,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/frame/view.h"
+#include "tools/budget_report.h"
 #include "tools/commands/bench_arguments.h"
 #include "tools/frame_path.h"
 #include "tools/frame_report.h"
@@ -23,14 +24,15 @@ struct Plan {
 
 bool has_choice(const BenchArguments& arguments) {
   const bool one_search = arguments.search.has_value() && *arguments.search != SearchChoice::all;
-  return one_search || arguments.lod || arguments.slack || arguments.filter ||
-         arguments.splatting || arguments.exponential;
+  return one_search || arguments.time_budget > 0 || arguments.lod || arguments.slack ||
+         arguments.filter || arguments.splatting || arguments.exponential;
 }
 
 Plan make_plan(const BenchArguments& arguments, bool flat) {
   if (arguments.stages == BenchStages::all && !has_choice(arguments))
     return {ablation_rows(), true, false};
-  const PipelineDesc desc = chosen_desc(arguments);
+  PipelineDesc desc = chosen_desc(arguments);
+  if (arguments.stereo) desc.eyes = 2;
   if (arguments.stages == BenchStages::splat && !arguments.exponential &&
       desc.splatting == Splatting::ours)
     return {exponential_rows(desc), true, true};
@@ -39,8 +41,10 @@ Plan make_plan(const BenchArguments& arguments, bool flat) {
 
 FramePath make_path(const BenchArguments& arguments, const BenchSubject& subject) {
   FramePath path;
-  path.frames = frame_path(subject.cameras, arguments.tau);
+  path.frames = arguments.stereo ? stereo_path(subject.cameras, arguments.tau)
+                                 : frame_path(subject.cameras, arguments.tau);
   path.repeats = chosen_repeats(arguments, path.frames.size());
+  if (arguments.time_budget > 0) path.time_budget = TimeBudgetDesc{arguments.time_budget};
   return path;
 }
 
@@ -101,6 +105,7 @@ class Rows {
     });
     Json json = report_row(row, run, context_);
     if (plan_.images) compare_images(row, json);
+    if (path_.time_budget) json["time_budget"] = time_budget_json(run, lost_by(row, run));
     rows.push_back(json);
   }
 
@@ -108,6 +113,23 @@ class Rows {
     const std::vector<RgbaImage> images = draw_images(maker_, row.desc, path_.frames, compared_);
     if (row.desc.exponential == Exponential::exact) expected_ = images;
     if (!expected_.empty()) add_error(json, image_error(images, expected_), images.size());
+  }
+
+  // Images of the path's first time: at the τ that they were timed with, and at the fixed one.
+  std::vector<BudgetError> lost_by(const FrameRow& row, const FrameRun& run) {
+    std::vector<FrameInput> steered = path_.frames;
+    for (const size_t i : compared_) steered[i].tau = run.timed[i].tau;
+    PipelineDesc leaves = row.desc;
+    leaves.lod = Lod::all_leaves;
+    const auto expected = draw_images(maker_, leaves, path_.frames, compared_);
+    const auto budget = draw_images(maker_, row.desc, steered, compared_);
+    const auto fixed = draw_images(maker_, row.desc, path_.frames, compared_);
+    std::vector<BudgetError> errors;
+    for (size_t i = 0; i < compared_.size(); ++i)
+      errors.push_back({compared_[i], path_.frames[0].tau,
+                        image_error({budget[i]}, {expected[i]}).psnr,
+                        image_error({fixed[i]}, {expected[i]}).psnr});
+    return errors;
   }
 
   FrameMaker maker_;
@@ -129,6 +151,7 @@ Json bench_frames(const BenchArguments& arguments, const BenchSubject& subject) 
   rows.run();
   if (plan.compares && !plan.images) add_speedups(rows.rows);
   print_frames(rows.rows);
+  if (path.time_budget) print_time_budget(rows.rows[0]["time_budget"]);
   for (const Json& row : rows.left_out)
     fmt::print("left out: {}: {}\n", row["name"].get<std::string>(), row["why"].get<std::string>());
   const DeviceRates rates = subject.backend.rates();

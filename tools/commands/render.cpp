@@ -86,6 +86,8 @@ void settle_outputs(Arguments& arguments) {
 void render(Arguments& arguments) {
   arguments.choices.eyes = arguments.stereo ? 2 : 1;
   settle_outputs(arguments);
+  if (arguments.choices.time_budget > 0 && arguments.choices.lod == VOY_LOD_ALL_LEAVES)
+    bad_usage("--time-budget: found it with --lod off, expected --lod on: tau is what it changes");
   const std::vector<Camera> cameras = choose_cameras(arguments);
   uint32_t width = 0, height = 0;
   for (const Camera& camera : cameras) {
@@ -112,7 +114,7 @@ void render(Arguments& arguments) {
 void add_cut_choices(CLI::App& command, RenderChoices& choices) {
   add_choice<VoyLod>(command, "--lod", choices.lod,
                      {{"on", VOY_LOD_CUT}, {"off", VOY_LOD_ALL_LEAVES}}, "off draws every leaf");
-  add_tau_option(command, choices.tau);
+  add_tau_or_budget_options(command, choices.tau, choices.time_budget);
   add_choice<VoySearch>(command, "--search", choices.search,
                         {{"temporal", VOY_SEARCH_TEMPORAL},
                          {"streaming", VOY_SEARCH_STREAMING},

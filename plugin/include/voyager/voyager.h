@@ -102,6 +102,7 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT = 26,
   VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC = 27,
   VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW = 28,
+  VOY_STRUCTURE_TYPE_TIME_BUDGET = 29,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -410,6 +411,22 @@ typedef enum VoySplatting {
   VOY_SPLATTING_MAX_ENUM = 0x7fffffff
 } VoySplatting;
 
+/* In VoyViewDesc.next, or given to voySetViewTimeBudget: the view chooses tau, frame by frame,
+ * so that millisecondsTotal of VoyFrameStats stays within the budget; it aims at nine tenths of
+ * it. That is the device's time on CUDA, the call's own on the CPU, without what the host draws.
+ * tau starts at VoyViewDesc.tau, brought into the range, and depends on nothing but the times
+ * of the view's frames that have ended: the same times give the same tau. While they stay about
+ * the aim tau rests. docs/time-budget.md says how it moves. */
+typedef struct VoyTimeBudget {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_TIME_BUDGET */
+  const void* next;
+  double milliseconds; /* a frame, all eyes together; finite, > 0 */
+  double leastTau;     /* pixels, finite, >= 0: time to spare is not spent on more than that */
+  double greatestTau;  /* pixels, finite, >= leastTau: where more is needed, frames are late */
+} VoyTimeBudget;
+#define VOY_TIME_BUDGET_INIT \
+  { VOY_STRUCTURE_TYPE_TIME_BUDGET, NULL, 0.0, 1.0, 60.0 }
+
 /* The eyes of a view see one cut: that of the point amid them, as fine as the finest of them
  * wants it. Of a scene's data each is read once for both; covariance, colour, order and
  * blending are each eye's own, so that an eye's image is what it would be alone with that cut:
@@ -418,14 +435,14 @@ typedef enum VoySplatting {
  * A view draws instances of scenes, sorted together, so that where they overlap the nearer
  * hides the farther; and keeps the cut of each between frames. A scene may be several. */
 typedef struct VoyViewDesc {
-  VoyStructureType type; /* VOY_STRUCTURE_TYPE_VIEW_DESC */
-  const void* next;
+  VoyStructureType type;  /* VOY_STRUCTURE_TYPE_VIEW_DESC */
+  const void* next;       /* NULL or a VoyTimeBudget */
   uint32_t instanceCount; /* 1 to VoyCapabilities.maxInstances; more are UNSUPPORTED */
   const VoyScene* scenes; /* one an instance, of the same device; copied */
   uint32_t eyeCount;      /* 1 to VoyCapabilities.maxEyes, of each frame; more are UNSUPPORTED */
   uint32_t maxWidth, maxHeight; /* pixels: no target of a frame may be larger */
   VoyLod lod;
-  double tau; /* granularity in pixels, finite, >= 0 */
+  double tau; /* granularity in pixels, finite, >= 0; where a time budget starts */
   VoySearch search;
   VoyAlphaFilter alphaFilter;
   VoyExponential exponential;
@@ -438,13 +455,18 @@ typedef struct VoyViewDesc {
         VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, VOY_SPLATTING_OURS                     \
   }
 
-/* Errors: INVALID_ARGUMENT, UNSUPPORTED (a choice that VoyCapabilities does not have),
+/* Errors: INVALID_ARGUMENT, UNSUPPORTED (a choice that VoyCapabilities does not have; a time
+ * budget where the view draws a cut of no instance, so that tau changes nothing),
  * OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no room for the scene). */
 VOY_API VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
 VOY_API VoyResult voyDestroyView(VoyView view);
 
-/* From the next frame on. tau in pixels, finite, >= 0. */
+/* From the next frame on. tau in pixels, finite, >= 0. Ends a time budget. */
 VOY_API VoyResult voySetViewTau(VoyView view, double tau);
+
+/* From the next frame on: sets a time budget, or changes it, and tau goes on from where it is.
+ * May be called every frame. Errors: INVALID_ARGUMENT, UNSUPPORTED as in voyCreateView. */
+VOY_API VoyResult voySetViewTimeBudget(VoyView view, const VoyTimeBudget* budget);
 
 /* -------------------------------------------------------------------- frame */
 
@@ -576,6 +598,14 @@ typedef enum VoyStage {
   VOY_STAGE_MAX_ENUM = 0x7fffffff
 } VoyStage;
 
+typedef enum VoyBudgetState {
+  VOY_BUDGET_STATE_NONE = 0,        /* the view had no time budget */
+  VOY_BUDGET_STATE_HELD = 1,        /* millisecondsTotal <= timeBudget */
+  VOY_BUDGET_STATE_LATE = 2,        /* more than that: tau rises if it stays so */
+  VOY_BUDGET_STATE_UNREACHABLE = 3, /* more than that at greatestTau */
+  VOY_BUDGET_STATE_MAX_ENUM = 0x7fffffff
+} VoyBudgetState;
+
 /* Room for stages in VoyFrameStats, for good; how many there are is its stageCount. */
 #define VOY_MAX_STAGES 16
 
@@ -605,6 +635,10 @@ typedef struct VoyFrameStats {
   uint64_t missing;                    /* cut nodes that stood in for missing ones */
   double milliseconds[VOY_MAX_STAGES]; /* by VoyStage; 0 from stageCount on */
   double millisecondsTotal;
+  double tau;        /* as used: voySetViewTau with it gives the same image, to the bit */
+  double timeBudget; /* milliseconds, as the frame was drawn; 0 where there was none */
+  VoyBudgetState budgetState;
+  uint32_t reserved; /* 0 */
 } VoyFrameStats;
 
 /* Of the view's last successful frame; VOY_ERROR_INVALID_ARGUMENT before any. Where frames are

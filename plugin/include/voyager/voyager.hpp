@@ -80,6 +80,7 @@ class View : public Handle<VoyView, voyDestroyView> {
   using Handle::Handle;
 
   void set_tau(double pixels) { check(voySetViewTau(get(), pixels)); }
+  void set_time_budget(const VoyTimeBudget& budget) { check(voySetViewTimeBudget(get(), &budget)); }
   void render(const VoyFrame& frame) { check(voyRenderFrame(get(), &frame)); }
   // Node ids of the instance's cut in the last frame, ascending.
   std::vector<uint32_t> cut(uint32_t instance = 0) const {

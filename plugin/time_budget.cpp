@@ -1,0 +1,36 @@
+#include "plugin/time_budget.h"
+
+#include "plugin/structs.h"
+
+namespace voyager {
+namespace {
+
+// τ changes nothing in a view that draws every leaf of all its instances.
+bool draws_any_cut(const ViewObject& view) {
+  for (uint32_t i = 0; i < view.instances; ++i)
+    if (view.view->draws_cut(i)) return true;
+  return false;
+}
+
+}  // namespace
+
+void check_time_budget(const VoyTimeBudget& budget) {
+  const auto check = [](const char* field, double found, bool right, const std::string& expected) {
+    if (!std::isfinite(found) || !right)
+      refuse_number(std::string("VoyTimeBudget.") + field, found, expected);
+  };
+  check("milliseconds", budget.milliseconds, budget.milliseconds > 0, "a finite number, > 0");
+  check("leastTau", budget.leastTau, budget.leastTau >= 0, "a finite number of pixels, >= 0");
+  check("greatestTau", budget.greatestTau, budget.greatestTau >= budget.leastTau,
+        "a finite number of pixels, >= leastTau");
+}
+
+void set_time_budget(ViewObject& view, const VoyTimeBudget& budget) {
+  if (!draws_any_cut(view))
+    throw ApiError(VOY_ERROR_UNSUPPORTED,
+                   "VoyTimeBudget: found a view that draws every leaf of each instance, expected "
+                   "one that draws a cut, which tau makes smaller");
+  view.view->set_time_budget({budget.milliseconds, budget.leastTau, budget.greatestTau}, view.tau);
+}
+
+}  // namespace voyager
