@@ -277,6 +277,7 @@ TEST_F(VulkanTarget, WhatAHostForgetsCallsNoVulkanAtUnload) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   mock.signal(semaphores.released, 1);
   ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
+  release(0);
   ASSERT_EQ(render(1, 1), VOY_SUCCESS) << voy.message();
   const auto leave = [] {
     VulkanMock::current = nullptr;  // whatever is called now crashes

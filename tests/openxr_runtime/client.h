@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/openxr_runtime/vulkan_client.h"
+#include "tests/support/needs_vulkan.h"
 #include "tests/support/test_support.h"
 
 namespace test_runtime::test {
@@ -285,6 +286,7 @@ class Client {
 
 // Skips, with the reason, where there is no Vulkan.
 #define VOYAGER_NEEDS_VULKAN(client) \
-  if (!(client).has_vulkan()) GTEST_SKIP() << "found no Vulkan device: lavapipe would do"
+  if (!(client).has_vulkan())        \
+  VOYAGER_SKIP_WITHOUT_VULKAN("found no Vulkan device: lavapipe would do")
 
 }  // namespace test_runtime::test

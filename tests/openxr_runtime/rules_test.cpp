@@ -294,7 +294,8 @@ TEST(Rule, WhatIsLegalAndSeldomMeantIsRemarked) {
 
 // The layout is the application's to restore: Vulkan's own layer tells.
 TEST(Rule, AnImageReleasedInAnotherLayoutIsTold) {
-  if (!has_validation_layer()) GTEST_SKIP() << "the Vulkan validation layer is not here";
+  if (!has_validation_layer())
+    VOYAGER_SKIP_WITHOUT_VULKAN("the Vulkan validation layer is not here");
   const Stage stage(Json::object());
   Client client;
   VOYAGER_NEEDS_VULKAN(client);

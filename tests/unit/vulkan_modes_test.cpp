@@ -77,7 +77,9 @@ Choice expected(const Having& having, Sharing sharing, Sync sync) {
   }
   for (const Sync each : {Sync::host, Sync::binary, Sync::timeline})
     if (why_not(having, out.sharing, each).empty()) out.sync = each;
-  if (out.why.empty()) out.why = why_not(having, out.sharing, Sync::timeline);
+  const std::string no_timelines = why_not(having, out.sharing, Sync::timeline);
+  if (!out.why.empty() && !no_timelines.empty()) out.why += "; ";
+  out.why += no_timelines;
   return out;
 }
 
