@@ -20,6 +20,12 @@ ErrorCode code_of(cudaError_t status) {
     case cudaErrorHardwareStackError:
     case cudaErrorECCUncorrectable:
     case cudaErrorContextIsDestroyed:
+    case cudaErrorMisalignedAddress:
+    case cudaErrorInvalidAddressSpace:
+    case cudaErrorIllegalInstruction:
+    case cudaErrorInvalidPc:
+    case cudaErrorAssert:
+    case cudaErrorUnknown:
       return ErrorCode::device_lost;
     default:
       return ErrorCode::internal;

@@ -213,6 +213,15 @@ void each_ring(const FrameInput& frame, const Work& work) {
   }
 }
 
+// What was launched of a frame that fails may still write to its images.
+void mark_end_quietly(const FrameInput& frame, cudaStream_t stream) noexcept {
+  try {
+    each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
+  } catch (const std::exception&) {
+    return;  // a device that is lost writes nothing more
+  }
+}
+
 SplatPipeline::Eyes SplatPipeline::external_eyes(const FrameInput& frame) {
   Eyes eyes{};
   for (size_t i = 0; i < frame.eyes.size(); ++i) {
@@ -245,6 +254,7 @@ void SplatPipeline::submit(const FrameInput& frame, bool checked) {
     copy(report);  // the host that waits for the image does not wait for this
     each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
   } catch (...) {
+    mark_end_quietly(frame, stream);
     under_way_.pop_back();
     throw;
   }

@@ -241,7 +241,7 @@ VOY_API VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVul
  * with HOST sharing only: UNSUPPORTED.
  * With DEVICE sharing the call returns while the frame is under way, after 0.1 ms or so of
  * the host's time; the first of a view, one after a failure, and one that needs larger
- * buffers wait once for the device.
+ * buffers wait once for the device; with a scene of which chunks are damaged every one does.
  * Such a frame cannot be drawn again: where the view turned to far more splats than before, it
  * may lack some, and VoyFrameStats.pairsDropped says so; the next has the room.
  * The eyes of one frame are layers of one image, or go to a target each: the image and the values
