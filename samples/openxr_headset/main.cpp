@@ -58,7 +58,8 @@ bool visit(Journey& journey, Validations* validations) try {
   Runtime runtime(validations ? &validations->xr : nullptr);
   const Graphics graphics(runtime, validations ? &validations->vulkan : nullptr);
   const auto opening = std::chrono::steady_clock::now();
-  VoyagerLayer voyager(graphics, journey.options.scene, journey.options.tau);
+  VoyagerLayer voyager(graphics, journey.options.scene, journey.options.tau,
+                       journey.options.time_budget);
   journey.patience.excuse(std::chrono::steady_clock::now() - opening);
   const Input input(runtime);
   journey.modes = say_what_runs(runtime, graphics, voyager);
@@ -66,6 +67,7 @@ bool visit(Journey& journey, Validations* validations) try {
   for (;;) {
     try {
       Visit(runtime, graphics, input, voyager, journey).run();
+      journey.tau = voyager.tau();
       return true;
     } catch (const Lost& lost) {
       journey.statistics.lost();
@@ -86,7 +88,7 @@ void run(const Options& options, Validations* validations) {
   while (!visit(journey, validations) && !interrupted)
     std::this_thread::sleep_for(std::chrono::milliseconds(500));
   if (journey.recorder) journey.recorder->write_cameras();
-  std::printf("%s; tau %g; %s\n", journey.statistics.summary().c_str(), options.tau,
+  std::printf("%s; tau %g; %s\n", journey.statistics.summary().c_str(), journey.tau,
               journey.modes.c_str());
 }
 

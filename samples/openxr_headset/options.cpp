@@ -12,6 +12,12 @@ std::string not_negative(const std::string& text) {
   return "found " + text + ", expected a number, 0 or more";
 }
 
+std::string above_zero(const std::string& text) {
+  double value = 0;
+  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return {};
+  return "found " + text + ", expected milliseconds above 0";
+}
+
 std::string positive(const std::string& text) {
   uint64_t value = 0;
   const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
@@ -34,8 +40,12 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--readback", o.readback,
                  "A PNG an eye and frame, 0000_L.png and so on, and their cameras.json")
       ->type_name("FOLDER");
-  app.add_option("--tau", o.tau, "Granularity in pixels")
-      ->check(CLI::Validator(not_negative, "PX"));
+  auto* const tau = app.add_option("--tau", o.tau, "Granularity in pixels")
+                        ->check(CLI::Validator(not_negative, "PX"));
+  app.add_option("--time-budget", o.time_budget,
+                 "Voyager's share of a frame, both eyes: the granularity follows")
+      ->check(CLI::Validator(above_zero, "MS"))
+      ->excludes(tau);
   app.add_flag("--validation", o.validation,
                "Run under the validation layers of Vulkan and OpenXR; exit with 1 where they had "
                "anything to say");

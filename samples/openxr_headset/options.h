@@ -14,6 +14,7 @@ struct Options {
   bool validation = false;
   uint64_t frames = 0;  // 0: until the player leaves
   double tau = 3;
+  double time_budget = 0;  // milliseconds a frame in place of tau; 0 is none
 };
 
 // Nothing where --help was printed. Throws CLI::ParseError.

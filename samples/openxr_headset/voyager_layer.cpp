@@ -13,8 +13,9 @@ constexpr VkPipelineStageFlags kStages = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
 
 }  // namespace
 
-VoyagerLayer::VoyagerLayer(const Graphics& graphics, const std::string& scene, double tau)
-    : graphics_(graphics), tau_(tau) {
+VoyagerLayer::VoyagerLayer(const Graphics& graphics, const std::string& scene, double tau,
+                           double time_budget)
+    : graphics_(graphics), tau_(tau), time_budget_(time_budget) {
   create_device();
   scene_ = device_.open_scene(scene);
 }
@@ -41,6 +42,9 @@ void VoyagerLayer::create_view(VkExtent2D largest) {
   desc.maxWidth = largest.width;
   desc.maxHeight = largest.height;
   desc.tau = tau_;
+  VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
+  budget.milliseconds = time_budget_;
+  if (time_budget_ > 0) desc.next = &budget;
   view_ = {};  // its buffers go before the new one's come
   view_ = device_.create_view(desc);
   view_extent_ = largest;

@@ -20,14 +20,16 @@ inline constexpr uint32_t kFramesInFlight = 2;
 
 class VoyagerLayer {
  public:
-  // Throws Failure where the library draws no stereo.
-  VoyagerLayer(const Graphics& graphics, const std::string& scene, double tau);
+  // time_budget: milliseconds a frame, or 0: tau stays. Throws Failure where the library draws
+  // no stereo.
+  VoyagerLayer(const Graphics& graphics, const std::string& scene, double tau, double time_budget);
 
   const VoyCapabilities& capabilities() const { return capabilities_; }
   const VoyVulkanCapabilities& vulkan_capabilities() const { return vulkan_; }
   const voy::Device& device() const { return device_; }
   const voy::Scene& scene() const { return scene_; }
-  double tau() const { return tau_; }
+  // That of the last frame that is known of.
+  double tau() const { return frame_ == 0 ? tau_ : view_.stats().tau; }
   VkExtent2D largest() const { return {capabilities_.maxWidth, capabilities_.maxHeight}; }
 
   // The queue must be idle: the targets' images are replaced.
@@ -60,7 +62,7 @@ class VoyagerLayer {
   uint64_t timeline_value() const;
 
   const Graphics& graphics_;
-  const double tau_;
+  const double tau_, time_budget_;
   voy::Device device_;
   VoyCapabilities capabilities_ = VOY_CAPABILITIES_INIT;
   VoyVulkanCapabilities vulkan_ = VOY_VULKAN_CAPABILITIES_INIT;

@@ -117,6 +117,14 @@ TEST_F(Headset, SkippedDisplayPeriodsAreMissed) {
   EXPECT_NE(output.find("3 display periods missed"), std::string::npos) << output;
 }
 
+// From 3 to the least there is, where there is time to spare; to the greatest where there is none.
+TEST_F(Headset, TheGranularityFollowsATimeBudget) {
+  EXPECT_NE(expect_well_behaved({}, "--frames 20 --time-budget 1e6").find("tau 1;"),
+            std::string::npos);
+  EXPECT_NE(expect_well_behaved({}, "--frames 40 --time-budget 1e-6").find("tau 60;"),
+            std::string::npos);
+}
+
 // With the exit code, on one line that names what is wrong.
 TEST_F(Headset, RefusalsAreOneLine) {
   write_bytes(file("bad.json"), "[{\"width\": 8, \"height\": 8}]");
@@ -131,6 +139,8 @@ TEST_F(Headset, RefusalsAreOneLine) {
       {scene + " --frames 0", 1, "--frames"},
       {scene + " --frames -3", 1, "--frames"},
       {scene + " --tau -1", 1, "--tau"},
+      {scene + " --time-budget 0", 1, "--time-budget"},
+      {scene + " --time-budget 8 --tau 3", 1, "--time-budget"},
       {scene + " --readback " + file("refused"), 1, "--readback"},
       {scene + " --frames 1 --camera-file " + file("absent.json"), 2, "absent.json"},
       {scene + " --frames 1 --camera-file " + file("bad.json"), 2, "bad.json: camera 0"},
