@@ -73,14 +73,14 @@ def decibels(values):
 def cells(report):
     budget = report["rows"][0]["time_budget"]
     tau, ms = budget["tau"], budget["ms"]
-    return [f"{os.path.basename(report['scene'])}, {stem(report['cameras'])}", report["size"] or "own",
+    return [f"{os.path.basename(report['scene'])}, {stem(report['cameras'])}", str(report["eyes"]), report["size"] or "own",
             str(report["multiprocessors_asked"] or "all"), f"{budget['milliseconds']:.3f}", f"{100 * budget['on_time']:.1f}",
             f"{100 * budget['unreachable']:.1f}", f"{ms['median']:.3f} / {ms['p99']:.3f}",
             f"{tau['median']:.2f} / {tau['p99']:.2f}", f"{100 * budget['moved']:.1f}",
             decibels([row["budget"] for row in budget["psnr"]]), decibels([row["fixed"] for row in budget["psnr"]])]
 
 
-HEADS = ["scene, cameras", "size", "multiprocessors", "budget, ms", "on time, %", "late at the greatest τ, %",
+HEADS = ["scene, cameras", "eyes", "size", "multiprocessors", "budget, ms", "on time, %", "late at the greatest τ, %",
          "ms: median / p99", "τ: median / p99", "frames that moved τ, %", "PSNR against all leaves, dB: mean / least",
          "the same at τ = 3"]
 

@@ -14,6 +14,7 @@ constexpr double kBandOfNoise = 2, kLeastBand = 0.035, kLargestBand = 0.1;
 constexpr double kPatience = 2.2;  // what errors beyond it add up to before τ moves
 constexpr double kClip = 3;        // of an error at rest: one frame alone never moves τ
 static_assert(kClip - 1 < kPatience);
+constexpr double kLate = 0.75;    // that a frame over the budget counts at least
 constexpr double kNewLoad = 1.7;  // errors of that size are a new load; smaller ones drift
 constexpr double kNear = 1;       // an error this small needs no further correction
 constexpr double kFirstNoise = 0.04, kNoiseStep = 1.05;
@@ -104,7 +105,8 @@ double TimeBudget::mean_error(size_t count) const {
 // At rest: a cumulative sum on each side tells a shift from noise.
 void TimeBudget::watch() {
   const double now = clipped_error(0) / band();
-  above_ = std::max(0.0, above_ + now - 1);
+  const bool late = error(0) > -std::log(kAim);
+  above_ = std::max(0.0, above_ + (late ? std::max(now - 1, kLate) : now - 1));
   below_ = std::max(0.0, below_ - now - 1);
   outside_ = above_ > 0 || below_ > 0 ? outside_ + 1 : 0;
   if (std::max(above_, below_) > kPatience) start(above_ > below_);
@@ -129,9 +131,10 @@ void TimeBudget::track() {
   std::array<double, kMedian> places;
   for (size_t i = 0; i < kMedian; ++i) places[i] = sample(i).u + error(i) / slope_;
   std::sort(places.begin(), places.end());
-  aim_at(places[kMedian / 2]);
+  const double place = places[kMedian / 2];
+  aim_at(place);
   if (std::fabs(target_ - u_) * slope_ >= kNear * band()) return;
-  target_ = u_;
+  if (target_ == place) target_ = u_;  // else it is the end of the range, which is gone to
   if (fresh_ >= kMedian) tracking_ = false;
 }
 

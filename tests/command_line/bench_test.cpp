@@ -183,6 +183,31 @@ TEST_F(CommandLineBench, ATimeBudgetSteersTauAndTellsEachFrames) {
   EXPECT_EQ(held["path"]["tau"].back(), 1);
 }
 
+TEST_F(CommandLineBench, BothEyesAgainstOne) {
+  const Json cameras = Json::parse(file_bytes(file("stills.json")));
+  write_bytes(file("two.json"), Json{cameras[0], cameras[1]}.dump());
+  const Outcome result =
+      run("voyager bench " + file("city.voy") + " --cameras " + file("two.json") +
+          " --size 96x54 --backend cpu --stereo --repeat 3 "
+          "--json " +
+          file("two_bench.json"));
+  ASSERT_EQ(result.exit_code, 0) << result.output;
+  const Json report = Json::parse(file_bytes(file("two_bench.json")));
+  ASSERT_EQ(report["rows"].size(), 3u);
+  const Json &left = report["rows"][0], &right = report["rows"][1], &both = report["rows"][2];
+  EXPECT_NEAR(both["counters"]["splats"].get<double>(),
+              left["counters"]["splats"].get<double>() + right["counters"]["splats"].get<double>(),
+              0.02 * both["counters"]["splats"].get<double>());
+  for (const char* part : {"frame", "search", "project", "rasterize"}) {
+    const Json& cost = report["stereo"][part];
+    EXPECT_EQ(cost["both"], both["ms"][part]["median"]) << part;
+    EXPECT_NEAR(
+        cost["saved"].get<double>(),
+        cost["left"].get<double>() + cost["right"].get<double>() - cost["both"].get<double>(), 1e-9)
+        << part;
+  }
+}
+
 TEST_F(CommandLineBench, ATimeBudgetIsForBothEyes) {
   const Json cameras = Json::parse(file_bytes(file("stills.json")));
   write_bytes(file("pair.json"), Json{cameras[0], cameras[1]}.dump());

@@ -122,6 +122,49 @@ TEST_F(CommandLine, ATimeBudgetIsRefusedWhereThereIsNothingToSteer) {
     expect_refusal(render("city.voy", "--time-budget " + bad + out), 1, "found " + bad);
 }
 
+// Every leaf: there is no cut that one eye could change for the other.
+TEST_F(CommandLine, APairIsItsTwoCamerasWithOneCut) {
+  const std::string leaves = " --backend cpu --lod off -o ";
+  ASSERT_EQ(run(render("city.voy", "--stereo --camera 3" + leaves + file("pair"))).exit_code, 0);
+  for (const int camera : {3, 4}) {
+    const std::string alone = file(std::to_string(camera) + "_alone.png");
+    ASSERT_EQ(
+        run(render("city.voy", "--camera " + std::to_string(camera) + leaves + alone)).exit_code,
+        0);
+    EXPECT_TRUE(file_bytes(alone) ==
+                file_bytes(file("pair/000" + std::to_string(camera) + ".png")));
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("pair")), {}), 2);
+  const std::string walk = "--backend cpu --stereo --all --tau 6 -o " + file("pairs") +
+                           " --dump-cut " + file("pair_cuts") + " --depth " + file("pair_depths") +
+                           " --stats " + file("pairs.json");
+  ASSERT_EQ(run(render("city.voy", walk)).exit_code, 0);
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("pairs")), {}), 120);
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("pair_depths")), {}), 120);
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("pair_cuts")), {}), 60);
+  EXPECT_EQ(nlohmann::json::parse(file_bytes(file("pairs.json")))["frames"].size(), 60u);
+  ASSERT_EQ(run(render("city.voy", "--backend cpu --stereo --camera 2 --tau 6 -o " +
+                                       file("second") + " --dump-cut " + file("second.txt")))
+                .exit_code,
+            0);
+  EXPECT_TRUE(file_bytes(file("second.txt")) == file_bytes(file("pair_cuts/0001.txt")));
+  EXPECT_TRUE(file_bytes(file("second/0003.png")) == file_bytes(file("pairs/0003.png")));
+}
+
+TEST_F(CommandLine, PairsThatThereAreNotAreRefused) {
+  expect_refusal(render("city.voy", "--stereo --camera 119 -o " + file("p")), 1, "--camera");
+  expect_refusal(render("city.voy", "--stereo -o " + file("p.png")), 1, "--stereo");
+  expect_refusal(render("city.voy", "--stereo -o " + file("p") + " --depth " + file("p.pfm")), 1,
+                 "--depth");
+  auto cameras = nlohmann::json::parse(file_bytes(file("city.cameras.json")));
+  cameras.erase(cameras.begin());
+  write_bytes(file("odd.json"), cameras.dump());
+  expect_refusal("voyager render " + file("city.voy") + " --cameras " + file("odd.json") +
+                     " --stereo --all -o " + file("p"),
+                 2, "119 cameras");
+  EXPECT_FALSE(fs::exists(file("p")));
+}
+
 TEST_F(CommandLine, AWalkWritesAFileAFrame) {
   const Outcome result = run(
       render("city.voy", "--all -o " + file("walk") + " --depth " + file("walk_depth") +
@@ -257,7 +300,6 @@ TEST_F(CommandLine, AnInterpolatedCutIsASceneOfItsOwn) {
 TEST_F(CommandLine, BadUsageIsNamedAndExitsWithOne) {
   expect_refusal("voyager", 1, "command");
   expect_refusal("voyager fly", 1, "fly");
-  expect_refusal(render("city.voy", "--stereo -o a.png"), 1, "--stereo");
   expect_refusal(render("city.voy", "--search guess -o a.png"), 1, "guess");
   expect_refusal(render("city.voy", "--slack maybe -o a.png"), 1, "maybe");
   expect_refusal(render("city.voy", "--backend cpu --exp half2 -o a.png"), 1, "half2");

@@ -102,6 +102,20 @@ bool at_aim(const Drawn& frame) {
   return std::fabs(frame.milliseconds / kAim - 1) < 0.1;
 }
 
+// However little they are late: what a dead band would bear with, a display does not.
+TEST(TimeBudget, FramesThatAreLateDoNotGoOnBeingLate) {
+  for (const Plant& plant : kPlants)
+    for (const double late : {1.005, 1.05}) {
+      Frames frames(plant, 1, 0.09);
+      frames.draw_many(300, 1);  // the band is as wide as it gets
+      const double load = late * kBudget / plant(frames.drawn.back().tau);
+      const size_t before = frames.drawn.size();
+      frames.draw_many(40, load);
+      EXPECT_GT(frames.drawn.back().tau, frames.drawn[before].tau)
+          << "exponent " << plant.exponent << ", late by " << late;
+    }
+}
+
 TEST(TimeBudget, AStepInLoadSettlesWithoutRinging) {
   constexpr size_t kFramesAfter[] = {8, 10, 10, 13, 16};  // by delay
   for (size_t delay = 0; delay < std::size(kFramesAfter); ++delay)

@@ -68,7 +68,10 @@ std::vector<Camera> read_walk(const BenchArguments& arguments) {
   return cameras;
 }
 
-void bench(const BenchArguments& arguments) {
+void bench(BenchArguments& arguments) {
+  const bool whole = arguments.stereo || arguments.time_budget > 0;
+  arguments.stages =
+      arguments.stages_asked.value_or(whole ? BenchStages::all : BenchStages::search);
   refuse_misplaced(arguments);
   require_extension("--json", arguments.json, {".json"});
   require_distinct({arguments.json}, {arguments.scene, arguments.cameras});
@@ -152,8 +155,7 @@ void add_conditions(CLI::App& command, BenchArguments& arguments) {
       ->type_name("N")
       ->check(CLI::Range(1, 100000));
   command.add_flag("--stereo", arguments.stereo,
-                   "Cameras two by two, left then right: what both eyes cost against one, with "
-                   "--stages all");
+                   "Cameras two by two, left then right: what both eyes cost against one");
   command.add_flag("--verify", arguments.verify,
                    "Also compare every frame's cut and weights with the exhaustive search's");
 }
@@ -167,10 +169,11 @@ void add_bench(CLI::App& app) {
       ->required();
   command->add_option("--cameras", arguments->cameras, "INRIA cameras.json, as one walk")
       ->required();
-  add_choice<BenchStages>(
-      *command, "--stages", arguments->stages,
+  add_choice<std::optional<BenchStages>>(
+      *command, "--stages", arguments->stages_asked,
       {{"search", BenchStages::search}, {"splat", BenchStages::splat}, {"all", BenchStages::all}},
-      "What to time: the search alone, or whole frames. Without further choices splat compares "
+      "What to time: the search alone (the default without --stereo and --time-budget), or whole "
+      "frames. Without further choices splat compares "
       "the exponentials, and all goes from 3DGS to ours in steps");
   add_choices(*command, *arguments);
   add_conditions(*command, *arguments);

@@ -18,7 +18,8 @@ enum class SearchChoice { all, exhaustive, streaming, temporal };
 // Options that were not given have no value where that means something else than a default.
 struct BenchArguments {
   std::string scene, cameras, json;
-  BenchStages stages = BenchStages::search;
+  std::optional<BenchStages> stages_asked;
+  BenchStages stages = BenchStages::search;  // whole frames where only these can be meant
   BenchBackend backend = BenchBackend::automatic;
   std::optional<Lod> lod;
   std::optional<SearchChoice> search;

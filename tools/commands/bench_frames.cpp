@@ -157,6 +157,7 @@ Json bench_frames(const BenchArguments& arguments, const BenchSubject& subject) 
   const DeviceRates rates = subject.backend.rates();
   return {{"stages", arguments.stages == BenchStages::all ? "all" : "splat"},
           {"size", size_of(path)},
+          {"eyes", path.frames[0].eyes.size()},
           {"frames", path.frames.size()},
           {"repeats", path.repeats},
           {"leaves", subject.scene->leaf_count},

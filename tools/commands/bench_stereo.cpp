@@ -80,6 +80,7 @@ Json bench_stereo(const BenchArguments& arguments, const BenchSubject& subject) 
   print_frames(rows);
   print_costs(costs);
   return {{"stages", "all"},
+          {"eyes", 2},
           {"stereo", costs},
           {"frames", subject.cameras.size() / 2},
           {"repeats", repeats},
