@@ -35,48 +35,67 @@ std::array<VkExtent2D, kEyes> recommended(const Runtime& runtime, const Graphics
 EyeImages::EyeImages(const Session& session, const Runtime& runtime, const Graphics& graphics,
                      VkExtent2D largest, bool readable) {
   const std::vector<int64_t> formats = session.swapchain_formats();
-  colour_format_ = choose_colour(graphics, formats);
   const auto sizes = recommended(runtime, graphics, largest);
   for (size_t i = 0; i < kEyes; ++i) eyes_[i].extent = sizes[i];
-  const bool same = sizes[0].width == sizes[1].width && sizes[0].height == sizes[1].height;
-
-  SwapchainDesc desc = {colour_format_.format,
-                        XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT,
-                        VK_IMAGE_ASPECT_COLOR_BIT,
-                        {},
-                        1};
-  if (readable) desc.usage |= XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT;
-  const bool array = same && create(session, graphics, true, desc, colours_);
-  if (!array && !create(session, graphics, false, desc, colours_))
-    throw Failure(kMachine, "xrCreateSwapchain: found none of " + std::string(colour_format_.name) +
-                                (readable ? " that can be copied from" : "") + ", expected one");
-
-  if (runtime.has_depth_layer()) depth_format_ = choose_depth(graphics, formats);
-  if (depth_format_) {
-    desc.format = *depth_format_;
-    desc.usage = XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-    desc.aspects = depth_aspects(*depth_format_);
-    if (!create(session, graphics, array, desc, depths_)) depth_format_.reset();
-  }
+  create_colours(session, graphics, usable_colours(graphics, formats), readable);
+  if (runtime.has_depth_layer()) create_depths(session, graphics, usable_depths(graphics, formats));
   for (size_t i = 0; i < kEyes; ++i) {
-    eyes_[i].colour = &colours_[array ? 0 : i];
-    eyes_[i].depth = depth_format_ ? &depths_[array ? 0 : i] : nullptr;
-    eyes_[i].layer = array ? static_cast<uint32_t>(i) : 0;
+    eyes_[i].colour = &colours_[array_ ? 0 : i];
+    eyes_[i].depth = depth_format_ ? &depths_[array_ ? 0 : i] : nullptr;
+    eyes_[i].layer = array_ ? static_cast<uint32_t>(i) : 0;
   }
 }
 
-bool EyeImages::create(const Session& session, const Graphics& graphics, bool array,
-                       const SwapchainDesc& desc, std::vector<Swapchain>& into) const {
+// The first that the runtime makes: the better format before the better layout.
+void EyeImages::create_colours(const Session& session, const Graphics& graphics,
+                               const std::vector<ColourFormat>& formats, bool readable) {
+  const VkExtent2D &left = eyes_[0].extent, &right = eyes_[1].extent;
+  const bool same = left.width == right.width && left.height == right.height;
+  SwapchainDesc desc = {
+      {}, XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT, VK_IMAGE_ASPECT_COLOR_BIT, {}, 1};
+  if (readable) desc.usage |= XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT;
+  std::string tried;
+  for (const ColourFormat& format : formats) {
+    colour_format_ = format;
+    desc.format = format.format;
+    for (const bool array : {true, false}) {
+      array_ = array;
+      if ((same || !array) && create(session, graphics, desc, colours_)) return;
+    }
+    tried += (tried.empty() ? "" : ", ") + std::string(format.name);
+  }
+  throw Failure(kMachine, "swapchains: found none of " + tried +
+                              (readable ? " that can be copied from" : "") + " (" + refusal_ +
+                              "), expected one");
+}
+
+// The first that the runtime makes in the colours' layout; else there is no depth.
+void EyeImages::create_depths(const Session& session, const Graphics& graphics,
+                              const std::vector<VkFormat>& formats) {
+  for (const VkFormat format : formats) {
+    const SwapchainDesc desc = {
+        format, XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT, depth_aspects(format), {}, 1};
+    if (!create(session, graphics, desc, depths_)) continue;
+    depth_format_ = format;
+    return;
+  }
+}
+
+// False where the runtime refuses, whatever the error: each has its own for what it cannot do.
+bool EyeImages::create(const Session& session, const Graphics& graphics, const SwapchainDesc& desc,
+                       std::vector<Swapchain>& into) try {
   SwapchainDesc wanted = desc;
-  wanted.layers = array ? kEyes : 1;
+  wanted.layers = array_ ? kEyes : 1;
   into.clear();
-  for (size_t i = 0; i < (array ? 1 : kEyes); ++i) {
+  for (size_t i = 0; i < (array_ ? 1 : kEyes); ++i) {
     wanted.extent = eyes_[i].extent;
-    std::optional<Swapchain> made = Swapchain::create(session.get(), graphics, wanted);
-    if (!made) return false;
-    into.push_back(std::move(*made));
+    into.emplace_back(session.get(), graphics, wanted);
   }
   return true;
+} catch (const Failure& failure) {
+  into.clear();
+  refusal_ = failure.what();
+  return false;
 }
 
 bool EyeImages::ready(XrDuration patience) {

@@ -2,6 +2,7 @@
 // The swapchains that both eyes are shown from: one with two layers where the eyes are of one
 // size, else one an eye; and the same for depth, where the compositor takes it.
 #include <array>
+#include <optional>
 
 #include "formats.h"
 #include "session.h"
@@ -33,13 +34,19 @@ class EyeImages {
   void release();
 
  private:
-  bool create(const Session& session, const Graphics& graphics, bool array,
-              const SwapchainDesc& desc, std::vector<Swapchain>& into) const;
+  void create_colours(const Session& session, const Graphics& graphics,
+                      const std::vector<ColourFormat>& formats, bool readable);
+  void create_depths(const Session& session, const Graphics& graphics,
+                     const std::vector<VkFormat>& formats);
+  bool create(const Session& session, const Graphics& graphics, const SwapchainDesc& desc,
+              std::vector<Swapchain>& into);
 
-  ColourFormat colour_format_;
+  ColourFormat colour_format_ = {};
   std::optional<VkFormat> depth_format_;
   std::array<EyeImage, kEyes> eyes_ = {};
   std::vector<Swapchain> colours_, depths_;
+  bool array_ = false;   // one swapchain, a layer an eye
+  std::string refusal_;  // why the last ones were not made
 };
 
 }  // namespace host

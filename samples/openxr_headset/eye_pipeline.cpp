@@ -20,7 +20,9 @@ VkAttachmentDescription attachment(VkFormat format, VkImageLayout layout) {
   description.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   description.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
   description.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-  description.initialLayout = description.finalLayout = layout;
+  // All is cleared: runtimes that hand out images in another layout are served too.
+  description.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  description.finalLayout = layout;
   return description;
 }
 

@@ -33,10 +33,13 @@ bool usable(const Graphics& graphics, const std::vector<int64_t>& offered, VkFor
 
 }  // namespace
 
-ColourFormat choose_colour(const Graphics& graphics, const std::vector<int64_t>& offered) {
+std::vector<ColourFormat> usable_colours(const Graphics& graphics,
+                                         const std::vector<int64_t>& offered) {
+  std::vector<ColourFormat> colours;
   for (const ColourFormat& colour : kColours)
     if (usable(graphics, offered, colour.format, VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BIT))
-      return colour;
+      colours.push_back(colour);
+  if (!colours.empty()) return colours;
   std::string found;
   for (const int64_t format : offered)
     found += (found.empty() ? "" : ", ") + std::to_string(format);
@@ -44,12 +47,12 @@ ColourFormat choose_colour(const Graphics& graphics, const std::vector<int64_t>&
                               " (VkFormat), expected a colour format of three channels or more");
 }
 
-std::optional<VkFormat> choose_depth(const Graphics& graphics,
-                                     const std::vector<int64_t>& offered) {
+std::vector<VkFormat> usable_depths(const Graphics& graphics, const std::vector<int64_t>& offered) {
+  std::vector<VkFormat> depths;
   for (const VkFormat format : kDepths)
     if (usable(graphics, offered, format, VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
-      return format;
-  return std::nullopt;
+      depths.push_back(format);
+  return depths;
 }
 
 VkImageAspectFlags depth_aspects(VkFormat format) {

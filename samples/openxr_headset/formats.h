@@ -1,7 +1,6 @@
 #pragma once
 // Which of a runtime's swapchain formats this program draws into. An _SRGB format holds code
 // values; to a compositor all others hold linear light.
-#include <optional>
 #include <vector>
 
 #include "graphics.h"
@@ -13,11 +12,13 @@ struct ColourFormat {
   const char* name;
 };
 
-// Of those that are offered, in any order: an _SRGB one of 8 bits, else a wide linear one, else
-// a linear one of 8 bits, whose darks have fewer steps. Throws Failure where none is known.
-ColourFormat choose_colour(const Graphics& graphics, const std::vector<int64_t>& offered);
-// The most precise; none where none is known.
-std::optional<VkFormat> choose_depth(const Graphics& graphics, const std::vector<int64_t>& offered);
+// Of those that are offered, in any order, the best first: _SRGB ones of 8 bits, then wide linear
+// ones, then linear ones of 8 bits, whose darks have fewer steps. Throws Failure where none is
+// known.
+std::vector<ColourFormat> usable_colours(const Graphics& graphics,
+                                         const std::vector<int64_t>& offered);
+// The most precise first; none where none is known.
+std::vector<VkFormat> usable_depths(const Graphics& graphics, const std::vector<int64_t>& offered);
 VkImageAspectFlags depth_aspects(VkFormat format);
 
 }  // namespace host

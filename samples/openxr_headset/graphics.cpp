@@ -4,6 +4,7 @@
 #include <voyager/voyager.hpp>
 
 #include "failure.h"
+#include "warn_once.h"
 
 namespace host {
 namespace {
@@ -27,7 +28,8 @@ XrGraphicsRequirementsVulkan2KHR requirements(const Runtime& runtime) {
   return needs;
 }
 
-// The lowest that both can do.
+// The lowest that both can do. The runtime's maximum is what it was tested with: whether it takes
+// more is seen where the instance is made.
 uint32_t agree(const Runtime& runtime, uint32_t voyager) {
   const XrGraphicsRequirementsVulkan2KHR needs = requirements(runtime);
   const uint32_t version = std::max(voyager, to_vulkan(needs.minApiVersionSupported));
@@ -36,8 +38,8 @@ uint32_t agree(const Runtime& runtime, uint32_t voyager) {
   if (VK_API_VERSION_MAJOR(version) > VK_API_VERSION_MAJOR(most) ||
       (VK_API_VERSION_MAJOR(version) == VK_API_VERSION_MAJOR(most) &&
        VK_API_VERSION_MINOR(version) > VK_API_VERSION_MINOR(most)))
-    throw Failure(kMachine, runtime.name() + ": found Vulkan " + text(most) +
-                                " at most, expected " + text(version));
+    warn_once(runtime.name() + ": found Vulkan " + text(most) + " tested at most, expected " +
+              text(version) + ": trying it");
   return version;
 }
 

@@ -9,11 +9,14 @@
 #include <thread>
 
 #include "ground.h"
+#include "interrupted.h"
 #include "mode_names.h"
 #include "visit.h"
 
 namespace host {
 namespace {
+
+constexpr std::chrono::milliseconds kAfterLoss(100);  // a runtime may lose session after session
 
 ExitStatus status_of(VoyResult result) {
   switch (result) {
@@ -74,19 +77,32 @@ bool visit(Journey& journey, Validations* validations) try {
       if (journey.finished() || interrupted) return true;
       std::fprintf(stderr, "%s: starting again\n", lost.what());
       journey.patience.check(lost.what());
+      std::this_thread::sleep_for(kAfterLoss);
       if (lost.kind() == Lost::instance || !runtime.find_headset_again()) return false;
     }
   }
 } catch (const Lost& lost) {
+  if (interrupted) return false;
   if (!journey.traveller) throw Failure(kMachine, lost.what());  // there never was one
   journey.patience.check(lost.what());
   return false;
 }
 
+// Of what was recorded before a failure, which is the one to be told.
+void save_cameras(const Journey& journey) noexcept try {
+  if (journey.recorder) journey.recorder->write_cameras();
+} catch (const std::exception&) {
+}
+
 void run(const Options& options, Validations* validations) {
   Journey journey(options);
-  while (!visit(journey, validations) && !interrupted)
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  try {
+    while (!visit(journey, validations) && !interrupted)
+      std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  } catch (...) {
+    save_cameras(journey);
+    throw;
+  }
   if (journey.recorder) journey.recorder->write_cameras();
   std::printf("%s; tau %g; %s\n", journey.statistics.summary().c_str(), journey.tau,
               journey.modes.c_str());

@@ -42,6 +42,10 @@ inline Pose from_xr(const XrPosef& p) {
               glm::dquat(p.orientation.w, p.orientation.x, p.orientation.y, p.orientation.z))};
 }
 
+inline XrVector3f to_xr(const glm::dvec3& p) {
+  return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
 inline Pose from_voyager(const VoyPose& p) {
   return {{p.position[0], p.position[1], p.position[2]},
           {p.orientation[3], p.orientation[0], p.orientation[1], p.orientation[2]}};

@@ -1,9 +1,10 @@
 #include "recorder.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <glm/mat3x3.hpp>
-#include <system_error>
+#include <vector>
 
 #include "failure.h"
 #include "files.h"
@@ -41,12 +42,28 @@ nlohmann::json to_json(const Camera& camera, uint64_t id, const std::string& nam
           {"cy", f.up * fy}};
 }
 
+// Exactly what picture_name makes, or cameras.json.
+bool is_recorded(const std::string& name) {
+  if (name == "cameras.json") return true;
+  const size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
+  const std::string rest = name.substr(digits);
+  return (digits == 4 || (digits > 4 && name[0] != '0')) && (rest == "_L.png" || rest == "_R.png");
+}
+
 }  // namespace
 
 Recorder::Recorder(std::string folder) : folder_(std::move(folder)) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) throw Failure(kMachine, folder_ + ": " + error.message());
+  namespace fs = std::filesystem;
+  try {
+    fs::create_directories(folder_);
+    std::vector<fs::path> old;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+      if (entry.is_regular_file() && is_recorded(entry.path().filename().string()))
+        old.push_back(entry.path());
+    for (const fs::path& path : old) fs::remove(path);
+  } catch (const fs::filesystem_error& error) {
+    throw Failure(kMachine, folder_ + ": " + error.code().message());
+  }
 }
 
 void Recorder::add(uint64_t frame, const std::array<Camera, kEyes>& eyes) {

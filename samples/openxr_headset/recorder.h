@@ -13,7 +13,8 @@ namespace host {
 
 class Recorder {
  public:
-  // Makes the folder.
+  // Makes the folder, and removes what an earlier recording left in it: cameras.json and pictures
+  // of such names, nothing else.
   explicit Recorder(std::string folder);
 
   // Its pictures may come later. A frame that was lost before it was shown is added again.

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <thread>
 
+#include "interrupted.h"
+
 namespace host {
 namespace {
 
@@ -20,13 +22,16 @@ std::string runtime_hint() {
          "; XR_LOADER_DEBUG=all tells what the loader tried";
 }
 
+Lost no_runtime(XrResult result) {
+  return {Lost::instance,
+          "found no OpenXR runtime (" + result_name(result) + "), expected one: " + runtime_hint()};
+}
+
 std::vector<XrExtensionProperties> list_extensions(const char* layer) {
   uint32_t count = 0;
   // Where there is no runtime, this is the first call to say so.
   const XrResult result = xrEnumerateInstanceExtensionProperties(layer, 0, &count, nullptr);
-  if (XR_FAILED(result))
-    throw Lost(Lost::instance, "found no OpenXR runtime (" + result_name(result) +
-                                   "), expected one: " + runtime_hint());
+  if (XR_FAILED(result)) throw no_runtime(result);
   return xr_list("xrEnumerateInstanceExtensionProperties",
                  xr_struct<XrExtensionProperties>(XR_TYPE_EXTENSION_PROPERTIES),
                  [&](uint32_t capacity, uint32_t* size, XrExtensionProperties* into) {
@@ -90,8 +95,8 @@ void Runtime::create(XrValidation* validation) {
   info.enabledExtensionNames = extensions.data();
   XrInstance instance = XR_NULL_HANDLE;
   const XrResult result = xrCreateInstance(&info, &instance);
-  if (XR_FAILED(result) && result != XR_ERROR_RUNTIME_UNAVAILABLE &&
-      result != XR_ERROR_INSTANCE_LOST)
+  if (result == XR_ERROR_RUNTIME_UNAVAILABLE) throw no_runtime(result);
+  if (XR_FAILED(result) && result != XR_ERROR_INSTANCE_LOST)
     throw Failure(kMachine, "xrCreateInstance: " + result_name(result) + ": " + runtime_hint());
   check(result, "xrCreateInstance");
   instance_ = UniqueXrInstance(instance);
@@ -106,6 +111,7 @@ void Runtime::find_headset() {
     std::fprintf(stderr, "%s: no headset yet, waiting for one\n", name_.c_str());
   while (result == XR_ERROR_FORM_FACTOR_UNAVAILABLE && std::chrono::steady_clock::now() < until) {
     std::this_thread::sleep_for(kPause);
+    if (interrupted) throw Lost(Lost::instance, "interrupted before there was a headset");
     result = xrGetSystem(instance_.get(), &info, &system_);
   }
   if (result == XR_ERROR_FORM_FACTOR_UNAVAILABLE || result == XR_ERROR_FORM_FACTOR_UNSUPPORTED)

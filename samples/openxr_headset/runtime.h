@@ -12,7 +12,8 @@ inline constexpr uint32_t kEyes = 2;
 
 class Runtime {
  public:
-  // validation may be NULL. Waits for a headset that is not there yet, 30 s at most.
+  // validation may be NULL. Waits for a headset that is not there yet, 30 s at most;
+  // throws Lost where that is interrupted.
   explicit Runtime(XrValidation* validation);
 
   XrInstance get() const { return instance_.get(); }

@@ -88,7 +88,7 @@ void Session::end_frame(XrTime display_time, const XrCompositionLayerProjection*
   check(xrEndFrame(get(), &info), "xrEndFrame");
 }
 
-std::optional<Views> Session::locate(XrTime display_time) const {
+std::optional<Located> Session::locate(XrTime display_time) const {
   XrViewLocateInfo info = xr_struct<XrViewLocateInfo>(XR_TYPE_VIEW_LOCATE_INFO);
   info.viewConfigurationType = kStereo;
   info.displayTime = display_time;
@@ -98,10 +98,9 @@ std::optional<Views> Session::locate(XrTime display_time) const {
   views.fill(xr_struct<XrView>(XR_TYPE_VIEW));
   uint32_t count = 0;
   check(xrLocateViews(get(), &info, &state, kEyes, &count, views.data()), "xrLocateViews");
-  constexpr XrViewStateFlags kValid =
-      XR_VIEW_STATE_ORIENTATION_VALID_BIT | XR_VIEW_STATE_POSITION_VALID_BIT;
-  if (count != kEyes || (state.viewStateFlags & kValid) != kValid) return std::nullopt;
-  return views;
+  if (count != kEyes || !(state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT))
+    return std::nullopt;
+  return Located{views, (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) != 0};
 }
 
 const char* state_name(XrSessionState state) {

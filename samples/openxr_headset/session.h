@@ -11,6 +11,11 @@ namespace host {
 // Both eyes at one time, in LOCAL space.
 using Views = std::array<XrView, kEyes>;
 
+struct Located {
+  Views views;
+  bool position_known;  // else the positions mean nothing
+};
+
 class Session {
  public:
   Session(const Runtime& runtime, const Graphics& graphics, const Input& input);
@@ -32,8 +37,8 @@ class Session {
   void begin_frame() const;
   // layer: NULL shows nothing.
   void end_frame(XrTime display_time, const XrCompositionLayerProjection* layer) const;
-  // None where the runtime does not know where the head is.
-  std::optional<Views> locate(XrTime display_time) const;
+  // None where the runtime does not know which way the head looks.
+  std::optional<Located> locate(XrTime display_time) const;
 
  private:
   const Runtime& runtime_;

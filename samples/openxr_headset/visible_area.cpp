@@ -1,5 +1,7 @@
 #include "visible_area.h"
 
+#include "warn_once.h"
+
 namespace host {
 namespace {
 
@@ -36,12 +38,22 @@ std::vector<XrVector2f> read_mask(const Runtime& runtime, XrSession session, uin
   return corners;
 }
 
+// An eye is as well shown whole: what goes wrong with a mask ends nothing.
+std::vector<XrVector2f> mask_or_whole(const Runtime& runtime, XrSession session, uint32_t eye) {
+  try {
+    return read_mask(runtime, session, eye);
+  } catch (const Failure& failure) {
+    warn_once(std::string(failure.what()) + ": whole images are drawn");
+    return {};
+  }
+}
+
 }  // namespace
 
 VisibleArea::VisibleArea(const Gpu& gpu) : VisibleArea(gpu, std::vector<XrVector2f>()) {}
 
 VisibleArea::VisibleArea(const Gpu& gpu, const Runtime& runtime, XrSession session, uint32_t eye)
-    : VisibleArea(gpu, read_mask(runtime, session, eye)) {}
+    : VisibleArea(gpu, mask_or_whole(runtime, session, eye)) {}
 
 VisibleArea::VisibleArea(const Gpu& gpu, const std::vector<XrVector2f>& mask)
     : whole_(mask.empty()),

@@ -16,7 +16,8 @@ class VisibleArea {
  public:
   // The whole image.
   explicit VisibleArea(const Gpu& gpu);
-  // What the runtime says of this eye; the whole where it says nothing.
+  // What the runtime says of this eye; the whole where it says nothing, or fails
+  // (told on standard error).
   VisibleArea(const Gpu& gpu, const Runtime& runtime, XrSession session, uint32_t eye);
 
   void record(VkCommandBuffer commands) const;

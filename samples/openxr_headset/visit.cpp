@@ -3,9 +3,10 @@
 #include <cmath>
 #include <thread>
 
-namespace host {
+#include "interrupted.h"
+#include "warn_once.h"
 
-volatile std::sig_atomic_t interrupted = 0;
+namespace host {
 
 namespace {
 
@@ -25,6 +26,15 @@ bool finite(const XrPosef& p) {
                                  std::hypot(p.orientation.z, p.orientation.w));
   return std::abs(size - 1) < 0.01 && std::isfinite(p.position.x) && std::isfinite(p.position.y) &&
          std::isfinite(p.position.z);
+}
+
+// As `to` looks, about the head's middle of `from`.
+Views turned(const Views& from, Views to) {
+  const Pose before = middle(from_xr(from[0].pose), from_xr(from[1].pose));
+  const Pose head = {before.position, middle(from_xr(to[0].pose), from_xr(to[1].pose)).orientation};
+  for (size_t i = 0; i < kEyes; ++i)
+    to[i].pose.position = to_xr((head * inverse(before) * from_xr(from[i].pose)).position);
+  return to;
 }
 
 }  // namespace
@@ -55,7 +65,7 @@ void Visit::run() try {
     leave_when_finished();
     if (session_.running()) {
       frame();
-    } else if (interrupted) {
+    } else if (interrupted || journey_.finished()) {
       break;  // there is nothing to leave
     } else {
       std::this_thread::sleep_for(kBetweenEvents);
@@ -70,6 +80,13 @@ void Visit::run() try {
 } catch (const Lost&) {
   renderer_.finish();
   throw;
+} catch (...) {
+  save_pictures();
+  throw;
+}
+
+// Of what was drawn before a failure, which is the one to be told.
+void Visit::save_pictures() noexcept try { renderer_.finish(); } catch (const std::exception&) {
 }
 
 void Visit::handle_events() {
@@ -83,6 +100,7 @@ void Visit::handle(const XrEventDataBuffer& event) {
       const uint64_t begun = session_.begun();
       session_.handle(as<XrEventDataSessionStateChanged>(event));
       if (session_.begun() != begun) journey_.statistics.begun();
+      if (session_.begun() != begun) leaving_ = false;  // this one was not asked to exit
       if (session_.begun() != begun && begun > 0) journey_.statistics.restarted();
       break;
     }
@@ -124,10 +142,7 @@ void Visit::frame() {
     views_.reset();  // they were in the old space
     recentre_at_.reset();
   }
-  if (const std::optional<Views> found = session_.locate(state.predictedDisplayTime)) {
-    if (finite((*found)[0].pose) && finite((*found)[1].pose)) views_ = found;
-  }
-  // Where the head is lost, the last that was known of it stays.
+  look(state.predictedDisplayTime);
   const std::optional<Views> views = views_;
   if (views) steer(state, *views);
   if (!leaving_ && state.shouldRender && views && draw(*views)) {
@@ -140,6 +155,17 @@ void Visit::frame() {
     session_.end_frame(state.predictedDisplayTime, nullptr);
     journey_.statistics.empty();
   }
+}
+
+// Where the head is lost, the last that was known of it stays.
+void Visit::look(XrTime display_time) {
+  std::optional<Located> found = session_.locate(display_time);
+  if (!found) return;
+  if (!found->position_known) {
+    if (!views_) return;
+    found->views = turned(*views_, found->views);
+  }
+  if (finite(found->views[0].pose) && finite(found->views[1].pose)) views_ = found->views;
 }
 
 void Visit::steer(const XrFrameState& state, const Views& views) {
@@ -164,8 +190,12 @@ std::optional<std::array<Camera, kEyes>> Visit::cameras(const Views& views) cons
     cameras[i].width = images_.eye(i).extent.width;
     cameras[i].height = images_.eye(i).extent.height;
     if (voyFovFromAngles(fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown,
-                         &cameras[i].frustum) != VOY_SUCCESS)
+                         &cameras[i].frustum) != VOY_SUCCESS) {
+      warn_once(
+          "xrLocateViews: found the angles of no frustum, expected left below right and down below "
+          "up: such frames stay empty");
       return std::nullopt;
+    }
   }
   return cameras;
 }

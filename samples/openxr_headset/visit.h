@@ -1,7 +1,5 @@
 #pragma once
 // One session from its making to its end: events, frames, what is shown in them.
-#include <csignal>
-
 #include "journey.h"
 #include "renderer.h"
 
@@ -20,8 +18,10 @@ class Visit {
   void handle_events();
   void handle(const XrEventDataBuffer& event);
   void read_visible_area(uint32_t eye);
+  void save_pictures() noexcept;
   void leave_when_finished();
   void frame();
+  void look(XrTime display_time);
   void steer(const XrFrameState& state, const Views& views);
   bool draw(const Views& views);
   std::optional<std::array<Camera, kEyes>> cameras(const Views& views) const;
@@ -38,8 +38,5 @@ class Visit {
   std::optional<XrTime> recentre_at_, steered_at_;
   bool leaving_ = false;
 };
-
-// Set by SIGINT and SIGTERM: leave as if the frames were done.
-extern volatile std::sig_atomic_t interrupted;
 
 }  // namespace host

@@ -18,8 +18,8 @@ UniqueImageView make_view(VkDevice device, VkImage image, const SwapchainDesc& d
 
 }  // namespace
 
-std::optional<Swapchain> Swapchain::create(XrSession session, const Graphics& graphics,
-                                           const SwapchainDesc& desc) {
+Swapchain::Swapchain(XrSession session, const Graphics& graphics, const SwapchainDesc& desc)
+    : extent_(desc.extent), layers_(desc.layers) {
   XrSwapchainCreateInfo info = xr_struct<XrSwapchainCreateInfo>(XR_TYPE_SWAPCHAIN_CREATE_INFO);
   info.usageFlags = desc.usage;
   info.format = desc.format;
@@ -30,16 +30,9 @@ std::optional<Swapchain> Swapchain::create(XrSession session, const Graphics& gr
   info.arraySize = desc.layers;
   info.mipCount = 1;
   XrSwapchain made = XR_NULL_HANDLE;
-  const XrResult result = xrCreateSwapchain(session, &info, &made);
-  if (result == XR_ERROR_FEATURE_UNSUPPORTED || result == XR_ERROR_SWAPCHAIN_FORMAT_UNSUPPORTED)
-    return std::nullopt;
-  check(result, "xrCreateSwapchain");
-  Swapchain swapchain;
-  swapchain.swapchain_ = UniqueXrSwapchain(made);
-  swapchain.extent_ = desc.extent;
-  swapchain.layers_ = desc.layers;
-  swapchain.list_images(graphics, desc);
-  return swapchain;
+  check(xrCreateSwapchain(session, &info, &made), "xrCreateSwapchain");
+  swapchain_ = UniqueXrSwapchain(made);
+  list_images(graphics, desc);
 }
 
 void Swapchain::list_images(const Graphics& graphics, const SwapchainDesc& desc) {

@@ -1,7 +1,5 @@
 #pragma once
 // One swapchain of the runtime's: its images, and whose they are at a time.
-#include <optional>
-
 #include "graphics.h"
 #include "unique.h"
 
@@ -17,9 +15,8 @@ struct SwapchainDesc {
 
 class Swapchain {
  public:
-  // Nothing where the runtime does not make such swapchains.
-  static std::optional<Swapchain> create(XrSession session, const Graphics& graphics,
-                                         const SwapchainDesc& desc);
+  // Throws Failure where the runtime does not make such swapchains, or Lost.
+  Swapchain(XrSession session, const Graphics& graphics, const SwapchainDesc& desc);
 
   XrSwapchain get() const { return swapchain_.get(); }
   VkExtent2D extent() const { return extent_; }
@@ -36,14 +33,13 @@ class Swapchain {
   VkImageView view(uint32_t layer) const { return views_[index_ * layers_ + layer].get(); }
 
  private:
-  Swapchain() = default;
   void list_images(const Graphics& graphics, const SwapchainDesc& desc);
 
   enum class State { released, acquired, ready };
 
   UniqueXrSwapchain swapchain_;
-  VkExtent2D extent_ = {0, 0};
-  uint32_t layers_ = 0, index_ = 0;
+  VkExtent2D extent_;
+  uint32_t layers_, index_ = 0;
   State state_ = State::released;
   std::vector<VkImage> images_;
   std::vector<UniqueImageView> views_;  // one a layer

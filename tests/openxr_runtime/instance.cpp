@@ -25,9 +25,18 @@ void start_run() {
   }
 }
 
+// A script that is refused is told of once, by xrCreateInstance.
+void try_run() {
+  try {
+    start_run();
+  } catch (const Refusal&) {
+    context().run.reset();
+  }
+}
+
 std::vector<std::string> offered() {
   std::vector<std::string> names = {XR_KHR_VULKAN_ENABLE2_EXTENSION_NAME};
-  const auto& optional = run().script.extensions;
+  const auto optional = context().run ? run().script.extensions : optional_extensions();
   names.insert(names.end(), optional.begin(), optional.end());
   return names;
 }
@@ -66,7 +75,7 @@ XrResult xrEnumerateInstanceExtensionProperties(const char* layer, uint32_t capa
                                                 XrExtensionProperties* properties) {
   return call(__func__, [&](auto&) {
     if (layer) refuse(XR_ERROR_API_LAYER_NOT_PRESENT, "layerName: the runtime is no layer");
-    if (!context().instance) start_run();
+    if (!context().instance) try_run();
     const auto names = offered();
     return enumerate(names.size(), capacity, count, properties, [&](size_t i, auto& item) {
       checked(&item, XR_TYPE_EXTENSION_PROPERTIES, "properties");

@@ -16,11 +16,15 @@ int64_t Run::frame(const char* function) const {
 }
 
 XrResult Run::failure(const char* function) {
-  for (Failure& failure : failures_)
-    if (failure.times > 0 && failure.call == function && frame(function) >= failure.frame) {
-      --failure.times;
-      return failure.result;
+  for (Failure& failure : failures_) {
+    if (failure.times == 0 || failure.call != function || frame(function) < failure.frame) continue;
+    if (failure.after > 0) {
+      --failure.after;
+      continue;
     }
+    --failure.times;
+    return failure.result;
+  }
   return XR_SUCCESS;
 }
 

@@ -1,6 +1,7 @@
 #include "script.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "extensions.h"
@@ -18,15 +19,18 @@ const std::vector<std::string> kFields = {"motion",
                                           "maximum",
                                           "formats",
                                           "extensions",
+                                          "vulkan",
                                           "hz",
                                           "period_ns",
                                           "realtime",
                                           "images",
                                           "image_order",
+                                          "image_layouts",
                                           "hidden_frames",
                                           "position_lost_frames",
                                           "tracking_lost_frames",
                                           "image_timeout_frames",
+                                          "flipped_frames",
                                           "patience_ms",
                                           "events",
                                           "input",
@@ -92,6 +96,17 @@ void read_extensions(const Reader& json, Script& script) {
   }
 }
 
+void read_vulkan(const Reader& json, Script& script) {
+  if (!json.has("vulkan")) return;
+  const auto numbers = json.numbers("vulkan", 4);
+  for (const double number : numbers)
+    if (number < 0 || number > 99 || number != std::floor(number))
+      json.refuse("vulkan", "[major, minor, major, minor] from 0 to 99");
+  const auto whole = [&](size_t i) { return static_cast<uint16_t>(numbers[i]); };
+  script.vulkan[0] = XR_MAKE_VERSION(whole(0), whole(1), 0);
+  script.vulkan[1] = XR_MAKE_VERSION(whole(2), whole(3), 0);
+}
+
 void read_timing(const Reader& json, Script& script) {
   if (json.has("hz") && json.has("period_ns")) json.refuse("hz", "no period_ns beside it");
   if (json.has("hz")) script.period = static_cast<int64_t>(1e9 / json.number("hz", 1, 1000));
@@ -102,6 +117,7 @@ void read_timing(const Reader& json, Script& script) {
 
 void read_images(const Reader& json, Script& script) {
   if (json.has("images")) script.images = json.whole("images", 1, 8);
+  if (json.has("image_layouts")) script.image_layouts = json.truth("image_layouts");
   if (!json.has("image_order")) return;
   const std::string order = json.text("image_order");
   if (order == "descending")
@@ -154,12 +170,14 @@ Script read_script(const std::string& path) {
   read_sizes(json, script);
   read_formats(json, script);
   read_extensions(json, script);
+  read_vulkan(json, script);
   read_timing(json, script);
   read_images(json, script);
   read_ranges(json, "hidden_frames", script.hidden);
   read_ranges(json, "position_lost_frames", script.position_lost);
   read_ranges(json, "tracking_lost_frames", script.tracking_lost);
   read_ranges(json, "image_timeout_frames", script.image_timeouts);
+  read_ranges(json, "flipped_frames", script.flipped);
   read_ranges(json, "capture_frames", script.capture);
   script.events = read_events(json);
   script.inputs = read_inputs(json);

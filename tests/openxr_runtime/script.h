@@ -20,7 +20,7 @@ bool contains(const Ranges& ranges, int64_t frame);
 struct Event {
   int64_t frame;
   std::string what;
-  int64_t amount = 0;  // restart_polls, frames or periods, as `what` needs
+  int64_t amount = 0;  // restart_polls (-1: never), frames or periods, as `what` needs
   Pose recentred;      // of the new LOCAL in the first one
 };
 
@@ -32,6 +32,7 @@ struct Input {
 struct Failure {
   std::string call;
   int64_t frame;
+  int64_t after;  // calls that are let through
   int64_t times;
   XrResult result;
 };
@@ -48,10 +49,12 @@ struct Script {
   std::vector<std::string> extensions;
   int64_t period = 1000000000 / 72;  // nanoseconds
   bool realtime = false;
-  int64_t images = 3;  // of a swapchain
+  XrVersion vulkan[2] = {XR_MAKE_VERSION(1, 0, 0), XR_MAKE_VERSION(1, 4, 0)};  // least, most
+  int64_t images = 3;                                                          // of a swapchain
   ImageOrder image_order = ImageOrder::ascending;
+  bool image_layouts = true;  // as OpenXR promises
   Ranges hidden = {{0, 3}};
-  Ranges position_lost, tracking_lost, image_timeouts;
+  Ranges position_lost, tracking_lost, image_timeouts, flipped;
   int64_t patience = 2000;  // milliseconds that a second xrWaitFrame waits
   std::vector<Event> events;
   std::vector<Input> inputs;

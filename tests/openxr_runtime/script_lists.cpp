@@ -31,6 +31,11 @@ void sort_by_frame(std::vector<Item>& items) {
                    [](const Item& a, const Item& b) { return a.frame < b.frame; });
 }
 
+int64_t read_amount(const Reader& json, const EventKind& kind) {
+  const bool never = kind.what == std::string("stop") && json.field(kind.amount).is_null();
+  return never ? -1 : json.whole(kind.amount, 0, 1000);
+}
+
 Event read_event(const Reader& json) {
   Event event;
   event.frame = json.whole("frame", 0, kLast);
@@ -41,8 +46,8 @@ Event read_event(const Reader& json) {
     if (event.what != kind.what) continue;
     std::vector<std::string> fields = {"frame", "do"};
     if (kind.amount) fields.push_back(kind.amount);
-    event.amount =
-        kind.amount && json.has(kind.amount) ? json.whole(kind.amount, 0, 1000) : kind.usual;
+    event.amount = kind.usual;
+    if (kind.amount && json.has(kind.amount)) event.amount = read_amount(json, kind);
     if (event.what == "recentre") {
       fields.insert(fields.end(), {"position", "orientation"});
       event.recentred = read_pose(json);
@@ -84,11 +89,12 @@ XrResult read_result(const Reader& json) {
 }
 
 Failure read_failure(const Reader& json) {
-  json.only({"call", "frame", "times", "result"});
+  json.only({"call", "frame", "after", "times", "result"});
   Failure failure;
   failure.call = json.text("call");
   if (!is_function(failure.call)) json.refuse("call", "the name of a function of this runtime");
   failure.frame = json.has("frame") ? json.whole("frame", 0, kLast) : 0;
+  failure.after = json.has("after") ? json.whole("after", 0, kLast) : 0;
   failure.times = json.has("times") ? json.whole("times", 1, kLast) : 1;
   failure.result = read_result(json);
   return failure;

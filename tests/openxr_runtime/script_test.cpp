@@ -39,6 +39,9 @@ constexpr BadScript kBad[] = {
      "recommended: found an array of 2, expected no more"},
     {"Format", R"({"formats": ["RGB"]})",
      "formats: found an array of 1, expected an array of R8G8B8A8"},
+    {"Vulkan", R"({"vulkan": [1, 0, 1, 0.5]})", "vulkan: found an array of 4, expected [major"},
+    {"Amount", R"({"events": [{"frame": 1, "do": "late", "periods": null}]})",
+     "events[0]: periods: found null"},
     {"Extension", R"({"extensions": ["XR_KHR_no"]})", "extensions: found an array of 1"},
     {"Ranges", R"({"hidden_frames": [[1]]})",
      "hidden_frames: found an array of 1, expected an array"},
@@ -73,6 +76,7 @@ TEST_P(BadScripts, AreRefusedByName) {
   EXPECT_LT(result, 0);
   EXPECT_NE(said.find(GetParam().message), std::string::npos) << said;
   EXPECT_NE(said.find("script.json"), std::string::npos) << said;
+  EXPECT_EQ(said.find("voyager_test_runtime: "), said.rfind("voyager_test_runtime: ")) << said;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, BadScripts, ::testing::ValuesIn(kBad),

@@ -6,15 +6,17 @@ namespace test_runtime {
 namespace {
 
 VkImageUsageFlags usage_of(const XrSwapchainCreateInfo& info, const Format& format) {
-  // The runtime reads it back, and promises an attachment's layout.
-  VkImageUsageFlags usage =
-      VK_IMAGE_USAGE_TRANSFER_SRC_BIT | (format.depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
-                                                      : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT);
+  // No more than was asked for, but for what the runtime itself does: it promises an attachment's
+  // layout, and reads back what is captured.
+  VkImageUsageFlags usage = format.depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
+                                         : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  if (!run().script.output.empty()) usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
   const std::pair<XrSwapchainUsageFlags, VkImageUsageFlags> pairs[] = {
       {XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT},
       {XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
        VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT},
       {XR_SWAPCHAIN_USAGE_UNORDERED_ACCESS_BIT, VK_IMAGE_USAGE_STORAGE_BIT},
+      {XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_USAGE_TRANSFER_SRC_BIT},
       {XR_SWAPCHAIN_USAGE_TRANSFER_DST_BIT, VK_IMAGE_USAGE_TRANSFER_DST_BIT},
       {XR_SWAPCHAIN_USAGE_SAMPLED_BIT, VK_IMAGE_USAGE_SAMPLED_BIT}};
   for (const auto& [xr, vk] : pairs)
@@ -99,7 +101,7 @@ VkImageAspectFlags Swapchain::aspect() const {
 }
 
 void Swapchain::initialise(SwapchainImage& image) const {
-  if (image.initialised) return;
+  if (image.initialised || !run().script.image_layouts) return;
   session.device.submit([&](VkCommandBuffer commands) {
     const VkImageMemoryBarrier barrier = {
         VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,

@@ -28,7 +28,14 @@ const Format& check_create_info(const XrSwapchainCreateInfo& info) {
   expect(info.mipCount >= 1, "mipCount: expected at least 1");
   if (info.faceCount != 1 || info.sampleCount != 1 || info.arraySize > 2)
     refuse(XR_ERROR_FEATURE_UNSUPPORTED, "one face, one sample, at most two layers are supported");
-  return *find_format(info.format);
+  const Format& format = *find_format(info.format);
+  const XrSwapchainUsageFlags attachment = format.depth
+                                               ? XR_SWAPCHAIN_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
+                                               : XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT;
+  if (!(info.usageFlags & attachment))
+    remark("usageFlags: found no attachment of " + std::string(format.name) +
+           ", which an image must be left as");
+  return format;
 }
 
 }  // namespace

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "spaces.h"
 
 using namespace test_runtime;
@@ -19,6 +21,8 @@ XrResult xrLocateViews(XrSession handle, const XrViewLocateInfo* info, XrViewSta
       checked(&view, XR_TYPE_VIEW, "views");
       view.pose = to_xr(base.in_root.inverse() * head.eyes[eye].pose);
       view.fov = head.eyes[eye].fov();
+      if (contains(run().script.flipped, run().frame()))
+        std::swap(view.fov.angleUp, view.fov.angleDown);
       // Where nothing is known, an application must not use what it finds.
       if (!(state->viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT)) view.pose.position = {};
       if (!(state->viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT))

@@ -63,8 +63,8 @@ XrResult xrGetVulkanGraphicsRequirements2KHR(XrInstance handle, XrSystemId syste
     Instance& instance = find_instance(handle);
     check_system(system);
     checked(requirements, XR_TYPE_GRAPHICS_REQUIREMENTS_VULKAN_KHR, "graphicsRequirements");
-    requirements->minApiVersionSupported = XR_MAKE_VERSION(1, 0, 0);
-    requirements->maxApiVersionSupported = XR_MAKE_VERSION(1, 4, 0);
+    requirements->minApiVersionSupported = run().script.vulkan[0];
+    requirements->maxApiVersionSupported = run().script.vulkan[1];
     instance.requirements_asked = true;
     return XR_SUCCESS;
   });
