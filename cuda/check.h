@@ -5,7 +5,8 @@
 namespace voyager::cuda {
 
 // Throws Error: over_budget for want of device memory, no_device where there is no
-// usable device, device_lost where its context can do nothing any more, else internal; the message has `what` and CUDA's own words.
+// usable device, device_lost where its context can do nothing any more, else internal; the message
+// has `what` and CUDA's own words.
 void check(cudaError_t status, const char* what);
 
 }  // namespace voyager::cuda
