@@ -58,8 +58,9 @@ HandleTable::~HandleTable() {
       slot.object.reset();
   }
   // Here nobody destroys them, and a leak checker still finds them.
-  alignas(decltype(slots_)) static std::byte stay[sizeof slots_];
-  if (left) new (stay) decltype(slots_)(std::move(slots_));
+  using Slots = decltype(slots_);
+  alignas(Slots) static std::byte stay[sizeof(Slots)];
+  if (left) new (stay) Slots(std::move(slots_));
 }
 
 size_t HandleTable::find(const void* handle, Kind kind) const {
