@@ -178,7 +178,7 @@ unsigned bin_blocks(unsigned multiprocessors) {
 
 void launch_bin(const SplatFrame& f) {
   uint32_t most = 0;  // tiles of an eye
-  for (uint32_t eye = 0; eye < f.eyes; ++eye)
+  for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
     most = std::max(most, f.splats.frame.first[eye + 1] - f.splats.frame.first[eye]);
   const dim3 blocks(bin_blocks(f.multiprocessors), (most + kBandTiles - 1) / kBandTiles);
   bin_count<<<blocks, kBinThreads, 0, f.stream>>>(f.splats);

@@ -31,8 +31,9 @@ void FrameImage::resolve(const Image& image, FrameStats& stats) const {
     copy(image.color, image.color_pitch, color_.data(), image.width * pixel_bytes(image.format));
   if (image.depth != nullptr)
     copy(image.depth, image.depth_pitch, depth_.data(), image.width * sizeof(float));
-  stats.milliseconds[kResolve] = stage.milliseconds();
-  stats.total_milliseconds += stats.milliseconds[kResolve];
+  const double milliseconds = stage.milliseconds();
+  stats.milliseconds[kResolve] += milliseconds;
+  stats.total_milliseconds += milliseconds;
 }
 
 }  // namespace voyager::cuda

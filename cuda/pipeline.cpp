@@ -105,7 +105,6 @@ void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work
 
 SplatFrame SplatPipeline::work(const FrameTiles& tiles) const {
   SplatFrame work{};
-  work.eyes = desc_.eyes;
   work.splats = splats_.view(tiles);
   work.multiprocessors = device_->multiprocessors();
   work.stream = stream_.get();
@@ -296,8 +295,9 @@ void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const 
 // is left out, and a Gaussian is read once for all eyes, which see about the same ones.
 void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) const {
   const SplatCounters& counted = report.counters();
-  const uint64_t offsets =
-      uint64_t{report.tiles.count()} * bin_blocks(device_->multiprocessors()) * sizeof(uint32_t);
+  // A block of bin has one eye's.
+  const uint64_t offsets = uint64_t{report.tiles.count()} * bin_blocks(device_->multiprocessors()) *
+                           sizeof(uint32_t) / desc_.eyes;
   const uint64_t pairs = counted.pairs;
   uint64_t candidates = 0;
   for (const InstanceCounters& instance : counted.instances) candidates += instance.candidates;

@@ -85,13 +85,6 @@ __device__ SplatRecord record_of(const Splat& s, float log_scale) {
           s.depth, s.t, s.colour.x,  s.colour.y,  s.colour.z,   s.inverse_k};
 }
 
-// The item as another eye reads it: a compiler that sees that it is the same would keep its
-// coefficients in registers from eye to eye, which costs more than it saves.
-__device__ DrawItem read_again(DrawItem item) {
-  asm volatile("" : "+r"(item.gaussian), "+r"(item.parent));
-  return item;
-}
-
 template <class Sh, bool kLod, int kEyes>
 __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
     project_splats(SplatFrame f, bool boxes) {
@@ -119,7 +112,7 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
         for (int eye = 0; eye < kEyes; ++eye) {
           Splat splat;
           const ProjectParams& params = f.params[eye];
-          if (!project(params, arrays, read_again(item), drawn, splat)) continue;
+          if (!project(params, arrays, item, drawn, splat)) continue;
           const SplatRecord record = record_of(splat, params.log_scale);
           f.splats.records[rank * kEyes + eye] = record;
           extent[eye] =
@@ -179,7 +172,7 @@ void launch_for(const SplatFrame& f, bool boxes) {
 bool launch_project(const SplatFrame& frame, bool alpha_filter) {
   if (frame.draws.list.room == 0) return false;
   static_assert(kMaxEyes == 2);
-  if (frame.eyes == 1)
+  if (frame.splats.frame.eyes == 1)
     launch_for<1>(frame, !alpha_filter);
   else
     launch_for<2>(frame, !alpha_filter);

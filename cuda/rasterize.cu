@@ -227,7 +227,7 @@ void launch(const SplatFrame& f, const RasterParams& params) {
 template <Exponential E, bool kFilter>
 void launch_for(const SplatFrame& f, bool siblings, const RasterParams& params) {
   bool depth = false, limits = false;
-  for (uint32_t eye = 0; eye < f.eyes; ++eye) {
+  for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye) {
     depth = depth || params.eyes[eye].target.has_depth();
     limits = limits || params.eyes[eye].limits.values != nullptr;
   }
@@ -254,7 +254,7 @@ void launch_for(const SplatFrame& f, const RasterChoices& choices, const RasterP
 
 void launch_rasterize(const SplatFrame& f, const RasterChoices& choices, const RasterEye* eyes) {
   RasterParams params{f.splats, {}, choices.lut, choices.lut_size};
-  std::copy_n(eyes, f.eyes, params.eyes);
+  std::copy_n(eyes, f.splats.frame.eyes, params.eyes);
   switch (choices.exponential) {
     case Exponential::exact:
       launch_for<Exponential::exact>(f, choices, params);

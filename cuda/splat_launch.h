@@ -24,7 +24,6 @@ struct SplatFrame {
   GaussianView gaussians;
   DrawView draws;
   ProjectParams params[kMaxEyes];
-  uint32_t eyes;
   SplatView splats;
   unsigned multiprocessors;
   cudaStream_t stream;
