@@ -5,33 +5,19 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <new>
 #include <thread>
 
 #include "ground.h"
 #include "interrupted.h"
 #include "mode_names.h"
+#include "outcome.h"
 #include "visit.h"
 
 namespace host {
 namespace {
 
+constexpr char kProgram[] = "openxr_headset";
 constexpr std::chrono::milliseconds kAfterLoss(100);  // a runtime may lose session after session
-
-ExitStatus status_of(VoyResult result) {
-  switch (result) {
-    case VOY_ERROR_INVALID_ARGUMENT:
-    case VOY_ERROR_UNSUPPORTED:
-      return kBadUsage;
-    case VOY_ERROR_FILE_NOT_FOUND:
-    case VOY_ERROR_REFUSED_INPUT:
-      return kRefusedInput;
-    case VOY_ERROR_DAMAGED_CHUNK:
-      return kDamagedChunk;
-    default:
-      return kMachine;
-  }
-}
 
 struct Validations {
   Validation vulkan;
@@ -108,42 +94,23 @@ void run(const Options& options, Validations* validations) {
               journey.modes.c_str());
 }
 
-int fail(int status, const std::string& message) noexcept {
-  std::fputs(("openxr_headset: " + message + "\n").c_str(), stderr);
-  return status;
-}
-
-int run_and_report(const Options& options, Validations* validations) {
-  try {
-    run(options, validations);
-    return kSuccess;
-  } catch (const Failure& failure) {
-    return fail(failure.status(), failure.what());
-  } catch (const voy::Error& error) {
-    return fail(status_of(error.result()), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(kMachine, "out of memory");
-  } catch (const std::exception& error) {
-    return fail(kMachine, error.what());
-  }
-}
-
 int parse_and_run(int argc, char** argv) {
   std::optional<Options> options;
   try {
     options = parse_options(argc, argv);
     if (!options) return kSuccess;  // --help
   } catch (const CLI::ParseError& error) {
-    return fail(kBadUsage, std::string(error.what()) + " (see --help)");
+    return fail(kProgram, kBadUsage, std::string(error.what()) + " (see --help)");
   }
   std::optional<Validations> validations;
   if (options->validation) validations.emplace();
-  const int status = run_and_report(*options, validations ? &*validations : nullptr);
+  const int status =
+      outcome_of(kProgram, [&] { run(*options, validations ? &*validations : nullptr); });
   // Counted once all is destroyed.
   const uint64_t messages =
       validations ? validations->vulkan.messages() + validations->xr.messages() : 0;
   if (status == kSuccess && messages > 0)
-    return fail(kBadUsage, std::to_string(messages) + " validation messages");
+    return fail(kProgram, kBadUsage, std::to_string(messages) + " validation messages");
   return status;
 }
 

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
-#include <new>
 #include <optional>
 
 #include "camera_file.h"
@@ -14,28 +13,15 @@
 #include "mode_names.h"
 #include "offscreen.h"
 #include "options.h"
+#include "outcome.h"
 #include "placement.h"
 #include "window_loop.h"
 
 namespace host {
 namespace {
 
+constexpr char kProgram[] = "vulkan_host";
 constexpr double kNear = 0.2;  // metres, as `voyager render` has it
-
-ExitStatus status_of(VoyResult result) {
-  switch (result) {
-    case VOY_ERROR_INVALID_ARGUMENT:
-    case VOY_ERROR_UNSUPPORTED:
-      return kBadUsage;
-    case VOY_ERROR_FILE_NOT_FOUND:
-    case VOY_ERROR_REFUSED_INPUT:
-      return kRefusedInput;
-    case VOY_ERROR_DAMAGED_CHUNK:
-      return kDamagedChunk;
-    default:
-      return kMachine;
-  }
-}
 
 DepthConvention convention(VoyDepthEncoding encoding) {
   if (encoding == VOY_DEPTH_ENCODING_REVERSED)
@@ -109,39 +95,21 @@ void run(const Options& options, Validation* validation) {
   log.write(device, voyager);
 }
 
-int fail(int status, const std::string& message) noexcept {
-  std::fputs(("vulkan_host: " + message + "\n").c_str(), stderr);
-  return status;
-}
-
-int run_and_report(const Options& options, Validation* validation) {
-  try {
-    run(options, validation);
-    return kSuccess;
-  } catch (const Failure& failure) {
-    return fail(failure.status(), failure.what());
-  } catch (const voy::Error& error) {
-    return fail(status_of(error.result()), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(kMachine, "out of memory");
-  } catch (const std::exception& error) {
-    return fail(kMachine, error.what());
-  }
-}
-
 int parse_and_run(int argc, char** argv) {
   std::optional<Options> options;
   try {
     options = parse_options(argc, argv);
     if (!options) return kSuccess;  // --help
   } catch (const CLI::ParseError& error) {
-    return fail(kBadUsage, std::string(error.what()) + " (see --help)");
+    return fail(kProgram, kBadUsage, std::string(error.what()) + " (see --help)");
   }
   Validation validation;
-  const int status = run_and_report(*options, options->validation ? &validation : nullptr);
+  const int status =
+      outcome_of(kProgram, [&] { run(*options, options->validation ? &validation : nullptr); });
   // Counted once all is destroyed.
   if (status == kSuccess && validation.messages() > 0)
-    return fail(kBadUsage, std::to_string(validation.messages()) + " validation messages");
+    return fail(kProgram, kBadUsage,
+                std::to_string(validation.messages()) + " validation messages");
   return status;
 }
 
