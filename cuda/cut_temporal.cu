@@ -90,7 +90,7 @@ __device__ void signal_changes(const TreeView& tree, const StateView& state, con
     const uint32_t slot = __ffs(left) - 1;
     if (slot % kGroupLanes != lane_in_group()) continue;
     const uint32_t record = record_of(s, slot);
-    const uint32_t first = tree.opens[record], last = tree.opens[record + 1];
+    const uint32_t first = tree.opens[record].first, last = tree.opens[record].last;
     if (first != last) send_signals(state, first, last, refined >> slot & 1 ? 0 : kClose);
   }
 }

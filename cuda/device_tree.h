@@ -10,7 +10,7 @@ namespace voyager::cuda {
 struct TreeView {
   const SearchSubtree* subtrees;
   const SearchRecord* records;
-  const uint32_t* opens;
+  const SubtreeSpan* opens;
   const SearchChunk* chunks;
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
   uint32_t subtree_count, chunk_count;
@@ -22,7 +22,7 @@ class DeviceTree {
   DeviceTree(const SearchTree& search, const LodTree& tree)
       : subtrees_(upload(std::span<const SearchSubtree>(search.subtrees))),
         records_(upload(std::span<const SearchRecord>(search.records))),
-        opens_(upload(std::span<const uint32_t>(search.opens))),
+        opens_(upload(std::span<const SubtreeSpan>(search.opens))),
         chunks_(upload(std::span<const SearchChunk>(search.chunks))) {
     if (search.leaves_have_extent) leaves_ = upload(std::span<const NodeRecord>(tree.records));
   }
@@ -40,7 +40,7 @@ class DeviceTree {
  private:
   Buffer<SearchSubtree> subtrees_;
   Buffer<SearchRecord> records_;
-  Buffer<uint32_t> opens_;
+  Buffer<SubtreeSpan> opens_;
   Buffer<SearchChunk> chunks_;
   Buffer<NodeRecord> leaves_;
 };

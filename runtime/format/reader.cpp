@@ -65,7 +65,18 @@ std::vector<NodeRange> SceneFile::nodes_of(uint32_t index) const {
   return nodes_between(tiers(), chunks_.at(index).place, place_after(index));
 }
 
+std::vector<std::byte> SceneFile::read_stored(uint32_t first, uint32_t last) const {
+  const ChunkEntry &from = chunks_.at(first), &to = chunks_.at(last - 1);
+  std::vector<std::byte> bytes(to.offset + to.bytes - from.offset);
+  source_->read(from.offset, bytes);
+  return bytes;
+}
+
 Chunk SceneFile::read_chunk(uint32_t index) const {
+  return decode(index, read_stored(index, index + 1));
+}
+
+Chunk SceneFile::decode(uint32_t index, std::span<const std::byte> stored) const {
   const ChunkEntry& entry = chunks_.at(index);
   const ChunkContext context{
       info_.quality,
@@ -74,9 +85,7 @@ Chunk SceneFile::read_chunk(uint32_t index) const {
       {info_.source_origin[0], info_.source_origin[1], info_.source_origin[2]},
       info_.leaf_count,
       tiers()};
-  std::vector<std::byte> bytes(entry.bytes);
-  source_->read(entry.offset, bytes);
-  return decode_chunk(bytes, {name(), index, entry, place_after(index)}, context);
+  return decode_chunk(stored, {name(), index, entry, place_after(index)}, context);
 }
 
 }  // namespace voyager

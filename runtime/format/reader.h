@@ -51,6 +51,11 @@ class SceneFile {
   // file, chunk, offset, found, expected. Thread-safe.
   Chunk read_chunk(uint32_t index) const;
 
+  // The stored bytes of consecutive chunks, in one read. Throws as the source does. Thread-safe.
+  std::vector<std::byte> read_stored(uint32_t first, uint32_t last) const;
+  // Checks and decodes one chunk from its stored bytes, as read_chunk() does. Thread-safe.
+  Chunk decode(uint32_t index, std::span<const std::byte> stored) const;
+
   static bool is_scene_file(std::span<const std::byte> first_bytes);
 
  private:

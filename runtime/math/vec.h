@@ -10,6 +10,7 @@ struct Vec3 {
   T x, y, z;
   VOYAGER_HD T& operator[](int i) { return (&x)[i]; }
   VOYAGER_HD const T& operator[](int i) const { return (&x)[i]; }
+  bool operator==(const Vec3&) const = default;
 };
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;

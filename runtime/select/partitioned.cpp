@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 #include "runtime/select/partitioned_blocks.h"
 
@@ -13,8 +14,8 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
       refined_(memory),
       cut_slots_(memory),
       last_cut_slots_(memory),
+      stand_ins_(memory),
       work_(memory),
-      signalled_(memory),
       signals_(memory),
       blocks_(memory),
       tier_block_(memory),
@@ -27,15 +28,17 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
   cut_slots_.resize(count);
   last_cut_slots_.resize(count);
   work_.resize(count);
-  signalled_.resize(count);
+  if (tree.chunks_come_and_go) stand_ins_.resize(count);
   for (uint32_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier) {
     tier_block_.push_back(static_cast<uint32_t>(blocks_.size()));
     const uint32_t end = tree.tier_begin[tier + 1];
     for (uint32_t s = tree.tier_begin[tier]; s < end; s += kBlockSubtrees)
-      blocks_.push_back({s, std::min(end, s + kBlockSubtrees), tier, 0, {}, {}});
+      blocks_.push_back({s, std::min(end, s + kBlockSubtrees), tier, 0, 0, {}, {}});
   }
   touched_.resize(blocks_.size());
-  signals_.resize(std::max(blocks_.size(), count / kRoundSubtrees + 1));
+  const size_t runs = std::max(blocks_.size(), count / kRoundSubtrees + 1);
+  signals_.reserve(runs);
+  for (size_t i = 0; i < runs; ++i) signals_.emplace_back(memory);
   chunk_stamp_.resize(tree.chunk_count());
 }
 
@@ -43,7 +46,11 @@ void PartitionedSearch::run(const CutQuery& query, Search kind, Workers& workers
   assert(kind != Search::exhaustive);
   stats_ = {};
   stats_.ran = kind;
-  if (known_ && query == query_ && kind == Search::temporal) return;
+  if (known_ && query == query_ && kind == Search::temporal && !relinked_) {
+    stats_.stand_ins = count_stand_ins();
+    relisted_ = false;
+    return;
+  }
   begin(query);
   if (continues_ && kind != Search::streaming)
     repair(kind, workers);
@@ -55,6 +62,7 @@ void PartitionedSearch::run(const CutQuery& query, Search kind, Workers& workers
 void PartitionedSearch::begin(const CutQuery& query) {
   continues_ = known_;
   known_ = false;
+  relisted_ = std::exchange(relinked_, false) || !continues_;
   if (!continues_) references_.clear();
   query_ = query;
   references_.begin_frame(query);
@@ -73,13 +81,15 @@ void PartitionedSearch::finish(Workers& workers) {
       if (touched_[b] != 0) settle(b, tally);
     count(tally);
   });
-  if (!continues_ || total_.entered + total_.left != 0) list_cut(workers);
+  relisted_ = relisted_ || total_.entered + total_.left != 0;
+  if (relisted_) list_cut(workers);
   stats_.nodes_tested = total_.tested;
   stats_.subtrees_visited = total_.visited;
   stats_.chunks_read = total_.chunks;
   stats_.bytes_read = total_.bytes;
   stats_.entered = total_.entered;
   stats_.left = total_.left;
+  stats_.stand_ins = count_stand_ins();
   needed_missing_ = total_.needed_missing;
   known_ = needed_missing_ == kNoNode;
 }
@@ -140,6 +150,7 @@ uint32_t PartitionedSearch::look(uint32_t subtree, Tally& tally) {
   const uint32_t before = refined_[subtree];
   refined_[subtree] = found.refined;
   cut_slots_[subtree] = found.cut;
+  if (!stand_ins_.empty()) stand_ins_[subtree] = found.stand_ins;
   watch_[subtree] = make_watch(found.slack, found.extent, references_.current());
   return (before ^ found.refined) & s.interior;
 }
@@ -147,7 +158,26 @@ uint32_t PartitionedSearch::look(uint32_t subtree, Tally& tally) {
 void PartitionedSearch::close(uint32_t subtree) {
   refined_[subtree] = 0;
   cut_slots_[subtree] = 0;
+  if (!stand_ins_.empty()) stand_ins_[subtree] = 0;
   watch_[subtree] = kNever;
+}
+
+uint64_t PartitionedSearch::count_stand_ins() const {
+  uint64_t nodes = 0;
+  for (const Block& block : blocks_) nodes += block.stand_ins;
+  return nodes;
+}
+
+void PartitionedSearch::relink(std::span<const uint32_t> unlinked,
+                               std::span<const uint32_t> changed) {
+  relinked_ = true;
+  if (!known_) return;
+  for (const uint32_t s : unlinked) {
+    close(s);
+    touch(block_of(s));
+  }
+  for (const uint32_t s : changed)
+    if (refined_[s] != 0) watch_[s] = kDue;
 }
 
 }  // namespace voyager

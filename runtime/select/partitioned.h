@@ -17,10 +17,11 @@
 namespace voyager {
 
 // One view's cut of one tree, kept from run to run. Not thread-safe; the work is
-// spread over `workers`, and no result depends on their number. Takes 32 bytes a
-// subtree when made, and 4 a node of the largest cut that it has seen, from the given
-// resource; once such a cut was seen a run allocates nothing. Throws only
-// std::bad_alloc; the next run then starts from nothing, and is right.
+// spread over `workers`, and no result depends on their number. Takes 24 bytes a
+// subtree when made (28 where chunks come and go), and from the given resource 4 a node
+// of the largest cut and 4 a subtree of the largest change that it has seen; once they
+// were seen a run allocates nothing. Throws only std::bad_alloc; the next run then starts
+// from nothing, and is right.
 class PartitionedSearch {
  public:
   // Consecutive subtrees of one tier. Their cut nodes are in cut() in three pieces:
@@ -29,6 +30,7 @@ class PartitionedSearch {
     uint32_t first, last;  // subtrees [first, last)
     uint32_t tier;
     uint32_t open;                 // subtrees
+    uint32_t stand_ins;            // nodes
     std::array<uint32_t, 3> size;  // of each piece, nodes
     std::array<uint32_t, 3> at;    // where each piece starts in cut()
   };
@@ -41,11 +43,16 @@ class PartitionedSearch {
   void run(const CutQuery& query, Search kind, Workers& workers);
   // The next run starts from nothing.
   void forget() { known_ = false; }
+  // Between two runs the tree has changed: nothing leads to the subtrees of `unlinked` now,
+  // and those of `changed` have a record that is blocked, or no longer is.
+  void relink(std::span<const uint32_t> unlinked, std::span<const uint32_t> changed);
 
   // Results of the last run, valid until the next.
   // Node ids, ascending. Where needed_missing() is a node, what is below it and its
   // siblings is left out.
   const std::pmr::vector<uint32_t>& cut() const { return cut_; }
+  // False: cut() is what the run before left.
+  bool relisted() const { return relisted_; }
   const SearchStats& stats() const { return stats_; }
   // The first of the missing subtrees that this cut needs, and its root: the smallest
   // of their roots. kNoNode if the cut is whole.
@@ -74,6 +81,7 @@ class PartitionedSearch {
   void read_chunk_of(uint32_t subtree, uint32_t& chunk, Tally& tally);
   uint32_t look(uint32_t subtree, Tally& tally);
   void close(uint32_t subtree);
+  uint64_t count_stand_ins() const;
 
   // streaming.cpp
   void stream(Workers& workers);
@@ -92,7 +100,6 @@ class PartitionedSearch {
   void visit_opened(Workers& workers);
   void visit_round(size_t begin, size_t end);
   uint32_t gather_opened(size_t lists);
-  uint32_t first_below(uint32_t subtree) const;
 
   // settle.cpp
   void settle(size_t index, Tally& tally);
@@ -105,20 +112,22 @@ class PartitionedSearch {
   CutQuery query_{};
   bool known_ = false;      // the state below is that of a whole run at query_
   bool continues_ = false;  // and was so before the run in progress
+  bool relinked_ = false;   // since then
+  bool relisted_ = false;
 
   // By subtree. A closed one: kNever, 0, 0.
   std::pmr::vector<Watch> watch_;
   std::pmr::vector<uint32_t> refined_;    // bits of slots, and kOpen
   std::pmr::vector<uint32_t> cut_slots_;  // bits of slots
   std::pmr::vector<uint32_t> last_cut_slots_;
-  // Scratch by subtree: subtrees that are due, by block, then those just opened; and
-  // what a run of subtrees opened (from the front) and closed (from the back), in the
-  // place of all that hang below it.
-  std::pmr::vector<uint32_t> work_, signalled_;
+  std::pmr::vector<uint32_t> stand_ins_;  // bits of slots; empty where no record is ever blocked
+  // Scratch by subtree: subtrees that are due, by block, then those just opened.
+  std::pmr::vector<uint32_t> work_;
+  // Of a run of subtrees: how many of work_ it visits, and what they opened and closed.
   struct Signals {
-    uint32_t first;   // place in signalled_
-    uint32_t visits;  // from work_
-    uint32_t opened, closed;
+    explicit Signals(std::pmr::memory_resource* memory) : opened(memory), closed(memory) {}
+    uint32_t visits = 0;
+    std::pmr::vector<uint32_t> opened, closed;
   };
   std::pmr::vector<Signals> signals_;  // by block, then by run of work_
   std::pmr::vector<Block> blocks_;

@@ -21,5 +21,6 @@ inline constexpr double kStreamingShare = 0.85;
 
 inline constexpr uint32_t kNoChunk = 0xffffffffu;
 inline constexpr Watch kNever{INFINITY, 0};  // of a subtree that is closed
+inline constexpr Watch kDue{-1, 0};  // of one that is to be visited, however little has moved
 
 }  // namespace voyager

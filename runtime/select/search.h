@@ -21,6 +21,7 @@ struct SearchStats {
   uint64_t chunks_read = 0;        // that hold a visited subtree; exhaustive: 0
   uint64_t bytes_read = 0;         // of search records, subtree tables, chunk hulls and kept state
   uint64_t entered = 0, left = 0;  // nodes, against the run before
+  uint64_t stand_ins = 0;          // cut nodes of size ≥ τ* whose children are not there
 };
 
 }  // namespace voyager

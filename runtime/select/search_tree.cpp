@@ -5,16 +5,13 @@
 #include <bit>
 #include <limits>
 
+#include "runtime/select/search_records.h"
 #include "runtime/select/set_bits.h"
 
 namespace voyager {
 namespace {
 
 constexpr size_t kBlock = 1024;  // subtrees
-
-uint32_t slot_bits(uint32_t first, uint32_t count) {
-  return ((1u << count) - 1u) << first;
-}
 
 class Builder {
  public:
@@ -36,7 +33,6 @@ class Builder {
       for (size_t s = begin; s < end; ++s) fill_records(static_cast<uint32_t>(s));
     });
     for (size_t tier = 0; tier + 1 < out_.tier_begin.size(); ++tier) link(tier);
-    out_.opens.back() = static_cast<uint32_t>(count);
     set_chunks(workers);
   }
 
@@ -50,18 +46,14 @@ class Builder {
     SearchSubtree& to = out_.subtrees[s];
     to = {from.root, from.first_child, from.first_grandchild, from.child_count, 0, 0, 0, kNoRecord};
     if (is_missing(s)) return;
-    const uint32_t nodes = from.node_count();
-    to.owned = slot_bits(0, nodes);
-    if (from.repeats_root) to.owned &= ~1u;
-    if (from.repeats_child) to.owned &= ~2u;
+    const auto record = [&](uint32_t slot) -> auto& {
+      return tree_.records[from.node(slot)];
+    };
+    to.owned = owned_slots(from);
+    to.interior = interior_slots(from, record);
     bool extent = false;
-    for (uint32_t slot = 0; slot < nodes; ++slot) {
-      const NodeRecord& r = tree_.records[from.node(slot)];
-      if (r.child_count != 0)
-        to.interior |= 1u << slot;
-      else
-        extent |= r.extent != 0.0f;
-    }
+    for (uint32_t slot = 0; slot < from.node_count(); ++slot)
+      extent |= (to.interior >> slot & 1) == 0 && record(slot).extent != 0.0f;
     if (extent) leaves_have_extent_.store(true, std::memory_order_relaxed);
   }
 
@@ -113,27 +105,16 @@ class Builder {
       records += subtree.missing() ? 1 : count_bits(subtree.interior);
     }
     out_.records.resize(records);
-    out_.opens.resize(size_t{records} + 1);
+    out_.opens.resize(records);
   }
 
   void fill_records(uint32_t s) {
-    const SearchSubtree& subtree = out_.subtrees[s];
-    const uint32_t levels = levels_of(s);
-    const bool child_in_runs = subtree.child_count == 1;
-    const uint32_t nodes = subtree.missing() ? 0 : partition_.subtrees[s].node_count();
-    uint32_t record = subtree.first_record, grandchild = 1 + subtree.child_count;
-    for (uint32_t slot = 0; slot < nodes; ++slot) {
-      const NodeRecord& from = tree_.records[subtree.node(slot)];
-      if (from.child_count == 0) continue;
-      uint32_t children = 0;
-      if (slot == 0 && levels > 1) children = slot_bits(1, subtree.child_count);
-      if (slot > 0 && slot <= subtree.child_count && levels > 2) {
-        const uint32_t count = child_in_runs ? nodes - 2 : from.child_count;
-        children = slot_bits(grandchild, count);
-        grandchild += count;
-      }
-      out_.records[record++] = {from.box_min, from.extent, from.box_max, children};
-    }
+    if (out_.subtrees[s].missing()) return;
+    const Subtree& subtree = partition_.subtrees[s];
+    fill_search_records(
+        subtree,
+        levels_of(s), [&](uint32_t slot) -> auto& { return tree_.records[subtree.node(slot)]; },
+        &out_.records[out_.subtrees[s].first_record]);
   }
 
   // The roots of the next tier, in order, are the children of this tier's lowest
@@ -145,25 +126,24 @@ class Builder {
     for (uint32_t s = out_.tier_begin[tier]; s < out_.tier_begin[tier + 1]; ++s) {
       const SearchSubtree& subtree = out_.subtrees[s];
       uint32_t record = subtree.first_record;
-      if (subtree.missing()) out_.opens[record] = next;
       for (uint32_t left = subtree.interior; left != 0; left &= left - 1, ++record) {
         const auto slot = static_cast<uint32_t>(std::countr_zero(left));
         const bool lowest = slot_is_lowest(s, slot);
         const uint32_t node = subtree.node(slot);
         const uint32_t first = tree_.first_child[node];
         while (lowest && next < end && out_.subtrees[next].root < first) ++next;
-        out_.opens[record] = next;
+        out_.opens[record].first = out_.opens[record].last = next;
         if (!lowest) continue;
         const uint32_t after = first + tree_.records[node].child_count;
         for (; next < end && out_.subtrees[next].root < after; ++next)
           out_.subtrees[next].entry = record;
+        out_.opens[record].last = next;
       }
     }
   }
 
   bool slot_is_lowest(uint32_t s, uint32_t slot) const {
-    const uint32_t level = slot == 0 ? 0 : slot <= out_.subtrees[s].child_count ? 1 : 2;
-    return level + 1 == levels_of(s);
+    return is_lowest(slot, out_.subtrees[s].child_count, levels_of(s));
   }
 
   void set_chunks(Workers& workers) {

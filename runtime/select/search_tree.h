@@ -15,15 +15,26 @@
 namespace voyager {
 
 inline constexpr uint32_t kNoRecord = 0xffffffffu;
+// In the place of an entry: nothing leads to the subtree now (runtime/stream/linker.h).
+inline constexpr uint32_t kNotLinked = 0xfffffffeu;
+
+// Alone in SearchRecord::children: the subtrees below are not there, so that the node
+// stands in for them, however large it is.
+inline constexpr uint32_t kBlocked = 0x80000000u;
 
 // An interior node in its subtree.
 struct SearchRecord {
   Vec3f box_min;
   float extent;
   Vec3f box_max;
-  uint32_t children;  // the slots of its children; 0 on the lowest level of a tier
+  uint32_t children;  // the slots of its children; 0, or kBlocked, on the lowest level of a tier
 };
 static_assert(sizeof(SearchRecord) == 32);
+
+// Subtrees [first, last).
+struct SubtreeSpan {
+  uint32_t first, last;
+};
 
 // Slots are those of Subtree. Record first_record + k is that of the k-th slot in `interior`.
 struct SearchSubtree {
@@ -66,16 +77,17 @@ struct SearchTree {
   size_t chunk_count() const { return chunks.empty() ? 0 : chunks.size() - 1; }
   uint64_t bytes() const {
     return subtrees.size() * sizeof(SearchSubtree) + records.size() * sizeof(SearchRecord) +
-           opens.size() * sizeof(uint32_t) + chunks.size() * sizeof(SearchChunk);
+           opens.size() * sizeof(SubtreeSpan) + chunks.size() * sizeof(SearchChunk);
   }
 
   std::pmr::vector<SearchSubtree> subtrees;
   std::pmr::vector<SearchRecord> records;
-  // Subtrees [opens[r], opens[r + 1]) have children of record r as their roots.
-  std::pmr::vector<uint32_t> opens;
+  // By record: the subtrees that have its children as their roots. Of a blocked one: no matter.
+  std::pmr::vector<SubtreeSpan> opens;
   std::pmr::vector<SearchChunk> chunks;   // and one with the end as its first subtree
   std::pmr::vector<uint32_t> tier_begin;  // first subtree of each tier, and the end
   bool leaves_have_extent = false;        // else a leaf's size is 0 wherever its weight matters
+  bool chunks_come_and_go = false;  // records may be blocked, and the tree changes between runs
 };
 
 // Subtrees [first, last), whose chunk is damaged.

@@ -12,9 +12,11 @@ void PartitionedSearch::settle(size_t index, Tally& tally) {
   touched_[index] = 0;
   block.open = 0;
   block.size = {};
+  block.stand_ins = 0;
   for (uint32_t s = block.first; s < block.last; ++s) {
     const uint32_t now = cut_slots_[s], before = last_cut_slots_[s];
     block.open += refined_[s] != 0;
+    if (!stand_ins_.empty()) block.stand_ins += count_bits(stand_ins_[s]);
     if (now != before) {
       tally.entered += count_bits(now & ~before);
       tally.left += count_bits(before & ~now);

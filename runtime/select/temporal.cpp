@@ -1,12 +1,19 @@
 // From the last cut: what may have changed is visited, then what that opens.
 #include <algorithm>
-#include <numeric>
 
 #include "runtime/select/partitioned.h"
 #include "runtime/select/partitioned_blocks.h"
 #include "runtime/select/signal.h"
 
 namespace voyager {
+namespace {
+
+// Subtrees [first, last).
+void append(std::pmr::vector<uint32_t>& list, uint32_t first, uint32_t last) {
+  for (uint32_t s = first; s < last; ++s) list.push_back(s);
+}
+
+}  // namespace
 
 void PartitionedSearch::repair(Search kind, Workers& workers) {
   const uint64_t due = list_due(kind, workers);
@@ -30,7 +37,7 @@ uint64_t PartitionedSearch::list_due(Search kind, Workers& workers) {
         for (uint32_t s = block.first; s < block.last; ++s)
           if (all ? refined_[s] != 0 : due(watch_[s], travel) && !renew(s)) work_[out++] = s;
       }
-      signals_[b] = {block.first, out - block.first, 0, 0};
+      signals_[b].visits = out - block.first;
     }
     count(tally);
   });
@@ -55,12 +62,6 @@ bool PartitionedSearch::streaming_is_cheaper(uint64_t due) const {
   return static_cast<double>(due) > kStreamingShare * static_cast<double>(open);
 }
 
-// What hangs below consecutive subtrees is consecutive too.
-uint32_t PartitionedSearch::first_below(uint32_t subtree) const {
-  return subtree == tree_.subtrees.size() ? tree_.opens.back()
-                                          : tree_.opens[tree_.subtrees[subtree].first_record];
-}
-
 void PartitionedSearch::visit_due(Workers& workers) {
   workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
     Tally tally;
@@ -68,27 +69,18 @@ void PartitionedSearch::visit_due(Workers& workers) {
     for (size_t b = begin; b < end; ++b) {
       const Block& block = blocks_[b];
       Signals& signals = signals_[b];
+      signals.opened.clear(), signals.closed.clear();
       if (signals.visits == 0) continue;
       touch(b);
-      uint32_t opened = first_below(block.first), closed = first_below(block.last);
-      signals = {opened, signals.visits, 0, 0};
       for (uint32_t i = 0; i < signals.visits; ++i) {
         const uint32_t s = work_[block.first + i];
         read_chunk_of(s, chunk, tally);
         const uint32_t flipped = look(s, tally);
         signal_below(
             tree_, s, flipped, refined_[s],
-            [&](uint32_t from, uint32_t to) {
-              std::iota(&signalled_[opened], &signalled_[opened] + (to - from), from);
-              opened += to - from;
-            },
-            [&](uint32_t from, uint32_t to) {
-              closed -= to - from;
-              std::iota(&signalled_[closed], &signalled_[closed] + (to - from), from);
-            });
+            [&](uint32_t from, uint32_t to) { append(signals.opened, from, to); },
+            [&](uint32_t from, uint32_t to) { append(signals.closed, from, to); });
       }
-      signals.opened = opened - signals.first;
-      signals.closed = first_below(block.last) - closed;
     }
     count(tally);
   });
@@ -98,13 +90,11 @@ void PartitionedSearch::visit_due(Workers& workers) {
 // verdicts fell as well, so they were due themselves and told their own.
 void PartitionedSearch::close_signalled(Workers& workers) {
   workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
-    for (size_t b = begin; b < end; ++b) {
-      const uint32_t last = first_below(blocks_[b].last);
-      for (uint32_t i = last - signals_[b].closed; i < last; ++i) {
-        close(signalled_[i]);
-        touch(block_of(signalled_[i]));
+    for (size_t b = begin; b < end; ++b)
+      for (const uint32_t s : signals_[b].closed) {
+        close(s);
+        touch(block_of(s));
       }
-    }
   });
 }
 
@@ -120,8 +110,8 @@ void PartitionedSearch::visit_opened(Workers& workers) {
 void PartitionedSearch::visit_round(size_t begin, size_t end) {
   Tally tally;
   uint32_t chunk = kNoChunk;
-  const uint32_t first = first_below(work_[begin]);
-  uint32_t opened = first;
+  std::pmr::vector<uint32_t>& opened = signals_[begin / kRoundSubtrees].opened;
+  opened.clear();
   for (size_t i = begin; i < end; ++i) {
     const uint32_t s = work_[i];
     if (tree_.subtrees[s].missing()) {
@@ -133,13 +123,8 @@ void PartitionedSearch::visit_round(size_t begin, size_t end) {
     const uint32_t flipped = look(s, tally);
     signal_below(
         tree_, s, flipped, refined_[s],
-        [&](uint32_t from, uint32_t to) {
-          std::iota(&signalled_[opened], &signalled_[opened] + (to - from), from);
-          opened += to - from;
-        },
-        [](uint32_t, uint32_t) {});
+        [&](uint32_t from, uint32_t to) { append(opened, from, to); }, [](uint32_t, uint32_t) {});
   }
-  signals_[begin / kRoundSubtrees] = {first, 0, opened - first, 0};
   count(tally);
 }
 
@@ -147,9 +132,9 @@ void PartitionedSearch::visit_round(size_t begin, size_t end) {
 uint32_t PartitionedSearch::gather_opened(size_t lists) {
   uint32_t gathered = 0;
   for (size_t i = 0; i < lists; ++i) {
-    const auto from = signalled_.begin() + static_cast<std::ptrdiff_t>(signals_[i].first);
-    std::copy_n(from, signals_[i].opened, work_.begin() + gathered);
-    gathered += signals_[i].opened;
+    const auto& opened = signals_[i].opened;
+    std::copy(opened.begin(), opened.end(), work_.begin() + gathered);
+    gathered += static_cast<uint32_t>(opened.size());
   }
   return gathered;
 }

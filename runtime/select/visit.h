@@ -49,6 +49,7 @@ inline constexpr uint32_t kOpen = 0x80000000u;  // beside the bits of refined sl
 struct Visit {
   uint32_t refined = kOpen;
   uint32_t cut = 0;        // slots in the cut
+  uint32_t stand_ins = 0;  // those of them that would be refined if their children were there
   float slack = INFINITY;  // least over the nodes that decide; +inf where none does
   float extent = 0.0f;     // greatest over the same nodes
   uint32_t tested = 0;
@@ -69,6 +70,10 @@ inline Visit visit(const SearchTree& tree, const SearchSubtree& subtree, const S
     v.slack = verdict.slack < v.slack ? verdict.slack : v.slack;
     v.extent = r.extent > v.extent ? r.extent : v.extent;
     if (!verdict.refined) continue;
+    if (r.children == kBlocked) {
+      v.stand_ins |= slot;
+      continue;
+    }
     v.refined |= slot;
     reached |= r.children;
   }

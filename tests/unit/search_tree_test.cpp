@@ -69,7 +69,7 @@ TEST(SearchTree, LeadsToEveryChild) {
         for (uint32_t slots = cut.search.records[record].children & s.owned; slots != 0;
              slots &= slots - 1)
           ++reached[s.node(static_cast<uint32_t>(std::countr_zero(slots)))];
-        for (uint32_t i = cut.search.opens[record]; i < cut.search.opens[record + 1]; ++i) {
+        for (uint32_t i = cut.search.opens[record].first; i < cut.search.opens[record].last; ++i) {
           ASSERT_EQ(cut.search.subtrees[i].entry, record);
           ASSERT_EQ(cut.tree.parent[cut.search.subtrees[i].root], node);
           reached[cut.search.subtrees[i].root] += cut.search.subtrees[i].owned & 1;

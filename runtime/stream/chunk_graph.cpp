@@ -1,0 +1,77 @@
+#include "runtime/stream/chunk_graph.h"
+
+#include <algorithm>
+
+namespace voyager {
+
+ChunkGraph::ChunkGraph(std::span<const ChunkEntry> chunks, const Tiers& tiers)
+    : chunks_(chunks), tiers_(tiers), parents_(chunks.size()), children_(chunks.size()) {
+  for (uint32_t chunk = 0; chunk < size(); ++chunk) {
+    const uint32_t last = last_root(chunk);
+    const uint32_t first = std::max(first_root(chunk), 1u);
+    const uint32_t begin = last == 0 ? chunk : owner_of_parent(first);
+    const uint32_t end = last == 0 ? chunk : std::min(chunk, owner_of_parent(last) + 1);
+    parents_[chunk] = {std::min(begin, end), end};
+    const uint32_t below = chunks_[chunk].place.next[3], after = place_after(chunk).next[3];
+    const ChunkRange range =
+        below == after ? ChunkRange{chunk + 1, chunk + 1} : with_roots(below, after - below);
+    const uint32_t least = std::max(range.first, chunk + 1);
+    children_[chunk] = {least, std::max(least, range.last)};
+  }
+}
+
+SubtreePlace ChunkGraph::place_after(uint32_t chunk) const {
+  return chunk + 1 < size() ? chunks_[chunk + 1].place : SubtreePlace::end_of(tiers_);
+}
+
+uint32_t ChunkGraph::tier_of(uint32_t subtree) const {
+  const auto& begin = tiers_.tier_begin;
+  return static_cast<uint32_t>(std::upper_bound(begin.begin(), begin.end(), subtree) -
+                               begin.begin() - 1);
+}
+
+// Repeated or not.
+uint32_t ChunkGraph::first_root(uint32_t chunk) const {
+  const SubtreePlace& place = chunks_[chunk].place;
+  return place.next[0] - (place.listed_children != 0 ? 1 : 0);
+}
+
+uint32_t ChunkGraph::last_root(uint32_t chunk) const {
+  const ChunkEntry& entry = chunks_[chunk];
+  const uint32_t tier = tier_of(entry.first_subtree + entry.subtree_count - 1);
+  if (chunk + 1 < size() && tier_of(chunks_[chunk + 1].first_subtree) == tier)
+    return place_after(chunk).next[0] - 1;
+  const uint32_t level = tier == 0 ? 0 : tiers_.first_tier_levels + (tier - 1) * kTierLevels;
+  return tiers_.level_begin[level + 1] - 1;
+}
+
+// next[3] ascends over all chunks; a chunk that nothing hangs from has its successor's.
+uint32_t ChunkGraph::owner_of_parent(uint32_t root) const {
+  const auto after =
+      std::upper_bound(chunks_.begin(), chunks_.end(), root,
+                       [](uint32_t r, const ChunkEntry& c) { return r < c.place.next[3]; });
+  return after == chunks_.begin() ? 0 : static_cast<uint32_t>(after - chunks_.begin() - 1);
+}
+
+ChunkRange ChunkGraph::with_roots(uint32_t first, uint32_t count) const {
+  uint32_t low = 0, high = size();
+  while (low < high) {
+    const uint32_t middle = (low + high) / 2;
+    if (last_root(middle) < first)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  const uint32_t begin = low;
+  high = size();
+  while (low < high) {
+    const uint32_t middle = (low + high) / 2;
+    if (first_root(middle) < first + count)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return {begin, low};
+}
+
+}  // namespace voyager

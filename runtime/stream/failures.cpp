@@ -1,0 +1,72 @@
+#include "runtime/stream/failures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace voyager {
+namespace {
+
+// A message without its numbers: offsets and counts differ where the cause is the same.
+std::string cause_of(const std::string& message) {
+  std::string cause;
+  std::copy_if(message.begin(), message.end(), std::back_inserter(cause),
+               [](char c) { return c < '0' || c > '9'; });
+  return cause;
+}
+
+}  // namespace
+
+void Failures::add(uint32_t chunk, const Error& error, double now) {
+  ++count_;
+  Failed& failed = failed_[chunk];
+  failed.code = error.code();
+  failed.message = error.what();
+  ++failed.times;
+  failed.again = error.code() == ErrorCode::io ||
+                 (error.code() == ErrorCode::damaged_chunk && failed.times == 1);
+  const double wait =
+      std::min(kLongestWait,
+               kFirstWait * std::ldexp(1.0, static_cast<int>(std::min(failed.times - 1, 16u))));
+  failed.due = failed.again ? now + wait : -1;
+  if (told_.insert(cause_of(failed.message)).second) messages_.push_back(failed.message);
+}
+
+std::vector<uint32_t> Failures::take_due(double now) {
+  std::vector<uint32_t> due;
+  for (auto& [chunk, failed] : failed_) {
+    if (failed.due < 0 || failed.due > now) continue;
+    failed.due = -1;
+    due.push_back(chunk);
+  }
+  return due;
+}
+
+double Failures::next_due(double now) const {
+  double next = -1;
+  for (const auto& [chunk, failed] : failed_)
+    if (failed.due >= 0) {
+      const double wait = std::max(0.0, failed.due - now);
+      next = next < 0 ? wait : std::min(next, wait);
+    }
+  return next;
+}
+
+bool Failures::is_hopeless(uint32_t chunk) const {
+  const auto found = failed_.find(chunk);
+  return found != failed_.end() && (!found->second.again || found->second.times >= kPatience);
+}
+
+void Failures::rethrow(uint32_t chunk) const {
+  const auto found = failed_.find(chunk);
+  if (found == failed_.end())
+    throw Error(ErrorCode::internal, "chunk " + std::to_string(chunk) + ": failed for no reason");
+  throw Error(found->second.code, found->second.message);
+}
+
+std::vector<std::string> Failures::take_messages() {
+  return std::exchange(messages_, {});
+}
+
+}  // namespace voyager

@@ -1,0 +1,209 @@
+#include "runtime/stream/linker.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace voyager {
+namespace {
+
+// Addresses of a family's nodes, from one of its subtrees to the next: a node that is repeated
+// is where its owner has it.
+class Addresses {
+ public:
+  explicit Addresses(SlotShape shape) : shape_(shape) {}
+
+  SearchSubtree of(const LinkTable& table, uint32_t index, uint32_t entry) {
+    const StagedSubtree& s = table.subtrees[index];
+    uint32_t node = table.slot * shape_.nodes + s.first_node;
+    if (!s.ids.repeats_root) root_ = node++;
+    if (s.ids.child_count != 0 && !s.ids.repeats_child) {
+      first_child_ = node;
+      node += s.ids.child_count;
+    }
+    return {root_,
+            first_child_,
+            node,
+            s.ids.child_count,
+            table.slot * shape_.records + s.first_record,
+            s.interior,
+            s.owned,
+            entry};
+  }
+
+ private:
+  SlotShape shape_;
+  uint32_t root_ = 0, first_child_ = 0;
+};
+
+// Of what the chunk could not know by itself.
+void add_parents(const StagedSubtree& from, const SearchSubtree& subtree, uint32_t parent,
+                 LinkPatch& patch) {
+  if (!from.ids.repeats_root) patch.parents.push_back({subtree.root, parent});
+  if (from.ids.repeats_root && !from.ids.repeats_child)
+    for (uint32_t i = 0; i < from.ids.child_count; ++i)
+      patch.parents.push_back({subtree.first_child + i, subtree.root});
+  if (from.ids.repeats_child)
+    for (uint32_t i = 0; i < from.ids.grandchild_count; ++i)
+      patch.parents.push_back({subtree.first_grandchild + i, subtree.first_child});
+}
+
+// The node that a root hangs from.
+uint32_t find_below(const std::vector<NodeBelow>& below, uint32_t root) {
+  const auto after =
+      std::upper_bound(below.begin(), below.end(), root,
+                       [](uint32_t r, const NodeBelow& node) { return r < node.first_child; });
+  return static_cast<uint32_t>(after - below.begin() - 1);
+}
+
+}  // namespace
+
+Linker::Linker(const ChunkGraph& graph, SlotShape shape)
+    : graph_(graph), shape_(shape), tables_(graph.size()) {}
+
+Linker::Family Linker::family_of(uint32_t root) const {
+  const uint32_t chunk = graph_.owner_of_parent(root);
+  return {chunk, find_below(tables_[chunk]->below, root)};
+}
+
+bool Linker::complete(const NodeBelow& node) const {
+  const ChunkRange range = graph_.with_roots(node.first_child, node.child_count);
+  for (uint32_t chunk = range.first; chunk < range.last; ++chunk)
+    if (!holds(chunk)) return false;
+  return true;
+}
+
+template <class Visit>
+void Linker::each_subtree(const NodeBelow& node, const Visit& visit) const {
+  const ChunkRange range = graph_.with_roots(node.first_child, node.child_count);
+  for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
+    if (!holds(chunk)) continue;
+    LinkTable& table = *tables_[chunk];
+    const auto& all = table.subtrees;
+    // Roots ascend in a tier, and those of a later tier are greater.
+    auto s = std::lower_bound(
+        all.begin(), all.end(), node.first_child,
+        [](const StagedSubtree& subtree, uint32_t root) { return subtree.ids.root < root; });
+    for (; s != all.end() && s->ids.root - node.first_child < node.child_count; ++s)
+      visit(table, static_cast<uint32_t>(s - all.begin()));
+  }
+}
+
+// Those that the chunk's subtrees belong to, each once.
+template <class Work>
+void Linker::each_family_of(const LinkTable& table, const Work& work) const {
+  uint32_t done = 0;  // roots before this
+  for (const StagedSubtree& s : table.subtrees) {
+    if (s.ids.root == 0 || s.ids.root < done) continue;
+    const Family family = family_of(s.ids.root);
+    done = below_of(family).first_child + below_of(family).child_count;
+    work(family);
+  }
+}
+
+void Linker::add_below(const LinkTable& table, uint32_t subtree, std::vector<Family>& out) const {
+  const uint32_t end = subtree + 1 < table.subtrees.size()
+                           ? table.subtrees[subtree + 1].first_below
+                           : static_cast<uint32_t>(table.below.size());
+  for (uint32_t below = table.subtrees[subtree].first_below; below < end; ++below)
+    out.push_back({table.chunk, below});
+}
+
+void Linker::check(const StagedChunk& chunk, const std::string& file) const {
+  const LinkTable& own = chunk.links;
+  const auto& subtrees = own.subtrees;
+  for (size_t i = 0; i < subtrees.size(); ++i) {
+    const uint32_t root = subtrees[i].ids.root;
+    if (root == 0) continue;
+    const uint32_t owner = graph_.owner_of_parent(root);
+    const auto& below = owner == own.chunk ? own.below : tables_[owner]->below;
+    const NodeBelow& parent = below[find_below(below, root)];
+    if (!is_inside(chunk.roots[i], parent.box)) refuse_nesting(own.chunk, root, file);
+  }
+  const auto check_repeat = [&](const Subtree& repeats, const LinkTable& before,
+                                const LinkTable& after) {
+    if (repeats.repeats_root && !is_same(before.last_root, after.first_root))
+      refuse_repeat(own.chunk, repeats.root, file);
+    if (repeats.repeats_child && !is_same(before.last_child, after.first_child))
+      refuse_repeat(own.chunk, repeats.first_child, file);
+  };
+  if (own.chunk > 0 && holds(own.chunk - 1))
+    check_repeat(subtrees[0].ids, *tables_[own.chunk - 1], own);
+  if (own.chunk + 1 < graph_.size() && holds(own.chunk + 1))
+    check_repeat(tables_[own.chunk + 1]->subtrees[0].ids, own, *tables_[own.chunk + 1]);
+}
+
+void Linker::arrive(LinkTable&& table, LinkPatch& patch) {
+  const uint32_t chunk = table.chunk;
+  tables_[chunk] = std::make_unique<LinkTable>(std::move(table));
+  LinkTable& own = *tables_[chunk];
+  for (uint32_t i = 0; i < own.subtrees.size() && own.subtrees[i].ids.root == 0; ++i)
+    link_root(own, i, patch);
+  each_family_of(own, [&](const Family& family) { link(family, patch); });
+}
+
+// A subtree of the tree's root. Runs of it are in chunks that are never evicted and come in
+// order, so that the first of them has the node itself.
+void Linker::link_root(LinkTable& table, uint32_t subtree, LinkPatch& patch) {
+  Addresses addresses(shape_);
+  SearchSubtree linked{};
+  for (uint32_t chunk = 0; chunk <= table.chunk; ++chunk) {
+    const uint32_t end =
+        chunk == table.chunk ? subtree + 1 : static_cast<uint32_t>(tables_[chunk]->subtrees.size());
+    for (uint32_t i = 0; i < end; ++i) linked = addresses.of(*tables_[chunk], i, kNoRecord);
+  }
+  table.subtrees[subtree].linked = true;
+  add_parents(table.subtrees[subtree], linked, kNoNode, patch);
+  patch.linked.emplace_back(table.first_subtree + subtree, linked);
+}
+
+void Linker::link(Family first, LinkPatch& patch) {
+  work_.assign(1, first);
+  while (!work_.empty()) {
+    const Family family = work_.back();
+    work_.pop_back();
+    LinkTable& table = *tables_[family.chunk];
+    NodeBelow& node = table.below[family.below];
+    if (node.linked || !table.subtrees[node.subtree].linked || !complete(node)) continue;
+    node.linked = true;
+    const uint32_t record = table.slot * shape_.records + node.record;
+    const uint32_t parent = table.slot * shape_.nodes + node.node;
+    Addresses addresses(shape_);
+    SubtreeSpan span{kNoNode, 0};
+    each_subtree(node, [&](LinkTable& of, uint32_t i) {
+      const uint32_t subtree = of.first_subtree + i;
+      span = {std::min(span.first, subtree), subtree + 1};
+      const SearchSubtree linked = addresses.of(of, i, record);
+      of.subtrees[i].linked = true;
+      add_parents(of.subtrees[i], linked, parent, patch);
+      patch.linked.emplace_back(subtree, linked);
+      add_below(of, i, work_);
+    });
+    patch.tied.records.push_back({record, 0, span});
+    patch.tied.changed.push_back(table.first_subtree + node.subtree);
+  }
+}
+
+void Linker::unlink(Family first, LinkPatch& patch) {
+  work_.assign(1, first);
+  while (!work_.empty()) {
+    const Family family = work_.back();
+    work_.pop_back();
+    LinkTable& table = *tables_[family.chunk];
+    NodeBelow& node = table.below[family.below];
+    if (!std::exchange(node.linked, false)) continue;
+    patch.cut.records.push_back({table.slot * shape_.records + node.record, kBlocked, {0, 0}});
+    patch.cut.changed.push_back(table.first_subtree + node.subtree);
+    each_subtree(node, [&](LinkTable& of, uint32_t i) {
+      of.subtrees[i].linked = false;
+      patch.unlinked.push_back(of.first_subtree + i);
+      add_below(of, i, work_);
+    });
+  }
+}
+
+void Linker::evict(uint32_t chunk, LinkPatch& patch) {
+  each_family_of(*tables_[chunk], [&](const Family& family) { unlink(family, patch); });
+  tables_[chunk].reset();
+}
+
+}  // namespace voyager

@@ -1,0 +1,81 @@
+#pragma once
+// What leads to what among the chunks that are resident. Nodes of one tier lead to subtrees
+// of the next; a node does so only when all subtrees below it are there, and all that leads
+// to itself, so that whatever search follows the links finds a cut that is whole.
+#include <memory>
+
+#include "runtime/stream/chunk_graph.h"
+#include "runtime/stream/staged_chunk.h"
+
+namespace voyager {
+
+// Places in a slot; addresses are slot * that + number in the chunk.
+struct SlotShape {
+  uint32_t nodes, records;
+};
+
+// Changes of a SearchTree whose nodes and records are addresses, and of its nodes' parents.
+// All of `cut` is to be done before all of `tied`; in each, no place is there twice with
+// different values.
+struct LinkPatch {
+  struct Record {
+    uint32_t record, children;  // SearchRecord::children
+    SubtreeSpan opens;
+  };
+  struct Parent {
+    uint32_t node, parent;
+  };
+  struct Links {
+    std::vector<Record> records;
+    std::vector<uint32_t> changed;  // subtrees that hold those records
+  };
+  Links cut, tied;
+  std::vector<uint32_t> unlinked;  // subtrees to which nothing leads any more; for their entries
+  std::vector<std::pair<uint32_t, SearchSubtree>> linked;
+  std::vector<Parent> parents;
+
+  bool empty() const { return cut.records.empty() && unlinked.empty() && linked.empty(); }
+};
+
+class Linker {
+ public:
+  // The graph outlives the linker.
+  Linker(const ChunkGraph& graph, SlotShape shape);
+
+  bool holds(uint32_t chunk) const { return tables_[chunk] != nullptr; }
+  uint32_t slot(uint32_t chunk) const { return tables_[chunk]->slot; }
+  // Of a chunk whose parents are all held: what it alone could not show. Throws
+  // Error(damaged_chunk) as stage_chunk() does.
+  void check(const StagedChunk& chunk, const std::string& file) const;
+  // A chunk whose parents are all held, in table.slot.
+  void arrive(LinkTable&& table, LinkPatch& patch);
+  // None of its children is held.
+  void evict(uint32_t chunk, LinkPatch& patch);
+
+ private:
+  struct Family {
+    uint32_t chunk, below;  // of the node that leads to it
+  };
+
+  const NodeBelow& below_of(const Family& family) const {
+    return tables_[family.chunk]->below[family.below];
+  }
+  Family family_of(uint32_t root) const;
+  bool complete(const NodeBelow& node) const;
+  // Each subtree of the family in turn: visit(table, index in it).
+  template <class Visit>
+  void each_subtree(const NodeBelow& node, const Visit& visit) const;
+  template <class Work>
+  void each_family_of(const LinkTable& table, const Work& work) const;
+  void link(Family family, LinkPatch& patch);
+  void unlink(Family family, LinkPatch& patch);
+  void link_root(LinkTable& table, uint32_t subtree, LinkPatch& patch);
+  void add_below(const LinkTable& table, uint32_t subtree, std::vector<Family>& out) const;
+
+  const ChunkGraph& graph_;
+  SlotShape shape_;
+  std::vector<std::unique_ptr<LinkTable>> tables_;  // by chunk
+  std::vector<Family> work_;
+};
+
+}  // namespace voyager

@@ -1,0 +1,344 @@
+#include "runtime/stream/residency.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+
+namespace voyager {
+namespace {
+
+// How many requests evictions make room for ahead of their reading.
+constexpr size_t kRoomAhead = 256;
+
+uint32_t make_urgency(uint32_t of_class, float error) {
+  return of_class << 30 | std::bit_cast<uint32_t>(error) >> 1;
+}
+
+float error_of(uint32_t urgency) {
+  return std::bit_cast<float>((urgency & 0x3fffffffu) << 1);
+}
+
+}  // namespace
+
+Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks, uint32_t slots,
+                     uint32_t pinned)
+    : graph_(graph),
+      chunks_(chunks),
+      slots_(slots),
+      pinned_(pinned),
+      state_(chunks.size()),
+      slot_(chunks.size(), kNoSlot),
+      urgency_(chunks.size()),
+      needed_plan_(chunks.size()),
+      missed_(chunks.size()),
+      target_(chunks.size()),
+      children_there_(chunks.size()),
+      shares_family_(chunks.size()) {
+  assert(pinned <= slots);
+  for (uint32_t slot = slots; slot-- > 0;) free_slots_.push_back(slot);
+  plan({});
+}
+
+void Residency::plan(std::span<const Viewer> viewers) {
+  ++plan_;
+  find_needed(viewers);
+  share_in_families();
+  share_with_parents();
+  choose_target();
+  queue_requests();
+  list_victims();
+}
+
+Residency::Needed Residency::look_at(uint32_t chunk, std::span<const Viewer> viewers) const {
+  const EntryHull& hull = chunks_[chunk].hull;
+  Needed found{chunk, 0, false};
+  for (const Viewer& viewer : viewers) {
+    const float size = hull.screen_size(viewer.query.centre);
+    if (!(size >= viewer.query.target_size)) continue;
+    const float error = size / viewer.query.target_size;
+    const Class of = viewer.ahead ? Class::ahead : viewer.sees(hull) ? Class::seen : Class::around;
+    found.now = found.now || !viewer.ahead;
+    found.urgency = std::max(
+        found.urgency, make_urgency(static_cast<uint32_t>(of), error >= 1.0f ? error : INFINITY));
+  }
+  return found;
+}
+
+// False where it is not to be had, because it or what it hangs from has failed.
+bool Residency::add_needed(const Needed& needed) {
+  const uint32_t chunk = needed.chunk;
+  if (state_[chunk] == State::failed) {
+    failed_.push_back(needed);
+    return false;
+  }
+  const ChunkRange parents = graph_.parents(chunk);
+  for (uint32_t p = parents.first; p < parents.last; ++p)
+    if (needed_plan_[p] != plan_ && !add_needed({p, needed.urgency, needed.now})) return false;
+  needed_plan_[chunk] = plan_;
+  extra_.push_back(needed);
+  return true;
+}
+
+// From the top: a chunk can only be needed where one that leads to it is. Both ascend.
+void Residency::find_needed(std::span<const Viewer> viewers) {
+  needed_.clear(), failed_.clear(), extra_.clear();
+  uint32_t next = 0;
+  size_t from = 0;
+  const auto look = [&](uint32_t chunk) {
+    next = chunk + 1;
+    if (needed_plan_[chunk] == plan_) return;
+    const Needed found = look_at(chunk, viewers);
+    if (found.urgency != 0) add_needed(found);
+  };
+  // What leads to others without being needed itself is not followed.
+  while (next < graph_.size() && graph_.parents(next).empty()) look(next);
+  for (; from < extra_.size(); ++from) {
+    const ChunkRange children = graph_.children(extra_[from].chunk);
+    for (uint32_t c = std::max(next, children.first); c < children.last; ++c) look(c);
+  }
+  needed_ = extra_;
+  std::sort(needed_.begin(), needed_.end(),
+            [](const Needed& a, const Needed& b) { return a.chunk < b.chunk; });
+}
+
+// A node is refined only when all that hangs from it is there.
+void Residency::share_in_families() {
+  for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
+  const auto follows = [&](size_t i) {
+    return i < needed_.size() && needed_[i].chunk == needed_[i - 1].chunk + 1 &&
+           shares_family_[needed_[i].chunk] != 0;
+  };
+  for (size_t i = 1; i < needed_.size(); ++i) {
+    if (!follows(i)) continue;
+    size_t last = i;
+    while (shares_family_[needed_[last].chunk] == 2 && follows(last + 1)) ++last;
+    uint32_t most = 0;
+    for (size_t k = i - 1; k <= last; ++k) most = std::max(most, urgency_[needed_[k].chunk]);
+    for (size_t k = i - 1; k <= last; ++k) needed_[k].urgency = std::max(needed_[k].urgency, most);
+    i = last;
+  }
+}
+
+void Residency::share_with_parents() {
+  for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
+  for (size_t i = needed_.size(); i-- > 0;) {
+    needed_[i].urgency = urgency_[needed_[i].chunk];
+    const ChunkRange parents = graph_.parents(needed_[i].chunk);
+    for (uint32_t p = parents.first; p < parents.last; ++p)
+      urgency_[p] = std::max(urgency_[p], needed_[i].urgency);
+  }
+}
+
+void Residency::choose_target() {
+  extra_.clear();
+  for (const Needed& needed : needed_)
+    if (needed.chunk >= pinned_) extra_.push_back(needed);
+  const size_t room = slots_ - pinned_;
+  if (extra_.size() > room) {
+    // Parents are at least as urgent as their children, and come before them.
+    const auto before = [](const Needed& a, const Needed& b) {
+      return a.urgency != b.urgency ? a.urgency > b.urgency : a.chunk < b.chunk;
+    };
+    std::nth_element(extra_.begin(), extra_.begin() + static_cast<std::ptrdiff_t>(room),
+                     extra_.end(), before);
+    extra_.resize(room);
+  }
+  for (const Needed& needed : extra_) target_[needed.chunk] = plan_;
+}
+
+void Residency::queue_requests() {
+  for (const uint32_t chunk : requests_)
+    counters_.flushed += state_[chunk] == State::absent && !is_wanted(chunk);
+  requests_.clear();
+  for (uint32_t chunk = 0; chunk < pinned_; ++chunk)
+    if (state_[chunk] == State::absent) {
+      urgency_[chunk] = UINT32_MAX;
+      requests_.push_back(chunk);
+    }
+  for (const Needed& needed : extra_)
+    if (state_[needed.chunk] == State::absent) requests_.push_back(needed.chunk);
+  for (const Needed& needed : needed_)
+    if (needed.now && class_of(needed.urgency) == Class::seen &&
+        state_[needed.chunk] != State::resident)
+      missed_[needed.chunk] = 1;
+  std::sort(requests_.begin(), requests_.end(), [&](uint32_t a, uint32_t b) {
+    return urgency_[a] != urgency_[b] ? urgency_[a] < urgency_[b] : a > b;
+  });
+}
+
+// By the time since they were last needed over the error that they then spared; what leads to a
+// victim goes after it.
+void Residency::list_victims() {
+  victims_.clear();
+  if (coming_ + requests_.size() <= free_slots_.size()) return;
+  std::vector<std::pair<float, uint32_t>> scored;
+  std::vector<float> score(graph_.size(), INFINITY);
+  for (uint32_t chunk = graph_.size(); chunk-- > pinned_;) {
+    if (state_[chunk] != State::resident || is_wanted(chunk)) continue;
+    const float age = static_cast<float>(plan_ - needed_plan_[chunk]);
+    score[chunk] = std::min(score[chunk], age / error_of(urgency_[chunk]));
+    const ChunkRange parents = graph_.parents(chunk);
+    for (uint32_t p = parents.first; p < parents.last; ++p)
+      score[p] = std::min(score[p], score[chunk]);
+    scored.emplace_back(score[chunk], chunk);
+  }
+  std::sort(scored.begin(), scored.end());
+  for (const auto& [of, chunk] : scored) victims_.push_back(chunk);
+}
+
+ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
+  while (!requests_.empty() && state_[requests_.back()] != State::absent) requests_.pop_back();
+  if (requests_.empty()) return {0, 0};
+  const auto to_read = [&](uint32_t chunk) {
+    return chunk < graph_.size() && state_[chunk] == State::absent && is_wanted(chunk);
+  };
+  ChunkRange range{requests_.back(), requests_.back() + 1};
+  uint64_t taken = chunks_[range.first].bytes;
+  const auto fits = [&](uint32_t chunk) {
+    return range.last - range.first < most && to_read(chunk) &&
+           taken + chunks_[chunk].bytes <= bytes;
+  };
+  for (; fits(range.last); ++range.last) taken += chunks_[range.last].bytes;
+  for (; range.first > 0 && fits(range.first - 1); --range.first)
+    taken += chunks_[range.first - 1].bytes;
+  for (uint32_t chunk = range.first; chunk < range.last; ++chunk) state_[chunk] = State::on_its_way;
+  counters_.requested += range.last - range.first;
+  coming_ += range.last - range.first;
+  return range;
+}
+
+bool Residency::read(uint32_t chunk) {
+  assert(state_[chunk] == State::on_its_way);
+  state_[chunk] = State::read;
+  return keep(chunk);
+}
+
+bool Residency::keep(uint32_t chunk) {
+  assert(state_[chunk] == State::read);
+  if (is_wanted(chunk)) return true;
+  drop(chunk);
+  return false;
+}
+
+// Its slot, or its claim to one.
+void Residency::give_up(uint32_t chunk, State now) {
+  if (slot_[chunk] == kNoSlot)
+    --coming_;
+  else
+    free_slot(slot_[chunk]);
+  slot_[chunk] = kNoSlot;
+  state_[chunk] = now;
+}
+
+void Residency::drop(uint32_t chunk) {
+  give_up(chunk, State::absent);
+  ++counters_.flushed;
+}
+
+uint32_t Residency::take_slot(uint32_t chunk) {
+  assert(state_[chunk] == State::read && slot_[chunk] == kNoSlot);
+  if (free_slots_.empty()) return kNoSlot;
+  slot_[chunk] = free_slots_.back();
+  free_slots_.pop_back();
+  --coming_;
+  return slot_[chunk];
+}
+
+void Residency::filled(uint32_t chunk) {
+  state_[chunk] = State::filled;
+  filled_.push_back(chunk);
+}
+
+void Residency::failed(uint32_t chunk) {
+  assert(state_[chunk] == State::on_its_way || state_[chunk] == State::read);
+  give_up(chunk, State::failed);
+}
+
+void Residency::retry(uint32_t chunk) {
+  if (state_[chunk] == State::failed) state_[chunk] = State::absent;
+}
+
+bool Residency::parents_there(uint32_t chunk) const {
+  const ChunkRange parents = graph_.parents(chunk);
+  for (uint32_t p = parents.first; p < parents.last; ++p)
+    if (state_[p] != State::resident) return false;
+  return true;
+}
+
+std::vector<uint32_t> Residency::arrive(const std::function<bool(uint32_t)>& accept) {
+  std::sort(filled_.begin(), filled_.end());
+  std::vector<uint32_t> arrived, waiting;
+  for (const uint32_t chunk : filled_) {
+    if (!is_wanted(chunk)) {
+      drop(chunk);
+      continue;
+    }
+    if (!parents_there(chunk)) {
+      waiting.push_back(chunk);
+      continue;
+    }
+    if (!accept(chunk)) {
+      give_up(chunk, State::failed);
+      continue;
+    }
+    state_[chunk] = State::resident;
+    ++resident_;
+    ++counters_.arrived;
+    counters_.late += missed_[chunk];
+    missed_[chunk] = 0;
+    const ChunkRange parents = graph_.parents(chunk);
+    for (uint32_t p = parents.first; p < parents.last; ++p) ++children_there_[p];
+    arrived.push_back(chunk);
+  }
+  filled_ = waiting;
+  return arrived;
+}
+
+std::vector<Residency::Evicted> Residency::evict() {
+  std::vector<Evicted> evicted;
+  const size_t wanted = coming_ + std::min(requests_.size(), kRoomAhead);
+  while (free_slots_.size() + evicted.size() < wanted && !victims_.empty()) {
+    const uint32_t chunk = victims_.back();
+    victims_.pop_back();
+    if (state_[chunk] != State::resident || is_wanted(chunk) || children_there_[chunk] != 0)
+      continue;
+    const ChunkRange parents = graph_.parents(chunk);
+    for (uint32_t p = parents.first; p < parents.last; ++p) --children_there_[p];
+    evicted.push_back({chunk, slot_[chunk]});
+    slot_[chunk] = kNoSlot;
+    state_[chunk] = State::absent;
+    --resident_;
+    ++counters_.evicted;
+  }
+  return evicted;
+}
+
+ResidencyNeed Residency::need() const {
+  ResidencyNeed need;
+  for (const Needed& needed : needed_) {
+    if (!needed.now) continue;
+    const bool missing = state_[needed.chunk] != State::resident;
+    const bool seen = class_of(needed.urgency) == Class::seen;
+    ++need.chunks;
+    need.seen += seen && needed.chunk >= pinned_;
+    if (!missing) continue;
+    ++need.missing;
+    need.missing_bytes += chunks_[needed.chunk].bytes;
+  }
+  for (const Needed& needed : failed_)
+    if (needed.now && class_of(needed.urgency) == Class::seen)
+      need.seen_failed.push_back(needed.chunk);
+  return need;
+}
+
+bool Residency::settled() const {
+  const auto to_come = [&](uint32_t chunk) {
+    return is_wanted(chunk) && state_[chunk] != State::resident && state_[chunk] != State::failed;
+  };
+  for (uint32_t chunk = 0; chunk < pinned_; ++chunk)
+    if (to_come(chunk)) return false;
+  return std::none_of(needed_.begin(), needed_.end(),
+                      [&](const Needed& needed) { return to_come(needed.chunk); });
+}
+
+}  // namespace voyager

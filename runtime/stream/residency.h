@@ -1,0 +1,135 @@
+#pragma once
+// Which chunks are to be in a scene's slots: a function of who looks at it and of what is
+// there. No I/O, no threads, no clock; every decision is the same on every machine.
+//
+// A chunk is needed where its entry hull is at least τ* large (docs/lod-selection.md): only
+// then may the cut hold a node of it. Where there are more than there are slots, the most
+// urgent are the target: what is seen before what is around, that before what will be seen,
+// and of these what would be missed most, by the size of what stands in. A chunk is as urgent
+// as the most urgent that hangs from it. Once all of the target is there nothing moves.
+//
+//     absent -> on its way -> read -> filled -> resident -> absent
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "runtime/stream/chunk_graph.h"
+#include "runtime/stream/viewer.h"
+
+namespace voyager {
+
+// Chunks.
+struct ResidencyCounters {
+  uint64_t requested = 0, arrived = 0, evicted = 0;
+  uint64_t late = 0;     // of those that arrived: a viewer had seen that they were not there
+  uint64_t flushed = 0;  // requests that were taken back, or had come for nothing
+};
+
+// Of the last plan, for the viewers that are not ahead: chunks, and their stored bytes.
+struct ResidencyNeed {
+  uint64_t chunks = 0, missing = 0, missing_bytes = 0;
+  uint64_t seen = 0;  // beside those that are pinned
+  std::vector<uint32_t> seen_failed;
+};
+
+class Residency {
+ public:
+  static constexpr uint32_t kNoSlot = 0xffffffffu;
+
+  // Both outlive it. pinned: so many of the first chunks stay; all without parents at least,
+  // and no more than slots.
+  Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks, uint32_t slots,
+            uint32_t pinned);
+
+  // Who looks now. What is no longer wanted is no longer requested.
+  void plan(std::span<const Viewer> viewers);
+
+  // The most urgent chunks that are to be read: consecutive, at most `most`, and of at most
+  // `bytes` in the file unless one alone has more. They are on their way then.
+  ChunkRange take_requests(uint32_t most, uint64_t bytes);
+  // A chunk that was on its way. False: nobody wants it any more, and it is absent.
+  bool read(uint32_t chunk);
+  // As read(), of one that was read before.
+  bool keep(uint32_t chunk);
+  // A slot for a chunk that was read, to be filled; kNoSlot where none is free.
+  uint32_t take_slot(uint32_t chunk);
+  void filled(uint32_t chunk);
+  // A chunk that was on its way, or read, is not to be had, until retry().
+  void failed(uint32_t chunk);
+  void retry(uint32_t chunk);
+
+  // Filled chunks that become resident, parents before children; those that accept(chunk)
+  // refuses have failed.
+  std::vector<uint32_t> arrive(const std::function<bool(uint32_t)>& accept);
+  struct Evicted {
+    uint32_t chunk, slot;
+  };
+  // Residents that make room for what is to come, children before parents. A slot is taken
+  // again only after free_slot(): when no frame reads it any more.
+  std::vector<Evicted> evict();
+  void free_slot(uint32_t slot) { free_slots_.push_back(slot); }
+
+  // One node leads to the chunk and to the one before; inside: and to the one behind.
+  void set_shares_family(uint32_t chunk, bool inside) { shares_family_[chunk] = inside ? 2 : 1; }
+
+  uint32_t slot(uint32_t chunk) const { return slot_[chunk]; }
+  bool is_resident(uint32_t chunk) const { return state_[chunk] == State::resident; }
+  bool is_coming(uint32_t chunk) const {
+    return state_[chunk] == State::read || state_[chunk] == State::filled;
+  }
+  bool is_wanted(uint32_t chunk) const { return target_[chunk] == plan_ || chunk < pinned_; }
+  uint32_t urgency(uint32_t chunk) const { return urgency_[chunk]; }
+  uint32_t slots() const { return slots_; }
+  uint32_t pinned() const { return pinned_; }
+  uint32_t resident() const { return resident_; }
+  ResidencyNeed need() const;
+  // All of the target is there, but for what failed.
+  bool settled() const;
+  const ResidencyCounters& counters() const { return counters_; }
+
+ private:
+  enum class State : uint8_t { absent, on_its_way, read, filled, resident, failed };
+  enum class Class : uint32_t { ahead, around, seen };
+  struct Needed {
+    uint32_t chunk, urgency;
+    bool now;
+  };
+
+  static Class class_of(uint32_t urgency) { return static_cast<Class>(urgency >> 30); }
+  Needed look_at(uint32_t chunk, std::span<const Viewer> viewers) const;
+  void find_needed(std::span<const Viewer> viewers);
+  bool add_needed(const Needed& needed);
+  void share_in_families();
+  void share_with_parents();
+  void choose_target();
+  void queue_requests();
+  void list_victims();
+  bool parents_there(uint32_t chunk) const;
+  void give_up(uint32_t chunk, State now);
+  void drop(uint32_t chunk);
+
+  const ChunkGraph& graph_;
+  std::span<const ChunkEntry> chunks_;
+  uint32_t slots_, pinned_, resident_ = 0;
+  uint32_t plan_ = 0;
+  // By chunk.
+  std::vector<State> state_;
+  std::vector<uint32_t> slot_;
+  std::vector<uint32_t> urgency_;      // when it was last needed
+  std::vector<uint32_t> needed_plan_;  // the last plan that needed it
+  std::vector<uint8_t> missed_;        // a viewer has seen that it was not there
+  std::vector<uint32_t> target_;       // the last plan that had it in its target
+  std::vector<uint32_t> children_there_;
+  std::vector<uint8_t> shares_family_;
+
+  std::vector<Needed> needed_;                // of the last plan, ascending
+  std::vector<Needed> failed_;                // and what it would have needed
+  std::vector<Needed> extra_;                 // scratch
+  std::vector<uint32_t> requests_, victims_;  // the first to go last
+  std::vector<uint32_t> filled_, free_slots_;
+  uint32_t coming_ = 0;  // on their way or read: each will want a slot
+  ResidencyCounters counters_;
+};
+
+}  // namespace voyager

@@ -1,0 +1,148 @@
+#pragma once
+// Keeps the chunks of one scene coming: threads that read and decode what residency asks
+// for, and what a frame does about it. A frame waits for none of it unless it says so.
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <thread>
+
+#include "runtime/format/reader.h"
+#include "runtime/stream/chunk_pool.h"
+#include "runtime/stream/failures.h"
+#include "runtime/stream/residency.h"
+
+namespace voyager {
+
+struct StreamDesc {
+  uint32_t slots = 0;
+  uint32_t pinned = 0;               // as Residency has it
+  unsigned readers = 2;              // threads; 0: step() does it all
+  uint64_t read_bytes = 1 << 18;     // of one read, at most, unless one chunk has more
+  uint64_t staged_bytes = 32 << 20;  // stored bytes of what was read and has no slot yet
+  // Of the pool's memory, for messages: of each slot, and beside them.
+  uint64_t slot_bytes = 0, fixed_bytes = 0;
+  std::function<double()> clock;  // seconds, for what is tried again; none: the machine's
+};
+
+// Of the scene, since it was opened.
+struct StreamCounters {
+  ResidencyCounters chunks;
+  uint64_t reads = 0, bytes_read = 0;
+  uint64_t failures = 0;  // of reads and of chunks
+  uint32_t resident = 0;
+  ResidencyNeed need;
+};
+
+// What linking has changed, for searches that go on from their last cut.
+struct StreamChange {
+  uint64_t version;                         // from 1
+  std::vector<uint32_t> unlinked, changed;  // as PartitionedSearch::relink() takes them
+};
+
+class SceneStream {
+ public:
+  // The pool outlives it. Nothing is read before read_top().
+  SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc& desc, ChunkPool& pool);
+  ~SceneStream();
+  SceneStream(const SceneStream&) = delete;
+  SceneStream& operator=(const SceneStream&) = delete;
+
+  // What a chunk of the file takes at most.
+  static SlotShape slot_shape(const SceneFile& file);
+  // How many of the first chunks hold a subtree of the tree's root.
+  static uint32_t top_chunks(const SceneFile& file);
+
+  // Reads the top, and starts the threads. Once, before any frame. Throws Error as the source
+  // does and as a chunk is damaged: a scene without its top is nothing.
+  void read_top();
+
+  // Who looks, for one view's instance; it replaces what was said before. No viewers: nobody.
+  // Any thread.
+  void look(const void* who, std::vector<Viewer> viewers);
+  // What has come becomes resident, unless another frame reads the pool just now. Any thread.
+  void commit();
+  // The same until nothing more is to come. Throws Error(over_budget) where what is seen does
+  // not fit, and unless `stand_in` what kept a chunk that is seen from coming.
+  void wait(bool stand_in);
+
+  // Held while a frame reads the pool, and what changes with it.
+  std::shared_lock<std::shared_mutex> hold() const { return std::shared_lock(pool_mutex_); }
+  uint64_t version() const { return version_; }
+  // The changes after a version, in their order; false where those are no longer known.
+  bool changes_since(uint64_t version, std::vector<std::shared_ptr<const StreamChange>>& out) const;
+
+  // As of the last step or commit. Any thread.
+  StreamCounters counters() const;
+  // What went wrong, each cause once. Any thread.
+  std::vector<std::string> take_messages();
+
+  // One step of planning, filling or reading, for a stream without threads. False: there is
+  // nothing to do until a frame has looked or committed, or time has passed.
+  bool step();
+
+ private:
+  using Lock = std::unique_lock<std::mutex>;
+
+  // Read, and not resident yet.
+  struct Coming {
+    StagedChunk chunk;
+    uint64_t stored_bytes;
+  };
+
+  void run();
+  bool step(Lock& lock);
+  bool plan_if_asked();
+  bool retry_due();
+  bool fill_one(Lock& lock);
+  bool read_some(Lock& lock);
+  std::vector<std::byte> read_stored(ChunkRange range);
+  void stage(uint32_t chunk, const std::function<Chunk()>& decode, Lock& lock);
+  void fail(uint32_t chunk, const std::exception& error);
+  void forget(uint32_t chunk);
+  void commit_all();
+  bool accept(uint32_t chunk, LinkPatch& patch);
+  void learn_families(const LinkTable& table);
+  void check_fits() const;
+  bool is_settled() const;
+  void publish();
+  void signal();
+  double now() const;
+
+  const std::shared_ptr<const SceneFile> file_;
+  const StreamDesc desc_;
+  const Tiers tiers_;
+  const ChunkGraph graph_;
+  ChunkPool& pool_;
+
+  // The pool's: held alone while that changes, before mutex_.
+  mutable std::shared_mutex pool_mutex_;
+  std::deque<std::shared_ptr<const StreamChange>> changes_;
+  uint64_t version_ = 0;
+
+  // Held only to copy something; after mutex_.
+  mutable std::mutex small_mutex_;
+  std::condition_variable wake_, progress_;
+  uint64_t signals_ = 0;
+  bool stopping_ = false;
+  bool look_again_ = false;
+  std::map<const void*, std::vector<Viewer>> viewers_;
+  StreamCounters published_;
+  std::vector<std::string> messages_;
+
+  // Of all that follows; a plan may hold it for milliseconds.
+  std::mutex mutex_;
+  Residency residency_;
+  Linker linker_;
+  std::map<uint32_t, Coming> coming_;  // by chunk
+  std::deque<uint32_t> ready_;         // those of them without a slot
+  uint64_t staged_bytes_ = 0;
+  Failures failures_;
+  uint64_t reads_ = 0, bytes_read_ = 0;
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace voyager

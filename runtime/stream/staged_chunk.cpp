@@ -1,0 +1,156 @@
+#include "runtime/stream/staged_chunk.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "runtime/base/error.h"
+#include "runtime/lod/subtree_cursor.h"
+#include "runtime/select/search_records.h"
+
+namespace voyager {
+namespace {
+
+class Stager {
+ public:
+  Stager(Chunk&& chunk, uint32_t index, const Tiers& tiers, const std::string& file)
+      : tiers_(tiers), file_(file) {
+    out_.content = std::move(chunk);
+    out_.links.chunk = index;
+    out_.links.first_subtree = out_.content.first_subtree;
+  }
+
+  StagedChunk stage() {
+    const Chunk& content = out_.content;
+    out_.parent.assign(content.node.size(), kNoNode);
+    uint32_t record = 0;
+    for (size_t i = 0; i < content.subtrees.size(); ++i) {
+      add(content.subtrees[i], content.first_subtree + static_cast<uint32_t>(i),
+          content.records.data() + record);
+      record += content.subtrees[i].node_count();
+    }
+    out_.links.last_root = root_;
+    out_.links.last_child = child_;
+    return std::move(out_);
+  }
+
+ private:
+  // records: of the subtree, by slot.
+  void add(const Subtree& subtree, uint32_t index, const NodeRecord* records) {
+    LinkTable& links = out_.links;
+    const uint32_t levels = index < tiers_.tier_begin[1] ? tiers_.first_tier_levels : kTierLevels;
+    const auto record = [&](uint32_t slot) -> const NodeRecord& { return records[slot]; };
+    check_repeats(subtree, records);
+    StagedSubtree staged{subtree,
+                         next_node_,
+                         static_cast<uint32_t>(out_.records.size()),
+                         static_cast<uint32_t>(links.below.size()),
+                         interior_slots(subtree, record),
+                         owned_slots(subtree)};
+    out_.records.resize(out_.records.size() + static_cast<size_t>(std::popcount(staged.interior)));
+    fill_search_records(subtree, levels, record, out_.records.data() + staged.first_record);
+    set_parents(subtree, records);
+    uint32_t search_record = staged.first_record;
+    for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
+      const bool owned = (staged.owned >> slot & 1) != 0;
+      if ((staged.interior >> slot & 1) != 0) {
+        if (is_lowest(slot, subtree.child_count, levels)) {
+          out_.records[search_record].children = kBlocked;
+          links.below.push_back({next_node_, search_record, out_.content.first_child[next_node_],
+                                 records[slot].child_count,
+                                 static_cast<uint32_t>(links.subtrees.size()), records[slot]});
+        }
+        ++search_record;
+      }
+      if (owned) ++next_node_;
+    }
+    links.subtrees.push_back(staged);
+    out_.roots.push_back(records[0]);
+  }
+
+  // Slot by slot: what a node hangs from, and that it lies inside that.
+  void set_parents(const Subtree& subtree, const NodeRecord* records) {
+    const uint32_t own_root = subtree.repeats_root ? 0 : 1,
+                   own_child = subtree.repeats_child ? 1 : 0;
+    const uint32_t first_child = next_node_ + own_root;  // of those that are owned
+    const uint32_t first_grandchild = first_child + subtree.child_count - own_child;
+    for (uint32_t i = 0; i < subtree.child_count; ++i) {
+      check_inside(subtree.first_child + i, records[1 + i], records[0]);
+      if (i >= own_child && own_root != 0) out_.parent[first_child + i - own_child] = next_node_;
+    }
+    uint32_t grandchild = 0;
+    for (uint32_t i = 0; i < subtree.child_count; ++i) {
+      const uint32_t left = subtree.grandchild_count - grandchild;
+      const uint32_t own =
+          subtree.child_count == 1 ? left : std::min(left, records[1 + i].child_count);
+      for (uint32_t k = 0; k < own; ++k, ++grandchild) {
+        check_inside(subtree.first_grandchild + grandchild,
+                     records[1 + subtree.child_count + grandchild], records[1 + i]);
+        if (i >= own_child)
+          out_.parent[first_grandchild + grandchild] = first_child + i - own_child;
+      }
+    }
+  }
+
+  // The cut meets every path once only if sizes never grow downwards.
+  void check_inside(uint32_t node, const NodeRecord& child, const NodeRecord& parent) const {
+    if (!is_inside(child, parent)) refuse_nesting(out_.links.chunk, node, file_);
+  }
+
+  void check_repeats(const Subtree& subtree, const NodeRecord* records) {
+    const uint32_t chunk = out_.links.chunk;
+    const bool first = out_.links.subtrees.empty();
+    if (subtree.repeats_root && !first && !is_same(records[0], root_))
+      refuse_repeat(chunk, subtree.root, file_);
+    if (subtree.repeats_child && !first && !is_same(records[1], child_))
+      refuse_repeat(chunk, subtree.first_child, file_);
+    root_ = records[0];
+    if (subtree.child_count != 0) child_ = records[1];
+    if (!first) return;
+    out_.links.first_root = root_;
+    out_.links.first_child = child_;
+  }
+
+  const Tiers& tiers_;
+  const std::string& file_;
+  StagedChunk out_;
+  uint32_t next_node_ = 0;
+  // Of the subtree before.
+  NodeRecord root_{}, child_{};
+};
+
+[[noreturn]] void refuse(uint32_t chunk, uint32_t node, const std::string& file, const char* found,
+                         const char* expected) {
+  throw Error(ErrorCode::damaged_chunk, file + ": chunk " + std::to_string(chunk) + ": node " +
+                                            std::to_string(node) + ": found " + found +
+                                            ", expected " + expected);
+}
+
+}  // namespace
+
+bool is_same(const NodeRecord& a, const NodeRecord& b) {
+  using Words = std::array<uint32_t, sizeof(NodeRecord) / sizeof(uint32_t)>;
+  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
+}
+
+bool is_inside(const NodeRecord& child, const NodeRecord& parent) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (child.box_min[axis] < parent.box_min[axis] || child.box_max[axis] > parent.box_max[axis])
+      return false;
+  return child.extent <= parent.extent;
+}
+
+void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file) {
+  refuse(chunk, node, file, "a larger box or extent than its parent's", "one inside it");
+}
+
+void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file) {
+  refuse(chunk, node, file, "another record where it is repeated", "its own");
+}
+
+StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers,
+                        const std::string& file) {
+  return Stager(std::move(chunk), index, tiers, file).stage();
+}
+
+}  // namespace voyager

@@ -1,0 +1,62 @@
+#pragma once
+// A chunk that was read, before it has a place: what its slot will hold, in numbers of its
+// own. Nodes and records are counted from the chunk's first.
+#include <string>
+
+#include "runtime/format/chunk.h"
+#include "runtime/lod/subtree_cursor.h"
+#include "runtime/select/search_tree.h"
+
+namespace voyager {
+
+struct StagedSubtree {
+  Subtree ids;            // nodes as the file numbers them
+  uint32_t first_node;    // of those that it owns: root, children, grandchildren
+  uint32_t first_record;  // as in SearchSubtree
+  uint32_t first_below;   // in LinkTable::below
+  uint32_t interior, owned;
+  bool linked = false;  // a refined node may lead to it (Linker)
+};
+
+// An interior node of its tier's lowest level: subtrees of other chunks hang from it.
+struct NodeBelow {
+  uint32_t node, record;
+  uint32_t first_child, child_count;  // as the file numbers them
+  uint32_t subtree;                   // in LinkTable::subtrees
+  NodeRecord box;
+  bool linked = false;  // the subtrees below are there, and so is all above
+};
+
+// What stays on the host of a chunk that is resident.
+struct LinkTable {
+  uint32_t chunk = 0, slot = 0;
+  uint32_t first_subtree = 0;
+  std::vector<StagedSubtree> subtrees;
+  std::vector<NodeBelow> below;
+  // The root and the first child of the first and of the last subtree: neighbours may repeat them.
+  NodeRecord first_root{}, first_child{}, last_root{}, last_child{};
+};
+
+struct StagedChunk {
+  LinkTable links;
+  Chunk content;
+  std::vector<SearchRecord> records;  // those of the lowest level are blocked
+  std::vector<NodeRecord> roots;      // of each subtree
+  // Of each owned node: its parent, or kNoNode where another chunk may own it.
+  std::vector<uint32_t> parent;
+};
+
+// tiers: the file's. Throws Error(damaged_chunk) naming `file`, the chunk and the node where
+// a box or an extent is larger than its parent's, or a repeated record is not its owner's,
+// as far as the chunk by itself can show it.
+StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers, const std::string& file);
+
+// To the bit.
+bool is_same(const NodeRecord& a, const NodeRecord& b);
+// What the search relies on (runtime/lod/tree.h).
+bool is_inside(const NodeRecord& child, const NodeRecord& parent);
+// Error(damaged_chunk) naming file, chunk and node.
+[[noreturn]] void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file);
+[[noreturn]] void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file);
+
+}  // namespace voyager
