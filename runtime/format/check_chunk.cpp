@@ -21,12 +21,14 @@ bool sound_box(const NodeRecord& r) {
   return true;
 }
 
-void check_records(const Chunk& chunk, const ChunkLocation& location) {
+void check_records(const Chunk& chunk, const ChunkLocation& location, const ChunkContext& context) {
   for (size_t i = 0; i < chunk.records.size(); ++i) {
     const NodeRecord& r = chunk.records[i];
     const char* wrong = !sound_box(r)      ? "a box that is not finite and ordered"
                         : !(r.extent >= 0) ? "an extent that is negative or not a number"
-                                           : nullptr;
+                        : r.child_count == 0 && r.extent != 0 && !context.leaves_have_extent
+                            ? "an extent of a leaf, of which the header knows none"
+                            : nullptr;
     if (wrong) location.damaged("record " + std::to_string(i) + " with " + wrong, "a sound record");
   }
 }
@@ -39,12 +41,13 @@ bool finite(const Quatf& q) {
   return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
 }
 
-// Without an early end, so that it runs several at a time.
-bool finite(const float* values, size_t count) {
-  constexpr uint32_t kExponent = 0x7f800000;
+// Magnitudes in the order of their bits, infinities and NaNs last; without an early end,
+// so that it runs several at a time.
+bool at_most(const float* values, size_t count, float largest) {
+  const uint32_t bound = std::bit_cast<uint32_t>(largest);
   uint32_t bad = 0;
   for (size_t i = 0; i < count; ++i)
-    bad |= (std::bit_cast<uint32_t>(values[i]) & kExponent) == kExponent ? 1u : 0u;
+    bad |= (std::bit_cast<uint32_t>(values[i]) & 0x7fffffffu) > bound ? 1u : 0u;
   return bad == 0;
 }
 
@@ -60,7 +63,8 @@ const char* fault(const Chunk& chunk, size_t i, const ChunkContext& context) {
   if (!finite(w.rotation)) return "a rotation that is not finite";
   if (!std::isfinite(w.opacity) || (!leaf && w.opacity < 0)) return "an opacity out of range";
   const size_t floats = context.coefficients() * 3;
-  if (!finite(chunk.sh.data() + i * floats, floats)) return "an SH coefficient that is not finite";
+  if (!at_most(chunk.sh.data() + i * floats, floats, context.largest_sh))
+    return "an SH coefficient that is not finite, or beyond the header's largest";
   return nullptr;
 }
 
@@ -79,7 +83,7 @@ void list_nodes(const Subtree& subtree, const SubtreeCursor& cursor, size_t firs
 void link_subtrees(std::span<const uint8_t> child_counts,
                    std::span<const uint8_t> grandchild_counts, const ChunkLocation& location,
                    const ChunkContext& context, Chunk& chunk) {
-  check_records(chunk, location);
+  check_records(chunk, location, context);
   SubtreeCursor cursor(context.tiers);
   const ChunkEntry& entry = location.entry;
   if (!cursor.move_to(entry.first_subtree, entry.place))

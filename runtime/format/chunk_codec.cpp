@@ -72,9 +72,9 @@ EncodedChunk encode_chunk(const Chunk& chunk, const ChunkContext& context) {
   EncodedChunk out;
   out.bytes.resize(sizeof header);
   if (context.quality == Quality::compact)
-    out.position_error = encode_compact(chunk, context, header, out.bytes);
+    encode_compact(chunk, context, header, out);
   else
-    encode_lossless(chunk, out.bytes);
+    encode_lossless(chunk, out);
   header.payload_bytes = static_cast<uint32_t>(out.bytes.size() - sizeof header);
   std::memcpy(out.bytes.data(), &header, sizeof header);
   out.bytes.resize(align_up(out.bytes.size(), chunk_align(context.quality)));

@@ -18,6 +18,9 @@ struct ChunkContext {
   Vec3d origin{0, 0, 0}, source_origin{0, 0, 0};
   uint32_t leaf_count = 0;
   Tiers tiers;
+  // What a decoded chunk must keep to; an encoder reads neither.
+  float largest_sh = 0;             // no |coefficient| is larger
+  bool leaves_have_extent = false;  // else every leaf's extent is 0
 
   size_t coefficients() const {
     const auto n = static_cast<size_t>(sh_degree) + 1;
@@ -29,6 +32,7 @@ struct EncodedChunk {
   std::vector<std::byte> bytes;  // header, payload, zeros up to a multiple of chunk_align()
   uint64_t checksum = 0;         // XXH3-64 of bytes
   double position_error = 0;     // largest distance of a restored mean, metres; lossless 0
+  float largest_sh = 0;          // |coefficient| as it is restored
 };
 
 // The chunk's arrays are complete and finite; node and first_child are not read.

@@ -51,6 +51,21 @@ void set_sh_scales(const Chunk& chunk, size_t coefficients, ChunkHeader& header)
             std::max(header.sh_scale[band], std::fabs(chunk.sh[i * coefficients * 3 + k]));
 }
 
+// As the decoder will restore them: rounding keeps the order of magnitudes.
+float largest_restored_sh(const Chunk& chunk, size_t coefficients, const ChunkHeader& header) {
+  float constant = 0;
+  for (size_t i = 0; i < chunk.words.size(); ++i)
+    for (size_t c = 0; c < 3; ++c)
+      constant = std::max(constant, std::fabs(chunk.sh[i * coefficients * 3 + c]));
+  float largest = half_to_float(float_to_half(constant));
+  for (size_t band = 0; band < 3; ++band) {
+    const float scale = header.sh_scale[band];
+    const int steps = kShSteps[band];
+    largest = std::max(largest, restore_sh(quantise_sh(scale, scale, steps), scale, steps));
+  }
+  return largest;
+}
+
 double position_error(const Chunk& chunk, const ChunkHeader& header) {
   double most = 0;
   for (size_t i = 0; i < chunk.words.size(); ++i) {
@@ -193,14 +208,14 @@ void take_sh(BytePlanes& planes, const ChunkHeader& header, size_t coefficients,
 
 }  // namespace
 
-double encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader& header,
-                      std::vector<std::byte>& out) {
+void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader& header,
+                    EncodedChunk& out) {
   const size_t coefficients = context.coefficients(), nodes = chunk.words.size();
   for (int axis = 0; axis < 3; ++axis) header.position_step[axis] = position_step(chunk, axis);
   set_sh_scales(chunk, coefficients, header);
   std::vector<std::byte> raw(
       plane_bytes(chunk.records.size(), chunk.subtrees.size(), nodes, coefficients));
-  Compressor frame(out);
+  Compressor frame(out.bytes);
   const std::byte *group = raw.data(), *const end = raw.data() + raw.size();
   const auto end_group = [&](const std::byte* position) {
     frame.add(group, position, position == end);
@@ -211,7 +226,8 @@ double encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHead
   encoder.put_geometry(planes);
   encoder.put_sh(planes, coefficients);
   encoder.put_sources(planes);
-  return position_error(chunk, header);
+  out.position_error = position_error(chunk, header);
+  out.largest_sh = largest_restored_sh(chunk, coefficients, header);
 }
 
 void decode_compact(std::span<const std::byte> payload, const ChunkHeader& header,

@@ -5,9 +5,9 @@
 namespace voyager {
 
 // Fills the frame and scale fields of `header`, whose counts are set; appends the
-// payload to `out`. Returns the largest distance of a restored mean, metres.
-double encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader& header,
-                      std::vector<std::byte>& out);
+// payload to out.bytes, and sets what out says of the restored values.
+void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader& header,
+                    EncodedChunk& out);
 // Fills the chunk: subtrees are checked, words are not. Throws Error(damaged_chunk),
 // also where the payload does not decompress to what the counts of `location` take.
 void decode_compact(std::span<const std::byte> payload, const ChunkHeader& header,

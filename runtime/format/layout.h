@@ -21,8 +21,10 @@ inline constexpr uint64_t chunk_align(Quality quality) {
 
 // Line ends in both habits, so that a transfer in text mode is seen at once.
 inline constexpr unsigned char kSceneMagic[8] = {0x89, 'V', 'O', 'Y', '\r', '\n', 0x1a, '\n'};
-inline constexpr uint32_t kSceneVersion = 2;
+inline constexpr uint32_t kSceneVersion = 3;
 inline constexpr uint32_t kFlagAntialiased = 1;
+inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0
+inline constexpr uint32_t kFlags = kFlagAntialiased | kFlagLeafExtents;
 inline constexpr uint32_t kChunkTag = 0x4b484356;  // "VCHK"
 
 enum class SectionKind : uint32_t { chunk_directory = 1, tiers = 2 };
@@ -66,9 +68,11 @@ struct FileHeader {
   uint32_t section_count;
   Section directory;
   Section tiers;
+  float largest_sh;   // |coefficient|, over all that the chunks decode to
+  uint32_t reserved;  // 0
   uint64_t checksum;  // XXH3-64 of the header's bytes before this field
 };
-static_assert(sizeof(FileHeader) == 280 && offsetof(FileHeader, checksum) == 272);
+static_assert(sizeof(FileHeader) == 288 && offsetof(FileHeader, checksum) == 280);
 
 struct ChunkEntry {
   uint64_t offset;    // in the file, a multiple of chunk_align()

@@ -1,6 +1,8 @@
 #include "runtime/format/lossless_codec.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "runtime/format/check_chunk.h"
@@ -71,8 +73,8 @@ uint64_t lossless_payload_bytes(const ChunkEntry& entry, size_t coefficients) {
          entry.node_count * node;
 }
 
-void encode_lossless(const Chunk& chunk, std::vector<std::byte>& out) {
-  PlaneWriter planes(out);
+void encode_lossless(const Chunk& chunk, EncodedChunk& out) {
+  PlaneWriter planes(out.bytes);
   planes.put(chunk.records.data(), chunk.records.size());
   put_table(chunk, planes);
   if (chunk.position_words.empty())
@@ -85,6 +87,7 @@ void encode_lossless(const Chunk& chunk, std::vector<std::byte>& out) {
   planes.put(chunk.sh.data(), chunk.sh.size());
   planes.put(chunk.source_index.data(), chunk.source_index.size());
   planes.put(chunk.axis_code.data(), chunk.axis_code.size());
+  for (const float sh : chunk.sh) out.largest_sh = std::max(out.largest_sh, std::fabs(sh));
 }
 
 void decode_lossless(std::span<const std::byte> payload, const ChunkLocation& location,

@@ -6,7 +6,8 @@ namespace voyager {
 
 // Of a chunk with the counts of `entry`.
 uint64_t lossless_payload_bytes(const ChunkEntry& entry, size_t coefficients);
-void encode_lossless(const Chunk& chunk, std::vector<std::byte>& out);
+// Appends the payload to out.bytes, and sets out.largest_sh.
+void encode_lossless(const Chunk& chunk, EncodedChunk& out);
 // payload.size() is lossless_payload_bytes(). Fills the chunk: subtrees are checked
 // (Error(damaged_chunk)), words are not.
 void decode_lossless(std::span<const std::byte> payload, const ChunkLocation& location,

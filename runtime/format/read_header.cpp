@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "runtime/base/checksum.h"
 #include "runtime/scene/gaussian_cloud.h"
@@ -10,7 +11,7 @@ namespace voyager {
 namespace {
 
 void check_counts(const FileHeader& h, const Check& check) {
-  check.at_most(offsetof(FileHeader, flags), "flags", h.flags, kFlagAntialiased);
+  check.at_most(offsetof(FileHeader, flags), "flags", h.flags, kFlags);
   check.that(h.quality == 1 || h.quality == 2, offsetof(FileHeader, quality), "an unknown quality",
              "1 or 2");
   check.at_most(offsetof(FileHeader, sh_degree), "SH degree", h.sh_degree, kMaxShDegree);
@@ -43,6 +44,13 @@ void check_ranges(const FileHeader& h, const Check& check) {
   check.that(h.position_error >= 0 && h.position_error < double{kMaxCoordinate},
              offsetof(FileHeader, position_error), "a position error out of range",
              "finite, not negative");
+  check.that(h.largest_sh >= 0 && h.largest_sh <= std::numeric_limits<float>::max(),
+             offsetof(FileHeader, largest_sh), "a largest SH coefficient out of range",
+             "finite, not negative");
+  check.equal(offsetof(FileHeader, reserved), "reserved field", h.reserved, 0);
+  const bool empty = h.largest_sh == 0 && (h.flags & kFlagLeafExtents) == 0;
+  check.that(h.node_count != 0 || empty, offsetof(FileHeader, largest_sh),
+             "SH or extents without nodes", "none");
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ SceneFileInfo to_info(const FileHeader& h) {
   info.bounds_min = {h.bounds_min[0], h.bounds_min[1], h.bounds_min[2]};
   info.bounds_max = {h.bounds_max[0], h.bounds_max[1], h.bounds_max[2]};
   info.position_error = h.position_error;
+  info.largest_sh = h.largest_sh;
+  info.leaves_have_extent = (h.flags & kFlagLeafExtents) != 0;
   info.import.read = h.import_read;
   info.import.dropped_position = h.dropped_position;
   info.import.dropped_scale = h.dropped_scale;
@@ -84,7 +86,9 @@ Chunk SceneFile::decode(uint32_t index, std::span<const std::byte> stored) const
       {info_.origin[0], info_.origin[1], info_.origin[2]},
       {info_.source_origin[0], info_.source_origin[1], info_.source_origin[2]},
       info_.leaf_count,
-      tiers()};
+      tiers(),
+      info_.largest_sh,
+      info_.leaves_have_extent};
   return decode_chunk(stored, {name(), index, entry, place_after(index)}, context);
 }
 

@@ -27,6 +27,8 @@ struct SceneFileInfo {
   std::array<double, 3> source_origin;  // of the input's position words
   Vec3f bounds_min, bounds_max;         // the root's box, scene-local
   double position_error;                // compact: largest |error| of a mean, metres; lossless 0
+  float largest_sh;                     // |coefficient|, over all bands of all nodes as read
+  bool leaves_have_extent;              // some leaf's record has an extent that is not 0
   ImportReport import;
 };
 

@@ -82,11 +82,17 @@ std::vector<ChunkEntry> make_entries(const LodTree& tree, const Partition& parti
   return entries;
 }
 
+bool leaves_have_extent(const LodTree& tree) {
+  return std::any_of(tree.records.begin(), tree.records.end(),
+                     [](const NodeRecord& r) { return r.child_count == 0 && r.extent != 0; });
+}
+
 FileHeader make_header(const BakedScene& baked, const Partition& partition, Quality quality) {
   FileHeader h{};
   std::memcpy(h.magic, kSceneMagic, sizeof h.magic);
   h.version = kSceneVersion;
-  h.flags = baked.leaves.antialiased ? kFlagAntialiased : 0;
+  h.flags = (baked.leaves.antialiased ? kFlagAntialiased : 0) |
+            (leaves_have_extent(baked.tree) ? kFlagLeafExtents : 0);
   h.quality = static_cast<uint32_t>(quality);
   h.sh_degree = static_cast<uint32_t>(baked.leaves.sh_degree);
   h.node_count = static_cast<uint32_t>(baked.tree.size());
@@ -160,7 +166,9 @@ void write_scene_file(const BakedScene& baked, const Partition& partition, const
                              to_vec(baked.origin),
                              to_vec(baked.leaves.origin),
                              static_cast<uint32_t>(baked.leaves.size()),
-                             tiers_of(partition)};
+                             tiers_of(partition),
+                             0,
+                             false};
   std::vector<ChunkEntry> entries = make_entries(baked.tree, partition);
   const size_t chunks = entries.size();
   FileHeader header = make_header(baked, partition, quality);
@@ -181,6 +189,7 @@ void write_scene_file(const BakedScene& baked, const Partition& partition, const
       entry.checksum = batch[i].checksum;
       file.write(batch[i].bytes);
       header.position_error = std::max(header.position_error, batch[i].position_error);
+      header.largest_sh = std::max(header.largest_sh, batch[i].largest_sh);
     }
   }
   finish_file(file, partition, entries, header);

@@ -272,6 +272,29 @@ void check_hulls(const Scene& scene) {
     }
 }
 
+float largest_magnitude(const std::pmr::vector<float>& values, Workers& workers) {
+  std::atomic<uint32_t> largest{0};  // magnitudes are in the order of their bits
+  workers.for_blocks(values.size(), size_t{1} << 20, [&](size_t begin, size_t end) {
+    uint32_t most = 0;
+    for (size_t i = begin; i < end; ++i)
+      most = std::max(most, std::bit_cast<uint32_t>(values[i]) & 0x7fffffffu);
+    for (uint32_t seen = largest; most > seen && !largest.compare_exchange_weak(seen, most);) {
+    }
+  });
+  return std::bit_cast<float>(largest.load());
+}
+
+// What the header says for readers that never see the whole.
+void check_claims(const SceneFileInfo& info, const Scene& scene, Workers& workers) {
+  if (const float largest = largest_magnitude(scene.sh, workers); largest != info.largest_sh)
+    refuse(scene, "a largest SH coefficient of " + std::to_string(largest),
+           "the header's " + std::to_string(info.largest_sh));
+  const auto has_extent = [](const NodeRecord& r) { return r.child_count == 0 && r.extent != 0; };
+  if (info.leaves_have_extent &&
+      std::none_of(scene.tree.records.begin(), scene.tree.records.end(), has_extent))
+    refuse(scene, "no leaf with an extent", "one, as the header says");
+}
+
 // What only the whole file can show.
 void check_totals(const Scene& scene) {
   if (std::count(scene.leaves.begin(), scene.leaves.end(), kNoNode) != 0)
@@ -307,7 +330,10 @@ void load_baked(const SceneFile& file, Workers& workers, Scene& scene) {
   check_repeats(scene, findings);
   check_nesting(scene, workers);
   check_hulls(scene);
-  if (scene.damaged.empty() && scene.tree.size() != 0) check_totals(scene);
+  if (scene.damaged.empty() && scene.tree.size() != 0) {
+    check_totals(scene);
+    check_claims(file.info(), scene, workers);
+  }
   add_search(scene, workers);
   add_notes(scene);
 }

@@ -49,15 +49,19 @@ TEST(CommandLinePartition, ChunkBytesAreKeptInTheFileAndToldByInfo) {
   }
 }
 
-TEST(CommandLinePartition, AFileOfVersionOneIsRefusedAndSaysToBakeAgain) {
+TEST(CommandLinePartition, FilesOfOlderVersionsAreRefusedAndSayToBakeAgain) {
   const TempFolder folder;
-  std::string bytes = file_bytes(VOYAGER_SOURCE_DIR "/tests/fuzz/corpus/voy/version1.voy");
-  ASSERT_FALSE(bytes.empty());
-  write_bytes(folder.file("old.voy"), bytes);
-  const Outcome info = run("voyager info " + folder.file("old.voy"));
-  EXPECT_EQ(info.exit_code, 2) << info.output;
-  for (const char* part : {"old.voy", "version 1", "bake the scene again"})
-    EXPECT_NE(info.output.find(part), std::string::npos) << info.output;
+  for (const std::string version : {"1", "2"}) {
+    const std::string old = VOYAGER_SOURCE_DIR "/tests/fuzz/corpus/voy/version" + version + ".voy";
+    const std::string bytes = file_bytes(old);
+    ASSERT_FALSE(bytes.empty());
+    write_bytes(folder.file("old.voy"), bytes);
+    const Outcome info = run("voyager info " + folder.file("old.voy"));
+    EXPECT_EQ(info.exit_code, 2) << info.output;
+    for (const std::string& part :
+         {std::string("old.voy"), "version " + version, std::string("bake the scene again")})
+      EXPECT_NE(info.output.find(part), std::string::npos) << info.output;
+  }
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ ChunkContext context_of(Quality quality, int degree = 1) {
   context.sh_degree = degree;
   context.leaf_count = 3;
   context.tiers = {3, kLevels, kTiers};
+  context.largest_sh = 0.25f;
   return context;
 }
 
@@ -138,6 +139,26 @@ TEST(ChunkCodec, AChunkOutOfPlaceIsRefused) {
   expect_damaged(sound, {{1, 3, 4, 4}, 2, 0}, context);
   expect_damaged(sound, kEnd, context_of(Quality::lossless));
   expect_damaged(sound, kEnd, context_of(Quality::compact, 3));
+}
+
+// What a device relies on without reading the whole file.
+TEST(ChunkCodec, WhatTheHeaderRulesOutIsRefused) {
+  for (const Quality quality : {Quality::lossless, Quality::compact}) {
+    for (const size_t k : {size_t{0}, size_t{16}, size_t{47}}) {  // constants and band 1
+      Chunk chunk = family(4);
+      chunk.sh[k] =
+          -std::nextafter(0.25f, 1.0f) - (k % 12 < 3 ? 0.001f : 0.0f);  // a step of binary16
+      EXPECT_EQ(test::error_code([&] { round_trip(chunk, context_of(quality)); }),
+                ErrorCode::damaged_chunk)
+          << k;
+    }
+    Chunk chunk = family(4);
+    chunk.records[2].extent = 0.5f;
+    ChunkContext context = context_of(quality);
+    EXPECT_EQ(test::error_code([&] { round_trip(chunk, context); }), ErrorCode::damaged_chunk);
+    context.leaves_have_extent = true;
+    EXPECT_EQ(round_trip(chunk, context).records[2].extent, 0.5f);
+  }
 }
 
 // A search takes it for infinitely large (METHOD §3).

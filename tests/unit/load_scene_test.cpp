@@ -306,7 +306,13 @@ TEST(LoadScene, AHeaderThatContradictsTheTreeIsRefused) {
   EXPECT_NO_THROW(load(changed([](FileHeader&) {})));
   for (const Bytes& bytes :
        {changed([](FileHeader& h) { ++h.depth; }), changed([](FileHeader& h) { ++h.leaf_count; }),
-        changed([](FileHeader& h) { h.bounds_min[0] -= 1; })})
+        changed([](FileHeader& h) { h.bounds_min[0] -= 1; }),
+        changed([](FileHeader& h) { h.largest_sh = std::nextafter(h.largest_sh, 1e9f); }),
+        changed([](FileHeader& h) { h.largest_sh = -1; }),
+        changed([](FileHeader& h) { h.largest_sh = std::nanf(""); }),
+        changed([](FileHeader& h) { h.reserved = 1; }),
+        changed([](FileHeader& h) { h.flags |= 4; }),
+        changed([](FileHeader& h) { h.flags |= kFlagLeafExtents; })})
     EXPECT_EQ(test::error_code([&] { load(bytes); }), ErrorCode::refused_input);
 }
 

@@ -104,6 +104,40 @@ TEST(SceneFile, CarriesWhatTheImportReported) {
   EXPECT_TRUE(same_bits(&file.info().import, &cloud.report, sizeof cloud.report));
 }
 
+// So that a reader can choose formats and searches before it has read a chunk.
+TEST(SceneFile, TheHeaderTellsTheLargestShOfWhatIsRead) {
+  for (const Quality quality : {Quality::lossless, Quality::compact})
+    for (const int degree : {0, 1, 2, 3}) {
+      GaussianCloud cloud = test::random_cloud(500, 20 + static_cast<uint64_t>(degree), degree);
+      const size_t floats = cloud.sh.size() / cloud.size();
+      for (const float value : {0.0f, -9.37512f, 70000.0f, 1e-40f}) {
+        cloud.sh[100 * floats + floats - 1] = value;
+        const Bytes bytes = test::scene_bytes(test::bake(cloud), quality);
+        const SceneFile file(test::source_of(bytes));
+        float largest = 0;
+        for_nodes(file, [&](const Chunk& chunk, size_t i, uint32_t) {
+          for (size_t k = 0; k < floats; ++k)
+            largest = std::max(largest, std::fabs(chunk.sh[i * floats + k]));
+        });
+        EXPECT_EQ(file.info().largest_sh, largest) << degree << ' ' << value;
+      }
+    }
+}
+
+TEST(SceneFile, TheHeaderTellsWhetherLeavesHaveExtents) {
+  for (const Quality quality : {Quality::lossless, Quality::compact})
+    for (const test::Extents extents : {test::Extents::longest_side, test::Extents::any}) {
+      const BakedScene baked =
+          test::baked_of(test::random_tree(test::TreeShape::mixture, 300, 8, extents));
+      const bool some =
+          std::any_of(baked.tree.records.begin(), baked.tree.records.end(),
+                      [](const NodeRecord& r) { return r.child_count == 0 && r.extent != 0; });
+      EXPECT_EQ(some, extents == test::Extents::any);
+      const Bytes bytes = test::scene_bytes(baked, quality);
+      EXPECT_EQ(SceneFile(test::source_of(bytes)).info().leaves_have_extent, some);
+    }
+}
+
 TEST(SceneFile, EveryTruncationIsRefused) {
   const Bytes whole =
       test::scene_bytes(test::bake(test::random_cloud(40, 3, 0)), Quality::lossless);
@@ -167,16 +201,17 @@ TEST(SceneFile, RefusalsNameFilePlaceFoundAndExpected) {
 
 TEST(SceneFile, AnotherVersionIsRefusedAndSaysToBakeAgain) {
   Bytes bytes = test::scene_bytes(test::bake(test::random_cloud(10, 5)), Quality::lossless);
-  const uint32_t version = 1;
-  std::memcpy(bytes.data() + offsetof(FileHeader, version), &version, sizeof version);
-  try {
-    const SceneFile file(test::source_of(bytes));
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::refused_input);
-    const std::string message = error.what();
-    for (const char* part : {"test.voy", "offset 8", "version 1", "2: bake the scene again"})
-      EXPECT_NE(message.find(part), std::string::npos) << message;
+  for (const uint32_t version : {1u, 2u, 4u}) {
+    std::memcpy(bytes.data() + offsetof(FileHeader, version), &version, sizeof version);
+    try {
+      const SceneFile file(test::source_of(bytes));
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::refused_input);
+      const std::string message = error.what(), found = "version " + std::to_string(version);
+      for (const char* part : {"test.voy", "offset 8", found.c_str(), "3: bake the scene again"})
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+    }
   }
 }
 
