@@ -50,6 +50,9 @@ void fill(VoyFrameStats& out, const FrameStats& in) {
   out.cutSize = in.cut_size;
   out.entered = in.entered;
   out.left = in.left;
+  out.missing = in.missing;
+  out.bytesStreamed = in.bytes_streamed;
+  out.bytesNeeded = in.bytes_needed;
   out.splats = in.splats;
   out.pairsBefore = in.pairs_before;
   out.pairsAfter = in.pairs_after;

@@ -64,8 +64,9 @@ uint32_t damaged_chunks(const Scene& scene) {
 
 void log_opening(const Log& log, const Scene& scene) {
   log.write(VOY_LOG_INFO,
-            ("voyOpenScene: " + scene.name + ": " + std::to_string(scene.gaussians.size()) +
-             " Gaussians, " + std::to_string(scene.tree.size()) + " of them nodes of a tree")
+            ("voyOpenScene: " + scene.name + ": " + std::to_string(std::max<uint64_t>(scene.gaussians.size(), scene.node_count)) +
+             " Gaussians, " + std::to_string(scene.node_count) + " of them nodes of a tree" +
+             (scene.streamed() ? ", streamed" : ""))
                 .c_str());
   for (const SceneNote& note : scene.notes)
     if (note.kind != SceneNote::Kind::omitted)
@@ -76,7 +77,7 @@ void log_opening(const Log& log, const Scene& scene) {
 VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
   VoySceneInfo info = VOY_SCENE_INFO_INIT;
   info.gaussianCount = scene.leaf_count;
-  info.nodeCount = scene.tree.size();
+  info.nodeCount = scene.node_count;
   info.treeDepth = scene.tree_depth;
   info.chunkCount = scene.chunk_count;
   info.damagedChunkCount = damaged_chunks(scene);

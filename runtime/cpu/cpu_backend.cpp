@@ -57,7 +57,7 @@ class CpuPipeline final : public HostPipeline {
   }
   void collect(FrameStats& stats) const override { instances_.collect(stats); }
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
-    cut = instances_.cut(instance);
+    instances_.read_cut(instance, cut);
   }
   bool cut_is_near() const override { return true; }
 

@@ -75,6 +75,9 @@ struct FrameInput {
   std::vector<InstancePose> instances;  // one an instance of the view; none: all at the identity
   double tau = 3;
   Vec3f background{0, 0, 0};
+  // Of streamed scenes: what is seen is waited for, as far as it can come. stand_in: what cannot
+  // is drawn by its ancestors; else the frame fails.
+  bool wait_resident = false, stand_in = false;
 };
 
 enum Stage { kSearch, kProject, kSort, kBin, kRasterize, kResolve, kStageCount };
@@ -92,6 +95,9 @@ struct FrameStats {
   // Sums over the instances, as all that follows; from splats on over the eyes, too.
   uint64_t nodes_total = 0, nodes_tested = 0, subtrees_visited = 0, chunks_read = 0, bytes_read = 0;
   uint64_t cut_size = 0, entered = 0, left = 0;
+  uint64_t missing = 0;         // of the cut: stand in for what is not there
+  uint64_t bytes_streamed = 0;  // since the view's frame before
+  uint64_t bytes_needed = 0;    // stored bytes of chunks that are needed and not there
   uint64_t splats = 0, pairs_before = 0, pairs_after = 0;
   // Pairs, or what would have become pairs, for which a device had no memory; 0 in a whole image.
   uint64_t pairs_dropped = 0;
@@ -139,6 +145,11 @@ struct DeviceRates {
   double bytes = 0;              // of its memory, a second
 };
 
+// Bytes of a pool.
+struct PoolBytes {
+  uint64_t slot, fixed;
+};
+
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -157,6 +168,11 @@ class Backend {
   virtual std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                                     std::pmr::memory_resource* memory,
                                                     Workers& workers) = 0;
+  // Where the chunks of a streamed scene lie, whose description is complete: for so many slots.
+  // Throws Error(over_budget), std::bad_alloc.
+  virtual std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, uint32_t slots);
+  // What that takes of the memory that a budget for streaming bounds: a slot, and beside them.
+  virtual PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const;
   // The scene has a tree. Throws Error(unsupported) where the backend has no such search.
   virtual std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                                      const SearchDesc& desc,

@@ -13,7 +13,11 @@ GaussianArrays gaussian_arrays(const Scene& scene) {
 
 DrawList::DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
                    std::pmr::memory_resource* memory)
-    : scene_(std::move(scene)), no_cut_(memory), leaves_(memory) {
+    : scene_(std::move(scene)), leaves_(memory) {
+  if (scene_->streamed() && lod == Lod::all_leaves)
+    throw Error(ErrorCode::unsupported,
+                "lod: found all leaves, a streamed scene is drawn as a cut: most of its leaves "
+                "are not there");
   if (scene_->flat() || lod == Lod::all_leaves)
     list_leaves();
   else

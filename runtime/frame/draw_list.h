@@ -23,7 +23,11 @@ class DrawList {
   // Index in items() is the tie-breaker of the sort: node ids ascend in a cut,
   // input indices where every leaf is drawn.
   const std::pmr::vector<DrawItem>& items() const { return search_ ? search_->items() : leaves_; }
-  const std::pmr::vector<uint32_t>& cut() const { return search_ ? search_->cut() : no_cut_; }
+  // Node ids, ascending; none where every leaf is drawn.
+  void read_cut(std::pmr::vector<uint32_t>& nodes) const {
+    nodes.clear();
+    if (search_) search_->read_cut(nodes);
+  }
   // Adds its counters.
   void collect(FrameStats& stats) const;
 
@@ -32,7 +36,6 @@ class DrawList {
 
   std::shared_ptr<const Scene> scene_;
   std::optional<HostSearch> search_;  // none where every leaf is drawn
-  std::pmr::vector<uint32_t> no_cut_;
   std::pmr::vector<DrawItem> leaves_;
   bool leaves_missing_ = false;
 };

@@ -36,6 +36,7 @@ inline void add_search(const SearchStats& found, bool counts_changes, FrameStats
   stats.changes_counted = stats.changes_counted && counts_changes;
   stats.entered += found.entered;
   stats.left += found.left;
+  stats.missing += found.stand_ins;
 }
 
 }  // namespace voyager

@@ -32,8 +32,8 @@ class HostInstances {
 
   // In their order, as the last update left them.
   const std::deque<HostInstance>& all() const { return all_; }
-  const std::pmr::vector<uint32_t>& cut(size_t instance) const {
-    return all_[instance].draws.cut();
+  void read_cut(size_t instance, std::pmr::vector<uint32_t>& nodes) const {
+    all_[instance].draws.read_cut(nodes);
   }
   // Of all instances.
   size_t places() const { return places_; }

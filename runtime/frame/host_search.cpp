@@ -11,6 +11,9 @@ namespace voyager {
 HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
                        std::pmr::memory_resource* memory)
     : scene_(std::move(scene)), desc_(desc), items_(memory) {
+  if (scene_->streamed() && desc.kind == Search::exhaustive)
+    throw Error(ErrorCode::unsupported,
+                "search: found exhaustive, a streamed scene has streaming and temporal");
   if (desc.kind != Search::exhaustive) {
     partitioned_.emplace(scene_->search, memory);
     return;
@@ -22,11 +25,11 @@ HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& des
 void HostSearch::run(const CutQuery& query, Workers& workers) {
   Stopwatch watch;
   const std::optional<CutQuery> weighed = std::exchange(weighed_, std::nullopt);
+  if (scene_->streamed()) follow_stream();
   find(query, workers);
   times_.search = watch.lap();
   // A view that stands still has its weights.
-  const bool stands = weighed == query && partitioned_ &&
-                      partitioned_->stats().entered + partitioned_->stats().left == 0;
+  const bool stands = weighed == query && partitioned_ && !partitioned_->relisted();
   if (desc_.weights && !stands) weigh(query, workers);
   weighed_ = query;
   times_.weights = watch.lap();
@@ -39,6 +42,20 @@ void HostSearch::find(const CutQuery& query, Workers& workers) {
     exhaustive_->run(scene_->tree, missing_, query, workers);
   if ((partitioned_ ? partitioned_->needed_missing() : exhaustive_->needed_missing()) != kNoNode)
     refuse_damaged();
+}
+
+void HostSearch::follow_stream() {
+  const SceneStream& stream = *scene_->stream;
+  if (!stream.changes_since(version_, changes_)) partitioned_->forget();
+  for (const auto& change : changes_) partitioned_->relink(change->unlinked, change->changed);
+  version_ = stream.version();
+  changes_.clear();
+}
+
+void HostSearch::read_cut(std::pmr::vector<uint32_t>& nodes) const {
+  nodes = cut();
+  if (!scene_->streamed()) return;
+  for (uint32_t& node : nodes) node = scene_->node_ids[node];
 }
 
 void HostSearch::weigh(const CutQuery& query, Workers& workers) {
@@ -89,7 +106,9 @@ class SearchOfHost final : public SceneSearch {
   SearchTimes times() override { return search_.times(); }
   SearchStats stats() override { return search_.stats(); }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
-    cut.assign(search_.cut().begin(), search_.cut().end());
+    std::pmr::vector<uint32_t> nodes;
+    search_.read_cut(nodes);
+    cut.assign(nodes.begin(), nodes.end());
     weights.clear();
     for (const DrawItem& item : search_.items()) weights.push_back(item.t);
   }

@@ -23,17 +23,21 @@ class HostSearch {
   // std::bad_alloc; the next run is right all the same.
   void run(const CutQuery& query, Workers& workers);
 
-  // Of the last run. Ascending; items()[i] draws cut()[i], where weights are wanted.
+  // Of the last run, in the order of node ids: ids, or addresses of a streamed scene. items()[i]
+  // draws cut()[i], where weights are wanted.
   const std::pmr::vector<uint32_t>& cut() const {
     return partitioned_ ? partitioned_->cut() : exhaustive_->cut();
   }
   const std::pmr::vector<DrawItem>& items() const { return items_; }
+  // Node ids, ascending.
+  void read_cut(std::pmr::vector<uint32_t>& nodes) const;
   const SearchTimes& times() const { return times_; }
   // An exhaustive search keeps nothing to count what entered and left: 0.
   SearchStats stats() const;
   bool counts_changes() const { return partitioned_.has_value(); }
 
  private:
+  void follow_stream();
   void find(const CutQuery& query, Workers& workers);
   void weigh(const CutQuery& query, Workers& workers);
   [[noreturn]] void refuse_damaged() const;
@@ -45,6 +49,9 @@ class HostSearch {
   std::optional<PartitionedSearch> partitioned_;
   std::pmr::vector<DrawItem> items_;
   std::optional<CutQuery> weighed_;  // what items_ are of
+  // Of a streamed scene: what the search has heard of.
+  uint64_t version_ = 0;
+  std::vector<std::shared_ptr<const StreamChange>> changes_;
   SearchTimes times_;
 };
 

@@ -10,6 +10,9 @@ namespace voyager {
 // Error(refused_input).
 void load_baked(const SceneFile& file, Workers& workers, Scene& scene);
 
+// What a .voy file says of itself.
+void set_info(const SceneFileInfo& info, Scene& scene);
+
 // Fills a Scene from a flat file that import_gaussians() reads.
 void load_flat(const ByteSource& source, Workers& workers, Scene& scene);
 

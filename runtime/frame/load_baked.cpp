@@ -15,6 +15,8 @@ namespace {
   throw Error(ErrorCode::refused_input, scene.name + ": found " + found + ", expected " + expected);
 }
 
+}  // namespace
+
 void set_info(const SceneFileInfo& info, Scene& scene) {
   scene.storage = info.quality == Quality::compact ? Storage::compact : Storage::lossless;
   scene.sh_degree = info.sh_degree;
@@ -22,12 +24,15 @@ void set_info(const SceneFileInfo& info, Scene& scene) {
   scene.tree_depth = info.depth;
   scene.chunk_count = info.chunk_count;
   scene.leaf_count = info.leaf_count;
+  scene.node_count = info.node_count;
   scene.origin = {info.origin[0], info.origin[1], info.origin[2]};
   scene.bounds_min = info.bounds_min;
   scene.bounds_max = info.bounds_max;
   scene.position_error = info.position_error;
   scene.import = info.import;
 }
+
+namespace {
 
 void make_room(const SceneFileInfo& info, Scene& scene) {
   const size_t nodes = info.node_count;

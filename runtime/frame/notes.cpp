@@ -19,9 +19,11 @@ void add_notes(Scene& scene) {
   if (scene.sh_degree < kMaxShDegree) {
     const auto missing =
         static_cast<uint64_t>(sh_coefficients(kMaxShDegree) - scene.coefficients());
-    scene.notes.push_back({Kind::omitted, 0, scene.gaussians.size() * missing * 3 * sizeof(float),
-                           "SH bands above degree " + std::to_string(scene.sh_degree),
-                           "the input has none; bytes are against degree 3"});
+    scene.notes.push_back(
+        {Kind::omitted, 0,
+         std::max<uint64_t>(scene.gaussians.size(), scene.node_count) * missing * 3 * sizeof(float),
+         "SH bands above degree " + std::to_string(scene.sh_degree),
+         "the input has none; bytes are against degree 3"});
   }
 }
 

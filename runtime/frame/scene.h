@@ -12,6 +12,7 @@
 #include "runtime/math/gaussian.h"
 #include "runtime/scene/gaussian_cloud.h"
 #include "runtime/select/search_tree.h"
+#include "runtime/stream/scene_stream.h"
 
 namespace voyager {
 
@@ -44,6 +45,9 @@ struct DamagedNodes {
   std::string message;  // names file, chunk, offset, found, expected
 };
 
+// Of a scene that is streamed only the chunks in `pool` are there. Where they lie on the host,
+// what is said to be by node id is by address (slot * SlotShape::nodes + place in the chunk),
+// and may be read under stream->hold(); where they do not, those arrays are empty.
 struct Scene {
   explicit Scene(std::pmr::memory_resource* memory)
       : gaussians(memory),
@@ -52,9 +56,11 @@ struct Scene {
         search(memory),
         axis_code(memory),
         leaves(memory),
-        partition(memory) {}
+        partition(memory),
+        node_ids(memory) {}
 
   bool flat() const { return storage == Storage::flat; }
+  bool streamed() const { return stream != nullptr; }
   int coefficients() const { return sh_coefficients(sh_degree); }
   const float* sh_of(uint32_t i) const {
     return sh.data() + size_t{i} * 3 * static_cast<size_t>(coefficients());
@@ -65,10 +71,11 @@ struct Scene {
   int sh_degree = 0;
   bool antialiased = false;
   uint32_t tree_depth = 0, chunk_count = 0;
-  uint64_t leaf_count = 0;
+  uint64_t leaf_count = 0, node_count = 0;         // of the whole tree
   Vec3d origin{0, 0, 0};                           // world position of the scene-local zero
   Vec3f bounds_min{0, 0, 0}, bounds_max{0, 0, 0};  // scene-local, means ± 3·max(s)
   double position_error = 0;
+  float largest_sh = 0;  // of a streamed scene: no coefficient of it is larger
   ImportReport import;
 
   std::pmr::vector<Gaussian> gaussians;  // by node id; a flat scene's by index
@@ -81,6 +88,10 @@ struct Scene {
   std::vector<DamagedNodes> damaged;     // by first, disjoint
   std::vector<DamagedChunk> damaged_chunks;  // by chunk
   std::vector<SceneNote> notes;
+
+  std::pmr::vector<uint32_t> node_ids;  // by address, of a streamed scene on the host
+  std::unique_ptr<ChunkPool> pool;
+  std::unique_ptr<SceneStream> stream;  // fills the pool, so goes before it
 };
 
 // Opens .voy, .ply or .spz, told by its bytes. Throws Error; std::bad_alloc

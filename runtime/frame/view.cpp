@@ -36,6 +36,7 @@ uint64_t count_missing(const std::pmr::vector<uint32_t>& from,
 View::View(Scenes scenes, Backend& backend, const PipelineDesc& desc,
            std::pmr::memory_resource* memory, Workers& workers)
     : scenes_(std::move(scenes)),
+      streaming_(scenes_),
       desc_(desc),
       pipeline_(backend.create_pipeline(scenes_, desc, memory, workers)) {
   cuts_.reserve(scenes_.size());
@@ -66,9 +67,10 @@ void View::keep_cuts(bool read) {
   }
 }
 
-FrameStats View::known_stats(const FrameInput& frame) const {
+FrameStats View::known_stats(const FrameInput& frame) {
   FrameStats stats;
-  for (const auto& scene : scenes_) stats.nodes_total += scene->tree.size();
+  streaming_.collect(stats);
+  for (const auto& scene : scenes_) stats.nodes_total += scene->node_count;
   stats.tau = frame.tau;
   if (budget_) {
     stats.time_budget = budget_->desc().milliseconds;
@@ -155,6 +157,7 @@ void View::render(const FrameInput& frame) {
     for (size_t i = 0; i < scenes_.size(); ++i)
       check_camera(instance_camera(frame, eye, i), *scenes_[i],
                    frame.instances.empty() ? "" : " in instance " + std::to_string(i));
+  const auto holds = streaming_.begin(frame);
   const bool follows = follows_;  // the search's last run was the last frame's
   follows_ = false;
   if (frame.eyes[0].image.external.ring != nullptr)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/frame/backend.h"
+#include "runtime/frame/frame_streaming.h"
 #include "runtime/frame/time_budget.h"
 
 namespace voyager {
@@ -63,7 +64,7 @@ class View {
     bool changes_known = false;  // entered and left are there already
   };
 
-  FrameStats known_stats(const FrameInput& frame) const;
+  FrameStats known_stats(const FrameInput& frame);
   void draw(const FrameInput& frame, bool follows);
   void keep_stats(const FrameStats& stats);
   void submit(const FrameInput& frame, bool follows);
@@ -75,6 +76,7 @@ class View {
   void keep_cuts(bool read);
 
   Scenes scenes_;
+  FrameStreaming streaming_;
   PipelineDesc desc_;
   std::unique_ptr<Pipeline> pipeline_;
   std::vector<InstanceCut> cuts_;

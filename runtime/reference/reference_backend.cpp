@@ -113,7 +113,7 @@ class ReferencePipeline final : public HostPipeline {
   void collect_eye(FrameStats& stats) const override { stats.splats += keys_.size(); }
   void collect(FrameStats& stats) const override { instances_.collect(stats); }
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
-    cut = instances_.cut(instance);
+    instances_.read_cut(instance, cut);
   }
   bool cut_is_near() const override { return true; }
 

@@ -59,6 +59,9 @@ struct SearchSubtree {
 };
 static_assert(sizeof(SearchSubtree) == 32);
 
+// Of a subtree that has not come yet.
+inline constexpr SearchSubtree kUnlinkedSubtree{kNoNode, 0, 0, 0, 0, 0, 0, kNotLinked};
+
 // Hull of the records that the roots of a chunk hang from: no root can be reached
 // where even the hull's size is under τ*, because every operation of size() is
 // monotone. Those of chunks with subtrees of the tree's root are never under it.
@@ -74,6 +77,7 @@ struct SearchTree {
   explicit SearchTree(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : subtrees(memory), records(memory), opens(memory), chunks(memory), tier_begin(memory) {}
 
+  uint32_t subtree_count() const { return chunks.empty() ? 0 : chunks.back().first_subtree; }
   size_t chunk_count() const { return chunks.empty() ? 0 : chunks.size() - 1; }
   uint64_t bytes() const {
     return subtrees.size() * sizeof(SearchSubtree) + records.size() * sizeof(SearchRecord) +

@@ -1,0 +1,127 @@
+#include "runtime/frame/frame_streaming.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/frame/frame_search.h"
+#include "runtime/frame/instance.h"
+
+namespace voyager {
+namespace {
+
+// How far ahead chunks are asked for, in seconds: about what a disk, and a server, take.
+constexpr double kHorizons[] = {0.25, 1.0};
+// Faster than this, or longer between two frames, a viewer has jumped.
+constexpr double kFastest = 150;       // metres a second
+constexpr double kLongestFrame = 0.5;  // seconds
+// Of a new frame's velocity in the running mean.
+constexpr double kNewest = 0.25;
+// Slower than this a viewer stands: what it leans is not a way.
+constexpr double kSlowest = 0.05;  // metres a second
+
+double length(const Vec3d& v) {
+  return std::sqrt(dot(v, v));
+}
+
+Vec3f unit_float(const Vec3d& v) {
+  const Vec3d n = (1 / length(v)) * v;
+  return {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
+}
+
+// What a camera sees, and by `margin` (tangents) more on each side.
+Wedge wedge_of(const Camera& camera, const Vec3d& origin, double margin) {
+  const auto& [right, down, forward] = camera.world_to_view.row;
+  const double left = -camera.cx / camera.fx - margin;
+  const double to_right = (camera.width - camera.cx) / camera.fx + margin;
+  const double up = -camera.cy / camera.fy - margin;
+  const double to_down = (camera.height - camera.cy) / camera.fy + margin;
+  return {
+      cut_centre(camera.eye, origin),
+      {unit_float(right - left * forward), unit_float(to_right * forward - right),
+       unit_float(down - up * forward), unit_float(to_down * forward - down), unit_float(forward)}};
+}
+
+}  // namespace
+
+FrameStreaming::FrameStreaming(const Scenes& scenes, Clock clock)
+    : scenes_(scenes), clock_(std::move(clock)) {
+  for (const auto& scene : scenes)
+    if (scene->streamed() &&
+        std::find(streamed_.begin(), streamed_.end(), scene.get()) == streamed_.end())
+      streamed_.push_back(scene.get());
+  for (const Scene* scene : streamed_) bytes_read_.push_back(scene->stream->counters().bytes_read);
+  if (!clock_)
+    clock_ = [] {
+      return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+          .count();
+    };
+}
+
+FrameStreaming::~FrameStreaming() {
+  for (size_t i = 0; i < scenes_.size(); ++i)
+    if (scenes_[i]->streamed()) scenes_[i]->stream->look(&scenes_[i], {});
+}
+
+// Of the first eye, in the world. Instances that move are not foreseen.
+std::optional<Vec3d> FrameStreaming::velocity(const FrameInput& frame) {
+  const Vec3d eye = frame.eyes[0].camera.eye;
+  const double time = clock_(), since = time - time_;
+  if (eye_ && since > 0 && since < kLongestFrame) {
+    const Vec3d now = (1 / since) * (eye - *eye_);
+    if (length(now) > kFastest)
+      velocity_.reset();
+    else
+      velocity_ = velocity_ ? (1 - kNewest) * *velocity_ + kNewest * now : now;
+  } else if (since >= kLongestFrame) {
+    velocity_.reset();
+  }
+  eye_ = eye;
+  time_ = time;
+  return velocity_ && length(*velocity_) > kSlowest ? velocity_ : std::nullopt;
+}
+
+std::vector<Viewer> FrameStreaming::viewers_of(const FrameInput& frame, size_t instance) {
+  const Vec3d& origin = scenes_[instance]->origin;
+  Viewer viewer{cut_query(frame, instance, origin), {}, false};
+  for (const FrameEye& eye : frame.eyes)
+    viewer.eyes.push_back(wedge_of(instance_camera(frame, eye, instance), origin,
+                                   kWedgeMargin * double{viewer.query.target_size}));
+  return {viewer};
+}
+
+FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
+  Holds holds;
+  if (streamed_.empty()) return holds;
+  const std::optional<Vec3d> way = velocity(frame);
+  for (size_t i = 0; i < scenes_.size(); ++i) {
+    if (!scenes_[i]->streamed()) continue;
+    std::vector<Viewer> viewers = viewers_of(frame, i);
+    for (const double horizon : kHorizons) {
+      if (!way) break;
+      FrameInput later = frame;
+      for (FrameEye& eye : later.eyes) eye.camera.eye = eye.camera.eye + horizon * *way;
+      viewers.push_back(viewers_of(later, i)[0]);
+      viewers.back().ahead = true;
+    }
+    scenes_[i]->stream->look(&scenes_[i], std::move(viewers));
+  }
+  for (const Scene* scene : streamed_) {
+    if (frame.wait_resident)
+      scene->stream->wait(frame.stand_in);
+    else
+      scene->stream->commit();
+  }
+  for (const Scene* scene : streamed_) holds.push_back(scene->stream->hold());
+  return holds;
+}
+
+void FrameStreaming::collect(FrameStats& stats) {
+  for (size_t i = 0; i < streamed_.size(); ++i) {
+    const StreamCounters counters = streamed_[i]->stream->counters();
+    stats.bytes_streamed += counters.bytes_read - bytes_read_[i];
+    stats.bytes_needed += counters.need.missing_bytes;
+    bytes_read_[i] = counters.bytes_read;
+  }
+}
+
+}  // namespace voyager

@@ -1,0 +1,44 @@
+#pragma once
+// A view's part in streaming: says where it looks, and is going, and takes what has come.
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <shared_mutex>
+#include <vector>
+
+#include "runtime/frame/backend.h"
+
+namespace voyager {
+
+// Seconds, on a clock that never goes back.
+using Clock = std::function<double()>;
+
+class FrameStreaming {
+ public:
+  explicit FrameStreaming(const Scenes& scenes, Clock clock = {});
+  ~FrameStreaming();
+  FrameStreaming(const FrameStreaming&) = delete;
+  FrameStreaming& operator=(const FrameStreaming&) = delete;
+
+  // While these live, what is resident stays as the frame has found it.
+  using Holds = std::vector<std::shared_lock<std::shared_mutex>>;
+  // In front of a frame. Waits for nothing unless the frame says so; throws as
+  // SceneStream::wait() does.
+  Holds begin(const FrameInput& frame);
+  // Of the frame.
+  void collect(FrameStats& stats);
+
+ private:
+  std::vector<Viewer> viewers_of(const FrameInput& frame, size_t instance);
+  std::optional<Vec3d> velocity(const FrameInput& frame);
+
+  const Scenes& scenes_;
+  std::vector<const Scene*> streamed_;  // each once
+  std::vector<uint64_t> bytes_read_;    // of each, as of the frame before
+  Clock clock_;
+  std::optional<Vec3d> velocity_;  // world, metres a second; none: unknown
+  std::optional<Vec3d> eye_;
+  double time_ = 0;
+};
+
+}  // namespace voyager

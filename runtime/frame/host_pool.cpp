@@ -1,0 +1,91 @@
+#include "runtime/frame/host_pool.h"
+
+#include <algorithm>
+
+#include "runtime/frame/load.h"
+
+namespace voyager {
+namespace {
+
+size_t floats_of(const Scene& scene) {
+  return static_cast<size_t>(scene.coefficients()) * 3;
+}
+
+class HostPool final : public ChunkPool {
+ public:
+  HostPool(Scene& scene, SlotShape shape, uint32_t slots) : scene_(scene), shape_(shape) {
+    const size_t nodes = size_t{slots} * shape.nodes, records = size_t{slots} * shape.records;
+    scene.gaussians.resize(nodes);
+    scene.sh.resize(nodes * floats_of(scene));
+    scene.tree.records.resize(nodes);
+    scene.tree.parent.resize(nodes, kNoNode);
+    scene.axis_code.resize(nodes);
+    scene.node_ids.resize(nodes, kNoNode);
+    scene.search.subtrees.assign(scene.search.subtree_count(), kUnlinkedSubtree);
+    scene.search.records.resize(records);
+    scene.search.opens.resize(records);
+  }
+
+  void fill(uint32_t slot, const StagedChunk& staged) override {
+    const Chunk& chunk = staged.content;
+    const size_t base = size_t{slot} * shape_.nodes, floats = floats_of(scene_);
+    for (size_t i = 0; i < chunk.node.size(); ++i) {
+      const size_t at = base + i;
+      set_gaussian(scene_, at, chunk.words[i], chunk.is_leaf(i));
+      scene_.tree.records[at] = chunk.record_of(i);
+      scene_.tree.parent[at] =
+          staged.parent[i] == kNoNode ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
+      scene_.axis_code[at] = chunk.axis_code[i];
+      scene_.node_ids[at] = chunk.node[i];
+    }
+    std::copy(chunk.sh.begin(), chunk.sh.end(),
+              scene_.sh.begin() + static_cast<std::ptrdiff_t>(base * floats));
+    std::copy(
+        staged.records.begin(), staged.records.end(),
+        scene_.search.records.begin() + static_cast<std::ptrdiff_t>(size_t{slot} * shape_.records));
+  }
+
+  void apply(const LinkPatch& patch) override {
+    SearchTree& search = scene_.search;
+    const auto set_records = [&](const std::vector<LinkPatch::Record>& records) {
+      for (const LinkPatch::Record& r : records) {
+        search.records[r.record].children = r.children;
+        search.opens[r.record] = r.opens;
+      }
+    };
+    set_records(patch.cut.records);
+    for (const uint32_t subtree : patch.unlinked) search.subtrees[subtree].entry = kNotLinked;
+    set_records(patch.tied.records);
+    for (const auto& [subtree, linked] : patch.linked) search.subtrees[subtree] = linked;
+    for (const LinkPatch::Parent& p : patch.parents) scene_.tree.parent[p.node] = p.parent;
+  }
+
+ private:
+  Scene& scene_;
+  const SlotShape shape_;
+};
+
+}  // namespace
+
+PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
+  const uint64_t node = sizeof(Gaussian) + floats_of(scene) * sizeof(float) + sizeof(NodeRecord) +
+                        2 * sizeof(uint32_t) + sizeof(uint8_t);
+  const uint64_t record = sizeof(SearchRecord) + sizeof(SubtreeSpan);
+  return {shape.nodes * node + shape.records * record,
+          scene.search.subtree_count() * sizeof(SearchSubtree) +
+              scene.search.chunks.size() * sizeof(SearchChunk)};
+}
+
+std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, SlotShape shape, uint32_t slots) {
+  return std::make_unique<HostPool>(scene, shape, slots);
+}
+
+std::unique_ptr<ChunkPool> Backend::create_pool(Scene& scene, SlotShape shape, uint32_t slots) {
+  return create_host_pool(scene, shape, slots);
+}
+
+PoolBytes Backend::pool_bytes(const Scene& scene, SlotShape shape) const {
+  return host_pool_bytes(scene, shape);
+}
+
+}  // namespace voyager

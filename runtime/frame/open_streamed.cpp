@@ -1,0 +1,83 @@
+#include "runtime/frame/open_streamed.h"
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+#include <cstdio>
+
+#include "runtime/frame/load.h"
+
+namespace voyager {
+namespace {
+
+// Of the slots: what every view has at once, wherever it looks.
+constexpr uint32_t kPinnedShare = 16;
+
+SearchChunk search_chunk(const ChunkEntry& entry) {
+  const EntryHull& hull = entry.hull;
+  // As make_search_tree() has it: subtrees of the tree's root are always reached.
+  if (std::isinf(hull.extent))
+    return {
+        {-FLT_MAX, -FLT_MAX, -FLT_MAX}, FLT_MAX, {FLT_MAX, FLT_MAX, FLT_MAX}, entry.first_subtree};
+  return {hull.box_min, hull.extent, hull.box_max, entry.first_subtree};
+}
+
+// All that is known without a chunk; the pool has the rest.
+void set_search(const SceneFile& file, SearchTree& search) {
+  const uint32_t subtrees = file.info().subtree_count;
+  search.chunks_come_and_go = true;
+  search.leaves_have_extent = file.info().leaves_have_extent;
+  for (const ChunkEntry& entry : file.chunks()) search.chunks.push_back(search_chunk(entry));
+  search.chunks.push_back({{0, 0, 0}, 0, {0, 0, 0}, subtrees});
+  const Tiers tiers = file.tiers();
+  search.tier_begin.assign(tiers.tier_begin.begin(), tiers.tier_begin.end());
+}
+
+uint32_t slots_for(const SceneFile& file, const PoolBytes& bytes, uint64_t budget) {
+  const auto chunks = static_cast<uint32_t>(file.chunks().size());
+  if (budget == 0) return chunks;
+  const uint64_t room = budget < bytes.fixed ? 0 : (budget - bytes.fixed) / bytes.slot;
+  const uint32_t least = SceneStream::top_chunks(file);
+  if (room >= least) return static_cast<uint32_t>(std::min<uint64_t>(room, chunks));
+  char message[160];
+  std::snprintf(message, sizeof message,
+                ": the top of the tree takes %.3f MB, the memory budget allows %.3f MB",
+                static_cast<double>(bytes.fixed + least * bytes.slot) / 1e6,
+                static_cast<double>(budget) / 1e6);
+  throw Error(ErrorCode::over_budget, file.name() + message);
+}
+
+}  // namespace
+
+std::shared_ptr<const Scene> open_streamed(const std::shared_ptr<const ByteSource>& source,
+                                           const StreamingDesc& desc, Backend& backend,
+                                           std::pmr::memory_resource* memory, Workers& workers) {
+  std::array<std::byte, 8> first{};
+  const auto start = std::span(first).first(std::min<uint64_t>(first.size(), source->size()));
+  source->read(0, start);
+  if (!SceneFile::is_scene_file(start)) return load_scene(source, memory, workers);
+  const auto file = std::make_shared<const SceneFile>(source);
+  auto scene = std::make_shared<Scene>(memory);
+  scene->name = source->name();
+  set_info(file->info(), *scene);
+  add_notes(*scene);
+  if (file->chunks().empty()) return scene;
+  scene->largest_sh = file->info().largest_sh;
+  set_search(*file, scene->search);
+  const SlotShape shape = SceneStream::slot_shape(*file);
+  const PoolBytes bytes = backend.pool_bytes(*scene, shape);
+  StreamDesc stream;
+  stream.slots = slots_for(*file, bytes, desc.budget);
+  stream.pinned = std::max(SceneStream::top_chunks(*file), stream.slots / kPinnedShare);
+  stream.readers = desc.readers;
+  stream.slot_bytes = bytes.slot;
+  stream.fixed_bytes = bytes.fixed;
+  stream.clock = desc.clock;
+  scene->pool = backend.create_pool(*scene, shape, stream.slots);
+  scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
+  scene->stream->read_top();
+  return scene;
+}
+
+}  // namespace voyager

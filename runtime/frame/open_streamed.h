@@ -1,0 +1,20 @@
+#pragma once
+#include "runtime/frame/backend.h"
+
+namespace voyager {
+
+struct StreamingDesc {
+  uint64_t budget = 0;   // bytes of the pool, on the device that renders; 0: room for all
+  unsigned readers = 2;  // threads that read and decode; 0: none, SceneStream::step() does it
+  std::function<double()> clock;  // as StreamDesc has it
+};
+
+// Opens a .voy file of which a part at a time is in memory; other formats are loaded whole, as
+// load_scene() does. Reads the header, the directory and the top of the tree. Throws as
+// load_scene() does, and Error(over_budget) where the budget has no room for the top; the message
+// names what it takes. The backend outlives the scene.
+std::shared_ptr<const Scene> open_streamed(const std::shared_ptr<const ByteSource>& source,
+                                           const StreamingDesc& desc, Backend& backend,
+                                           std::pmr::memory_resource* memory, Workers& workers);
+
+}  // namespace voyager
