@@ -14,10 +14,12 @@ namespace {
 // Of the slots: what every view has at once, wherever it looks.
 constexpr uint32_t kPinnedShare = 16;
 
-SearchChunk search_chunk(const ChunkEntry& entry) {
+// As make_search_tree() has it: over what the subtrees' roots hang from. A file's hull is as good
+// but where a chunk goes on with a root of the one before, and of the tree's root: those are
+// never passed over.
+SearchChunk search_chunk(const ChunkEntry& entry, bool top) {
   const EntryHull& hull = entry.hull;
-  // As make_search_tree() has it: subtrees of the tree's root are always reached.
-  if (std::isinf(hull.extent))
+  if (top || entry.place.listed_children != 0)
     return {
         {-FLT_MAX, -FLT_MAX, -FLT_MAX}, FLT_MAX, {FLT_MAX, FLT_MAX, FLT_MAX}, entry.first_subtree};
   return {hull.box_min, hull.extent, hull.box_max, entry.first_subtree};
@@ -28,9 +30,10 @@ void set_search(const SceneFile& file, SearchTree& search) {
   const uint32_t subtrees = file.info().subtree_count;
   search.chunks_come_and_go = true;
   search.leaves_have_extent = file.info().leaves_have_extent;
-  for (const ChunkEntry& entry : file.chunks()) search.chunks.push_back(search_chunk(entry));
-  search.chunks.push_back({{0, 0, 0}, 0, {0, 0, 0}, subtrees});
   const Tiers tiers = file.tiers();
+  for (const ChunkEntry& entry : file.chunks())
+    search.chunks.push_back(search_chunk(entry, entry.first_subtree < tiers.tier_begin[1]));
+  search.chunks.push_back({{0, 0, 0}, 0, {0, 0, 0}, subtrees});
   search.tier_begin.assign(tiers.tier_begin.begin(), tiers.tier_begin.end());
 }
 

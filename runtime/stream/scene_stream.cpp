@@ -366,6 +366,7 @@ void SceneStream::wait(bool stand_in) {
       Lock lock(mutex_);
       stepped = plan_if_asked();
       commit_all();
+      publish();
       check_fits();
       if (is_settled()) {
         const std::vector<uint32_t> failed = residency_.need().seen_failed;

@@ -75,6 +75,7 @@ class SceneStream {
   // The changes after a version, in their order; false where those are no longer known.
   bool changes_since(uint64_t version, std::vector<std::shared_ptr<const StreamChange>>& out) const;
 
+  uint32_t slots() const { return desc_.slots; }
   // As of the last step or commit. Any thread.
   StreamCounters counters() const;
   // What went wrong, each cause once. Any thread.

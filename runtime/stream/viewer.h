@@ -29,12 +29,12 @@ struct Wedge {
   }
 };
 
-// Wedges are wider than what an eye sees by so many τ* (tangents) on each side, and what hangs
-// from a node of extent E is taken to reach so many E beyond the node's box. A merged Gaussian
-// has σ ≤ E·√3/2 and is drawn to 3.33 σ (METHOD §6), 1.64 times as far where the clamp of its
-// Jacobian stretches it; a cut node's E is below 2 τ*·distance between it and its parent.
+// The margin. Wedges are wider than what an eye sees by so many τ* (tangents) on each side: a cut
+// node is below 2 τ* in size, and none is drawn further than that from its mean. And what hangs
+// from a node of extent E is taken to reach E beyond the node's box: a leaf is drawn to 3.33 σ
+// where its box has 3, a merged Gaussian over a uniform patch (σ = 0.29 E) to 0.46 E beyond.
 inline constexpr float kWedgeMargin = 10.0f;
-inline constexpr float kHullReach = 6.0f;
+inline constexpr float kHullReach = 1.0f;
 
 // One camera, or two eyes that share a cut, in a scene's coordinates.
 struct Viewer {

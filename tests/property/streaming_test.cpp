@@ -1,0 +1,187 @@
+// A scene of which only a part is there is drawn as its resident part allows, and once all
+// that is needed has come, as if it were there whole.
+#include <random>
+
+#include "tests/support/random_trees.h"
+#include "tests/support/stream_rig.h"
+
+namespace voyager {
+namespace {
+
+using test::expect_same_bits;
+using test::Frame;
+using test::frame_input;
+using test::is_cut;
+using test::look;
+using test::render;
+using test::StreamRig;
+
+std::vector<FrameInput> walk(size_t frames, uint32_t seed, double tau) {
+  std::mt19937 random(seed);
+  Vec3d eye{0, -2, -30}, way{0, 0, 1};
+  std::vector<FrameInput> inputs;
+  for (size_t i = 0; i < frames; ++i) {
+    if (i % 17 == 16) eye = {60.0 * test::unit(random) - 30, -5, 60.0 * test::unit(random) - 30};
+    if (i % 5 == 0)
+      way = {2.0 * test::unit(random) - 1, test::unit(random) - 0.5, 2.0 * test::unit(random) - 1};
+    eye = eye + way;
+    inputs.push_back(frame_input(look(eye, eye + way + Vec3d{0.01, 0.02, 0.03}, 61, 45, 75), tau));
+  }
+  return inputs;
+}
+
+BakedScene random_scene(size_t count, uint32_t seed) {
+  return test::bake(test::random_cloud(count, seed, 1));
+}
+
+PipelineDesc searching(Search search) {
+  PipelineDesc desc;
+  desc.search = search;
+  return desc;
+}
+
+TEST(Streaming, FramesThatWaitEqualResidentOnes) {
+  for (const Search search : {Search::temporal, Search::temporal_visit, Search::streaming}) {
+    StreamRig rig(random_scene(4000, 3), 1.0, searching(search));
+    for (FrameInput input : walk(40, 1, 6)) {
+      const Frame whole = render(rig.whole, input);
+      input.wait_resident = true;
+      const Frame part = render(rig.part, input);
+      ASSERT_EQ(part.cut, whole.cut);
+      expect_same_bits(part, whole);
+      ASSERT_EQ(part.stats.missing, 0u);
+    }
+  }
+}
+
+// Trees of every shape, with nodes of more children than a subtree holds.
+TEST(Streaming, TreesOfAnyShapeStream) {
+  for (const test::TreeShape shape : test::kTreeShapes) {
+    std::mt19937 random(7);
+    for (const uint32_t nodes : {1u, 40u, 1000u}) {
+      SCOPED_TRACE(test::name_of(shape) + " " + std::to_string(nodes));
+      StreamRig rig(test::baked_of(test::random_tree(shape, nodes, 5)), 1.0);
+      std::vector<Vec3f> places = test::random_places(rig.resident->tree, random);
+      std::shuffle(places.begin(), places.end(), random);
+      places.resize(std::min<size_t>(places.size(), 30));
+      for (const Vec3f& place : places) {
+        const Vec3d eye{place.x, place.y, place.z};
+        for (const double tau : {0.5, 8.0}) {
+          FrameInput input = frame_input(look(eye, eye + Vec3d{0, 0.1, 1}, 16, 16), tau);
+          const Frame before = render(rig.part, input);
+          ASSERT_TRUE(is_cut(rig.resident->tree, before.cut));
+          const Frame whole = render(rig.whole, input);
+          input.wait_resident = true;
+          const Frame part = render(rig.part, input);
+          ASSERT_EQ(part.cut, whole.cut);
+          expect_same_bits(part, whole);
+        }
+      }
+    }
+  }
+}
+
+// A little is read between any two frames, and there is room for a part only.
+TEST(Streaming, EveryFrameDrawsACut) {
+  for (const double share : {0.02, 0.1, 0.3, 1.0})
+    for (const size_t steps : {0u, 1u, 3u, 20u}) {
+      SCOPED_TRACE(std::to_string(share) + ", steps " + std::to_string(steps));
+      StreamRig rig(random_scene(4000, 4), share);
+      for (const FrameInput& input : walk(60, 2, 4)) {
+        const Frame frame = render(rig.part, input);
+        ASSERT_TRUE(is_cut(rig.resident->tree, frame.cut));
+        ASSERT_LE(rig.stream().counters().resident, rig.stream().slots());
+        rig.work(steps);
+      }
+    }
+}
+
+TEST(Streaming, AStandingViewerConvergesToTheResidentFrameAndThenNothingMoves) {
+  StreamRig rig(random_scene(4000, 5), 1.0);
+  const std::vector<FrameInput> inputs = walk(30, 3, 5);
+  for (size_t i = 0; i < inputs.size(); ++i) {
+    render(rig.part, inputs[i]);
+    rig.work(2);
+    if (i % 10 != 9) continue;
+    const Frame part = rig.settle(inputs[i]), whole = render(rig.whole, inputs[i]);
+    ASSERT_EQ(part.cut, whole.cut);
+    expect_same_bits(part, whole);
+    const StreamCounters before = rig.stream().counters();
+    const Frame again = render(rig.part, inputs[i]);
+    EXPECT_EQ(rig.work(), 0u);
+    EXPECT_EQ(rig.stream().counters().bytes_read, before.bytes_read);
+    EXPECT_EQ(again.stats.entered + again.stats.left, 0u);
+    EXPECT_EQ(again.stats.bytes_streamed, 0u);
+  }
+}
+
+// Where there is room for what is seen, what is around may be coarse: no pixel shows it.
+TEST(Streaming, RoomForWhatIsSeenIsRoomForTheResidentImage) {
+  GaussianCloud cloud = test::random_cloud(20000, 6, 1);
+  for (float& x : cloud.position) x *= 20;
+  size_t smaller = 0, refused = 0;
+  for (const double share : {0.2, 0.4, 0.6, 0.8}) {
+    StreamRig rig(test::bake(cloud), share);
+    for (int i = 0; i < 12; ++i) {
+      const double angle = 0.5 * i;
+      const Vec3d out{std::cos(angle), -0.1, std::sin(angle)};
+      const Vec3d eye = 80.0 * out;
+      FrameInput input = frame_input(look(eye, eye + out, 96, 64, 40), 0.5);
+      const Frame whole = render(rig.whole, input);
+      input.wait_resident = true;
+      Frame part;
+      try {
+        part = render(rig.part, input);
+      } catch (const Error& error) {
+        ASSERT_EQ(error.code(), ErrorCode::over_budget) << error.what();
+        ++refused;
+        continue;
+      }
+      expect_same_bits(part, whole);
+      ASSERT_TRUE(is_cut(rig.resident->tree, part.cut));
+      smaller += part.stats.missing != 0;
+    }
+  }
+  EXPECT_GT(smaller, 10u);
+  EXPECT_GT(refused, 0u);
+}
+
+// Room for less than is seen: the most urgent stays, and nothing is read twice in vain.
+TEST(Streaming, TooLittleRoomIsCoarseAndStill) {
+  StreamRig rig(random_scene(20000, 6), 0.05);
+  const FrameInput input = frame_input(look({0, -2, -12}, {0, 0, 0}, 61, 45), 1);
+  const Frame frame = rig.settle(input);
+  ASSERT_TRUE(is_cut(rig.resident->tree, frame.cut));
+  EXPECT_GT(frame.stats.missing, 0u);
+  const uint64_t read = rig.stream().counters().bytes_read;
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(render(rig.part, input).cut, frame.cut);
+    EXPECT_EQ(rig.work(), 0u);
+  }
+  EXPECT_EQ(rig.stream().counters().bytes_read, read);
+}
+
+// What a search goes on from is worth no less than what it would find from nothing.
+TEST(Streaming, TheTemporalCutIsTheStreamingOne) {
+  StreamRig rig(random_scene(6000, 8), 0.2);
+  View streaming(rig.streamed, *rig.backend, searching(Search::streaming), rig.memory(),
+                 rig.workers);
+  View visit(rig.streamed, *rig.backend, searching(Search::temporal_visit), rig.memory(),
+             rig.workers);
+  size_t compared = 0;
+  for (const FrameInput& input : walk(80, 5, 4)) {
+    const Frame temporal = render(rig.part, input);
+    const uint64_t version = rig.stream().version();
+    const Frame other = render(streaming, input), all = render(visit, input);
+    rig.work(4);
+    if (rig.stream().version() != version) continue;
+    ++compared;
+    ASSERT_EQ(temporal.cut, other.cut);
+    ASSERT_EQ(temporal.stats.missing, other.stats.missing);
+    ASSERT_EQ(all.cut, other.cut);
+  }
+  EXPECT_GT(compared, 40u);
+}
+
+}  // namespace
+}  // namespace voyager

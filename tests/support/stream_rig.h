@@ -1,0 +1,81 @@
+#pragma once
+// One scene twice: loaded whole, and streamed without threads, so that a test says when chunks
+// are read.
+#include <gtest/gtest.h>
+
+#include "runtime/frame/open_streamed.h"
+#include "tests/support/render_scene.h"
+#include "tests/support/scene_files.h"
+
+namespace voyager::test {
+
+// Whether every path from the root to a leaf meets the cut once. cut: ascending.
+inline testing::AssertionResult is_cut(const LodTree& tree, const std::vector<uint32_t>& cut) {
+  std::vector<uint8_t> covered(tree.size());
+  size_t next = 0;
+  for (uint32_t n = 0; n < tree.size(); ++n) {
+    const bool above = n != 0 && covered[tree.parent[n]] != 0;
+    const bool in_cut = next < cut.size() && cut[next] == n;
+    next += in_cut;
+    if (above && in_cut) return testing::AssertionFailure() << "node " << n << " is drawn twice";
+    covered[n] = above || in_cut;
+    if (tree.is_leaf(n) && covered[n] == 0)
+      return testing::AssertionFailure() << "nothing stands for leaf " << n;
+  }
+  if (next != cut.size()) return testing::AssertionFailure() << "node ids that do not ascend";
+  return testing::AssertionSuccess();
+}
+
+class StreamRig {
+ public:
+  // share: of the memory that all chunks take; at least room for the top.
+  StreamRig(const BakedScene& baked, double share, const PipelineDesc& desc = {},
+            uint32_t chunk_bytes = kMinChunkBytes, Quality quality = Quality::lossless)
+      : StreamRig(scene_bytes(baked, quality, 0, chunk_bytes), share, desc) {}
+
+  StreamRig(Bytes file, double share, const PipelineDesc& desc = {})
+      : bytes(std::move(file)),
+        backend(create_cpu_backend()),
+        resident(load_scene(source_of(bytes), memory(), workers)),
+        streamed(open(source_of(bytes), share)),
+        whole(resident, *backend, desc, memory(), workers),
+        part(streamed, *backend, desc, memory(), workers) {}
+
+  std::shared_ptr<const Scene> open(const std::shared_ptr<const ByteSource>& source, double share) {
+    StreamingDesc desc;
+    desc.readers = 0;
+    desc.clock = [this] { return time; };
+    const SceneFile file(source);
+    const PoolBytes pool = backend->pool_bytes(*resident, SceneStream::slot_shape(file));
+    const double chunks = static_cast<double>(file.chunks().size());
+    const uint64_t least = std::max<uint64_t>(SceneStream::top_chunks(file),
+                                              static_cast<uint64_t>(std::ceil(share * chunks)));
+    desc.budget = pool.fixed + least * pool.slot;
+    return open_streamed(source, desc, *backend, memory(), workers);
+  }
+
+  SceneStream& stream() const { return *streamed->stream; }
+  // Steps, as long as there is something to do and fewer than `most`.
+  size_t work(size_t most = SIZE_MAX) const {
+    size_t steps = 0;
+    while (steps < most && stream().step()) ++steps;
+    return steps;
+  }
+  // Frames, with all the work between them, until nothing moves.
+  Frame settle(const FrameInput& input) {
+    Frame frame = render(part, input);
+    for (int i = 0; i < 100 && work() != 0; ++i) frame = render(part, input);
+    return frame;
+  }
+
+  static std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
+
+  double time = 0;  // seconds
+  const Bytes bytes;
+  Workers workers;
+  const std::unique_ptr<Backend> backend;
+  const std::shared_ptr<const Scene> resident, streamed;
+  View whole, part;
+};
+
+}  // namespace voyager::test
