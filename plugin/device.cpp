@@ -100,6 +100,7 @@ voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend kind,
       log{desc.log, desc.logUser, number(desc.logLevel)},
       memory(std::pmr::new_delete_resource()),
       budget(desc.memoryBudget),
+      device_budget(desc.deviceMemoryBudget),
       workers(desc.workerThreads),
       backend_kind(kind),
       backend(std::move(chosen)) {

@@ -6,6 +6,7 @@
 #include "plugin/depth_limit.h"
 #include "plugin/frame_input.h"
 #include "plugin/frame_targets.h"
+#include "plugin/streaming.h"
 #include "plugin/structs.h"
 
 using namespace voyager;
@@ -70,8 +71,10 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
   return guarded("voyRenderFrame", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
     const VoyVulkanFrame* vulkan = nullptr;
+    const VoyFrameStreaming* streaming = nullptr;
     check_structure(frame, VOY_STRUCTURE_TYPE_FRAME, "VoyFrame",
-                    Extension{VOY_STRUCTURE_TYPE_VULKAN_FRAME, vulkan});
+                    Extension{VOY_STRUCTURE_TYPE_VULKAN_FRAME, vulkan},
+                    Extension{VOY_STRUCTURE_TYPE_FRAME_STREAMING, streaming});
     check_count(frame->eyeCount, object->eyes, object->eyes, "frame.eyeCount");
     check_pointer(frame->eyes, "frame.eyes");
     const auto targets = checked_targets(call, *frame, vulkan, *object);
@@ -86,6 +89,13 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
     const auto view_lock = claim(*object);
     const auto target_locks = claim(targets);
     input.tau = object->view->next_tau(object->tau);
+    if (streaming != nullptr) {
+      check_count(streaming->waitResident, 0, 1, "frame.next.waitResident");
+      check_count(streaming->standIn, 0, 1, "frame.next.standIn");
+      input.wait_resident = streaming->waitResident != 0;
+      input.stand_in = streaming->standIn != 0;
+    }
+    for (const auto& scene : object->scenes) log_streaming(object->device(), *scene->scene);
     if (vulkan == nullptr)
       object->view->render(input);
     else

@@ -1,5 +1,6 @@
 #include "plugin/memory.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
 
@@ -43,6 +44,11 @@ void Budget::take(uint64_t bytes) {
                   static_cast<double>(limit_) / 1e6);
     throw Error(ErrorCode::over_budget, message);
   } while (!used_.compare_exchange_weak(used, used + bytes, std::memory_order_relaxed));
+}
+
+uint64_t Budget::left() const {
+  const uint64_t used = used_.load(std::memory_order_relaxed);
+  return limit_ == 0 ? UINT64_MAX : limit_ - std::min(limit_, used);
 }
 
 void* SceneMemory::do_allocate(size_t size, size_t alignment) {

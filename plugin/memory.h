@@ -26,6 +26,8 @@ class Budget {
  public:
   explicit Budget(uint64_t limit) : limit_(limit) {}
   void take(uint64_t bytes);  // throws Error(over_budget)
+  // All where there is no limit.
+  uint64_t left() const;
   void give_back(uint64_t bytes) { used_.fetch_sub(bytes, std::memory_order_relaxed); }
 
  private:

@@ -22,6 +22,18 @@ void finish(vulkan::Ring& ring, DeviceObject& device) noexcept {
 
 }  // namespace
 
+SceneObject::~SceneObject() {
+  scene.reset();
+  device().device_budget.give_back(device_bytes);
+}
+
+// Threads of ours must leave the library's code, whatever else stays.
+bool SceneObject::stays_at_unload() noexcept {
+  if (!Child::stays_at_unload()) return false;
+  if (scene != nullptr && scene->streamed()) scene->stream->stop();
+  return true;
+}
+
 void ViewObject::drop_view() noexcept {
   for (const auto& used : rings)
     if (const auto ring = used.lock()) finish(*ring, device());

@@ -47,7 +47,7 @@ struct DeviceObject final : Object {
   Log log;
   std::optional<HostMemory> host_memory;
   std::pmr::memory_resource* memory;  // views and frames
-  Budget budget;                      // scene data
+  Budget budget, device_budget;       // scene data, on the host and on a device
   Workers workers;
   VoyBackend backend_kind;
   std::unique_ptr<Backend> backend;
@@ -67,7 +67,7 @@ struct Child : Object {
   Child(Kind kind, std::shared_ptr<DeviceObject> device) : Object(kind, std::move(device)) {}
   DeviceObject& device() const { return static_cast<DeviceObject&>(*parent()); }
 
- private:
+ protected:
   bool stays_at_unload() noexcept override { return device().vulkan != nullptr; }
 };
 
@@ -77,8 +77,17 @@ struct SceneObject final : Child {
   explicit SceneObject(std::shared_ptr<DeviceObject> owner)
       : Child(kKind, std::move(owner)), memory(device().memory, device().budget) {}
 
+  ~SceneObject() override;
+  Budget& pool_budget() const;  // that a streamed scene's pool counts on
+  // The pool in a device's own memory, which `memory` does not count.
+  uint64_t device_bytes = 0;
+  std::mutex resizing;  // guards device_bytes, once the scene is open
+
   SceneMemory memory;
-  std::shared_ptr<const Scene> scene;  // lives in `memory`, so is declared after it
+  std::shared_ptr<Scene> scene;  // lives in `memory`, so is declared after it
+
+ private:
+  bool stays_at_unload() noexcept override;
 };
 
 struct ViewObject final : Child {

@@ -2,6 +2,7 @@
 
 #include "plugin/byte_source.h"
 #include "plugin/call.h"
+#include "plugin/streaming.h"
 #include "plugin/structs.h"
 
 using namespace voyager;
@@ -64,7 +65,8 @@ uint32_t damaged_chunks(const Scene& scene) {
 
 void log_opening(const Log& log, const Scene& scene) {
   log.write(VOY_LOG_INFO,
-            ("voyOpenScene: " + scene.name + ": " + std::to_string(std::max<uint64_t>(scene.gaussians.size(), scene.node_count)) +
+            ("voyOpenScene: " + scene.name + ": " +
+             std::to_string(std::max<uint64_t>(scene.gaussians.size(), scene.node_count)) +
              " Gaussians, " + std::to_string(scene.node_count) + " of them nodes of a tree" +
              (scene.streamed() ? ", streamed" : ""))
                 .c_str());
@@ -101,10 +103,16 @@ VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
 VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* scene) {
   return guarded("voyOpenScene", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
-    check_structure(desc, VOY_STRUCTURE_TYPE_SCENE_DESC, "VoySceneDesc");
+    const VoySceneStreaming* streaming = nullptr;
+    check_structure(desc, VOY_STRUCTURE_TYPE_SCENE_DESC, "VoySceneDesc",
+                    Extension{VOY_STRUCTURE_TYPE_SCENE_STREAMING, streaming});
     check_pointer(scene, "scene");
+    if (streaming != nullptr) check_streaming(*streaming);
     const auto object = std::make_shared<SceneObject>(owner);
-    object->scene = load_scene(open_source(*desc), &object->memory, owner->workers);
+    if (streaming != nullptr)
+      open_streamed(*object, open_source(*desc), *streaming);
+    else
+      object->scene = load_scene(open_source(*desc), &object->memory, owner->workers);
     log_opening(owner->log, *object->scene);
     *scene = static_cast<VoyScene>(HandleTable::instance().insert(object));
     return VOY_SUCCESS;

@@ -1,14 +1,36 @@
 #include "tools/renderer.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 namespace voyager::tools {
 namespace {
 
-voy::Device create_device(VoyBackend backend) {
+void print_warning(void*, VoyLogLevel, const char* message) {
+  fmt::print(stderr, "voyager: {}\n", message);
+}
+
+// The budget holds where the scene is drawn: in the host's memory, or in CUDA's own.
+voy::Device create_device(const RenderChoices& choices) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  desc.backend = backend;
+  desc.backend = choices.backend;
+  if (choices.streamed) desc.log = print_warning;
+  desc.deviceMemoryBudget = static_cast<uint64_t>(choices.budget * 1e6);
+  const bool on_host =
+      choices.backend == VOY_BACKEND_CPU || choices.backend == VOY_BACKEND_REFERENCE ||
+      (choices.backend == VOY_BACKEND_AUTO && voyQueryBackend(VOY_BACKEND_CUDA) != VOY_SUCCESS);
+  if (on_host) desc.memoryBudget = desc.deviceMemoryBudget;
   return voy::Device::create(desc);
+}
+
+voy::Scene open_scene(const voy::Device& device, const std::string& path,
+                      const RenderChoices& choices) {
+  VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+  desc.path = path.c_str();
+  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+  if (choices.streamed) desc.next = &streaming;
+  return device.open_scene(desc);
 }
 
 voy::View create_view(const voy::Device& device, VoyScene scene, const RenderChoices& choices,
@@ -38,8 +60,8 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
 Renderer::Renderer(const std::string& scene, const RenderChoices& choices, uint32_t max_width,
                    uint32_t max_height)
     : choices_(choices),
-      device_(create_device(choices.backend)),
-      scene_(device_.open_scene(scene)),
+      device_(create_device(choices)),
+      scene_(open_scene(device_, scene, choices)),
       view_(create_view(device_, scene_.get(), choices, max_width, max_height)),
       images_(choices.eyes) {}
 
@@ -80,6 +102,10 @@ void Renderer::render(std::span<const Camera> cameras) {
   frame.eyeCount = static_cast<uint32_t>(eyes.size());
   frame.eyes = eyes.data();
   std::copy_n(choices_.background, 3, frame.background);
+  VoyFrameStreaming streaming = VOY_FRAME_STREAMING_INIT;
+  streaming.waitResident = choices_.wait_resident ? 1 : 0;
+  streaming.standIn = choices_.keep_going ? 1 : 0;
+  if (choices_.streamed) frame.next = &streaming;
   view_.render(frame);
 }
 

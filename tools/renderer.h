@@ -24,6 +24,9 @@ struct RenderChoices {
   bool floats = false;              // RGBA32F instead of RGBA8
   bool depth = false;
   uint32_t eyes = 1;  // of each frame
+  double budget = 0;  // MB of scene data where it is drawn; 0: no limit
+  bool streamed = false;
+  bool wait_resident = false, keep_going = false;  // of a streamed scene
 };
 
 // Of an eye.

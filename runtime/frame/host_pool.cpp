@@ -14,16 +14,26 @@ size_t floats_of(const Scene& scene) {
 class HostPool final : public ChunkPool {
  public:
   HostPool(Scene& scene, SlotShape shape, uint32_t slots) : scene_(scene), shape_(shape) {
-    const size_t nodes = size_t{slots} * shape.nodes, records = size_t{slots} * shape.records;
-    scene.gaussians.resize(nodes);
-    scene.sh.resize(nodes * floats_of(scene));
-    scene.tree.records.resize(nodes);
-    scene.tree.parent.resize(nodes, kNoNode);
-    scene.axis_code.resize(nodes);
-    scene.node_ids.resize(nodes, kNoNode);
-    scene.search.subtrees.assign(scene.search.subtree_count(), kUnlinkedSubtree);
-    scene.search.records.resize(records);
-    scene.search.opens.resize(records);
+    resize(slots);
+  }
+
+  // The old arrays go first, so that a budget holds at every moment.
+  void resize(uint32_t slots) override {
+    const size_t nodes = size_t{slots} * shape_.nodes, records = size_t{slots} * shape_.records;
+    for (const bool room : {false, true}) {
+      const auto fit = [room](auto& array, size_t size) {
+        std::decay_t<decltype(array)>(room ? size : 0, array.get_allocator()).swap(array);
+      };
+      fit(scene_.gaussians, nodes);
+      fit(scene_.sh, nodes * floats_of(scene_));
+      fit(scene_.tree.records, nodes);
+      fit(scene_.tree.parent, nodes);
+      fit(scene_.axis_code, nodes);
+      fit(scene_.node_ids, nodes);
+      fit(scene_.search.records, records);
+      fit(scene_.search.opens, records);
+    }
+    scene_.search.subtrees.assign(scene_.search.subtree_count(), kUnlinkedSubtree);
   }
 
   void fill(uint32_t slot, const StagedChunk& staged) override {

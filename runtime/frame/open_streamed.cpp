@@ -11,8 +11,9 @@
 namespace voyager {
 namespace {
 
-// Of the slots: what every view has at once, wherever it looks.
-constexpr uint32_t kPinnedShare = 16;
+// What every view has at once, wherever it looks: read when the scene is opened.
+constexpr uint32_t kPinnedShare = 8;  // of the slots, one in so many
+constexpr uint32_t kMostPinned = 1024;
 
 // As make_search_tree() has it: over what the subtrees' roots hang from. A file's hull is as good
 // but where a chunk goes on with a root of the one before, and of the tree's root: those are
@@ -51,11 +52,15 @@ uint32_t slots_for(const SceneFile& file, const PoolBytes& bytes, uint64_t budge
   throw Error(ErrorCode::over_budget, file.name() + message);
 }
 
+uint32_t pinned_of(const SceneFile& file, uint32_t slots) {
+  return std::max(SceneStream::top_chunks(file), std::min(kMostPinned, slots / kPinnedShare));
+}
+
 }  // namespace
 
-std::shared_ptr<const Scene> open_streamed(const std::shared_ptr<const ByteSource>& source,
-                                           const StreamingDesc& desc, Backend& backend,
-                                           std::pmr::memory_resource* memory, Workers& workers) {
+std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& source,
+                                     const StreamingDesc& desc, Backend& backend,
+                                     std::pmr::memory_resource* memory, Workers& workers) {
   std::array<std::byte, 8> first{};
   const auto start = std::span(first).first(std::min<uint64_t>(first.size(), source->size()));
   source->read(0, start);
@@ -72,7 +77,7 @@ std::shared_ptr<const Scene> open_streamed(const std::shared_ptr<const ByteSourc
   const PoolBytes bytes = backend.pool_bytes(*scene, shape);
   StreamDesc stream;
   stream.slots = slots_for(*file, bytes, desc.budget);
-  stream.pinned = std::max(SceneStream::top_chunks(*file), stream.slots / kPinnedShare);
+  stream.pinned = pinned_of(*file, stream.slots);
   stream.readers = desc.readers;
   stream.slot_bytes = bytes.slot;
   stream.fixed_bytes = bytes.fixed;
@@ -81,6 +86,13 @@ std::shared_ptr<const Scene> open_streamed(const std::shared_ptr<const ByteSourc
   scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
   scene->stream->read_top();
   return scene;
+}
+
+void resize_streamed(Scene& scene, uint64_t budget, Backend& backend) {
+  const SceneFile& file = scene.stream->file();
+  const PoolBytes bytes = backend.pool_bytes(scene, SceneStream::slot_shape(file));
+  const uint32_t slots = slots_for(file, bytes, budget);
+  scene.stream->resize(slots, pinned_of(file, slots));
 }
 
 }  // namespace voyager

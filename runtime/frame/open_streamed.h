@@ -13,8 +13,12 @@ struct StreamingDesc {
 // load_scene() does. Reads the header, the directory and the top of the tree. Throws as
 // load_scene() does, and Error(over_budget) where the budget has no room for the top; the message
 // names what it takes. The backend outlives the scene.
-std::shared_ptr<const Scene> open_streamed(const std::shared_ptr<const ByteSource>& source,
-                                           const StreamingDesc& desc, Backend& backend,
-                                           std::pmr::memory_resource* memory, Workers& workers);
+std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& source,
+                                     const StreamingDesc& desc, Backend& backend,
+                                     std::pmr::memory_resource* memory, Workers& workers);
+
+// Another budget for a scene that open_streamed() has made: all but the top is dropped. Waits for
+// frames that draw it. Throws Error(over_budget), and nothing has changed.
+void resize_streamed(Scene& scene, uint64_t budget, Backend& backend);
 
 }  // namespace voyager

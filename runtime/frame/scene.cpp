@@ -24,8 +24,8 @@ std::string hex(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::shared_ptr<const Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
-                                        std::pmr::memory_resource* memory, Workers& workers) {
+std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
+                                  std::pmr::memory_resource* memory, Workers& workers) {
   std::array<std::byte, 64> buffer;
   const std::span<std::byte> first =
       std::span(buffer).first(std::min<uint64_t>(buffer.size(), source->size()));

@@ -96,7 +96,7 @@ struct Scene {
 
 // Opens .voy, .ply or .spz, told by its bytes. Throws Error; std::bad_alloc
 // where `memory` refuses.
-std::shared_ptr<const Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
-                                        std::pmr::memory_resource* memory, Workers& workers);
+std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
+                                  std::pmr::memory_resource* memory, Workers& workers);
 
 }  // namespace voyager

@@ -12,6 +12,10 @@ class ChunkPool {
   virtual void fill(uint32_t slot, const StagedChunk& chunk) = 0;
   // Between two frames: what was filled before and is linked now is there for the next one.
   virtual void apply(const LinkPatch& patch) = 0;
+  // Room for so many slots instead; what they held is lost, and nothing is linked. No frame
+  // reads the pool and no slot is being filled. Throws Error(over_budget) or std::bad_alloc,
+  // and may then have any number of slots up to those it had.
+  virtual void resize(uint32_t slots) = 0;
 };
 
 }  // namespace voyager

@@ -58,15 +58,15 @@ uint32_t find_below(const std::vector<NodeBelow>& below, uint32_t root) {
 }  // namespace
 
 Linker::Linker(const ChunkGraph& graph, SlotShape shape)
-    : graph_(graph), shape_(shape), tables_(graph.size()) {}
+    : graph_(&graph), shape_(shape), tables_(graph.size()) {}
 
 Linker::Family Linker::family_of(uint32_t root) const {
-  const uint32_t chunk = graph_.owner_of_parent(root);
+  const uint32_t chunk = graph_->owner_of_parent(root);
   return {chunk, find_below(tables_[chunk]->below, root)};
 }
 
 bool Linker::complete(const NodeBelow& node) const {
-  const ChunkRange range = graph_.with_roots(node.first_child, node.child_count);
+  const ChunkRange range = graph_->with_roots(node.first_child, node.child_count);
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk)
     if (!holds(chunk)) return false;
   return true;
@@ -74,7 +74,7 @@ bool Linker::complete(const NodeBelow& node) const {
 
 template <class Visit>
 void Linker::each_subtree(const NodeBelow& node, const Visit& visit) const {
-  const ChunkRange range = graph_.with_roots(node.first_child, node.child_count);
+  const ChunkRange range = graph_->with_roots(node.first_child, node.child_count);
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     if (!holds(chunk)) continue;
     LinkTable& table = *tables_[chunk];
@@ -114,7 +114,7 @@ void Linker::check(const StagedChunk& chunk, const std::string& file) const {
   for (size_t i = 0; i < subtrees.size(); ++i) {
     const uint32_t root = subtrees[i].ids.root;
     if (root == 0) continue;
-    const uint32_t owner = graph_.owner_of_parent(root);
+    const uint32_t owner = graph_->owner_of_parent(root);
     const auto& below = owner == own.chunk ? own.below : tables_[owner]->below;
     const NodeBelow& parent = below[find_below(below, root)];
     if (!is_inside(chunk.roots[i], parent.box)) refuse_nesting(own.chunk, root, file);
@@ -128,7 +128,7 @@ void Linker::check(const StagedChunk& chunk, const std::string& file) const {
   };
   if (own.chunk > 0 && holds(own.chunk - 1))
     check_repeat(subtrees[0].ids, *tables_[own.chunk - 1], own);
-  if (own.chunk + 1 < graph_.size() && holds(own.chunk + 1))
+  if (own.chunk + 1 < graph_->size() && holds(own.chunk + 1))
     check_repeat(tables_[own.chunk + 1]->subtrees[0].ids, own, *tables_[own.chunk + 1]);
 }
 

@@ -72,7 +72,7 @@ class Linker {
   void link_root(LinkTable& table, uint32_t subtree, LinkPatch& patch);
   void add_below(const LinkTable& table, uint32_t subtree, std::vector<Family>& out) const;
 
-  const ChunkGraph& graph_;
+  const ChunkGraph* graph_;
   SlotShape shape_;
   std::vector<std::unique_ptr<LinkTable>> tables_;  // by chunk
   std::vector<Family> work_;

@@ -22,7 +22,7 @@ float error_of(uint32_t urgency) {
 
 Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks, uint32_t slots,
                      uint32_t pinned)
-    : graph_(graph),
+    : graph_(&graph),
       chunks_(chunks),
       slots_(slots),
       pinned_(pinned),
@@ -71,7 +71,7 @@ bool Residency::add_needed(const Needed& needed) {
     failed_.push_back(needed);
     return false;
   }
-  const ChunkRange parents = graph_.parents(chunk);
+  const ChunkRange parents = graph_->parents(chunk);
   for (uint32_t p = parents.first; p < parents.last; ++p)
     if (needed_plan_[p] != plan_ && !add_needed({p, needed.urgency, needed.now})) return false;
   needed_plan_[chunk] = plan_;
@@ -91,9 +91,9 @@ void Residency::find_needed(std::span<const Viewer> viewers) {
     if (found.urgency != 0) add_needed(found);
   };
   // What leads to others without being needed itself is not followed.
-  while (next < graph_.size() && graph_.parents(next).empty()) look(next);
+  while (next < graph_->size() && graph_->parents(next).empty()) look(next);
   for (; from < extra_.size(); ++from) {
-    const ChunkRange children = graph_.children(extra_[from].chunk);
+    const ChunkRange children = graph_->children(extra_[from].chunk);
     for (uint32_t c = std::max(next, children.first); c < children.last; ++c) look(c);
   }
   needed_ = extra_;
@@ -123,7 +123,7 @@ void Residency::share_with_parents() {
   for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
   for (size_t i = needed_.size(); i-- > 0;) {
     needed_[i].urgency = urgency_[needed_[i].chunk];
-    const ChunkRange parents = graph_.parents(needed_[i].chunk);
+    const ChunkRange parents = graph_->parents(needed_[i].chunk);
     for (uint32_t p = parents.first; p < parents.last; ++p)
       urgency_[p] = std::max(urgency_[p], needed_[i].urgency);
   }
@@ -172,12 +172,12 @@ void Residency::list_victims() {
   victims_.clear();
   if (coming_ + requests_.size() <= free_slots_.size()) return;
   std::vector<std::pair<float, uint32_t>> scored;
-  std::vector<float> score(graph_.size(), INFINITY);
-  for (uint32_t chunk = graph_.size(); chunk-- > pinned_;) {
+  std::vector<float> score(graph_->size(), INFINITY);
+  for (uint32_t chunk = graph_->size(); chunk-- > pinned_;) {
     if (state_[chunk] != State::resident || is_wanted(chunk)) continue;
     const float age = static_cast<float>(plan_ - needed_plan_[chunk]);
     score[chunk] = std::min(score[chunk], age / error_of(urgency_[chunk]));
-    const ChunkRange parents = graph_.parents(chunk);
+    const ChunkRange parents = graph_->parents(chunk);
     for (uint32_t p = parents.first; p < parents.last; ++p)
       score[p] = std::min(score[p], score[chunk]);
     scored.emplace_back(score[chunk], chunk);
@@ -190,7 +190,7 @@ ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
   while (!requests_.empty() && state_[requests_.back()] != State::absent) requests_.pop_back();
   if (requests_.empty()) return {0, 0};
   const auto to_read = [&](uint32_t chunk) {
-    return chunk < graph_.size() && state_[chunk] == State::absent && is_wanted(chunk);
+    return chunk < graph_->size() && state_[chunk] == State::absent && is_wanted(chunk);
   };
   ChunkRange range{requests_.back(), requests_.back() + 1};
   uint64_t taken = chunks_[range.first].bytes;
@@ -244,6 +244,13 @@ uint32_t Residency::take_slot(uint32_t chunk) {
   return slot_[chunk];
 }
 
+void Residency::place(uint32_t chunk) {
+  assert(state_[chunk] == State::absent);
+  state_[chunk] = State::read;
+  ++coming_;
+  take_slot(chunk);
+}
+
 void Residency::filled(uint32_t chunk) {
   state_[chunk] = State::filled;
   filled_.push_back(chunk);
@@ -259,7 +266,7 @@ void Residency::retry(uint32_t chunk) {
 }
 
 bool Residency::parents_there(uint32_t chunk) const {
-  const ChunkRange parents = graph_.parents(chunk);
+  const ChunkRange parents = graph_->parents(chunk);
   for (uint32_t p = parents.first; p < parents.last; ++p)
     if (state_[p] != State::resident) return false;
   return true;
@@ -286,7 +293,7 @@ std::vector<uint32_t> Residency::arrive(const std::function<bool(uint32_t)>& acc
     ++counters_.arrived;
     counters_.late += missed_[chunk];
     missed_[chunk] = 0;
-    const ChunkRange parents = graph_.parents(chunk);
+    const ChunkRange parents = graph_->parents(chunk);
     for (uint32_t p = parents.first; p < parents.last; ++p) ++children_there_[p];
     arrived.push_back(chunk);
   }
@@ -302,7 +309,7 @@ std::vector<Residency::Evicted> Residency::evict() {
     victims_.pop_back();
     if (state_[chunk] != State::resident || is_wanted(chunk) || children_there_[chunk] != 0)
       continue;
-    const ChunkRange parents = graph_.parents(chunk);
+    const ChunkRange parents = graph_->parents(chunk);
     for (uint32_t p = parents.first; p < parents.last; ++p) --children_there_[p];
     evicted.push_back({chunk, slot_[chunk]});
     slot_[chunk] = kNoSlot;

@@ -55,6 +55,8 @@ class Residency {
   // A slot for a chunk that was read, to be filled; kNoSlot where none is free.
   uint32_t take_slot(uint32_t chunk);
   void filled(uint32_t chunk);
+  // An absent chunk takes a slot at once, as if it had been read; one must be free.
+  void place(uint32_t chunk);
   // A chunk that was on its way, or read, is not to be had, until retry().
   void failed(uint32_t chunk);
   void retry(uint32_t chunk);
@@ -109,7 +111,7 @@ class Residency {
   void give_up(uint32_t chunk, State now);
   void drop(uint32_t chunk);
 
-  const ChunkGraph& graph_;
+  const ChunkGraph* graph_;
   std::span<const ChunkEntry> chunks_;
   uint32_t slots_, pinned_, resident_ = 0;
   uint32_t plan_ = 0;

@@ -13,6 +13,11 @@ namespace {
 constexpr size_t kChangesKept = 64;
 constexpr uint32_t kMostChunksARead = 64;
 
+ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) {
+  return {a.requested + b.requested, a.arrived + b.arrived, a.evicted + b.evicted, a.late + b.late,
+          a.flushed + b.flushed};
+}
+
 }  // namespace
 
 SlotShape SceneStream::slot_shape(const SceneFile& file) {
@@ -38,17 +43,24 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       desc_(desc),
       tiers_(file_->tiers()),
       graph_(file_->chunks(), tiers_),
+      shape_(slot_shape(*file_)),
       pool_(pool),
+      slots_(desc.slots),
       residency_(graph_, file_->chunks(), desc.slots, desc.pinned),
-      linker_(graph_, slot_shape(*file_)) {}
+      linker_(graph_, shape_) {}
 
 SceneStream::~SceneStream() {
+  stop();
+}
+
+void SceneStream::stop() {
   {
     const std::lock_guard lock(small_mutex_);
     stopping_ = true;
   }
   wake_.notify_all();
   for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
 }
 
 double SceneStream::now() const {
@@ -68,21 +80,68 @@ void SceneStream::signal() {
 // ---------------------------------------------------------------- threads
 
 void SceneStream::read_top() {
+  top_ = file_->read_stored(0, desc_.pinned);
+  {
+    const std::unique_lock pool(pool_mutex_);
+    const Lock lock(mutex_);
+    put_top();
+  }
+  for (unsigned i = 0; i < desc_.readers; ++i) threads_.emplace_back([this] { run(); });
+}
+
+// From memory: a scene that has lost its top would have to wait for it.
+void SceneStream::put_top() {
+  const auto& chunks = file_->chunks();
+  const std::span stored = std::span<const std::byte>(top_);
+  for (uint32_t chunk = 0; chunk < residency_.pinned(); ++chunk) {
+    residency_.place(chunk);
+    Coming& coming = coming_[chunk];
+    coming.chunk = stage_chunk(
+        file_->decode(chunk,
+                      stored.subspan(chunks[chunk].offset - chunks[0].offset, chunks[chunk].bytes)),
+        chunk, tiers_, file_->name());
+    coming.chunk.links.slot = residency_.slot(chunk);
+    pool_.fill(coming.chunk.links.slot, coming.chunk);
+    residency_.filled(chunk);
+  }
+  commit_all();
+  for (uint32_t chunk = 0; chunk < residency_.pinned(); ++chunk)
+    if (!residency_.is_resident(chunk)) failures_.rethrow(chunk);
+}
+
+void SceneStream::resize(uint32_t slots, uint32_t pinned) {
   {
     const std::unique_lock pool(pool_mutex_);
     Lock lock(mutex_);
-    const uint32_t top = top_chunks(*file_);
-    for (uint32_t chunk = 0; chunk < top;) {
-      if (residency_.is_resident(chunk)) {
-        ++chunk;
-        continue;
-      }
-      const bool more = step(lock);
-      commit_all();
-      if (!more && !residency_.is_resident(chunk)) failures_.rethrow(chunk);
+    filled_.wait(lock, [&] { return filling_ == 0; });
+    const auto before = static_cast<uint32_t>(slots_.load());
+    try {
+      pool_.resize(slots);
+      reset(slots, pinned);
+    } catch (...) {
+      pool_.resize(before);
+      reset(before, residency_.pinned());
+      throw;
     }
+    const std::lock_guard small(small_mutex_);
+    look_again_ = true;
   }
-  for (unsigned i = 0; i < desc_.readers; ++i) threads_.emplace_back([this] { run(); });
+  signal();
+}
+
+void SceneStream::reset(uint32_t slots, uint32_t pinned) {
+  ++generation_;
+  counted_ = total(counted_, residency_.counters());
+  residency_ = Residency(graph_, file_->chunks(), slots, std::min(pinned, desc_.pinned));
+  linker_ = Linker(graph_, shape_);
+  coming_.clear();
+  ready_.clear();
+  staged_bytes_ = 0;
+  slots_ = slots;
+  // No search can go on from what it has.
+  changes_.clear();
+  version_ += kChangesKept;
+  put_top();
 }
 
 void SceneStream::run() {
@@ -158,6 +217,7 @@ bool SceneStream::fill_one(Lock& lock) {
   staged_bytes_ -= coming.stored_bytes;
   coming.stored_bytes = 0;
   coming.chunk.links.slot = slot;
+  ++filling_;
   lock.unlock();
   std::exception_ptr failure;
   try {
@@ -168,6 +228,8 @@ bool SceneStream::fill_one(Lock& lock) {
   coming.chunk.content = {};
   coming.chunk.records = {};
   lock.lock();
+  --filling_;
+  filled_.notify_all();
   if (!failure) {
     residency_.filled(chunk);
     return true;
@@ -185,6 +247,7 @@ bool SceneStream::read_some(Lock& lock) {
   const ChunkRange range = residency_.take_requests(kMostChunksARead, desc_.read_bytes);
   if (range.empty()) return false;
   const auto& chunks = file_->chunks();
+  const uint64_t generation = generation_;
   lock.unlock();
   std::vector<std::byte> bytes;
   try {
@@ -196,6 +259,7 @@ bool SceneStream::read_some(Lock& lock) {
   ++reads_;
   bytes_read_ += bytes.size();
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
+    if (generation_ != generation) break;
     const uint64_t at = chunks[chunk].offset - chunks[range.first].offset;
     const std::span stored = std::span<const std::byte>(bytes);
     stage(
@@ -213,6 +277,7 @@ bool SceneStream::read_some(Lock& lock) {
 void SceneStream::stage(uint32_t chunk, const std::function<Chunk()>& decode, Lock& lock) {
   StagedChunk staged;
   std::exception_ptr failure;
+  const uint64_t generation = generation_;
   lock.unlock();
   try {
     staged = stage_chunk(decode(), chunk, tiers_, file_->name());
@@ -220,6 +285,7 @@ void SceneStream::stage(uint32_t chunk, const std::function<Chunk()>& decode, Lo
     failure = std::current_exception();
   }
   lock.lock();
+  if (generation_ != generation) return;
   if (failure) {
     try {
       std::rethrow_exception(failure);
@@ -383,7 +449,8 @@ void SceneStream::wait(bool stand_in) {
 
 void SceneStream::publish() {
   StreamCounters now;
-  now.chunks = residency_.counters();
+  now.chunks = total(counted_, residency_.counters());
+  now.slots = residency_.slots();
   now.reads = reads_;
   now.bytes_read = bytes_read_;
   now.failures = failures_.count();

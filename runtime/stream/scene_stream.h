@@ -1,6 +1,7 @@
 #pragma once
 // Keeps the chunks of one scene coming: threads that read and decode what residency asks
 // for, and what a frame does about it. A frame waits for none of it unless it says so.
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -33,7 +34,7 @@ struct StreamCounters {
   ResidencyCounters chunks;
   uint64_t reads = 0, bytes_read = 0;
   uint64_t failures = 0;  // of reads and of chunks
-  uint32_t resident = 0;
+  uint32_t slots = 0, resident = 0;
   ResidencyNeed need;
 };
 
@@ -56,9 +57,16 @@ class SceneStream {
   // How many of the first chunks hold a subtree of the tree's root.
   static uint32_t top_chunks(const SceneFile& file);
 
-  // Reads the top, and starts the threads. Once, before any frame. Throws Error as the source
-  // does and as a chunk is damaged: a scene without its top is nothing.
+  // Reads what is pinned, and starts the threads. Once, before any frame. Throws Error as the
+  // source does and as a chunk is damaged: a scene without its top is nothing.
   void read_top();
+  // Other slots, as StreamDesc has them, and no more pinned than at first: what was there goes,
+  // but for what is pinned. Waits for frames
+  // that hold the pool, and for no source. Throws as ChunkPool::resize() does; the stream has
+  // then as many slots as before, if that was to be had.
+  void resize(uint32_t slots, uint32_t pinned);
+  // Ends the threads; nothing comes any more. Also done when it is destroyed.
+  void stop();
 
   // Who looks, for one view's instance; it replaces what was said before. No viewers: nobody.
   // Any thread.
@@ -75,7 +83,9 @@ class SceneStream {
   // The changes after a version, in their order; false where those are no longer known.
   bool changes_since(uint64_t version, std::vector<std::shared_ptr<const StreamChange>>& out) const;
 
-  uint32_t slots() const { return desc_.slots; }
+  const SceneFile& file() const { return *file_; }
+  // What the pool takes.
+  uint64_t pool_bytes() const { return desc_.fixed_bytes + slots_ * desc_.slot_bytes; }
   // As of the last step or commit. Any thread.
   StreamCounters counters() const;
   // What went wrong, each cause once. Any thread.
@@ -102,11 +112,13 @@ class SceneStream {
   bool read_some(Lock& lock);
   std::vector<std::byte> read_stored(ChunkRange range);
   void stage(uint32_t chunk, const std::function<Chunk()>& decode, Lock& lock);
+  void put_top();
   void fail(uint32_t chunk, const std::exception& error);
   void forget(uint32_t chunk);
   void commit_all();
   bool accept(uint32_t chunk, LinkPatch& patch);
   void learn_families(const LinkTable& table);
+  void reset(uint32_t slots, uint32_t pinned);
   void check_fits() const;
   bool is_settled() const;
   void publish();
@@ -117,7 +129,9 @@ class SceneStream {
   const StreamDesc desc_;
   const Tiers tiers_;
   const ChunkGraph graph_;
+  const SlotShape shape_;
   ChunkPool& pool_;
+  std::atomic<uint64_t> slots_;
 
   // The pool's: held alone while that changes, before mutex_.
   mutable std::shared_mutex pool_mutex_;
@@ -141,6 +155,12 @@ class SceneStream {
   std::map<uint32_t, Coming> coming_;  // by chunk
   std::deque<uint32_t> ready_;         // those of them without a slot
   uint64_t staged_bytes_ = 0;
+  // Of the pool's present slots: what a thread has begun for earlier ones is for nothing.
+  uint64_t generation_ = 0;
+  unsigned filling_ = 0;
+  std::condition_variable filled_;
+  std::vector<std::byte> top_;  // stored bytes of what is pinned
+  ResidencyCounters counted_;   // for earlier slots
   Failures failures_;
   uint64_t reads_ = 0, bytes_read_ = 0;
   std::vector<std::thread> threads_;

@@ -90,7 +90,7 @@ TEST(Streaming, EveryFrameDrawsACut) {
       for (const FrameInput& input : walk(60, 2, 4)) {
         const Frame frame = render(rig.part, input);
         ASSERT_TRUE(is_cut(rig.resident->tree, frame.cut));
-        ASSERT_LE(rig.stream().counters().resident, rig.stream().slots());
+        ASSERT_LE(rig.stream().counters().resident, rig.stream().counters().slots);
         rig.work(steps);
       }
     }

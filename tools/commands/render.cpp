@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "runtime/base/error.h"
 #include "tools/commands/commands.h"
@@ -19,6 +20,7 @@ struct Arguments {
   size_t camera = 0;
   bool all = false, stereo = false;
   ImageSize size;
+  std::optional<bool> wait_resident;
   RenderChoices choices;
   OutputPaths outputs;
 };
@@ -83,9 +85,18 @@ void settle_outputs(Arguments& arguments) {
   outputs.floats = arguments.choices.floats;
 }
 
+// A scene is streamed where its memory is bounded, or what is damaged of it is to be stood in for.
+void settle_streaming(Arguments& arguments) {
+  RenderChoices& choices = arguments.choices;
+  choices.streamed =
+      choices.budget > 0 || choices.keep_going || arguments.wait_resident.has_value();
+  choices.wait_resident = arguments.wait_resident.value_or(choices.keep_going);
+}
+
 void render(Arguments& arguments) {
   arguments.choices.eyes = arguments.stereo ? 2 : 1;
   settle_outputs(arguments);
+  settle_streaming(arguments);
   if (arguments.choices.time_budget > 0 && arguments.choices.lod == VOY_LOD_ALL_LEAVES)
     bad_usage("--time-budget: found it with --lod off, expected --lod on: tau is what it changes");
   const std::vector<Camera> cameras = choose_cameras(arguments);
@@ -170,6 +181,22 @@ void add_choices(CLI::App& command, RenderChoices& choices) {
       ->default_str("0,0,0");
 }
 
+void add_streaming(CLI::App& command, Arguments& arguments) {
+  command
+      .add_option("--budget", arguments.choices.budget,
+                  "Stream the scene: its data takes at most so many MB (10^6 bytes) of the memory "
+                  "of the device that renders")
+      ->check(CLI::PositiveNumber)
+      ->type_name("MB");
+  add_choice<std::optional<bool>>(
+      command, "--wait-resident", arguments.wait_resident, {{"off", false}, {"on", true}},
+      "Stream the scene; on: each frame waits for all that it sees; off: it draws what is there, "
+      "coarser where something is missing");
+  command.add_flag("--keep-going", arguments.choices.keep_going,
+                   "Stream the scene, wait unless told not to, and draw what is damaged by its "
+                   "ancestors");
+}
+
 void add_outputs(CLI::App& command, OutputPaths& outputs, bool& floats) {
   command
       .add_option("-o", outputs.image,
@@ -198,6 +225,7 @@ void add_render(CLI::App& app) {
                     "with --camera I, I and I + 1. Images are numbered by camera, cuts by pair");
   add_size_option(*command, arguments->size);
   add_choices(*command, arguments->choices);
+  add_streaming(*command, *arguments);
   add_outputs(*command, arguments->outputs, arguments->choices.floats);
   command->footer(
       "Example: voyager render city.voy --cameras city.cameras.json --camera 0 --tau 3 -o "

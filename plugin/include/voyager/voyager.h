@@ -46,7 +46,7 @@ extern "C" {
  * major version and a minor version up to its own. The patch version never matters. */
 #define VOY_MAKE_VERSION(major, minor, patch) \
   ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
-#define VOY_API_VERSION VOY_MAKE_VERSION(0, 2, 0)
+#define VOY_API_VERSION VOY_MAKE_VERSION(0, 3, 0)
 
 typedef enum VoyResult {
   VOY_SUCCESS = 0,
@@ -103,6 +103,9 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC = 27,
   VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW = 28,
   VOY_STRUCTURE_TYPE_TIME_BUDGET = 29,
+  VOY_STRUCTURE_TYPE_SCENE_STREAMING = 30,
+  VOY_STRUCTURE_TYPE_FRAME_STREAMING = 31,
+  VOY_STRUCTURE_TYPE_STREAMING_STATS = 32,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -169,18 +172,21 @@ typedef struct VoyDeviceDesc {
    * maker's device, say). The other backends are refused where it is not theirs. */
   const uint8_t* deviceUuid;
   /* Bytes that scene data may occupy in host memory, over all scenes of this device; 0 is
-   * no limit. CUDA's copies in the device's own memory are not counted in this version. */
+   * no limit. */
   uint64_t memoryBudget;
+  /* The same for streamed scenes in CUDA's own memory. The copies that CUDA makes of scenes that
+   * are loaded whole are not counted. Without meaning for the other backends. */
+  uint64_t deviceMemoryBudget;
   uint32_t workerThreads; /* 1 to 1024, no more than there are processors; 0 is one a processor */
   VoyLogLevel logLevel;   /* the most verbose level wanted */
   VoyLogFunction log;     /* or NULL */
   void* logUser;
   const VoyAllocator* allocator; /* or NULL for malloc; the struct is copied */
 } VoyDeviceDesc;
-#define VOY_DEVICE_DESC_INIT                                                             \
-  {                                                                                      \
-    VOY_STRUCTURE_TYPE_DEVICE_DESC, NULL, VOY_API_VERSION, VOY_BACKEND_AUTO, NULL, 0, 0, \
-        VOY_LOG_WARNING, NULL, NULL, NULL                                                \
+#define VOY_DEVICE_DESC_INIT                                                                \
+  {                                                                                         \
+    VOY_STRUCTURE_TYPE_DEVICE_DESC, NULL, VOY_API_VERSION, VOY_BACKEND_AUTO, NULL, 0, 0, 0, \
+        VOY_LOG_WARNING, NULL, NULL, NULL                                                   \
   }
 
 /* VOY_SUCCESS if voyCreateDevice can make this backend here, on any device; else
@@ -240,11 +246,30 @@ typedef struct VoyByteSource {
 #define VOY_BYTE_SOURCE_INIT \
   { VOY_STRUCTURE_TYPE_BYTE_SOURCE, NULL, NULL, 0, NULL, NULL }
 
+/* In VoySceneDesc.next: of a .voy only what frames need is in memory, chunk by chunk, and comes
+ * while frames are drawn; other formats are loaded whole all the same. What has not come yet is
+ * drawn by its nearest ancestors, so that a frame waits for nothing and has no hole
+ * (VoyFrameStreaming changes that). A streamed scene is searched by STREAMING or a TEMPORAL
+ * search, and drawn as a cut. docs/streaming.md has the rest.
+ * Threads of ours read the bytes, also while no call is in progress, from voyOpenScene until
+ * voyDestroyScene (or voyDestroyDevice) returns. */
+typedef struct VoySceneStreaming {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_STREAMING */
+  const void* next;
+  /* Bytes that the scene may take where it is drawn: VoyDeviceDesc.memoryBudget's, on CUDA
+   * deviceMemoryBudget's. 0, or more than is left of that: what is left. */
+  uint64_t memoryBudget;
+  uint32_t readerThreads; /* that read and decode; 0 to 64, 0 is 2 */
+  uint32_t reserved;      /* 0 */
+} VoySceneStreaming;
+#define VOY_SCENE_STREAMING_INIT \
+  { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, 0, 0 }
+
 /* Exactly one of path and source. The format is told from the bytes: .voy (with
  * its tree), or a flat scene (.ply, .spz), which draws every Gaussian. */
 typedef struct VoySceneDesc {
-  VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_DESC */
-  const void* next;
+  VoyStructureType type;       /* VOY_STRUCTURE_TYPE_SCENE_DESC */
+  const void* next;            /* NULL or a VoySceneStreaming */
   const char* path;            /* UTF-8; copied */
   const VoyByteSource* source; /* the struct is copied; its user must live as long as the scene */
 } VoySceneDesc;
@@ -252,8 +277,15 @@ typedef struct VoySceneDesc {
   { VOY_STRUCTURE_TYPE_SCENE_DESC, NULL, NULL, NULL }
 
 /* Errors: FILE_NOT_FOUND, IO, REFUSED_INPUT, OVER_BUDGET, OUT_OF_HOST_MEMORY.
- * A damaged chunk of a .voy does not fail the opening: frames that need it do. */
+ * A damaged chunk of a .voy does not fail the opening: frames that need it do. But the top of
+ * a streamed scene's tree is read here, and DAMAGED_CHUNK where it cannot be. OVER_BUDGET: of a
+ * streamed scene, the budget has no room for that top; the message says what it takes. */
 VOY_API VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* scene);
+
+/* Changes VoySceneStreaming.memoryBudget. All but the top of the tree is dropped, and comes again
+ * as frames need it. Waits for frames that draw the scene. UNSUPPORTED where it is not streamed;
+ * OVER_BUDGET as in voyOpenScene, and nothing has changed then. */
+VOY_API VoyResult voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes);
 
 /* Waits for frames that draw it, and frees its memory. Every call on a view with an
  * instance of it then returns VOY_ERROR_SCENE_DESTROYED, but for voyDestroyView. */
@@ -320,6 +352,29 @@ typedef struct VoySceneNote {
  * result is VOY_INCOMPLETE if that is more. */
 VOY_API VoyResult voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNote* notes,
                                    uint32_t* count);
+
+/* Since the scene was opened, but for what is of the latest frames. */
+typedef struct VoyStreamingStats {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_STREAMING_STATS */
+  void* next;
+  uint64_t budgetBytes;           /* that the scene takes of its budget: slots and tables */
+  uint64_t slots, residentChunks; /* room, and what is there */
+  uint64_t neededChunks;          /* by the latest frames, whatever the budget */
+  uint64_t missingChunks;         /* of these, not there */
+  uint64_t missingBytes;          /* and what they take in the file */
+  uint64_t requested, arrived;    /* chunks */
+  uint64_t late;    /* of those that arrived: a frame had looked where they were not yet */
+  uint64_t evicted; /* to make room */
+  uint64_t flushed; /* that nobody wanted any more before they had arrived */
+  uint64_t reads, bytesRead;
+  uint64_t failures; /* reads that failed, and chunks that were damaged; each is tried again where
+                        that may help. The log names each cause once (WARNING) */
+} VoyStreamingStats;
+#define VOY_STREAMING_STATS_INIT \
+  { VOY_STRUCTURE_TYPE_STREAMING_STATS, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+
+/* UNSUPPORTED where the scene is not streamed. */
+VOY_API VoyResult voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats);
 
 /* ------------------------------------------------------------------- target */
 
@@ -557,10 +612,25 @@ typedef struct VoyInstancePose {
 #define VOY_INSTANCE_POSE_INIT \
   { VOY_STRUCTURE_TYPE_INSTANCE_POSE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, 1 }
 
+/* In VoyFrame.next: for loading screens, cuts and pictures that must be whole. */
+typedef struct VoyFrameStreaming {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STREAMING */
+  const void* next;
+  /* 1: the call waits until all is there that the frame sees of its streamed scenes, with a margin
+   * (docs/streaming.md); the image is then that of the scenes loaded whole, to the bit.
+   * OVER_BUDGET where that is more than a budget has room for; the message says what it takes. */
+  uint32_t waitResident;
+  /* 1: what cannot be had, because it is damaged or cannot be read, is drawn by its ancestors.
+   * 0: such a frame fails, if it waits, with what was wrong (DAMAGED_CHUNK, IO). */
+  uint32_t standIn;
+} VoyFrameStreaming;
+#define VOY_FRAME_STREAMING_INIT \
+  { VOY_STRUCTURE_TYPE_FRAME_STREAMING, NULL, 0, 0 }
+
 typedef struct VoyFrame {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME */
-  const void* next;
-  uint32_t eyeCount; /* the view's */
+  const void* next;      /* NULL or a chain of VoyFrameStreaming and VoyVulkanFrame */
+  uint32_t eyeCount;     /* the view's */
   const VoyFrameEye* eyes;
   const VoyInstancePose* instances; /* one an instance, or NULL: all at the identity */
   double nearZ; /* metres in the world, > 0: splats with z <= nearZ are not drawn; 0.2 by default */
@@ -631,8 +701,9 @@ typedef struct VoyFrameStats {
   uint64_t pairsAfter;    /* of the ellipses at the α threshold */
   uint64_t pairsDropped;  /* pairs, strips and Gaussians for which a device had no memory;
                              0 in a whole image */
-  uint64_t bytesStreamed, bytesNeeded;
-  uint64_t missing;                    /* cut nodes that stood in for missing ones */
+  uint64_t bytesStreamed; /* of streamed scenes, read since the view's last frame */
+  uint64_t bytesNeeded;   /* what the file has of chunks that are needed and not there */
+  uint64_t missing;       /* cut nodes of size >= tau* that stand in for children not there */
   double milliseconds[VOY_MAX_STAGES]; /* by VoyStage; 0 from stageCount on */
   double millisecondsTotal;
   double tau;        /* as used: voySetViewTau with it gives the same image, to the bit */

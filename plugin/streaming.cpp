@@ -1,0 +1,114 @@
+#include "plugin/streaming.h"
+
+#include <algorithm>
+
+#include "plugin/call.h"
+#include "plugin/structs.h"
+#include "runtime/frame/open_streamed.h"
+
+namespace voyager {
+namespace {
+
+constexpr uint32_t kMostReaders = 64, kDefaultReaders = 2;
+
+// Of a budget of its own, and of what the device has left for it; 0: no limit.
+uint64_t allowed(uint64_t wanted, uint64_t left) {
+  const uint64_t least = std::min(wanted == 0 ? UINT64_MAX : wanted, left);
+  return least == UINT64_MAX ? 0 : std::max<uint64_t>(least, 1);
+}
+
+bool is_on_device(const SceneObject& object) {
+  return object.device().backend_kind == VOY_BACKEND_CUDA;
+}
+
+// What the pool takes on a device; its memory was found before it was counted.
+void count_device_bytes(SceneObject& object) {
+  if (!is_on_device(object) || !object.scene->streamed()) return;
+  const uint64_t bytes = object.scene->stream->pool_bytes();
+  if (bytes > object.device_bytes) object.device().device_budget.take(bytes - object.device_bytes);
+  if (bytes < object.device_bytes)
+    object.device().device_budget.give_back(object.device_bytes - bytes);
+  object.device_bytes = bytes;
+}
+
+}  // namespace
+
+void check_streaming(const VoySceneStreaming& streaming) {
+  check_count(streaming.readerThreads, 0, kMostReaders, "desc.next.readerThreads");
+  check_count(streaming.reserved, 0, 0, "desc.next.reserved");
+}
+
+Budget& SceneObject::pool_budget() const {
+  return is_on_device(*this) ? device().device_budget : device().budget;
+}
+
+void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>& source,
+                   const VoySceneStreaming& streaming) {
+  StreamingDesc desc;
+  desc.budget = allowed(streaming.memoryBudget, object.pool_budget().left());
+  desc.readers = streaming.readerThreads == 0 ? kDefaultReaders : streaming.readerThreads;
+  object.scene = open_streamed(source, desc, *object.device().backend, &object.memory,
+                               object.device().workers);
+  count_device_bytes(object);
+}
+
+void log_streaming(const DeviceObject& device, const Scene& scene) {
+  if (!scene.streamed()) return;
+  for (const std::string& message : scene.stream->take_messages())
+    device.log.write(VOY_LOG_WARNING, ("streaming: " + message).c_str());
+}
+
+}  // namespace voyager
+
+using namespace voyager;
+
+namespace {
+
+void check_streamed(const SceneObject& object) {
+  if (!object.scene->streamed())
+    throw ApiError(VOY_ERROR_UNSUPPORTED,
+                   "scene: found one that is loaded whole, expected one that is streamed");
+}
+
+}  // namespace
+
+VoyResult voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes) {
+  return guarded("voySetSceneMemoryBudget", [&](Call& call) {
+    const auto object = call.use<SceneObject>(scene);
+    check_streamed(*object);
+    const std::lock_guard resizing(object->resizing);
+    const uint64_t own = object->scene->stream->pool_bytes(), left = object->pool_budget().left();
+    resize_streamed(*object->scene,
+                    allowed(bytes, left > UINT64_MAX - own ? UINT64_MAX : left + own),
+                    *object->device().backend);
+    count_device_bytes(*object);
+    return VOY_SUCCESS;
+  });
+}
+
+VoyResult voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats) {
+  return guarded("voyGetStreamingStats", [&](Call& call) {
+    const auto object = call.use<SceneObject>(scene);
+    check_structure(stats, VOY_STRUCTURE_TYPE_STREAMING_STATS, "VoyStreamingStats");
+    check_streamed(*object);
+    const StreamCounters found = object->scene->stream->counters();
+    VoyStreamingStats out = VOY_STREAMING_STATS_INIT;
+    out.next = stats->next;
+    out.budgetBytes = object->scene->stream->pool_bytes();
+    out.slots = found.slots;
+    out.residentChunks = found.resident;
+    out.neededChunks = found.need.chunks;
+    out.missingChunks = found.need.missing;
+    out.missingBytes = found.need.missing_bytes;
+    out.requested = found.chunks.requested;
+    out.arrived = found.chunks.arrived;
+    out.late = found.chunks.late;
+    out.evicted = found.chunks.evicted;
+    out.flushed = found.chunks.flushed;
+    out.reads = found.reads;
+    out.bytesRead = found.bytes_read;
+    out.failures = found.failures;
+    *stats = out;
+    return VOY_SUCCESS;
+  });
+}
