@@ -80,7 +80,7 @@ VoyResult voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes) {
     const uint64_t own = object->scene->stream->pool_bytes(), left = object->pool_budget().left();
     resize_streamed(*object->scene,
                     allowed(bytes, left > UINT64_MAX - own ? UINT64_MAX : left + own),
-                    *object->device().backend);
+                    *object->device().backend, object->device().workers);
     count_device_bytes(*object);
     return VOY_SUCCESS;
   });

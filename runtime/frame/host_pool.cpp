@@ -81,9 +81,11 @@ PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
   const uint64_t node = sizeof(Gaussian) + floats_of(scene) * sizeof(float) + sizeof(NodeRecord) +
                         2 * sizeof(uint32_t) + sizeof(uint8_t);
   const uint64_t record = sizeof(SearchRecord) + sizeof(SubtreeSpan);
+  const SearchTree& search = scene.search;
   return {shape.nodes * node + shape.records * record,
-          scene.search.subtree_count() * sizeof(SearchSubtree) +
-              scene.search.chunks.size() * sizeof(SearchChunk)};
+          search.subtree_count() * sizeof(SearchSubtree) +
+              search.chunks.size() * sizeof(SearchChunk) +
+              search.tier_begin.size() * sizeof(uint32_t)};
 }
 
 std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, SlotShape shape, uint32_t slots) {

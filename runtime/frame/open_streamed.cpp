@@ -11,7 +11,7 @@
 namespace voyager {
 namespace {
 
-// What every view has at once, wherever it looks: read when the scene is opened.
+// What every view has at once, wherever it looks.
 constexpr uint32_t kPinnedShare = 8;  // of the slots, one in so many
 constexpr uint32_t kMostPinned = 1024;
 
@@ -32,6 +32,7 @@ void set_search(const SceneFile& file, SearchTree& search) {
   search.chunks_come_and_go = true;
   search.leaves_have_extent = file.info().leaves_have_extent;
   const Tiers tiers = file.tiers();
+  search.chunks.reserve(file.chunks().size() + 1);
   for (const ChunkEntry& entry : file.chunks())
     search.chunks.push_back(search_chunk(entry, entry.first_subtree < tiers.tier_begin[1]));
   search.chunks.push_back({{0, 0, 0}, 0, {0, 0, 0}, subtrees});
@@ -56,6 +57,14 @@ uint32_t pinned_of(const SceneFile& file, uint32_t slots) {
   return std::max(SceneStream::top_chunks(file), std::min(kMostPinned, slots / kPinnedShare));
 }
 
+uint32_t first_of(const SceneFile& file, const StreamDesc& desc, uint64_t limit) {
+  uint64_t bytes = 0;
+  uint32_t first = 0;
+  for (; first < desc.slots; ++first)
+    if ((bytes += file.chunks()[first].bytes) > limit) break;
+  return std::max(first, desc.pinned);
+}
+
 }  // namespace
 
 std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& source,
@@ -78,21 +87,22 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   StreamDesc stream;
   stream.slots = slots_for(*file, bytes, desc.budget);
   stream.pinned = pinned_of(*file, stream.slots);
+  stream.first = first_of(*file, stream, desc.first_bytes);
   stream.readers = desc.readers;
   stream.slot_bytes = bytes.slot;
   stream.fixed_bytes = bytes.fixed;
   stream.clock = desc.clock;
   scene->pool = backend.create_pool(*scene, shape, stream.slots);
   scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
-  scene->stream->read_top();
+  scene->stream->read_top(workers);
   return scene;
 }
 
-void resize_streamed(Scene& scene, uint64_t budget, Backend& backend) {
+void resize_streamed(Scene& scene, uint64_t budget, Backend& backend, Workers& workers) {
   const SceneFile& file = scene.stream->file();
   const PoolBytes bytes = backend.pool_bytes(scene, SceneStream::slot_shape(file));
   const uint32_t slots = slots_for(file, bytes, budget);
-  scene.stream->resize(slots, pinned_of(file, slots));
+  scene.stream->resize(slots, pinned_of(file, slots), workers);
 }
 
 }  // namespace voyager

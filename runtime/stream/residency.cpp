@@ -247,6 +247,7 @@ uint32_t Residency::take_slot(uint32_t chunk) {
 void Residency::place(uint32_t chunk) {
   assert(state_[chunk] == State::absent);
   state_[chunk] = State::read;
+  target_[chunk] = plan_;
   ++coming_;
   take_slot(chunk);
 }

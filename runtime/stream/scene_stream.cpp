@@ -79,37 +79,48 @@ void SceneStream::signal() {
 
 // ---------------------------------------------------------------- threads
 
-void SceneStream::read_top() {
-  top_ = file_->read_stored(0, desc_.pinned);
+void SceneStream::read_top(Workers& workers) {
+  const std::vector<std::byte> stored = file_->read_stored(0, desc_.first);
+  const ChunkEntry& last = file_->chunks()[desc_.pinned - 1];
+  const auto pinned_bytes =
+      static_cast<std::ptrdiff_t>(last.offset + last.bytes - file_->chunks()[0].offset);
+  top_.assign(stored.begin(), stored.begin() + pinned_bytes);
   {
     const std::unique_lock pool(pool_mutex_);
     const Lock lock(mutex_);
-    put_top();
+    put_first(desc_.first, stored, workers);
   }
   for (unsigned i = 0; i < desc_.readers; ++i) threads_.emplace_back([this] { run(); });
 }
 
-// From memory: a scene that has lost its top would have to wait for it.
-void SceneStream::put_top() {
+// The first chunks, at once: before any frame, and from memory where what was there is lost,
+// since a scene without its top would have to wait for it.
+void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, Workers& workers) {
   const auto& chunks = file_->chunks();
-  const std::span stored = std::span<const std::byte>(top_);
-  for (uint32_t chunk = 0; chunk < residency_.pinned(); ++chunk) {
+  std::vector<Coming*> coming(count);
+  for (uint32_t chunk = 0; chunk < count; ++chunk) {
     residency_.place(chunk);
-    Coming& coming = coming_[chunk];
-    coming.chunk = stage_chunk(
-        file_->decode(chunk,
-                      stored.subspan(chunks[chunk].offset - chunks[0].offset, chunks[chunk].bytes)),
-        chunk, tiers_, file_->name());
-    coming.chunk.links.slot = residency_.slot(chunk);
-    pool_.fill(coming.chunk.links.slot, coming.chunk);
-    residency_.filled(chunk);
+    coming[chunk] = &coming_[chunk];
   }
+  workers.for_blocks(count, 16, [&](size_t begin, size_t end) {
+    for (auto chunk = static_cast<uint32_t>(begin); chunk < end; ++chunk) {
+      const auto bytes =
+          stored.subspan(chunks[chunk].offset - chunks[0].offset, chunks[chunk].bytes);
+      StagedChunk& staged = coming[chunk]->chunk;
+      staged = stage_chunk(file_->decode(chunk, bytes), chunk, tiers_, file_->name());
+      staged.links.slot = residency_.slot(chunk);
+      pool_.fill(staged.links.slot, staged);
+      staged.content = {};
+      staged.records = {};
+    }
+  });
+  for (uint32_t chunk = 0; chunk < count; ++chunk) residency_.filled(chunk);
   commit_all();
   for (uint32_t chunk = 0; chunk < residency_.pinned(); ++chunk)
     if (!residency_.is_resident(chunk)) failures_.rethrow(chunk);
 }
 
-void SceneStream::resize(uint32_t slots, uint32_t pinned) {
+void SceneStream::resize(uint32_t slots, uint32_t pinned, Workers& workers) {
   {
     const std::unique_lock pool(pool_mutex_);
     Lock lock(mutex_);
@@ -117,10 +128,10 @@ void SceneStream::resize(uint32_t slots, uint32_t pinned) {
     const auto before = static_cast<uint32_t>(slots_.load());
     try {
       pool_.resize(slots);
-      reset(slots, pinned);
+      reset(slots, pinned, workers);
     } catch (...) {
       pool_.resize(before);
-      reset(before, residency_.pinned());
+      reset(before, residency_.pinned(), workers);
       throw;
     }
     const std::lock_guard small(small_mutex_);
@@ -129,7 +140,7 @@ void SceneStream::resize(uint32_t slots, uint32_t pinned) {
   signal();
 }
 
-void SceneStream::reset(uint32_t slots, uint32_t pinned) {
+void SceneStream::reset(uint32_t slots, uint32_t pinned, Workers& workers) {
   ++generation_;
   counted_ = total(counted_, residency_.counters());
   residency_ = Residency(graph_, file_->chunks(), slots, std::min(pinned, desc_.pinned));
@@ -141,7 +152,7 @@ void SceneStream::reset(uint32_t slots, uint32_t pinned) {
   // No search can go on from what it has.
   changes_.clear();
   version_ += kChangesKept;
-  put_top();
+  put_first(residency_.pinned(), top_, workers);
 }
 
 void SceneStream::run() {

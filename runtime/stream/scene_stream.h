@@ -11,6 +11,7 @@
 #include <shared_mutex>
 #include <thread>
 
+#include "runtime/base/workers.h"
 #include "runtime/format/reader.h"
 #include "runtime/stream/chunk_pool.h"
 #include "runtime/stream/failures.h"
@@ -21,6 +22,7 @@ namespace voyager {
 struct StreamDesc {
   uint32_t slots = 0;
   uint32_t pinned = 0;               // as Residency has it
+  uint32_t first = 0;                // chunks that read_top() reads, from pinned to slots
   unsigned readers = 2;              // threads; 0: step() does it all
   uint64_t read_bytes = 1 << 18;     // of one read, at most, unless one chunk has more
   uint64_t staged_bytes = 32 << 20;  // stored bytes of what was read and has no slot yet
@@ -57,14 +59,14 @@ class SceneStream {
   // How many of the first chunks hold a subtree of the tree's root.
   static uint32_t top_chunks(const SceneFile& file);
 
-  // Reads what is pinned, and starts the threads. Once, before any frame. Throws Error as the
+  // Reads the first chunks, and starts the threads. Once, before any frame. Throws Error as the
   // source does and as a chunk is damaged: a scene without its top is nothing.
-  void read_top();
+  void read_top(Workers& workers);
   // Other slots, as StreamDesc has them, and no more pinned than at first: what was there goes,
   // but for what is pinned. Waits for frames
   // that hold the pool, and for no source. Throws as ChunkPool::resize() does; the stream has
   // then as many slots as before, if that was to be had.
-  void resize(uint32_t slots, uint32_t pinned);
+  void resize(uint32_t slots, uint32_t pinned, Workers& workers);
   // Ends the threads; nothing comes any more. Also done when it is destroyed.
   void stop();
 
@@ -112,13 +114,13 @@ class SceneStream {
   bool read_some(Lock& lock);
   std::vector<std::byte> read_stored(ChunkRange range);
   void stage(uint32_t chunk, const std::function<Chunk()>& decode, Lock& lock);
-  void put_top();
+  void put_first(uint32_t count, std::span<const std::byte> stored, Workers& workers);
   void fail(uint32_t chunk, const std::exception& error);
   void forget(uint32_t chunk);
   void commit_all();
   bool accept(uint32_t chunk, LinkPatch& patch);
   void learn_families(const LinkTable& table);
-  void reset(uint32_t slots, uint32_t pinned);
+  void reset(uint32_t slots, uint32_t pinned, Workers& workers);
   void check_fits() const;
   bool is_settled() const;
   void publish();

@@ -44,6 +44,7 @@ class StreamRig {
   std::shared_ptr<const Scene> open(const std::shared_ptr<const ByteSource>& source, double share) {
     StreamingDesc desc;
     desc.readers = 0;
+    desc.first_bytes = 0;
     desc.clock = [this] { return time; };
     const SceneFile file(source);
     const PoolBytes pool = backend->pool_bytes(*resident, SceneStream::slot_shape(file));
