@@ -34,9 +34,9 @@ uint64_t count_missing(const std::pmr::vector<uint32_t>& from,
 }  // namespace
 
 View::View(Scenes scenes, Backend& backend, const PipelineDesc& desc,
-           std::pmr::memory_resource* memory, Workers& workers)
+           std::pmr::memory_resource* memory, Workers& workers, Clock clock)
     : scenes_(std::move(scenes)),
-      streaming_(scenes_),
+      streaming_(scenes_, std::move(clock)),
       desc_(desc),
       pipeline_(backend.create_pipeline(scenes_, desc, memory, workers)) {
   cuts_.reserve(scenes_.size());

@@ -14,11 +14,12 @@ namespace voyager {
 class View {
  public:
   // scenes: one an instance, from one to kMaxInstances.
+  // clock: what a viewer's velocity is measured by; none: the machine's.
   View(Scenes scenes, Backend& backend, const PipelineDesc& desc, std::pmr::memory_resource* memory,
-       Workers& workers);
+       Workers& workers, Clock clock = {});
   View(std::shared_ptr<const Scene> scene, Backend& backend, const PipelineDesc& desc,
-       std::pmr::memory_resource* memory, Workers& workers)
-      : View(Scenes{std::move(scene)}, backend, desc, memory, workers) {}
+       std::pmr::memory_resource* memory, Workers& workers, Clock clock = {})
+      : View(Scenes{std::move(scene)}, backend, desc, memory, workers, std::move(clock)) {}
 
   // Runs the stages and fills the images, all in host memory or all of another API. The frame
   // has no pose, or one an instance. Throws Error(damaged_chunk) where the frame needs one,

@@ -56,7 +56,9 @@ Residency::Needed Residency::look_at(uint32_t chunk, std::span<const Viewer> vie
     const float size = hull.screen_size(viewer.query.centre);
     if (!(size >= viewer.query.target_size)) continue;
     const float error = size / viewer.query.target_size;
-    const Class of = viewer.ahead ? Class::ahead : viewer.sees(hull) ? Class::seen : Class::around;
+    const Class of = !viewer.sees(hull) ? Class::around
+                     : viewer.ahead     ? Class::ahead
+                                        : Class::seen;
     found.now = found.now || !viewer.ahead;
     found.urgency = std::max(
         found.urgency, make_urgency(static_cast<uint32_t>(of), error >= 1.0f ? error : INFINITY));

@@ -4,7 +4,7 @@
 //
 // A chunk is needed where its entry hull is at least τ* large (docs/lod-selection.md): only
 // then may the cut hold a node of it. Where there are more than there are slots, the most
-// urgent are the target: what is seen before what is around, that before what will be seen,
+// urgent are the target: what is seen before what will be seen, that before what is around,
 // and of these what would be missed most, by the size of what stands in. A chunk is as urgent
 // as the most urgent that hangs from it. Once all of the target is there nothing moves.
 //
@@ -92,7 +92,7 @@ class Residency {
 
  private:
   enum class State : uint8_t { absent, on_its_way, read, filled, resident, failed };
-  enum class Class : uint32_t { ahead, around, seen };
+  enum class Class : uint32_t { around, ahead, seen };
   struct Needed {
     uint32_t chunk, urgency;
     bool now;

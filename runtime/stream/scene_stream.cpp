@@ -319,7 +319,14 @@ void SceneStream::fail(uint32_t chunk, const std::exception& error) {
   const auto* ours = dynamic_cast<const Error*>(&error);
   const Error other(ErrorCode::io,
                     file_->name() + ": chunk " + std::to_string(chunk) + ": " + error.what());
-  failures_.add(chunk, ours != nullptr ? *ours : other, now());
+  add_failure(chunk, ours != nullptr ? *ours : other);
+}
+
+// What hangs from the chunk is no longer to be had either: that takes another plan.
+void SceneStream::add_failure(uint32_t chunk, const Error& error) {
+  failures_.add(chunk, error, now());
+  const std::lock_guard small(small_mutex_);
+  look_again_ = true;
 }
 
 void SceneStream::forget(uint32_t chunk) {
@@ -383,7 +390,7 @@ bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
   try {
     linker_.check(staged, file_->name());
   } catch (const Error& error) {
-    failures_.add(chunk, error, now());
+    add_failure(chunk, error);
     return false;
   }
   learn_families(staged.links);
@@ -452,7 +459,7 @@ void SceneStream::wait(bool stand_in) {
       }
       if (desc_.readers == 0) stepped = step(lock);
     }
-    if (stepped) continue;
+    if (stepped || desc_.readers == 0) continue;
     std::unique_lock small(small_mutex_);
     progress_.wait_for(small, std::chrono::milliseconds(100), [&] { return signals_ != seen; });
   }

@@ -86,6 +86,7 @@ class SceneStream {
   bool changes_since(uint64_t version, std::vector<std::shared_ptr<const StreamChange>>& out) const;
 
   const SceneFile& file() const { return *file_; }
+  uint32_t pinned() const { return desc_.pinned; }
   // What the pool takes.
   uint64_t pool_bytes() const { return desc_.fixed_bytes + slots_ * desc_.slot_bytes; }
   // As of the last step or commit. Any thread.
@@ -116,6 +117,7 @@ class SceneStream {
   void stage(uint32_t chunk, const std::function<Chunk()>& decode, Lock& lock);
   void put_first(uint32_t count, std::span<const std::byte> stored, Workers& workers);
   void fail(uint32_t chunk, const std::exception& error);
+  void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
   void commit_all();
   bool accept(uint32_t chunk, LinkPatch& patch);

@@ -1,0 +1,253 @@
+// Streaming from a disk that takes its time, and one that fails: flights, jumps, too little
+// room, budgets that change, faults of every kind. Deterministic.
+#include <random>
+
+#include "tests/support/simulated_disk.h"
+#include "tests/support/stream_rig.h"
+
+namespace voyager {
+namespace {
+
+using test::expect_same_bits;
+using test::Frame;
+using test::frame_input;
+using test::is_cut;
+using test::look;
+using test::render;
+using test::SimulatedDisk;
+
+constexpr double kFrame = 1.0 / 60;  // seconds
+
+GaussianCloud wide_cloud(size_t count = 20000) {
+  GaussianCloud cloud = test::random_cloud(count, 6, 1);
+  for (float& x : cloud.position) x *= 40;
+  return cloud;
+}
+
+FrameInput ahead(const Vec3d& eye, const Vec3d& way, double tau = 3) {
+  return frame_input(look(eye, eye + way, 61, 45, 60), tau);
+}
+
+// A scene on a disk, and a view of it that draws a frame each 1/60 s.
+class Flight {
+ public:
+  explicit Flight(double share, double latency = 0.002, double bandwidth = 20e6)
+      : rig_(test::bake(wide_cloud()), share),
+        disk_(std::make_shared<SimulatedDisk>(rig_.bytes, latency, bandwidth)),
+        scene_(rig_.open(disk_, share)),
+        view_(scene_, *rig_.backend, {}, rig_.memory(), rig_.workers,
+              [this] { return rig_.time; }) {
+    disk_->idle_until(0);
+  }
+
+  // The frame, and what the disk does until the next one.
+  Frame draw(const FrameInput& input) {
+    Frame frame = render(view_, input);
+    EXPECT_TRUE(is_cut(rig_.resident->tree, frame.cut));
+    EXPECT_LE(counters().resident, counters().slots);
+    rig_.time += kFrame;
+    disk_->idle_until(rig_.time - kFrame);
+    while (disk_->is_free(rig_.time) && stream().step()) continue;
+    return frame;
+  }
+  // Stands until nothing is missing, or for so many frames.
+  Frame stand(const FrameInput& input, int frames = 600) {
+    Frame frame = draw(input);
+    for (int i = 0; i < frames && !(frame.stats.missing == 0 && i > 2); ++i) frame = draw(input);
+    return frame;
+  }
+  Frame whole(const FrameInput& input) { return render(rig_.whole, input); }
+
+  SceneStream& stream() const { return *scene_->stream; }
+  StreamCounters counters() const { return stream().counters(); }
+  SimulatedDisk& disk() { return *disk_; }
+  Scene& scene() { return *scene_; }
+  test::StreamRig& rig() { return rig_; }
+
+ private:
+  test::StreamRig rig_;
+  std::shared_ptr<SimulatedDisk> disk_;
+  std::shared_ptr<Scene> scene_;
+  View view_;
+};
+
+const Vec3d kForward{0, 0.02, 1};
+
+TEST(StreamingDisk, AFlightThatStopsEndsInTheResidentImage) {
+  Flight flight(1.0);
+  Vec3d eye{0, -3, -120};
+  uint64_t coarse = 0;
+  for (int i = 0; i < 240; ++i, eye.z += 0.5)
+    coarse += flight.draw(ahead(eye, kForward)).stats.missing != 0;
+  EXPECT_GT(coarse, 0u);
+  const Frame end = flight.stand(ahead(eye, kForward));
+  const Frame whole = flight.whole(ahead(eye, kForward));
+  EXPECT_EQ(end.cut, whole.cut);
+  expect_same_bits(end, whole);
+}
+
+// What lies ahead is asked for before it is needed.
+TEST(StreamingDisk, AnEvenFlightFindsMostOfItsWayThere) {
+  Flight flight(1.0, 0.001, 100e6);
+  Vec3d eye{0, -3, -400};
+  flight.stand(ahead(eye, kForward));
+  const StreamCounters before = flight.counters();
+  for (int i = 0; i < 300; ++i, eye.z += 0.3) flight.draw(ahead(eye, kForward));
+  const StreamCounters after = flight.counters();
+  const uint64_t arrived = after.chunks.arrived - before.chunks.arrived;
+  ASSERT_GT(arrived, 20u);
+  EXPECT_LT(after.chunks.late - before.chunks.late, arrived / 4);
+}
+
+TEST(StreamingDisk, AJumpTakesBackWhatIsNoLongerWanted) {
+  Flight flight(1.0, 0.02, 1e6);
+  for (int i = 0; i < 5; ++i) flight.draw(ahead({0, -3, -400}, kForward, 12));
+  ASSERT_EQ(flight.counters().chunks.flushed, 0u);
+  flight.draw(ahead({0, -3, 400}, Vec3d{0, 0.02, -1}, 12));
+  EXPECT_GT(flight.counters().chunks.flushed, 0u);
+}
+
+TEST(StreamingDisk, ZigzagThrashesNothing) {
+  Flight flight(0.3);
+  for (int i = 0; i < 300; ++i) {
+    const double x = i % 40 < 20 ? 40.0 : -40.0;
+    flight.draw(ahead({x, -3, -60}, kForward));
+  }
+  // Both places fit or they do not; what one needs is not read again at every turn for ever.
+  const StreamCounters counters = flight.counters();
+  EXPECT_LT(counters.chunks.arrived, 15 * (counters.chunks.evicted + counters.slots));
+}
+
+// Less room than a frame needs: coarser, whole, and at rest.
+TEST(StreamingDisk, ABudgetBelowTheWorkingSetIsCoarseAndAtRest) {
+  Flight flight(0.03);
+  const FrameInput input = ahead({0, -3, -60}, kForward, 0.3);
+  Frame frame = flight.stand(input, 300);
+  EXPECT_GT(frame.stats.missing, 0u);
+  const uint64_t read = flight.counters().bytes_read;
+  for (int i = 0; i < 60; ++i) EXPECT_EQ(flight.draw(input).cut, frame.cut);
+  EXPECT_EQ(flight.counters().bytes_read, read);
+}
+
+TEST(StreamingDisk, ABudgetMayShrinkAndGrowInMidFlight) {
+  Flight flight(0.6);
+  test::StreamRig& rig = flight.rig();
+  const PoolBytes pool =
+      rig.backend->pool_bytes(flight.scene(), SceneStream::slot_shape(flight.stream().file()));
+  const auto chunks = flight.stream().file().chunks().size();
+  Vec3d eye{0, -3, -100};
+  for (const double share : {0.05, 1.0, 0.02, 1.0}) {
+    for (int i = 0; i < 30; ++i, eye.z += 0.5) flight.draw(ahead(eye, kForward));
+    const auto slots = static_cast<uint64_t>(share * static_cast<double>(chunks));
+    resize_streamed(flight.scene(), pool.fixed + slots * pool.slot, *rig.backend, rig.workers);
+    EXPECT_EQ(flight.draw(ahead(eye, kForward)).stats.missing > 0, true);
+    ASSERT_EQ(flight.counters().slots, slots);
+  }
+  const Frame end = flight.stand(ahead(eye, kForward));
+  expect_same_bits(end, flight.whole(ahead(eye, kForward)));
+}
+
+TEST(StreamingDisk, ABudgetWithoutRoomForTheTopIsRefusedAndChangesNothing) {
+  Flight flight(0.6);
+  const FrameInput input = ahead({0, -3, -60}, kForward);
+  const Frame before = flight.stand(input);
+  EXPECT_EQ(test::error_code([&] {
+              resize_streamed(flight.scene(), 100, *flight.rig().backend, flight.rig().workers);
+            }),
+            ErrorCode::over_budget);
+  expect_same_bits(flight.draw(input), before);
+}
+
+// ------------------------------------------------------------------ faults
+
+// Reads fail for a while: frames go on, the failure is told once, and all comes in the end.
+TEST(StreamingDisk, ReadsThatFailAreTriedAgain) {
+  Flight flight(1.0);
+  const FrameInput input = ahead({0, -3, -60}, kForward);
+  flight.disk().fault = [&](uint64_t offset, size_t) {
+    throw Error(ErrorCode::io, "disk.voy: offset " + std::to_string(offset) + ": found EIO");
+  };
+  for (int i = 0; i < 60; ++i) flight.draw(input);
+  EXPECT_GT(flight.counters().failures, 1u);
+  EXPECT_EQ(flight.stream().take_messages().size(), 1u);
+  EXPECT_LT(flight.disk().reads, 20000u) << "it is not tried again at once";
+  flight.disk().fault = nullptr;
+  const Frame end = flight.stand(input, 2000);
+  expect_same_bits(end, flight.whole(input));
+  EXPECT_TRUE(flight.stream().take_messages().empty());
+}
+
+// A file that has become shorter since it was opened.
+TEST(StreamingDisk, WhatWasCutOffIsStoodInFor) {
+  Flight flight(1.0);
+  const FrameInput input = ahead({0, -3, -60}, kForward);
+  const uint64_t end = flight.disk().size() / 2;
+  flight.disk().fault = [&](uint64_t offset, size_t size) {
+    if (offset + size > end)
+      throw Error(ErrorCode::io, "disk.voy: offset " + std::to_string(end) + ": found the end");
+  };
+  for (int i = 0; i < 200; ++i) flight.draw(input);
+  const Frame frame = flight.draw(input);
+  EXPECT_GT(frame.stats.missing, 0u);
+  EXPECT_EQ(flight.stream().take_messages().size(), 1u);
+}
+
+// Every chunk but the top is altered: none of it is ever drawn.
+TEST(StreamingDisk, DamagedChunksAreNeverDrawn) {
+  Flight flight(1.0);
+  const auto& chunks = flight.stream().file().chunks();
+  const uint64_t top = chunks[flight.stream().pinned()].offset;
+  flight.disk().alter = [&](uint64_t offset, std::span<std::byte> into) {
+    for (size_t i = 0; i < into.size(); ++i)
+      if (offset + i >= top && (offset + i) % 1000 == 0) into[i] ^= std::byte{1};
+  };
+  const FrameInput input = ahead({0, -3, -60}, kForward);
+  const Frame before = flight.draw(input);
+  for (int i = 0; i < 300; ++i) flight.draw(input);
+  const Frame after = flight.draw(input);
+  EXPECT_EQ(after.cut, before.cut);
+  expect_same_bits(after, before);
+  EXPECT_GT(flight.counters().failures, 1u);
+}
+
+// A frame that waits fails where a damaged chunk is seen, and does not where it is stood in for,
+// or where nothing sees it.
+TEST(StreamingDisk, AFrameThatWaitsSaysWhatIsDamaged) {
+  Flight flight(1.0);
+  const auto& chunks = flight.stream().file().chunks();
+  const ChunkEntry& last = chunks.back();
+  flight.disk().alter = [&](uint64_t offset, std::span<std::byte> into) {
+    if (offset <= last.offset && offset + into.size() > last.offset)
+      into[last.offset - offset] ^= std::byte{0x40};
+  };
+  FrameInput input = ahead({0, -3, -60}, kForward, 0.01);
+  const Vec3d middle{0.5 * (double(last.hull.box_min.x) + double(last.hull.box_max.x)),
+                     0.5 * (double(last.hull.box_min.y) + double(last.hull.box_max.y)),
+                     0.5 * (double(last.hull.box_min.z) + double(last.hull.box_max.z))};
+  input = frame_input(look(middle - Vec3d{0, 0, 30}, middle, 61, 45, 60), 0.01);
+  input.wait_resident = true;
+  EXPECT_EQ(test::error_code([&] { flight.draw(input); }), ErrorCode::damaged_chunk);
+  input.stand_in = true;
+  const Frame frame = flight.draw(input);
+  EXPECT_GT(frame.stats.missing, 0u);
+  // From behind, nothing of it is seen.
+  FrameInput away =
+      frame_input(look(middle + Vec3d{0, 0, 200}, middle + Vec3d{0, 0, 300}, 61, 45, 30), 1);
+  away.wait_resident = true;
+  const Frame sound = flight.draw(away);
+  expect_same_bits(sound, flight.whole(away));
+}
+
+TEST(StreamingDisk, OutOfMemoryIsAFailureLikeAnother) {
+  Flight flight(1.0);
+  int left = 5;
+  flight.disk().fault = [&](uint64_t, size_t) {
+    if (left-- > 0) throw std::bad_alloc();
+  };
+  const FrameInput input = ahead({0, -3, -60}, kForward);
+  const Frame end = flight.stand(input, 2000);
+  expect_same_bits(end, flight.whole(input));
+}
+
+}  // namespace
+}  // namespace voyager
