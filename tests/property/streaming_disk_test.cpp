@@ -101,9 +101,9 @@ TEST(StreamingDisk, AnEvenFlightFindsMostOfItsWayThere) {
 
 TEST(StreamingDisk, AJumpTakesBackWhatIsNoLongerWanted) {
   Flight flight(1.0, 0.02, 1e6);
-  for (int i = 0; i < 5; ++i) flight.draw(ahead({0, -3, -400}, kForward, 12));
+  for (int i = 0; i < 5; ++i) flight.draw(ahead({0, -3, -150}, kForward, 12));
   ASSERT_EQ(flight.counters().chunks.flushed, 0u);
-  flight.draw(ahead({0, -3, 400}, Vec3d{0, 0.02, -1}, 12));
+  flight.draw(ahead({0, -3, 150}, Vec3d{0, 0.02, -1}, 12));
   EXPECT_GT(flight.counters().chunks.flushed, 0u);
 }
 
