@@ -37,7 +37,7 @@ class Flight {
         scene_(rig_.open(disk_, share)),
         view_(scene_, *rig_.backend, {}, rig_.memory(), rig_.workers,
               [this] { return rig_.time; }) {
-    disk_->idle_until(0);
+    disk_->start(0);
   }
 
   // The frame, and what the disk does until the next one.
