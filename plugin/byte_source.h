@@ -6,7 +6,8 @@
 
 namespace voyager {
 
-// The host's bytes. A read that fails or throws is Error(io).
+// The host's bytes. A read that returns VOY_ERROR_TIMEOUT is Error(io_transient), one that fails
+// otherwise or throws Error(io).
 class HostSource final : public ByteSource {
  public:
   explicit HostSource(const VoyByteSource& source)
