@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -12,32 +13,32 @@
 #include "runtime/base/error.h"
 
 namespace voyager::http {
-namespace {
-
 // What libcurl's callbacks fill. Nothing may be thrown through libcurl, so what went wrong is kept.
-struct Answer {
+struct Connection::Answer {
   const std::string& name;
   Transfer& transfer;
+  Clock::time_point heard = Clock::now();  // when bytes came last
   ReplyHead head{};
   uint64_t body = 0;  // bytes to come, once the head is accepted
   std::exception_ptr failure{};
+
+  void take_head() {
+    if (!head.is_final() || transfer.version) return;
+    Accepted accepted = check_reply(name, head, transfer.range, transfer.known);
+    body = accepted.body;
+    transfer.version = std::move(accepted.version);
+  }
 };
 
-void take_head(Answer& answer) {
-  if (!answer.head.is_final()) return;
-  const Transfer& asked = answer.transfer;
-  Accepted accepted = check_reply(answer.name, answer.head, asked.range, asked.known);
-  answer.body = accepted.body;
-  answer.transfer.version = std::move(accepted.version);
-}
-
 // A line of the head; an empty one ends it. Anything but `count` ends the transfer.
-size_t on_head(const char* line, size_t, size_t count, void* user) {
+size_t Connection::on_head(const char* line, size_t, size_t count, void* user) {
   auto& answer = *static_cast<Answer*>(user);
+  answer.heard = Clock::now();
   try {
-    const bool ends = count <= 2 && (line[0] == '\r' || line[0] == '\n');
-    if (ends && answer.head.status != 0 && !answer.transfer.version) take_head(answer);
-    if (!ends) answer.head.add_line({line, count});
+    if (count == 0 || line[0] == '\r' || line[0] == '\n')
+      answer.take_head();
+    else
+      answer.head.add_line({line, count});
     return count;
   } catch (...) {
     answer.failure = std::current_exception();
@@ -45,9 +46,10 @@ size_t on_head(const char* line, size_t, size_t count, void* user) {
   }
 }
 
-size_t on_body(const char* bytes, size_t, size_t count, void* user) {
+size_t Connection::on_body(const char* bytes, size_t, size_t count, void* user) {
   auto& answer = *static_cast<Answer*>(user);
   Transfer& transfer = answer.transfer;
+  answer.heard = Clock::now();
   if (!transfer.version || count > answer.body - transfer.got) {
     answer.failure = std::make_exception_ptr(
         Error(ErrorCode::refused_input, answer.name +
@@ -60,6 +62,8 @@ size_t on_body(const char* bytes, size_t, size_t count, void* user) {
   transfer.got += count;
   return count;
 }
+
+namespace {
 
 void start_libcurl() {
   static std::once_flag once;
@@ -133,28 +137,26 @@ ErrorCode code_of(CURLcode code) {
 
 Connection::Connection(const std::string& url, const std::string& name, const Options& options,
                        const std::atomic<bool>& cancelled)
-    : name_(name), cancelled_(cancelled) {
+    : name_(name), options_(options), cancelled_(cancelled) {
   start_libcurl();
   multi_.reset(curl_multi_init());
   easy_.reset(curl_easy_init());
   if (!multi_ || !easy_) throw std::bad_alloc();
-  configure(url, options);
+  configure(url);
 }
 
-void Connection::configure(const std::string& url, const Options& options) {
+void Connection::configure(const std::string& url) {
   CURL* easy = easy_.get();
   set(easy, CURLOPT_URL, url.c_str());
   set(easy, CURLOPT_ERRORBUFFER, error_);
   set(easy, CURLOPT_NOSIGNAL, 1L);
   set(easy, CURLOPT_USERAGENT, "voyager/" VOYAGER_VERSION);
   set(easy, CURLOPT_FOLLOWLOCATION, 1L);
-  set(easy, CURLOPT_MAXREDIRS, static_cast<long>(options.redirects));
+  set(easy, CURLOPT_MAXREDIRS, static_cast<long>(options_.redirects));
   set_protocols(easy, url.size() > 4 && (url[4] == 's' || url[4] == 'S'));
   set_certificates(easy);
   set(easy, CURLOPT_SUPPRESS_CONNECT_HEADERS, 1L);
-  set(easy, CURLOPT_CONNECTTIMEOUT_MS, static_cast<long>(options.connect_time.count()));
-  set(easy, CURLOPT_LOW_SPEED_LIMIT, static_cast<long>(options.slowest_rate));
-  set(easy, CURLOPT_LOW_SPEED_TIME, static_cast<long>(options.stall_time.count()));
+  set(easy, CURLOPT_CONNECTTIMEOUT_MS, static_cast<long>(options_.stall_time.count()));
   set(easy, CURLOPT_HEADERFUNCTION, &on_head);
   set(easy, CURLOPT_WRITEFUNCTION, &on_body);
 #if LIBCURL_VERSION_NUM >= 0x075700
@@ -169,7 +171,7 @@ void Connection::get(Transfer& transfer) {
   set(easy_.get(), CURLOPT_RANGE, range.c_str());
   set(easy_.get(), CURLOPT_HEADERDATA, &answer);
   set(easy_.get(), CURLOPT_WRITEDATA, &answer);
-  const CURLcode code = run(transfer.deadline);
+  const CURLcode code = run(answer);
   curl_off_t wish = 0;
   curl_easy_getinfo(easy_.get(), CURLINFO_RETRY_AFTER, &wish);
   transfer.retry_after = std::chrono::seconds(std::clamp<curl_off_t>(wish, 0, 86'400));
@@ -179,7 +181,7 @@ void Connection::get(Transfer& transfer) {
   if (!transfer.version || transfer.got < answer.body) fail(CURLE_PARTIAL_FILE, transfer);
 }
 
-CURLcode Connection::run(Clock::time_point deadline) {
+CURLcode Connection::run(Answer& answer) {
   const NoSigpipe quiet;
   error_[0] = '\0';
   if (curl_multi_add_handle(multi_.get(), easy_.get()) != CURLM_OK) return CURLE_FAILED_INIT;
@@ -192,14 +194,25 @@ CURLcode Connection::run(Clock::time_point deadline) {
       if (message != nullptr) result = message->data.result;
       break;
     }
-    const auto time = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    const int64_t time = time_left(answer);
     result = cancelled_ ? CURLE_ABORTED_BY_CALLBACK : CURLE_OPERATION_TIMEDOUT;
     if (cancelled_ || time <= 0) break;
-    curl_multi_poll(multi_.get(), nullptr, 0, static_cast<int>(std::min<long>(time, 1000)),
+    curl_multi_poll(multi_.get(), nullptr, 0, static_cast<int>(std::min<int64_t>(time, 1000)),
                     nullptr);
   }
   curl_multi_remove_handle(multi_.get(), easy_.get());
   return result;
+}
+
+int64_t Connection::time_left(const Answer& answer) {
+  using std::chrono::milliseconds;
+  const Clock::time_point now = Clock::now();
+  const auto stall = std::chrono::ceil<milliseconds>(answer.heard + options_.stall_time - now);
+  const auto end = std::chrono::ceil<milliseconds>(answer.transfer.deadline - now);
+  if (stall.count() <= 0 || end.count() <= 0)
+    std::snprintf(error_, sizeof error_, "%s",
+                  end.count() <= 0 ? "the end of the time for a read" : "a server that stalls");
+  return std::min(stall, end).count();
 }
 
 void Connection::fail(CURLcode code, const Transfer& transfer) const {

@@ -33,7 +33,8 @@ struct Transfer {
 // next. Used by one thread at a time, wake() apart.
 class Connection {
  public:
-  // What `cancelled` refers to must outlive it. Throws Error(internal), std::bad_alloc.
+  // What it is given by reference must outlive it, but for the url. Throws Error(internal),
+  // std::bad_alloc.
   Connection(const std::string& url, const std::string& name, const Options& options,
              const std::atomic<bool>& cancelled);
   Connection(const Connection&) = delete;
@@ -55,11 +56,17 @@ class Connection {
     void operator()(CURLM* multi) const { curl_multi_cleanup(multi); }
   };
 
-  void configure(const std::string& url, const Options& options);
-  CURLcode run(Clock::time_point deadline);
+  struct Answer;
+  static size_t on_head(const char* line, size_t one, size_t count, void* answer);
+  static size_t on_body(const char* bytes, size_t one, size_t count, void* answer);
+  void configure(const std::string& url);
+  CURLcode run(Answer& answer);
+  // Milliseconds until it is over, for the reason in error_.
+  int64_t time_left(const Answer& answer);
   [[noreturn]] void fail(CURLcode code, const Transfer& transfer) const;
 
   const std::string& name_;
+  const Options& options_;
   const std::atomic<bool>& cancelled_;
   std::unique_ptr<CURLM, EndMulti> multi_;  // owns the open connections
   std::unique_ptr<CURL, EndEasy> easy_;
