@@ -146,14 +146,14 @@ TEST_F(OnNginx, ASlowConnectionIsNoFailureAndSeveralAreFaster) {
 
 TEST_F(OnNginx, ARestartInMidFlightIsBridged) {
   nginx_.serve("scene.voy", file_);
-  ASSERT_EQ(nginx_.start("limit_rate 1m;"), "");
+  ASSERT_EQ(nginx_.start("limit_rate 3m;"), "");
   http::Options options = quick();
   options.tries = 10;
   options.first_wait = 50ms;
   const http::Source source(nginx_.url("scene.voy"), options);
   std::string got;
   std::thread reader([&] { got = read(source, 100'000, 1'900'000); });
-  std::this_thread::sleep_for(500ms);
+  std::this_thread::sleep_for(200ms);
   nginx_.stop();
   std::this_thread::sleep_for(100ms);
   EXPECT_EQ(nginx_.restart(), "");
