@@ -22,7 +22,7 @@ void HostSource::read(uint64_t offset, std::span<std::byte> into) const {
   if (into.empty()) return;
   const int32_t found = call(source_, offset, into);
   if (found == VOY_SUCCESS) return;
-  const bool later = found == VOY_ERROR_TIMEOUT;
+  const bool later = found != VOY_ERROR_FILE_NOT_FOUND && found != VOY_ERROR_REFUSED_INPUT;
   throw Error(later ? ErrorCode::io_transient : ErrorCode::io,
               name_ + ": offset " + std::to_string(offset) + ": reading " +
                   std::to_string(into.size()) + " bytes: found result " + std::to_string(found) +

@@ -48,6 +48,7 @@ SceneStream::~SceneStream() {
     stopping_ = true;
   }
   wake_.notify_all();
+  file_->source().cancel();  // a read may wait for a server
   for (std::thread& thread : threads_) thread.join();
 }
 
@@ -68,6 +69,7 @@ void SceneStream::signal() {
 // ---------------------------------------------------------------- threads
 
 void SceneStream::read_top() {
+  file_->source().expect(Access::uncached);  // the pool is the cache
   {
     const std::unique_lock pool(pool_mutex_);
     Lock lock(mutex_);
@@ -240,7 +242,7 @@ void SceneStream::fail(uint32_t chunk, const std::exception& error) {
   forget(chunk);
   residency_.failed(chunk);
   const auto* ours = dynamic_cast<const Error*>(&error);
-  const Error other(ErrorCode::io,
+  const Error other(ErrorCode::io_transient,
                     file_->name() + ": chunk " + std::to_string(chunk) + ": " + error.what());
   failures_.add(chunk, ours != nullptr ? *ours : other, now());
 }

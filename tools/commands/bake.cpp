@@ -43,7 +43,8 @@ GaussianCloud read_one(const std::string& path, const Progress& progress) {
 
 GaussianCloud read_all(const std::vector<std::string>& paths, const Progress& progress) {
   GaussianCloud cloud = read_one(paths.front(), progress);
-  for (size_t i = 1; i < paths.size(); ++i) append(cloud, read_one(paths[i], progress), shown_path(paths[i]));
+  for (size_t i = 1; i < paths.size(); ++i)
+    append(cloud, read_one(paths[i], progress), shown_path(paths[i]));
   return cloud;
 }
 

@@ -225,8 +225,9 @@ VOY_API VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabili
 
 /* Bytes that the host supplies: a pak file, an asset bundle, memory.
  * read fills `size` bytes from `offset` (in range) and returns VOY_SUCCESS, or
- * an error, which the call in progress reports as VOY_ERROR_IO; VOY_ERROR_TIMEOUT
- * says that the same read may go well later. It may be called
+ * an error, which the call in progress reports as VOY_ERROR_IO. The same read may
+ * be tried again later, but not after VOY_ERROR_FILE_NOT_FOUND and
+ * VOY_ERROR_REFUSED_INPUT, which say that it is no use. It may be called
  * from any thread, several at once, from voyOpenScene until voyDestroyScene (or
  * voyDestroyDevice) returns: read, user and the bytes must stay valid that long.
  * Where voyOpenScene fails, until it returns. */
