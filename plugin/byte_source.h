@@ -6,7 +6,8 @@
 
 namespace voyager {
 
-// The host's bytes. A read that fails or throws is Error(io).
+// The host's bytes. A read that fails or throws is Error(io_transient), but Error(io) where the
+// result says that the bytes are gone (VOY_ERROR_FILE_NOT_FOUND, VOY_ERROR_REFUSED_INPUT).
 class HostSource final : public ByteSource {
  public:
   explicit HostSource(const VoyByteSource& source)

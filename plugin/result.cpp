@@ -21,6 +21,7 @@ VoyResult result_of(ErrorCode code) {
     case ErrorCode::file_not_found:
       return VOY_ERROR_FILE_NOT_FOUND;
     case ErrorCode::io:
+    case ErrorCode::io_transient:
       return VOY_ERROR_IO;
     case ErrorCode::refused_input:
       return VOY_ERROR_REFUSED_INPUT;

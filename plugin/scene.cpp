@@ -4,16 +4,17 @@
 #include "plugin/call.h"
 #include "plugin/streaming.h"
 #include "plugin/structs.h"
+#include "runtime/base/open_source.h"
 
 using namespace voyager;
 
 namespace {
 
-std::shared_ptr<const ByteSource> open_source(const VoySceneDesc& desc) {
+std::shared_ptr<const ByteSource> source_of(const VoySceneDesc& desc) {
   if ((desc.path == nullptr) == (desc.source == nullptr))
     refuse(std::string("desc: found ") + (desc.path ? "both" : "neither") +
            " of path and source, expected exactly one");
-  if (desc.path != nullptr) return open_file_source(desc.path);
+  if (desc.path != nullptr) return open_source(desc.path);
   check_structure(desc.source, VOY_STRUCTURE_TYPE_BYTE_SOURCE, "VoyByteSource");
   if (desc.source->read == nullptr) refuse("desc.source.read: found NULL, expected a function");
   return std::make_shared<HostSource>(*desc.source);
@@ -110,9 +111,9 @@ VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* sce
     if (streaming != nullptr) check_streaming(*streaming);
     const auto object = std::make_shared<SceneObject>(owner);
     if (streaming != nullptr)
-      open_streamed(*object, open_source(*desc), *streaming);
+      open_streamed(*object, source_of(*desc), *streaming);
     else
-      object->scene = load_scene(open_source(*desc), &object->memory, owner->workers);
+      object->scene = load_scene(source_of(*desc), &object->memory, owner->workers);
     log_opening(owner->log, *object->scene);
     *scene = static_cast<VoyScene>(HandleTable::instance().insert(object));
     return VOY_SUCCESS;

@@ -6,8 +6,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh
 
-# setup.sh has brought lavapipe and the validation layer: no test may skip for want of them.
-export VOYAGER_REQUIRE_VULKAN=1
+# setup.sh has brought lavapipe, the validation layer and nginx: no test may skip for want of them.
+export VOYAGER_REQUIRE_VULKAN=1 VOYAGER_REQUIRE_NGINX=1
 
 step() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
 
@@ -17,6 +17,7 @@ scripts/check_format.sh
 step "release: build and test"
 cmake --preset release -DVOYAGER_WERROR=ON
 cmake --build --preset release
+[ -e build/release/lib/libvoyager_http.so ] || { echo "test.sh: libvoyager_http.so: not built, expected because setup.sh brings libcurl" >&2; exit 1; }
 ctest --preset release -j "$(nproc)"
 
 step "static analysis"

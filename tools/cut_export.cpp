@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/base/error.h"
+#include "runtime/base/open_source.h"
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/frame_search.h"
 #include "runtime/scene/export/writer.h"
@@ -33,8 +34,7 @@ void append(GaussianCloud& cloud, const GaussianArrays& arrays, const DrawItem& 
 void export_cut(const std::string& scene_path, const Camera& camera, double tau,
                 const std::string& ply_path) {
   Workers workers;
-  const auto scene =
-      load_scene(open_file_source(scene_path), std::pmr::get_default_resource(), workers);
+  const auto scene = load_scene(open_source(scene_path), std::pmr::get_default_resource(), workers);
   voyager::Camera seen;
   seen.eye = {camera.pose.position[0], camera.pose.position[1], camera.pose.position[2]};
   const VoyFrustum f = camera.frustum();

@@ -19,6 +19,7 @@ inline ExitCode exit_code(ErrorCode code) {
     case ErrorCode::damaged_chunk:
       return kDamagedChunk;
     case ErrorCode::io:
+    case ErrorCode::io_transient:
     case ErrorCode::over_budget:
     case ErrorCode::no_device:
     case ErrorCode::device_lost:

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "runtime/base/error.h"
+#include "runtime/base/url.h"
 
 namespace voyager::tools {
 namespace {
@@ -13,6 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool same_file(const std::string& a, const std::string& b) {
+  if (is_url(b)) return false;  // no output is one
   std::error_code ignored;
   return fs::equivalent(a, b, ignored) ||
          fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();

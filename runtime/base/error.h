@@ -10,7 +10,8 @@ enum class ErrorCode {
   invalid_argument,  // the caller's mistake
   unsupported,       // a mode or format that this build or backend lacks
   file_not_found,
-  io,             // the machine: read, write, disk full
+  io,             // the machine: read, write, disk full; trying again gives the same
+  io_transient,   // a read that may go well later: a time-out, a busy server, EIO
   refused_input,  // a malformed file: message names file, place, found, expected
   damaged_chunk,  // a chunk that this frame needs failed its checksum or decoding
   over_budget,

@@ -14,9 +14,8 @@
 namespace voyager {
 namespace {
 
-[[noreturn]] void fail(const std::string& name, const std::string& doing,
-                       ErrorCode code = ErrorCode::io) {
-  throw Error(code, name + ": " + doing + ": " + std::strerror(errno));
+[[noreturn]] void fail(const std::string& name, const std::string& doing) {
+  throw Error(ErrorCode::io, name + ": " + doing + ": " + std::strerror(errno));
 }
 
 // A name beside `path` that no other thread or process uses.
@@ -28,54 +27,6 @@ std::string unused_name(const std::string& path) {
   } while (::access(name.c_str(), F_OK) == 0);
   return name;
 }
-
-void check_range(const std::string& name, uint64_t size, uint64_t offset, size_t count) {
-  if (offset > size || count > size - offset)
-    throw Error(ErrorCode::refused_input, name + ": offset " + std::to_string(offset) + ": found " +
-                                              std::to_string(size - std::min(offset, size)) +
-                                              " bytes, expected " + std::to_string(count));
-}
-
-class FileSource final : public ByteSource {
- public:
-  explicit FileSource(const std::string& path) : name_(path) {
-    fd_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (fd_ < 0) fail(path, "open", errno == ENOENT ? ErrorCode::file_not_found : ErrorCode::io);
-    struct stat info = {};
-    const bool regular = ::fstat(fd_, &info) == 0 && S_ISREG(info.st_mode);
-    if (!regular) {
-      ::close(fd_);
-      throw Error(ErrorCode::refused_input,
-                  path + ": found something that is not a regular file, expected a file");
-    }
-    size_ = static_cast<uint64_t>(info.st_size);
-  }
-  ~FileSource() override { ::close(fd_); }
-  FileSource(const FileSource&) = delete;
-  FileSource& operator=(const FileSource&) = delete;
-
-  const std::string& name() const override { return name_; }
-  uint64_t size() const override { return size_; }
-  void read(uint64_t offset, std::span<std::byte> into) const override {
-    check_range(name_, size_, offset, into.size());
-    while (!into.empty()) {
-      const ssize_t got = ::pread(fd_, into.data(), into.size(), static_cast<off_t>(offset));
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) fail(name_, "read");
-      if (got == 0)
-        throw Error(ErrorCode::io,
-                    name_ + ": offset " + std::to_string(offset) +
-                        ": found the end of the file, which was truncated while open");
-      offset += static_cast<uint64_t>(got);
-      into = into.subspan(static_cast<size_t>(got));
-    }
-  }
-
- private:
-  std::string name_;
-  int fd_ = -1;
-  uint64_t size_ = 0;
-};
 
 class SourceReader final : public ByteReader {
  public:
@@ -121,15 +72,20 @@ class StdinReader final : public ByteReader {
 
 }  // namespace
 
-std::unique_ptr<ByteSource> open_file_source(const std::string& path) {
-  return std::make_unique<FileSource>(path);
+void check_range(const ByteSource& source, uint64_t offset, size_t count) {
+  const uint64_t size = source.size();
+  if (offset <= size && count <= size - offset) return;
+  throw Error(ErrorCode::refused_input, source.name() + ": offset " + std::to_string(offset) +
+                                            ": found " +
+                                            std::to_string(size - std::min(offset, size)) +
+                                            " bytes, expected " + std::to_string(count));
 }
 
 MemorySource::MemorySource(std::string name, std::span<const std::byte> bytes)
     : name_(std::move(name)), bytes_(bytes) {}
 
 void MemorySource::read(uint64_t offset, std::span<std::byte> into) const {
-  check_range(name_, bytes_.size(), offset, into.size());
+  check_range(*this, offset, into.size());
   if (!into.empty()) std::memcpy(into.data(), bytes_.data() + offset, into.size());
 }
 

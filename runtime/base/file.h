@@ -11,18 +11,37 @@
 
 namespace voyager {
 
+// How a source will be read from now on.
+enum class Access {
+  forward,    // mostly from the start to the end: the system reads ahead
+  scattered,  // pieces here and there: no reading ahead
+  uncached,   // the same, past the system's page cache where the file system can
+};
+
 class ByteSource {
  public:
   virtual ~ByteSource() = default;
-  // What error messages call it: a path, or the host's name for it.
+  // What error messages call it: a path, a URL without its secrets, or the host's name for it.
   virtual const std::string& name() const = 0;
   virtual uint64_t size() const = 0;
-  // Fills all of `into` from `offset`, or throws Error(io). Safe to call from
-  // several threads at once.
+  // Fills all of `into` from `offset`, or throws: Error(io_transient) where the same read may
+  // go well later; any other code where it will not, among them Error(refused_input) for a
+  // range beyond size(). `into` then holds anything. Blocks; safe to call from several threads
+  // at once.
   virtual void read(uint64_t offset, std::span<std::byte> into) const = 0;
+  // A wish, granted where the source has something to choose. Before reads of other threads.
+  virtual void expect(Access) const noexcept {}
+  // Nobody wants the bytes any more: where reads can be slow for want of an answer (HTTP),
+  // those under way end at once with Error(io), as do all later ones. Callable from any thread,
+  // during reads; for good. The others are not affected.
+  virtual void cancel() const noexcept {}
 };
 
-// Throws Error(file_not_found) or Error(io).
+// Throws Error(refused_input) unless [offset, offset + count) is within the source.
+void check_range(const ByteSource& source, uint64_t offset, size_t count);
+
+// A regular file. Its reads fail with Error(io) once it has been truncated below them. Throws
+// Error(file_not_found), Error(refused_input) or Error(io).
 std::unique_ptr<ByteSource> open_file_source(const std::string& path);
 
 class MemorySource final : public ByteSource {

@@ -42,6 +42,7 @@ class SceneFile {
 
   const SceneFileInfo& info() const { return info_; }
   const std::string& name() const { return source_->name(); }
+  const ByteSource& source() const { return *source_; }
 
   const std::vector<ChunkEntry>& chunks() const { return chunks_; }
   // Valid as long as the file.

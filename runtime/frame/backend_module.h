@@ -1,6 +1,5 @@
 #pragma once
-// Backends that live in a shared library of their own, because what they need is not
-// on every machine.
+// Backends that live in a module (runtime/base/module.h).
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -30,9 +29,8 @@ inline constexpr char kBackendModuleSymbol[] = "voyager_backend_module";
 // This build's stamp.
 const char* backend_module_stamp();
 
-// Loads libvoyager_NAME.so from beside the caller's library or program (and ../lib
-// beside it), else from where the system looks. The module stays loaded for good: the
-// driver's run-time does not survive being unloaded. Thread-safe. Throws
+// Loads libvoyager_NAME.so. It stays loaded: the driver's run-time does not survive being
+// unloaded. Thread-safe. Throws
 // Error(no_device) where there is no module, or one of another build, or it finds no
 // device, with the reason.
 std::unique_ptr<Backend> load_backend(const std::string& name, const BackendModuleOptions& options);

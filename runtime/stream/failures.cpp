@@ -24,7 +24,7 @@ void Failures::add(uint32_t chunk, const Error& error, double now) {
   failed.code = error.code();
   failed.message = error.what();
   ++failed.times;
-  failed.again = error.code() == ErrorCode::io ||
+  failed.again = error.code() == ErrorCode::io_transient ||
                  (error.code() == ErrorCode::damaged_chunk && failed.times == 1);
   const double wait =
       std::min(kLongestWait,

@@ -9,9 +9,9 @@
 
 namespace voyager {
 
-// A read that failed is tried again, later each time: a disk or a server may come back. So is
-// a chunk that was damaged, once: it may have been on its way only. What a file says of itself
-// stays wrong.
+// A read that failed for what may pass is tried again, later each time: a disk or a server may
+// come back. So is a chunk that was damaged, once: it may have been on its way only. What a file
+// says of itself stays wrong, and what is gone stays gone.
 class Failures {
  public:
   static constexpr double kFirstWait = 0.1, kLongestWait = 10;  // seconds

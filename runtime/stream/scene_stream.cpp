@@ -59,6 +59,7 @@ void SceneStream::stop() {
     stopping_ = true;
   }
   wake_.notify_all();
+  file_->source().cancel();  // a read may wait for a server
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
 }
@@ -80,6 +81,7 @@ void SceneStream::signal() {
 // ---------------------------------------------------------------- threads
 
 void SceneStream::read_top(Workers& workers) {
+  file_->source().expect(Access::uncached);  // the pool is the cache
   const std::vector<std::byte> stored = file_->read_stored(0, desc_.first);
   const ChunkEntry& last = file_->chunks()[desc_.pinned - 1];
   const auto pinned_bytes =
@@ -317,7 +319,7 @@ void SceneStream::fail(uint32_t chunk, const std::exception& error) {
   forget(chunk);
   residency_.failed(chunk);
   const auto* ours = dynamic_cast<const Error*>(&error);
-  const Error other(ErrorCode::io,
+  const Error other(ErrorCode::io_transient,
                     file_->name() + ": chunk " + std::to_string(chunk) + ": " + error.what());
   add_failure(chunk, ours != nullptr ? *ours : other);
 }

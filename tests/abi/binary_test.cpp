@@ -37,7 +37,7 @@ void expect_needs_none(const std::string& path, const std::vector<std::string>& 
 }
 
 TEST(Binary, LibraryNeedsNoDriverAndNoLoader) {
-  expect_needs_none(VOYAGER_LIBRARY, {"libcuda", "libcudart", "libvulkan", "libopenxr"});
+  expect_needs_none(VOYAGER_LIBRARY, {"libcuda", "libcudart", "libvulkan", "libopenxr", "libcurl"});
 }
 
 // A host that linked the library, or a part of it, would not show that dlopen is enough.

@@ -78,6 +78,20 @@ TEST(ImportDirection, CudaImportsTheRuntimeOnly) {
                              "runtime/cpu/", "runtime/reference/"});
 }
 
+TEST(ImportDirection, HttpImportsTheBaseOnly) {
+  expect_no_include("http",
+                    {"plugin/", "voyager/", "tools/", "samples/", "tests/", "bench/", "cuda"});
+  for (const Include& include : includes_below("http"))
+    EXPECT_TRUE(include.name.rfind("runtime/", 0) != 0 ||
+                include.name.rfind("runtime/base/", 0) == 0)
+        << include.file << " includes " << include.name;
+}
+
+TEST(ImportDirection, OnlyTheHttpModuleKnowsLibcurl) {
+  for (const char* folder : {"runtime", "plugin", "tools", "samples", "cuda"})
+    expect_no_include(folder, {"http/", "curl/"});
+}
+
 TEST(ImportDirection, OnlyTheModuleIncludesCuda) {
   for (const char* folder : {"tools", "samples"})
     expect_no_include(folder, {"cuda/", "cuda", "cub/"});

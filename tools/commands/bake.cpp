@@ -9,6 +9,8 @@
 
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
+#include "runtime/base/open_source.h"
+#include "runtime/base/url.h"
 #include "runtime/format/reader.h"
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
@@ -35,13 +37,14 @@ GaussianCloud read_one(const std::string& path, const Progress& progress) {
   ImportOptions options;
   options.progress = progress;
   if (path == "-") return import_gaussians(*read_stdin(), options);
-  const auto source = open_file_source(path);
+  const auto source = open_source(path);
   return import_gaussians(*read_source(*source), options);
 }
 
 GaussianCloud read_all(const std::vector<std::string>& paths, const Progress& progress) {
   GaussianCloud cloud = read_one(paths.front(), progress);
-  for (size_t i = 1; i < paths.size(); ++i) append(cloud, read_one(paths[i], progress), paths[i]);
+  for (size_t i = 1; i < paths.size(); ++i)
+    append(cloud, read_one(paths[i], progress), shown_path(paths[i]));
   return cloud;
 }
 

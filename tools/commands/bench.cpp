@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "runtime/base/error.h"
-#include "runtime/base/file.h"
+#include "runtime/base/open_source.h"
 #include "runtime/cpu/cpu_backend.h"
 #include "runtime/frame/backend_module.h"
 #include "tools/commands/bench_arguments.h"
@@ -78,19 +78,18 @@ void bench(BenchArguments& arguments) {
   AtomicFile file(arguments.json);  // refused before the work, not after it
   Workers workers;
   const auto scene =
-      load_scene(open_file_source(arguments.scene), std::pmr::get_default_resource(), workers);
+      load_scene(open_source(arguments.scene), std::pmr::get_default_resource(), workers);
   const bool search = arguments.stages == BenchStages::search;
   if (search && scene->tree.size() == 0)
-    throw Error(
-        ErrorCode::refused_input,
-        arguments.scene + ": found a scene without a tree, expected a .voy that is not empty");
+    throw Error(ErrorCode::refused_input,
+                scene->name + ": found a scene without a tree, expected a .voy that is not empty");
   if (arguments.time_budget > 0 && scene->flat())
-    throw Error(ErrorCode::refused_input, arguments.scene +
+    throw Error(ErrorCode::refused_input, scene->name +
                                               ": found a scene without a tree, "
                                               "expected a .voy with --time-budget");
   const auto backend = create_backend(arguments);
   const BenchSubject subject{scene, *backend, read_walk(arguments), workers};
-  Json report = {{"scene", arguments.scene},
+  Json report = {{"scene", scene->name},
                  {"cameras", arguments.cameras},
                  {"version", VOYAGER_VERSION},
                  {"device", backend->device_name()},

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "runtime/base/error.h"
+#include "runtime/base/open_source.h"
 #include "runtime/format/export_hier.h"
 #include "runtime/format/export_ply.h"
 #include "runtime/format/reader.h"
@@ -42,7 +43,7 @@ void export_scene(const Arguments& arguments) {
     export_cut(arguments.scene, choose_camera(arguments), arguments.tau, arguments.output);
   } else {
     require_extension("-o", arguments.output, {".hier", ".ply"});
-    const SceneFile scene(open_file_source(arguments.scene));
+    const SceneFile scene(open_source(arguments.scene));
     const bool tree = std::filesystem::path(arguments.output).extension() == ".hier";
     (tree ? export_hier : export_ply)(scene, arguments.output, progress_bar());
   }

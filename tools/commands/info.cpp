@@ -3,6 +3,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "runtime/base/open_source.h"
+#include "runtime/base/url.h"
 #include "runtime/format/reader.h"
 #include "tools/commands/commands.h"
 #include "voyager/voyager.hpp"
@@ -20,7 +22,7 @@ struct Partitioning {
 
 Partitioning partitioning(const std::string& path, const VoySceneInfo& info) {
   if (info.storage == VOY_SCENE_STORAGE_FLAT) return {};
-  const SceneFile file(open_file_source(path));
+  const SceneFile file(open_source(path));
   return {file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes};
 }
 
@@ -96,7 +98,8 @@ void add_info(CLI::App& app) {
     const voy::Device device = voy::Device::create();
     const voy::Scene scene = device.open_scene(*path);
     const VoySceneInfo info = scene.info();
-    (*json ? print_json : print_text)(*path, info, partitioning(*path, info), scene.notes());
+    (*json ? print_json : print_text)(shown_path(*path), info, partitioning(*path, info),
+                                      scene.notes());
   });
 }
 

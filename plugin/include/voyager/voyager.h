@@ -231,7 +231,9 @@ VOY_API VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabili
 
 /* Bytes that the host supplies: a pak file, an asset bundle, memory.
  * read fills `size` bytes from `offset` (in range) and returns VOY_SUCCESS, or
- * an error, which the call in progress reports as VOY_ERROR_IO. It may be called
+ * an error, which the call in progress reports as VOY_ERROR_IO. The same read may
+ * be tried again later, but not after VOY_ERROR_FILE_NOT_FOUND and
+ * VOY_ERROR_REFUSED_INPUT, which say that it is no use. It may be called
  * from any thread, several at once, from voyOpenScene until voyDestroyScene (or
  * voyDestroyDevice) returns: read, user and the bytes must stay valid that long.
  * Where voyOpenScene fails, until it returns. */
@@ -270,13 +272,14 @@ typedef struct VoySceneStreaming {
 typedef struct VoySceneDesc {
   VoyStructureType type;       /* VOY_STRUCTURE_TYPE_SCENE_DESC */
   const void* next;            /* NULL or a VoySceneStreaming */
-  const char* path;            /* UTF-8; copied */
+  const char* path;            /* UTF-8; copied: a file, or an http:// or https:// URL */
   const VoyByteSource* source; /* the struct is copied; its user must live as long as the scene */
 } VoySceneDesc;
 #define VOY_SCENE_DESC_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_DESC, NULL, NULL, NULL }
 
-/* Errors: FILE_NOT_FOUND, IO, REFUSED_INPUT, OVER_BUDGET, OUT_OF_HOST_MEMORY.
+/* Errors: FILE_NOT_FOUND, IO, REFUSED_INPUT, OVER_BUDGET, OUT_OF_HOST_MEMORY;
+ * UNSUPPORTED for a URL where libvoyager_http.so is missing (docs/streaming.md).
  * A damaged chunk of a .voy does not fail the opening: frames that need it do. But the top of
  * a streamed scene's tree is read here, and DAMAGED_CHUNK where it cannot be. OVER_BUDGET: of a
  * streamed scene, the budget has no room for that top; the message says what it takes. */

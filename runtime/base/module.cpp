@@ -1,0 +1,54 @@
+#include "runtime/base/module.h"
+
+#include <dlfcn.h>
+
+#include <array>
+#include <filesystem>
+
+namespace voyager {
+namespace {
+
+// Where the code of this very function was loaded from.
+std::filesystem::path own_folder() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&module_stamp), &info) == 0 || !info.dli_fname)
+    return {};
+  std::error_code ignored;
+  return std::filesystem::absolute(info.dli_fname, ignored).parent_path();
+}
+
+void* open_library(const std::string& file, std::string& why) {
+  const std::filesystem::path folder = own_folder();
+  const std::array<std::string, 3> places = {(folder / file).string(),
+                                             (folder / ".." / "lib" / file).string(), file};
+  for (const std::string& place : places) {
+    std::error_code ignored;
+    if (place != file && !std::filesystem::exists(place, ignored)) continue;
+    if (void* library = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE))
+      return library;
+    why = dlerror();
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+std::string module_stamp(size_t shared_type_bytes) {
+  return std::string(VOYAGER_VERSION) + ", " + __VERSION__ + ", " +
+         std::to_string(shared_type_bytes);
+}
+
+const void* open_module(const std::string& name, const char* symbol, const std::string& stamp,
+                        ErrorCode failure) {
+  const std::string file = "libvoyager_" + name + ".so";
+  std::string why;
+  void* library = open_library(file, why);
+  if (!library) throw Error(failure, file + ": cannot be loaded: " + why);
+  const void* module = dlsym(library, symbol);
+  const char* found = module ? *static_cast<const char* const*>(module) : "no known build";
+  if (stamp != found)
+    throw Error(failure, file + ": found a module of " + found + ", expected " + stamp);
+  return module;
+}
+
+}  // namespace voyager

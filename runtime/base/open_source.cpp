@@ -1,0 +1,28 @@
+#include "runtime/base/open_source.h"
+
+#include <array>
+
+#include "runtime/base/http_module.h"
+#include "runtime/base/module.h"
+#include "runtime/base/url.h"
+
+namespace voyager {
+namespace {
+
+std::unique_ptr<ByteSource> open_url(const std::string& url) {
+  const auto* module = static_cast<const HttpModule*>(open_module(
+      "http", kHttpModuleSymbol, module_stamp(sizeof(HttpModule)), ErrorCode::unsupported));
+  ErrorCode code = ErrorCode::internal;
+  std::array<char, 1024> message{};
+  if (ByteSource* source = module->open(url.c_str(), &code, message.data(), message.size()))
+    return std::unique_ptr<ByteSource>(source);
+  throw Error(code, message.data());
+}
+
+}  // namespace
+
+std::unique_ptr<ByteSource> open_source(const std::string& path) {
+  return is_url(path) ? open_url(path) : open_file_source(path);
+}
+
+}  // namespace voyager
