@@ -12,8 +12,8 @@ using Folders = std::set<std::string>;
 
 // What each folder of the runtime may include, besides itself.
 const std::map<std::string, Folders>& allowed() {
-  static const Folders below_backends = {"math",   "base",   "scene",  "lod",
-                                         "format", "select", "stages", "frame"};
+  static const Folders below_backends = {"math",   "base",   "scene",  "lod",  "format",
+                                         "select", "stages", "stream", "frame"};
   static const std::map<std::string, Folders> table = {
       {"math", {}},
       {"base", {"math"}},
@@ -22,7 +22,8 @@ const std::map<std::string, Folders>& allowed() {
       {"format", {"math", "base", "scene", "lod"}},
       {"select", {"math", "base", "scene", "lod"}},
       {"stages", {"math", "base", "scene", "lod"}},
-      {"frame", {"math", "base", "scene", "lod", "format", "select", "stages"}},
+      {"stream", {"math", "base", "scene", "lod", "format", "select"}},
+      {"frame", {"math", "base", "scene", "lod", "format", "select", "stages", "stream"}},
       {"cpu", below_backends},
       {"reference", below_backends},
   };

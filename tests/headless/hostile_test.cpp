@@ -8,12 +8,12 @@ namespace {
 
 TEST_F(Hostile, DeviceChoices) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  for (const uint32_t version : {0xffffffffu, VOY_MAKE_VERSION(0, 1, 0), VOY_MAKE_VERSION(0, 3, 0),
+  for (const uint32_t version : {0xffffffffu, VOY_MAKE_VERSION(0, 2, 0), VOY_MAKE_VERSION(0, 4, 0),
                                  VOY_MAKE_VERSION(1, 0, 0), VOY_MAKE_VERSION(1, 2, 0)}) {
     desc.apiVersion = version;
-    expect_refused(create_device(desc), VOY_ERROR_INCOMPATIBLE_VERSION, "0.2.0");
+    expect_refused(create_device(desc), VOY_ERROR_INCOMPATIBLE_VERSION, "0.3.0");
   }
-  desc.apiVersion = VOY_MAKE_VERSION(0, 2, 7);
+  desc.apiVersion = VOY_MAKE_VERSION(0, 3, 7);
   EXPECT_EQ(create_device(desc), VOY_SUCCESS);
   for (const int backend : {-1, 4, INT32_MAX, INT32_MIN}) {
     desc.backend = bad_enum<VoyBackend>(backend);

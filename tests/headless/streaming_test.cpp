@@ -1,0 +1,221 @@
+// A streamed scene as a host has it: threads that read the host's bytes, budgets, frames that
+// wait and frames that do not, refusals.
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "host.h"
+
+namespace {
+
+// A baked scene's bytes, made by the command line once for all tests.
+const std::string& baked_bytes() {
+  static const std::string bytes = [] {
+    std::string folder = (std::filesystem::temp_directory_path() / "voyager-XXXXXX").string();
+    if (mkdtemp(folder.data()) == nullptr) return std::string();
+    const std::string ply = folder + "/scene.ply", voy = folder + "/scene.voy";
+    std::ofstream(ply, std::ios::binary) << ply_bytes(20000);
+    const std::string command =
+        std::string(VOYAGER_TOOL) + " bake " + ply + " -o " + voy + " >/dev/null 2>&1";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    std::ifstream file(voy, std::ios::binary);
+    std::string found((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    std::filesystem::remove_all(folder);
+    return found;
+  }();
+  return bytes;
+}
+
+// The fixture's scene and view are those of the baked scene, streamed with `megabytes`.
+struct StreamedHost : Host {
+  explicit StreamedHost(const Library& library, double megabytes,
+                        VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT)
+      : Host(library, desc) {
+    baked.bytes = baked_bytes();
+    EXPECT_EQ(open(megabytes), VOY_SUCCESS) << voy.message();
+    view_streamed();
+  }
+  VoyResult open(double megabytes) {
+    const VoyByteSource source = baked.source();
+    VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+    streaming.memoryBudget = static_cast<uint64_t>(megabytes * 1e6);
+    VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
+    scene_desc.next = &streaming;
+    scene_desc.source = &source;
+    return voy.OpenScene(device, &scene_desc, &scene);
+  }
+  void view_streamed() {
+    VoyViewDesc wanted = view_desc();
+    wanted.tau = 1;
+    EXPECT_EQ(voy.CreateView(device, &wanted, &view), VOY_SUCCESS) << voy.message();
+  }
+  VoyResult draw(uint32_t wait, uint32_t stand_in = 0) {
+    VoyFrameStreaming streaming = VOY_FRAME_STREAMING_INIT;
+    streaming.waitResident = wait;
+    streaming.standIn = stand_in;
+    VoyFrameEye one = eye();
+    one.target = target;
+    VoyFrame frame = VOY_FRAME_INIT;
+    frame.next = &streaming;
+    frame.eyeCount = 1;
+    frame.eyes = &one;
+    return voy.RenderFrame(view, &frame);
+  }
+  VoyStreamingStats streaming() {
+    VoyStreamingStats stats = VOY_STREAMING_STATS_INIT;
+    EXPECT_EQ(voy.GetStreamingStats(scene, &stats), VOY_SUCCESS) << voy.message();
+    return stats;
+  }
+  VoyFrameStats frame_stats() {
+    VoyFrameStats stats = {};
+    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    EXPECT_EQ(voy.GetFrameStats(view, &stats), VOY_SUCCESS);
+    return stats;
+  }
+
+  BytesHost baked;
+};
+
+std::vector<float> resident_image(const Library& voy) {
+  StreamedHost host(voy, 0);
+  const VoyByteSource source = host.baked.source();
+  VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+  desc.source = &source;
+  EXPECT_EQ(voy.OpenScene(host.device, &desc, &host.scene), VOY_SUCCESS) << voy.message();
+  host.view_streamed();
+  EXPECT_EQ(host.render(), VOY_SUCCESS) << voy.message();
+  return host.pixels;
+}
+
+TEST(Streaming, AFrameThatWaitsIsTheResidentImage) {
+  const Library voy;
+  StreamedHost host(voy, 0);
+  ASSERT_EQ(host.draw(1), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(host.pixels, resident_image(voy));
+  EXPECT_EQ(host.frame_stats().missing, 0u);
+  const VoyStreamingStats stats = host.streaming();
+  EXPECT_GT(stats.residentChunks, 0u);
+  EXPECT_EQ(stats.missingChunks, 0u);
+}
+
+TEST(Streaming, ATooSmallBudgetSaysWhatItTakes) {
+  const Library voy;
+  StreamedHost host(voy, 0);
+  EXPECT_EQ(host.open(0.001), VOY_ERROR_OVER_BUDGET);
+  EXPECT_NE(voy.message().find(" MB"), std::string::npos) << voy.message();
+  ASSERT_EQ(host.open(0.6), VOY_SUCCESS) << voy.message();
+  host.view_streamed();
+  EXPECT_EQ(host.draw(0), VOY_SUCCESS) << voy.message();
+  EXPECT_GT(host.frame_stats().missing, 0u);
+  EXPECT_EQ(host.draw(1), VOY_ERROR_OVER_BUDGET);
+  EXPECT_NE(voy.message().find(" MB"), std::string::npos) << voy.message();
+  EXPECT_LE(host.streaming().budgetBytes, 600000u);
+}
+
+TEST(Streaming, TheDevicesBudgetBindsStreamedScenesToo) {
+  const Library voy;
+  VoyDeviceDesc desc = device_for(VOY_BACKEND_CPU);
+  desc.memoryBudget = 3000000;
+  StreamedHost host(voy, 0, desc);
+  VoySceneInfo info = VOY_SCENE_INFO_INIT;
+  ASSERT_EQ(voy.GetSceneInfo(host.scene, &info), VOY_SUCCESS);
+  EXPECT_LE(info.residentBytes, 3000000u);
+  EXPECT_LE(host.streaming().budgetBytes, 3000000u);
+  EXPECT_EQ(host.draw(0), VOY_SUCCESS) << voy.message();
+}
+
+TEST(Streaming, ABudgetChangesWhileFramesAreDrawn) {
+  const Library voy;
+  StreamedHost host(voy, 0);
+  ASSERT_EQ(host.draw(1), VOY_SUCCESS);
+  const std::vector<float> whole = host.pixels;
+  ASSERT_EQ(voy.SetSceneMemoryBudget(host.scene, 600000), VOY_SUCCESS) << voy.message();
+  EXPECT_LE(host.streaming().budgetBytes, 600000u);
+  ASSERT_EQ(host.draw(0), VOY_SUCCESS) << voy.message();
+  EXPECT_GT(host.frame_stats().missing, 0u);
+  EXPECT_EQ(voy.SetSceneMemoryBudget(host.scene, 10), VOY_ERROR_OVER_BUDGET);
+  ASSERT_EQ(voy.SetSceneMemoryBudget(host.scene, 0), VOY_SUCCESS) << voy.message();
+  ASSERT_EQ(host.draw(1), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(host.pixels, whole);
+}
+
+// The threads go with the scene, whoever forgets what.
+TEST(Streaming, ScenesGoWhileTheirBytesAreRead) {
+  for (int i = 0; i < 20; ++i) {
+    const Library voy;
+    StreamedHost host(voy, 0);
+    EXPECT_EQ(host.draw(0), VOY_SUCCESS);
+    if (i % 2 == 0) {
+      EXPECT_EQ(voy.DestroyScene(host.scene), VOY_SUCCESS);
+    }
+  }
+  EXPECT_FALSE(Library::is_mapped());
+}
+
+struct Warnings {
+  std::vector<std::string> messages;
+  static void log(void* user, VoyLogLevel level, const char* message) {
+    if (level == VOY_LOG_WARNING) static_cast<Warnings*>(user)->messages.emplace_back(message);
+  }
+};
+
+// Once in the log, on the thread of a call; the frame goes on.
+TEST(Streaming, AReadThatFailsIsToldOnceAndTriedAgain) {
+  const Library voy;
+  Warnings warnings;
+  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  desc.log = Warnings::log;
+  desc.logUser = &warnings;
+  StreamedHost host(voy, 0.6, desc);
+  host.baked.failing = host.baked.reads;
+  // Room for more than was read at once.
+  ASSERT_EQ(voy.SetSceneMemoryBudget(host.scene, 0), VOY_SUCCESS);
+  host.baked.failing = host.baked.reads;
+  for (int i = 0; i < 400 && (host.streaming().failures == 0 || warnings.messages.empty()); ++i) {
+    ASSERT_EQ(host.draw(0), VOY_SUCCESS) << voy.message();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_LE(warnings.messages.size(), 1u);
+  ASSERT_EQ(host.draw(1), VOY_SUCCESS) << voy.message();
+}
+
+TEST(Streaming, Refusals) {
+  const Library voy;
+  StreamedHost host(voy, 0);
+  VoyStreamingStats stats = VOY_STREAMING_STATS_INIT;
+  EXPECT_EQ(voy.GetStreamingStats(nullptr, &stats), VOY_ERROR_INVALID_HANDLE);
+  EXPECT_EQ(voy.GetStreamingStats(host.scene, nullptr), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(host.draw(2), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_EQ(host.draw(0, 7), VOY_ERROR_INVALID_ARGUMENT);
+
+  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+  streaming.readerThreads = 65;
+  const VoyByteSource source = host.baked.source();
+  VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+  desc.next = &streaming;
+  desc.source = &source;
+  VoyScene scene = nullptr;
+  EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_ERROR_INVALID_ARGUMENT);
+  streaming.readerThreads = 0;
+  streaming.reserved = 1;
+  EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_ERROR_INVALID_ARGUMENT);
+
+  VoyView view = nullptr;
+  VoyViewDesc wanted = host.view_desc();
+  wanted.search = VOY_SEARCH_EXHAUSTIVE;
+  EXPECT_EQ(voy.CreateView(host.device, &wanted, &view), VOY_ERROR_UNSUPPORTED);
+  wanted = host.view_desc();
+  wanted.lod = VOY_LOD_ALL_LEAVES;
+  EXPECT_EQ(voy.CreateView(host.device, &wanted, &view), VOY_ERROR_UNSUPPORTED);
+
+  // Other formats are loaded whole.
+  const VoyByteSource flat = host.bytes.source();
+  streaming = VOY_SCENE_STREAMING_INIT;
+  desc.source = &flat;
+  ASSERT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(voy.GetStreamingStats(scene, &stats), VOY_ERROR_UNSUPPORTED);
+  EXPECT_EQ(voy.SetSceneMemoryBudget(scene, 1), VOY_ERROR_UNSUPPORTED);
+}
+
+}  // namespace
