@@ -9,7 +9,7 @@
 namespace voyager {
 namespace {
 
-constexpr uint32_t kMostReaders = 64, kDefaultReaders = 2;
+constexpr uint32_t kMostReaders = 64, kDefaultReaders = 4;
 
 // Of a budget of its own, and of what the device has left for it; 0: no limit.
 uint64_t allowed(uint64_t wanted, uint64_t left) {

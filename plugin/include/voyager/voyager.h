@@ -261,7 +261,7 @@ typedef struct VoySceneStreaming {
   /* Bytes that the scene may take where it is drawn: VoyDeviceDesc.memoryBudget's, on CUDA
    * deviceMemoryBudget's. 0, or more than is left of that: what is left. */
   uint64_t memoryBudget;
-  uint32_t readerThreads; /* that read and decode; 0 to 64, 0 is 2 */
+  uint32_t readerThreads; /* that read and decode; 0 to 64, 0 is 4 */
   uint32_t reserved;      /* 0 */
 } VoySceneStreaming;
 #define VOY_SCENE_STREAMING_INIT \
