@@ -11,8 +11,26 @@
 #include <cstddef>
 
 #include "runtime/base/floating_point_mode.h"
+#include "runtime/base/thread_sanitizer.h"
 
 namespace voyager {
+
+// A block of a loop, as oneTBB copies and calls it.
+template <class Body>
+struct LoopTask {
+  LoopOrder* order;
+  const Body* body;
+  size_t n, grain;
+
+  void operator()(size_t block) const {
+    order->begin_task();
+    {
+      const FloatingPointMode mode;
+      (*body)(block * grain, std::min(n, (block + 1) * grain));
+    }
+    order->end_task();
+  }
+};
 
 class Workers {
  public:
@@ -35,12 +53,9 @@ class Workers {
       body(size_t{0}, n);
       return;
     }
-    arena_.execute([&] {
-      tbb::parallel_for(size_t{0}, blocks, [&](size_t block) {
-        const FloatingPointMode mode;
-        body(block * grain, std::min(n, (block + 1) * grain));
-      });
-    });
+    LoopOrder order;
+    const LoopTask<Body> task{&order, &body, n, grain};
+    arena_.execute([&] { tbb::parallel_for(size_t{0}, blocks, task); });
   }
 
   // `less` must be a strict total order, so that the result is unique.
