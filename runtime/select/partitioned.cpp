@@ -172,8 +172,10 @@ void PartitionedSearch::relink(std::span<const uint32_t> unlinked,
                                std::span<const uint32_t> changed) {
   relinked_ = true;
   if (!known_) return;
+  // What leads to a subtree that was linked again says nothing new: it stays as it was, at other
+  // addresses.
   for (const uint32_t s : unlinked) {
-    close(s);
+    if (tree_.subtrees[s].entry == kNotLinked) close(s);
     touch(block_of(s));
   }
   for (const uint32_t s : changed)

@@ -43,8 +43,9 @@ class PartitionedSearch {
   void run(const CutQuery& query, Search kind, Workers& workers);
   // The next run starts from nothing.
   void forget() { known_ = false; }
-  // Between two runs the tree has changed: nothing leads to the subtrees of `unlinked` now,
-  // and those of `changed` have a record that is blocked, or no longer is.
+  // Between two runs the tree has changed, and is what it is now: nothing led to the subtrees of
+  // `unlinked` for a time, or does now, and those of `changed` have a record that is blocked, or
+  // no longer is.
   void relink(std::span<const uint32_t> unlinked, std::span<const uint32_t> changed);
 
   // Results of the last run, valid until the next.

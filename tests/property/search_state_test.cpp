@@ -49,6 +49,21 @@ TEST(SearchState, OneStateServesEverySearchInAnyOrder) {
   }
 }
 
+// As a view finds it that has not drawn meanwhile: all but the top has gone and come again.
+TEST(SearchState, WhatWasUnlinkedAndLinkedAgainGoesOn) {
+  for (const TreeShape shape : {TreeShape::four_way, TreeShape::mixture}) {
+    SearchRig rig(test::random_tree(shape, 5000, 5));
+    std::vector<uint32_t> all, below;
+    for (uint32_t s = 0; s < rig.search_tree.subtree_count(); ++s) all.push_back(s);
+    below.assign(all.begin() + rig.search_tree.tier_begin[1], all.end());
+    for (int frame = 0; frame < 20; ++frame) {
+      ASSERT_TRUE(rig.agree({{30, 4, -12 + 0.5f * static_cast<float>(frame / 2)}, 0.05f}));
+      for (PartitionedSearch* search : {&rig.streaming, &rig.temporal, &rig.temporal_visit})
+        search->relink(below, all);
+    }
+  }
+}
+
 TEST(SearchState, ViewsOfOneSceneAreIndependent) {
   SearchRig rig(test::random_tree(TreeShape::four_way, 8000, 4));
   PartitionedSearch alone(rig.search_tree), a(rig.search_tree), b(rig.search_tree);
