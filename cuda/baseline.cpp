@@ -139,6 +139,7 @@ void BaselinePipeline::draw(const FrameInput& frame, FrameStats& stats) {
   fit(tiles_, static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));
   const RasterTarget target = image_.target(eye, frame.background);
   const cudaStream_t stream = stream_.get();
+  const SceneReading reading(instances_, stream);
   timer_.begin();
   instances_.update(frame, stream);
   const uint32_t places = read_places(stream);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cuda/baseline.h"
+#include "cuda/device_pool.h"
 #include "cuda/external_ring.h"
 #include "cuda/pipeline.h"
 #include "cuda/search.h"
@@ -55,6 +56,14 @@ class CudaBackend final : public Backend {
     return cuda::create_pipeline(device_, std::move(instances), desc);
   }
 
+  std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, uint32_t slots) override {
+    device_->use();
+    return std::make_unique<DevicePool>(device_, scene, shape, slots);
+  }
+  PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const override {
+    return DevicePool::bytes(*device_, scene, shape);
+  }
+
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                              const SearchDesc& desc, std::pmr::memory_resource*,
                                              Workers& workers) override {
@@ -66,8 +75,10 @@ class CudaBackend final : public Backend {
  private:
   DeviceInstance instance_of(const std::shared_ptr<const Scene>& scene, const PipelineDesc& desc,
                              Workers& workers) {
-    auto gaussians = gaussians_.of(
-        scene, [&](const Scene& s) { return std::make_shared<DeviceScene>(s, workers); });
+    auto gaussians = gaussians_.of(scene, [&](const Scene& s) {
+      return s.streamed() ? std::make_shared<DeviceScene>(pool_of(s, *device_))
+                          : std::make_shared<DeviceScene>(s, workers);
+    });
     const bool draws_cut = !scene->flat() && desc.lod == Lod::cut;
     auto search = draws_cut ? search_for(scene, desc.search, true, workers) : nullptr;
     return {scene, std::move(gaussians), create_draws(*scene, desc.lod, std::move(search))};
@@ -77,7 +88,10 @@ class CudaBackend final : public Backend {
                                         bool weights, Workers& workers) {
     if (!scene->damaged_chunks.empty()) return create_host_cut_search(scene, kind, workers);
     if (kind == Search::exhaustive) return create_exhaustive_search(device_, scene, weights);
-    const auto tree = trees_.of(scene, [](const Scene& s) { return upload_tree(s); });
+    const auto tree = trees_.of(scene, [&](const Scene& s) {
+      return s.streamed() ? std::make_shared<const DeviceTree>(pool_of(s, *device_))
+                          : upload_tree(s);
+    });
     return create_partitioned_search(device_, tree, scene, kind, weights);
   }
 

@@ -93,6 +93,7 @@ __device__ void emit_subtree(const TreeView& tree, const StateView& state, const
       parent = s.first_record;
     }
     state.nodes[place] = node;
+    if (state.ids != nullptr) state.ids[place] = __ldg(tree.node_ids + node);
     if (kOrigin)
       state.origin[place] = {s.interior >> slot & 1 ? record_of(s, slot) : kNoRecord, parent};
   }
@@ -102,8 +103,10 @@ __device__ void emit_subtree(const TreeView& tree, const StateView& state, const
 __device__ void clear_rest(const StateView& state, const Block& block) {
   for (uint32_t level = 0; level < kLevels; ++level) {
     const Segment segment = state.segments[block.first_segment + level * block.stride];
-    for (uint32_t i = segment.size + threadIdx.x; i < segment.room; i += kEmitThreads)
+    for (uint32_t i = segment.size + threadIdx.x; i < segment.room; i += kEmitThreads) {
       state.nodes[segment.first + i] = kNoNode;
+      if (state.ids != nullptr) state.ids[segment.first + i] = kNoNode;
+    }
   }
 }
 

@@ -83,9 +83,10 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   }
   __syncthreads();
   if (threadIdx.x == 0) {
-    const uint32_t before = work[1].cut_size;
+    const uint32_t before = work[1].cut_size, stand_ins = work[1].stand_ins;
     work[1] = work[0];
     work[1].cut_size = static_cast<uint32_t>(before + work[0].entered - work[0].left);
+    work[1].stand_ins += stand_ins;
     work[1].list_size = list_size;
     work[1].dirty_count = dirty;
     work[0] = FrameCounters{};

@@ -29,8 +29,8 @@ Layout make_layout(const SearchTree& tree) {
 
 }  // namespace
 
-CutState::CutState(const SearchTree& tree, size_t leaves, bool weights) {
-  const size_t subtrees = tree.subtrees.size();
+CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
+  const size_t subtrees = tree.subtree_count();
   const Layout layout = make_layout(tree);
   const size_t blocks = layout.blocks.size();
   blocks_ = upload(std::span<const Block>(layout.blocks));
@@ -38,6 +38,7 @@ CutState::CutState(const SearchTree& tree, size_t leaves, bool weights) {
   watch_ = upload(std::span<const Watch>(std::vector<Watch>(subtrees, {INFINITY, 0})));
   refined_ = Buffer<uint32_t>(subtrees);
   cut_ = Buffer<uint32_t>(subtrees);
+  stand_ins_ = Buffer<uint32_t>(tree.chunks_come_and_go ? subtrees : 0);
   segments_ = Buffer<Segment>(kLevels * blocks);
   open_counts_ = Buffer<uint32_t>(blocks);
   open_blocks_ = Buffer<uint32_t>(blocks);
@@ -47,16 +48,18 @@ CutState::CutState(const SearchTree& tree, size_t leaves, bool weights) {
   due_ = Buffer<uint32_t>(subtrees);
   signals_ = Buffer<uint32_t>(subtrees);
   counters_ = Buffer<FrameCounters>(2);
-  const size_t places = leaves + leaves / 8 + 64 * kLevels * blocks;
+  const size_t places = most + most / 8 + 64 * kLevels * blocks;
   nodes_ = Buffer<uint32_t>(places);
   origin_ = Buffer<CutOrigin>(weights ? places : 0);
   weights_ = Buffer<float>(weights ? places : 0);
+  ids_ = Buffer<uint32_t>(tree.chunks_come_and_go ? places : 0);
   for (const Buffer<uint32_t>* zero :
-       {&refined_, &cut_, &open_counts_, &open_blocks_, &open_block_count_, &dirty_flags_, &dirty_})
+       {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_, &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);
   fill(segments_, 0);
   fill(weights_, 0);  // places that hold no node are read with the others
   fill(nodes_, 0xff);
+  fill(ids_, 0xff);
   fill(signals_, 0xff);
   fill(counters_, 0);
 }
@@ -65,6 +68,7 @@ StateView CutState::view() const {
   return {watch_.data(),
           refined_.data(),
           cut_.data(),
+          stand_ins_.data(),
           blocks_.data(),
           tiers_.data(),
           static_cast<uint32_t>(blocks_.size()),
@@ -80,7 +84,8 @@ StateView CutState::view() const {
           counters_.data(),
           nodes_.data(),
           origin_.data(),
-          weights_.data()};
+          weights_.data(),
+          ids_.data()};
 }
 
 }  // namespace voyager::cuda

@@ -47,7 +47,8 @@ struct CutOrigin {
 struct FrameCounters {
   unsigned long long nodes_tested, subtrees_visited, chunks_read, bytes_read;
   unsigned long long entered, left;
-  uint32_t cut_size, list_size;  // nodes, and places in the list; kept from frame to frame
+  // Nodes, places in the list, and nodes of the cut that stand in; kept from frame to frame.
+  uint32_t cut_size, list_size, stand_ins;
   uint32_t streamed;             // 1: by streaming
   uint32_t due_count;            // entries of due[]
   uint32_t dirty_count;          // entries of dirty[]
@@ -61,6 +62,7 @@ struct StateView {
   Watch* watch;
   uint32_t* refined;  // bits of slots, and kOpen
   uint32_t* cut;      // bits of slots
+  uint32_t* stand_ins;  // bits of slots; null where no record is ever blocked
   const Block* blocks;
   const Tier* tiers;
   uint32_t block_count, tier_count;
@@ -76,6 +78,7 @@ struct StateView {
   uint32_t* nodes;    // the cut list: ascending, with kNoNode in between
   CutOrigin* origin;  // of each place
   float* weights;     // of each place
+  uint32_t* ids;      // of each place, where nodes are addresses: the file's
 };
 
 inline constexpr uint32_t kNoSignal = 0xffffffffu;
@@ -83,15 +86,15 @@ inline constexpr uint32_t kClose = 0x80000000u;  // beside the subtree; else it 
 
 class CutState {
  public:
-  // leaves: of the whole tree, no cut has more nodes. All memory is taken here.
-  CutState(const SearchTree& tree, size_t leaves, bool weights);
+  // most: no cut has more nodes. All memory is taken here.
+  CutState(const SearchTree& tree, size_t most, bool weights);
 
   StateView view() const;
   uint32_t list_room() const { return static_cast<uint32_t>(nodes_.size()); }
 
  private:
   Buffer<Watch> watch_;
-  Buffer<uint32_t> refined_, cut_;
+  Buffer<uint32_t> refined_, cut_, stand_ins_;
   Buffer<Block> blocks_;
   Buffer<Tier> tiers_;
   Buffer<Segment> segments_;
@@ -101,6 +104,7 @@ class CutState {
   Buffer<uint32_t> nodes_;
   Buffer<CutOrigin> origin_;
   Buffer<float> weights_;
+  Buffer<uint32_t> ids_;
 };
 
 }  // namespace voyager::cuda

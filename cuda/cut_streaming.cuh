@@ -49,7 +49,7 @@ __device__ inline void read_subtrees(const TreeView& tree, const StateView& stat
     const Known known = load_known(state, subtree);
     const SearchSubtree s = load_subtree(tree, subtree);
     // Without an entry: the tree's root.
-    bool open = there;
+    bool open = there && s.entry != kNotLinked;
     if (open && s.entry != kNoRecord) {
       open = judge(load_record(tree.records + s.entry), sight).refined;
       if (lane_in_group() == 0) ++tally.tested;

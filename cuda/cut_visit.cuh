@@ -81,6 +81,7 @@ inline constexpr uint32_t kVisitBytes =
 // What one warp has counted; a lane's part of it.
 struct Tally {
   uint32_t tested = 0, visited = 0, hulls = 0, chunks = 0, entered = 0, left = 0;
+  uint32_t stand_ins = 0;  // what they have changed by, modulo 2^32
 
   __device__ void flush(FrameCounters* counters) const {
     add(&counters->nodes_tested, tested + hulls);
@@ -90,12 +91,14 @@ struct Tally {
         tested * sizeof(SearchRecord) + visited * kVisitBytes + hulls * sizeof(SearchChunk));
     add(&counters->entered, entered);
     add(&counters->left, left);
+    add(&counters->stand_ins, stand_ins);
   }
 
  private:
-  __device__ static void add(unsigned long long* total, uint32_t part) {
+  template <class T>
+  __device__ static void add(T* total, uint32_t part) {
     const uint32_t sum = __reduce_add_sync(kAllLanes, part);
-    if (lane_in_warp() == 0 && sum != 0) atomicAdd(total, sum);
+    if (lane_in_warp() == 0 && sum != 0) atomicAdd(total, T{sum});
   }
 };
 
@@ -114,8 +117,10 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
     if (interior >> slot & 1) {
       const SearchRecord r = load_record(tree.records + record_of(s, slot));
       const NodeVerdict verdict = judge(r, sight);
-      refined = verdict.refined;
+      const bool blocked = r.children == kBlocked;
+      refined = verdict.refined && !blocked;
       if (refined) reached |= r.children;
+      if (verdict.refined && blocked) v.stand_ins |= 1u << slot;
       v.slack = fminf(v.slack, verdict.slack);
       if (slot == 0) v.extent = r.extent;
       ++tally.tested;
@@ -127,7 +132,25 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
   v.slack = group_min(v.slack);
   v.extent = __shfl_sync(kAllLanes, v.extent, 0, kGroupLanes);  // extents never grow downwards
   v.cut = reached & ~v.refined & s.owned;
+  // A record that is blocked is of the tier's lowest level: nodes below it are in no slot here.
+  if (tree.node_ids != nullptr) v.stand_ins = group_or(v.stand_ins) & v.cut;
   return v;
+}
+
+// The block's nodes are to be written again.
+__device__ inline void mark_dirty(const StateView& state, uint32_t block) {
+  if (state.dirty_flags[block] == 0 && atomicExch(&state.dirty_flags[block], 1) == 0)
+    state.dirty[atomicAdd(&state.work->dirty_count, 1)] = block;
+}
+
+// By one lane of a subtree's group.
+__device__ inline void set_stand_ins(const StateView& state, uint32_t subtree, uint32_t stand_ins,
+                                     Tally& tally) {
+  if (state.stand_ins == nullptr) return;
+  const uint32_t before = state.stand_ins[subtree];
+  if (before == stand_ins) return;
+  state.stand_ins[subtree] = stand_ins;
+  tally.stand_ins += __popc(stand_ins) - __popc(before);
 }
 
 // Nodes that entered and left: the sizes of the block's segments, and that they are to
@@ -146,9 +169,7 @@ __device__ inline void count_change(const StateView& state, uint32_t subtree, ui
     const uint32_t before = atomicAdd(&state.open_counts[b], static_cast<uint32_t>(opened));
     if (before == (opened > 0 ? 0 : 1)) state.work->open_blocks_changed = 1;
   }
-  if (lane_in_group() == kLevels + 1 && new_cut != old_cut && state.dirty_flags[b] == 0 &&
-      atomicExch(&state.dirty_flags[b], 1) == 0)
-    state.dirty[atomicAdd(&state.work->dirty_count, 1)] = b;
+  if (lane_in_group() == kLevels + 1 && new_cut != old_cut) mark_dirty(state, b);
   if (lane_in_group() == 0) {
     tally.entered += __popc(new_cut & ~old_cut);
     tally.left += __popc(old_cut & ~new_cut);
@@ -174,6 +195,7 @@ __device__ inline void settle(const StateView& state, const SearchSubtree& s, ui
     state.watch[subtree] = make_watch(v.slack, v.extent, reference);
     if (v.refined != known.refined) state.refined[subtree] = v.refined;
     if (v.cut != known.cut) state.cut[subtree] = v.cut;
+    set_stand_ins(state, subtree, v.stand_ins, tally);
     ++tally.visited;
   }
   if (v.cut != known.cut || !was_open)
@@ -188,6 +210,7 @@ __device__ inline void close_subtree(const StateView& state, uint32_t subtree, u
     state.watch[subtree] = make_watch(INFINITY, 0.0f, 0);
     state.refined[subtree] = 0;
     state.cut[subtree] = 0;
+    set_stand_ins(state, subtree, 0, tally);
   }
   count_change(state, subtree, child_count, known.cut, 0, -1, tally);
 }

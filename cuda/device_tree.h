@@ -14,28 +14,21 @@ struct TreeView {
   const SearchChunk* chunks;
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
   uint32_t subtree_count, chunk_count;
+  // Of a streamed scene, whose nodes and records are addresses: the file's ids of nodes. Else null.
+  const uint32_t* node_ids;
 };
+
+class DevicePool;
 
 // What the partitioned searches need.
 class DeviceTree {
  public:
-  DeviceTree(const SearchTree& search, const LodTree& tree)
-      : subtrees_(upload(std::span<const SearchSubtree>(search.subtrees))),
-        records_(upload(std::span<const SearchRecord>(search.records))),
-        opens_(upload(std::span<const SubtreeSpan>(search.opens))),
-        chunks_(upload(std::span<const SearchChunk>(search.chunks))) {
-    if (search.leaves_have_extent) leaves_ = upload(std::span<const NodeRecord>(tree.records));
-  }
+  DeviceTree(const SearchTree& search, const LodTree& tree);
+  // Of a streamed scene: its pool's, which outlives this.
+  explicit DeviceTree(const DevicePool& pool) : pool_(&pool) {}
 
-  TreeView view() const {
-    return {subtrees_.data(),
-            records_.data(),
-            opens_.data(),
-            chunks_.data(),
-            leaves_.data(),
-            static_cast<uint32_t>(subtrees_.size()),
-            static_cast<uint32_t>(chunks_.size() == 0 ? 0 : chunks_.size() - 1)};
-  }
+  // For a frame: a pool may have another size in the next.
+  TreeView view() const;
 
  private:
   Buffer<SearchSubtree> subtrees_;
@@ -43,6 +36,8 @@ class DeviceTree {
   Buffer<SubtreeSpan> opens_;
   Buffer<SearchChunk> chunks_;
   Buffer<NodeRecord> leaves_;
+  TreeView view_{};
+  const DevicePool* pool_ = nullptr;
 };
 
 }  // namespace voyager::cuda

@@ -18,6 +18,7 @@ class CutDraws final : public Draws {
     search_->weigh(query, stream);
   }
   DrawView view() const override { return {search_->list(), nullptr}; }
+  void end_frame(cudaStream_t stream) noexcept override { search_->end_frame(stream); }
   size_t report_bytes() const override { return search_->report_bytes(); }
   void report(void* into, cudaStream_t stream) const override { search_->report(into, stream); }
   bool counts_changes() const override { return search_->counts_changes(); }
@@ -83,6 +84,10 @@ class LeafDraws final : public Draws {
 
 std::unique_ptr<Draws> create_draws(const Scene& scene, Lod lod,
                                     std::unique_ptr<CutSearch> search) {
+  if (scene.streamed() && lod == Lod::all_leaves)
+    throw Error(ErrorCode::unsupported,
+                "lod: found all leaves, a streamed scene is drawn as a cut: most of its leaves "
+                "are not there");
   if (scene.flat() || lod == Lod::all_leaves) return std::make_unique<LeafDraws>(scene);
   return std::make_unique<CutDraws>(std::move(search));
 }

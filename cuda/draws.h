@@ -15,6 +15,8 @@ class Draws {
   // where the frame needs a node that is not there.
   virtual void update(const CutQuery& query, cudaStream_t stream) = 0;
   virtual DrawView view() const = 0;
+  // As CutSearch has it.
+  virtual void end_frame(cudaStream_t) noexcept {}
   // What collect() needs of the last frame: report_bytes() in pinned memory, copied on the
   // stream.
   virtual size_t report_bytes() const = 0;
@@ -26,7 +28,8 @@ class Draws {
   virtual void read_cut(std::pmr::vector<uint32_t>& cut) = 0;
 };
 
-// search: of a scene with a tree whose cut is drawn.
+// search: of a scene with a tree whose cut is drawn. Throws Error(unsupported) for all leaves of a
+// streamed scene.
 std::unique_ptr<Draws> create_draws(const Scene& scene, Lod lod, std::unique_ptr<CutSearch> search);
 
 }  // namespace voyager::cuda

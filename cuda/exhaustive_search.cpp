@@ -1,5 +1,6 @@
 #include "cuda/search.h"
 #include "cuda/search_launch.h"
+#include "runtime/base/error.h"
 
 namespace voyager::cuda {
 namespace {
@@ -80,6 +81,9 @@ class ExhaustiveSearch final : public CutSearch {
 std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
                                                     std::shared_ptr<const Scene> scene,
                                                     bool weights) {
+  if (scene->streamed())
+    throw Error(ErrorCode::unsupported,
+                "search: found exhaustive, a streamed scene has streaming and temporal");
   device->use();
   return std::make_unique<ExhaustiveSearch>(std::move(device), *scene, weights);
 }

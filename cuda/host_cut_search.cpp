@@ -1,4 +1,5 @@
 #include "cuda/search.h"
+#include "runtime/base/error.h"
 #include "runtime/frame/host_search.h"
 
 namespace voyager::cuda {
@@ -62,6 +63,9 @@ class HostCutSearch final : public CutSearch {
 
 std::unique_ptr<CutSearch> create_host_cut_search(std::shared_ptr<const Scene> scene, Search kind,
                                                   Workers& workers) {
+  if (scene->streamed())
+    throw Error(ErrorCode::unsupported,
+                "search: found one on the host, a streamed scene's tree is on the device");
   return std::make_unique<HostCutSearch>(std::move(scene), kind, workers);
 }
 

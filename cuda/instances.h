@@ -21,6 +21,10 @@ class DeviceInstances {
 
   // Each instance's draws, in its scene's coordinates. Throws as Draws does.
   void update(const FrameInput& frame, cudaStream_t stream);
+  // What reads the scenes' arrays in this frame has been launched, or has failed to be.
+  void end_frame(cudaStream_t stream) const noexcept {
+    for (const DeviceInstance& instance : all_) instance.draws->end_frame(stream);
+  }
 
   const std::vector<DeviceInstance>& all() const { return all_; }
   // Whether one of them may draw nodes between their parent and themselves.
@@ -36,6 +40,20 @@ class DeviceInstances {
 
  private:
   std::vector<DeviceInstance> all_;
+};
+
+// In front of update(): what is launched while this lives may read the scenes' arrays.
+class SceneReading {
+ public:
+  SceneReading(const DeviceInstances& instances, cudaStream_t stream)
+      : instances_(instances), stream_(stream) {}
+  ~SceneReading() { instances_.end_frame(stream_); }
+  SceneReading(const SceneReading&) = delete;
+  SceneReading& operator=(const SceneReading&) = delete;
+
+ private:
+  const DeviceInstances& instances_;
+  cudaStream_t stream_;
 };
 
 }  // namespace voyager::cuda

@@ -187,6 +187,7 @@ void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
   Eyes eyes{};
   for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
     eyes[eye].target = images_[eye].target(frame.eyes[eye], frame.background);
+  const SceneReading reading(instances_, stream_.get());
   launch_search(frame, *report);
   for (;;) {
     launch_lists(frame, *report);
@@ -241,13 +242,12 @@ void SplatPipeline::submit(const FrameInput& frame, bool checked) {
     // In front of the frame's own work, so that the two APIs take fewer turns on the device.
     // Lists that the host waits for come first: it would wait for its own queue.
     if (!checked) each_ring(frame, wait);
-    launch_search(frame, report);
-    if (checked) {
-      launch_checked_lists(frame, report);
-      each_ring(frame, wait);
-    } else {
-      launch_lists(frame, report);
+    {
+      const SceneReading reading(instances_, stream);
+      launch_search(frame, report);
+      checked ? launch_checked_lists(frame, report) : launch_lists(frame, report);
     }
+    if (checked) each_ring(frame, wait);
     launch_image(external_eyes(frame), report);
     each_ring(frame, [&](const ExternalTarget& target) { signal_rendered(target, stream); });
     copy(report);  // the host that waits for the image does not wait for this

@@ -11,9 +11,9 @@
 
 namespace voyager::cuda {
 
-// A cut on the device: node ids, ascending. Places that hold kNoNode are none.
+// A cut on the device. Places that hold kNoNode are none.
 struct CutList {
-  const uint32_t* nodes;
+  const uint32_t* nodes;  // in the order of ids: ids, or addresses of a streamed scene
   const float* weights;  // t by place; null where the search finds none
   const uint32_t* size;  // places in use; on the device, as the arrays are
   uint32_t room;         // no list has more places
@@ -32,6 +32,8 @@ class CutSearch {
   // t of the cut just found; only of a search that was made for weights.
   virtual void weigh(const CutQuery& query, cudaStream_t stream) = 0;
   virtual CutList list() const = 0;
+  // What reads the scene's arrays in this frame has been launched, or has failed to be.
+  virtual void end_frame(cudaStream_t) noexcept {}
 
   // What found() needs of the last run: report_bytes() in pinned memory, copied on the stream.
   virtual size_t report_bytes() const = 0;
@@ -46,19 +48,22 @@ class CutSearch {
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // streaming, temporal or temporal_visit. Device memory besides the scene's arrays:
-// 24 bytes a subtree and, for the list, 4.5 bytes a leaf, with weights 18.
+// 24 bytes a subtree and, for the list, 4.5 bytes a leaf, with weights 18; of a streamed scene
+// 28 a subtree, and 4.5 more for each node that there are places for in its pool. Such a scene's
+// search runs under SceneStream::hold(), and ends each run with end_frame().
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,
                                                      std::shared_ptr<const DeviceTree> tree,
                                                      std::shared_ptr<const Scene> scene,
                                                      Search kind, bool weights);
 
 // Uploads every node's record and parent for itself: it is a baseline, not what a frame uses.
+// Throws Error(unsupported) for a streamed scene.
 std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
                                                     std::shared_ptr<const Scene> scene,
                                                     bool weights);
 
 // Runs on the host, for scenes with damaged chunks; find() throws Error(damaged_chunk)
-// where the cut needs one.
+// where the cut needs one. Throws Error(unsupported) for a streamed scene.
 std::unique_ptr<CutSearch> create_host_cut_search(std::shared_ptr<const Scene> scene, Search kind,
                                                   Workers& workers);
 

@@ -28,6 +28,16 @@ struct Travels {
 void launch_temporal(const SearchFrame& frame, const Travels& travels, uint32_t max_due);
 // Visits all open subtrees.
 void launch_temporal_visit(const SearchFrame& frame);
+// cut_relink.cu, before one of those. What linking has changed, by subtree; both where kernels
+// read them.
+struct Relinked {
+  const uint32_t* unlinked;  // to which nothing led for some time, or does now
+  const uint32_t* changed;   // with a record that is blocked now, or no longer is
+  uint32_t unlinked_count, changed_count;
+};
+void launch_relink(const SearchFrame& frame, const Relinked& relinked);
+// The search starts from nothing: where it is not known what has changed.
+void launch_forget(const SearchFrame& frame);
 // cut_streaming.cu
 void launch_streaming(const SearchFrame& frame);
 // cut_place.cu, cut_emit.cu: the cut list, ascending, and for weights what they depend on.

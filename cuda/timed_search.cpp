@@ -28,6 +28,7 @@ class TimedSearch final : public SceneSearch {
     if (weights_) search_->weigh(query, stream_.get());
     timer_.mark(kWeighed);
     search_->report(report_.data(), stream_.get());
+    search_->end_frame(stream_.get());
   }
   SearchTimes times() override {
     device_->use();

@@ -1,0 +1,44 @@
+#pragma once
+// A scene's Gaussians as kernels take them.
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "runtime/math/sh.h"
+
+namespace voyager::cuda {
+
+// By Gaussian: by node id, or by address in a pool.
+struct GaussianView {
+  // Mean, and what bounds the support before all else is read: the largest scale (upper
+  // 16 bits) and the radius of the support in standard deviations, 0 where α never
+  // reaches α* (lower 16), both rounded up to the upper half of a binary32.
+  const float4* hulls;
+  const float4* shapes;  // two each: scale and log o; rotation (w, x, y, z)
+  const float* opacities;
+  // Of a tree; null for a flat scene.
+  const uint8_t* axis_codes;
+  const uint32_t* parents;
+  const uint32_t* child_counts;
+  // SH coefficients [k][rgb]: binary16 padded to 16 bytes, or binary32.
+  const void* coefficients;
+  int sh_degree;
+  bool half_sh;
+  uint32_t count;
+};
+
+// 16-byte words of a Gaussian's coefficients in binary16.
+VOYAGER_HD constexpr int half_sh_words(int degree) {
+  return (3 * sh_coefficients(degree) + 7) / 8;
+}
+
+// Coefficients no larger than this are kept in binary16 on the device: each is then off by
+// at most 2⁻⁹ (docs/numerics.md has what that does to colours).
+inline constexpr float kMaxHalfCoefficient = 8.0f;
+
+inline constexpr uint32_t coefficient_bytes(int degree, bool half) {
+  return half ? 16u * static_cast<uint32_t>(half_sh_words(degree))
+              : 12u * static_cast<uint32_t>(sh_coefficients(degree));
+}
+
+}  // namespace voyager::cuda
