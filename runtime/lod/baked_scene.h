@@ -23,11 +23,15 @@ struct BakedScene {
 };
 
 // A Gaussian's mean in a scene's local metres: the one rounding to binary32 is here.
+// `word` is three position words of a cloud.
+inline Vec3f local_mean(const float* word, const std::array<double, 3>& cloud_origin,
+                        const std::array<double, 3>& origin) {
+  return {static_cast<float>((double{word[0]} + cloud_origin[0]) - origin[0]),
+          static_cast<float>((double{word[1]} + cloud_origin[1]) - origin[1]),
+          static_cast<float>((double{word[2]} + cloud_origin[2]) - origin[2])};
+}
 inline Vec3f local_mean(const GaussianCloud& cloud, size_t i, const std::array<double, 3>& origin) {
-  const float* p = &cloud.position[3 * i];
-  return {static_cast<float>((double{p[0]} + cloud.origin[0]) - origin[0]),
-          static_cast<float>((double{p[1]} + cloud.origin[1]) - origin[1]),
-          static_cast<float>((double{p[2]} + cloud.origin[2]) - origin[2])};
+  return local_mean(&cloud.position[3 * i], cloud.origin, origin);
 }
 
 // Words of a leaf with its mean in the scene's local metres.

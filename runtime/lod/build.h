@@ -18,6 +18,13 @@ inline constexpr uint32_t kChildren = 4;
 // beyond kMaxLogScale, and more Gaussians than 32-bit node ids can name.
 BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& progress = {});
 
+// What build_tree() refuses of a cloud, for builders that never hold the whole: more
+// Gaussians than kMaxGaussians, and a mean beyond the coordinates of METHOD §3.
+// 0.36 of a merged Gaussian each (shape.h) still leaves node ids below kNoNode.
+inline constexpr uint64_t kMaxGaussians = 3'000'000'000;
+void check_count(uint64_t gaussians);
+void check_mean(size_t gaussian, const Vec3f& mean);
+
 // The scene's origin for bounds in world metres: 0, or a multiple of 1024 m
 // where they reach beyond ±16 km; each axis on its own.
 std::array<double, 3> scene_origin(const Vec3d& bounds_min, const Vec3d& bounds_max);
@@ -27,5 +34,10 @@ std::array<double, 3> scene_origin(const Vec3d& bounds_min, const Vec3d& bounds_
 // precision of all others away. What build_tree() uses; a scene drawn without
 // a tree uses it too, so that both have the same local coordinates.
 std::array<double, 3> scene_origin(const GaussianCloud& cloud);
+
+// The same for a cloud that is elsewhere: the world positions of Gaussians 0, stride,
+// 2 · stride, … of `gaussians`.
+size_t origin_stride(size_t gaussians);
+std::array<double, 3> scene_origin(const std::vector<Vec3d>& sample);
 
 }  // namespace voyager

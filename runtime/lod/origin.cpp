@@ -21,22 +21,32 @@ std::array<double, 3> scene_origin(const Vec3d& bounds_min, const Vec3d& bounds_
   return origin;
 }
 
-std::array<double, 3> scene_origin(const GaussianCloud& cloud) {
-  if (cloud.size() == 0) return {0, 0, 0};
-  const size_t stride = (cloud.size() + kSample - 1) / kSample;
+size_t origin_stride(size_t gaussians) {
+  return (gaussians + kSample - 1) / kSample;
+}
+
+std::array<double, 3> scene_origin(const std::vector<Vec3d>& sample) {
+  if (sample.empty()) return {0, 0, 0};
   Vec3d least{}, most{};
-  std::vector<double> sample;
+  std::vector<double> sorted(sample.size());
   for (int axis = 0; axis < 3; ++axis) {
-    const size_t a = static_cast<size_t>(axis);
-    sample.clear();
-    for (size_t i = 0; i < cloud.size(); i += stride)
-      sample.push_back(double{cloud.position[3 * i + a]} + cloud.origin[a]);
-    std::sort(sample.begin(), sample.end());
-    const size_t margin = sample.size() / 50;
-    least[axis] = sample[margin];
-    most[axis] = sample[sample.size() - 1 - margin];
+    for (size_t i = 0; i < sample.size(); ++i) sorted[i] = sample[i][axis];
+    std::sort(sorted.begin(), sorted.end());
+    const size_t margin = sorted.size() / 50;
+    least[axis] = sorted[margin];
+    most[axis] = sorted[sorted.size() - 1 - margin];
   }
   return scene_origin(least, most);
+}
+
+std::array<double, 3> scene_origin(const GaussianCloud& cloud) {
+  std::vector<Vec3d> sample;
+  for (size_t i = 0; i < cloud.size(); i += origin_stride(cloud.size())) {
+    const float* p = &cloud.position[3 * i];
+    sample.push_back({double{p[0]} + cloud.origin[0], double{p[1]} + cloud.origin[1],
+                      double{p[2]} + cloud.origin[2]});
+  }
+  return scene_origin(sample);
 }
 
 }  // namespace voyager

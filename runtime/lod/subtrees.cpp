@@ -84,8 +84,7 @@ void split_tiers(const LodTree& tree, uint32_t first_tier_levels, Partition& par
   for (size_t level = 0; level + 1 < levels.size();) {
     const uint32_t height = level == 0 ? first_tier_levels : kTierLevels;
     partition.tier_begin.push_back(static_cast<uint32_t>(partition.subtrees.size()));
-    Splitter splitter(tree, height, partition.subtrees);
-    for (uint32_t root = levels[level]; root < levels[level + 1]; ++root) splitter.split(root);
+    split_tier(tree, height, levels[level], levels[level + 1], partition.subtrees);
     level += height;
   }
   partition.tier_begin.push_back(static_cast<uint32_t>(partition.subtrees.size()));
@@ -106,20 +105,12 @@ void split_into_fewest(const LodTree& tree, Partition& partition) {
 
 // The subtrees of a chunk, at least one.
 EntryHull entry_hull(const LodTree& tree, std::span<const Subtree> subtrees) {
-  EntryHull hull{};
-  bool first = true;
-  for (const Subtree& subtree : subtrees) {
+  const auto hull_above = [&](const Subtree& subtree) {
     const uint32_t parent = tree.parent[subtree.first_owned()];
-    const NodeRecord& r = tree.records[parent == kNoNode ? 0 : parent];
-    const float extent = parent == kNoNode ? std::numeric_limits<float>::infinity() : r.extent;
-    if (first) hull = {r.box_min, extent, r.box_max};
-    first = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      hull.box_min[axis] = std::min(hull.box_min[axis], r.box_min[axis]);
-      hull.box_max[axis] = std::max(hull.box_max[axis], r.box_max[axis]);
-    }
-    hull.extent = std::max(hull.extent, extent);
-  }
+    return parent == kNoNode ? hull_of_root(tree.records[0]) : hull_of(tree.records[parent]);
+  };
+  EntryHull hull = hull_above(subtrees.front());
+  for (const Subtree& subtree : subtrees.subspan(1)) hull = join(hull, hull_above(subtree));
   return hull;
 }
 
@@ -139,6 +130,24 @@ void pack_chunks(const LodTree& tree, Partition& partition, std::pmr::memory_res
 
 }  // namespace
 
+EntryHull hull_of(const NodeRecord& parent) {
+  return {parent.box_min, parent.extent, parent.box_max};
+}
+
+EntryHull hull_of_root(const NodeRecord& root) {
+  return {root.box_min, std::numeric_limits<float>::infinity(), root.box_max};
+}
+
+EntryHull join(const EntryHull& a, const EntryHull& b) {
+  EntryHull hull = a;
+  for (int axis = 0; axis < 3; ++axis) {
+    hull.box_min[axis] = std::min(a.box_min[axis], b.box_min[axis]);
+    hull.box_max[axis] = std::max(a.box_max[axis], b.box_max[axis]);
+  }
+  hull.extent = std::max(a.extent, b.extent);
+  return hull;
+}
+
 std::pmr::vector<uint32_t> pack_runs(std::span<const uint32_t> sizes, uint32_t limit,
                                      std::pmr::memory_resource* memory) {
   std::pmr::vector<uint32_t> begin(memory);
@@ -152,6 +161,12 @@ std::pmr::vector<uint32_t> pack_runs(std::span<const uint32_t> sizes, uint32_t l
   }
   begin.push_back(static_cast<uint32_t>(sizes.size()));
   return begin;
+}
+
+void split_tier(const LodTree& tree, uint32_t levels, uint32_t begin, uint32_t end,
+                std::pmr::vector<Subtree>& out) {
+  Splitter splitter(tree, levels, out);
+  for (uint32_t root = begin; root < end; ++root) splitter.split(root);
 }
 
 Partition partition_tree(const LodTree& tree, uint32_t chunk_bytes,

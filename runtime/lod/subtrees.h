@@ -103,6 +103,15 @@ struct Partition {
   std::pmr::vector<EntryHull> chunk_hull;  // of each chunk
 };
 
+// A hull over one entry parent, and one over two: the first of equal values stays.
+EntryHull hull_of(const NodeRecord& parent);
+EntryHull hull_of_root(const NodeRecord& root);  // which has no parent
+EntryHull join(const EntryHull& a, const EntryHull& b);
+
+// Appends the subtrees of a tier of `levels` levels whose roots are [begin, end).
+void split_tier(const LodTree& tree, uint32_t levels, uint32_t begin, uint32_t end,
+                std::pmr::vector<Subtree>& out);
+
 // The tree is sound (runtime/lod/validate.h). chunk_bytes from kMinChunkBytes to
 // kMaxChunkBytes. O(n); throws only std::bad_alloc.
 Partition partition_tree(const LodTree& tree, uint32_t chunk_bytes,

@@ -7,20 +7,6 @@
 namespace voyager {
 namespace {
 
-void require_alike(const GaussianCloud& cloud, const GaussianCloud& more, const std::string& name) {
-  const auto text = [](const std::array<double, 3>& origin) {
-    return "(" + std::to_string(origin[0]) + ", " + std::to_string(origin[1]) + ", " +
-           std::to_string(origin[2]) + ")";
-  };
-  if (cloud.origin != more.origin)
-    throw Error(ErrorCode::refused_input, name + ": origin: found " + text(more.origin) +
-                                              ", expected the first input's " + text(cloud.origin));
-  if (cloud.antialiased != more.antialiased)
-    throw Error(ErrorCode::refused_input, name + ": antialiased: found " +
-                                              (more.antialiased ? "yes" : "no") +
-                                              ", expected what the first input has");
-}
-
 // [k][rgb] with more bands, the new ones zero.
 void raise_degree(GaussianCloud& cloud, int degree) {
   if (cloud.sh_degree >= degree) return;
@@ -41,8 +27,35 @@ void append(std::pmr::vector<float>& to, std::pmr::vector<float>& from) {
 
 }  // namespace
 
+void require_alike(const std::array<double, 3>& origin, bool antialiased,
+                   const std::array<double, 3>& more_origin, bool more_antialiased,
+                   const std::string& more_name) {
+  const auto text = [](const std::array<double, 3>& o) {
+    return "(" + std::to_string(o[0]) + ", " + std::to_string(o[1]) + ", " + std::to_string(o[2]) +
+           ")";
+  };
+  if (origin != more_origin)
+    throw Error(ErrorCode::refused_input, more_name + ": origin: found " + text(more_origin) +
+                                              ", expected the first input's " + text(origin));
+  if (antialiased != more_antialiased)
+    throw Error(ErrorCode::refused_input, more_name + ": antialiased: found " +
+                                              (more_antialiased ? "yes" : "no") +
+                                              ", expected what the first input has");
+}
+
+void add(ImportReport& sum, const ImportReport& more) {
+  sum.read += more.read;
+  sum.dropped_position += more.dropped_position;
+  sum.dropped_scale += more.dropped_scale;
+  sum.repaired_scale += more.repaired_scale;
+  sum.repaired_rotation += more.repaired_rotation;
+  sum.repaired_opacity += more.repaired_opacity;
+  sum.dropped_opacity += more.dropped_opacity;
+  sum.repaired_sh += more.repaired_sh;
+}
+
 void append(GaussianCloud& cloud, GaussianCloud&& more, const std::string& more_name) {
-  require_alike(cloud, more, more_name);
+  require_alike(cloud.origin, cloud.antialiased, more.origin, more.antialiased, more_name);
   raise_degree(cloud, more.sh_degree);
   raise_degree(more, cloud.sh_degree);
   append(cloud.position, more.position);
@@ -50,15 +63,7 @@ void append(GaussianCloud& cloud, GaussianCloud&& more, const std::string& more_
   append(cloud.rotation, more.rotation);
   append(cloud.opacity, more.opacity);
   append(cloud.sh, more.sh);
-  ImportReport& sum = cloud.report;
-  sum.read += more.report.read;
-  sum.dropped_position += more.report.dropped_position;
-  sum.dropped_scale += more.report.dropped_scale;
-  sum.repaired_scale += more.report.repaired_scale;
-  sum.repaired_rotation += more.report.repaired_rotation;
-  sum.repaired_opacity += more.report.repaired_opacity;
-  sum.dropped_opacity += more.report.dropped_opacity;
-  sum.repaired_sh += more.report.repaired_sh;
+  add(cloud.report, more.report);
 }
 
 }  // namespace voyager

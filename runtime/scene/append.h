@@ -11,4 +11,10 @@ namespace voyager {
 // could not keep their words, nor splats their shape.
 void append(GaussianCloud& cloud, GaussianCloud&& more, const std::string& more_name);
 
+// What append() asks of two inputs, for builders that never hold either.
+void require_alike(const std::array<double, 3>& origin, bool antialiased,
+                   const std::array<double, 3>& more_origin, bool more_antialiased,
+                   const std::string& more_name);
+void add(ImportReport& sum, const ImportReport& more);
+
 }  // namespace voyager

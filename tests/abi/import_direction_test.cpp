@@ -20,6 +20,7 @@ const std::map<std::string, Folders>& allowed() {
       {"scene", {"math", "base"}},
       {"lod", {"math", "base", "scene"}},
       {"format", {"math", "base", "scene", "lod"}},
+      {"bake", {"math", "base", "scene", "lod", "format"}},
       {"select", {"math", "base", "scene", "lod"}},
       {"stages", {"math", "base", "scene", "lod"}},
       {"stream", {"math", "base", "scene", "lod", "format", "select"}},

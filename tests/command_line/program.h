@@ -16,10 +16,14 @@ struct Outcome {
   std::string output;  // both streams
 };
 
-inline Outcome run(const std::string& command_line) {
+// A built program with its arguments, as a shell takes it.
+inline std::string program(const std::string& command_line) {
   // AddressSanitizer's dlopen does not look where the program's RUNPATH says.
-  const std::string libraries = "LD_LIBRARY_PATH=" VOYAGER_BIN_DIR "/../lib ";
-  const std::string command = "( " + libraries + VOYAGER_BIN_DIR + "/" + command_line + " ) 2>&1";
+  return "env LD_LIBRARY_PATH=" VOYAGER_BIN_DIR "/../lib " VOYAGER_BIN_DIR "/" + command_line;
+}
+
+inline Outcome run_shell(const std::string& shell_command) {
+  const std::string command = "( " + shell_command + " ) 2>&1";
   std::FILE* pipe = ::popen(command.c_str(), "r");
   Outcome result{-1, ""};
   if (pipe == nullptr) return result;
@@ -29,6 +33,10 @@ inline Outcome run(const std::string& command_line) {
   const int status = ::pclose(pipe);
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+inline Outcome run(const std::string& command_line) {
+  return run_shell(program(command_line));
 }
 
 // Runs them until one fails: that one and what it said, "" where none does. For what a suite sets

@@ -1,12 +1,18 @@
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cinttypes>
 #include <cstdio>
+#include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "runtime/bake/bake.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
@@ -17,6 +23,7 @@
 #include "runtime/lod/validate.h"
 #include "runtime/scene/append.h"
 #include "runtime/scene/import/importer.h"
+#include "runtime/scene/sanitise.h"
 #include "tools/commands/commands.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
@@ -25,26 +32,76 @@
 namespace voyager::tools {
 namespace {
 
+uint64_t half_of_memory() {
+  return static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+         static_cast<uint64_t>(::sysconf(_SC_PAGESIZE)) / 2;
+}
+
 struct Arguments {
   std::vector<std::string> inputs;
   std::string output;
   Quality quality = Quality::compact;
   uint32_t chunk_bytes = kDefaultChunkBytes;
   bool verify = false;
+  uint64_t memory = half_of_memory() / 1'000'000;  // MB
+  std::string work;
+  std::optional<BakeStep> step;
+  std::string part;  // K/N
 };
 
-GaussianCloud read_one(const std::string& path, const Progress& progress) {
+using Readers = std::vector<std::unique_ptr<BlockReader>>;
+
+Readers open_all(const std::vector<std::string>& paths) {
+  if (std::count(paths.begin(), paths.end(), "-") > 1)
+    throw Error(ErrorCode::invalid_argument, "input: found - more than once, expected one stream");
+  Readers readers;
+  for (const std::string& path : paths)
+    readers.push_back(path == "-" ? open_blocks(read_stdin())
+                                  : open_blocks(open_source(path)));
+  return readers;
+}
+
+uint64_t bytes_in_memory(const Readers& readers) {
+  uint64_t count = 0;
+  int sh_degree = 0;
+  for (const auto& reader : readers) {
+    count += reader->count();
+    sh_degree = std::max(sh_degree, reader->sh_degree());
+  }
+  return bytes_to_bake(count, sh_degree);
+}
+
+// What is in a stream whose header was read.
+GaussianCloud read_stream(BlockReader& reader, const Progress& progress) {
+  constexpr size_t kAtOnce = 1 << 14;
+  GaussianCloud cloud;
+  cloud.sh_degree = reader.sh_degree();
+  for (uint64_t done = 0;;) {
+    const RawBlock block = reader.next(kAtOnce);
+    if (block.count == 0) break;
+    GaussianCloud more = reader.decode(block);
+    if (done == 0) cloud.origin = more.origin;
+    append(cloud, std::move(more), reader.name());
+    done += block.count;
+    report(progress, "reading", done, reader.count());
+  }
+  sanitise(cloud);
+  return cloud;
+}
+
+GaussianCloud read_one(const std::string& path, BlockReader& reader, const Progress& progress) {
   ImportOptions options;
   options.progress = progress;
-  if (path == "-") return import_gaussians(*read_stdin(), options);
+  if (path == "-") return read_stream(reader, progress);
   const auto source = open_source(path);
   return import_gaussians(*read_source(*source), options);
 }
 
-GaussianCloud read_all(const std::vector<std::string>& paths, const Progress& progress) {
-  GaussianCloud cloud = read_one(paths.front(), progress);
+GaussianCloud read_all(const std::vector<std::string>& paths, const Readers& readers,
+                       const Progress& progress) {
+  GaussianCloud cloud = read_one(paths.front(), *readers.front(), progress);
   for (size_t i = 1; i < paths.size(); ++i)
-    append(cloud, read_one(paths[i], progress), shown_path(paths[i]));
+    append(cloud, read_one(paths[i], *readers[i], progress), shown_path(paths[i]));
   return cloud;
 }
 
@@ -79,25 +136,127 @@ void verify_file(const std::string& path, const LodTree& tree, const Partition& 
   }
 }
 
-void bake(const Arguments& arguments) {
-  require_extension("-o", arguments.output, {".voy"});
-  require_distinct({arguments.output}, arguments.inputs);
-  const Progress progress = progress_bar();
-  const Stopwatch watch;
+void print_summary(const Arguments& arguments, const BakeSummary& result, const Stopwatch& watch) {
+  fmt::print("{}: {} Gaussians, {} nodes, {} subtrees, {} chunks, {} bytes, {:.1f} s{}\n",
+             arguments.output, result.gaussians, result.nodes, result.subtrees, result.chunks,
+             open_file_source(arguments.output)->size(), watch.milliseconds() / 1000,
+             arguments.verify    ? ", verified"
+             : result.cells != 0 ? fmt::format(", in {} cells", result.cells)
+                                 : "");
+  if (result.import.dropped() + result.import.repaired() > 0)
+    fmt::print("{} Gaussians dropped, {} repaired (voyager info {} tells which)\n",
+               result.import.dropped(), result.import.repaired(), arguments.output);
+}
+
+BakeSummary bake_in_memory(const Arguments& arguments, const Readers& readers,
+                           const Progress& progress) {
   Workers workers;
-  const BakedScene baked = build_tree(read_all(arguments.inputs, progress), workers, progress);
+  const BakedScene baked =
+      build_tree(read_all(arguments.inputs, readers, progress), workers, progress);
   if (arguments.verify) require_sound(arguments.output, validate(baked));
   const Partition partition = partition_tree(baked.tree, arguments.chunk_bytes);
   if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
   write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
   if (arguments.verify) verify_file(arguments.output, baked.tree, partition);
-  fmt::print("{}: {} Gaussians, {} nodes, {} subtrees, {} chunks, {} bytes, {:.1f} s{}\n",
-             arguments.output, baked.leaves.size(), baked.tree.size(), partition.subtrees.size(),
-             partition.chunk_count(), open_file_source(arguments.output)->size(),
-             watch.milliseconds() / 1000, arguments.verify ? ", verified" : "");
-  if (const ImportReport& report = baked.leaves.report; report.dropped() + report.repaired() > 0)
-    fmt::print("{} Gaussians dropped, {} repaired (voyager info {} tells which)\n",
-               report.dropped(), report.repaired(), arguments.output);
+  return {baked.leaves.size(),     baked.tree.size(),   partition.subtrees.size(),
+          partition.chunk_count(), baked.leaves.report, 0};
+}
+
+// A work folder that nobody named goes when the bake fails, too; a kill leaves it.
+class OwnFolder {
+ public:
+  explicit OwnFolder(std::string path) : path_(std::move(path)) {}
+  ~OwnFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  }
+  OwnFolder(const OwnFolder&) = delete;
+  OwnFolder& operator=(const OwnFolder&) = delete;
+
+ private:
+  std::string path_;
+};
+
+BakeSummary bake_from_folder(const Arguments& arguments, const OpenInputs& open,
+                             const Progress& progress) {
+  if (arguments.verify)
+    throw Error(ErrorCode::unsupported,
+                "--verify: found a bake in a work folder, expected one in memory: the file is "
+                "compared with the whole tree");
+  BakeInParts bake;
+  bake.request = bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes);
+  bake.output = arguments.output;
+  bake.work = arguments.work.empty() ? arguments.output + ".work" : arguments.work;
+  bake.quality = arguments.quality;
+  bake.chunk_bytes = arguments.chunk_bytes;
+  bake.memory = arguments.memory * 1'000'000;
+  bake.step = arguments.step.value_or(BakeStep::all);
+  if (!arguments.part.empty())
+    std::sscanf(arguments.part.c_str(), "%" SCNu32 "/%" SCNu32, &bake.part, &bake.parts);
+  Workers workers;
+  return bake_in_parts(bake, open, workers, progress);
+}
+
+bool writes_output(const Arguments& arguments) {
+  return !arguments.step || *arguments.step == BakeStep::merge;
+}
+
+void bake(const Arguments& arguments) {
+  require_extension("-o", arguments.output, {".voy"});
+  require_distinct({arguments.output}, arguments.inputs);
+  if (arguments.step && arguments.work.empty())
+    throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
+  const Progress progress = progress_bar();
+  const Stopwatch watch;
+  if (!arguments.work.empty()) {
+    const BakeSummary result = bake_from_folder(
+        arguments, [&] { return open_all(arguments.inputs); }, progress);
+    if (writes_output(arguments)) return print_summary(arguments, result, watch);
+    fmt::print("{}: {} Gaussians in {} cells, {:.1f} s\n", arguments.work, result.gaussians,
+               result.cells, watch.milliseconds() / 1000);
+    return;
+  }
+  Readers readers = open_all(arguments.inputs);
+  if (bytes_in_memory(readers) <= arguments.memory * 1'000'000)
+    return print_summary(arguments, bake_in_memory(arguments, readers, progress), watch);
+  const OwnFolder folder(arguments.output + ".work");
+  print_summary(arguments,
+                bake_from_folder(
+                    arguments, [&] { return std::move(readers); }, progress),
+                watch);
+}
+
+std::string check_part(const std::string& text) {
+  uint32_t part = 0, parts = 0;
+  int end = 0;
+  if (std::sscanf(text.c_str(), "%" SCNu32 "/%" SCNu32 "%n", &part, &parts, &end) == 2 &&
+      static_cast<size_t>(end) == text.size() && part < parts)
+    return {};
+  return "found " + text + ", expected K/N with K from 0 to N - 1";
+}
+
+void add_work_options(CLI::App& command, Arguments& arguments) {
+  command
+      .add_option("--memory", arguments.memory,
+                  "MB (10^6 bytes) that the bake may take, about; the default is half of the "
+                  "machine's. A scene for which that does not do is baked in cells, from a "
+                  "work folder")
+      ->check(CLI::Range(uint64_t{16}, uint64_t{1} << 40));
+  command.add_option("--work", arguments.work,
+                     "The folder for a bake in cells: a bake that was killed goes on from "
+                     "there when it is run again. Without it OUT.work, where one is needed. "
+                     "It is removed when the scene is there");
+  command
+      .add_option("--step", arguments.step, "One step alone, for batch systems (docs/baking.md)")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, BakeStep>{{"split", BakeStep::split},
+                                                                  {"cells", BakeStep::cells},
+                                                                  {"encode", BakeStep::encode},
+                                                                  {"merge", BakeStep::merge}}));
+  command
+      .add_option("--part", arguments.part,
+                  "With --step cells or encode: part K, from 0, of N of the cells")
+      ->check(CLI::Validator(check_part, "K/N"));
 }
 
 }  // namespace
@@ -124,6 +283,7 @@ void add_bake(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--verify", arguments->verify,
                     "Check every invariant of the tree and its partition, and read the file back");
+  add_work_options(*command, *arguments);
   command->footer("Example: voyager bake city.ply -o city.voy --quality lossless --verify");
   command->callback([arguments] { bake(*arguments); });
 }

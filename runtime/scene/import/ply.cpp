@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/import/ply_header.h"
@@ -21,9 +22,8 @@ constexpr size_t kBlockBytes = 256 * 1024;  // stays in cache while it is taken 
 // One property of the rows and where its words go.
 struct Column {
   const Property* property;
-  std::pmr::vector<float>* into;
+  std::pmr::vector<float> GaussianCloud::*into;
   size_t width, at;  // word `at` of every `width`
-  double minus;      // taken off doubles before they are rounded
 };
 
 template <class T>
@@ -69,56 +69,111 @@ uint64_t bytes_of(const PeekReader& input, const Element& element) {
   return bytes;
 }
 
-class PlyImport {
+class PlyReader final : public BlockReader {
  public:
-  PlyImport(ByteReader& reader, const ImportOptions& options)
-      : input_(reader), options_(options), cloud_(options.memory) {}
-
-  GaussianCloud run() {
-    header_ = ply::read_header(input_);
+  explicit PlyReader(ByteReader& reader) : input_(reader), header_(ply::read_header(input_)) {
     find_columns();
     check_length();
     for (size_t i = 0; i < header_.vertex; ++i) skip(header_.elements[i]);
-    read_vertices();
-    skip_the_rest();
-    return std::move(cloud_);
+  }
+  explicit PlyReader(std::unique_ptr<ByteReader> reader) : PlyReader(*reader) {
+    owned_ = std::move(reader);
+  }
+
+  const std::string& name() const override { return input_.name(); }
+  uint64_t count() const override { return vertex().count; }
+  int sh_degree() const override { return sh_degree_; }
+  bool antialiased() const override { return false; }
+  bool length_is_known() const { return input_.remaining().has_value(); }
+
+  RawBlock next(size_t most) override {
+    RawBlock block;
+    block.count = static_cast<size_t>(std::min<uint64_t>(most, count() - taken_));
+    if (block.count == 0) {
+      skip_the_rest();
+      return block;
+    }
+    const size_t stride = vertex().stride;
+    block.bytes.resize(block.count * stride);
+    const size_t got = input_.read(block.bytes);
+    if (got != block.bytes.size())
+      refuse(input_.name(), input_.offset(), "element vertex",
+             std::to_string(taken_ * stride + got) + " bytes",
+             std::to_string(count() * stride) + " bytes (" + std::to_string(count()) + " rows of " +
+                 std::to_string(stride) + ")");
+    if (taken_ == 0) choose_origin(block.bytes.data(), std::min(block.count, rows_at_once()));
+    taken_ += block.count;
+    return block;
+  }
+
+  GaussianCloud decode(const RawBlock& block) const override {
+    GaussianCloud cloud;
+    cloud.sh_degree = sh_degree_;
+    resize(cloud, block.count);
+    store(block, 0, cloud);
+    return cloud;
+  }
+
+  // The rows that stay in cache while they are taken apart by columns.
+  size_t rows_at_once() const { return std::max<size_t>(1, kBlockBytes / vertex().stride); }
+
+  void reserve(GaussianCloud& cloud, uint64_t gaussians) const {
+    for (const Column& column : columns_)
+      reserve_for(cloud.*column.into, gaussians, count(), column.width);
+  }
+
+  void resize(GaussianCloud& cloud, size_t gaussians) const {
+    for (const Column& column : columns_) (cloud.*column.into).resize(gaussians * column.width);
+  }
+
+  // The cloud's arrays already hold first + block.count Gaussians.
+  void store(const RawBlock& block, size_t first, GaussianCloud& cloud) const {
+    cloud.origin = origin_;
+    const size_t step = rows_at_once();
+    for (size_t begin = 0; begin < block.count; begin += step)
+      for (size_t i = 0; i < columns_.size(); ++i)
+        take(columns_[i], i < 3 ? origin_[i] : 0.0, block.bytes.data() + begin * vertex().stride,
+             std::min(step, block.count - begin), cloud, first + begin);
   }
 
  private:
   const Element& vertex() const { return header_.elements[header_.vertex]; }
 
-  void add_column(const std::string& name, std::pmr::vector<float>& into, size_t width, size_t at) {
+  void add_column(const std::string& name, std::pmr::vector<float> GaussianCloud::*into,
+                  size_t width, size_t at) {
     const Property* property = vertex().find(name);
     if (!property)
       refuse(input_.name(), input_.offset(), "element vertex", "no property " + name,
              "x y z f_dc_0..2 opacity scale_0..2 rot_0..3, and f_rest_* without gaps");
-    columns_.push_back({property, &into, width, at, 0.0});
+    columns_.push_back({property, into, width, at});
   }
 
   void find_columns() {
     const auto is_rest = [](const Property& p) { return p.name.rfind("f_rest_", 0) == 0; };
     const auto rest =
         std::count_if(vertex().properties.begin(), vertex().properties.end(), is_rest);
-    while (cloud_.sh_degree <= kMaxShDegree && 3 * (cloud_.coefficients() - 1) != rest)
-      ++cloud_.sh_degree;
-    if (cloud_.sh_degree > kMaxShDegree)
+    while (sh_degree_ <= kMaxShDegree && 3 * (sh_coefficients(sh_degree_) - 1) != rest)
+      ++sh_degree_;
+    if (sh_degree_ > kMaxShDegree)
       refuse(input_.name(), input_.offset(), "properties f_rest_*", std::to_string(rest),
              "0, 9, 24 or 45 (SH degree 0 to 3)");
-    const size_t coefficients = static_cast<size_t>(cloud_.coefficients());
-    for (size_t i = 0; i < 3; ++i) add_column(std::string(1, "xyz"[i]), cloud_.position, 3, i);
-    for (size_t i = 0; i < 3; ++i) add_column("scale_" + std::to_string(i), cloud_.log_scale, 3, i);
-    for (size_t i = 0; i < 4; ++i) add_column("rot_" + std::to_string(i), cloud_.rotation, 4, i);
-    add_column("opacity", cloud_.opacity, 1, 0);
+    using Cloud = GaussianCloud;
+    const size_t coefficients = static_cast<size_t>(sh_coefficients(sh_degree_));
+    for (size_t i = 0; i < 3; ++i) add_column(std::string(1, "xyz"[i]), &Cloud::position, 3, i);
     for (size_t i = 0; i < 3; ++i)
-      add_column("f_dc_" + std::to_string(i), cloud_.sh, coefficients * 3, i);
+      add_column("scale_" + std::to_string(i), &Cloud::log_scale, 3, i);
+    for (size_t i = 0; i < 4; ++i) add_column("rot_" + std::to_string(i), &Cloud::rotation, 4, i);
+    add_column("opacity", &Cloud::opacity, 1, 0);
+    for (size_t i = 0; i < 3; ++i)
+      add_column("f_dc_" + std::to_string(i), &Cloud::sh, coefficients * 3, i);
     for (size_t i = 0; i < 3 * (coefficients - 1); ++i) {
       const size_t channel = i / (coefficients - 1), k = 1 + i % (coefficients - 1);
-      add_column("f_rest_" + std::to_string(i), cloud_.sh, coefficients * 3, 3 * k + channel);
+      add_column("f_rest_" + std::to_string(i), &Cloud::sh, coefficients * 3, 3 * k + channel);
     }
   }
 
   // Where the length of the stream is known, the header is held to it before
-  // anything is allocated; then the whole cloud is reserved at once.
+  // anything is allocated.
   void check_length() {
     uint64_t expected = 0;
     bool open_ended = false;
@@ -134,17 +189,6 @@ class PlyImport {
       refuse(input_.name(), input_.offset(), "elements", std::to_string(*found) + " bytes",
              std::to_string(expected) + " bytes (vertex: " + std::to_string(vertex().count) +
                  " rows of " + std::to_string(vertex().stride) + ")");
-    reserve(vertex().count, vertex().count);
-  }
-
-  void reserve(uint64_t gaussians, uint64_t announced) {
-    for (const Column& column : columns_)
-      reserve_for(*column.into, gaussians, announced, column.width);
-  }
-
-  void resize(uint64_t gaussians) {
-    for (const Column& column : columns_)
-      column.into->resize(static_cast<size_t>(gaussians) * column.width);
   }
 
   void skip(const Element& element) {
@@ -164,27 +208,6 @@ class PlyImport {
              "the end of the file after the last element");
   }
 
-  void read_vertices() {
-    const uint64_t count = vertex().count;
-    const size_t stride = vertex().stride, rows = std::max<size_t>(1, kBlockBytes / stride);
-    std::vector<std::byte> block(rows * stride);
-    for (uint64_t first = 0; first < count;) {
-      const size_t n = static_cast<size_t>(std::min<uint64_t>(rows, count - first));
-      const size_t got = input_.read(std::span(block).first(n * stride));
-      if (got != n * stride)
-        refuse(input_.name(), input_.offset(), "element vertex",
-               std::to_string(first * stride + got) + " bytes",
-               std::to_string(count * stride) + " bytes (" + std::to_string(count) + " rows of " +
-                   std::to_string(stride) + ")");
-      if (first == 0) choose_origin(block.data(), n);
-      reserve(first + n, count);
-      resize(first + n);
-      for (const Column& column : columns_) take(column, block.data(), first, n);
-      first += n;
-      report(options_.progress, "reading", first, count);
-    }
-  }
-
   // Only doubles can say where on a planet the scene lies to better than a
   // millimetre; words of 32 bits are kept as they are.
   void choose_origin(const std::byte* block, size_t rows) {
@@ -199,37 +222,56 @@ class PlyImport {
         continue;
       for (size_t axis = 0; axis < 3; ++axis)
         if (std::fabs(world[axis]) > kOriginReach)
-          cloud_.origin[axis] = std::round(world[axis] / kOriginStep) * kOriginStep;
+          origin_[axis] = std::round(world[axis] / kOriginStep) * kOriginStep;
       break;
     }
-    for (size_t axis = 0; axis < 3; ++axis) columns_[axis].minus = cloud_.origin[axis];
   }
 
-  void take(const Column& column, const std::byte* block, uint64_t first, size_t rows) const {
+  // `minus` is taken off doubles before they are rounded.
+  void take(const Column& column, double minus, const std::byte* block, size_t rows,
+            GaussianCloud& cloud, size_t first) const {
     const std::byte* from = block + column.property->offset;
-    float* into = column.into->data() + static_cast<size_t>(first) * column.width + column.at;
+    float* into = (cloud.*column.into).data() + first * column.width + column.at;
     with_type(column.property->type, [&]<class T>(T) {
       for (size_t row = 0; row < rows; ++row) {
         const T value = load<T>(from + row * vertex().stride, header_.big_endian);
         if constexpr (std::is_same_v<T, double>)
-          into[row * column.width] = static_cast<float>(value - column.minus);
+          into[row * column.width] = static_cast<float>(value - minus);
         else
           into[row * column.width] = static_cast<float>(value);
       }
     });
   }
 
+  std::unique_ptr<ByteReader> owned_;
   PeekReader input_;
-  const ImportOptions& options_;
-  GaussianCloud cloud_;
   ply::Header header_;
+  int sh_degree_ = 0;
+  std::array<double, 3> origin_{0, 0, 0};
   std::vector<Column> columns_;  // x, y, z first
+  uint64_t taken_ = 0;           // Gaussians
 };
 
 }  // namespace
 
 GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options) {
-  return PlyImport(reader, options).run();
+  PlyReader rows(reader);
+  GaussianCloud cloud(options.memory);
+  cloud.sh_degree = rows.sh_degree();
+  if (rows.length_is_known()) rows.reserve(cloud, rows.count());
+  for (uint64_t done = 0;;) {
+    const RawBlock block = rows.next(rows.rows_at_once());
+    if (block.count == 0) return cloud;
+    rows.reserve(cloud, done + block.count);
+    rows.resize(cloud, done + block.count);
+    rows.store(block, done, cloud);
+    done += block.count;
+    report(options.progress, "reading", done, rows.count());
+  }
+}
+
+std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader) {
+  return std::make_unique<PlyReader>(std::move(reader));
 }
 
 }  // namespace voyager

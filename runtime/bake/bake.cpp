@@ -1,0 +1,257 @@
+#include "runtime/bake/bake.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "runtime/bake/for_cells.h"
+#include "runtime/bake/join.h"
+#include "runtime/base/error.h"
+#include "runtime/format/writer.h"
+#include "runtime/lod/build.h"
+
+namespace voyager {
+namespace {
+
+// Bytes a Gaussian takes as words in the input.
+uint64_t word_bytes(int sh_degree) {
+  return (3 + other_floats(sh_degree)) * sizeof(float);
+}
+
+std::string megabytes(uint64_t bytes) {
+  return std::to_string(bytes / 1000000 + 1) + " MB";
+}
+
+class Baker {
+ public:
+  Baker(const BakeInParts& bake, const OpenInputs& open, Workers& workers, const Progress& progress)
+      : bake_(bake),
+        open_(open),
+        workers_(workers),
+        progress_(progress),
+        folder_(bake.work, bake.request,
+                bake.step != BakeStep::cells && bake.step != BakeStep::encode) {}
+
+  BakeSummary run() {
+    if (!folder_.has(kSplitDone) && !split()) return bake_whole();
+    split_ = read_split_info(folder_);
+    for (const char* name : {kPositionRows, kOtherRows, kSpoolDone}) folder_.drop(name);
+    const BakePlan plan(split_.spool.gaussians, split_.cell_level, bake_.chunk_bytes);
+    if (bake_.step == BakeStep::split) return summary(plan);
+    if (bake_.step != BakeStep::encode) build_cells(plan);
+    if (bake_.step == BakeStep::cells) return summary(plan);
+    require_all_built(plan);
+    const BakedScene top = build_top(split_, plan, folder_, workers_);
+    encode_cells(plan, top);
+    if (bake_.step == BakeStep::encode) return summary(plan);
+    join(plan, top);
+    folder_.drop_all();
+    return summary(plan);
+  }
+
+ private:
+  // Says what failed for want of space, and how much it takes.
+  template <class Action>
+  void in_space(uint64_t bytes, const std::string& what, const Action& action) {
+    folder_.require_space(bytes, what);
+    try {
+      action();
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::io) throw;
+      throw Error(ErrorCode::io, std::string(error.what()) + " (" + what + " takes " +
+                                     megabytes(bytes) + " in " + folder_.path() + ")");
+    }
+  }
+
+  // False where the scene is too small for cells: then it stays in the spool.
+  bool split() {
+    const bool spooled = folder_.has(kSpoolDone);
+    if (bake_.step == BakeStep::cells || bake_.step == BakeStep::encode ||
+        bake_.step == BakeStep::merge)
+      if (!spooled || BakePlan::deepest_level(read_spool_info(folder_).gaussians) != 0)
+        throw Error(ErrorCode::invalid_argument,
+                    folder_.path() + ": found no finished split, expected --step split before");
+    const SpoolInfo spool = spooled ? read_spool_info(folder_) : read_inputs();
+    const uint32_t level = choose_level(spool);
+    if (level == 0) return false;
+    const BakePlan plan(spool.gaussians, level, bake_.chunk_bytes);
+    const std::array<double, 3> origin = origin_of(spool, folder_);
+    const SplitTree tree =
+        find_medians(spool, plan, folder_, origin, bake_.memory / 2, workers_, progress_);
+    in_space(spool.gaussians * (word_bytes(spool.sh_degree) + 4), "sorting the Gaussians", [&] {
+      distribute(spool, plan, tree, origin, folder_, bake_.memory / 2, workers_, progress_);
+    });
+    return true;
+  }
+
+  SpoolInfo read_inputs() {
+    auto readers = open_();
+    uint64_t count = 0;
+    int sh_degree = 0;
+    for (const auto& reader : readers) {
+      count += reader->count();
+      sh_degree = std::max(sh_degree, reader->sh_degree());
+    }
+    SpoolInfo spool;
+    in_space(count * word_bytes(sh_degree), "a copy of the inputs", [&] {
+      spool = spool_inputs([&] { return std::move(readers); }, folder_, bake_.memory / 2, workers_,
+                           progress_);
+    });
+    return spool;
+  }
+
+  // As few cells as keep all threads busy and fit into the memory.
+  uint32_t choose_level(const SpoolInfo& spool) {
+    const uint32_t deepest = BakePlan::deepest_level(spool.gaussians);
+    const auto threads = static_cast<uint64_t>(workers_.count());
+    for (uint32_t level = 1; level <= deepest; ++level) {
+      const uint64_t largest = BakePlan::largest_cell(spool.gaussians, level);
+      if (bake_.most_in_cell != 0) {
+        if (largest <= bake_.most_in_cell || level == deepest) return level;
+        continue;
+      }
+      const bool enough = (uint64_t{1} << (2 * level)) >= 4 * threads;
+      if (enough && cells_at_once(largest, spool.sh_degree) >= threads) return level;
+    }
+    return deepest;
+  }
+
+  uint64_t cells_at_once(uint64_t largest_cell, int sh_degree) const {
+    return bake_.memory / 5 * 3 / bytes_to_bake(largest_cell, sh_degree);
+  }
+
+  size_t lanes(const BakePlan& plan) {
+    const uint64_t largest = BakePlan::largest_cell(plan.gaussians(), plan.cell_level());
+    const uint64_t fit = cells_at_once(largest, split_.spool.sh_degree);
+    if (fit == 0 && bake_.most_in_cell == 0)
+      throw Error(ErrorCode::over_budget,
+                  folder_.path() + ": found --memory of " + megabytes(bake_.memory) +
+                      ", expected at least " +
+                      megabytes(bytes_to_bake(largest, split_.spool.sh_degree) / 3 * 5) +
+                      " for its cells of " + std::to_string(largest) + " Gaussians");
+    return static_cast<size_t>(
+        std::clamp<uint64_t>(fit, 1, static_cast<uint64_t>(workers_.count())));
+  }
+
+  // The cells of this part that have no file of that name.
+  std::vector<uint32_t> cells_without(const BakePlan& plan, std::string (*name)(uint32_t)) const {
+    std::vector<uint32_t> cells;
+    const uint64_t begin = uint64_t{plan.cells()} * bake_.part / bake_.parts;
+    const uint64_t end = uint64_t{plan.cells()} * (bake_.part + 1) / bake_.parts;
+    for (uint64_t cell = begin; cell < end; ++cell)
+      if (!folder_.has(name(static_cast<uint32_t>(cell))))
+        cells.push_back(static_cast<uint32_t>(cell));
+    return cells;
+  }
+
+  void build_cells(const BakePlan& plan) {
+    const std::vector<uint32_t> cells = cells_without(plan, cell_tree_name);
+    in_space(cells.size() * uint64_t{sizeof(NodeRow)} + plan.gaussians() * 4, "orders of cells",
+             [&] {
+               for_cells(cells, lanes(plan), workers_, progress_, "merging",
+                         [&](uint32_t cell) { build_cell(split_, plan, cell, folder_, workers_); });
+             });
+  }
+
+  void require_all_built(const BakePlan& plan) const {
+    for (uint32_t cell = 0; cell < plan.cells(); ++cell)
+      if (!folder_.has(cell_tree_name(cell)))
+        throw Error(ErrorCode::invalid_argument, folder_.path() + ": found no tree of cell " +
+                                                     std::to_string(cell) +
+                                                     ", expected --step cells of all parts before");
+  }
+
+  void encode_cells(const BakePlan& plan, const BakedScene& top) {
+    const std::vector<uint32_t> cells = cells_without(plan, cell_chunks_name);
+    // The rows of each cell go when its chunks are there: those in work are what is more.
+    const uint64_t largest = BakePlan::largest_cell(plan.gaussians(), plan.cell_level());
+    const size_t at_once = lanes(plan);
+    in_space(std::min(at_once, cells.size()) * largest * 2 * word_bytes(split_.spool.sh_degree),
+             "chunks of cells", [&] {
+               for_cells(cells, at_once, workers_, progress_, "encoding", [&](uint32_t cell) {
+                 encode_cell(split_, plan, top, bake_.quality, cell, folder_, workers_);
+               });
+             });
+  }
+
+  void join(const BakePlan& plan, const BakedScene& top) {
+    uint64_t bytes = plan.chunk_count() * sizeof(ChunkEntry);
+    for (uint32_t cell = 0; cell < plan.cells(); ++cell)
+      bytes += std::filesystem::file_size(folder_.file(cell_chunks_name(cell)));
+    try {
+      join_cells(split_, plan, top, bake_.quality, folder_, bake_.output, workers_, progress_);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::io) throw;
+      throw Error(ErrorCode::io, std::string(error.what()) + " (" + bake_.output + " takes " +
+                                     megabytes(bytes) + ")");
+    }
+  }
+
+  // Of a scene too small for cells; only at the end, since there are no parts.
+  BakeSummary bake_whole() {
+    const SpoolInfo spool = read_spool_info(folder_);
+    BakeSummary result;
+    result.gaussians = spool.gaussians;
+    result.import = spool.import;
+    if (bake_.step != BakeStep::all && bake_.step != BakeStep::merge) return result;
+    const BakedScene baked = build_tree(read_cloud(spool), workers_, progress_);
+    const Partition partition = partition_tree(baked.tree, bake_.chunk_bytes);
+    write_scene_file(baked, partition, bake_.output, bake_.quality, workers_, progress_);
+    result.nodes = baked.tree.size();
+    result.subtrees = partition.subtrees.size();
+    result.chunks = partition.chunk_count();
+    folder_.drop_all();
+    return result;
+  }
+
+  GaussianCloud read_cloud(const SpoolInfo& spool) const {
+    const ScratchFile positions = ScratchFile::open(folder_.file(kPositionRows));
+    const ScratchFile others = ScratchFile::open(folder_.file(kOtherRows));
+    GaussianCloud cloud;
+    cloud.sh_degree = spool.sh_degree;
+    cloud.antialiased = spool.antialiased;
+    cloud.origin = spool.source_origin;
+    cloud.report = spool.import;
+    const size_t width = other_floats(spool.sh_degree);
+    for (const SpoolPiece& piece : spool.pieces) {
+      const std::vector<float> position = read_positions(positions, piece);
+      const std::vector<float> other = read_others(others, piece, spool.sh_degree);
+      cloud.position.insert(cloud.position.end(), position.begin(), position.end());
+      for (auto row = other.begin(); row != other.end();
+           row += static_cast<std::ptrdiff_t>(width)) {
+        cloud.log_scale.insert(cloud.log_scale.end(), row, row + 3);
+        cloud.rotation.insert(cloud.rotation.end(), row + 3, row + 7);
+        cloud.opacity.push_back(row[7]);
+        cloud.sh.insert(cloud.sh.end(), row + 8, row + static_cast<std::ptrdiff_t>(width));
+      }
+    }
+    return cloud;
+  }
+
+  BakeSummary summary(const BakePlan& plan) const {
+    const Tiers tiers = plan.tiers();
+    return {plan.gaussians(),   tiers.node_count(),  tiers.tier_begin.back(),
+            plan.chunk_count(), split_.spool.import, plan.cells()};
+  }
+
+  const BakeInParts& bake_;
+  const OpenInputs& open_;
+  Workers& workers_;
+  const Progress& progress_;
+  WorkFolder folder_;
+  SplitInfo split_;
+};
+
+}  // namespace
+
+uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree) {
+  // Words of leaves and of 0.36 merged Gaussians, 45 bytes a node, order and sources;
+  // the rest is what is encoded and what allocators keep.
+  return gaussians * (word_bytes(sh_degree) * 3 / 2 + 100);
+}
+
+BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Workers& workers,
+                          const Progress& progress) {
+  return Baker(bake, open, workers, progress).run();
+}
+
+}  // namespace voyager

@@ -1,0 +1,54 @@
+#pragma once
+// A bake that holds a part of the scene at a time: the same file, to the byte, that
+// build_tree(), partition_tree() and write_scene_file() give, in memory of a given size,
+// from a work folder in which it goes on after a kill at any moment (docs/baking.md).
+//
+//   split    inputs -> spool -> splits above the cells -> rows of each cell
+//   cells    rows of a cell -> its tree, merged (each cell alone)
+//   encode   roots of all cells -> the top; rows and top -> chunks of a cell (each alone)
+//   merge    top and chunks of all cells -> scene.voy
+#include "runtime/bake/spool.h"
+#include "runtime/format/layout.h"
+
+namespace voyager {
+
+enum class BakeStep { all, split, cells, encode, merge };
+
+struct BakeInParts {
+  // What is baked: a work folder is one request's. Lines of text.
+  std::string request;
+  std::string output;  // the .voy
+  std::string work;    // the folder: made, and removed when the output is there
+  Quality quality = Quality::compact;
+  uint32_t chunk_bytes = kDefaultChunkBytes;
+  uint64_t memory = 0;  // bytes that scene data may take at a time, about
+  // all: what of split, cells, encode and merge is still to do. merge: the same, but for
+  // the split. The others: that step alone, of part `part` of `parts` of the cells.
+  BakeStep step = BakeStep::all;
+  uint32_t part = 0, parts = 1;
+  uint32_t most_in_cell = 0;  // Gaussians; 0: what memory and threads ask for
+};
+
+struct BakeSummary {
+  uint64_t gaussians = 0, nodes = 0, subtrees = 0, chunks = 0;
+  ImportReport import;
+  uint32_t cells = 0;  // 0: baked in one piece
+};
+
+// `open` is called where the folder has not yet all of the inputs. Throws
+// Error(refused_input) as importers and build_tree() do, and for a folder that is
+// another request's or was altered; Error(invalid_argument) for a step before its time;
+// Error(io) where the disk is full, saying how much is needed; Error(over_budget) where
+// memory does not do.
+BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Workers& workers,
+                          const Progress& progress);
+
+// The lines of a request. `inputs` are paths, or - for standard input, of which nothing
+// can be told; files count with size and time of change. Throws Error(file_not_found).
+std::string bake_request(const std::vector<std::string>& inputs, Quality quality,
+                         uint32_t chunk_bytes);
+
+// Bytes that baking in memory takes at most, about.
+uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree);
+
+}  // namespace voyager

@@ -1,0 +1,36 @@
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "runtime/bake/bake.h"
+#include "runtime/base/error.h"
+
+namespace voyager {
+namespace {
+
+constexpr int kWorkVersion = 1;  // of the files in the folder
+
+std::string line_of(const std::string& path) {
+  if (path == "-") return "input standard input\n";
+  struct stat info = {};
+  if (::stat(path.c_str(), &info) != 0)
+    throw Error(ErrorCode::file_not_found, path + ": not found");
+  const uint64_t nanoseconds = static_cast<uint64_t>(info.st_mtim.tv_sec) * 1000000000u +
+                               static_cast<uint64_t>(info.st_mtim.tv_nsec);
+  return "input " + std::filesystem::absolute(path).string() + " of " +
+         std::to_string(info.st_size) + " bytes, changed at " + std::to_string(nanoseconds) + "\n";
+}
+
+}  // namespace
+
+std::string bake_request(const std::vector<std::string>& inputs, Quality quality,
+                         uint32_t chunk_bytes) {
+  std::string text = "work folder version " + std::to_string(kWorkVersion) + "\n.voy version " +
+                     std::to_string(kSceneVersion) + "\nquality " +
+                     (quality == Quality::compact ? "compact" : "lossless") + "\nchunk bytes " +
+                     std::to_string(chunk_bytes) + "\n";
+  for (const std::string& input : inputs) text += line_of(input);
+  return text;
+}
+
+}  // namespace voyager

@@ -1,0 +1,206 @@
+#include "runtime/bake/spool.h"
+
+#include <tbb/parallel_pipeline.h>
+
+#include <algorithm>
+
+#include "runtime/bake/sealed_file.h"
+#include "runtime/base/checksum.h"
+#include "runtime/base/error.h"
+#include "runtime/lod/build.h"
+#include "runtime/scene/append.h"
+#include "runtime/scene/sanitise.h"
+
+namespace voyager {
+namespace {
+
+constexpr size_t kMostInBlock = 1 << 16, kLeastInBlock = 256;  // Gaussians
+
+// One block on its way.
+struct Job {
+  const BlockReader* reader = nullptr;
+  RawBlock raw;
+  std::array<double, 3> origin{0, 0, 0};
+  bool antialiased = false;
+  ImportReport import;
+  std::vector<float> positions, others;
+  SpoolPiece piece{};
+};
+using JobPointer = std::shared_ptr<Job>;
+
+// The words of a row after the position, SH beyond the cloud's degree 0.
+std::vector<float> rows_of(const GaussianCloud& cloud, int sh_degree) {
+  const size_t width = other_floats(sh_degree), sh = static_cast<size_t>(cloud.coefficients()) * 3;
+  std::vector<float> rows(cloud.size() * width);
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    float* row = rows.data() + i * width;
+    row = std::copy_n(cloud.log_scale.data() + 3 * i, 3, row);
+    row = std::copy_n(cloud.rotation.data() + 4 * i, 4, row);
+    *row++ = cloud.opacity[i];
+    std::copy_n(cloud.sh.data() + sh * i, sh, row);
+  }
+  return rows;
+}
+
+class Spooler {
+ public:
+  Spooler(std::vector<std::unique_ptr<BlockReader>> readers, const WorkFolder& folder,
+          size_t in_block, const Progress& progress)
+      : readers_(std::move(readers)),
+        in_block_(in_block),
+        progress_(progress),
+        positions_(ScratchFile::create(folder.file(kPositionRows))),
+        others_(ScratchFile::create(folder.file(kOtherRows))) {
+    for (const auto& reader : readers_) {
+      info_.sh_degree = std::max(info_.sh_degree, reader->sh_degree());
+      announced_ += reader->count();
+    }
+    info_.antialiased = readers_.front()->antialiased();
+    const std::array<double, 3> any{};
+    for (const auto& reader : readers_)
+      require_alike(any, info_.antialiased, any, reader->antialiased(), reader->name());
+  }
+
+  // In the order of the input, one at a time.
+  JobPointer next() {
+    while (current_ < readers_.size()) {
+      auto job = std::make_shared<Job>();
+      job->reader = readers_[current_].get();
+      job->raw = readers_[current_]->next(in_block_);
+      if (job->raw.count != 0) return job;
+      ++current_;
+    }
+    return nullptr;
+  }
+
+  void decode(Job& job) const {
+    GaussianCloud cloud = job.reader->decode(job.raw);
+    job.raw = {};
+    job.origin = cloud.origin;
+    job.antialiased = cloud.antialiased;
+    sanitise(cloud);
+    job.import = cloud.report;
+    job.positions.assign(cloud.position.begin(), cloud.position.end());
+    job.others = rows_of(cloud, info_.sh_degree);
+    job.piece.count = static_cast<uint32_t>(cloud.size());
+    job.piece.position_sum = checksum(std::as_bytes(std::span(job.positions)));
+    job.piece.other_sum = checksum(std::as_bytes(std::span(job.others)));
+  }
+
+  // In the order of the input, one at a time.
+  void place(Job& job) {
+    if (info_.import.read == 0 && job.reader == readers_.front().get())
+      info_.source_origin = job.origin;
+    require_alike(info_.source_origin, info_.antialiased, job.origin, job.antialiased,
+                  job.reader->name());
+    add(info_.import, job.import);
+    check_count(uint64_t{info_.gaussians} + job.piece.count);
+    job.piece.first = info_.gaussians;
+    info_.gaussians += job.piece.count;
+    if (job.piece.count != 0) info_.pieces.push_back(job.piece);
+    report(progress_, "reading", info_.import.read, announced_);
+  }
+
+  void write(const Job& job) {
+    positions_.write(uint64_t{job.piece.first} * 3 * sizeof(float),
+                     std::as_bytes(std::span(job.positions)));
+    others_.write(job.piece.first * other_floats(info_.sh_degree) * sizeof(float),
+                  std::as_bytes(std::span(job.others)));
+  }
+
+  SpoolInfo finish() {
+    positions_.flush();
+    others_.flush();
+    return std::move(info_);
+  }
+
+ private:
+  std::vector<std::unique_ptr<BlockReader>> readers_;
+  size_t in_block_, current_ = 0;
+  const Progress& progress_;
+  ScratchFile positions_, others_;
+  SpoolInfo info_;
+  uint64_t announced_ = 0;
+};
+
+void run(Spooler& spooler, size_t blocks_at_once) {
+  using Mode = tbb::filter_mode;
+  const auto read = [&](tbb::flow_control& flow) -> JobPointer {
+    JobPointer job = spooler.next();
+    if (!job) flow.stop();
+    return job;
+  };
+  const auto decode = [&](JobPointer job) {
+    const FloatingPointMode mode;
+    spooler.decode(*job);
+    return job;
+  };
+  const auto place = [&](JobPointer job) {
+    spooler.place(*job);
+    return job;
+  };
+  const auto write = [&](const JobPointer& job) { spooler.write(*job); };
+  tbb::parallel_pipeline(
+      blocks_at_once, tbb::make_filter<void, JobPointer>(Mode::serial_in_order, read) &
+                          tbb::make_filter<JobPointer, JobPointer>(Mode::parallel, decode) &
+                          tbb::make_filter<JobPointer, JobPointer>(Mode::serial_in_order, place) &
+                          tbb::make_filter<JobPointer, void>(Mode::parallel, write));
+}
+
+void write_info(const WorkFolder& folder, const SpoolInfo& info) {
+  Packer packer;
+  packer.put(info.gaussians).put(info.sh_degree).put(info.antialiased);
+  packer.put(info.source_origin).put(info.import).put_all(info.pieces);
+  write_sealed(folder.file(kSpoolDone), packer.bytes());
+}
+
+std::vector<float> read_rows(const ScratchFile& file, const SpoolPiece& piece, size_t width,
+                             uint64_t sum) {
+  std::vector<float> rows(piece.count * width);
+  const auto bytes = std::as_writable_bytes(std::span(rows));
+  file.read(piece.first * width * sizeof(float), bytes);
+  if (checksum(bytes) != sum)
+    refuse_folder(file.path(), "another checksum of rows from " + std::to_string(piece.first),
+                  std::to_string(sum));
+  return rows;
+}
+
+}  // namespace
+
+SpoolInfo spool_inputs(const OpenInputs& open, const WorkFolder& folder, uint64_t memory,
+                       Workers& workers, const Progress& progress) {
+  // A block is there as bytes, as a cloud and as rows.
+  const size_t blocks = 2 * static_cast<size_t>(workers.count()) + 2;
+  const size_t gaussian = 3 * sizeof(float) * (3 + other_floats(kMaxShDegree));
+  const size_t in_block = std::clamp(static_cast<size_t>(memory / 2 / (blocks * gaussian)),
+                                     kLeastInBlock, kMostInBlock);
+  Spooler spooler(open(), folder, in_block, progress);
+  workers.run([&] { run(spooler, blocks); });
+  SpoolInfo info = spooler.finish();
+  write_info(folder, info);
+  return info;
+}
+
+SpoolInfo read_spool_info(const WorkFolder& folder) {
+  const std::string path = folder.file(kSpoolDone);
+  const std::vector<std::byte> bytes = read_sealed(path);
+  Unpacker from(path, bytes);
+  SpoolInfo info;
+  info.gaussians = from.take<uint32_t>();
+  info.sh_degree = from.take<int32_t>();
+  info.antialiased = from.take<bool>();
+  info.source_origin = from.take<std::array<double, 3>>();
+  info.import = from.take<ImportReport>();
+  from.take_all(info.pieces);
+  return info;
+}
+
+std::vector<float> read_positions(const ScratchFile& file, const SpoolPiece& piece) {
+  return read_rows(file, piece, 3, piece.position_sum);
+}
+
+std::vector<float> read_others(const ScratchFile& file, const SpoolPiece& piece, int sh_degree) {
+  return read_rows(file, piece, other_floats(sh_degree), piece.other_sum);
+}
+
+}  // namespace voyager

@@ -1,0 +1,99 @@
+#include "runtime/bake/top_tree.h"
+
+#include <algorithm>
+
+#include "runtime/lod/levels.h"
+#include "runtime/lod/shape.h"
+#include "runtime/lod/summarise.h"
+
+namespace voyager {
+namespace {
+
+void lay_out_top(const BakePlan& plan, BakedScene& top) {
+  const uint32_t nodes = plan.tiers().level_begin[plan.top_levels()];
+  LodTree& tree = top.tree;
+  tree.records.resize(nodes);
+  tree.first_child.resize(nodes);
+  tree.parent.resize(nodes, kNoNode);
+  uint32_t node = 0, next = 1;
+  for (uint32_t level = 0; level < plan.top_levels(); ++level)
+    for (const uint32_t size : sizes_on_level(plan.gaussians(), level)) {
+      const uint32_t children = split_in_parts(size).count;
+      tree.records[node].child_count = children;
+      tree.first_child[node] = next;
+      for (uint32_t i = 0; i < children && next + i < nodes; ++i) tree.parent[next + i] = node;
+      next += children;
+      ++node;
+    }
+  GaussianCloud& merged = top.merged;
+  merged.sh_degree = top.leaves.sh_degree;
+  merged.origin = top.origin;
+  merged.position.resize(3 * size_t{nodes});
+  merged.log_scale.resize(3 * size_t{nodes});
+  merged.rotation.resize(4 * size_t{nodes});
+  merged.opacity.resize(nodes);
+  merged.sh.resize(nodes * static_cast<size_t>(merged.coefficients()) * 3);
+  for (uint32_t i = 0; i < nodes; ++i) top.gaussian.push_back(i);
+  top.axis_code.resize(nodes);
+}
+
+void put_node(const NodeRow& row, uint32_t node, BakedScene& top) {
+  top.tree.records[node] = row.record;
+  GaussianCloud& merged = top.merged;
+  std::copy_n(&row.words.mean.x, 3, &merged.position[3 * size_t{node}]);
+  std::copy_n(&row.words.log_scale.x, 3, &merged.log_scale[3 * size_t{node}]);
+  std::copy_n(&row.words.rotation.w, 4, &merged.rotation[4 * size_t{node}]);
+  merged.opacity[node] = row.words.opacity;
+  const size_t floats = static_cast<size_t>(merged.coefficients()) * 3;
+  std::copy_n(row.sh, floats, merged.sh.data() + node * floats);
+}
+
+// Of every cell, the levels that are the top's, too.
+void put_cells(const BakePlan& plan, const WorkFolder& folder, BakedScene& top, Workers& workers) {
+  workers.for_blocks(plan.cells(), 1, [&](size_t index, size_t) {
+    const auto cell = static_cast<uint32_t>(index);
+    const std::vector<NodeRow> rows = read_cell_nodes(plan, cell, folder);
+    size_t row = 0;
+    for (uint32_t level = 0; plan.cell_level() + level < plan.top_levels(); ++level) {
+      // The cells' nodes of a level lie one cell after the other.
+      const uint32_t begin = plan.first_node(cell, level);
+      const uint32_t end = cell + 1 < plan.cells()
+                               ? plan.first_node(cell + 1, level)
+                               : plan.tiers().level_begin[plan.cell_level() + level + 1];
+      for (uint32_t node = begin; node < end; ++node) put_node(rows.at(row++), node, top);
+    }
+  });
+}
+
+}  // namespace
+
+BakedScene build_top(const SplitInfo& split, const BakePlan& plan, const WorkFolder& folder,
+                     Workers& workers) {
+  BakedScene top;
+  top.leaves.sh_degree = split.spool.sh_degree;
+  top.leaves.origin = split.spool.source_origin;
+  top.origin = split.origin;
+  lay_out_top(plan, top);
+  put_cells(plan, folder, top, workers);
+  const auto all = plan.tiers().level_begin;
+  for (uint32_t node = all[plan.cell_level()]; node-- > 0;) summarise(node, top);
+  // Levels whose nodes have their children here, and the end of them.
+  const std::vector<uint32_t> levels(all.begin(), all.begin() + plan.top_levels());
+  align_levels(levels, top, workers);
+  return top;
+}
+
+const NodeRecord& record_above(const BakedScene& top, const BakePlan& plan, uint32_t cell) {
+  return top.tree.records[top.tree.parent[plan.first_node(cell, 0)]];
+}
+
+void align_cell(const BakedScene& top, const BakePlan& plan, uint32_t cell, CellTree& tree,
+                Workers& workers) {
+  const size_t root = tree.baked.gaussian[0], turned = plan.first_node(cell, 0);
+  GaussianCloud& merged = tree.baked.merged;
+  std::copy_n(&top.merged.log_scale[3 * turned], 3, &merged.log_scale[3 * root]);
+  std::copy_n(&top.merged.rotation[4 * turned], 4, &merged.rotation[4 * root]);
+  align_levels(tree.levels, tree.baked, workers);
+}
+
+}  // namespace voyager

@@ -1,0 +1,47 @@
+#pragma once
+// A flat scene in blocks, for what is larger than memory: bytes come off the input
+// one block after the other, and blocks are decoded by as many threads as there are.
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/base/file.h"
+#include "runtime/scene/gaussian_cloud.h"
+
+namespace voyager {
+
+// Some Gaussians as the input has them.
+struct RawBlock {
+  std::vector<std::byte> bytes;
+  size_t count = 0;  // Gaussians; 0 after the last block
+};
+
+class BlockReader {
+ public:
+  virtual ~BlockReader() = default;
+  // What the input's header says.
+  virtual const std::string& name() const = 0;
+  virtual uint64_t count() const = 0;
+  virtual int sh_degree() const = 0;
+  virtual bool antialiased() const = 0;
+
+  // The next Gaussians, at most `most`, which is at least 1. From one thread at a
+  // time. Throws Error(refused_input) as the importer of the format does, Error(io).
+  virtual RawBlock next(size_t most) = 0;
+  // The Gaussians of a block, not yet sanitised; the same words that importing the
+  // whole gives. Safe from several threads, also beside next().
+  virtual GaussianCloud decode(const RawBlock& block) const = 0;
+};
+
+// Reads the header. A .ply from any stream; a .spz, whose attributes are apart from
+// one another, only from a source, of which each attribute is read at a place of its
+// own. Throws Error(refused_input) naming place, found and expected.
+std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader);
+std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> source);
+
+// The formats; the reader stands at the format's first byte.
+std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader);
+std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source);
+
+}  // namespace voyager

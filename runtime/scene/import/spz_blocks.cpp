@@ -1,0 +1,146 @@
+// A .spz keeps each attribute apart, over all Gaussians: one place in the file for
+// each brings them together block by block.
+#include <algorithm>
+
+#include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/decompress.h"
+#include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/spz_decode.h"
+
+namespace voyager {
+namespace {
+
+using spz::Attribute;
+
+constexpr uint32_t kNewestPlanar = 3, kNewest = 4;
+
+// Plain bytes of one attribute, from the first Gaussian on.
+class AttributeStream {
+ public:
+  AttributeStream(const ByteSource& source, Attribute attribute)
+      : reader_(read_source(source)), input_(*reader_) {
+    const std::span<const std::byte> first = input_.peek(1);
+    if (!first.empty() && first[0] == std::byte{0x1f}) {
+      plain_ = std::make_unique<GzipReader>(input_);
+      header_ = spz::read_header(*plain_, kNewestPlanar);
+      skip_to(attribute);
+      return;
+    }
+    header_ = spz::read_header(input_, kNewest);
+    if (header_.version != kNewest) {
+      skip_to(attribute);
+      return;
+    }
+    const auto sizes = spz::read_stream_table(input_, header_);
+    for (size_t i = 0; i < attribute; ++i) input_.skip(sizes[i]);
+    plain_ = std::make_unique<ZstdReader>(input_, sizes[attribute]);
+  }
+
+  const spz::Header& header() const { return header_; }
+
+  void read(std::span<std::byte> into, const char* what) {
+    ByteReader& bytes = plain();
+    const size_t got = bytes.read(into);
+    if (got != into.size())
+      refuse(bytes.name(), bytes.offset(), what, std::to_string(got) + " bytes",
+             std::to_string(into.size()) + " bytes of a block");
+  }
+
+  // After the last byte of the attribute: that nothing follows which should not.
+  void finish(bool last) {
+    if (plain_ && header_.version == kNewest) return plain_->finish();
+    if (!last) return;
+    std::vector<std::byte> unused(header_.has_extensions ? 4096 : 0);
+    while (!unused.empty() && plain().read(unused) == unused.size()) {
+    }
+    if (plain_) plain_->finish();
+    if (!input_.peek(1).empty())
+      refuse(input_.name(), input_.offset(), "length", "more bytes", "the end of the file");
+  }
+
+ private:
+  ByteReader& plain() { return plain_ ? static_cast<ByteReader&>(*plain_) : input_; }
+
+  void skip_to(Attribute attribute) {
+    PeekReader stepper(plain());
+    for (int i = 0; i < attribute; ++i)
+      stepper.skip(uint64_t{header_.count} * header_.bytes_of(static_cast<Attribute>(i)));
+  }
+
+  std::unique_ptr<ByteReader> reader_;
+  PeekReader input_;
+  std::unique_ptr<Decompressor> plain_;
+  spz::Header header_;
+};
+
+class SpzReader final : public BlockReader {
+ public:
+  explicit SpzReader(std::shared_ptr<const ByteSource> source) : source_(std::move(source)) {
+    streams_.push_back(std::make_unique<AttributeStream>(*source_, spz::kPositions));
+    header_ = streams_.front()->header();
+    for (int i = 1; i < header_.attributes(); ++i)
+      streams_.push_back(std::make_unique<AttributeStream>(*source_, static_cast<Attribute>(i)));
+  }
+
+  const std::string& name() const override { return source_->name(); }
+  uint64_t count() const override { return header_.count; }
+  int sh_degree() const override { return header_.sh_degree; }
+  bool antialiased() const override { return header_.antialiased; }
+
+  RawBlock next(size_t most) override {
+    RawBlock block;
+    block.count = std::min<size_t>(most, header_.count - taken_);
+    if (block.count == 0) {
+      for (const auto& stream : streams_) stream->finish(stream == streams_.back());
+      return block;
+    }
+    block.bytes.resize(bytes_before(header_.attributes(), block.count));
+    for (int i = 0; i < header_.attributes(); ++i) {
+      const size_t begin = bytes_before(i, block.count), end = bytes_before(i + 1, block.count);
+      const auto index = static_cast<size_t>(i);
+      streams_[index]->read(std::span(block.bytes).subspan(begin, end - begin),
+                            spz::kAttributeName[index]);
+    }
+    taken_ += static_cast<uint32_t>(block.count);
+    return block;
+  }
+
+  GaussianCloud decode(const RawBlock& block) const override {
+    GaussianCloud cloud;
+    cloud.sh_degree = header_.sh_degree;
+    cloud.antialiased = header_.antialiased;
+    cloud.position.resize(3 * block.count);
+    cloud.log_scale.resize(3 * block.count);
+    cloud.rotation.resize(4 * block.count);
+    cloud.opacity.resize(block.count);
+    cloud.sh.resize(block.count * static_cast<size_t>(cloud.coefficients()) * 3);
+    for (int i = 0; i < header_.attributes(); ++i) {
+      const size_t begin = bytes_before(i, block.count), end = bytes_before(i + 1, block.count);
+      spz::decode(header_, static_cast<Attribute>(i),
+                  std::span(block.bytes).subspan(begin, end - begin), 0, cloud);
+    }
+    return cloud;
+  }
+
+ private:
+  // Of a block of so many Gaussians, where an attribute starts.
+  size_t bytes_before(int attribute, size_t gaussians) const {
+    size_t bytes = 0;
+    for (int i = 0; i < attribute; ++i)
+      bytes += header_.bytes_of(static_cast<Attribute>(i)) * gaussians;
+    return bytes;
+  }
+
+  std::shared_ptr<const ByteSource> source_;
+  std::vector<std::unique_ptr<AttributeStream>> streams_;
+  spz::Header header_;
+  uint32_t taken_ = 0;  // Gaussians
+};
+
+}  // namespace
+
+std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source) {
+  return std::make_unique<SpzReader>(std::move(source));
+}
+
+}  // namespace voyager
