@@ -43,8 +43,9 @@ struct BakeSummary {
 BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Workers& workers,
                           const Progress& progress);
 
-// The lines of a request. `inputs` are paths, or - for standard input, of which nothing
-// can be told; files count with size and time of change. Throws Error(file_not_found).
+// The lines of a request. `inputs` are paths, URLs, or - for standard input, of which
+// nothing can be told; files count with size and time of change, URLs with size. Throws
+// Error(file_not_found), and for a URL what open_source() does.
 std::string bake_request(const std::vector<std::string>& inputs, Quality quality,
                          uint32_t chunk_bytes);
 

@@ -90,7 +90,7 @@ void encode_cell(const SplitInfo& split, const BakePlan& plan, const BakedScene&
   const Footer footer{file.position(), parts.bytes().size(), checksum(parts.bytes())};
   file.write(parts.bytes());
   file.write(std::as_bytes(std::span(&footer, 1)));
-  file.commit();
+  file.commit_unflushed();
   folder.drop(cell_rows_name(cell));
 }
 

@@ -42,11 +42,6 @@ class Distributor {
     workers_.for_blocks(ends_.size(), 1, [&](size_t cell, size_t) { write_cell(cell); });
   }
 
-  void flush() {
-    workers_.for_blocks(ends_.size(), 1,
-                        [&](size_t cell, size_t) { ScratchFile::open(file_of(cell)).flush(); });
-  }
-
  private:
   struct Piece {
     std::vector<uint32_t> cell;   // of each row
@@ -181,7 +176,6 @@ void distribute(const SpoolInfo& spool, const BakePlan& plan, const SplitTree& t
     report(progress, "distributing", pieces[end - 1].first + uint64_t{pieces[end - 1].count},
            spool.gaussians);
   }
-  distributor.flush();
   write_info(folder, spool, plan.cell_level(), origin);
   for (const char* name : {kPositionRows, kOtherRows, kSpoolDone}) folder.drop(name);
 }

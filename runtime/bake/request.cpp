@@ -3,7 +3,10 @@
 #include <filesystem>
 
 #include "runtime/bake/bake.h"
+#include "runtime/base/checksum.h"
 #include "runtime/base/error.h"
+#include "runtime/base/open_source.h"
+#include "runtime/base/url.h"
 
 namespace voyager {
 namespace {
@@ -12,6 +15,10 @@ constexpr int kWorkVersion = 1;  // of the files in the folder
 
 std::string line_of(const std::string& path) {
   if (path == "-") return "input standard input\n";
+  if (is_url(path))
+    return "input " + shown_path(path) + " of " + std::to_string(open_source(path)->size()) +
+           " bytes, its URL's checksum " +
+           std::to_string(checksum(std::as_bytes(std::span(path)))) + "\n";
   struct stat info = {};
   if (::stat(path.c_str(), &info) != 0)
     throw Error(ErrorCode::file_not_found, path + ": not found");

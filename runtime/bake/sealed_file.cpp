@@ -10,7 +10,7 @@ void write_sealed(const std::string& path, std::span<const std::byte> bytes) {
   AtomicFile file(path);
   file.write(bytes);
   file.write(std::as_bytes(std::span(&sum, 1)));
-  file.commit();
+  file.commit_unflushed();
 }
 
 std::vector<std::byte> read_sealed(const std::string& path) {

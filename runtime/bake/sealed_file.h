@@ -11,7 +11,7 @@
 
 namespace voyager {
 
-// Appears in one step, flushed. Throws Error(io).
+// Appears in one step. Throws Error(io).
 void write_sealed(const std::string& path, std::span<const std::byte> bytes);
 
 // Throws Error(refused_input) naming the file where its checksum does not match.

@@ -108,11 +108,7 @@ class Spooler {
                   std::as_bytes(std::span(job.others)));
   }
 
-  SpoolInfo finish() {
-    positions_.flush();
-    others_.flush();
-    return std::move(info_);
-  }
+  SpoolInfo take_info() { return std::move(info_); }
 
  private:
   std::vector<std::unique_ptr<BlockReader>> readers_;
@@ -176,7 +172,7 @@ SpoolInfo spool_inputs(const OpenInputs& open, const WorkFolder& folder, uint64_
                                      kLeastInBlock, kMostInBlock);
   Spooler spooler(open(), folder, in_block, progress);
   workers.run([&] { run(spooler, blocks); });
-  SpoolInfo info = spooler.finish();
+  SpoolInfo info = spooler.take_info();
   write_info(folder, info);
   return info;
 }

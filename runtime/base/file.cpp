@@ -137,6 +137,10 @@ void AtomicFile::write_at(uint64_t offset, std::span<const std::byte> bytes) {
 
 void AtomicFile::commit() {
   if (::fsync(fd_) != 0) fail(path_, "finish");
+  commit_unflushed();
+}
+
+void AtomicFile::commit_unflushed() {
   if (temporary_.empty()) {
     const std::string unnamed = "/proc/self/fd/" + std::to_string(fd_);
     temporary_ = unused_name(path_);

@@ -76,7 +76,8 @@ std::unique_ptr<ByteReader> read_stdin();
 // Has no name until commit(), which flushes and then takes `path` in one step.
 // Destroyed without commit, or killed, it leaves `path` alone, and nothing behind
 // but on file systems without unnamed files, where a kill leaves path.partial-*.
-// Writes may come from one thread at a time. All throw Error(io).
+// write() may come from one thread at a time, write_at() from several where no two
+// overlap. All throw Error(io).
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);  // throws Error(io)
@@ -88,6 +89,9 @@ class AtomicFile {
   void write_at(uint64_t offset, std::span<const std::byte> bytes);  // overwrite, position kept
   uint64_t position() const { return position_; }
   void commit();
+  // The same without the flush: whole to every process, also after a kill, but a loss of
+  // power may tear it. For files under checksums that can be made again.
+  void commit_unflushed();
 
  private:
   std::string path_;

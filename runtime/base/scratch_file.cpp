@@ -60,8 +60,4 @@ void ScratchFile::read(uint64_t offset, std::span<std::byte> into) const {
   }
 }
 
-void ScratchFile::flush() {
-  if (::fsync(fd_.get()) != 0) fail(path_, "finish");
-}
-
 }  // namespace voyager

@@ -19,7 +19,6 @@ class ScratchFile {
   uint64_t size() const;
   void write(uint64_t offset, std::span<const std::byte> bytes);
   void read(uint64_t offset, std::span<std::byte> into) const;
-  void flush();  // returns when all is on the device
 
  private:
   ScratchFile(std::string path, int flags);

@@ -22,6 +22,7 @@
 #include "runtime/lod/build.h"
 #include "runtime/lod/validate.h"
 #include "runtime/scene/append.h"
+#include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sanitise.h"
 #include "tools/commands/commands.h"
@@ -56,8 +57,7 @@ Readers open_all(const std::vector<std::string>& paths) {
     throw Error(ErrorCode::invalid_argument, "input: found - more than once, expected one stream");
   Readers readers;
   for (const std::string& path : paths)
-    readers.push_back(path == "-" ? open_blocks(read_stdin())
-                                  : open_blocks(open_source(path)));
+    readers.push_back(path == "-" ? open_blocks(read_stdin()) : open_blocks(open_source(path)));
   return readers;
 }
 
@@ -71,6 +71,15 @@ uint64_t bytes_in_memory(const Readers& readers) {
   return bytes_to_bake(count, sh_degree);
 }
 
+// So that many appends copy little.
+void make_room(GaussianCloud& cloud, uint64_t gaussians, uint64_t announced) {
+  reserve_for(cloud.position, gaussians, announced, 3);
+  reserve_for(cloud.log_scale, gaussians, announced, 3);
+  reserve_for(cloud.rotation, gaussians, announced, 4);
+  reserve_for(cloud.opacity, gaussians, announced, 1);
+  reserve_for(cloud.sh, gaussians, announced, static_cast<size_t>(cloud.coefficients()) * 3);
+}
+
 // What is in a stream whose header was read.
 GaussianCloud read_stream(BlockReader& reader, const Progress& progress) {
   constexpr size_t kAtOnce = 1 << 14;
@@ -81,6 +90,7 @@ GaussianCloud read_stream(BlockReader& reader, const Progress& progress) {
     if (block.count == 0) break;
     GaussianCloud more = reader.decode(block);
     if (done == 0) cloud.origin = more.origin;
+    make_room(cloud, done + block.count, reader.count());
     append(cloud, std::move(more), reader.name());
     done += block.count;
     report(progress, "reading", done, reader.count());
