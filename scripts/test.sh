@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sets up, builds and runs every test: format, the release build, static
-# analysis, the sanitizer build, and aarch64 under qemu-user. What CI runs. Safe
+# analysis, the sanitizer builds, and aarch64 under qemu-user. What CI runs. Safe
 # to run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -27,6 +27,11 @@ step "asan: build and test under AddressSanitizer and UndefinedBehaviorSanitizer
 cmake --preset asan -DVOYAGER_WERROR=ON
 cmake --build --preset asan
 ctest --preset asan -j "$(nproc)"
+
+step "tsan: two minutes of streaming on many threads under ThreadSanitizer"
+cmake --preset tsan -DVOYAGER_WERROR=ON
+cmake --build --preset tsan --target property_streaming_flight_test
+VOYAGER_FLIGHT_SECONDS=120 ctest --preset tsan -R StreamingFlight
 
 if [ "$(uname -m)" = aarch64 ]; then
   step "aarch64: this machine is one, and the steps above were it"

@@ -15,20 +15,20 @@
 
 namespace voyager {
 
-// A block of a loop, as oneTBB copies and calls it.
+// A loop over blocks, for the threads that take part in it.
 template <class Body>
-struct LoopTask {
-  LoopOrder* order;
-  const Body* body;
+struct Loop {
+  const Body& body;
   size_t n, grain;
+  LoopOrder order;
 
-  void operator()(size_t block) const {
-    order->begin_task();
+  void run(size_t block) {
+    order.begin_task();
     {
       const FloatingPointMode mode;
-      (*body)(block * grain, std::min(n, (block + 1) * grain));
+      body(block * grain, std::min(n, (block + 1) * grain));
     }
-    order->end_task();
+    order.end_task();
   }
 };
 
@@ -53,9 +53,10 @@ class Workers {
       body(size_t{0}, n);
       return;
     }
-    LoopOrder order;
-    const LoopTask<Body> task{&order, &body, n, grain};
-    arena_.execute([&] { tbb::parallel_for(size_t{0}, blocks, task); });
+    Loop<Body> loop{body, n, grain, {}};
+    arena_.execute([&loop, blocks] {
+      tbb::parallel_for(size_t{0}, blocks, [own = &loop](size_t block) { own->run(block); });
+    });
   }
 
   // `less` must be a strict total order, so that the result is unique.

@@ -29,6 +29,7 @@ void set_info(const SceneFileInfo& info, Scene& scene) {
   scene.bounds_min = info.bounds_min;
   scene.bounds_max = info.bounds_max;
   scene.position_error = info.position_error;
+  scene.largest_sh = info.largest_sh;
   scene.import = info.import;
 }
 

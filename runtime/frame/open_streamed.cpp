@@ -80,7 +80,6 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   set_info(file->info(), *scene);
   add_notes(*scene);
   if (file->chunks().empty()) return scene;
-  scene->largest_sh = file->info().largest_sh;
   set_search(*file, scene->search);
   const SlotShape shape = SceneStream::slot_shape(*file);
   const PoolBytes bytes = backend.pool_bytes(*scene, shape);

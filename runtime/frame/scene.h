@@ -75,7 +75,7 @@ struct Scene {
   Vec3d origin{0, 0, 0};                           // world position of the scene-local zero
   Vec3f bounds_min{0, 0, 0}, bounds_max{0, 0, 0};  // scene-local, means ± 3·max(s)
   double position_error = 0;
-  float largest_sh = 0;  // of a streamed scene: no coefficient of it is larger
+  float largest_sh = 0;  // of a baked scene: no coefficient of it is larger
   ImportReport import;
 
   std::pmr::vector<Gaussian> gaussians;  // by node id; a flat scene's by index

@@ -31,6 +31,7 @@ Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks
       urgency_(chunks.size()),
       needed_plan_(chunks.size()),
       missed_(chunks.size()),
+      counted_(chunks.size()),
       target_(chunks.size()),
       children_there_(chunks.size()),
       shares_family_(chunks.size()) {
@@ -44,6 +45,7 @@ void Residency::plan(std::span<const Viewer> viewers) {
   find_needed(viewers);
   share_in_families();
   share_with_parents();
+  count_need();
   choose_target();
   queue_requests();
   list_victims();
@@ -292,6 +294,7 @@ std::vector<uint32_t> Residency::arrive(const std::function<bool(uint32_t)>& acc
       continue;
     }
     state_[chunk] = State::resident;
+    count_missing(chunk, false);
     ++resident_;
     ++counters_.arrived;
     counters_.late += missed_[chunk];
@@ -317,28 +320,32 @@ std::vector<Residency::Evicted> Residency::evict() {
     evicted.push_back({chunk, slot_[chunk]});
     slot_[chunk] = kNoSlot;
     state_[chunk] = State::absent;
+    count_missing(chunk, true);
     --resident_;
     ++counters_.evicted;
   }
   return evicted;
 }
 
-ResidencyNeed Residency::need() const {
-  ResidencyNeed need;
+void Residency::count_need() {
+  need_ = {};
   for (const Needed& needed : needed_) {
+    counted_[needed.chunk] = needed.now;
     if (!needed.now) continue;
-    const bool missing = state_[needed.chunk] != State::resident;
-    const bool seen = class_of(needed.urgency) == Class::seen;
-    ++need.chunks;
-    need.seen += seen && needed.chunk >= pinned_;
-    if (!missing) continue;
-    ++need.missing;
-    need.missing_bytes += chunks_[needed.chunk].bytes;
+    ++need_.chunks;
+    need_.seen += class_of(needed.urgency) == Class::seen && needed.chunk >= pinned_;
+    if (state_[needed.chunk] != State::resident) count_missing(needed.chunk, true);
   }
   for (const Needed& needed : failed_)
     if (needed.now && class_of(needed.urgency) == Class::seen)
-      need.seen_failed.push_back(needed.chunk);
-  return need;
+      need_.seen_failed.push_back(needed.chunk);
+}
+
+// A chunk that comes or goes after the plan.
+void Residency::count_missing(uint32_t chunk, bool missing) {
+  if (needed_plan_[chunk] != plan_ || counted_[chunk] == 0) return;
+  need_.missing += missing ? 1 : -uint64_t{1};
+  need_.missing_bytes += missing ? chunks_[chunk].bytes : -uint64_t{chunks_[chunk].bytes};
 }
 
 bool Residency::settled() const {

@@ -85,7 +85,7 @@ class Residency {
   uint32_t slots() const { return slots_; }
   uint32_t pinned() const { return pinned_; }
   uint32_t resident() const { return resident_; }
-  ResidencyNeed need() const;
+  const ResidencyNeed& need() const { return need_; }
   // All of the target is there, but for what failed.
   bool settled() const;
   const ResidencyCounters& counters() const { return counters_; }
@@ -104,10 +104,12 @@ class Residency {
   bool add_needed(const Needed& needed);
   void share_in_families();
   void share_with_parents();
+  void count_need();
   void choose_target();
   void queue_requests();
   void list_victims();
   bool parents_there(uint32_t chunk) const;
+  void count_missing(uint32_t chunk, bool missing);
   void give_up(uint32_t chunk, State now);
   void drop(uint32_t chunk);
 
@@ -121,6 +123,7 @@ class Residency {
   std::vector<uint32_t> urgency_;      // when it was last needed
   std::vector<uint32_t> needed_plan_;  // the last plan that needed it
   std::vector<uint8_t> missed_;        // a viewer has seen that it was not there
+  std::vector<uint8_t> counted_;       // in need_, if the last plan needed it
   std::vector<uint32_t> target_;       // the last plan that had it in its target
   std::vector<uint32_t> children_there_;
   std::vector<uint8_t> shares_family_;
@@ -131,6 +134,7 @@ class Residency {
   std::vector<uint32_t> requests_, victims_;  // the first to go last
   std::vector<uint32_t> filled_, free_slots_;
   uint32_t coming_ = 0;  // on their way or read: each will want a slot
+  ResidencyNeed need_;
   ResidencyCounters counters_;
 };
 
