@@ -116,7 +116,7 @@ TEST_F(OnTls, ASecureUrlIsNotRedirectedToAnInsecureOne) {
 TEST(Tls, APlainServerIsNoTlsServer) {
   ScriptedServer server([](const ScriptedRequest&) { return ScriptedReply{"", true}; });
   std::string url = server.url();
-  http::Options options = quick();
+  http::Options options = impatient();
   options.tries = 1;
   expect_error(ErrorCode::io_transient, "1 try",
                [&] { http::Source(url.insert(4, "s"), options); });

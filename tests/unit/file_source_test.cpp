@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <random>
@@ -73,7 +74,7 @@ class FileSource : public testing::TestWithParam<Access> {
     return into;
   }
   bool same(uint64_t offset, size_t count) const {
-    return std::ranges::equal(read(offset, count), std::span(bytes_).subspan(offset, count));
+    return std::memcmp(read(offset, count).data(), bytes_.data() + offset, count) == 0;
   }
   // Its error, with a code that is not one where there is none.
   Error error_of(uint64_t offset, size_t count) const {
@@ -108,7 +109,7 @@ TEST_P(FileSource, GivesRangesToManyThreadsAtOnce) {
       std::mt19937 random(t);
       for (int i = 0; i < 50; ++i) {
         const uint64_t offset = random() % bytes_.size();
-        wrong += !same(offset, random() % (bytes_.size() - offset));
+        wrong += !same(offset, random() % std::min<size_t>(100'000, bytes_.size() - offset));
       }
     });
   for (std::thread& thread : threads) thread.join();
