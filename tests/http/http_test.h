@@ -29,10 +29,18 @@ inline const PlainEnvironment plain_environment;
 // Quick to give up, for tests that wait for it.
 inline http::Options quick() {
   http::Options options;
-  options.stall_time = 400ms;
-  options.deadline = 3s;
+  options.stall_time = 3s;
+  options.deadline = 15s;
   options.tries = 4;
   options.first_wait = 10ms;
+  return options;
+}
+
+// The same, where a stall is what the test is about.
+inline http::Options impatient() {
+  http::Options options = quick();
+  options.stall_time = 400ms;
+  options.deadline = 3s;
   return options;
 }
 

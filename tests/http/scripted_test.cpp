@@ -117,8 +117,8 @@ TEST(Scripted, StallsAreBridged) {
       return ScriptedReply{sound(request).bytes.substr(0, bytes), false, true};
     }));
     const Timer timer;
-    expect_bridged(server);
-    EXPECT_LT(timer.elapsed(), 2s) << bytes;
+    expect_bridged(server, impatient());
+    EXPECT_LT(timer.elapsed(), 3s) << bytes;
   }
 }
 
@@ -225,7 +225,7 @@ TEST(Scripted, HeadersWithoutEndMeetTheDeadline) {
       head += "X-" + std::to_string(i) + ": filler filler filler\r\n";
     return ScriptedReply{head, false, true};
   }));
-  const http::Source source(server.url(), quick());
+  const http::Source source(server.url(), impatient());
   const Timer timer;
   EXPECT_THROW(read(source, 80'000, 50'000), Error);
   EXPECT_LT(timer.elapsed(), 4s);

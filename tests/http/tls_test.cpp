@@ -50,15 +50,13 @@ class OnTls : public testing::Test {
   Nginx nginx_;
 };
 
-TEST_F(OnTls, AnUnknownAuthorityIsRefusedAtOnce) {
+TEST_F(OnTls, AnUnknownAuthorityIsRefused) {
   ASSERT_EQ(start(""), "");
-  const Timer timer;
   expect_error(ErrorCode::io, "certificate", [&] { http::Source(url(), quick()); });
   ::setenv("CURL_CA_BUNDLE", nginx_.folder("other.pem").c_str(), 1);
   expect_error(ErrorCode::io, "certificate", [&] { http::Source(url(), quick()); });
   ::setenv("CURL_CA_BUNDLE", nginx_.folder("none.pem").c_str(), 1);
   expect_error(ErrorCode::io, "certificate", [&] { http::Source(url(), quick()); });
-  EXPECT_LT(timer.elapsed(), 2s);
 }
 
 TEST_F(OnTls, TheVariablesThatNameAnAuthorityAreHonoured) {
@@ -116,7 +114,7 @@ TEST_F(OnTls, ASecureUrlIsNotRedirectedToAnInsecureOne) {
 TEST(Tls, APlainServerIsNoTlsServer) {
   ScriptedServer server([](const ScriptedRequest&) { return ScriptedReply{"", true}; });
   std::string url = server.url();
-  http::Options options = quick();
+  http::Options options = impatient();
   options.tries = 1;
   expect_error(ErrorCode::io_transient, "1 try",
                [&] { http::Source(url.insert(4, "s"), options); });

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <random>
@@ -39,19 +40,17 @@ extern "C" ssize_t pread(int fd, void* into, size_t count, off_t at) {
 namespace voyager {
 namespace {
 
-using Bytes = std::vector<std::byte>;
+using Bytes = std::string;
 
 Bytes random_bytes(size_t count) {
   std::mt19937 random(5);
-  Bytes bytes(count);
-  for (std::byte& b : bytes) b = static_cast<std::byte>(random());
+  Bytes bytes(count, '\0');
+  for (char& b : bytes) b = static_cast<char>(random());
   return bytes;
 }
 
 void write_file(const std::string& path, const Bytes& bytes) {
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(path, std::ios::binary) << bytes;
 }
 
 // Not in tmpfs, where there is nothing to read past.
@@ -68,12 +67,12 @@ class FileSource : public testing::TestWithParam<Access> {
     source_->expect(GetParam());
   }
   Bytes read(uint64_t offset, size_t count) const {
-    Bytes into(count);
-    source_->read(offset, into);
+    Bytes into(count, '\0');
+    source_->read(offset, std::as_writable_bytes(std::span(into)));
     return into;
   }
   bool same(uint64_t offset, size_t count) const {
-    return std::ranges::equal(read(offset, count), std::span(bytes_).subspan(offset, count));
+    return std::memcmp(read(offset, count).data(), bytes_.data() + offset, count) == 0;
   }
   // Its error, with a code that is not one where there is none.
   Error error_of(uint64_t offset, size_t count) const {
@@ -91,9 +90,9 @@ class FileSource : public testing::TestWithParam<Access> {
 };
 
 TEST_P(FileSource, GivesAnyRange) {
-  open(random_bytes(3'000'017));  // larger than a bounce buffer, no multiple of a block
+  open(random_bytes(1'100'017));  // larger than a bounce buffer, no multiple of a block
   const uint64_t edges[] = {0,    1,       511,     512,     4095,      4096,
-                            4097, 1048575, 1048576, 1048577, 2'999'999, 3'000'017};
+                            4097, 1048575, 1048576, 1048577, 1'100'000, 1'100'017};
   for (const uint64_t first : edges)
     for (const uint64_t end : edges)
       EXPECT_TRUE(end < first || same(first, end - first)) << first << " to " << end;
@@ -108,7 +107,7 @@ TEST_P(FileSource, GivesRangesToManyThreadsAtOnce) {
       std::mt19937 random(t);
       for (int i = 0; i < 50; ++i) {
         const uint64_t offset = random() % bytes_.size();
-        wrong += !same(offset, random() % (bytes_.size() - offset));
+        wrong += !same(offset, random() % std::min<size_t>(100'000, bytes_.size() - offset));
       }
     });
   for (std::thread& thread : threads) thread.join();
@@ -224,9 +223,9 @@ TEST(FileSourceOnTmpfs, IsReadWithoutTheCacheAsWithIt) {
   if (::access(path.c_str(), R_OK) != 0) GTEST_SKIP() << "no /dev/shm here";
   const auto source = open_file_source(path);
   source->expect(Access::uncached);
-  Bytes into(9'000);
-  source->read(1'001, into);
-  EXPECT_TRUE(std::ranges::equal(into, std::span(bytes).subspan(1'001)));
+  Bytes into(9'000, '\0');
+  source->read(1'001, std::as_writable_bytes(std::span(into)));
+  EXPECT_EQ(into, bytes.substr(1'001));
   ::unlink(path.c_str());
 }
 
