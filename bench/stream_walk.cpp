@@ -119,7 +119,7 @@ int main(int argc, char** argv) try {
   const voy::Target target = device.create_target(target_desc);
 
   const auto frames = static_cast<size_t>(seconds * fps);
-  std::vector<double> ms, wall, missing, cut;
+  std::vector<double> ms, wall, missing, cut, seen, unseen;
   double first_image = 0, settled = 0;
   size_t coarse = 0;
   uint64_t needed = 0;
@@ -141,14 +141,19 @@ int main(int argc, char** argv) try {
     view.render(frame);
     const VoyFrameStats stats = view.stats();
     if (i == 0) first_image = seconds_since(start);
-    if (settled == 0 && stats.missing == 0) settled = seconds_since(start);
+    VoyStreamingStats streamed = VOY_STREAMING_STATS_INIT;
+    voyGetStreamingStats(handle, &streamed);
+    const bool whole = stats.missing == 0 || streamed.seenMissingChunks == 0;
+    if (settled == 0 && i > 10 && whole) settled = seconds_since(start);
     if (i == settling) voyGetStreamingStats(handle, &before);
     if (i >= settling) {
       wall.push_back(1e3 * seconds_since(begun));
       ms.push_back(stats.millisecondsTotal);
       missing.push_back(static_cast<double>(stats.missing));
       cut.push_back(static_cast<double>(stats.cutSize));
-      coarse += stats.missing != 0;
+      coarse += !whole;
+      seen.push_back(static_cast<double>(streamed.seenChunks));
+      unseen.push_back(static_cast<double>(streamed.seenMissingChunks));
       needed += stats.bytesNeeded;
     }
     next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps));
@@ -163,7 +168,8 @@ int main(int argc, char** argv) try {
       "\"pool_mb\": %.1f, \"slots\": %llu, \"resident\": %llu, \"needed_chunks\": %llu,\n"
       " \"device_s\": %.2f, \"opened_s\": %.2f, \"first_image_s\": %.2f, \"settled_s\": %.2f, "
       "\"frames\": %zu, \"coarse_frames\": %zu, \"missing_p50\": %.0f, \"missing_p99\": %.0f, "
-      "\"cut_p50\": %.0f,\n"
+      "\"cut_p50\": %.0f, \"seen_p50\": %.0f, \"seen_missing_p50\": %.0f, \"seen_missing_p99\": "
+      "%.0f,\n"
       " \"ms_p50\": %.2f, \"ms_p99\": %.2f, \"wall_p50\": %.2f, \"wall_p99\": %.2f, "
       "\"wall_max\": %.2f, \"read_mb_a_metre\": %.3f, \"late\": %llu, \"arrived\": %llu, "
       "\"evicted\": %llu, \"failures\": %llu, \"peak_host_mb\": %.0f}\n",
@@ -173,8 +179,9 @@ int main(int argc, char** argv) try {
       static_cast<unsigned long long>(after.residentChunks),
       static_cast<unsigned long long>(after.neededChunks), device_made, opened, first_image,
       settled, frames, coarse, quantile(missing, 0.5), quantile(missing, 0.99), quantile(cut, 0.5),
-      quantile(ms, 0.5), quantile(ms, 0.99), quantile(wall, 0.5), quantile(wall, 0.99),
-      quantile(wall, 1), static_cast<double>(after.bytesRead - before.bytesRead) / 1e6 / metres,
+      quantile(seen, 0.5), quantile(unseen, 0.5), quantile(unseen, 0.99), quantile(ms, 0.5),
+      quantile(ms, 0.99), quantile(wall, 0.5), quantile(wall, 0.99), quantile(wall, 1),
+      static_cast<double>(after.bytesRead - before.bytesRead) / 1e6 / metres,
       static_cast<unsigned long long>(after.late - before.late),
       static_cast<unsigned long long>(after.arrived - before.arrived),
       static_cast<unsigned long long>(after.evicted - before.evicted),

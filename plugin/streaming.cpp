@@ -100,6 +100,8 @@ VoyResult voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats) {
     out.neededChunks = found.need.chunks;
     out.missingChunks = found.need.missing;
     out.missingBytes = found.need.missing_bytes;
+    out.seenChunks = found.need.seen;
+    out.seenMissingChunks = found.need.seen_missing;
     out.requested = found.chunks.requested;
     out.arrived = found.chunks.arrived;
     out.late = found.chunks.late;

@@ -58,9 +58,7 @@ Residency::Needed Residency::look_at(uint32_t chunk, std::span<const Viewer> vie
     const float size = hull.screen_size(viewer.query.centre);
     if (!(size >= viewer.query.target_size)) continue;
     const float error = size / viewer.query.target_size;
-    const Class of = !viewer.sees(hull) ? Class::around
-                     : viewer.ahead     ? Class::ahead
-                                        : Class::seen;
+    const Class of = !viewer.sees(hull) ? Class::around : viewer.ahead ? Class::ahead : Class::seen;
     found.now = found.now || !viewer.ahead;
     found.urgency = std::max(
         found.urgency, make_urgency(static_cast<uint32_t>(of), error >= 1.0f ? error : INFINITY));
@@ -330,10 +328,12 @@ std::vector<Residency::Evicted> Residency::evict() {
 void Residency::count_need() {
   need_ = {};
   for (const Needed& needed : needed_) {
-    counted_[needed.chunk] = needed.now;
+    counted_[needed.chunk] = 0;
     if (!needed.now) continue;
+    const bool seen = class_of(needed.urgency) == Class::seen && needed.chunk >= pinned_;
+    counted_[needed.chunk] = seen ? 2 : 1;
     ++need_.chunks;
-    need_.seen += class_of(needed.urgency) == Class::seen && needed.chunk >= pinned_;
+    need_.seen += seen;
     if (state_[needed.chunk] != State::resident) count_missing(needed.chunk, true);
   }
   for (const Needed& needed : failed_)
@@ -344,7 +344,9 @@ void Residency::count_need() {
 // A chunk that comes or goes after the plan.
 void Residency::count_missing(uint32_t chunk, bool missing) {
   if (needed_plan_[chunk] != plan_ || counted_[chunk] == 0) return;
-  need_.missing += missing ? 1 : -uint64_t{1};
+  const uint64_t one = missing ? 1 : -uint64_t{1};
+  need_.missing += one;
+  if (counted_[chunk] == 2) need_.seen_missing += one;
   need_.missing_bytes += missing ? chunks_[chunk].bytes : -uint64_t{chunks_[chunk].bytes};
 }
 

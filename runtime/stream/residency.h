@@ -29,7 +29,7 @@ struct ResidencyCounters {
 // Of the last plan, for the viewers that are not ahead: chunks, and their stored bytes.
 struct ResidencyNeed {
   uint64_t chunks = 0, missing = 0, missing_bytes = 0;
-  uint64_t seen = 0;  // beside those that are pinned
+  uint64_t seen = 0, seen_missing = 0;  // beside those that are pinned
   std::vector<uint32_t> seen_failed;
 };
 
@@ -123,7 +123,7 @@ class Residency {
   std::vector<uint32_t> urgency_;      // when it was last needed
   std::vector<uint32_t> needed_plan_;  // the last plan that needed it
   std::vector<uint8_t> missed_;        // a viewer has seen that it was not there
-  std::vector<uint8_t> counted_;       // in need_, if the last plan needed it
+  std::vector<uint8_t> counted_;       // 1: in need_, if the last plan needed it; 2: as seen, too
   std::vector<uint32_t> target_;       // the last plan that had it in its target
   std::vector<uint32_t> children_there_;
   std::vector<uint8_t> shares_family_;

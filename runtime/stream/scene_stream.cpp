@@ -12,6 +12,7 @@ namespace {
 
 constexpr size_t kChangesKept = 64;
 constexpr uint32_t kMostChunksARead = 64;
+constexpr int kPlanRest = 3;  // after a plan, times what it took
 
 ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) {
   return {a.requested + b.requested, a.arrived + b.arrived, a.evicted + b.evicted, a.late + b.late,
@@ -67,6 +68,16 @@ void SceneStream::stop() {
 double SceneStream::now() const {
   if (desc_.clock) return desc_.clock();
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Seconds until there may be something to do that no one tells of; negative: never.
+double SceneStream::next_due() const {
+  double wait = failures_.next_due(now());
+  const std::lock_guard small(small_mutex_);
+  if (!look_again_) return wait;
+  const auto rest = next_plan_ - std::chrono::steady_clock::now();
+  const double plan = std::max(0.0, std::chrono::duration<double>(rest).count());
+  return wait < 0 ? plan : std::min(wait, plan);
 }
 
 void SceneStream::signal() {
@@ -170,7 +181,7 @@ void SceneStream::run() {
     {
       Lock lock(mutex_);
       if (step(lock)) continue;
-      wait = failures_.next_due(now());
+      wait = next_due();
     }
     std::unique_lock small(small_mutex_);
     const auto woken = [&] { return stopping_ || signals_ != seen; };
@@ -197,6 +208,9 @@ bool SceneStream::step(Lock& lock) {
 
 bool SceneStream::plan_if_asked() {
   std::vector<Viewer> viewers;
+  // Threads that read must not all be planning, however many chunks a scene has.
+  const auto now = std::chrono::steady_clock::now();
+  if (desc_.readers != 0 && now < next_plan_) return false;
   {
     const std::lock_guard small(small_mutex_);
     if (!look_again_) return false;
@@ -204,6 +218,8 @@ bool SceneStream::plan_if_asked() {
     for (const auto& [who, of] : viewers_) viewers.insert(viewers.end(), of.begin(), of.end());
   }
   residency_.plan(viewers);
+  const auto end = std::chrono::steady_clock::now();
+  next_plan_ = end + kPlanRest * (end - now);
   return true;
 }
 
@@ -450,6 +466,7 @@ void SceneStream::wait(bool stand_in) {
     {
       const std::unique_lock pool(pool_mutex_);
       Lock lock(mutex_);
+      next_plan_ = {};
       stepped = plan_if_asked();
       commit_all();
       publish();

@@ -2,6 +2,7 @@
 // Keeps the chunks of one scene coming: threads that read and decode what residency asks
 // for, and what a frame does about it. A frame waits for none of it unless it says so.
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -128,6 +129,7 @@ class SceneStream {
   void publish();
   void signal();
   double now() const;
+  double next_due() const;
 
   const std::shared_ptr<const SceneFile> file_;
   const StreamDesc desc_;
@@ -159,6 +161,7 @@ class SceneStream {
   std::map<uint32_t, Coming> coming_;  // by chunk
   std::deque<uint32_t> ready_;         // those of them without a slot
   uint64_t staged_bytes_ = 0;
+  std::chrono::steady_clock::time_point next_plan_;
   // Of the pool's present slots: what a thread has begun for earlier ones is for nothing.
   uint64_t generation_ = 0;
   unsigned filling_ = 0;

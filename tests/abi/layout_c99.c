@@ -116,6 +116,8 @@ const struct LayoutRow kLayout[] = {
     FIELD(VoyStreamingStats, neededChunks),
     FIELD(VoyStreamingStats, missingChunks),
     FIELD(VoyStreamingStats, missingBytes),
+    FIELD(VoyStreamingStats, seenChunks),
+    FIELD(VoyStreamingStats, seenMissingChunks),
     FIELD(VoyStreamingStats, requested),
     FIELD(VoyStreamingStats, arrived),
     FIELD(VoyStreamingStats, late),

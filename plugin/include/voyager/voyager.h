@@ -365,6 +365,8 @@ typedef struct VoyStreamingStats {
   uint64_t neededChunks;          /* by the latest frames, whatever the budget */
   uint64_t missingChunks;         /* of these, not there */
   uint64_t missingBytes;          /* and what they take in the file */
+  uint64_t seenChunks;            /* of those needed: within an eye's frustum and the margin */
+  uint64_t seenMissingChunks;     /* of these, not there: 0 in a frame that shows nothing coarse */
   uint64_t requested, arrived;    /* chunks */
   uint64_t late;    /* of those that arrived: a frame had looked where they were not yet */
   uint64_t evicted; /* to make room */
@@ -374,7 +376,7 @@ typedef struct VoyStreamingStats {
                         that may help. The log names each cause once (WARNING) */
 } VoyStreamingStats;
 #define VOY_STREAMING_STATS_INIT \
-  { VOY_STRUCTURE_TYPE_STREAMING_STATS, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
+  { VOY_STRUCTURE_TYPE_STREAMING_STATS, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
 /* UNSUPPORTED where the scene is not streamed. */
 VOY_API VoyResult voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats);
