@@ -156,6 +156,7 @@ PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
 }
 
 void DevicePool::fill(uint32_t slot, const StagedChunk& chunk) {
+  const std::shared_ptr<void> kept = keep_context();  // the thread may be the host's
   device_->use();
   const UploadRing::Piece piece = ring_.take();
   pack(slot, chunk, piece.host());

@@ -23,8 +23,8 @@ class DevicePool final : public ChunkPool {
   static PoolBytes bytes(const Device& device, const Scene& scene, SlotShape shape);
 
   // Takes all its memory. The scene outlives it; its description is complete, and its search has
-  // chunks and tiers. Throws Error(over_budget) for want of memory, Error(unsupported) where there are more
-  // addresses than 32 bits.
+  // chunks and tiers. Throws Error(over_budget) for want of memory, Error(unsupported) where there
+  // are more addresses than 32 bits.
   DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
              uint32_t slots);
   ~DevicePool() override;
@@ -59,7 +59,7 @@ class DevicePool final : public ChunkPool {
   const int sh_degree_;
   const bool half_sh_;
   const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
-  const PoolLayout piece_layout_;  // of one slot
+  const PoolLayout piece_layout_;                // of one slot
   PoolLayout layout_;
   uint32_t slots_ = 0;
   Buffer<unsigned char> memory_;

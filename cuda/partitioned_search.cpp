@@ -17,8 +17,7 @@ constexpr uint32_t kSubtreesADue = 4;
 
 // What a search of a streamed scene follows.
 struct Streamed {
-  Streamed(const Scene& scene, const Device& device)
-      : pool(pool_of(scene, device)), reader(pool) {}
+  Streamed(const Scene& scene, const Device& device) : pool(pool_of(scene, device)), reader(pool) {}
 
   DevicePool& pool;
   PoolReader reader;
@@ -155,8 +154,8 @@ FrameCounters PartitionedSearch::counters() const {
 }
 
 void PartitionedSearch::report(void* into, cudaStream_t stream) const {
-  check(cudaMemcpyAsync(into, state_->view().work + 1, sizeof(FrameCounters), cudaMemcpyDeviceToHost,
-                        stream),
+  check(cudaMemcpyAsync(into, state_->view().work + 1, sizeof(FrameCounters),
+                        cudaMemcpyDeviceToHost, stream),
         "counters");
 }
 

@@ -24,6 +24,7 @@ class Streaming : public SplatTest {
                               unsigned readers = 0) {
     StreamingDesc desc;
     desc.readers = readers;
+    desc.first_bytes = 0;
     desc.budget = budget_of(backend, bytes, share);
     return open_streamed(source_of(bytes), desc, backend, memory(), workers);
   }
