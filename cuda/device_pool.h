@@ -51,6 +51,8 @@ class DevicePool final : public ChunkPool {
   }
   void pack(uint32_t slot, const StagedChunk& chunk, unsigned char* into) const;
   PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;
+  // Throws Error(over_budget) where a resize has left no memory.
+  void require_room() const;
   void wait_for_frames();
   void make_room(uint32_t slots);
 
@@ -83,7 +85,8 @@ class PoolReader {
   PoolReader(const PoolReader&) = delete;
   PoolReader& operator=(const PoolReader&) = delete;
 
-  // What comes on the stream from now on finds what was linked.
+  // What comes on the stream from now on finds what was linked. Throws Error(over_budget) where
+  // the pool has lost its memory.
   void begin(cudaStream_t stream) const;
   // What was launched on the stream so far has to end before links change.
   void end(cudaStream_t stream) noexcept;

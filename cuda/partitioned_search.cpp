@@ -100,7 +100,6 @@ bool PartitionedSearch::fit_pool(cudaStream_t stream) {
 
 // Whether the search goes on from its last cut.
 bool PartitionedSearch::follow_stream(const SearchFrame& now, bool goes_on) {
-  streamed_->reader.begin(now.stream);
   const std::optional<Relinked> relinked = streamed_->changes.follow(*scene_->stream);
   if (!goes_on || !relinked) {
     launch_forget(now);
@@ -115,7 +114,10 @@ bool PartitionedSearch::follow_stream(const SearchFrame& now, bool goes_on) {
 void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
   references_.begin_frame(query);
   bool goes_on = std::exchange(started_, false);  // should a launch fail, it does not
-  if (streamed_) goes_on = fit_pool(stream) && goes_on;
+  if (streamed_) {
+    streamed_->reader.begin(stream);
+    goes_on = fit_pool(stream) && goes_on;
+  }
   const SearchFrame now = frame(query, stream);
   if (streamed_) goes_on = follow_stream(now, goes_on);
   if (now.tree.subtree_count != 0) {
