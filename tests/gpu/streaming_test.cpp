@@ -208,7 +208,7 @@ TEST_F(Streaming, RoomForWhatIsSeenIsRoomForTheResidentImage) {
 TEST_F(Streaming, ViewsOnTwoThreadsDrawWhatTheyFindWhileChunksGo) {
   const Bytes bytes = cloud_bytes(30000, 11, 1);
   const auto whole = resident(bytes);
-  for (const double share : {0.15, 0.5}) {
+  for (const double share : {0.3, 0.7}) {
     const auto streamed = open(bytes, share, 2);
     const auto fly = [&](uint32_t seed, std::atomic<size_t>& same) {
       Workers own(1);
