@@ -69,8 +69,7 @@ __global__ void __launch_bounds__(kThreads) search_forget(uint32_t subtrees, Sta
 
 void launch_relink(const SearchFrame& f, const Relinked& relinked) {
   static const unsigned resident = resident_blocks(search_relink, kThreads, 1);
-  const uint32_t threads =
-      std::max(relinked.unlinked_count * kGroupLanes, relinked.changed_count);
+  const uint32_t threads = std::max(relinked.unlinked_count * kGroupLanes, relinked.changed_count);
   if (threads == 0) return;
   search_relink<<<std::min((threads + kThreads - 1) / kThreads, f.multiprocessors * resident),
                   kThreads, 0, f.stream>>>(f.tree, f.state, relinked);

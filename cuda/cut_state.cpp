@@ -53,8 +53,8 @@ CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
   origin_ = Buffer<CutOrigin>(weights ? places : 0);
   weights_ = Buffer<float>(weights ? places : 0);
   ids_ = Buffer<uint32_t>(tree.chunks_come_and_go ? places : 0);
-  for (const Buffer<uint32_t>* zero :
-       {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_, &open_block_count_, &dirty_flags_, &dirty_})
+  for (const Buffer<uint32_t>* zero : {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_,
+                                       &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);
   fill(segments_, 0);
   fill(weights_, 0);  // places that hold no node are read with the others

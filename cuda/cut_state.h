@@ -60,8 +60,8 @@ struct FrameCounters {
 // As kernels take it.
 struct StateView {
   Watch* watch;
-  uint32_t* refined;  // bits of slots, and kOpen
-  uint32_t* cut;      // bits of slots
+  uint32_t* refined;    // bits of slots, and kOpen
+  uint32_t* cut;        // bits of slots
   uint32_t* stand_ins;  // bits of slots; null where no record is ever blocked
   const Block* blocks;
   const Tier* tiers;

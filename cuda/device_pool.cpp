@@ -156,7 +156,9 @@ PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
 }
 
 void DevicePool::fill(uint32_t slot, const StagedChunk& chunk) {
+  const std::shared_ptr<void> kept = keep_context();  // the thread may be the host's
   device_->use();
+  require_room();
   const UploadRing::Piece piece = ring_.take();
   pack(slot, chunk, piece.host());
   launch_fill(copies(slot, chunk, piece.device()), stream_.get());
@@ -166,6 +168,7 @@ void DevicePool::fill(uint32_t slot, const StagedChunk& chunk) {
 // What may fail comes before what is launched.
 void DevicePool::apply(const LinkPatch& patch) {
   device_->use();
+  require_room();
   const PoolPatch copy = patches_.put(patch);
   wait_for_frames();
   launch_patch({array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords),
@@ -173,6 +176,12 @@ void DevicePool::apply(const LinkPatch& patch) {
                copy, stream_.get());
   patches_.read_by(stream_.get());
   applied_.record(stream_.get());
+}
+
+void DevicePool::require_room() const {
+  if (slots_ == 0)
+    throw Error(ErrorCode::over_budget,
+                "streaming: found no memory for any slot when a budget changed, expected some");
 }
 
 // On the device.
@@ -201,6 +210,7 @@ PoolReader::~PoolReader() {
 }
 
 void PoolReader::begin(cudaStream_t stream) const {
+  pool_.require_room();
   check(cudaStreamWaitEvent(stream, pool_.applied_.get(), 0), "links");
 }
 

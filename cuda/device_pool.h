@@ -23,8 +23,8 @@ class DevicePool final : public ChunkPool {
   static PoolBytes bytes(const Device& device, const Scene& scene, SlotShape shape);
 
   // Takes all its memory. The scene outlives it; its description is complete, and its search has
-  // chunks and tiers. Throws Error(over_budget) for want of memory, Error(unsupported) where there are more
-  // addresses than 32 bits.
+  // chunks and tiers. Throws Error(over_budget) for want of memory, Error(unsupported) where there
+  // are more addresses than 32 bits.
   DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
              uint32_t slots);
   ~DevicePool() override;
@@ -51,6 +51,8 @@ class DevicePool final : public ChunkPool {
   }
   void pack(uint32_t slot, const StagedChunk& chunk, unsigned char* into) const;
   PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;
+  // Throws Error(over_budget) where a resize has left no memory.
+  void require_room() const;
   void wait_for_frames();
   void make_room(uint32_t slots);
 
@@ -59,7 +61,7 @@ class DevicePool final : public ChunkPool {
   const int sh_degree_;
   const bool half_sh_;
   const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
-  const PoolLayout piece_layout_;  // of one slot
+  const PoolLayout piece_layout_;                // of one slot
   PoolLayout layout_;
   uint32_t slots_ = 0;
   Buffer<unsigned char> memory_;
@@ -83,7 +85,8 @@ class PoolReader {
   PoolReader(const PoolReader&) = delete;
   PoolReader& operator=(const PoolReader&) = delete;
 
-  // What comes on the stream from now on finds what was linked.
+  // What comes on the stream from now on finds what was linked. Throws Error(over_budget) where
+  // the pool has lost its memory.
   void begin(cudaStream_t stream) const;
   // What was launched on the stream so far has to end before links change.
   void end(cudaStream_t stream) noexcept;

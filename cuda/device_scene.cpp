@@ -69,9 +69,8 @@ void DeviceScene::upload_gaussians(const Scene& scene) {
   const size_t count = gaussians.size();
   hulls_ =
       upload_made<float4>(count, kUploadBlock, [&](size_t i) { return device_hull(gaussians[i]); });
-  shapes_ = upload_made<float4>(2 * count, kUploadBlock, [&](size_t i) {
-    return device_shape(gaussians[i / 2], i % 2);
-  });
+  shapes_ = upload_made<float4>(2 * count, kUploadBlock,
+                                [&](size_t i) { return device_shape(gaussians[i / 2], i % 2); });
   if (!scene.flat())
     opacities_ =
         upload_made<float>(count, kUploadBlock, [&](size_t i) { return gaussians[i].opacity; });
@@ -91,8 +90,7 @@ bool DeviceScene::upload_coefficients(const Scene& scene, Workers& workers) {
     const size_t n = std::min(kUploadBlock, count - first);
     workers.for_blocks(n, 4096, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
-        put_half_coefficients(&scene.sh[(first + i) * used], scene.sh_degree,
-                              &staging[i * stride]);
+        put_half_coefficients(&scene.sh[(first + i) * used], scene.sh_degree, &staging[i * stride]);
     });
     check(cudaMemcpy(half_coefficients_.data() + first * stride, staging.data(),
                      n * stride * sizeof(__half), cudaMemcpyHostToDevice),

@@ -17,8 +17,7 @@ constexpr uint32_t kSubtreesADue = 4;
 
 // What a search of a streamed scene follows.
 struct Streamed {
-  Streamed(const Scene& scene, const Device& device)
-      : pool(pool_of(scene, device)), reader(pool) {}
+  Streamed(const Scene& scene, const Device& device) : pool(pool_of(scene, device)), reader(pool) {}
 
   DevicePool& pool;
   PoolReader reader;
@@ -101,7 +100,6 @@ bool PartitionedSearch::fit_pool(cudaStream_t stream) {
 
 // Whether the search goes on from its last cut.
 bool PartitionedSearch::follow_stream(const SearchFrame& now, bool goes_on) {
-  streamed_->reader.begin(now.stream);
   const std::optional<Relinked> relinked = streamed_->changes.follow(*scene_->stream);
   if (!goes_on || !relinked) {
     launch_forget(now);
@@ -116,7 +114,10 @@ bool PartitionedSearch::follow_stream(const SearchFrame& now, bool goes_on) {
 void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
   references_.begin_frame(query);
   bool goes_on = std::exchange(started_, false);  // should a launch fail, it does not
-  if (streamed_) goes_on = fit_pool(stream) && goes_on;
+  if (streamed_) {
+    streamed_->reader.begin(stream);
+    goes_on = fit_pool(stream) && goes_on;
+  }
   const SearchFrame now = frame(query, stream);
   if (streamed_) goes_on = follow_stream(now, goes_on);
   if (now.tree.subtree_count != 0) {
@@ -155,8 +156,8 @@ FrameCounters PartitionedSearch::counters() const {
 }
 
 void PartitionedSearch::report(void* into, cudaStream_t stream) const {
-  check(cudaMemcpyAsync(into, state_->view().work + 1, sizeof(FrameCounters), cudaMemcpyDeviceToHost,
-                        stream),
+  check(cudaMemcpyAsync(into, state_->view().work + 1, sizeof(FrameCounters),
+                        cudaMemcpyDeviceToHost, stream),
         "counters");
 }
 

@@ -70,8 +70,8 @@ PoolPatch PatchBuffers::put(const LinkPatch& patch) {
   p.linked = writer.put<SearchSubtree>(patch.linked.size(),
                                        [&](size_t i) { return patch.linked[i].second; });
   p.parents = writer.put(patch.parents);
-  p.linked_subtrees = writer.put<uint32_t>(patch.linked.size(),
-                                           [&](size_t i) { return patch.linked[i].first; });
+  p.linked_subtrees =
+      writer.put<uint32_t>(patch.linked.size(), [&](size_t i) { return patch.linked[i].first; });
   p.unlinked = writer.put(patch.unlinked);
   p.cut_count = count_of(patch.cut.records);
   p.tied_count = count_of(patch.tied.records);

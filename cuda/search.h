@@ -14,9 +14,9 @@ namespace voyager::cuda {
 // A cut on the device. Places that hold kNoNode are none.
 struct CutList {
   const uint32_t* nodes;  // in the order of ids: ids, or addresses of a streamed scene
-  const float* weights;  // t by place; null where the search finds none
-  const uint32_t* size;  // places in use; on the device, as the arrays are
-  uint32_t room;         // no list has more places
+  const float* weights;   // t by place; null where the search finds none
+  const uint32_t* size;   // places in use; on the device, as the arrays are
+  uint32_t room;          // no list has more places
 };
 
 struct CutFound {

@@ -21,9 +21,9 @@ std::shared_ptr<Scene> scene_of(LodTree tree, uint32_t chunk_bytes = kDefaultChu
   auto scene = std::make_shared<Scene>(std::pmr::get_default_resource());
   scene->storage = Storage::lossless;
   scene->tree = std::move(tree);
-  scene->leaf_count = static_cast<uint64_t>(
-      std::count_if(scene->tree.records.begin(), scene->tree.records.end(),
-                    [](const NodeRecord& r) { return r.child_count == 0; }));
+  scene->leaf_count =
+      static_cast<uint64_t>(std::count_if(scene->tree.records.begin(), scene->tree.records.end(),
+                                          [](const NodeRecord& r) { return r.child_count == 0; }));
   scene->partition = partition_tree(scene->tree, chunk_bytes);
   scene->search = make_search_tree(scene->tree, scene->partition, {}, workers);
   return scene;
