@@ -9,8 +9,6 @@ namespace {
 
 // How many requests evictions make room for ahead of their reading.
 constexpr size_t kRoomAhead = 256;
-// Chunks that come, and that go, in one step: a frame has to link them.
-constexpr size_t kMostAStep = 256;
 
 uint32_t make_urgency(uint32_t of_class, float error) {
   return of_class << 30 | std::bit_cast<uint32_t>(error) >> 1;
@@ -285,7 +283,7 @@ std::vector<uint32_t> Residency::arrive(const std::function<bool(uint32_t)>& acc
       drop(chunk);
       continue;
     }
-    if (arrived.size() == kMostAStep || !parents_there(chunk)) {
+    if (!parents_there(chunk)) {
       waiting.push_back(chunk);
       continue;
     }
@@ -310,8 +308,7 @@ std::vector<uint32_t> Residency::arrive(const std::function<bool(uint32_t)>& acc
 std::vector<Residency::Evicted> Residency::evict() {
   std::vector<Evicted> evicted;
   const size_t wanted = coming_ + std::min(requests_.size(), kRoomAhead);
-  while (free_slots_.size() + evicted.size() < wanted && !victims_.empty() &&
-         evicted.size() < kMostAStep) {
+  while (free_slots_.size() + evicted.size() < wanted && !victims_.empty()) {
     const uint32_t chunk = victims_.back();
     victims_.pop_back();
     if (state_[chunk] != State::resident || is_wanted(chunk) || children_there_[chunk] != 0)

@@ -128,10 +128,7 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
     }
   });
   for (uint32_t chunk = 0; chunk < count; ++chunk) residency_.filled(chunk);
-  for (uint32_t before = 0; residency_.resident() != count;) {
-    commit_all();
-    if (std::exchange(before, residency_.resident()) == residency_.resident()) break;
-  }
+  commit_all();
   for (uint32_t chunk = 0; chunk < residency_.pinned(); ++chunk)
     if (!residency_.is_resident(chunk)) failures_.rethrow(chunk);
 }
