@@ -165,7 +165,8 @@ TEST(StreamingDisk, ReadsThatFailAreTriedAgain) {
   Flight flight(1.0);
   const FrameInput input = ahead({0, -3, -60}, kForward);
   flight.disk().fault = [&](uint64_t offset, size_t) {
-    throw Error(ErrorCode::io_transient, "disk.voy: offset " + std::to_string(offset) + ": found EIO");
+    throw Error(ErrorCode::io_transient,
+                "disk.voy: offset " + std::to_string(offset) + ": found EIO");
   };
   for (int i = 0; i < 60; ++i) flight.draw(input);
   EXPECT_GT(flight.counters().failures, 1u);
