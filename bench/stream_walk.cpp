@@ -122,7 +122,6 @@ int main(int argc, char** argv) try {
   std::vector<double> ms, wall, missing, cut, seen, unseen;
   double first_image = 0, settled = 0;
   size_t coarse = 0;
-  uint64_t needed = 0;
   VoyStreamingStats before = VOY_STREAMING_STATS_INIT;
   // Five seconds to settle, and then the walk.
   const auto settling = static_cast<size_t>(5 * fps);
@@ -154,7 +153,6 @@ int main(int argc, char** argv) try {
       coarse += !whole;
       seen.push_back(static_cast<double>(streamed.seenChunks));
       unseen.push_back(static_cast<double>(streamed.seenMissingChunks));
-      needed += stats.bytesNeeded;
     }
     next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps));
     std::this_thread::sleep_until(next);

@@ -1,6 +1,7 @@
 #include "runtime/frame/frame_streaming.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "runtime/frame/frame_search.h"
@@ -80,13 +81,13 @@ std::optional<Vec3d> FrameStreaming::velocity(const FrameInput& frame) {
   return velocity_ && length(*velocity_) > kSlowest ? velocity_ : std::nullopt;
 }
 
-std::vector<Viewer> FrameStreaming::viewers_of(const FrameInput& frame, size_t instance) {
+Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance) {
   const Vec3d& origin = scenes_[instance]->origin;
   Viewer viewer{cut_query(frame, instance, origin), {}, false};
   for (const FrameEye& eye : frame.eyes)
     viewer.eyes.push_back(wedge_of(instance_camera(frame, eye, instance), origin,
                                    kWedgeMargin * double{viewer.query.target_size}));
-  return {viewer};
+  return viewer;
 }
 
 FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
@@ -95,12 +96,12 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
   const std::optional<Vec3d> way = velocity(frame);
   for (size_t i = 0; i < scenes_.size(); ++i) {
     if (!scenes_[i]->streamed()) continue;
-    std::vector<Viewer> viewers = viewers_of(frame, i);
+    std::vector<Viewer> viewers = {viewer_of(frame, i)};
     for (const double horizon : kHorizons) {
       if (!way) break;
       FrameInput later = frame;
       for (FrameEye& eye : later.eyes) eye.camera.eye = eye.camera.eye + horizon * *way;
-      viewers.push_back(viewers_of(later, i)[0]);
+      viewers.push_back(viewer_of(later, i));
       viewers.back().ahead = true;
     }
     scenes_[i]->stream->look(&scenes_[i], std::move(viewers));

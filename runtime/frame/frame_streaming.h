@@ -1,6 +1,5 @@
 #pragma once
 // A view's part in streaming: says where it looks, and is going, and takes what has come.
-#include <chrono>
 #include <functional>
 #include <optional>
 #include <shared_mutex>
@@ -29,7 +28,7 @@ class FrameStreaming {
   void collect(FrameStats& stats);
 
  private:
-  std::vector<Viewer> viewers_of(const FrameInput& frame, size_t instance);
+  Viewer viewer_of(const FrameInput& frame, size_t instance);
   std::optional<Vec3d> velocity(const FrameInput& frame);
 
   const Scenes& scenes_;

@@ -6,6 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/frame/load.h"
+#include "runtime/lod/nesting.h"
 
 namespace voyager {
 namespace {
@@ -200,13 +201,6 @@ void name_parents_of_lost_nodes(Scene& scene) {
   }
 }
 
-bool inside(const NodeRecord& child, const NodeRecord& parent) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (child.box_min[axis] < parent.box_min[axis] || child.box_max[axis] > parent.box_max[axis])
-      return false;
-  return child.extent <= parent.extent;
-}
-
 // damaged is by first, and its ranges do not overlap.
 bool is_damaged(const Scene& scene, uint32_t node) {
   const auto after =
@@ -223,7 +217,7 @@ void check_nesting(const Scene& scene, Workers& workers) {
   workers.for_blocks(tree.size(), 8192, [&](size_t begin, size_t end) {
     for (size_t n = begin; n < end; ++n) {
       const uint32_t parent = tree.parent[n];
-      if (parent == kNoNode || inside(tree.records[n], tree.records[parent])) continue;
+      if (parent == kNoNode || is_inside(tree.records[n], tree.records[parent])) continue;
       const auto node = static_cast<uint32_t>(n);
       if (is_damaged(scene, node) || is_damaged(scene, parent)) continue;
       uint32_t least = first_wrong.load();
@@ -239,17 +233,11 @@ void check_nesting(const Scene& scene, Workers& workers) {
            "nested boxes, extents that never grow downwards");
 }
 
-// To the bit.
-bool same(const NodeRecord& a, const NodeRecord& b) {
-  using Words = std::array<uint32_t, sizeof(NodeRecord) / sizeof(uint32_t)>;
-  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
-}
-
 // A repeated record is compared in its owner's stead.
 void check_repeats(const Scene& scene, const std::vector<ChunkFindings>& findings) {
   for (size_t index = 0; index < findings.size(); ++index)
     for (const auto& [node, record] : findings[index].repeated)
-      if (!same(record, scene.tree.records[node]) && !is_damaged(scene, node))
+      if (!is_same(record, scene.tree.records[node]) && !is_damaged(scene, node))
         refuse(scene,
                "chunk " + std::to_string(index) + " repeating node " + std::to_string(node) +
                    " with another record",
@@ -258,7 +246,7 @@ void check_repeats(const Scene& scene, const std::vector<ChunkFindings>& finding
 
 bool covers(const EntryHull& hull, const LodTree& tree, uint32_t parent) {
   if (parent == kNoNode) return hull.extent == std::numeric_limits<float>::infinity();
-  return inside(tree.records[parent], {hull.box_min, hull.extent, hull.box_max, 0});
+  return is_inside(tree.records[parent], {hull.box_min, hull.extent, hull.box_max, 0});
 }
 
 // A hull that is too small would let a search skip nodes of the cut.

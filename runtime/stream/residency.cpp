@@ -92,7 +92,6 @@ void Residency::find_needed(std::span<const Viewer> viewers) {
     const Needed found = look_at(chunk, viewers);
     if (found.urgency != 0) add_needed(found);
   };
-  // What leads to others without being needed itself is not followed.
   while (next < graph_->size() && graph_->parents(next).empty()) look(next);
   for (; from < extra_.size(); ++from) {
     const ChunkRange children = graph_->children(extra_[from].chunk);

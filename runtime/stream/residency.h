@@ -81,7 +81,6 @@ class Residency {
     return state_[chunk] == State::read || state_[chunk] == State::filled;
   }
   bool is_wanted(uint32_t chunk) const { return target_[chunk] == plan_ || chunk < pinned_; }
-  uint32_t urgency(uint32_t chunk) const { return urgency_[chunk]; }
   uint32_t slots() const { return slots_; }
   uint32_t pinned() const { return pinned_; }
   uint32_t resident() const { return resident_; }

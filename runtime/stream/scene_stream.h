@@ -64,9 +64,8 @@ class SceneStream {
   // source does and as a chunk is damaged: a scene without its top is nothing.
   void read_top(Workers& workers);
   // Other slots, as StreamDesc has them, and no more pinned than at first: what was there goes,
-  // but for what is pinned. Waits for frames
-  // that hold the pool, and for no source. Throws as ChunkPool::resize() does; the stream has
-  // then as many slots as before, if that was to be had.
+  // but for what is pinned. Waits for frames that hold the pool, and for no source. Throws as
+  // ChunkPool::resize() does; the stream has then as many slots as before, if that was to be had.
   void resize(uint32_t slots, uint32_t pinned, Workers& workers);
   // Ends the threads; nothing comes any more. Also done when it is destroyed.
   void stop();
@@ -101,6 +100,7 @@ class SceneStream {
 
  private:
   using Lock = std::unique_lock<std::mutex>;
+  static constexpr size_t kChangesKept = 64;
 
   // Read, and not resident yet.
   struct Coming {
@@ -114,7 +114,6 @@ class SceneStream {
   bool retry_due();
   bool fill_one(Lock& lock);
   bool read_some(Lock& lock);
-  std::vector<std::byte> read_stored(ChunkRange range);
   void stage(uint32_t chunk, const std::function<Chunk()>& decode, Lock& lock);
   void put_first(uint32_t count, std::span<const std::byte> stored, Workers& workers);
   void fail(uint32_t chunk, const std::exception& error);

@@ -1,7 +1,6 @@
 #include "runtime/stream/staged_chunk.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "runtime/base/error.h"
@@ -127,18 +126,6 @@ class Stager {
 }
 
 }  // namespace
-
-bool is_same(const NodeRecord& a, const NodeRecord& b) {
-  using Words = std::array<uint32_t, sizeof(NodeRecord) / sizeof(uint32_t)>;
-  return std::bit_cast<Words>(a) == std::bit_cast<Words>(b);
-}
-
-bool is_inside(const NodeRecord& child, const NodeRecord& parent) {
-  for (int axis = 0; axis < 3; ++axis)
-    if (child.box_min[axis] < parent.box_min[axis] || child.box_max[axis] > parent.box_max[axis])
-      return false;
-  return child.extent <= parent.extent;
-}
 
 void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file) {
   refuse(chunk, node, file, "a larger box or extent than its parent's", "one inside it");

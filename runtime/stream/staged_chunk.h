@@ -4,6 +4,7 @@
 #include <string>
 
 #include "runtime/format/chunk.h"
+#include "runtime/lod/nesting.h"
 #include "runtime/lod/subtree_cursor.h"
 #include "runtime/select/search_tree.h"
 
@@ -51,10 +52,6 @@ struct StagedChunk {
 // as far as the chunk by itself can show it.
 StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers, const std::string& file);
 
-// To the bit.
-bool is_same(const NodeRecord& a, const NodeRecord& b);
-// What the search relies on (runtime/lod/tree.h).
-bool is_inside(const NodeRecord& child, const NodeRecord& parent);
 // Error(damaged_chunk) naming file, chunk and node.
 [[noreturn]] void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file);
 [[noreturn]] void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file);

@@ -1,0 +1,137 @@
+// What a frame does: it says where it looks, and links what has come.
+#include <algorithm>
+#include <cstdio>
+
+#include "runtime/stream/scene_stream.h"
+
+namespace voyager {
+
+void SceneStream::look(const void* who, std::vector<Viewer> viewers) {
+  {
+    const std::lock_guard small(small_mutex_);
+    const auto found = viewers_.find(who);
+    if (found == viewers_.end() ? viewers.empty() : found->second == viewers) return;
+    if (viewers.empty())
+      viewers_.erase(found);
+    else
+      viewers_[who] = std::move(viewers);
+    look_again_ = true;
+  }
+  signal();
+}
+
+void SceneStream::commit() {
+  const std::unique_lock pool(pool_mutex_, std::try_to_lock);
+  if (!pool.owns_lock()) return;
+  const Lock lock(mutex_, std::try_to_lock);
+  if (lock.owns_lock()) commit_all();
+}
+
+void SceneStream::commit_all() {
+  LinkPatch patch;
+  const std::vector<Residency::Evicted> evicted = residency_.evict();
+  for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);
+  const std::vector<uint32_t> arrived =
+      residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
+  for (const uint32_t chunk : arrived) coming_.erase(chunk);
+  // Those that nobody wants any more.
+  std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
+  if (!patch.empty()) {
+    pool_.apply(patch);
+    auto change = std::make_shared<StreamChange>();
+    change->version = ++version_;
+    change->unlinked = std::move(patch.unlinked);
+    change->changed = std::move(patch.cut.changed);
+    change->changed.insert(change->changed.end(), patch.tied.changed.begin(),
+                           patch.tied.changed.end());
+    changes_.push_back(std::move(change));
+    if (changes_.size() > kChangesKept) changes_.pop_front();
+  }
+  for (const Residency::Evicted& e : evicted) residency_.free_slot(e.slot);
+  if (evicted.empty() && arrived.empty()) return;
+  publish();
+  signal();
+}
+
+bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
+  StagedChunk& staged = coming_.at(chunk).chunk;
+  try {
+    linker_.check(staged, file_->name());
+  } catch (const Error& error) {
+    add_failure(chunk, error);
+    return false;
+  }
+  learn_families(staged.links);
+  linker_.arrive(std::move(staged.links), patch);
+  return true;
+}
+
+void SceneStream::learn_families(const LinkTable& table) {
+  for (const NodeBelow& node : table.below) {
+    const ChunkRange range = graph_.with_roots(node.first_child, node.child_count);
+    for (uint32_t chunk = range.first + 1; chunk < range.last; ++chunk)
+      residency_.set_shares_family(chunk, chunk + 1 < range.last);
+  }
+}
+
+bool SceneStream::changes_since(uint64_t version,
+                                std::vector<std::shared_ptr<const StreamChange>>& out) const {
+  out.clear();
+  if (version == version_) return true;
+  if (changes_.empty() || changes_.front()->version > version + 1) return false;
+  for (const auto& change : changes_)
+    if (change->version > version) out.push_back(change);
+  return true;
+}
+
+void SceneStream::check_fits() const {
+  const uint64_t slots = residency_.need().seen + residency_.pinned();
+  if (slots <= residency_.slots()) return;
+  const auto megabytes = [&](uint64_t of) {
+    return static_cast<double>(of * desc_.slot_bytes + desc_.fixed_bytes) / 1e6;
+  };
+  char message[160];
+  std::snprintf(message, sizeof message,
+                ": what the view frustum needs takes %.3f MB, the memory budget has room for "
+                "%.3f MB",
+                megabytes(slots), megabytes(residency_.slots()));
+  throw Error(ErrorCode::over_budget, file_->name() + message);
+}
+
+bool SceneStream::is_settled() const {
+  const std::vector<uint32_t> failed = residency_.need().seen_failed;
+  return residency_.settled() && std::all_of(failed.begin(), failed.end(), [&](uint32_t chunk) {
+           return failures_.is_hopeless(chunk);
+         });
+}
+
+void SceneStream::wait(bool stand_in) {
+  for (;;) {
+    uint64_t seen = 0;
+    {
+      const std::lock_guard small(small_mutex_);
+      seen = signals_;
+    }
+    bool stepped = false;
+    {
+      const std::unique_lock pool(pool_mutex_);
+      Lock lock(mutex_);
+      next_plan_ = {};
+      stepped = plan_if_asked();
+      commit_all();
+      publish();
+      check_fits();
+      if (is_settled()) {
+        const std::vector<uint32_t> failed = residency_.need().seen_failed;
+        if (!failed.empty() && !stand_in) failures_.rethrow(failed.front());
+        return;
+      }
+      if (desc_.readers == 0) stepped = step(lock);
+    }
+    if (stepped || desc_.readers == 0) continue;
+    std::unique_lock small(small_mutex_);
+    progress_.wait_for(small, std::chrono::milliseconds(100), [&] { return signals_ != seen; });
+  }
+}
+
+}  // namespace voyager
