@@ -159,6 +159,7 @@ void SceneStream::reset(uint32_t slots, uint32_t pinned, Workers& workers) {
   ready_.clear();
   staged_bytes_ = 0;
   slots_ = slots;
+  unsound_ = nullptr;
   // No search can go on from what it has.
   changes_.clear();
   version_ += kChangesKept;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -79,8 +80,9 @@ class SceneStream {
   // not fit, and unless `stand_in` what kept a chunk that is seen from coming.
   void wait(bool stand_in);
 
-  // Held while a frame reads the pool, and what changes with it.
-  std::shared_lock<std::shared_mutex> hold() const { return std::shared_lock(pool_mutex_); }
+  // Held while a frame reads the pool, and what changes with it. Throws what ChunkPool::apply()
+  // threw, from then on until resize(): what is linked is not what the pool has.
+  std::shared_lock<std::shared_mutex> hold() const;
   uint64_t version() const { return version_; }
   // The changes after a version, in their order; false where those are no longer known.
   bool changes_since(uint64_t version, std::vector<std::shared_ptr<const StreamChange>>& out) const;
@@ -120,6 +122,7 @@ class SceneStream {
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
   void commit_all();
+  void apply(const LinkPatch& patch);
   bool accept(uint32_t chunk, LinkPatch& patch);
   void learn_families(const LinkTable& table);
   void reset(uint32_t slots, uint32_t pinned, Workers& workers);
@@ -142,6 +145,7 @@ class SceneStream {
   mutable std::shared_mutex pool_mutex_;
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0;
+  std::exception_ptr unsound_;  // what apply() threw
 
   // Held only to copy something; after mutex_.
   mutable std::mutex small_mutex_;

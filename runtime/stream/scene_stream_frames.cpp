@@ -27,7 +27,23 @@ void SceneStream::commit() {
   if (lock.owns_lock()) commit_all();
 }
 
+std::shared_lock<std::shared_mutex> SceneStream::hold() const {
+  std::shared_lock lock(pool_mutex_);
+  if (unsound_) std::rethrow_exception(unsound_);
+  return lock;
+}
+
+void SceneStream::apply(const LinkPatch& patch) {
+  try {
+    pool_.apply(patch);
+  } catch (...) {
+    unsound_ = std::current_exception();
+    throw;
+  }
+}
+
 void SceneStream::commit_all() {
+  if (unsound_) std::rethrow_exception(unsound_);
   LinkPatch patch;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
   for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);
@@ -37,7 +53,7 @@ void SceneStream::commit_all() {
   // Those that nobody wants any more.
   std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
   if (!patch.empty()) {
-    pool_.apply(patch);
+    apply(patch);
     auto change = std::make_shared<StreamChange>();
     change->version = ++version_;
     change->unlinked = std::move(patch.unlinked);

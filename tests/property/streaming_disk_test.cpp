@@ -239,6 +239,36 @@ TEST(StreamingDisk, AFrameThatWaitsSaysWhatIsDamaged) {
   expect_same_bits(sound, flight.whole(away));
 }
 
+// A pool that could not take the links: what a frame would find is not what was linked.
+TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsMadeAnew) {
+  struct Pool final : ChunkPool {
+    void fill(uint32_t, const StagedChunk&) override {}
+    void apply(const LinkPatch&) override {
+      if (fails) throw Error(ErrorCode::device_lost, "pool: found no device");
+    }
+    void resize(uint32_t) override {}
+    bool fails = false;
+  } pool;
+  const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
+  const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
+  StreamDesc desc;
+  desc.slots = static_cast<uint32_t>(file->chunks().size());
+  desc.pinned = desc.first = SceneStream::top_chunks(*file);
+  desc.readers = 0;
+  Workers workers(1);
+  SceneStream stream(file, desc, pool);
+  stream.read_top(workers);
+  stream.look(&pool, {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}});
+  while (stream.step()) continue;
+  pool.fails = true;
+  EXPECT_EQ(test::error_code([&] { stream.commit(); }), ErrorCode::device_lost);
+  pool.fails = false;
+  EXPECT_EQ(test::error_code([&] { stream.commit(); }), ErrorCode::device_lost);
+  EXPECT_EQ(test::error_code([&] { stream.hold(); }), ErrorCode::device_lost);
+  stream.resize(desc.slots, desc.pinned, workers);
+  EXPECT_TRUE(stream.hold().owns_lock());
+}
+
 TEST(StreamingDisk, OutOfMemoryIsAFailureLikeAnother) {
   Flight flight(1.0);
   int left = 5;
