@@ -1,5 +1,6 @@
 #include "runtime/bake/spool.h"
 
+#include <tbb/concurrent_queue.h>
 #include <tbb/parallel_pipeline.h>
 
 #include <algorithm>
@@ -26,7 +27,6 @@ struct Job {
   std::vector<float> positions, others;
   SpoolPiece piece{};
 };
-using JobPointer = std::shared_ptr<Job>;
 
 // The words of a row after the position, SH beyond the cloud's degree 0.
 std::vector<float> rows_of(const GaussianCloud& cloud, int sh_degree) {
@@ -44,13 +44,16 @@ std::vector<float> rows_of(const GaussianCloud& cloud, int sh_degree) {
 
 class Spooler {
  public:
+  // blocks: on their way at once.
   Spooler(std::vector<std::unique_ptr<BlockReader>> readers, const WorkFolder& folder,
-          size_t in_block, const Progress& progress)
+          size_t in_block, size_t blocks, const Progress& progress)
       : readers_(std::move(readers)),
         in_block_(in_block),
+        jobs_(blocks),
         progress_(progress),
         positions_(ScratchFile::create(folder.file(kPositionRows))),
         others_(ScratchFile::create(folder.file(kOtherRows))) {
+    for (Job& job : jobs_) idle_.push(&job);
     for (const auto& reader : readers_) {
       info_.sh_degree = std::max(info_.sh_degree, reader->sh_degree());
       announced_ += reader->count();
@@ -61,14 +64,18 @@ class Spooler {
       require_alike(any, info_.antialiased, any, reader->antialiased(), reader->name());
   }
 
-  // In the order of the input, one at a time.
-  JobPointer next() {
-    while (current_ < readers_.size()) {
-      auto job = std::make_shared<Job>();
+  size_t blocks() const { return jobs_.size(); }
+
+  // In the order of the input, one at a time; null: that was all.
+  Job* next() {
+    for (; current_ < readers_.size(); ++current_) {
+      RawBlock raw = readers_[current_]->next(in_block_);
+      if (raw.count == 0) continue;
+      Job* job = nullptr;
+      idle_.try_pop(job);
       job->reader = readers_[current_].get();
-      job->raw = readers_[current_]->next(in_block_);
-      if (job->raw.count != 0) return job;
-      ++current_;
+      job->raw = std::move(raw);
+      return job;
     }
     return nullptr;
   }
@@ -101,11 +108,13 @@ class Spooler {
     report(progress_, "reading", info_.import.read, announced_);
   }
 
-  void write(const Job& job) {
+  void write(Job& job) {
     positions_.write(uint64_t{job.piece.first} * 3 * sizeof(float),
                      std::as_bytes(std::span(job.positions)));
     others_.write(job.piece.first * other_floats(info_.sh_degree) * sizeof(float),
                   std::as_bytes(std::span(job.others)));
+    job = {};
+    idle_.push(&job);
   }
 
   SpoolInfo take_info() { return std::move(info_); }
@@ -113,34 +122,37 @@ class Spooler {
  private:
   std::vector<std::unique_ptr<BlockReader>> readers_;
   size_t in_block_, current_ = 0;
+  std::vector<Job> jobs_;
+  tbb::concurrent_queue<Job*> idle_;
   const Progress& progress_;
   ScratchFile positions_, others_;
   SpoolInfo info_;
   uint64_t announced_ = 0;
 };
 
-void run(Spooler& spooler, size_t blocks_at_once) {
+// What is passed on are plain pointers: oneTBB leaks any other kind where a filter throws.
+void run(Spooler& spooler) {
   using Mode = tbb::filter_mode;
-  const auto read = [&](tbb::flow_control& flow) -> JobPointer {
-    JobPointer job = spooler.next();
-    if (!job) flow.stop();
+  const auto read = [&](tbb::flow_control& flow) {
+    Job* job = spooler.next();
+    if (job == nullptr) flow.stop();
     return job;
   };
-  const auto decode = [&](JobPointer job) {
+  const auto decode = [&](Job* job) {
     const FloatingPointMode mode;
     spooler.decode(*job);
     return job;
   };
-  const auto place = [&](JobPointer job) {
+  const auto place = [&](Job* job) {
     spooler.place(*job);
     return job;
   };
-  const auto write = [&](const JobPointer& job) { spooler.write(*job); };
-  tbb::parallel_pipeline(
-      blocks_at_once, tbb::make_filter<void, JobPointer>(Mode::serial_in_order, read) &
-                          tbb::make_filter<JobPointer, JobPointer>(Mode::parallel, decode) &
-                          tbb::make_filter<JobPointer, JobPointer>(Mode::serial_in_order, place) &
-                          tbb::make_filter<JobPointer, void>(Mode::parallel, write));
+  const auto write = [&](Job* job) { spooler.write(*job); };
+  tbb::parallel_pipeline(spooler.blocks(),
+                         tbb::make_filter<void, Job*>(Mode::serial_in_order, read) &
+                             tbb::make_filter<Job*, Job*>(Mode::parallel, decode) &
+                             tbb::make_filter<Job*, Job*>(Mode::serial_in_order, place) &
+                             tbb::make_filter<Job*, void>(Mode::parallel, write));
 }
 
 void write_info(const WorkFolder& folder, const SpoolInfo& info) {
@@ -170,8 +182,8 @@ SpoolInfo spool_inputs(const OpenInputs& open, const WorkFolder& folder, uint64_
   const size_t gaussian = 3 * sizeof(float) * (3 + other_floats(kMaxShDegree));
   const size_t in_block = std::clamp(static_cast<size_t>(memory / 2 / (blocks * gaussian)),
                                      kLeastInBlock, kMostInBlock);
-  Spooler spooler(open(), folder, in_block, progress);
-  workers.run([&] { run(spooler, blocks); });
+  Spooler spooler(open(), folder, in_block, blocks, progress);
+  workers.run([&] { run(spooler); });
   SpoolInfo info = spooler.take_info();
   write_info(folder, info);
   return info;

@@ -114,7 +114,7 @@ class Builder {
     fill_search_records(
         subtree,
         levels_of(s), [&](uint32_t slot) -> auto& { return tree_.records[subtree.node(slot)]; },
-        &out_.records[out_.subtrees[s].first_record]);
+        out_.records.data() + out_.subtrees[s].first_record);
   }
 
   // The roots of the next tier, in order, are the children of this tier's lowest
