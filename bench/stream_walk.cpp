@@ -98,6 +98,8 @@ int main(int argc, char** argv) try {
   const double device_made = seconds_since(start);
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
   streaming.memoryBudget = device_desc.deviceMemoryBudget;
+  const Camera first = path.at(0);
+  streaming.start = first.pose.position;
   VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
   scene_desc.next = &streaming;
   scene_desc.path = argv[1];

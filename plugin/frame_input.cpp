@@ -11,15 +11,11 @@
 namespace voyager {
 namespace {
 
-// METHOD §3: below this, squared distances stay finite in binary32.
-constexpr double kMaxCoordinate = 1e18;
 // Of an instance: depths in coordinates of METHOD §3 stay finite in binary32.
 constexpr double kMinInstanceScale = 1e-9, kMaxInstanceScale = 1e9;
 
 Vec3d checked_position(const double (&p)[3], const std::string& field) {
-  for (const double x : p)
-    if (!(std::fabs(x) < kMaxCoordinate))
-      refuse_number(field + ".position", x, "metres below 1e18 in magnitude");
+  for (const double x : p) check_coordinate(x, field + ".position");
   return {p[0], p[1], p[2]};
 }
 

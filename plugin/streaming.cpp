@@ -36,6 +36,8 @@ void count_device_bytes(SceneObject& object) {
 void check_streaming(const VoySceneStreaming& streaming) {
   check_count(streaming.readerThreads, 0, kMostReaders, "desc.next.readerThreads");
   check_count(streaming.reserved, 0, 0, "desc.next.reserved");
+  for (int axis = 0; streaming.start != nullptr && axis < 3; ++axis)
+    check_coordinate(streaming.start[axis], "desc.next.start");
 }
 
 Budget& SceneObject::pool_budget() const {
@@ -46,6 +48,8 @@ void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>&
                    const VoySceneStreaming& streaming) {
   StreamingDesc desc;
   desc.budget = allowed(streaming.memoryBudget, object.pool_budget().left());
+  if (streaming.start != nullptr)
+    desc.start = {streaming.start[0], streaming.start[1], streaming.start[2]};
   desc.readers = streaming.readerThreads == 0 ? kDefaultReaders : streaming.readerThreads;
   object.scene = open_streamed(source, desc, *object.device().backend, &object.memory,
                                object.device().workers);

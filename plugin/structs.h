@@ -108,6 +108,11 @@ inline void check_count(uint64_t found, uint64_t least, uint64_t most, const cha
   refuse(field + ": found " + text + ", expected " + expected);
 }
 
+// METHOD §3: below 1e18, squared distances stay finite in binary32.
+inline void check_coordinate(double x, const std::string& field) {
+  if (!(std::fabs(x) < 1e18)) refuse_number(field, x, "metres below 1e18 in magnitude");
+}
+
 inline void check_tau(double tau) {
   if (!std::isfinite(tau) || tau < 0) refuse_number("tau", tau, "a finite number of pixels, >= 0");
 }

@@ -29,6 +29,7 @@ voy::Scene open_scene(const voy::Device& device, const std::string& path,
   VoySceneDesc desc = VOY_SCENE_DESC_INIT;
   desc.path = path.c_str();
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+  streaming.start = choices.start;
   if (choices.streamed) desc.next = &streaming;
   return device.open_scene(desc);
 }

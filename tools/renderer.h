@@ -27,6 +27,7 @@ struct RenderChoices {
   double budget = 0;  // MB of scene data where it is drawn; 0: no limit
   bool streamed = false;
   bool wait_resident = false, keep_going = false;  // of a streamed scene
+  const double* start = nullptr;                   // of one: where the first frame looks from
 };
 
 // Of an eye.

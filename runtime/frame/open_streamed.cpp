@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "runtime/frame/load.h"
+#include "runtime/math/screen_size.h"
 
 namespace voyager {
 namespace {
@@ -86,7 +87,7 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   StreamDesc stream;
   stream.slots = slots_for(*file, bytes, desc.budget);
   stream.pinned = pinned_of(*file, stream.slots);
-  stream.first = first_of(*file, stream, desc.first_bytes);
+  stream.first = desc.start ? stream.pinned : first_of(*file, stream, desc.first_bytes);
   stream.readers = desc.readers;
   stream.slot_bytes = bytes.slot;
   stream.fixed_bytes = bytes.fixed;
@@ -94,6 +95,8 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   scene->pool = backend.create_pool(*scene, shape, stream.slots);
   scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
   scene->stream->read_top(workers);
+  if (desc.start)
+    scene->stream->read_around(cut_centre(*desc.start, scene->origin), desc.first_bytes);
   return scene;
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "runtime/frame/backend.h"
 
 namespace voyager {
@@ -8,6 +10,7 @@ struct StreamingDesc {
   unsigned readers = 2;  // threads that read and decode; 0: none, SceneStream::step() does it
   // What is read at once, from the top of the tree, if there are slots: stored bytes.
   uint64_t first_bytes = 32 << 20;
+  std::optional<Vec3d> start;     // a point of the scene around which it is read, in place of that
   std::function<double()> clock;  // as StreamDesc has it
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <utility>
 
 namespace voyager {
 namespace {
@@ -47,6 +48,7 @@ void Residency::plan(std::span<const Viewer> viewers) {
   share_with_parents();
   count_need();
   choose_target();
+  drop_waiting();
   queue_requests();
   list_victims();
 }
@@ -274,20 +276,35 @@ bool Residency::parents_there(uint32_t chunk) const {
   return true;
 }
 
-std::vector<uint32_t> Residency::arrive(const std::function<bool(uint32_t)>& accept) {
-  std::sort(filled_.begin(), filled_.end());
-  std::vector<uint32_t> arrived, waiting;
-  for (const uint32_t chunk : filled_) {
+// Those that came before their parents, and are not wanted any more.
+void Residency::drop_waiting() {
+  std::erase_if(waiting_, [&](uint32_t chunk) {
+    if (state_[chunk] != State::filled) return true;
+    if (is_wanted(chunk)) return false;
+    drop(chunk);
+    return true;
+  });
+}
+
+Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accept) {
+  Arrivals out;
+  std::vector<uint32_t> next = std::exchange(filled_, {});
+  std::sort(next.begin(), next.end());
+  for (size_t i = 0; i < next.size(); ++i) {
+    const uint32_t chunk = next[i];
+    if (state_[chunk] != State::filled) continue;  // came after its parent as well
     if (!is_wanted(chunk)) {
       drop(chunk);
+      out.given_up.push_back(chunk);
       continue;
     }
     if (!parents_there(chunk)) {
-      waiting.push_back(chunk);
+      waiting_.push_back(chunk);
       continue;
     }
     if (!accept(chunk)) {
       give_up(chunk, State::failed);
+      out.given_up.push_back(chunk);
       continue;
     }
     state_[chunk] = State::resident;
@@ -296,12 +313,13 @@ std::vector<uint32_t> Residency::arrive(const std::function<bool(uint32_t)>& acc
     ++counters_.arrived;
     counters_.late += missed_[chunk];
     missed_[chunk] = 0;
-    const ChunkRange parents = graph_->parents(chunk);
+    const ChunkRange parents = graph_->parents(chunk), children = graph_->children(chunk);
     for (uint32_t p = parents.first; p < parents.last; ++p) ++children_there_[p];
-    arrived.push_back(chunk);
+    for (uint32_t c = children.first; c < children.last; ++c)
+      if (state_[c] == State::filled) next.push_back(c);
+    out.resident.push_back(chunk);
   }
-  filled_ = waiting;
-  return arrived;
+  return out;
 }
 
 std::vector<Residency::Evicted> Residency::evict() {

@@ -62,8 +62,11 @@ class Residency {
   void retry(uint32_t chunk);
 
   // Filled chunks that become resident, parents before children; those that accept(chunk)
-  // refuses have failed.
-  std::vector<uint32_t> arrive(const std::function<bool(uint32_t)>& accept);
+  // refuses have failed. Costs by what has been filled, and has arrived, since the last time.
+  struct Arrivals {
+    std::vector<uint32_t> resident, given_up;
+  };
+  Arrivals arrive(const std::function<bool(uint32_t)>& accept);
   struct Evicted {
     uint32_t chunk, slot;
   };
@@ -107,6 +110,7 @@ class Residency {
   void choose_target();
   void queue_requests();
   void list_victims();
+  void drop_waiting();
   bool parents_there(uint32_t chunk) const;
   void count_missing(uint32_t chunk, bool missing);
   void give_up(uint32_t chunk, State now);
@@ -131,7 +135,9 @@ class Residency {
   std::vector<Needed> failed_;                // and what it would have needed
   std::vector<Needed> extra_;                 // scratch
   std::vector<uint32_t> requests_, victims_;  // the first to go last
-  std::vector<uint32_t> filled_, free_slots_;
+  std::vector<uint32_t> filled_;              // since the last arrivals
+  std::vector<uint32_t> waiting_;  // all that are filled before their parents are there, and others
+  std::vector<uint32_t> free_slots_;
   uint32_t coming_ = 0;  // on their way or read: each will want a slot
   ResidencyNeed need_;
   ResidencyCounters counters_;

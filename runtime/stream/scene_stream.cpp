@@ -216,6 +216,8 @@ bool SceneStream::plan_if_asked() {
     for (const auto& [who, of] : viewers_) viewers.insert(viewers.end(), of.begin(), of.end());
   }
   residency_.plan(viewers);
+  // Those that nobody wants any more.
+  std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
   const auto end = std::chrono::steady_clock::now();
   next_plan_ = end + kPlanRest * (end - now);
   return true;

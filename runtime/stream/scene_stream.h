@@ -64,6 +64,9 @@ class SceneStream {
   // Reads the first chunks, and starts the threads. Once, before any frame. Throws Error as the
   // source does and as a chunk is damaged: a scene without its top is nothing.
   void read_top(Workers& workers);
+  // Then: what is large from a point, in the scene's own coordinates, until about so many stored
+  // bytes of it are there. What cannot be had is left out.
+  void read_around(const Vec3f& centre, uint64_t bytes);
   // Other slots, as StreamDesc has them, and no more pinned than at first: what was there goes,
   // but for what is pinned. Waits for frames that hold the pool, and for no source. Throws as
   // ChunkPool::resize() does; the stream has then as many slots as before, if that was to be had.
@@ -126,6 +129,8 @@ class SceneStream {
   bool accept(uint32_t chunk, LinkPatch& patch);
   void learn_families(const LinkTable& table);
   void reset(uint32_t slots, uint32_t pinned, Workers& workers);
+  template <class Done>
+  void work_until(const Done& done);
   void check_fits() const;
   bool is_settled() const;
   void publish();

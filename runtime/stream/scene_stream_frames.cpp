@@ -5,6 +5,11 @@
 #include "runtime/stream/scene_stream.h"
 
 namespace voyager {
+namespace {
+
+constexpr float kStartTarget = 1e-3f;  // τ* where no frame has told: a pixel of a fine display
+
+}  // namespace
 
 void SceneStream::look(const void* who, std::vector<Viewer> viewers) {
   {
@@ -47,11 +52,10 @@ void SceneStream::commit_all() {
   LinkPatch patch;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
   for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);
-  const std::vector<uint32_t> arrived =
+  const Residency::Arrivals arrived =
       residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
-  for (const uint32_t chunk : arrived) coming_.erase(chunk);
-  // Those that nobody wants any more.
-  std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
+  for (const uint32_t chunk : arrived.resident) coming_.erase(chunk);
+  for (const uint32_t chunk : arrived.given_up) coming_.erase(chunk);
   if (!patch.empty()) {
     apply(patch);
     auto change = std::make_shared<StreamChange>();
@@ -64,7 +68,7 @@ void SceneStream::commit_all() {
     if (changes_.size() > kChangesKept) changes_.pop_front();
   }
   for (const Residency::Evicted& e : evicted) residency_.free_slot(e.slot);
-  if (evicted.empty() && arrived.empty()) return;
+  if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return;
   publish();
   signal();
 }
@@ -121,7 +125,8 @@ bool SceneStream::is_settled() const {
          });
 }
 
-void SceneStream::wait(bool stand_in) {
+template <class Done>
+void SceneStream::work_until(const Done& done) {
   for (;;) {
     uint64_t seen = 0;
     {
@@ -136,18 +141,32 @@ void SceneStream::wait(bool stand_in) {
       stepped = plan_if_asked();
       commit_all();
       publish();
-      check_fits();
-      if (is_settled()) {
-        const std::vector<uint32_t> failed = residency_.need().seen_failed;
-        if (!failed.empty() && !stand_in) failures_.rethrow(failed.front());
-        return;
-      }
+      if (done()) return;
       if (desc_.readers == 0) stepped = step(lock);
     }
     if (stepped || desc_.readers == 0) continue;
     std::unique_lock small(small_mutex_);
     progress_.wait_for(small, std::chrono::milliseconds(100), [&] { return signals_ != seen; });
   }
+}
+
+void SceneStream::wait(bool stand_in) {
+  work_until([&] {
+    check_fits();
+    if (!is_settled()) return false;
+    const std::vector<uint32_t> failed = residency_.need().seen_failed;
+    if (!failed.empty() && !stand_in) failures_.rethrow(failed.front());
+    return true;
+  });
+}
+
+void SceneStream::read_around(const Vec3f& centre, uint64_t bytes) {
+  look(this, {{{centre, kStartTarget}, {}, false}});
+  const auto& chunks = file_->chunks();
+  const uint64_t stored = chunks.back().offset + chunks.back().bytes - chunks.front().offset;
+  const uint64_t enough = counters().chunks.arrived + bytes * chunks.size() / stored;
+  work_until([&] { return residency_.settled() || residency_.counters().arrived >= enough; });
+  look(this, {});
 }
 
 }  // namespace voyager

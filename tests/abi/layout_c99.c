@@ -100,6 +100,7 @@ const struct LayoutRow kLayout[] = {
     FIELD(VoySceneStreaming, type),
     FIELD(VoySceneStreaming, next),
     FIELD(VoySceneStreaming, memoryBudget),
+    FIELD(VoySceneStreaming, start),
     FIELD(VoySceneStreaming, readerThreads),
     FIELD(VoySceneStreaming, reserved),
     STRUCT(VoyFrameStreaming),

@@ -1,6 +1,7 @@
 // A streamed scene as a host has it: threads that read the host's bytes, budgets, frames that
 // wait and frames that do not, refusals.
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
@@ -200,6 +201,12 @@ TEST(Streaming, Refusals) {
   streaming.readerThreads = 0;
   streaming.reserved = 1;
   EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_ERROR_INVALID_ARGUMENT);
+  streaming.reserved = 0;
+  double start[3] = {0, NAN, 0};
+  streaming.start = start;
+  EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_ERROR_INVALID_ARGUMENT);
+  start[1] = 0;
+  EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_SUCCESS) << voy.message();
 
   VoyView view = nullptr;
   VoyViewDesc wanted = host.view_desc();

@@ -211,6 +211,23 @@ TEST(StreamingDisk, DamagedChunksAreNeverDrawn) {
   EXPECT_GT(flight.counters().failures, 1u);
 }
 
+// What cannot be read around the start does not keep a scene from opening.
+TEST(StreamingDisk, ASceneOpensThoughWhatIsAroundItsStartIsDamaged) {
+  Flight flight(1.0);
+  const uint64_t top = flight.stream().file().chunks()[flight.stream().pinned()].offset;
+  flight.disk().alter = [&](uint64_t offset, std::span<std::byte> into) {
+    for (size_t i = 0; i < into.size(); ++i)
+      if (offset + i >= top && (offset + i) % 1000 == 0) into[i] ^= std::byte{1};
+  };
+  const Vec3d eye{0, -3, -60};
+  const auto disk = std::shared_ptr<const ByteSource>(std::shared_ptr<void>(), &flight.disk());
+  const auto scene = flight.rig().open(disk, 1.0, 32 << 20, eye);
+  EXPECT_EQ(scene->stream->counters().resident, scene->stream->pinned());
+  EXPECT_GT(scene->stream->counters().failures, 1u);
+  View view(scene, *flight.rig().backend, {}, flight.rig().memory(), flight.rig().workers);
+  EXPECT_TRUE(is_cut(flight.rig().resident->tree, render(view, ahead(eye, kForward)).cut));
+}
+
 // A frame that waits fails where a damaged chunk is seen, and does not where it is stood in for,
 // or where nothing sees it.
 TEST(StreamingDisk, AFrameThatWaitsSaysWhatIsDamaged) {

@@ -146,6 +146,33 @@ TEST(Streaming, RoomForWhatIsSeenIsRoomForTheResidentImage) {
   EXPECT_GT(refused, 0u);
 }
 
+// Whoever stands where a scene was said to be looked at first misses nothing that is large from
+// there, whichever way it turns; of a scene of which as much was read from the top, it does.
+TEST(Streaming, WhatIsLargeFromTheStartIsThereInTheFirstFrame) {
+  const Vec3d origin{1000, 0, -2000};
+  GaussianCloud cloud = test::random_cloud(100000, 8, 1);
+  for (float& x : cloud.position) x *= 20;
+  cloud.origin = {origin.x, origin.y, origin.z};
+  const StreamRig rig(test::bake(cloud), 1.0);
+  const uint64_t first_bytes = rig.bytes.size() / 4;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3d out{std::cos(1.5 * i), 0, std::sin(1.5 * i)};
+    const Vec3d eye = origin + 40.0 * out;
+    const FrameInput input = frame_input(look(eye, eye + out, 96, 64, 60), 20);
+    const auto missing = [&](std::optional<Vec3d> start) {
+      StreamRig other(rig.bytes, 0.5);
+      const auto scene = other.open(test::source_of(rig.bytes), 0.5, first_bytes, start);
+      View view(scene, *other.backend, {}, other.memory(), other.workers);
+      const Frame frame = render(view, input);
+      EXPECT_TRUE(is_cut(rig.resident->tree, frame.cut));
+      EXPECT_LE(scene->stream->counters().bytes_read, first_bytes + (1 << 19));
+      return frame.stats.missing;
+    };
+    EXPECT_EQ(missing(eye), 0u);
+    EXPECT_GT(missing({}), 0u);
+  }
+}
+
 // Room for less than is seen: the most urgent stays, and nothing is read twice in vain.
 TEST(Streaming, TooLittleRoomIsCoarseAndStill) {
   StreamRig rig(random_scene(20000, 6), 0.05);

@@ -41,10 +41,13 @@ class StreamRig {
         whole(resident, *backend, desc, memory(), workers),
         part(streamed, *backend, desc, memory(), workers) {}
 
-  std::shared_ptr<Scene> open(const std::shared_ptr<const ByteSource>& source, double share) {
+  // first_bytes: of what is read beside the top; around `start`, where there is one.
+  std::shared_ptr<Scene> open(const std::shared_ptr<const ByteSource>& source, double share,
+                              uint64_t first_bytes = 0, std::optional<Vec3d> start = {}) {
     StreamingDesc desc;
     desc.readers = 0;
-    desc.first_bytes = 0;
+    desc.first_bytes = first_bytes;
+    desc.start = start;
     desc.clock = [this] { return time += 1e-5; };  // each look at it takes a moment
     const SceneFile file(source);
     const PoolBytes pool = backend->pool_bytes(*resident, SceneStream::slot_shape(file));

@@ -105,6 +105,7 @@ void render(Arguments& arguments) {
     width = std::max(width, camera.width);
     height = std::max(height, camera.height);
   }
+  arguments.choices.start = cameras.front().pose.position;
   Renderer renderer(arguments.scene, arguments.choices, width, height);
   if (!arguments.outputs.cut.empty() && !renderer.draws_cut())
     bad_usage("--dump-cut: found a scene drawn without a cut, expected a .voy with --lod on");

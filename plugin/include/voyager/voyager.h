@@ -261,11 +261,15 @@ typedef struct VoySceneStreaming {
   /* Bytes that the scene may take where it is drawn: VoyDeviceDesc.memoryBudget's, on CUDA
    * deviceMemoryBudget's. 0, or more than is left of that: what is left. */
   uint64_t memoryBudget;
+  /* Where the first frames will look from: x, y, z in the scene's coordinates, or NULL. What
+   * voyOpenScene reads is then what is large from there, beside the top of the tree, up to 32 MB
+   * of the file. Each below 1e18 in magnitude; copied. */
+  const double* start;
   uint32_t readerThreads; /* that read and decode; 0 to 64, 0 is 4 */
   uint32_t reserved;      /* 0 */
 } VoySceneStreaming;
 #define VOY_SCENE_STREAMING_INIT \
-  { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, 0, 0 }
+  { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, NULL, 0, 0 }
 
 /* Exactly one of path and source. The format is told from the bytes: .voy (with
  * its tree), or a flat scene (.ply, .spz), which draws every Gaussian. */
