@@ -37,9 +37,9 @@ LutErrors measure(uint32_t m) {
 }
 
 // Half an interval h off, e^x is off by a factor of e^(h/2): that is the largest relative error
-// anywhere. Its mean square is that of a uniform distance, h/√12, its mean h²/24. The largest of α is at
-// the top, 1 - e^(-h/2) just below x = 0; at the bottom it is 1/255 of the relative one, and α
-// may come out below α*, by e^(-h/2) at most.
+// anywhere. Its mean square is that of a uniform distance, h/√12, its mean h²/24. The largest of α
+// is at the top, 1 - e^(-h/2) just below x = 0; at the bottom it is 1/255 of the relative one, and
+// α may come out below α*, by e^(-h/2) at most.
 TEST(AlphaLutSize, ErrorsAreThoseOfHalfAnInterval) {
   for (const uint32_t m : {8u, 16u, 31u, 32u, 64u, 128u}) {
     const LutErrors e = measure(m);

@@ -77,8 +77,8 @@ View random_view(std::mt19937& random, double fov) {
   const double away = std::pow(10, 1 + uniform(random));
   const double right = 0.5 * kWidth * uniform(random), below = 0.5 * kHeight * uniform(random);
   const Mat3d& w = v.camera.world_to_view;
-  const Vec3d at = stand + away / v.camera.fx * (right * w.row[0] + below * w.row[1]) +
-                   away * w.row[2];
+  const Vec3d at =
+      stand + away / v.camera.fx * (right * w.row[0] + below * w.row[1]) + away * w.row[2];
   v.mean = {static_cast<float>(at.x), static_cast<float>(at.y), static_cast<float>(at.z)};
   return v;
 }
@@ -113,9 +113,9 @@ Errors measure(double distance, double fov) {
     const Seen before = see(v.camera, origin, v.mean, e);
     v.camera.eye = v.camera.eye + 0.001 * v.camera.world_to_view.row[0];
     const Seen after = see(v.camera, origin, v.mean, e);
-    e.step = std::max(e.step, apart({after.found.x - before.found.x, after.found.y - before.found.y},
-                                    {after.exact.x - before.exact.x,
-                                     after.exact.y - before.exact.y}));
+    e.step =
+        std::max(e.step, apart({after.found.x - before.found.x, after.found.y - before.found.y},
+                               {after.exact.x - before.exact.x, after.exact.y - before.exact.y}));
   }
   return e;
 }

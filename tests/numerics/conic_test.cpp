@@ -116,12 +116,12 @@ TEST(Conic, NoAxisRatioIsWorseThanAnother) {
 // Or the sweeps above could not tell.
 TEST(Conic, TheTextbookLosesWhatOursKeeps) {
   for (const Build build : {Build::needle, Build::edge}) {
-    const Comparison thousand = measure(build, 2000, 1e6), more = measure(build, 1e4, 1e6);
-    EXPECT_GT(thousand.textbook.rho, 1);
-    EXPECT_LT(thousand.ours.rho, 0.005);
-    EXPECT_GT(more.broken, 0);
-    EXPECT_LT(more.ours.rho, 0.02);
-    record(name_of(build) + std::string("_2000"), thousand);
+    const Comparison large = measure(build, 2000, 1e6), larger = measure(build, 1e4, 1e6);
+    EXPECT_GT(large.textbook.rho, 1);
+    EXPECT_LT(large.ours.rho, 0.005);
+    EXPECT_GT(larger.broken, 0);
+    EXPECT_LT(larger.ours.rho, 0.02);
+    record(name_of(build) + std::string("_2000"), large);
   }
 }
 

@@ -77,8 +77,7 @@ inline Footprint random_footprint(std::mt19937& random, Build build, double pixe
             static_cast<float>(z)};
   const Vec3d ray = double{f.mean.x} * axes.row[0] + double{f.mean.y} * axes.row[1] +
                     double{f.mean.z} * axes.row[2];
-  f.rotation =
-      build == Build::edge ? turned_to(random, across(random, ray)) : random_turn(random);
+  f.rotation = build == Build::edge ? turned_to(random, across(random, ray)) : random_turn(random);
   const double longest = pixels * z / kFocal;
   f.scale.x = static_cast<float>(longest);
   f.scale.y = build != Build::needle ? f.scale.x : static_cast<float>(longest / ratio);

@@ -23,8 +23,8 @@ SiblingErrors measure(uint32_t k, float t) {
   SiblingErrors e;
   const float inverse_k = 1.0f / static_cast<float>(k);
   for (int i = 0; i <= 2000; ++i) {
-    const float alpha = kAlphaThreshold +
-                        (kAlphaMax - kAlphaThreshold) * static_cast<float>(i) / 2000.0f;
+    const float alpha =
+        kAlphaThreshold + (kAlphaMax - kAlphaThreshold) * static_cast<float>(i) / 2000.0f;
     const double truth = sibling_alpha(double{alpha}, double{t}, 1.0 / k);
     const auto error = [&](float found) { return std::fabs(double{found} / truth - 1); };
     e.ours = std::max(e.ours, error(sibling_alpha(alpha, t, inverse_k)));

@@ -108,8 +108,8 @@ TEST(Transmittance, OfSiblingsBeyondNumberLosesHalfAnEpsilonEach) {
   struct {
     uint32_t siblings;
     double colour_bound;
-  } const cases[] = {{10, 3e-7}, {100, 3e-7}, {1000, 2e-6}, {10000, 3e-6}, {100000, 1.3e-5},
-                     {1000000, 1.1e-3}};
+  } const cases[] = {{10, 3e-7},    {100, 3e-7},      {1000, 2e-6},
+                     {10000, 3e-6}, {100000, 1.3e-5}, {1000000, 1.1e-3}};
   for (const auto& c : cases) {
     double worst = 0, colour = 0;
     for (const double alpha : {0.00393, 0.0077, 0.0294, 0.1, 0.3, 0.5, 0.9, 0.99}) {

@@ -87,8 +87,8 @@ TEST(WeightEnds, AlignedRotationsAreFarFromTheTurnOfSign) {
     const Quatf a = test::random_turn(random), b = test::random_turn(random);
     const Quatd parent{a.w, a.x, a.y, a.z}, child{b.w, b.x, b.y, b.z};
     const Quatd q = child * cube_rotation<double>(nearest_axis_code(parent, child));
-    least = std::min(least, std::fabs(parent.w * q.w + parent.x * q.x + parent.y * q.y +
-                                      parent.z * q.z));
+    least = std::min(least,
+                     std::fabs(parent.w * q.w + parent.x * q.x + parent.y * q.y + parent.z * q.z));
   }
   EXPECT_GE(least, 0.853);
   test::record("least_dot", least);
