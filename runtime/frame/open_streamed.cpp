@@ -88,7 +88,7 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
   scene->stream->read_top(workers);
   if (desc.start)
-    scene->stream->read_around(cut_centre(*desc.start, scene->origin), desc.first_bytes);
+    scene->stream->read_around(cut_centre(*desc.start, scene->origin), desc.start_bytes);
   return scene;
 }
 

@@ -32,6 +32,7 @@ class StreamRig {
     desc.readers = 0;
     desc.first_bytes = first_bytes;
     desc.start = start;
+    desc.start_bytes = first_bytes;
     desc.clock = [this] { return time += 1e-5; };  // each look at it takes a moment
     const SceneFile file(source);
     const PoolBytes pool = backend->pool_bytes(*resident, SceneStream::slot_shape(file));
