@@ -109,12 +109,30 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
     }
     scenes_[i]->stream->look(&scenes_[i], std::move(viewers));
   }
-  for (const Scene* scene : streamed_) {
-    if (frame.wait_resident)
-      scene->stream->wait(frame.stand_in);
-    else
-      scene->stream->commit();
+  if (!frame.wait_resident) {
+    for (const Scene* scene : streamed_) scene->stream->commit();
+    return hold_all();
   }
+  // While one is waited for, another may get a budget, and lose what it had; not for ever.
+  constexpr int kMostTries = 8;
+  for (int tries = 1;; ++tries) {
+    std::vector<uint64_t> waited;
+    for (const Scene* scene : streamed_) {
+      waited.push_back(scene->stream->generation());
+      scene->stream->wait(frame.stand_in);
+    }
+    holds = hold_all();
+    const auto same = [](const Scene* scene, uint64_t generation) {
+      return scene->stream->generation() == generation;
+    };
+    if (std::equal(streamed_.begin(), streamed_.end(), waited.begin(), same) || tries == kMostTries)
+      return holds;
+    holds.clear();
+  }
+}
+
+FrameStreaming::Holds FrameStreaming::hold_all() const {
+  Holds holds;
   for (const Scene* scene : streamed_) holds.push_back(scene->stream->hold());
   return holds;
 }

@@ -28,6 +28,7 @@ class FrameStreaming {
   void collect(FrameStats& stats);
 
  private:
+  Holds hold_all() const;
   Viewer viewer_of(const FrameInput& frame, size_t instance);
   std::optional<Vec3d> velocity(const FrameInput& frame);
 

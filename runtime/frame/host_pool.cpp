@@ -20,7 +20,11 @@ class HostPool final : public ChunkPool {
   // The old arrays go first, so that a budget holds at every moment.
   void resize(uint32_t slots) override {
     const size_t nodes = size_t{slots} * shape_.nodes, records = size_t{slots} * shape_.records;
+    const bool as_many = scene_.search.opens.size() == records &&
+                         scene_.search.subtrees.size() == scene_.search.subtree_count();
+    if (as_many) std::fill(scene_.search.opens.begin(), scene_.search.opens.end(), SubtreeSpan{});
     for (const bool room : {false, true}) {
+      if (as_many) break;
       const auto fit = [room](auto& array, size_t size) {
         std::decay_t<decltype(array)>(room ? size : 0, array.get_allocator()).swap(array);
       };

@@ -14,7 +14,8 @@ class ChunkPool {
   virtual void apply(const LinkPatch& patch) = 0;
   // Room for so many slots instead; what they held is lost, and nothing is linked. No frame
   // reads the pool and no slot is being filled. Throws Error(over_budget) or std::bad_alloc,
-  // and may then have any number of slots up to those it had.
+  // and may then have any number of slots up to those it had; where there are as many already, a
+  // pool may keep its memory, and then throws nothing.
   virtual void resize(uint32_t slots) = 0;
 };
 

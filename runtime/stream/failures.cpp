@@ -26,6 +26,7 @@ void Failures::add(uint32_t chunk, const Error& error, double now) {
   ++failed.times;
   failed.again = error.code() == ErrorCode::io_transient ||
                  (error.code() == ErrorCode::damaged_chunk && failed.times == 1);
+  failed.last = now;
   failed.due = failed.again ? now + wait_after(failed.times) : -1;
   tell(failed.message);
 }
@@ -44,6 +45,10 @@ void Failures::source_failed(const Error& error, double now) {
   source_message_ = error.what();
   // Reads that were under way together fail together.
   if (!source_may_be_read(now)) return;
+  // Long ago, and nothing was read since: not in a row.
+  constexpr double kForgotten = 6 * kLongestWait;
+  if (now - source_failed_ > kForgotten) source_failures_ = 0;
+  source_failed_ = now;
   ++source_failures_;
   source_due_ = now + wait_after(source_failures_);
 }
@@ -76,14 +81,16 @@ double Failures::next_due(double now) const {
   return next < 0 ? source_due_ - now : std::min(next, source_due_ - now);
 }
 
-bool Failures::is_hopeless(uint32_t chunk) const {
+bool Failures::is_hopeless(uint32_t chunk, double since) const {
   const auto found = failed_.find(chunk);
-  return found != failed_.end() && (!found->second.again || found->second.times >= kPatience);
+  if (found == failed_.end()) return false;
+  const Failed& failed = found->second;
+  // One that is due again, or on its way, was not tried in vain since.
+  return !failed.again || (failed.times >= kPatience && (failed.last >= since || failed.due >= 0));
 }
 
 void Failures::rethrow(uint32_t chunk) const {
   const auto found = failed_.find(chunk);
-  if (found == failed_.end() && source_failures_ > 0) throw Error(source_code_, source_message_);
   if (found == failed_.end())
     throw Error(ErrorCode::internal, "chunk " + std::to_string(chunk) + ": failed for no reason");
   throw Error(found->second.code, found->second.message);

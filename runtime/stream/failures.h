@@ -25,6 +25,8 @@ class Failures {
   void add(uint32_t chunk, const Error& error, double now);
   // It came after all.
   void remove(uint32_t chunk) { failed_.erase(chunk); }
+  // Nothing of what is wanted now has been tried.
+  void forget_chunks() { failed_.clear(); }
 
   // A read of the source, of whichever chunks.
   void source_failed(const Error& error, double now);
@@ -37,10 +39,13 @@ class Failures {
   double next_due(double now) const;
 
   uint64_t count() const { return count_; }
-  // Whether it is no use to wait for the chunk: it is not tried again, or was in vain often.
-  bool is_hopeless(uint32_t chunk) const;
-  // Throws what kept the chunk from coming, of itself or of the source.
+  // Whether it is no use to wait for the chunk, as somebody has done since then: it is not tried
+  // again, or was in vain often, the last time since.
+  bool is_hopeless(uint32_t chunk, double since) const;
+  // Throws what kept the chunk from coming; it has failed.
   [[noreturn]] void rethrow(uint32_t chunk) const;
+  // Throws what the source failed with; it is down.
+  [[noreturn]] void rethrow_source() const { throw Error(source_code_, source_message_); }
   // Says what is no failure of a chunk, as a cause like others.
   void tell(const std::string& message);
   // Of causes that were not told yet: each once, however many chunks it costs.
@@ -51,7 +56,8 @@ class Failures {
     ErrorCode code;
     std::string message;
     unsigned times = 0;
-    double due = -1;  // negative: never, or now on its way
+    double due = -1;   // negative: never, or now on its way
+    double last = -1;  // when it failed
     bool again = false;
   };
 
@@ -59,7 +65,7 @@ class Failures {
 
   std::map<uint32_t, Failed> failed_;
   unsigned source_failures_ = 0;  // reads in a row
-  double source_due_ = 0;
+  double source_due_ = 0, source_failed_ = 0;
   ErrorCode source_code_{};
   std::string source_message_;
   std::set<std::string> told_;

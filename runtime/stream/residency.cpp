@@ -328,9 +328,17 @@ Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accep
   return out;
 }
 
+size_t Residency::slots_wanted() const {
+  return coming_ + std::min(requests_.size(), kRoomAhead);
+}
+
+bool Residency::has_changes() const {
+  return !filled_.empty() || (!victims_.empty() && free_slots_.size() < slots_wanted());
+}
+
 std::vector<Residency::Evicted> Residency::evict() {
   std::vector<Evicted> evicted;
-  const size_t wanted = coming_ + std::min(requests_.size(), kRoomAhead);
+  const size_t wanted = slots_wanted();
   while (free_slots_.size() + evicted.size() < wanted && !victims_.empty()) {
     const uint32_t chunk = victims_.back();
     victims_.pop_back();

@@ -75,6 +75,8 @@ class Residency {
   // again only after free_slot(): when no frame reads it any more.
   std::vector<Evicted> evict();
   void free_slot(uint32_t slot) { free_slots_.push_back(slot); }
+  // Whether arrive() or evict() has something to do.
+  bool has_changes() const;
 
   // One node leads to the chunk and to the one before; inside: and to the one behind.
   void set_shares_family(uint32_t chunk, bool inside) { shares_family_[chunk] = inside ? 2 : 1; }
@@ -111,6 +113,7 @@ class Residency {
   void choose_target();
   void queue_requests();
   void list_victims();
+  size_t slots_wanted() const;
   void drop_waiting();
   bool parents_there(uint32_t chunk) const;
   void count_missing(uint32_t chunk, bool missing);

@@ -87,8 +87,8 @@ double SceneStream::now() const {
 
 // Seconds until there may be something to do that no one tells of; negative: never.
 double SceneStream::next_due() const {
+  if (lost_) return std::max(0.0, rebuild_due_ - now());
   double wait = failures_.next_due(now());
-  if (lost_) wait = std::max(0.0, rebuild_due_ - now());
   const std::lock_guard small(small_mutex_);
   if (!look_again_) return wait;
   const auto rest = next_plan_ - std::chrono::steady_clock::now();
@@ -150,70 +150,72 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
 }
 
 void SceneStream::resize(uint32_t slots, uint32_t pinned, Workers& workers) {
-  {
-    const auto pool = hold_alone();
-    Lock lock(mutex_);
-    filled_.wait(lock, [&] { return filling_ == 0; });
-    const auto slots_before = static_cast<uint32_t>(slots_.load());
-    const uint32_t pinned_before = residency_.pinned();
+  const auto pool = hold_alone();
+  Lock lock(mutex_);
+  filled_.wait(lock, [&] { return filling_ == 0; });
+  const auto slots_before = static_cast<uint32_t>(slots_.load());
+  const uint32_t pinned_before = residency_.pinned();
+  try {
+    reset(slots, pinned, workers);
+  } catch (...) {
     try {
-      pool_.resize(slots);
-      reset(slots, pinned, workers);
+      reset(slots_before, pinned_before, workers);
     } catch (...) {
-      try {
-        pool_.resize(slots_before);
-        reset(slots_before, pinned_before, workers);
-      } catch (...) {
-        unsound_ = std::current_exception();
-        lose(unsound_);
-      }
-      throw;
+      lose(std::current_exception());
     }
-    const std::lock_guard small(small_mutex_);
-    look_again_ = true;
+    throw;
   }
-  signal();
 }
 
+// All anew, with what is pinned in it. Where it throws, the pool is as it was, or unsound.
 void SceneStream::reset(uint32_t slots, uint32_t pinned, Workers& workers) {
+  Residency residency(graph_, file_->chunks(), slots, std::min(pinned, desc_.pinned));
+  Linker linker(graph_, shape_);
+  unsound_ = std::make_exception_ptr(
+      Error(ErrorCode::internal, file_->name() + ": found its memory half filled anew"));
+  pool_.resize(slots);
   ++generation_;
   counted_ = total(counted_, residency_.counters());
-  residency_ = Residency(graph_, file_->chunks(), slots, std::min(pinned, desc_.pinned));
-  linker_ = Linker(graph_, shape_);
+  residency_ = std::move(residency);
+  linker_ = std::move(linker);
   coming_.clear();
   ready_.clear();
+  failures_.forget_chunks();
   staged_bytes_ = 0;
   slots_ = slots;
-  unsound_ = nullptr;
   lost_ = nullptr;
   // No search can go on from what it has.
   changes_.clear();
   version_ += kChangesKept;
+  {
+    const std::lock_guard small(small_mutex_);
+    look_again_ = true;
+  }
   put_first(residency_.pinned(), top_, workers);
+  unsound_ = nullptr;
+  signal();
 }
 
 // From within a catch, or with what one has caught.
 void SceneStream::lose(std::exception_ptr what) noexcept {
   constexpr double kRest = 1;  // second: memory may be had again
+  if (unsound_) unsound_ = what;
   lost_ = std::move(what);
   rebuild_due_ = now() + kRest;
+  signal();  // whoever rebuilds may be asleep
 }
 
 // Both locks are held. As many slots as before, and nothing in them but the top.
 void SceneStream::rebuild() {
-  const uint32_t pinned = residency_.pinned();
   try {
     Workers workers(1);
-    pool_.resize(static_cast<uint32_t>(slots_.load()));
-    reset(static_cast<uint32_t>(slots_.load()), pinned, workers);
-    failures_.tell(file_->name() +
-                   ": memory was refused; what had been read is dropped, and comes again");
-    const std::lock_guard small(small_mutex_);
-    look_again_ = true;
+    reset(static_cast<uint32_t>(slots_.load()), residency_.pinned(), workers);
   } catch (...) {
-    unsound_ = std::current_exception();
-    lose(unsound_);
+    lose(std::current_exception());
+    return;
   }
+  failures_.tell(file_->name() +
+                 ": memory was refused; what had been read is dropped, and comes again");
 }
 
 bool SceneStream::rebuild_if_due(Lock& lock) {
@@ -225,7 +227,7 @@ bool SceneStream::rebuild_if_due(Lock& lock) {
     filled_.wait(lock, [&] { return filling_ == 0; });
     if (lost_) rebuild();
   }
-  return true;
+  return !lost_;
 }
 
 void SceneStream::run() {
@@ -270,6 +272,7 @@ bool SceneStream::step(Lock& lock) {
 
 bool SceneStream::work(Lock& lock) {
   const bool done = plan_if_asked() || retry_due() || fill_one(lock) || read_some(lock);
+  commit_due_ = residency_.has_changes();
   if (done) {
     publish();
     signal();
@@ -400,11 +403,14 @@ void SceneStream::stage_range(ChunkRange range, const std::vector<std::byte>& by
         own = file_->read_stored(chunk, chunk + 1);
       } catch (const Error& error) {
         failure = error;
+      } catch (const std::exception& error) {
+        failure.emplace(ErrorCode::io_transient, file_->name() + ": " + error.what());
       }
       lock.lock();
       ++reads_;
       bytes_read_ += own.size();
       if (failure) return fail_range({chunk, range.last}, *failure, generation);
+      failures_.source_answered();
       stored = own;
     } else {
       stored = all.subspan(chunks[chunk].offset - chunks[range.first].offset, chunks[chunk].bytes);

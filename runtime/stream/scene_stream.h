@@ -82,12 +82,15 @@ class SceneStream {
   // Who looks, for one view's instance; it replaces what was said before. No viewers: nobody.
   // Any thread.
   void look(const void* who, std::vector<Viewer> viewers);
-  // What has come becomes resident, unless another frame reads the pool just now. Any thread.
+  // What has come becomes resident. Another frame that reads the pool just now puts that off, for
+  // a tenth of a second; then it is waited for, and this is what waits. Any thread.
   void commit();
   // The same until nothing more is to come. Throws Error(over_budget) where what is seen does
   // not fit, and unless `stand_in` what kept a chunk that is seen from coming: what failed for
   // good, or often, or because the source as a whole has failed often.
   void wait(bool stand_in);
+  // Another one where slots have been filled anew: what was waited for is gone.
+  uint64_t generation() const { return generation_; }
 
   // Held while a frame reads the pool, and what changes with it. Of several streams, in the order
   // of their addresses. Throws what ChunkPool::apply() threw, until the pool has been filled anew:
@@ -147,7 +150,7 @@ class SceneStream {
   template <class Done>
   bool work_once(const Done& done, bool& stepped);
   void check_fits() const;
-  bool is_settled() const;
+  bool is_settled(double since) const;
   void check_seen() const;
   void fail_range(ChunkRange range, const Error& error, uint64_t generation);
   void stage_range(ChunkRange range, const std::vector<std::byte>& bytes, uint64_t generation,
@@ -169,7 +172,8 @@ class SceneStream {
   // that frames that follow one another without end keep nobody out.
   mutable std::mutex door_;
   mutable std::shared_mutex pool_mutex_;
-  std::atomic<unsigned> commits_missed_{0};  // in a row: another frame held the pool
+  std::atomic<bool> commit_due_{false};
+  std::atomic<double> committed_{0};  // when; seconds
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0;
   std::exception_ptr unsound_;  // what apply() threw
@@ -193,7 +197,7 @@ class SceneStream {
   uint64_t staged_bytes_ = 0;
   std::chrono::steady_clock::time_point next_plan_;
   // Of the pool's present slots: what a thread has begun for earlier ones is for nothing.
-  uint64_t generation_ = 0;
+  std::atomic<uint64_t> generation_{0};
   unsigned filling_ = 0;
   // What ended a step or a commit halfway, for want of memory: what is resident, wanted and linked
   // is then no longer known, though frames may go on with the pool. All is filled anew.

@@ -43,13 +43,13 @@ std::shared_lock<std::shared_mutex> SceneStream::hold() const {
 
 // Where views draw by turns there is always one that holds the pool.
 void SceneStream::commit() {
-  constexpr unsigned kMostMissed = 4;
+  constexpr double kPutOff = 0.1;  // seconds
+  if (!commit_due_) return;
   std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) {
-    if (++commits_missed_ <= kMostMissed) return;
+    if (now() < committed_ + kPutOff) return;
     pool = hold_alone();
   }
-  commits_missed_ = 0;
   const Lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock() || lost_) return;
   try {
@@ -73,6 +73,8 @@ void SceneStream::apply(const LinkPatch& patch) {
 // throws leaves the pool as it is, and what is known of it, or unsound.
 bool SceneStream::commit_all() {
   LinkPatch patch;
+  committed_ = now();
+  commit_due_ = false;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
   for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);
   const Residency::Arrivals arrived =
@@ -156,9 +158,9 @@ void SceneStream::check_fits() const {
   throw Error(ErrorCode::over_budget, file_->name() + message);
 }
 
-bool SceneStream::is_settled() const {
+bool SceneStream::is_settled(double since) const {
   if (failures_.source_is_down() && !failures_.source_may_be_read(now())) return true;
-  const auto hopeless = [&](uint32_t chunk) { return failures_.is_hopeless(chunk); };
+  const auto hopeless = [&](uint32_t chunk) { return failures_.is_hopeless(chunk, since); };
   const std::vector<uint32_t>& failed = residency_.need().seen_failed;
   return residency_.settled(hopeless) && std::all_of(failed.begin(), failed.end(), hopeless);
 }
@@ -166,8 +168,8 @@ bool SceneStream::is_settled() const {
 // Of what is settled.
 void SceneStream::check_seen() const {
   const ResidencyNeed& need = residency_.need();
-  if (need.seen_missing == 0) return;
-  failures_.rethrow(need.seen_failed.empty() ? Residency::kNoSlot : need.seen_failed.front());
+  if (!need.seen_failed.empty()) failures_.rethrow(need.seen_failed.front());
+  if (need.seen_missing != 0 && failures_.source_is_down()) failures_.rethrow_source();
 }
 
 // One turn; whether it is done. Both locks are held meanwhile.
@@ -217,9 +219,10 @@ void SceneStream::work_until(const Done& done) {
 }
 
 void SceneStream::wait(bool stand_in) {
+  const double since = now();
   work_until([&] {
     check_fits();
-    if (!is_settled()) return false;
+    if (!is_settled(since)) return false;
     if (!stand_in) check_seen();
     return true;
   });
@@ -231,9 +234,11 @@ void SceneStream::read_around(const Vec3f& centre, uint64_t bytes) {
   const auto& chunks = file_->chunks();
   const uint64_t stored = chunks.back().offset + chunks.back().bytes - chunks.front().offset;
   const uint64_t enough = counters().chunks.arrived + bytes * chunks.size() / stored;
-  const double end = now() + kPatience;
-  work_until(
-      [&] { return is_settled() || residency_.counters().arrived >= enough || now() >= end; });
+  const double begin = now();
+  work_until([&] {
+    return is_settled(begin) || residency_.counters().arrived >= enough ||
+           now() >= begin + kPatience;
+  });
   look(this, {});
 }
 

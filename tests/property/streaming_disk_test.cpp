@@ -1,6 +1,8 @@
 // Streaming from a disk that takes its time, and one that fails: flights, jumps, too little
 // room, budgets that change, faults of every kind. Deterministic.
+#include <atomic>
 #include <random>
+#include <thread>
 
 #include "tests/support/simulated_disk.h"
 #include "tests/support/stream_rig.h"
@@ -306,6 +308,43 @@ TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
   EXPECT_EQ(stream.counters().resident, desc.slots);
 }
 
+// A pool on threads of its own that fails once: nobody else need move for all to come again.
+TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
+  struct Pool final : ChunkPool {
+    void fill(uint32_t, const StagedChunk&) override {}
+    void apply(const LinkPatch&) override {
+      if (fails.exchange(false)) throw Error(ErrorCode::device_lost, "pool: found no device");
+    }
+    void resize(uint32_t) override {
+      if (refuses.exchange(false)) throw Error(ErrorCode::over_budget, "pool: found no memory");
+    }
+    std::atomic<bool> fails{false}, refuses{false};
+  } pool;
+  const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
+  const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
+  StreamDesc desc;
+  desc.slots = static_cast<uint32_t>(file->chunks().size());
+  desc.pinned = desc.first = SceneStream::top_chunks(*file);
+  Workers workers(1);
+  SceneStream stream(file, desc, pool);
+  stream.read_top(workers);
+  const std::vector<Viewer> viewers = {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}};
+  const auto stand = [&] {
+    for (int i = 0; i < 500 && stream.counters().resident < desc.slots; ++i) {
+      stream.look(&pool, viewers);
+      stream.commit();
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return stream.counters().resident;
+  };
+  pool.fails = true;
+  EXPECT_EQ(stand(), desc.slots);
+  EXPECT_TRUE(stream.hold().owns_lock());
+  pool.refuses = true;
+  EXPECT_THROW(stream.resize(desc.slots - 1, desc.pinned, workers), Error);
+  EXPECT_EQ(stand(), desc.slots);
+}
+
 // A source that stays away, slowly: frames that wait get to know, and chunks are not asked for one
 // by one. When it comes back, all is well, and the next outage is told again.
 TEST(StreamingDisk, AFrameThatWaitsForASourceThatStaysAwayFails) {
@@ -340,6 +379,29 @@ TEST(StreamingDisk, AFrameThatWaitsForASourceThatStaysAwayFails) {
   flight.rig().time += 60;
   expect_same_bits(render(flight.view(), input), flight.whole(input));
   EXPECT_EQ(flight.counters().need.seen_missing, 0u);
+}
+
+// Whoever looks away from an outage, and back when it is over, waits for what had failed.
+TEST(StreamingDisk, AnOutageThatIsOverIsForgotten) {
+  Flight flight(1.0);
+  bool away = true;
+  flight.disk().fault = [&](uint64_t, size_t) {
+    if (away) throw Error(ErrorCode::io_transient, "disk.voy: found no answer");
+  };
+  FrameInput there = ahead({0, -3, -60}, kForward);
+  there.wait_resident = true;
+  for (int i = 0; i < 8; ++i, flight.rig().time += 11)
+    EXPECT_EQ(test::error_code([&] { render(flight.view(), there); }), ErrorCode::io_transient);
+  for (const double minutes : {0.0, 1.0, 10.0}) {
+    away = false;
+    for (int i = 0; i < 30; ++i) flight.draw(ahead({0, -3, 4000}, {0, 0, 1}, 60));
+    flight.rig().time += 60 * minutes;
+    expect_same_bits(render(flight.view(), there), flight.whole(there));
+    EXPECT_EQ(flight.counters().need.seen_missing, 0u);
+    away = true;
+    resize_streamed(flight.scene(), 0, *flight.rig().backend, flight.rig().workers);
+    EXPECT_EQ(test::error_code([&] { render(flight.view(), there); }), ErrorCode::io_transient);
+  }
 }
 
 // Chunks that cannot be had, of which nobody says that they might be: they are needed, and missing.
