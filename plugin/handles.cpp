@@ -119,6 +119,7 @@ void HandleTable::end_call(Object& object) noexcept {
 std::shared_ptr<Object> HandleTable::take(size_t index) {
   Slot& slot = slots_[index];
   slot.object->alive_ = false;
+  slot.object->removed();
   // A slot whose generations are used up is retired, so that no handle comes back.
   if (slot.generation != UINT32_MAX) {
     ++slot.generation;

@@ -28,6 +28,8 @@ class Object {
   const std::shared_ptr<Object>& parent() const { return device_; }
 
  private:
+  // Its handle is stale from now on; calls that use it may go on. Under the table's lock.
+  virtual void removed() noexcept {}
   // The library is unloaded and the host left the object: whether it must stay as it is,
   // because its destructor would use what may be gone.
   virtual bool stays_at_unload() noexcept { return false; }

@@ -27,6 +27,11 @@ SceneObject::~SceneObject() {
   device().device_budget.give_back(device_bytes);
 }
 
+// Frames that wait for what will not come would be waited for.
+void SceneObject::removed() noexcept {
+  if (scene != nullptr && scene->streamed()) scene->stream->abandon();
+}
+
 // Threads of ours must leave the library's code, whatever else stays.
 bool SceneObject::stays_at_unload() noexcept {
   if (!Child::stays_at_unload()) return false;

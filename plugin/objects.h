@@ -87,6 +87,7 @@ struct SceneObject final : Child {
   std::shared_ptr<Scene> scene;  // lives in `memory`, so is declared after it
 
  private:
+  void removed() noexcept override;
   bool stays_at_unload() noexcept override;
 };
 

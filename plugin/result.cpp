@@ -35,6 +35,8 @@ VoyResult result_of(ErrorCode code) {
       return VOY_ERROR_DEVICE_LOST;
     case ErrorCode::timeout:
       return VOY_ERROR_TIMEOUT;
+    case ErrorCode::scene_destroyed:
+      return VOY_ERROR_SCENE_DESTROYED;
     case ErrorCode::internal:
       break;
   }

@@ -7,7 +7,7 @@
 
 #include "runtime/frame/backend.h"
 #include "runtime/frame/time_budget.h"
-#include "tools/image_error.h"
+#include "tools/metrics/image_error.h"
 
 namespace voyager::tools {
 

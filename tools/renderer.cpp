@@ -7,8 +7,9 @@
 namespace voyager::tools {
 namespace {
 
-void print_warning(void*, VoyLogLevel, const char* message) {
-  fmt::print(stderr, "voyager: {}\n", message);
+// An error ends the command, and is printed there.
+void print_warning(void*, VoyLogLevel level, const char* message) {
+  if (level == VOY_LOG_WARNING) fmt::print(stderr, "voyager: {}\n", message);
 }
 
 // The budget holds where the scene is drawn: in the host's memory, or in CUDA's own.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/instance.h"
@@ -50,6 +51,8 @@ FrameStreaming::FrameStreaming(const Scenes& scenes, Clock clock)
     if (scene->streamed() &&
         std::find(streamed_.begin(), streamed_.end(), scene.get()) == streamed_.end())
       streamed_.push_back(scene.get());
+  // Views that share several scenes hold them in one order.
+  std::sort(streamed_.begin(), streamed_.end(), std::less<>());
   for (const Scene* scene : streamed_) bytes_read_.push_back(scene->stream->counters().bytes_read);
   if (!clock_)
     clock_ = [] {

@@ -12,10 +12,6 @@
 namespace voyager {
 namespace {
 
-// What every view has at once, wherever it looks.
-constexpr uint32_t kPinnedShare = 8;  // of the slots, one in so many
-constexpr uint32_t kMostPinned = 1024;
-
 // As make_search_tree() has it: over what the subtrees' roots hang from. A file's hull is as good
 // but where a chunk goes on with a root of the one before, and of the tree's root: those are
 // never passed over.
@@ -54,10 +50,6 @@ uint32_t slots_for(const SceneFile& file, const PoolBytes& bytes, uint64_t budge
   throw Error(ErrorCode::over_budget, file.name() + message);
 }
 
-uint32_t pinned_of(const SceneFile& file, uint32_t slots) {
-  return std::max(SceneStream::top_chunks(file), std::min(kMostPinned, slots / kPinnedShare));
-}
-
 uint32_t first_of(const SceneFile& file, const StreamDesc& desc, uint64_t limit) {
   uint64_t bytes = 0;
   uint32_t first = 0;
@@ -86,7 +78,7 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   const PoolBytes bytes = backend.pool_bytes(*scene, shape);
   StreamDesc stream;
   stream.slots = slots_for(*file, bytes, desc.budget);
-  stream.pinned = pinned_of(*file, stream.slots);
+  stream.pinned = SceneStream::pinned_chunks(*file, stream.slots);
   stream.first = desc.start ? stream.pinned : first_of(*file, stream, desc.first_bytes);
   stream.readers = desc.readers;
   stream.slot_bytes = bytes.slot;
@@ -96,7 +88,7 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
   scene->stream->read_top(workers);
   if (desc.start)
-    scene->stream->read_around(cut_centre(*desc.start, scene->origin), desc.first_bytes);
+    scene->stream->read_around(cut_centre(*desc.start, scene->origin), desc.start_bytes);
   return scene;
 }
 
@@ -104,7 +96,7 @@ void resize_streamed(Scene& scene, uint64_t budget, Backend& backend, Workers& w
   const SceneFile& file = scene.stream->file();
   const PoolBytes bytes = backend.pool_bytes(scene, SceneStream::slot_shape(file));
   const uint32_t slots = slots_for(file, bytes, budget);
-  scene.stream->resize(slots, pinned_of(file, slots), workers);
+  scene.stream->resize(slots, SceneStream::pinned_chunks(file, slots), workers);
 }
 
 }  // namespace voyager

@@ -26,11 +26,33 @@ void Failures::add(uint32_t chunk, const Error& error, double now) {
   ++failed.times;
   failed.again = error.code() == ErrorCode::io_transient ||
                  (error.code() == ErrorCode::damaged_chunk && failed.times == 1);
-  const double wait =
-      std::min(kLongestWait,
-               kFirstWait * std::ldexp(1.0, static_cast<int>(std::min(failed.times - 1, 16u))));
-  failed.due = failed.again ? now + wait : -1;
-  if (told_.insert(cause_of(failed.message)).second) messages_.push_back(failed.message);
+  failed.due = failed.again ? now + wait_after(failed.times) : -1;
+  tell(failed.message);
+}
+
+void Failures::tell(const std::string& message) {
+  if (told_.insert(cause_of(message)).second) messages_.push_back(message);
+}
+
+double Failures::wait_after(unsigned times) {
+  return std::min(kLongestWait,
+                  kFirstWait * std::ldexp(1.0, static_cast<int>(std::min(times - 1, 16u))));
+}
+
+void Failures::source_failed(const Error& error, double now) {
+  source_code_ = error.code();
+  source_message_ = error.what();
+  // Reads that were under way together fail together.
+  if (!source_may_be_read(now)) return;
+  ++source_failures_;
+  source_due_ = now + wait_after(source_failures_);
+}
+
+void Failures::source_answered() {
+  // What goes wrong after that is news.
+  if (source_is_down()) told_.clear();
+  source_failures_ = 0;
+  source_due_ = 0;
 }
 
 std::vector<uint32_t> Failures::take_due(double now) {
@@ -50,7 +72,8 @@ double Failures::next_due(double now) const {
       const double wait = std::max(0.0, failed.due - now);
       next = next < 0 ? wait : std::min(next, wait);
     }
-  return next;
+  if (source_may_be_read(now)) return next;
+  return next < 0 ? source_due_ - now : std::min(next, source_due_ - now);
 }
 
 bool Failures::is_hopeless(uint32_t chunk) const {
@@ -60,6 +83,7 @@ bool Failures::is_hopeless(uint32_t chunk) const {
 
 void Failures::rethrow(uint32_t chunk) const {
   const auto found = failed_.find(chunk);
+  if (found == failed_.end() && source_failures_ > 0) throw Error(source_code_, source_message_);
   if (found == failed_.end())
     throw Error(ErrorCode::internal, "chunk " + std::to_string(chunk) + ": failed for no reason");
   throw Error(found->second.code, found->second.message);

@@ -37,6 +37,7 @@ Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks
       children_there_(chunks.size()),
       shares_family_(chunks.size()) {
   assert(pinned <= slots);
+  free_slots_.reserve(slots);  // so that to free one throws nothing
   for (uint32_t slot = slots; slot-- > 0;) free_slots_.push_back(slot);
   plan({});
 }
@@ -99,9 +100,14 @@ void Residency::find_needed(std::span<const Viewer> viewers) {
     const ChunkRange children = graph_->children(extra_[from].chunk);
     for (uint32_t c = std::max(next, children.first); c < children.last; ++c) look(c);
   }
+  const auto by_chunk = [](const Needed& a, const Needed& b) {
+    return a.chunk != b.chunk ? a.chunk < b.chunk : a.urgency > b.urgency;
+  };
+  std::sort(failed_.begin(), failed_.end(), by_chunk);  // what several hang from is there often
+  const auto same = [](const Needed& a, const Needed& b) { return a.chunk == b.chunk; };
+  failed_.erase(std::unique(failed_.begin(), failed_.end(), same), failed_.end());
   needed_ = extra_;
-  std::sort(needed_.begin(), needed_.end(),
-            [](const Needed& a, const Needed& b) { return a.chunk < b.chunk; });
+  std::sort(needed_.begin(), needed_.end(), by_chunk);
 }
 
 // A node is refined only when all that hangs from it is there.
@@ -353,9 +359,16 @@ void Residency::count_need() {
     need_.seen += seen;
     if (state_[needed.chunk] != State::resident) count_missing(needed.chunk, true);
   }
-  for (const Needed& needed : failed_)
-    if (needed.now && class_of(needed.urgency) == Class::seen)
-      need_.seen_failed.push_back(needed.chunk);
+  for (const Needed& needed : failed_) {
+    if (!needed.now) continue;
+    ++need_.chunks;
+    ++need_.missing;
+    need_.missing_bytes += chunks_[needed.chunk].bytes;
+    if (class_of(needed.urgency) != Class::seen) continue;
+    ++need_.seen;
+    ++need_.seen_missing;
+    need_.seen_failed.push_back(needed.chunk);
+  }
 }
 
 // A chunk that comes or goes after the plan.
@@ -367,9 +380,10 @@ void Residency::count_missing(uint32_t chunk, bool missing) {
   need_.missing_bytes += missing ? chunks_[chunk].bytes : -uint64_t{chunks_[chunk].bytes};
 }
 
-bool Residency::settled() const {
+bool Residency::settled(const std::function<bool(uint32_t)>& hopeless) const {
   const auto to_come = [&](uint32_t chunk) {
-    return is_wanted(chunk) && state_[chunk] != State::resident && state_[chunk] != State::failed;
+    return is_wanted(chunk) && state_[chunk] != State::resident && state_[chunk] != State::failed &&
+           !hopeless(chunk);
   };
   for (uint32_t chunk = 0; chunk < pinned_; ++chunk)
     if (to_come(chunk)) return false;

@@ -26,11 +26,12 @@ struct ResidencyCounters {
   uint64_t flushed = 0;  // requests that were taken back, or had come for nothing
 };
 
-// Of the last plan, for the viewers that are not ahead: chunks, and their stored bytes.
+// Of the last plan, for the viewers that are not ahead: chunks, and their stored bytes. Of those
+// that have failed, what hangs from them is not known to be needed.
 struct ResidencyNeed {
   uint64_t chunks = 0, missing = 0, missing_bytes = 0;
   uint64_t seen = 0, seen_missing = 0;  // beside those that are pinned
-  std::vector<uint32_t> seen_failed;
+  std::vector<uint32_t> seen_failed;    // counted in all of these
 };
 
 class Residency {
@@ -88,8 +89,8 @@ class Residency {
   uint32_t pinned() const { return pinned_; }
   uint32_t resident() const { return resident_; }
   const ResidencyNeed& need() const { return need_; }
-  // All of the target is there, but for what failed.
-  bool settled() const;
+  // All of the target is there, but for what failed, or is hopeless(chunk).
+  bool settled(const std::function<bool(uint32_t)>& hopeless) const;
   const ResidencyCounters& counters() const { return counters_; }
 
  private:

@@ -12,6 +12,9 @@ namespace {
 
 constexpr uint32_t kMostChunksARead = 64;
 constexpr int kPlanRest = 3;  // after a plan, times what it took
+// What every view has at once, wherever it looks.
+constexpr uint32_t kPinnedShare = 8;  // of the slots, one in so many
+constexpr uint32_t kMostPinned = 1024;
 
 ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) {
   return {a.requested + b.requested, a.arrived + b.arrived, a.evicted + b.evicted, a.late + b.late,
@@ -35,6 +38,10 @@ uint32_t SceneStream::top_chunks(const SceneFile& file) {
       std::partition_point(chunks.begin(), chunks.end(),
                            [&](const ChunkEntry& entry) { return entry.first_subtree < end; }) -
       chunks.begin());
+}
+
+uint32_t SceneStream::pinned_chunks(const SceneFile& file, uint32_t slots) {
+  return std::max(top_chunks(file), std::min(kMostPinned, slots / kPinnedShare));
 }
 
 SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc& desc,
@@ -64,6 +71,15 @@ void SceneStream::stop() {
   threads_.clear();
 }
 
+void SceneStream::abandon() noexcept {
+  {
+    const std::lock_guard lock(small_mutex_);
+    abandoned_ = true;
+  }
+  progress_.notify_all();
+  file_->source().cancel();
+}
+
 double SceneStream::now() const {
   if (desc_.clock) return desc_.clock();
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -72,6 +88,7 @@ double SceneStream::now() const {
 // Seconds until there may be something to do that no one tells of; negative: never.
 double SceneStream::next_due() const {
   double wait = failures_.next_due(now());
+  if (lost_) wait = std::max(0.0, rebuild_due_ - now());
   const std::lock_guard small(small_mutex_);
   if (!look_again_) return wait;
   const auto rest = next_plan_ - std::chrono::steady_clock::now();
@@ -96,8 +113,10 @@ void SceneStream::read_top(Workers& workers) {
       static_cast<std::ptrdiff_t>(last.offset + last.bytes - file_->chunks()[0].offset);
   top_.assign(stored.begin(), stored.begin() + pinned_bytes);
   {
-    const std::unique_lock pool(pool_mutex_);
+    const auto pool = hold_alone();
     const Lock lock(mutex_);
+    ++reads_;
+    bytes_read_ += stored.size();
     put_first(desc_.first, stored, workers);
   }
   for (unsigned i = 0; i < desc_.readers; ++i) threads_.emplace_back([this] { run(); });
@@ -132,16 +151,22 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
 
 void SceneStream::resize(uint32_t slots, uint32_t pinned, Workers& workers) {
   {
-    const std::unique_lock pool(pool_mutex_);
+    const auto pool = hold_alone();
     Lock lock(mutex_);
     filled_.wait(lock, [&] { return filling_ == 0; });
-    const auto before = static_cast<uint32_t>(slots_.load());
+    const auto slots_before = static_cast<uint32_t>(slots_.load());
+    const uint32_t pinned_before = residency_.pinned();
     try {
       pool_.resize(slots);
       reset(slots, pinned, workers);
     } catch (...) {
-      pool_.resize(before);
-      reset(before, residency_.pinned(), workers);
+      try {
+        pool_.resize(slots_before);
+        reset(slots_before, pinned_before, workers);
+      } catch (...) {
+        unsound_ = std::current_exception();
+        lose(unsound_);
+      }
       throw;
     }
     const std::lock_guard small(small_mutex_);
@@ -160,10 +185,47 @@ void SceneStream::reset(uint32_t slots, uint32_t pinned, Workers& workers) {
   staged_bytes_ = 0;
   slots_ = slots;
   unsound_ = nullptr;
+  lost_ = nullptr;
   // No search can go on from what it has.
   changes_.clear();
   version_ += kChangesKept;
   put_first(residency_.pinned(), top_, workers);
+}
+
+// From within a catch, or with what one has caught.
+void SceneStream::lose(std::exception_ptr what) noexcept {
+  constexpr double kRest = 1;  // second: memory may be had again
+  lost_ = std::move(what);
+  rebuild_due_ = now() + kRest;
+}
+
+// Both locks are held. As many slots as before, and nothing in them but the top.
+void SceneStream::rebuild() {
+  const uint32_t pinned = residency_.pinned();
+  try {
+    Workers workers(1);
+    pool_.resize(static_cast<uint32_t>(slots_.load()));
+    reset(static_cast<uint32_t>(slots_.load()), pinned, workers);
+    failures_.tell(file_->name() +
+                   ": memory was refused; what had been read is dropped, and comes again");
+    const std::lock_guard small(small_mutex_);
+    look_again_ = true;
+  } catch (...) {
+    unsound_ = std::current_exception();
+    lose(unsound_);
+  }
+}
+
+bool SceneStream::rebuild_if_due(Lock& lock) {
+  if (now() < rebuild_due_) return false;
+  lock.unlock();  // the pool comes first
+  {
+    const auto pool = hold_alone();
+    lock.lock();
+    filled_.wait(lock, [&] { return filling_ == 0; });
+    if (lost_) rebuild();
+  }
+  return true;
 }
 
 void SceneStream::run() {
@@ -196,6 +258,17 @@ bool SceneStream::step() {
 }
 
 bool SceneStream::step(Lock& lock) {
+  if (lost_) return rebuild_if_due(lock);
+  try {
+    return work(lock);
+  } catch (...) {
+    if (!lock.owns_lock()) lock.lock();
+    lose(std::current_exception());
+    return false;
+  }
+}
+
+bool SceneStream::work(Lock& lock) {
   const bool done = plan_if_asked() || retry_due() || fill_one(lock) || read_some(lock);
   if (done) {
     publish();
@@ -272,53 +345,82 @@ bool SceneStream::fill_one(Lock& lock) {
 }
 
 bool SceneStream::read_some(Lock& lock) {
-  if (staged_bytes_ >= desc_.staged_bytes) return false;
+  if (staged_bytes_ >= desc_.staged_bytes || !failures_.source_may_be_read(now())) return false;
   const ChunkRange range = residency_.take_requests(kMostChunksARead, desc_.read_bytes);
   if (range.empty()) return false;
-  const auto& chunks = file_->chunks();
   const uint64_t generation = generation_;
   lock.unlock();
   std::vector<std::byte> bytes;
-  std::optional<Error> passing;
+  std::optional<Error> failure;
   try {
     bytes = file_->read_stored(range.first, range.last);
   } catch (const Error& error) {
-    if (error.code() == ErrorCode::io_transient) passing = error;
-  } catch (const std::exception&) {
+    failure = error;
+  } catch (const std::exception& error) {
+    failure.emplace(ErrorCode::io_transient, file_->name() + ": " + error.what());
   }
   lock.lock();
   ++reads_;
-  // A source that stalls would stall for each chunk.
-  if (passing) {
-    for (uint32_t chunk = range.first; chunk < range.last && generation_ == generation; ++chunk)
-      fail(chunk, *passing);
+  if (!failure) {
+    bytes_read_ += bytes.size();
+    failures_.source_answered();
+    stage_range(range, bytes, generation, lock);
     return true;
   }
-  // What failed for good is read chunk by chunk, to find which of them cannot be had.
-  bytes_read_ += bytes.size();
-  for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
-    if (generation_ != generation) break;
-    const uint64_t at = chunks[chunk].offset - chunks[range.first].offset;
-    const std::span stored = std::span<const std::byte>(bytes);
-    stage(
-        chunk,
-        [&] {
-          return bytes.empty() ? file_->read_chunk(chunk)
-                               : file_->decode(chunk, stored.subspan(at, chunks[chunk].bytes));
-        },
-        lock);
-  }
+  // Chunk by chunk it would fail as well: a source that stalls, and a file that is gone.
+  const bool whole =
+      failure->code() == ErrorCode::io_transient || failure->code() == ErrorCode::file_not_found;
+  if (whole) failures_.source_failed(*failure, now());
+  if (whole || range.last - range.first == 1)
+    fail_range(range, *failure, generation);
+  else
+    stage_range(range, {}, generation, lock);
   return true;
 }
 
+void SceneStream::fail_range(ChunkRange range, const Error& error, uint64_t generation) {
+  for (uint32_t chunk = range.first; chunk < range.last && generation_ == generation; ++chunk)
+    fail(chunk, error);
+}
+
+// No bytes: they could not be had at once, and which of the chunks can be had is found one by one,
+// in the order of the file: where one cannot, those behind it are beyond its end, or of a file that
+// was replaced.
+void SceneStream::stage_range(ChunkRange range, const std::vector<std::byte>& bytes,
+                              uint64_t generation, Lock& lock) {
+  const auto& chunks = file_->chunks();
+  const std::span<const std::byte> all(bytes);
+  for (uint32_t chunk = range.first; chunk < range.last && generation_ == generation; ++chunk) {
+    std::span<const std::byte> stored = all;
+    std::vector<std::byte> own;
+    if (bytes.empty()) {
+      lock.unlock();
+      std::optional<Error> failure;
+      try {
+        own = file_->read_stored(chunk, chunk + 1);
+      } catch (const Error& error) {
+        failure = error;
+      }
+      lock.lock();
+      ++reads_;
+      bytes_read_ += own.size();
+      if (failure) return fail_range({chunk, range.last}, *failure, generation);
+      stored = own;
+    } else {
+      stored = all.subspan(chunks[chunk].offset - chunks[range.first].offset, chunks[chunk].bytes);
+    }
+    stage(chunk, stored, lock);
+  }
+}
+
 // The lock is let go while the chunk is decoded.
-void SceneStream::stage(uint32_t chunk, const std::function<Chunk()>& decode, Lock& lock) {
+void SceneStream::stage(uint32_t chunk, std::span<const std::byte> stored, Lock& lock) {
   StagedChunk staged;
   std::exception_ptr failure;
   const uint64_t generation = generation_;
   lock.unlock();
   try {
-    staged = stage_chunk(decode(), chunk, tiers_, file_->name());
+    staged = stage_chunk(file_->decode(chunk, stored), chunk, tiers_, file_->name());
   } catch (...) {
     failure = std::current_exception();
   }
@@ -332,7 +434,6 @@ void SceneStream::stage(uint32_t chunk, const std::function<Chunk()>& decode, Lo
     }
     return;
   }
-  failures_.remove(chunk);
   if (!residency_.read(chunk)) return;
   const uint64_t bytes = file_->chunks()[chunk].bytes;
   coming_[chunk] = {std::move(staged), bytes};

@@ -60,12 +60,14 @@ class SceneStream {
   static SlotShape slot_shape(const SceneFile& file);
   // How many of the first chunks hold a subtree of the tree's root.
   static uint32_t top_chunks(const SceneFile& file);
+  // How many of the first chunks stay whoever looks, where there are so many slots.
+  static uint32_t pinned_chunks(const SceneFile& file, uint32_t slots);
 
   // Reads the first chunks, and starts the threads. Once, before any frame. Throws Error as the
   // source does and as a chunk is damaged: a scene without its top is nothing.
   void read_top(Workers& workers);
   // Then: what is large from a point, in the scene's own coordinates, until about so many stored
-  // bytes of it are there. What cannot be had is left out.
+  // bytes of it are there, or five seconds have passed. What cannot be had is left out.
   void read_around(const Vec3f& centre, uint64_t bytes);
   // Other slots, as StreamDesc has them, and no more pinned than at first: what was there goes,
   // but for what is pinned. Waits for frames that hold the pool, and for no source. Throws as
@@ -73,6 +75,9 @@ class SceneStream {
   void resize(uint32_t slots, uint32_t pinned, Workers& workers);
   // Ends the threads; nothing comes any more. Also done when it is destroyed.
   void stop();
+  // Nobody should wait for anything any more: wait() throws Error(scene_destroyed), and reads end.
+  // Any thread, also while others wait.
+  void abandon() noexcept;
 
   // Who looks, for one view's instance; it replaces what was said before. No viewers: nobody.
   // Any thread.
@@ -80,11 +85,13 @@ class SceneStream {
   // What has come becomes resident, unless another frame reads the pool just now. Any thread.
   void commit();
   // The same until nothing more is to come. Throws Error(over_budget) where what is seen does
-  // not fit, and unless `stand_in` what kept a chunk that is seen from coming.
+  // not fit, and unless `stand_in` what kept a chunk that is seen from coming: what failed for
+  // good, or often, or because the source as a whole has failed often.
   void wait(bool stand_in);
 
-  // Held while a frame reads the pool, and what changes with it. Throws what ChunkPool::apply()
-  // threw, from then on until resize(): what is linked is not what the pool has.
+  // Held while a frame reads the pool, and what changes with it. Of several streams, in the order
+  // of their addresses. Throws what ChunkPool::apply() threw, until the pool has been filled anew:
+  // what is linked is not what the pool has.
   std::shared_lock<std::shared_mutex> hold() const;
   uint64_t version() const { return version_; }
   // The changes after a version, in their order; false where those are no longer known.
@@ -115,24 +122,36 @@ class SceneStream {
 
   void run();
   bool step(Lock& lock);
+  bool work(Lock& lock);
   bool plan_if_asked();
   bool retry_due();
   bool fill_one(Lock& lock);
   bool read_some(Lock& lock);
-  void stage(uint32_t chunk, const std::function<Chunk()>& decode, Lock& lock);
+  void stage(uint32_t chunk, std::span<const std::byte> stored, Lock& lock);
   void put_first(uint32_t count, std::span<const std::byte> stored, Workers& workers);
   void fail(uint32_t chunk, const std::exception& error);
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
-  void commit_all();
+  bool commit_all();
+  std::shared_ptr<const StreamChange> change_of(const LinkPatch& patch) const;
+  void lose(std::exception_ptr what) noexcept;
+  bool rebuild_if_due(Lock& lock);
+  void rebuild();
+  std::unique_lock<std::shared_mutex> hold_alone() const;
   void apply(const LinkPatch& patch);
   bool accept(uint32_t chunk, LinkPatch& patch);
   void learn_families(const LinkTable& table);
   void reset(uint32_t slots, uint32_t pinned, Workers& workers);
   template <class Done>
   void work_until(const Done& done);
+  template <class Done>
+  bool work_once(const Done& done, bool& stepped);
   void check_fits() const;
   bool is_settled() const;
+  void check_seen() const;
+  void fail_range(ChunkRange range, const Error& error, uint64_t generation);
+  void stage_range(ChunkRange range, const std::vector<std::byte>& bytes, uint64_t generation,
+                   Lock& lock);
   void publish();
   void signal();
   double now() const;
@@ -146,8 +165,11 @@ class SceneStream {
   ChunkPool& pool_;
   std::atomic<uint64_t> slots_;
 
-  // The pool's: held alone while that changes, before mutex_.
+  // The pool's: held alone while that changes, before mutex_. Whoever takes it passes the door, so
+  // that frames that follow one another without end keep nobody out.
+  mutable std::mutex door_;
   mutable std::shared_mutex pool_mutex_;
+  std::atomic<unsigned> commits_missed_{0};  // in a row: another frame held the pool
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0;
   std::exception_ptr unsound_;  // what apply() threw
@@ -156,7 +178,7 @@ class SceneStream {
   mutable std::mutex small_mutex_;
   std::condition_variable wake_, progress_;
   uint64_t signals_ = 0;
-  bool stopping_ = false;
+  bool stopping_ = false, abandoned_ = false;
   bool look_again_ = false;
   std::map<const void*, std::vector<Viewer>> viewers_;
   StreamCounters published_;
@@ -173,6 +195,10 @@ class SceneStream {
   // Of the pool's present slots: what a thread has begun for earlier ones is for nothing.
   uint64_t generation_ = 0;
   unsigned filling_ = 0;
+  // What ended a step or a commit halfway, for want of memory: what is resident, wanted and linked
+  // is then no longer known, though frames may go on with the pool. All is filled anew.
+  std::exception_ptr lost_;
+  double rebuild_due_ = 0;
   std::condition_variable filled_;
   std::vector<std::byte> top_;  // stored bytes of what is pinned
   ResidencyCounters counted_;   // for earlier slots

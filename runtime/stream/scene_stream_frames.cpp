@@ -1,5 +1,6 @@
 // What a frame does: it says where it looks, and links what has come.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "runtime/stream/scene_stream.h"
@@ -25,17 +26,37 @@ void SceneStream::look(const void* who, std::vector<Viewer> viewers) {
   signal();
 }
 
-void SceneStream::commit() {
-  const std::unique_lock pool(pool_mutex_, std::try_to_lock);
-  if (!pool.owns_lock()) return;
-  const Lock lock(mutex_, std::try_to_lock);
-  if (lock.owns_lock()) commit_all();
+std::unique_lock<std::shared_mutex> SceneStream::hold_alone() const {
+  const std::lock_guard door(door_);
+  return std::unique_lock(pool_mutex_);
 }
 
 std::shared_lock<std::shared_mutex> SceneStream::hold() const {
-  std::shared_lock lock(pool_mutex_);
+  std::shared_lock<std::shared_mutex> lock;
+  {
+    const std::lock_guard door(door_);
+    lock = std::shared_lock(pool_mutex_);
+  }
   if (unsound_) std::rethrow_exception(unsound_);
   return lock;
+}
+
+// Where views draw by turns there is always one that holds the pool.
+void SceneStream::commit() {
+  constexpr unsigned kMostMissed = 4;
+  std::unique_lock pool(pool_mutex_, std::try_to_lock);
+  if (!pool.owns_lock()) {
+    if (++commits_missed_ <= kMostMissed) return;
+    pool = hold_alone();
+  }
+  commits_missed_ = 0;
+  const Lock lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock() || lost_) return;
+  try {
+    commit_all();
+  } catch (...) {
+    lose(std::current_exception());
+  }
 }
 
 void SceneStream::apply(const LinkPatch& patch) {
@@ -43,34 +64,46 @@ void SceneStream::apply(const LinkPatch& patch) {
     pool_.apply(patch);
   } catch (...) {
     unsound_ = std::current_exception();
+    lose(unsound_);
     throw;
   }
 }
 
-void SceneStream::commit_all() {
-  if (unsound_) std::rethrow_exception(unsound_);
+// Whether a chunk was given up, so that what is needed is not what the last plan found. What it
+// throws leaves the pool as it is, and what is known of it, or unsound.
+bool SceneStream::commit_all() {
   LinkPatch patch;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
   for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);
   const Residency::Arrivals arrived =
       residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
-  for (const uint32_t chunk : arrived.resident) coming_.erase(chunk);
+  for (const uint32_t chunk : arrived.resident) {
+    coming_.erase(chunk);
+    failures_.remove(chunk);
+  }
   for (const uint32_t chunk : arrived.given_up) coming_.erase(chunk);
   if (!patch.empty()) {
+    changes_.push_back(change_of(patch));
     apply(patch);
-    auto change = std::make_shared<StreamChange>();
-    change->version = ++version_;
-    change->unlinked = std::move(patch.unlinked);
-    change->changed = std::move(patch.cut.changed);
-    change->changed.insert(change->changed.end(), patch.tied.changed.begin(),
-                           patch.tied.changed.end());
-    changes_.push_back(std::move(change));
+    ++version_;
     if (changes_.size() > kChangesKept) changes_.pop_front();
   }
   for (const Residency::Evicted& e : evicted) residency_.free_slot(e.slot);
-  if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return;
+  if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return false;
   publish();
   signal();
+  return !arrived.given_up.empty();
+}
+
+// That which the next version will be.
+std::shared_ptr<const StreamChange> SceneStream::change_of(const LinkPatch& patch) const {
+  auto change = std::make_shared<StreamChange>();
+  change->version = version_ + 1;
+  change->unlinked = patch.unlinked;
+  change->changed = patch.cut.changed;
+  change->changed.insert(change->changed.end(), patch.tied.changed.begin(),
+                         patch.tied.changed.end());
+  return change;
 }
 
 bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
@@ -105,8 +138,13 @@ bool SceneStream::changes_since(uint64_t version,
 }
 
 void SceneStream::check_fits() const {
-  const uint64_t slots = residency_.need().seen + residency_.pinned();
-  if (slots <= residency_.slots()) return;
+  const uint64_t seen = residency_.need().seen - residency_.need().seen_failed.size();
+  if (seen + residency_.pinned() <= residency_.slots()) return;
+  // More slots would have more of the top among them.
+  uint64_t slots = seen + residency_.pinned();
+  while (slots < seen + pinned_chunks(*file_, static_cast<uint32_t>(slots)))
+    slots = seen + pinned_chunks(*file_, static_cast<uint32_t>(slots));
+  slots = std::min<uint64_t>(slots, file_->chunks().size());
   const auto megabytes = [&](uint64_t of) {
     return static_cast<double>(of * desc_.slot_bytes + desc_.fixed_bytes) / 1e6;
   };
@@ -114,15 +152,48 @@ void SceneStream::check_fits() const {
   std::snprintf(message, sizeof message,
                 ": what the view frustum needs takes %.3f MB, the memory budget has room for "
                 "%.3f MB",
-                megabytes(slots), megabytes(residency_.slots()));
+                std::ceil(1e3 * megabytes(slots)) / 1e3, megabytes(residency_.slots()));
   throw Error(ErrorCode::over_budget, file_->name() + message);
 }
 
 bool SceneStream::is_settled() const {
-  const std::vector<uint32_t> failed = residency_.need().seen_failed;
-  return residency_.settled() && std::all_of(failed.begin(), failed.end(), [&](uint32_t chunk) {
-           return failures_.is_hopeless(chunk);
-         });
+  if (failures_.source_is_down() && !failures_.source_may_be_read(now())) return true;
+  const auto hopeless = [&](uint32_t chunk) { return failures_.is_hopeless(chunk); };
+  const std::vector<uint32_t>& failed = residency_.need().seen_failed;
+  return residency_.settled(hopeless) && std::all_of(failed.begin(), failed.end(), hopeless);
+}
+
+// Of what is settled.
+void SceneStream::check_seen() const {
+  const ResidencyNeed& need = residency_.need();
+  if (need.seen_missing == 0) return;
+  failures_.rethrow(need.seen_failed.empty() ? Residency::kNoSlot : need.seen_failed.front());
+}
+
+// One turn; whether it is done. Both locks are held meanwhile.
+template <class Done>
+bool SceneStream::work_once(const Done& done, bool& stepped) {
+  const auto pool = hold_alone();
+  Lock lock(mutex_);
+  if (lost_) {
+    filled_.wait(lock, [&] { return filling_ == 0; });
+    rebuild();
+    if (lost_) std::rethrow_exception(lost_);
+  }
+  try {
+    next_plan_ = {};
+    stepped = plan_if_asked();
+    const bool changed = commit_all();
+    publish();
+    if (!changed && done()) return true;
+  } catch (const Error&) {
+    throw;
+  } catch (...) {
+    lose(std::current_exception());
+    throw;
+  }
+  if (desc_.readers == 0) stepped = step(lock);
+  return false;
 }
 
 template <class Done>
@@ -131,22 +202,17 @@ void SceneStream::work_until(const Done& done) {
     uint64_t seen = 0;
     {
       const std::lock_guard small(small_mutex_);
+      if (abandoned_)
+        throw Error(ErrorCode::scene_destroyed,
+                    file_->name() + ": found it destroyed while a frame waited for it");
       seen = signals_;
     }
     bool stepped = false;
-    {
-      const std::unique_lock pool(pool_mutex_);
-      Lock lock(mutex_);
-      next_plan_ = {};
-      stepped = plan_if_asked();
-      commit_all();
-      publish();
-      if (done()) return;
-      if (desc_.readers == 0) stepped = step(lock);
-    }
+    if (work_once(done, stepped)) return;
     if (stepped || desc_.readers == 0) continue;
     std::unique_lock small(small_mutex_);
-    progress_.wait_for(small, std::chrono::milliseconds(100), [&] { return signals_ != seen; });
+    progress_.wait_for(small, std::chrono::milliseconds(100),
+                       [&] { return signals_ != seen || abandoned_; });
   }
 }
 
@@ -154,18 +220,20 @@ void SceneStream::wait(bool stand_in) {
   work_until([&] {
     check_fits();
     if (!is_settled()) return false;
-    const std::vector<uint32_t> failed = residency_.need().seen_failed;
-    if (!failed.empty() && !stand_in) failures_.rethrow(failed.front());
+    if (!stand_in) check_seen();
     return true;
   });
 }
 
 void SceneStream::read_around(const Vec3f& centre, uint64_t bytes) {
+  constexpr double kPatience = 5;  // seconds
   look(this, {{{centre, kStartTarget}, {}, false}});
   const auto& chunks = file_->chunks();
   const uint64_t stored = chunks.back().offset + chunks.back().bytes - chunks.front().offset;
   const uint64_t enough = counters().chunks.arrived + bytes * chunks.size() / stored;
-  work_until([&] { return residency_.settled() || residency_.counters().arrived >= enough; });
+  const double end = now() + kPatience;
+  work_until(
+      [&] { return is_settled() || residency_.counters().arrived >= enough || now() >= end; });
   look(this, {});
 }
 

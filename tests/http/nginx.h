@@ -66,6 +66,11 @@ class Nginx {
     std::ofstream(folder_.file("nginx.conf")) << configuration(server, listen);
     return restart();
   }
+  // The same, on the port of before.
+  std::string start_again(const std::string& server) {
+    std::ofstream(folder_.file("nginx.conf")) << configuration(server, "");
+    return restart();
+  }
   std::string restart() {
     const std::string program = program_path("nginx"), root = folder_.file("");
     const std::string log = folder_.file("error.log"), conf = folder_.file("nginx.conf");

@@ -58,6 +58,19 @@ TEST(SearchEquality, LargeTrees) {
         expect_agreement(test::random_tree(shape, 100000, 3), kDefaultChunkBytes, 3, 1));
 }
 
+TEST(SearchEquality, AChainOfAHundredThousandAndAFamilyOfAMillion) {
+  for (const auto& [shape, nodes] :
+       {std::pair(test::TreeShape::chain, 100000u), std::pair(test::TreeShape::star, 1000001u)}) {
+    SearchRig rig(test::random_tree(shape, nodes, 1));
+    for (const CutQuery& query : {CutQuery{{30, 4, -12}, 0.05f},
+                                  {{30, 4, -12}, 1e-6f},
+                                  {{0, 0, 0}, 10},
+                                  {{1000, 4, -12}, 0.5f},
+                                  {{1000.1f, 4, -12}, 0.5f}})
+      ASSERT_TRUE(rig.agree(query)) << test::name_of(shape);
+  }
+}
+
 // Minutes: VOYAGER_LARGE_TREES=1.
 TEST(SearchEquality, TreesOfAMillionNodes) {
   if (std::getenv("VOYAGER_LARGE_TREES") == nullptr) GTEST_SKIP() << "takes minutes";

@@ -58,6 +58,7 @@ class Flight {
   }
   Frame whole(const FrameInput& input) { return render(rig_.whole, input); }
 
+  View& view() { return view_; }
   SceneStream& stream() const { return *scene_->stream; }
   StreamCounters counters() const { return stream().counters(); }
   SimulatedDisk& disk() { return *disk_; }
@@ -257,7 +258,7 @@ TEST(StreamingDisk, AFrameThatWaitsSaysWhatIsDamaged) {
 }
 
 // A pool that could not take the links: what a frame would find is not what was linked.
-TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsMadeAnew) {
+TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
   struct Pool final : ChunkPool {
     void fill(uint32_t, const StagedChunk&) override {}
     void apply(const LinkPatch&) override {
@@ -272,18 +273,133 @@ TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsMadeAnew) {
   desc.slots = static_cast<uint32_t>(file->chunks().size());
   desc.pinned = desc.first = SceneStream::top_chunks(*file);
   desc.readers = 0;
+  double time = 0;
+  desc.clock = [&] { return time; };
   Workers workers(1);
   SceneStream stream(file, desc, pool);
   stream.read_top(workers);
   stream.look(&pool, {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}});
   while (stream.step()) continue;
-  pool.fails = true;
-  EXPECT_EQ(test::error_code([&] { stream.commit(); }), ErrorCode::device_lost);
-  pool.fails = false;
-  EXPECT_EQ(test::error_code([&] { stream.commit(); }), ErrorCode::device_lost);
-  EXPECT_EQ(test::error_code([&] { stream.hold(); }), ErrorCode::device_lost);
+  const auto hold = [&] { stream.hold(); };
+  const auto fail = [&] {
+    pool.fails = true;
+    while (stream.step()) continue;
+    stream.commit();
+    pool.fails = false;
+    stream.commit();
+    EXPECT_EQ(test::error_code(hold), ErrorCode::device_lost);
+  };
+  fail();
   stream.resize(desc.slots, desc.pinned, workers);
   EXPECT_TRUE(stream.hold().owns_lock());
+  // By itself, after a rest, and as often as that takes.
+  fail();
+  pool.fails = true;
+  time += 10;
+  while (stream.step()) time += 1e-3;
+  EXPECT_EQ(test::error_code(hold), ErrorCode::device_lost);
+  pool.fails = false;
+  time += 10;
+  while (stream.step()) time += 1e-3;
+  EXPECT_TRUE(stream.hold().owns_lock());
+  stream.commit();
+  EXPECT_EQ(stream.counters().resident, desc.slots);
+}
+
+// A source that stays away, slowly: frames that wait get to know, and chunks are not asked for one
+// by one. When it comes back, all is well, and the next outage is told again.
+TEST(StreamingDisk, AFrameThatWaitsForASourceThatStaysAwayFails) {
+  Flight flight(1.0);
+  uint64_t failed = 0;
+  bool away = true;
+  flight.disk().fault = [&](uint64_t, size_t) {
+    if (!away) return;
+    ++failed;
+    flight.rig().time += 1;
+    throw Error(ErrorCode::io_transient, "disk.voy: found no answer");
+  };
+  FrameInput input = ahead({0, -3, -60}, kForward);
+  input.wait_resident = true;
+  const auto draw = [&] { render(flight.view(), input); };
+  EXPECT_EQ(test::error_code(draw), ErrorCode::io_transient);
+  EXPECT_LE(failed, 10u);
+  EXPECT_EQ(flight.stream().take_messages().size(), 1u);
+  EXPECT_GT(flight.counters().need.seen_missing, 0u);
+  // It opens, too, and draws what there is.
+  away = false;
+  auto opened = std::make_shared<SimulatedDisk>(flight.rig().bytes, 0.002, 20e6);
+  opened->fault = [&](uint64_t offset, size_t) {
+    const auto& chunks = flight.stream().file().chunks();
+    if (offset <= chunks.front().offset || offset > chunks.back().offset) return;
+    flight.rig().time += 1;
+    throw Error(ErrorCode::io_transient, "disk.voy: found no answer");
+  };
+  const auto scene = flight.rig().open(opened, 1.0, 32 << 20, Vec3d{0, -3, -60});
+  EXPECT_EQ(scene->stream->counters().resident, scene->stream->pinned());
+  // The first is back.
+  flight.rig().time += 60;
+  expect_same_bits(render(flight.view(), input), flight.whole(input));
+  EXPECT_EQ(flight.counters().need.seen_missing, 0u);
+}
+
+// Chunks that cannot be had, of which nobody says that they might be: they are needed, and missing.
+TEST(StreamingDisk, WhatHasFailedCountsAsMissing) {
+  Flight flight(1.0);
+  flight.disk().fault = [&](uint64_t, size_t) {
+    throw Error(ErrorCode::file_not_found, "disk.voy: found nothing");
+  };
+  const uint64_t before = flight.disk().reads;
+  const FrameInput input = ahead({0, -3, -60}, kForward);
+  for (int i = 0; i < 50; ++i) flight.draw(input);
+  EXPECT_GT(flight.counters().need.missing, 0u);
+  EXPECT_GT(flight.counters().need.seen_missing, 0u);
+  EXPECT_GT(flight.draw(input).stats.bytes_needed, 0u);
+  EXPECT_LE(flight.disk().reads - before, 10u);  // a file that is gone is not asked for by chunks
+}
+
+// A node that lies outside of what it hangs from shows when its chunk is linked: a frame that waits
+// fails, however late that is, and the chunk is read twice at most.
+TEST(StreamingDisk, AChunkThatFitsNoParentIsDamaged) {
+  BakedScene baked = test::bake(wide_cloud(4000));
+  test::StreamRig sound(baked, 1.0);
+  const SceneFile file(test::source_of(sound.bytes));
+  const auto victim = static_cast<uint32_t>(file.chunks().size()) - 5;
+  uint32_t root = 0;
+  for (const auto& subtree : file.read_chunk(victim).subtrees)
+    if (!subtree.repeats_root && root == 0) root = subtree.root;
+  ASSERT_NE(root, 0u);
+  baked.tree.records[root].box_max = {1e4f, 1e4f, 1e4f};
+  const test::Bytes bytes = test::scene_bytes(baked, Quality::lossless, 0, kMinChunkBytes);
+  const auto scene = sound.open(test::source_of(bytes), 1.0);
+  View view(scene, *sound.backend, {}, sound.memory(), sound.workers);
+  FrameInput input = frame_input(look({0, -2, -12}, {0, 0, 0}, 31, 25), 0.01);
+  input.wait_resident = true;
+  for (int i = 0; i < 3; ++i, sound.time += 20) {
+    EXPECT_EQ(test::error_code([&] { render(view, input); }), ErrorCode::damaged_chunk);
+    EXPECT_LE(scene->stream->counters().failures, 2u);
+  }
+  input.stand_in = true;
+  EXPECT_GT(render(view, input).stats.missing, 0u);
+}
+
+// The megabytes that a refusal names are enough.
+TEST(StreamingDisk, ARefusedBudgetSaysWhatIsEnough) {
+  Flight flight(0.1);
+  FrameInput input = ahead({0, -3, -120}, kForward, 0.3);
+  input.wait_resident = true;
+  std::string message;
+  try {
+    render(flight.view(), input);
+  } catch (const Error& error) {
+    ASSERT_EQ(error.code(), ErrorCode::over_budget) << error.what();
+    message = error.what();
+  }
+  const size_t takes = message.find("takes ");
+  ASSERT_NE(takes, std::string::npos) << message;
+  const double megabytes = std::stod(message.substr(takes + 6));
+  resize_streamed(flight.scene(), static_cast<uint64_t>(megabytes * 1e6), *flight.rig().backend,
+                  flight.rig().workers);
+  expect_same_bits(render(flight.view(), input), flight.whole(input));
 }
 
 TEST(StreamingDisk, OutOfMemoryIsAFailureLikeAnother) {

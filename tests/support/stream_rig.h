@@ -4,27 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "runtime/frame/open_streamed.h"
+#include "tests/support/is_cut.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 
 namespace voyager::test {
-
-// Whether every path from the root to a leaf meets the cut once. cut: ascending.
-inline testing::AssertionResult is_cut(const LodTree& tree, const std::vector<uint32_t>& cut) {
-  std::vector<uint8_t> covered(tree.size());
-  size_t next = 0;
-  for (uint32_t n = 0; n < tree.size(); ++n) {
-    const bool above = n != 0 && covered[tree.parent[n]] != 0;
-    const bool in_cut = next < cut.size() && cut[next] == n;
-    next += in_cut;
-    if (above && in_cut) return testing::AssertionFailure() << "node " << n << " is drawn twice";
-    covered[n] = above || in_cut;
-    if (tree.is_leaf(n) && covered[n] == 0)
-      return testing::AssertionFailure() << "nothing stands for leaf " << n;
-  }
-  if (next != cut.size()) return testing::AssertionFailure() << "node ids that do not ascend";
-  return testing::AssertionSuccess();
-}
 
 class StreamRig {
  public:
@@ -48,6 +32,7 @@ class StreamRig {
     desc.readers = 0;
     desc.first_bytes = first_bytes;
     desc.start = start;
+    desc.start_bytes = first_bytes;
     desc.clock = [this] { return time += 1e-5; };  // each look at it takes a moment
     const SceneFile file(source);
     const PoolBytes pool = backend->pool_bytes(*resident, SceneStream::slot_shape(file));

@@ -214,6 +214,10 @@ bool writes_output(const Arguments& arguments) {
 void bake(const Arguments& arguments) {
   require_extension("-o", arguments.output, {".voy"});
   require_distinct({arguments.output}, arguments.inputs);
+  if (!arguments.part.empty() && arguments.step != BakeStep::cells &&
+      arguments.step != BakeStep::encode)
+    throw Error(ErrorCode::invalid_argument,
+                "--part: found it without --step cells or encode, expected one of them");
   if (arguments.step && arguments.work.empty())
     throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
   const Progress progress = progress_bar();

@@ -187,7 +187,12 @@ void add_streaming(CLI::App& command, Arguments& arguments) {
       .add_option("--budget", arguments.choices.budget,
                   "Stream the scene: its data takes at most so many MB (10^6 bytes) of the memory "
                   "of the device that renders")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            const double found = std::strtod(text.c_str(), nullptr);
+            return found > 0 && found <= 1e9 ? "" : "found " + text + ", expected up to 1e9 MB";
+          },
+          "MB"))
       ->type_name("MB");
   add_choice<std::optional<bool>>(
       command, "--wait-resident", arguments.wait_resident, {{"off", false}, {"on", true}},

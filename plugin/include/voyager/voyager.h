@@ -262,7 +262,7 @@ typedef struct VoySceneStreaming {
    * deviceMemoryBudget's. 0, or more than is left of that: what is left. */
   uint64_t memoryBudget;
   /* Where the first frames will look from: x, y, z in the scene's coordinates, or NULL. What
-   * voyOpenScene reads is then what is large from there, beside the top of the tree, up to 32 MB
+   * voyOpenScene reads is then what is large from there, beside the top of the tree, up to 64 MB
    * of the file. Each below 1e18 in magnitude; copied. */
   const double* start;
   uint32_t readerThreads; /* that read and decode; 0 to 64, 0 is 4 */
@@ -652,9 +652,10 @@ typedef struct VoyFrame {
 /* Renders into the targets and returns when they are written; into Vulkan's images, as
  * VoyVulkanFrame says. On error no target is changed. Errors: INVALID_ARGUMENT (values out of
  * range), UNSUPPORTED (a depth limit where the view's splatting has none), SCENE_DESTROYED,
- * DAMAGED_CHUNK, OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no room for the frame),
- * BUSY, TIMEOUT (a Vulkan target: what the frame waits for was not signalled within 10 s),
- * DEVICE_LOST (CUDA's or Vulkan's device no longer works). */
+ * DAMAGED_CHUNK, IO, FILE_NOT_FOUND, REFUSED_INPUT (a frame that waits for what cannot be read of a
+ * streamed scene: VoyFrameStreaming), OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no
+ * room for the frame), BUSY, TIMEOUT (a Vulkan target: what the frame waits for was not signalled
+ * within 10 s), DEVICE_LOST (CUDA's or Vulkan's device no longer works). */
 VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
 
 /* The last frame's cut of one instance (its index in VoyViewDesc.scenes): node ids in

@@ -1,0 +1,76 @@
+// Memory that is refused at any moment, to a frame or to what reads chunks: it costs that frame, or
+// what had been read, and nothing else.
+#include <cstdlib>
+#include <new>
+
+#include "tests/support/stream_rig.h"
+
+namespace {
+
+// Allocations of this thread until one is refused; 0: none is.
+thread_local long refused_after = 0;
+
+void* allocate(size_t size) {
+  if (refused_after > 0 && --refused_after == 0) return nullptr;
+  return std::malloc(size == 0 ? 1 : size);
+}
+
+}  // namespace
+
+void* operator new(size_t size) {
+  if (void* memory = allocate(size)) return memory;
+  throw std::bad_alloc();
+}
+void* operator new(size_t size, const std::nothrow_t&) noexcept {
+  return allocate(size);
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, const std::nothrow_t&) noexcept {
+  std::free(memory);
+}
+
+namespace voyager {
+namespace {
+
+TEST(StreamingMemory, RefusedAtAnyMomentIsOvercome) {
+  GaussianCloud cloud = test::random_cloud(1500, 3, 1);
+  for (float& x : cloud.position) x *= 20;
+  test::StreamRig rig(test::bake(cloud), 1.0);
+  FrameInput input = test::frame_input(test::look({0, -3, -60}, {0, -3, 0}, 24, 18, 70), 2);
+  FrameInput other = test::frame_input(test::look({0, -3, 60}, {0, -3, 200}, 24, 18, 70), 2);
+  const test::Frame whole = test::render(rig.whole, input);
+  size_t refused = 0;
+  bool reached = true;
+  for (long at = 1; reached; at += at < 100 ? 1 : 13) {
+    test::render(rig.part, other);
+    rig.work();
+    refused_after = at;
+    for (int frame = 0; frame < 4; ++frame) {
+      try {
+        rig.work(20);
+        test::render(rig.part, input);
+      } catch (const std::bad_alloc&) {
+        ++refused;
+      }
+    }
+    reached = refused_after == 0;
+    refused_after = 0;
+    const test::Frame next = test::render(rig.part, input);
+    ASSERT_TRUE(test::is_cut(rig.resident->tree, next.cut)) << at;
+    rig.time += 20;
+    input.wait_resident = true;
+    const test::Frame waited = test::render(rig.part, input);
+    input.wait_resident = false;
+    test::expect_same_bits(waited, whole);
+    ASSERT_FALSE(HasFailure()) << at;
+  }
+  EXPECT_GT(refused, 10u);
+}
+
+}  // namespace
+}  // namespace voyager
