@@ -17,9 +17,9 @@ namespace {
 
 using Rgb = std::array<double, 3>;
 // Of Okabe and Ito, told apart by most eyes.
-constexpr Rgb kSeries[] = {{0, 0.45, 0.70},    {0.84, 0.37, 0}, {0, 0.62, 0.45}, {0.80, 0.47, 0.65},
-                           {0.90, 0.62, 0},    {0.34, 0.71, 0.91}, {0.35, 0.35, 0.35},
-                           {0.60, 0.20, 0.20}};
+constexpr Rgb kSeries[] = {{0, 0.45, 0.70},    {0.84, 0.37, 0},   {0, 0.62, 0.45},
+                           {0.80, 0.47, 0.65}, {0.90, 0.62, 0},   {0.34, 0.71, 0.91},
+                           {0.35, 0.35, 0.35}, {0.60, 0.20, 0.20}};
 constexpr Rgb kInk{0.13, 0.13, 0.13}, kGrid{0.88, 0.88, 0.88};
 constexpr double kLeft = 62, kRight = 18, kTop = 34, kBottom = 48;
 
@@ -112,6 +112,7 @@ class Canvas {
       if (series.joined && can_be_drawn(plot_, point))
         cairo_line_to(c_, px(x_.at(point.x)), py(y_.at(point.y)));
     cairo_stroke(c_);
+    bool below = false;  // by turns: labels of neighbours cover one another less
     for (const PlotPoint& point : series.points) {
       if (!can_be_drawn(plot_, point)) continue;
       const double x = px(x_.at(point.x)), y = py(y_.at(point.y));
@@ -120,8 +121,9 @@ class Canvas {
       cairo_fill(c_);
       colour(kInk);
       if (!point.label.empty()) {
-        const bool beside = x < plot_.width - 110;
-        text(x + (beside ? 6 : -6), y - 5, point.label, 9, beside ? 0 : 1);
+        const bool beside = x < plot_.width - 150;
+        text(x + (beside ? 6 : -6), y + (below ? 11 : -5), point.label, 9, beside ? 0 : 1);
+        below = !below;
       }
     }
   }
@@ -165,17 +167,27 @@ cairo_status_t append(void* into, const unsigned char* bytes, unsigned count) {
   return CAIRO_STATUS_SUCCESS;
 }
 
+// cairo counts its glyphs from 0 in each picture.
+void set_ids(std::string& svg, const std::string& id) {
+  for (const char* before : {"id=\"", "href=\"#", "url(#"}) {
+    const size_t length = std::string(before).size();
+    for (size_t at = svg.find(before); at != std::string::npos; at = svg.find(before, at + length))
+      svg.insert(at + length, id + "-");
+  }
+}
+
 }  // namespace
 
-std::string plot_svg(const Plot& plot) {
+std::string plot_svg(const Plot& plot, const std::string& id) {
   std::string svg;
-  const Surface surface(
-      cairo_svg_surface_create_for_stream(append, &svg, plot.width, plot.height),
-      &cairo_surface_destroy);
+  const Surface surface(cairo_svg_surface_create_for_stream(append, &svg, plot.width, plot.height),
+                        &cairo_surface_destroy);
   draw(surface.get(), plot, 1);
   cairo_surface_finish(surface.get());
   require_success(cairo_surface_status(surface.get()));
-  return svg.substr(svg.find("<svg"));  // what stands before it is a file's
+  svg.erase(0, svg.find("<svg"));  // what stands before it is a file's
+  set_ids(svg, id);
+  return svg;
 }
 
 void write_plot_png(const std::string& path, const Plot& plot) {

@@ -26,9 +26,10 @@ struct Plot {
   double width = 640, height = 420;  // points
 };
 
-// A complete <svg> element; text is drawn as outlines, so that it needs no font. Throws
-// Error(internal) where cairo does.
-std::string plot_svg(const Plot& plot);
+// A complete <svg> element; text is drawn as outlines, so that it needs no font. `id` begins the
+// ids in it, which must differ from those of all else on a page. Throws Error(internal) where cairo
+// does.
+std::string plot_svg(const Plot& plot, const std::string& id);
 // The same picture at two pixels a point.
 void write_plot_png(const std::string& path, const Plot& plot);
 

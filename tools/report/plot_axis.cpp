@@ -48,7 +48,8 @@ std::vector<PlotAxis::Tick> PlotAxis::ticks() const {
     const double high = logarithmic_ ? std::pow(10, most_) : most_;
     const double step = round_step(high - low);
     for (double i = std::ceil(low / step); i * step <= high; ++i)
-      if (!logarithmic_ || i > 0) found.push_back({at(i * step), fmt::format("{:.4g}", i * step)});
+      if (!logarithmic_ || i > 0)
+        found.push_back({at(i * step), fmt::format("{:.4g}", i * step + 0.0)});
     return found;
   }
   for (double power = std::floor(least_); power <= most_; ++power)

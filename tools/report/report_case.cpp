@@ -64,18 +64,15 @@ class Cases {
 
   void add_detail() {
     add("tau", [](ReportCase& c) { c.desc.lod = Lod::all_leaves; });
-    for (const double tau : axes_.taus)
-      add("tau", [&](ReportCase& c) { c.tau = tau; });
+    for (const double tau : axes_.taus) add("tau", [&](ReportCase& c) { c.tau = tau; });
     if (extent_ == ReportExtent::quick) return;
     for (const Search search : {Search::exhaustive, Search::streaming, Search::temporal_visit})
       add("search", [&](ReportCase& c) { c.desc.search = search; });
   }
 
   void add_exponentials() {
-    for (const Exponential exponential :
-         {Exponential::exact, Exponential::ex2, Exponential::half2})
-      if (has(exponential))
-        add("exp", [&](ReportCase& c) { c.desc.exponential = exponential; });
+    for (const Exponential exponential : {Exponential::exact, Exponential::ex2, Exponential::half2})
+      if (has(exponential)) add("exp", [&](ReportCase& c) { c.desc.exponential = exponential; });
     for (const uint32_t size : axes_.lut_sizes)
       add("exp", [&](ReportCase& c) {
         c.desc.exponential = Exponential::lut;

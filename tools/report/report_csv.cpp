@@ -42,16 +42,41 @@ class Line {
   bool began_ = false;
 };
 
-const char* const kColumns[] = {
-    "scene",   "camera_set", "backend",      "group",
-    "lod",     "tau",        "search",       "select",
-    "filter",  "splat",      "exp",          "lut_size",
-    "sh_degree", "quality",  "time_budget_ms", "cut",
-    "splats",  "pairs",      "psnr_ref_db",  "psnr_all_leaves_db",
-    "ssim",    "flip",       "max_abs",      "p999_abs",
-    "popping", "ssim_all_leaves", "flip_all_leaves", "max_abs_all_leaves",
-    "p999_abs_all_leaves", "popping_all_leaves", "ms_median", "ms_p95",
-    "ms_p99",  "bytes",      "joules"};
+const char* const kColumns[] = {"scene",
+                                "camera_set",
+                                "backend",
+                                "group",
+                                "lod",
+                                "tau",
+                                "search",
+                                "select",
+                                "filter",
+                                "splat",
+                                "exp",
+                                "lut_size",
+                                "sh_degree",
+                                "quality",
+                                "time_budget_ms",
+                                "cut",
+                                "splats",
+                                "pairs",
+                                "psnr_ref_db",
+                                "psnr_all_leaves_db",
+                                "ssim",
+                                "flip",
+                                "max_abs",
+                                "p999_abs",
+                                "popping",
+                                "ssim_all_leaves",
+                                "flip_all_leaves",
+                                "max_abs_all_leaves",
+                                "p999_abs_all_leaves",
+                                "popping_all_leaves",
+                                "ms_median",
+                                "ms_p95",
+                                "ms_p99",
+                                "bytes",
+                                "joules"};
 
 void add_choices(Line& line, const ReportRow& row) {
   const PipelineDesc& desc = row.is.desc;

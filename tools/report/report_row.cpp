@@ -21,14 +21,16 @@ double number_of(const Json& json) {
 }
 
 Json to_json(const ReportError& error) {
-  return {{"psnr_db", number(error.psnr)},  {"ssim", error.ssim ? Json(*error.ssim) : Json()},
-          {"flip", error.flip},             {"max_abs", error.largest},
-          {"p999_abs", error.p999},         {"popping", error.popping}};
+  return {{"psnr_db", number(error.psnr)},
+          {"ssim", error.ssim ? Json(*error.ssim) : Json()},
+          {"flip", error.flip},
+          {"max_abs", error.largest},
+          {"p999_abs", error.p999},
+          {"popping", error.popping}};
 }
 
 ReportError error_of(const Json& json) {
-  ReportError error{number_of(json["psnr_db"]), std::nullopt,
-                    json["flip"],               json["max_abs"],
+  ReportError error{number_of(json["psnr_db"]), std::nullopt,   json["flip"], json["max_abs"],
                     json["p999_abs"],           json["popping"]};
   if (!json["ssim"].is_null()) error.ssim = json["ssim"].get<double>();
   return error;
@@ -52,8 +54,7 @@ Json choices(const ReportCase& is) {
           {"filter", is.desc.alpha_filter ? "on" : "off"},
           {"splat", splatting_name(is.desc.splatting)},
           {"exp", exponential_name(is.desc.exponential)},
-          {"lut_size",
-           is.desc.exponential == Exponential::lut ? Json(is.desc.lut_size) : Json()},
+          {"lut_size", is.desc.exponential == Exponential::lut ? Json(is.desc.lut_size) : Json()},
           {"sh_degree", is.sh_degree},
           {"quality", storage_name(is.storage)}};
 }

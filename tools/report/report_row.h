@@ -10,7 +10,7 @@ namespace voyager::tools {
 
 // Against the float64 reference; docs/metrics.md.
 struct ReportError {
-  double psnr = 0;  // dB; infinite where nothing differs
+  double psnr = 0;             // dB; infinite where nothing differs
   std::optional<double> ssim;  // none of images smaller than its window
   double flip = 0, largest = 0, p999 = 0;
   double popping = 0;  // 1/255, mean a frame
@@ -29,8 +29,8 @@ struct ReportRow {
   std::vector<ReportTimes> stages;  // by Stage
   size_t timed = 0;                 // frames
   std::optional<double> joules;     // a frame
-  ReportError same;  // against the reference of the same cut
-  ReportError all;   // against the reference of all leaves: what is lost in all
+  ReportError same;                 // against the reference of the same cut
+  ReportError all;                  // against the reference of all leaves: what is lost in all
 };
 
 // Every field; from_json() gives the row back, so that a report can go on.
