@@ -10,6 +10,7 @@ packages=(
   libeigen3-dev
   libcurl4-openssl-dev                                   # http:// and https://
   libpng-dev libfmt-dev nlohmann-json3-dev libcli11-dev  # tools and samples
+  libcairo2-dev pkg-config fonts-dejavu-core             # voyager report: plots
   libvulkan-dev glslang-tools                            # Vulkan: headers, loader, shaders
   libtinygltf-dev libglm-dev libglfw3-dev libimgui-dev   # the Vulkan sample
   libopenxr-dev libopenxr-loader1                        # OpenXR: headers, loader

@@ -38,7 +38,8 @@ bool counts_pixels(const FrameStats& stats) {
 }  // namespace
 
 size_t FramePath::frames_drawn() const {
-  return warm_up_frames(*this) + 1 + frames.size() * (repeats + 1);
+  const size_t passes = repeats + (counts_pixels ? 1 : 0);
+  return warm_up_frames(*this) + 1 + frames.size() * passes;
 }
 
 FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const FramePath& path,
@@ -61,7 +62,7 @@ FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const Fra
       run.timed.push_back(draw(view, frame));
     }
   }
-  if (path.time_budget) return run;
+  if (path.time_budget || !path.counts_pixels) return run;
   PipelineDesc counting = desc;
   counting.count_pixels = true;
   View view = make_view(maker, counting);

@@ -34,8 +34,7 @@ void write_pfm(const std::string& path, const char* magic, uint32_t width, uint3
 
 }  // namespace
 
-void write_png(const std::string& path, uint32_t width, uint32_t height,
-               std::span<const uint8_t> rgba) {
+std::string encode_png(uint32_t width, uint32_t height, std::span<const uint8_t> rgba) {
   std::vector<uint8_t> rgb(size_t{3} * width * height);
   for (size_t i = 0; i < size_t{width} * height; ++i)
     std::copy_n(rgba.data() + 4 * i, 3, rgb.data() + 3 * i);
@@ -45,11 +44,17 @@ void write_png(const std::string& path, uint32_t width, uint32_t height,
   image.height = height;
   image.format = PNG_FORMAT_RGB;
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::vector<std::byte> bytes(size);
+  std::string bytes(size, '\0');
   if (png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr) == 0)
-    throw Error(ErrorCode::internal, path + ": PNG: " + image.message);
+    throw Error(ErrorCode::internal, std::string("PNG: ") + image.message);
   bytes.resize(size);
-  write_file(path, bytes);
+  return bytes;
+}
+
+void write_png(const std::string& path, uint32_t width, uint32_t height,
+               std::span<const uint8_t> rgba) {
+  const std::string bytes = encode_png(width, height, rgba);
+  write_file(path, std::as_bytes(std::span(bytes)));
 }
 
 void write_pfm_rgb(const std::string& path, uint32_t width, uint32_t height,

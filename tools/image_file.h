@@ -6,7 +6,8 @@
 
 namespace voyager::tools {
 
-// RGB, 8 bits, from rows of RGBA.
+// A PNG's bytes: RGB, 8 bits, from rows of RGBA.
+std::string encode_png(uint32_t width, uint32_t height, std::span<const uint8_t> rgba);
 void write_png(const std::string& path, uint32_t width, uint32_t height,
                std::span<const uint8_t> rgba);
 

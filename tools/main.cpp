@@ -70,6 +70,9 @@ int main(int argc, char** argv) try {
   voyager::tools::add_info(app);
   voyager::tools::add_render(app);
   voyager::tools::add_bench(app);
+#ifdef VOYAGER_HAS_REPORT
+  voyager::tools::add_report(app);
+#endif
   return parse_and_run(app, argc, argv);
 } catch (...) {
   return voyager::tools::kMachine;  // no memory even for the message

@@ -11,5 +11,6 @@ void add_export(CLI::App& app);
 void add_info(CLI::App& app);
 void add_render(CLI::App& app);
 void add_bench(CLI::App& app);
+void add_report(CLI::App& app);  // of builds with cairo
 
 }  // namespace voyager::tools

@@ -1,0 +1,118 @@
+// `voyager report` as a user runs it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/command_line/program.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::test {
+namespace {
+
+class Report : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    failure_ = failure_of({"voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("c.ply"),
+                           "voyager bake " + file("c.ply") + " -o " + file("c.voy")});
+    if (!failure_.empty()) return;
+    auto cameras = nlohmann::json::parse(file_bytes(file("c.cameras.json")));
+    cameras.erase(cameras.begin() + 3, cameras.end());
+    write_bytes(file("three.json"), cameras.dump());
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  void SetUp() override { ASSERT_EQ(failure_, ""); }
+
+  static std::string file(const std::string& name) { return folder_->file(name); }
+  static std::string report(const std::string& scene, const std::string& rest) {
+    return "voyager report " + file(scene) + " --cameras " + file("three.json") +
+           " --backend cpu --size 64x36 --quick " + rest;
+  }
+
+  static inline TempFolder* folder_ = nullptr;
+  static inline std::string failure_;
+};
+
+TEST_F(Report, LeavesATableAPageAndPlots) {
+  const Outcome outcome = run(report("c.voy", "--target 10000 -o " + file("out")));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("For 1e+04 ms a frame: --"), std::string::npos) << outcome.output;
+  const auto json = nlohmann::json::parse(file_bytes(file("out/report.json")));
+  const size_t rows = json["rows"].size();
+  EXPECT_GE(rows, 7u);
+  const std::string csv = file_bytes(file("out/report.csv"));
+  EXPECT_EQ(static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n')), rows + 1);
+  EXPECT_EQ(csv.find("scene,camera_set,backend,"), 0u);
+  for (const auto& row : json["rows"]) {
+    EXPECT_GT(row["ms"]["frame"]["median"].get<double>(), 0) << row.dump();
+    EXPECT_GE(row["ms"]["frame"]["p99"].get<double>(), row["ms"]["frame"]["median"].get<double>());
+  }
+  // All leaves are the scene: what is left is rounding.
+  for (const auto& row : json["rows"])
+    if (row["lod"] == "off" && row["exp"] == "exact") {
+      EXPECT_GT(row["total_error"]["psnr_db"].get<double>(), 60) << row.dump();
+    }
+  EXPECT_EQ(json["provenance"]["scene"]["bytes"].get<uint64_t>(),
+            std::filesystem::file_size(file("c.voy")));
+  const std::string page = file_bytes(file("out/report.html"));
+  for (size_t at = page.find("href=\""); at != std::string::npos;
+       at = page.find("href=\"", at + 1)) {
+    const std::string link = page.substr(at + 6, page.find('"', at + 6) - at - 6);
+    if (link[0] == '#' || link.rfind("data:", 0) == 0) continue;
+    EXPECT_TRUE(std::filesystem::exists(file("out/" + link))) << link;
+  }
+  EXPECT_FALSE(std::filesystem::exists(file("out/.report")));
+}
+
+// What was measured before the end is not measured again: its times are the same to the last digit.
+TEST_F(Report, GoesOnWhereItWasEnded) {
+  Outcome outcome{137, ""};
+  const std::string command = report("c.voy", "-o " + file("ended"));
+  int ended = 0;
+  std::string first;
+  for (int tenths = 5; outcome.exit_code == 137 && tenths < 600; tenths += 5) {
+    outcome = run_shell("timeout -s KILL " + std::to_string(0.1 * tenths) + " " + program(command));
+    ended += outcome.exit_code == 137;
+    if (!first.empty() || !std::filesystem::exists(file("ended/.report"))) continue;
+    for (const auto& entry : std::filesystem::directory_iterator(file("ended/.report")))
+      if (entry.path().filename().string().rfind("row-", 0) == 0 &&
+          entry.path().extension() == ".json")
+        first = file_bytes(entry.path());
+  }
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_GT(ended, 0);
+  if (first.empty()) return;
+  const auto kept = nlohmann::json::parse(first);
+  const auto json = nlohmann::json::parse(file_bytes(file("ended/report.json")));
+  EXPECT_TRUE(std::any_of(json["rows"].begin(), json["rows"].end(), [&](const auto& row) {
+    return row == kept;
+  })) << first;
+}
+
+TEST_F(Report, AFlatSceneIsBakedForIt) {
+  const Outcome outcome = run(report("c.ply", "-o " + file("flat")));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const std::string csv = file_bytes(file("flat/report.csv"));
+  for (const char* quality : {",flat,", ",lossless,", ",compact,"})
+    EXPECT_NE(csv.find(quality), std::string::npos) << quality;
+}
+
+TEST_F(Report, RefusalsAreOneLineAndLeaveNothing) {
+  const auto refuse = [](const std::string& command, int code, const std::string& names) {
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exit_code, code) << outcome.output;
+    EXPECT_NE(outcome.output.find(names), std::string::npos) << outcome.output;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+  };
+  write_bytes(file("none.json"), "[]");
+  refuse(report("absent.voy", "-o " + file("no")), 2, "absent.voy");
+  refuse(report("c.voy", "--full -o " + file("no")), 1, "--full");
+  refuse(report("c.voy", "--sms 4 -o " + file("no")), 1, "--sms");
+  refuse(report("c.voy", "--target 0 -o " + file("no")), 1, "--target");
+  EXPECT_FALSE(std::filesystem::exists(file("no")));
+}
+
+}  // namespace
+}  // namespace voyager::test

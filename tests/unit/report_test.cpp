@@ -1,0 +1,241 @@
+// Parts of a report: its configurations, its front, its table, its page.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "tests/support/test_support.h"
+#include "tools/report/kept_rows.h"
+#include "tools/report/page.h"
+#include "tools/report/pareto.h"
+#include "tools/report/plot_axis.h"
+#include "tools/report/report_csv.h"
+#include "tools/report/report_plots.h"
+#include "tools/report/report_scenes.h"
+
+namespace voyager::tools {
+namespace {
+
+ReportSubject city() {
+  ReportSubject subject;
+  subject.sh_degree = 3;
+  subject.storages = {Storage::lossless, Storage::compact};
+  subject.exponentials = {Exponential::exact, Exponential::ex2, Exponential::lut};
+  return subject;
+}
+
+ReportRow row(double tau, double ms, double flip) {
+  ReportRow found;
+  found.is = report_cases(ReportExtent::quick, city())[0];
+  found.is.tau = found.tau = tau;
+  found.frame = {ms, 1.1 * ms, 1.2 * ms};
+  found.stages.assign(kStageCount, {ms / 6, ms / 6, ms / 6});
+  found.all.flip = flip;
+  found.all.psnr = 40;
+  found.same.psnr = INFINITY;
+  found.same.ssim = 1;
+  found.cut = 1000;
+  found.timed = 40;
+  return found;
+}
+
+TEST(Report, NoConfigurationIsMeasuredTwice) {
+  ReportSubject cuda = city(), flat = city();
+  cuda.baseline = true;
+  cuda.exponentials.push_back(Exponential::half2);
+  flat.flat = true;
+  flat.storages = {Storage::flat, Storage::lossless, Storage::compact};
+  for (const ReportSubject& subject : {city(), cuda, flat})
+    for (const ReportExtent extent :
+         {ReportExtent::quick, ReportExtent::standard, ReportExtent::full}) {
+      std::set<std::string> names;
+      for (const ReportCase& is : report_cases(extent, subject)) {
+        EXPECT_TRUE(names.insert(is.name()).second) << is.name();
+        EXPECT_LE(is.sh_degree, subject.sh_degree);
+        if (subject.flat) {
+          EXPECT_EQ(is.desc.lod, Lod::all_leaves) << is.name();
+        }
+      }
+      EXPECT_GE(names.size(), 5u);
+    }
+}
+
+TEST(Report, TheStandardOneHasEachAxis) {
+  std::set<std::string> groups;
+  std::set<uint32_t> luts;
+  for (const ReportCase& is : report_cases(ReportExtent::standard, city())) {
+    groups.insert(is.group);
+    if (is.desc.exponential == Exponential::lut) luts.insert(is.desc.lut_size);
+  }
+  for (const char* group : {"default", "tau", "exp", "filter", "sh", "quality", "search"})
+    EXPECT_TRUE(groups.contains(group)) << group;
+  EXPECT_EQ(luts, (std::set<uint32_t>{8, 16, 31, 32, 64, 128}));
+}
+
+// Whatever is on the front, nothing is faster and better; whatever is not, something is as fast and
+// as good.
+TEST(Report, TheFrontIsWhatNothingBeats) {
+  std::vector<ReportRow> rows;
+  for (int i = 0; i < 60; ++i) rows.push_back(row(i, 1 + i * 37 % 23, 0.01 * (1 + i * 53 % 19)));
+  const std::vector<size_t> front = pareto_front(rows);
+  const auto beats = [&](size_t a, size_t b) {
+    return rows[a].frame.median <= rows[b].frame.median && rows[a].all.flip <= rows[b].all.flip;
+  };
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const bool on = std::find(front.begin(), front.end(), i) != front.end();
+    bool beaten = false;
+    for (size_t k = 0; k < rows.size(); ++k) beaten |= k != i && beats(k, i) && !beats(i, k);
+    EXPECT_EQ(on && beaten, false) << i;
+    if (!on) {
+      EXPECT_TRUE(std::any_of(front.begin(), front.end(), [&](size_t k) { return beats(k, i); }));
+    }
+  }
+}
+
+TEST(Report, TheBestOfWhatIsInTimeIsRecommended) {
+  const std::vector<ReportRow> rows = {row(1, 30, 0.01), row(6, 9, 0.03), row(15, 4, 0.08)};
+  const std::vector<size_t> front = pareto_front(rows);
+  EXPECT_EQ(recommend(rows, front, 11.1), 1u);
+  EXPECT_EQ(recommend(rows, front, 1000), 0u);
+  EXPECT_EQ(recommend(rows, front, 9.5), 2u);  // by its p95 the second is late
+  EXPECT_EQ(recommend(rows, front, 1), std::nullopt);
+}
+
+TEST(Report, OptionsAreThoseOfRender) {
+  ReportCase is = report_cases(ReportExtent::quick, city())[0];
+  EXPECT_EQ(render_options(is, 3), "--tau 3 --exp exact");
+  is.desc.exponential = Exponential::lut;
+  is.desc.alpha_filter = false;
+  EXPECT_EQ(render_options(is, 0.5), "--tau 0.5 --exp lut --lut-size 32 --filter off");
+  is.time_budget = 11.1;
+  EXPECT_EQ(render_options(is, 7), "--time-budget 11.1 --exp lut --lut-size 32 --filter off");
+  is = report_cases(ReportExtent::quick, city())[0];
+  is.desc.lod = Lod::all_leaves;
+  EXPECT_EQ(render_options(is, 3), "--lod off --exp exact");
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Report, EachLineOfTheTableHasTheHeadersFields) {
+  const std::vector<std::string> lines =
+      lines_of(report_csv({"a, \"city\"", "walk", "CPU"}, {row(3, 9, 0.02), row(15, 4, 0.1)}));
+  ASSERT_EQ(lines.size(), 3u);
+  const auto fields = [](const std::string& line) {
+    bool quoted = false;
+    size_t count = 1;
+    for (const char c : line) {
+      quoted ^= c == '"';
+      count += c == ',' && !quoted;
+    }
+    return count;
+  };
+  EXPECT_EQ(fields(lines[1]), fields(lines[0]));
+  EXPECT_EQ(fields(lines[2]), fields(lines[0]));
+  EXPECT_EQ(lines[1].find("\"a, \"\"city\"\"\",walk,CPU,default,on,3,temporal,cut,on,ours,"), 0u)
+      << lines[1];
+  EXPECT_NE(lines[1].find(",inf,40,1,"), std::string::npos) << lines[1];
+  for (const char* column : {"scene,",    ",camera_set,", ",backend,",     ",lod,",
+                             ",tau,",     ",search,",     ",select,",      ",filter,",
+                             ",splat,",   ",exp,",        ",lut_size,",    ",sh_degree,",
+                             ",quality,", ",cut,",        ",psnr_ref_db,", ",psnr_all_leaves_db,",
+                             ",ssim,",    ",flip,",       ",max_abs,",     ",p999_abs,",
+                             ",popping,", ",ms_median,",  ",ms_p95,",      ",ms_p99,",
+                             ",bytes,"})
+    EXPECT_NE(lines[0].find(column), std::string::npos) << column;
+}
+
+TEST(Report, WhatWasMeasuredIsKeptForTheSameReportAlone) {
+  const test::TempFolder folder;
+  const std::filesystem::path kept = folder.file("kept");
+  const nlohmann::ordered_json one = {{"scene", "a"}}, other = {{"scene", "b"}};
+  ReportRow measured = row(3, 9, 0.02);
+  measured.joules = 0.5;
+  {
+    KeptRows rows(kept, one);
+    EXPECT_FALSE(rows.find(measured.is));
+    rows.keep({measured, "picture", "difference"});
+  }
+  {
+    const KeptRows rows(kept, one);
+    const auto found = rows.find(measured.is);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(to_json(found->row), to_json(measured));
+    EXPECT_EQ(found->picture + found->difference, "picturedifference");
+    EXPECT_FALSE(rows.find(report_cases(ReportExtent::quick, city())[1]));
+  }
+  KeptRows rows(kept, other);
+  EXPECT_FALSE(rows.find(measured.is));
+  rows.remove();
+  EXPECT_FALSE(std::filesystem::exists(kept));
+}
+
+TEST(Report, AxesHoldTheirValuesAndLabelRoundNumbers) {
+  for (const bool logarithmic : {false, true})
+    for (const auto& values : {std::vector<double>{3, 4.5, 17}, {1e-3, 2e4}, {5}, {}}) {
+      const PlotAxis axis(values, logarithmic);
+      for (const double value : values) {
+        EXPECT_GE(axis.at(value), 0);
+        EXPECT_LE(axis.at(value), 1);
+      }
+      const auto ticks = axis.ticks();
+      EXPECT_LE(ticks.size(), 24u);
+      for (const PlotAxis::Tick& tick : ticks) {
+        EXPECT_GE(tick.at, -1e-9);
+        EXPECT_LE(tick.at, 1 + 1e-9);
+        if (!values.empty()) {
+          EXPECT_NEAR(axis.at(std::stod(tick.label)), tick.at, 1e-6);
+        }
+      }
+    }
+}
+
+TEST(Report, ThePageIsWholeByItself) {
+  const std::vector<ReportRow> rows = {row(3, 9, 0.02), row(15, 4, 0.1)};
+  const std::vector<size_t> front = pareto_front(rows);
+  ReportPage page{"a <city> & more",
+                  {{"scene", "<script>"}},
+                  "method",
+                  "advice",
+                  report_plots(rows, front),
+                  rows,
+                  front,
+                  {{0, {{"image", "\x01\x02"}}}}};
+  const std::string text = html(page);
+  EXPECT_NE(text.find("<title>a &lt;city&gt; &amp; more</title>"), std::string::npos);
+  EXPECT_EQ(text.find("<script>"), std::string::npos);
+  EXPECT_NE(text.find("data:image/png;base64,AQI="), std::string::npos);
+  EXPECT_NE(text.find("<svg"), std::string::npos);
+  EXPECT_EQ(text.find("http://") == std::string::npos || text.find("xmlns") != std::string::npos,
+            true);
+  std::set<std::string> ids;
+  for (size_t at = text.find("id=\""); at != std::string::npos; at = text.find("id=\"", at + 1))
+    EXPECT_TRUE(ids.insert(text.substr(at, text.find('"', at + 4) - at)).second)
+        << text.substr(at, 40);
+  // Links to rows lead to rows.
+  for (size_t at = text.find("href=\"#"); at != std::string::npos;
+       at = text.find("href=\"#", at + 1)) {
+    const std::string id = text.substr(at + 7, text.find('"', at + 7) - at - 7);
+    EXPECT_NE(text.find("id=\"" + id + "\""), std::string::npos) << id;
+  }
+}
+
+TEST(Report, WithoutItsBandsASceneIsThatOfALowerDegree) {
+  Scene scene(std::pmr::get_default_resource());
+  scene.sh_degree = 2;
+  for (int i = 0; i < 3 * 27; ++i) scene.sh.push_back(static_cast<float>(i));
+  drop_sh_bands(scene, 1);
+  ASSERT_EQ(scene.sh.size(), 3u * 12);
+  EXPECT_EQ(scene.sh_degree, 1);
+  for (uint32_t i = 0; i < 3; ++i)
+    for (int k = 0; k < 12; ++k)
+      EXPECT_EQ(scene.sh_of(i)[k], static_cast<float>(27 * static_cast<int>(i) + k));
+}
+
+}  // namespace
+}  // namespace voyager::tools

@@ -1,0 +1,54 @@
+#pragma once
+#include "tools/report/energy_meter.h"
+#include "tools/report/reference_images.h"
+#include "tools/report/report_row.h"
+#include "tools/report/report_scenes.h"
+
+namespace voyager::tools {
+
+// The pictures of a row that a reader is shown: of the first compared frame, RGBA float.
+struct ReportPictures {
+  RgbaImage image;
+  std::vector<float> difference;  // FLIP against the reference of all leaves
+};
+
+// How a report times and compares.
+struct ReportPlan {
+  std::vector<FrameInput> path;  // timed, in order
+  size_t repeats = 1;
+  // Of the path, ascending: compared with the reference. Where two follow one another, their
+  // change is compared as well.
+  std::vector<size_t> compared;
+};
+
+class Measurement {
+ public:
+  // references: of the plan's path. Throws Error(unsupported) where the backend lacks a choice.
+  Measurement(Backend& backend, ReportScenes& scenes, ReferenceImages& references,
+              const ReportPlan& plan, EnergyMeter* energy, Workers& workers)
+      : backend_(backend),
+        scenes_(scenes),
+        references_(references),
+        plan_(plan),
+        energy_(energy),
+        workers_(workers) {}
+
+  ReportRow run(const ReportCase& is, const std::function<void(size_t)>& frame_done);
+  // Of the last run.
+  const ReportPictures& pictures() const { return pictures_; }
+  size_t frames_drawn() const;
+
+ private:
+  ReportError compare(const std::vector<RgbaImage>& images, std::optional<double> tau,
+                      bool keep_difference);
+
+  Backend& backend_;
+  ReportScenes& scenes_;
+  ReferenceImages& references_;
+  const ReportPlan& plan_;
+  EnergyMeter* energy_;
+  Workers& workers_;
+  ReportPictures pictures_;
+};
+
+}  // namespace voyager::tools

@@ -1,0 +1,16 @@
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "runtime/frame/backend.h"
+
+namespace voyager::tools {
+
+// Where figures are from: the scene's name, bytes and XXH3 (of its megabytes' XXH3), the cameras',
+// Voyager's version, what drew and by which driver, the processor and system, the arguments.
+nlohmann::ordered_json provenance(const std::string& scene, const std::string& cameras,
+                                  const Backend& backend,
+                                  const std::vector<std::string>& arguments);
+
+}  // namespace voyager::tools

@@ -1,0 +1,58 @@
+#include "tools/report/reference_images.h"
+
+#include <fmt/core.h>
+
+#include "runtime/base/file.h"
+#include "runtime/reference/reference_backend.h"
+
+namespace voyager::tools {
+
+ReferenceImages::ReferenceImages(std::shared_ptr<const Scene> scene, std::vector<FrameInput> frames,
+                                 std::filesystem::path folder, Workers& workers)
+    : scene_(std::move(scene)),
+      frames_(std::move(frames)),
+      folder_(std::move(folder)),
+      workers_(workers),
+      backend_(create_reference_backend()) {}
+
+ReferenceImages::~ReferenceImages() = default;
+
+const RgbaImage& ReferenceImages::of(size_t frame, std::optional<double> tau) {
+  if (scene_->flat()) tau.reset();
+  const Key key{frame, tau};
+  const auto found = images_.find(key);
+  if (found != images_.end()) return found->second;
+  std::optional<RgbaImage> kept = read(key);
+  return images_.emplace(key, kept ? std::move(*kept) : draw(key)).first->second;
+}
+
+RgbaImage ReferenceImages::draw(const Key& key) {
+  PipelineDesc desc;
+  desc.lod = key.second ? Lod::cut : Lod::all_leaves;
+  desc.search = Search::exhaustive;
+  FrameInput frame = frames_[key.first];
+  frame.tau = key.second.value_or(0);
+  RgbaImage image = draw_images({*backend_, scene_, workers_}, desc, {frame}, {0})[0];
+  AtomicFile file(path_of(key).string());
+  file.write(std::as_bytes(std::span(image)));
+  file.commit();
+  return image;
+}
+
+std::filesystem::path ReferenceImages::path_of(const Key& key) const {
+  return folder_ / (key.second ? fmt::format("reference-{}-tau{:.17g}.f32", key.first, *key.second)
+                               : fmt::format("reference-{}-leaves.f32", key.first));
+}
+
+std::optional<RgbaImage> ReferenceImages::read(const Key& key) const {
+  const std::filesystem::path path = path_of(key);
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  const auto source = open_file_source(path.string());
+  const auto& camera = frames_[key.first].eyes[0].camera;
+  RgbaImage image(size_t{4} * camera.width * camera.height);
+  if (source->size() != image.size() * sizeof(float)) return std::nullopt;
+  source->read(0, std::as_writable_bytes(std::span(image)));
+  return image;
+}
+
+}  // namespace voyager::tools

@@ -1,0 +1,130 @@
+#include "tools/report/report_csv.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "tools/frame_rows.h"
+#include "voyager/voyager.h"
+
+namespace voyager::tools {
+namespace {
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
+class Line {
+ public:
+  Line& text(const std::string& value) {
+    if (!line_.empty() || began_) line_ += ',';
+    began_ = true;
+    line_ += quoted(value);
+    return *this;
+  }
+  Line& number(double value) { return text(fmt::format("{:.6g}", value)); }
+  Line& empty() { return text(""); }
+  template <class Value>
+  Line& where(bool known, const Value& value) {
+    if (!known) return empty();
+    if constexpr (std::is_arithmetic_v<Value>)
+      return number(static_cast<double>(value));
+    else
+      return text(value);
+  }
+  std::string take() { return line_ + "\n"; }
+
+ private:
+  std::string line_;
+  bool began_ = false;
+};
+
+const char* const kColumns[] = {"scene",
+                                "camera_set",
+                                "backend",
+                                "group",
+                                "lod",
+                                "tau",
+                                "search",
+                                "select",
+                                "filter",
+                                "splat",
+                                "exp",
+                                "lut_size",
+                                "sh_degree",
+                                "quality",
+                                "time_budget_ms",
+                                "cut",
+                                "splats",
+                                "pairs",
+                                "psnr_ref_db",
+                                "psnr_all_leaves_db",
+                                "ssim",
+                                "flip",
+                                "max_abs",
+                                "p999_abs",
+                                "popping",
+                                "ssim_all_leaves",
+                                "flip_all_leaves",
+                                "max_abs_all_leaves",
+                                "p999_abs_all_leaves",
+                                "popping_all_leaves",
+                                "ms_median",
+                                "ms_p95",
+                                "ms_p99",
+                                "bytes",
+                                "joules"};
+
+void add_choices(Line& line, const ReportRow& row) {
+  const PipelineDesc& desc = row.is.desc;
+  const bool cut = desc.lod == Lod::cut;
+  line.text(row.is.group).text(cut ? "on" : "off").where(cut, row.tau);
+  line.where(cut, std::string(search_name(desc.search)) +
+                      (desc.search == Search::temporal_visit ? " without slack" : ""));
+  line.text(cut ? "cut" : "flat").text(desc.alpha_filter ? "on" : "off");
+  line.text(splatting_name(desc.splatting)).text(exponential_name(desc.exponential));
+  line.where(desc.exponential == Exponential::lut, desc.lut_size);
+  line.number(row.is.sh_degree).text(storage_name(row.is.storage));
+  line.where(row.is.time_budget > 0, row.is.time_budget);
+}
+
+// "inf" where nothing differs.
+void add_psnr(Line& line, double psnr) {
+  std::isfinite(psnr) ? line.number(psnr) : line.text("inf");
+}
+
+void add_errors(Line& line, const ReportError& error) {
+  line.where(error.ssim.has_value(), error.ssim.value_or(0)).number(error.flip);
+  line.number(error.largest).number(error.p999).number(error.popping);
+}
+
+}  // namespace
+
+std::string report_csv(const ReportNames& names, const std::vector<ReportRow>& rows) {
+  Line header;
+  for (const char* column : kColumns) header.text(column);
+  std::string csv = header.take();
+  for (size_t stage = 0; stage < static_cast<size_t>(kStageCount); ++stage)
+    csv.insert(csv.size() - 1,
+               fmt::format(",ms_{}_median", voyStageName(static_cast<VoyStage>(stage))));
+  for (const ReportRow& row : rows) {
+    Line line;
+    line.text(names.scene).text(names.camera_set).text(names.backend);
+    add_choices(line, row);
+    line.number(row.cut).number(row.splats).number(row.pairs);
+    add_psnr(line, row.same.psnr);
+    add_psnr(line, row.all.psnr);
+    add_errors(line, row.same);
+    add_errors(line, row.all);
+    line.number(row.frame.median).number(row.frame.p95).number(row.frame.p99);
+    line.where(row.bytes > 0, row.bytes).where(row.joules.has_value(), row.joules.value_or(0));
+    for (const ReportTimes& stage : row.stages) line.number(stage.median);
+    csv += line.take();
+  }
+  return csv;
+}
+
+}  // namespace voyager::tools

@@ -1,0 +1,81 @@
+#include "tools/report/report_plots.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/frame_rows.h"
+
+namespace voyager::tools {
+namespace {
+
+// What a case has on its own axis.
+std::string axis_label(const ReportRow& row) {
+  const ReportCase& is = row.is;
+  if (is.group == "tau" || is.group == "default")
+    return is.desc.lod == Lod::cut ? fmt::format("τ {:g}", is.tau) : "all leaves";
+  if (is.group == "exp")
+    return is.desc.exponential == Exponential::lut ? fmt::format("lut {}", is.desc.lut_size)
+                                                   : exponential_name(is.desc.exponential);
+  if (is.group == "sh") return fmt::format("SH {}", is.sh_degree);
+  if (is.group == "quality") return storage_name(is.storage);
+  if (is.group == "filter") return "no filter";
+  if (is.group == "time budget") return fmt::format("{:.3g} ms", is.time_budget);
+  if (is.group == "search")
+    return is.desc.search == Search::temporal_visit ? "no slack" : search_name(is.desc.search);
+  return is.name();
+}
+
+Plot front_plot(const std::vector<ReportRow>& rows, const std::vector<size_t>& front) {
+  Plot plot{
+      "FLIP against all leaves, and time", "ms a frame, median", "FLIP", {}, true, false, 820, 480};
+  PlotSeries others{"measured", {}, false}, best{"front", {}, true};
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
+    if (!on_front) others.points.push_back({rows[i].frame.median, rows[i].all.flip, "", false});
+  }
+  for (const size_t i : front)
+    best.points.push_back({rows[i].frame.median, rows[i].all.flip, rows[i].is.name(), true});
+  plot.series = {best, others};
+  return plot;
+}
+
+// Against the same cut: what the axis itself costs. Of the axes that change the cut, against all.
+Plot axis_plot(const std::vector<ReportRow>& rows, const std::string& group, bool all) {
+  Plot plot{group,
+            "ms a frame, median",
+            all ? "PSNR against all leaves, dB" : "PSNR against the same cut, dB",
+            {},
+            false,
+            false,
+            400,
+            300};
+  PlotSeries series{"", {}, false};
+  for (const ReportRow& row : rows)
+    if (row.is.group == group || row.is.group == "default")
+      series.points.push_back({row.frame.median, all ? row.all.psnr : row.same.psnr,
+                               row.is.group == "default" ? "default" : axis_label(row),
+                               row.is.group == "default"});
+  plot.series = {series};
+  return plot;
+}
+
+}  // namespace
+
+std::vector<PagePlot> report_plots(const std::vector<ReportRow>& rows,
+                                   const std::vector<size_t>& front) {
+  std::vector<PagePlot> plots = {{"front.png", front_plot(rows, front)}};
+  for (const char* group : {"tau", "exp", "filter", "sh", "quality", "search", "time budget"}) {
+    const bool there = std::any_of(rows.begin(), rows.end(),
+                                   [&](const ReportRow& row) { return row.is.group == group; });
+    if (!there) continue;
+    const std::string name(group);
+    std::string file = name + ".png";
+    std::replace(file.begin(), file.end(), ' ', '_');
+    plots.push_back({file, axis_plot(rows, name, name == "tau" || name == "time budget")});
+  }
+  return plots;
+}
+
+}  // namespace voyager::tools

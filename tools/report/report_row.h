@@ -1,0 +1,40 @@
+#pragma once
+// One configuration, measured.
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "tools/report/report_case.h"
+
+namespace voyager::tools {
+
+// Against the float64 reference; docs/metrics.md.
+struct ReportError {
+  double psnr = 0;             // dB; infinite where nothing differs
+  std::optional<double> ssim;  // none of images smaller than its window
+  double flip = 0, largest = 0, p999 = 0;
+  double popping = 0;  // 1/255, mean a frame
+};
+
+struct ReportTimes {
+  double median = 0, p95 = 0, p99 = 0;  // milliseconds
+};
+
+struct ReportRow {
+  ReportCase is;
+  double tau = 0;  // as used; of a time budget, the median
+  // Means over the timed frames.
+  double cut = 0, splats = 0, pairs = 0, bytes = 0;
+  ReportTimes frame;
+  std::vector<ReportTimes> stages;  // by Stage
+  size_t timed = 0;                 // frames
+  std::optional<double> joules;     // a frame
+  ReportError same;                 // against the reference of the same cut
+  ReportError all;                  // against the reference of all leaves: what is lost in all
+};
+
+// Every field; from_json() gives the row back, so that a report can go on.
+nlohmann::ordered_json to_json(const ReportRow& row);
+ReportRow row_from_json(const nlohmann::ordered_json& json, const ReportCase& is);
+
+}  // namespace voyager::tools

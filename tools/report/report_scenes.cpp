@@ -1,0 +1,76 @@
+#include "tools/report/report_scenes.h"
+
+#include <algorithm>
+
+#include "runtime/base/open_source.h"
+#include "runtime/format/export_ply.h"
+#include "runtime/format/writer.h"
+#include "runtime/lod/build.h"
+#include "runtime/scene/import/importer.h"
+
+namespace voyager::tools {
+namespace {
+
+std::vector<Storage> storages_of(Storage own) {
+  if (own == Storage::compact) return {Storage::compact};
+  if (own == Storage::lossless) return {Storage::lossless, Storage::compact};
+  return {Storage::flat, Storage::lossless, Storage::compact};
+}
+
+}  // namespace
+
+ReportScenes::ReportScenes(const std::string& path, const std::filesystem::path& folder,
+                           Workers& workers, const Progress& progress)
+    : path_(path), folder_(folder), workers_(workers), progress_(progress) {
+  own_ = load_scene(open_source(path), std::pmr::get_default_resource(), workers);
+  storages_ = storages_of(own_->storage);
+}
+
+std::shared_ptr<const Scene> ReportScenes::get(Storage storage, int sh_degree) {
+  if (storage == storages_.front() && sh_degree == own_->sh_degree) return own_;
+  if (other_ && other_storage_ == storage && other_->sh_degree == sh_degree) return other_;
+  other_.reset();
+  const std::shared_ptr<Scene> scene =
+      load_scene(open_source(path_of(storage)), std::pmr::get_default_resource(), workers_);
+  drop_sh_bands(*scene, sh_degree);
+  other_storage_ = storage;
+  other_ = scene;
+  return scene;
+}
+
+std::string ReportScenes::path_of(Storage storage) {
+  if (storage == storages_.front()) return path_;
+  const std::filesystem::path path =
+      folder_ / (storage == Storage::lossless ? "lossless.voy" : "compact.voy");
+  if (!std::filesystem::exists(path)) bake(storage, path);
+  return path.string();
+}
+
+void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
+  std::filesystem::path input = path_;
+  if (own_->storage != Storage::flat) {
+    input = folder_ / "leaves.ply";
+    export_ply(SceneFile(open_source(path_)), input.string(), progress_);
+  }
+  const auto source = open_source(input.string());
+  GaussianCloud cloud = import_gaussians(*read_source(*source));
+  const BakedScene baked = build_tree(std::move(cloud), workers_, progress_);
+  write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), output.string(),
+                   storage == Storage::compact ? Quality::compact : Quality::lossless, workers_,
+                   progress_);
+  if (own_->storage != Storage::flat) std::filesystem::remove(input);
+}
+
+void drop_sh_bands(Scene& scene, int degree) {
+  if (degree >= scene.sh_degree) return;
+  const size_t before = 3 * static_cast<size_t>(scene.coefficients());
+  const size_t after = 3 * static_cast<size_t>(sh_coefficients(degree));
+  const size_t count = scene.sh.size() / before;
+  for (size_t i = 0; i < count; ++i)
+    std::copy_n(scene.sh.data() + i * before, after, scene.sh.data() + i * after);
+  scene.sh.resize(count * after);
+  scene.sh.shrink_to_fit();
+  scene.sh_degree = degree;
+}
+
+}  // namespace voyager::tools
