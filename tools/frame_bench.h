@@ -15,7 +15,7 @@ struct FramePath {
   std::vector<FrameInput> frames;  // not empty
   size_t repeats = 1;              // how often the path is timed, end to start at once
   std::optional<TimeBudgetDesc> time_budget =
-      {};  // it chooses timed frames' tau, from the first's on
+      {};                     // it chooses timed frames' tau, from the first's on
   bool counts_pixels = true;  // in a pass of its own
 
   // Frames that run_frames() draws, at most.
