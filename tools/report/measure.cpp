@@ -47,6 +47,7 @@ void set_times(const std::vector<FrameStats>& frames, ReportRow& row) {
 
 double median_tau(const std::vector<FrameStats>& frames) {
   std::vector<double> taus;
+  taus.reserve(frames.size());
   for (const FrameStats& stats : frames) taus.push_back(stats.tau);
   return percentile(taus, 0.5);
 }
