@@ -17,26 +17,12 @@ class HostPool final : public ChunkPool {
     resize(slots);
   }
 
-  // The old arrays go first, so that a budget holds at every moment.
   void resize(uint32_t slots) override {
-    const size_t nodes = size_t{slots} * shape_.nodes, records = size_t{slots} * shape_.records;
-    const bool as_many = scene_.search.opens.size() == records &&
-                         scene_.search.subtrees.size() == scene_.search.subtree_count();
-    if (as_many) std::fill(scene_.search.opens.begin(), scene_.search.opens.end(), SubtreeSpan{});
-    for (const bool room : {false, true}) {
-      if (as_many) break;
-      const auto fit = [room](auto& array, size_t size) {
-        std::decay_t<decltype(array)>(room ? size : 0, array.get_allocator()).swap(array);
-      };
-      fit(scene_.gaussians, nodes);
-      fit(scene_.sh, nodes * floats_of(scene_));
-      fit(scene_.tree.records, nodes);
-      fit(scene_.tree.parent, nodes);
-      fit(scene_.axis_code, nodes);
-      fit(scene_.node_ids, nodes);
-      fit(scene_.search.records, records);
-      fit(scene_.search.opens, records);
-    }
+    auto& opens = scene_.search.opens;
+    if (scene_.search.subtrees.empty() || opens.size() != size_t{slots} * shape_.records)
+      make_room(slots);
+    else
+      std::fill(opens.begin(), opens.end(), SubtreeSpan{});
     scene_.search.subtrees.assign(scene_.search.subtree_count(), kUnlinkedSubtree);
   }
 
@@ -75,6 +61,24 @@ class HostPool final : public ChunkPool {
   }
 
  private:
+  // The old arrays go first, so that a budget holds at every moment.
+  void make_room(uint32_t slots) {
+    const size_t nodes = size_t{slots} * shape_.nodes, records = size_t{slots} * shape_.records;
+    for (const bool room : {false, true}) {
+      const auto fit = [room](auto& array, size_t size) {
+        std::decay_t<decltype(array)>(room ? size : 0, array.get_allocator()).swap(array);
+      };
+      fit(scene_.gaussians, nodes);
+      fit(scene_.sh, nodes * floats_of(scene_));
+      fit(scene_.tree.records, nodes);
+      fit(scene_.tree.parent, nodes);
+      fit(scene_.axis_code, nodes);
+      fit(scene_.node_ids, nodes);
+      fit(scene_.search.records, records);
+      fit(scene_.search.opens, records);
+    }
+  }
+
   Scene& scene_;
   const SlotShape shape_;
 };

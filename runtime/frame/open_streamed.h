@@ -10,7 +10,7 @@ struct StreamingDesc {
   unsigned readers = 2;  // threads that read and decode; 0: none, SceneStream::step() does it
   // What is read at once, from the top of the tree, if there are slots: stored bytes.
   uint64_t first_bytes = 32 << 20;
-  // A point of the scene around which it is read, in place of that, and of how much.
+  // A point of the scene; around it so much is read in place of that.
   std::optional<Vec3d> start;
   uint64_t start_bytes = 64 << 20;
   std::function<double()> clock;  // as StreamDesc has it

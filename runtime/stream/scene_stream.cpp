@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 
 #include "runtime/base/floating_point_mode.h"
 
@@ -19,6 +18,11 @@ constexpr uint32_t kMostPinned = 1024;
 ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) {
   return {a.requested + b.requested, a.arrived + b.arrived, a.evicted + b.evicted, a.late + b.late,
           a.flushed + b.flushed};
+}
+
+// Chunk by chunk it would fail as well: a source that stalls, and a file that is gone.
+bool is_of_source(const Error& error) {
+  return error.code() == ErrorCode::io_transient || error.code() == ErrorCode::file_not_found;
 }
 
 }  // namespace
@@ -161,6 +165,7 @@ void SceneStream::resize(uint32_t slots, uint32_t pinned, Workers& workers) {
     try {
       reset(slots_before, pinned_before, workers);
     } catch (...) {
+      if (unsound_) unsound_ = std::current_exception();
       lose(std::current_exception());
     }
     throw;
@@ -199,7 +204,6 @@ void SceneStream::reset(uint32_t slots, uint32_t pinned, Workers& workers) {
 // From within a catch, or with what one has caught.
 void SceneStream::lose(std::exception_ptr what) noexcept {
   constexpr double kRest = 1;  // second: memory may be had again
-  if (unsound_) unsound_ = what;
   lost_ = std::move(what);
   rebuild_due_ = now() + kRest;
   signal();  // whoever rebuilds may be asleep
@@ -211,11 +215,15 @@ void SceneStream::rebuild() {
     Workers workers(1);
     reset(static_cast<uint32_t>(slots_.load()), residency_.pinned(), workers);
   } catch (...) {
+    if (unsound_) unsound_ = std::current_exception();
     lose(std::current_exception());
     return;
   }
-  failures_.tell(file_->name() +
-                 ": memory was refused; what had been read is dropped, and comes again");
+  try {
+    failures_.tell(file_->name() +
+                   ": memory was refused; what had been read is dropped, and comes again");
+  } catch (const std::bad_alloc&) {  // all is well, but untold
+  }
 }
 
 bool SceneStream::rebuild_if_due(Lock& lock) {
@@ -347,14 +355,11 @@ bool SceneStream::fill_one(Lock& lock) {
   return true;
 }
 
-bool SceneStream::read_some(Lock& lock) {
-  if (staged_bytes_ >= desc_.staged_bytes || !failures_.source_may_be_read(now())) return false;
-  const ChunkRange range = residency_.take_requests(kMostChunksARead, desc_.read_bytes);
-  if (range.empty()) return false;
-  const uint64_t generation = generation_;
-  lock.unlock();
+// The lock is let go meanwhile. No bytes where it fails.
+std::vector<std::byte> SceneStream::read(ChunkRange range, std::optional<Error>& failure,
+                                         Lock& lock) {
   std::vector<std::byte> bytes;
-  std::optional<Error> failure;
+  lock.unlock();
   try {
     bytes = file_->read_stored(range.first, range.last);
   } catch (const Error& error) {
@@ -364,20 +369,25 @@ bool SceneStream::read_some(Lock& lock) {
   }
   lock.lock();
   ++reads_;
-  if (!failure) {
-    bytes_read_ += bytes.size();
+  bytes_read_ += bytes.size();
+  if (!failure)
     failures_.source_answered();
-    stage_range(range, bytes, generation, lock);
-    return true;
-  }
-  // Chunk by chunk it would fail as well: a source that stalls, and a file that is gone.
-  const bool whole =
-      failure->code() == ErrorCode::io_transient || failure->code() == ErrorCode::file_not_found;
-  if (whole) failures_.source_failed(*failure, now());
-  if (whole || range.last - range.first == 1)
+  else if (is_of_source(*failure))
+    failures_.source_failed(*failure, now());
+  return bytes;
+}
+
+bool SceneStream::read_some(Lock& lock) {
+  if (staged_bytes_ >= desc_.staged_bytes || !failures_.source_may_be_read(now())) return false;
+  const ChunkRange range = residency_.take_requests(kMostChunksARead, desc_.read_bytes);
+  if (range.empty()) return false;
+  const uint64_t generation = generation_;
+  std::optional<Error> failure;
+  const std::vector<std::byte> bytes = read(range, failure, lock);
+  if (failure && (is_of_source(*failure) || range.last - range.first == 1))
     fail_range(range, *failure, generation);
   else
-    stage_range(range, {}, generation, lock);
+    stage_range(range, bytes, generation, lock);
   return true;
 }
 
@@ -392,30 +402,16 @@ void SceneStream::fail_range(ChunkRange range, const Error& error, uint64_t gene
 void SceneStream::stage_range(ChunkRange range, const std::vector<std::byte>& bytes,
                               uint64_t generation, Lock& lock) {
   const auto& chunks = file_->chunks();
-  const std::span<const std::byte> all(bytes);
   for (uint32_t chunk = range.first; chunk < range.last && generation_ == generation; ++chunk) {
-    std::span<const std::byte> stored = all;
-    std::vector<std::byte> own;
-    if (bytes.empty()) {
-      lock.unlock();
-      std::optional<Error> failure;
-      try {
-        own = file_->read_stored(chunk, chunk + 1);
-      } catch (const Error& error) {
-        failure = error;
-      } catch (const std::exception& error) {
-        failure.emplace(ErrorCode::io_transient, file_->name() + ": " + error.what());
-      }
-      lock.lock();
-      ++reads_;
-      bytes_read_ += own.size();
-      if (failure) return fail_range({chunk, range.last}, *failure, generation);
-      failures_.source_answered();
-      stored = own;
-    } else {
-      stored = all.subspan(chunks[chunk].offset - chunks[range.first].offset, chunks[chunk].bytes);
+    if (!bytes.empty()) {
+      const uint64_t at = chunks[chunk].offset - chunks[range.first].offset;
+      stage(chunk, std::span(bytes).subspan(at, chunks[chunk].bytes), lock);
+      continue;
     }
-    stage(chunk, stored, lock);
+    std::optional<Error> failure;
+    const std::vector<std::byte> own = read({chunk, chunk + 1}, failure, lock);
+    if (failure) return fail_range({chunk, range.last}, *failure, generation);
+    stage(chunk, own, lock);
   }
 }
 

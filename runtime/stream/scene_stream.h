@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <thread>
 
@@ -82,8 +83,8 @@ class SceneStream {
   // Who looks, for one view's instance; it replaces what was said before. No viewers: nobody.
   // Any thread.
   void look(const void* who, std::vector<Viewer> viewers);
-  // What has come becomes resident. Another frame that reads the pool just now puts that off, for
-  // a tenth of a second; then it is waited for, and this is what waits. Any thread.
+  // What has come becomes resident. Frames that read the pool just now put that off, for a tenth
+  // of a second; then the call waits for them to end. Any thread.
   void commit();
   // The same until nothing more is to come. Throws Error(over_budget) where what is seen does
   // not fit, and unless `stand_in` what kept a chunk that is seen from coming: what failed for
@@ -152,6 +153,7 @@ class SceneStream {
   void check_fits() const;
   bool is_settled(double since) const;
   void check_seen() const;
+  std::vector<std::byte> read(ChunkRange range, std::optional<Error>& failure, Lock& lock);
   void fail_range(ChunkRange range, const Error& error, uint64_t generation);
   void stage_range(ChunkRange range, const std::vector<std::byte>& bytes, uint64_t generation,
                    Lock& lock);
@@ -173,10 +175,11 @@ class SceneStream {
   mutable std::mutex door_;
   mutable std::shared_mutex pool_mutex_;
   std::atomic<bool> commit_due_{false};
-  std::atomic<double> committed_{0};  // when; seconds
+  std::atomic<double> put_off_{-1};  // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0;
-  std::exception_ptr unsound_;  // what apply() threw
+  // What kept the pool from being what is linked. Changed under both locks, read under either.
+  std::exception_ptr unsound_;
 
   // Held only to copy something; after mutex_.
   mutable std::mutex small_mutex_;

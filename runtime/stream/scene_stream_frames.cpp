@@ -47,7 +47,9 @@ void SceneStream::commit() {
   if (!commit_due_) return;
   std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) {
-    if (now() < committed_ + kPutOff) return;
+    const double since = put_off_;
+    if (since < 0) put_off_ = now();
+    if (since < 0 || now() < since + kPutOff) return;
     pool = hold_alone();
   }
   const Lock lock(mutex_, std::try_to_lock);
@@ -73,7 +75,7 @@ void SceneStream::apply(const LinkPatch& patch) {
 // throws leaves the pool as it is, and what is known of it, or unsound.
 bool SceneStream::commit_all() {
   LinkPatch patch;
-  committed_ = now();
+  put_off_ = -1;
   commit_due_ = false;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
   for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);

@@ -30,6 +30,20 @@ FrameInput ahead(const Vec3d& eye, const Vec3d& way, double tau = 3) {
   return frame_input(look(eye, eye + way, 61, 45, 60), tau);
 }
 
+// Holds nothing; fails while `fails`, or once.
+class FailingPool final : public ChunkPool {
+ public:
+  void fill(uint32_t, const StagedChunk&) override {}
+  void apply(const LinkPatch&) override {
+    if (fails || fails_once.exchange(false))
+      throw Error(ErrorCode::device_lost, "pool: found no device");
+  }
+  void resize(uint32_t) override {
+    if (refuses_once.exchange(false)) throw Error(ErrorCode::over_budget, "pool: found no memory");
+  }
+  std::atomic<bool> fails{false}, fails_once{false}, refuses_once{false};
+};
+
 // A scene on a disk, and a view of it that draws a frame each 1/60 s.
 class Flight {
  public:
@@ -261,14 +275,7 @@ TEST(StreamingDisk, AFrameThatWaitsSaysWhatIsDamaged) {
 
 // A pool that could not take the links: what a frame would find is not what was linked.
 TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
-  struct Pool final : ChunkPool {
-    void fill(uint32_t, const StagedChunk&) override {}
-    void apply(const LinkPatch&) override {
-      if (fails) throw Error(ErrorCode::device_lost, "pool: found no device");
-    }
-    void resize(uint32_t) override {}
-    bool fails = false;
-  } pool;
+  FailingPool pool;
   const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
   const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
   StreamDesc desc;
@@ -310,16 +317,7 @@ TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
 
 // A pool on threads of its own that fails once: nobody else need move for all to come again.
 TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
-  struct Pool final : ChunkPool {
-    void fill(uint32_t, const StagedChunk&) override {}
-    void apply(const LinkPatch&) override {
-      if (fails.exchange(false)) throw Error(ErrorCode::device_lost, "pool: found no device");
-    }
-    void resize(uint32_t) override {
-      if (refuses.exchange(false)) throw Error(ErrorCode::over_budget, "pool: found no memory");
-    }
-    std::atomic<bool> fails{false}, refuses{false};
-  } pool;
+  FailingPool pool;
   const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
   const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
   StreamDesc desc;
@@ -337,10 +335,10 @@ TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
     }
     return stream.counters().resident;
   };
-  pool.fails = true;
+  pool.fails_once = true;
   EXPECT_EQ(stand(), desc.slots);
   EXPECT_TRUE(stream.hold().owns_lock());
-  pool.refuses = true;
+  pool.refuses_once = true;
   EXPECT_THROW(stream.resize(desc.slots - 1, desc.pinned, workers), Error);
   EXPECT_EQ(stand(), desc.slots);
 }

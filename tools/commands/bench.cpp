@@ -3,8 +3,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
-#include "runtime/cpu/cpu_backend.h"
-#include "runtime/frame/backend_module.h"
 #include "tools/commands/bench_arguments.h"
 #include "tools/commands/commands.h"
 #include "tools/output_paths.h"
@@ -44,21 +42,6 @@ void refuse_misplaced(const BenchArguments& arguments) {
     bad_usage("--stereo: found it with a part of the frame, expected --stages all");
 }
 
-std::unique_ptr<Backend> create_backend(const BenchArguments& arguments) {
-  const BackendModuleOptions options{0, arguments.multiprocessors, nullptr};
-  if (arguments.backend == BenchBackend::cuda) return load_backend("cuda", options);
-  if (arguments.backend == BenchBackend::automatic) {
-    try {
-      return load_backend("cuda", options);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::no_device) throw;
-    }
-  }
-  if (arguments.multiprocessors != 0)
-    bad_usage("--sms: found the CPU backend, expected --backend cuda");
-  return create_cpu_backend();
-}
-
 std::vector<Camera> read_walk(const BenchArguments& arguments) {
   std::vector<Camera> cameras = read_cameras(arguments.cameras);
   require_pairs(arguments.stereo, cameras.size(), arguments.cameras);
@@ -87,13 +70,13 @@ void bench(BenchArguments& arguments) {
     throw Error(ErrorCode::refused_input, scene->name +
                                               ": found a scene without a tree, "
                                               "expected a .voy with --time-budget");
-  const auto backend = create_backend(arguments);
+  const auto backend = create_backend(arguments.backend);
   const BenchSubject subject{scene, *backend, read_walk(arguments), workers};
   Json report = {{"scene", scene->name},
                  {"cameras", arguments.cameras},
                  {"version", VOYAGER_VERSION},
                  {"device", backend->device_name()},
-                 {"multiprocessors_asked", arguments.multiprocessors},
+                 {"multiprocessors_asked", arguments.backend.multiprocessors},
                  {"tau", arguments.tau}};
   const bool costs = arguments.stereo && arguments.time_budget == 0;  // against one eye's
   const auto run = search ? bench_searches : costs ? bench_stereo : bench_frames;
@@ -137,17 +120,9 @@ void add_choices(CLI::App& command, BenchArguments& arguments) {
 }
 
 void add_conditions(CLI::App& command, BenchArguments& arguments) {
-  add_choice<BenchBackend>(
-      command, "--backend", arguments.backend,
-      {{"auto", BenchBackend::automatic}, {"cpu", BenchBackend::cpu}, {"cuda", BenchBackend::cuda}},
-      "Where; auto is CUDA where there is a device");
+  add_backend_options(command, arguments.backend);
   add_tau_or_budget_options(command, arguments.tau, arguments.time_budget);
   add_size_option(command, arguments.size);
-  command
-      .add_option("--sms", arguments.multiprocessors,
-                  "Confine CUDA to so many multiprocessors (green context)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
   command
       .add_option("--repeat", arguments.repeat,
                   "Time the path so often (default: until 100 frames are timed)")

@@ -7,12 +7,12 @@
 
 #include "runtime/frame/backend.h"
 #include "tools/cameras.h"
+#include "tools/commands/measured_backend.h"
 #include "tools/options.h"
 
 namespace voyager::tools {
 
 enum class BenchStages { search, splat, all };
-enum class BenchBackend { automatic, cpu, cuda };
 enum class SearchChoice { all, exhaustive, streaming, temporal };
 
 // Options that were not given have no value where that means something else than a default.
@@ -20,7 +20,7 @@ struct BenchArguments {
   std::string scene, cameras, json;
   std::optional<BenchStages> stages_asked;
   BenchStages stages = BenchStages::search;  // whole frames where only these can be meant
-  BenchBackend backend = BenchBackend::automatic;
+  BackendChoice backend;
   std::optional<Lod> lod;
   std::optional<SearchChoice> search;
   std::optional<bool> slack, filter;
@@ -31,7 +31,6 @@ struct BenchArguments {
   bool verify = false, stereo = false;
   double tau = 3;
   double time_budget = 0;  // milliseconds; 0: tau is fixed
-  unsigned multiprocessors = 0;
   ImageSize size;
 };
 

@@ -4,9 +4,8 @@
 #include <filesystem>
 
 #include "runtime/base/error.h"
-#include "runtime/cpu/cpu_backend.h"
-#include "runtime/frame/backend_module.h"
 #include "tools/commands/commands.h"
+#include "tools/commands/measured_backend.h"
 #include "tools/frame_path.h"
 #include "tools/options.h"
 #include "tools/output_folder.h"
@@ -25,14 +24,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-enum class ReportBackend { automatic, cpu, cuda };
-
 struct Arguments {
   std::string scene, cameras, output;
   bool quick = false, full = false;
   double target = 1000.0 / 90;  // milliseconds
-  ReportBackend backend = ReportBackend::automatic;
-  unsigned multiprocessors = 0;
+  BackendChoice backend;
   ImageSize size;
 };
 
@@ -45,21 +41,6 @@ Extent extent_of(const Arguments& arguments) {
   if (arguments.quick) return {ReportExtent::quick, 16, 2, 16};
   if (arguments.full) return {ReportExtent::full, 600, 8, 200};
   return {ReportExtent::standard, 60, 3, 40};
-}
-
-std::unique_ptr<Backend> create_backend(const Arguments& arguments) {
-  const BackendModuleOptions options{0, arguments.multiprocessors, nullptr};
-  if (arguments.backend == ReportBackend::cuda) return load_backend("cuda", options);
-  if (arguments.backend == ReportBackend::automatic) {
-    try {
-      return load_backend("cuda", options);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::no_device) throw;
-    }
-  }
-  if (arguments.multiprocessors != 0)
-    throw Error(ErrorCode::invalid_argument, "--sms: found the CPU backend, expected CUDA");
-  return create_cpu_backend();
 }
 
 // The first frames of the walk, and of these some, each with the one behind it where there is one.
@@ -88,7 +69,7 @@ class Report {
       : arguments_(arguments),
         extent_(extent_of(arguments)),
         output_(arguments.output),
-        backend_(create_backend(arguments)),
+        backend_(create_backend(arguments.backend)),
         plan_(make_plan(arguments, extent_)),
         provenance_(provenance(arguments.scene, arguments.cameras, *backend_, words(arguments))),
         kept_(std::filesystem::path(arguments.output) / ".report", provenance_),
@@ -116,8 +97,8 @@ class Report {
                                                        : "standard"};
     if (arguments.size.width != 0)
       found.push_back(fmt::format("--size {}x{}", arguments.size.width, arguments.size.height));
-    if (arguments.multiprocessors != 0)
-      found.push_back(fmt::format("--sms {}", arguments.multiprocessors));
+    if (arguments.backend.multiprocessors != 0)
+      found.push_back(fmt::format("--sms {}", arguments.backend.multiprocessors));
     found.push_back(fmt::format("--target {:.4g}", arguments.target));
     return found;
   }
@@ -258,17 +239,8 @@ void add_report(CLI::App& app) {
                    "Milliseconds that a frame may take, for the recommendation (11.1: 90 Hz)")
       ->check(CLI::Range(0.01, 10000.0))
       ->type_name("MS");
-  add_choice<ReportBackend>(*command, "--backend", arguments->backend,
-                            {{"auto", ReportBackend::automatic},
-                             {"cpu", ReportBackend::cpu},
-                             {"cuda", ReportBackend::cuda}},
-                            "Where; auto is CUDA where there is a device");
+  add_backend_options(*command, arguments->backend);
   add_size_option(*command, arguments->size);
-  command
-      ->add_option("--sms", arguments->multiprocessors,
-                   "Confine CUDA to so many multiprocessors (green context)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 1024));
   command->footer("Example: voyager report city.voy --cameras city.cameras.json -o report");
   command->callback([arguments] { Report(*arguments).run(); });
 }
