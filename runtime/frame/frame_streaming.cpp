@@ -96,6 +96,9 @@ Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance) {
 FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
   Holds holds;
   if (streamed_.empty()) return holds;
+  // Before the readers know of this frame: they hold what a commit needs while they plan for it.
+  if (!frame.wait_resident)
+    for (const Scene* scene : streamed_) scene->stream->commit();
   const std::optional<Vec3d> way = velocity(frame);
   for (size_t i = 0; i < scenes_.size(); ++i) {
     if (!scenes_[i]->streamed()) continue;
@@ -109,10 +112,7 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
     }
     scenes_[i]->stream->look(&scenes_[i], std::move(viewers));
   }
-  if (!frame.wait_resident) {
-    for (const Scene* scene : streamed_) scene->stream->commit();
-    return hold_all();
-  }
+  if (!frame.wait_resident) return hold_all();
   // While one is waited for, another may get a budget, and lose what it had; not for ever.
   constexpr int kMostTries = 8;
   for (int tries = 1;; ++tries) {
