@@ -13,8 +13,7 @@ ChunkGraph::ChunkGraph(std::span<const ChunkEntry> chunks, const Tiers& tiers)
     const uint32_t end = last == 0 ? chunk : std::min(chunk, owner_of_parent(last) + 1);
     parents_[chunk] = {std::min(begin, end), end};
     const uint32_t below = chunks_[chunk].place.next[3], after = place_after(chunk).next[3];
-    const ChunkRange range =
-        below == after ? ChunkRange{chunk + 1, chunk + 1} : with_roots(below, after - below);
+    const ChunkRange range = with_roots(below, after - below);
     const uint32_t least = std::max(range.first, chunk + 1);
     children_[chunk] = {least, std::max(least, range.last)};
   }

@@ -24,12 +24,13 @@ class ChunkGraph {
 
   uint32_t size() const { return static_cast<uint32_t>(chunks_.size()); }
   // Each before the chunk; none where it holds the tree's root and all that it leads to
-  // hangs from itself.
+  // hangs from itself. One between two that lead to the chunk is a parent even where nothing
+  // hangs from it: they are a range.
   ChunkRange parents(uint32_t chunk) const { return parents_[chunk]; }
-  // Each behind the chunk.
+  // Each behind the chunk: those that it is a parent of, and no other.
   ChunkRange children(uint32_t chunk) const { return children_[chunk]; }
   // The chunks whose subtrees have these nodes as their roots: [first, first + count) on a level
-  // of roots, but for the tree's.
+  // of roots, but for the tree's. Of no nodes: the one that has roots on either side of first.
   ChunkRange with_roots(uint32_t first, uint32_t count) const;
   // The chunk that owns the parent of a root, which is not the tree's.
   uint32_t owner_of_parent(uint32_t root) const;
