@@ -68,8 +68,7 @@ class CudaBackend final : public Backend {
                                              const SearchDesc& desc, std::pmr::memory_resource*,
                                              Workers& workers) override {
     device_->use();
-    return create_timed_search(device_, search_for(scene, desc.kind, desc.weights, workers),
-                               desc.weights);
+    return create_timed_search(device_, search_for(scene, desc, workers), desc.weights);
   }
 
  private:
@@ -79,20 +78,35 @@ class CudaBackend final : public Backend {
       return s.streamed() ? std::make_shared<DeviceScene>(pool_of(s, *device_))
                           : std::make_shared<DeviceScene>(s, workers);
     });
-    const bool draws_cut = !scene->flat() && desc.lod == Lod::cut;
-    auto search = draws_cut ? search_for(scene, desc.search, true, workers) : nullptr;
+    const bool searches = !scene->flat() && draws_cut(desc.lod);
+    auto search = searches ? search_for(scene, {desc.search, true, desc.lod}, workers) : nullptr;
     return {scene, std::move(gaussians), create_draws(*scene, desc.lod, std::move(search))};
   }
 
-  std::unique_ptr<CutSearch> search_for(const std::shared_ptr<const Scene>& scene, Search kind,
-                                        bool weights, Workers& workers) {
-    if (!scene->damaged_chunks.empty()) return create_host_cut_search(scene, kind, workers);
-    if (kind == Search::exhaustive) return create_exhaustive_search(device_, scene, weights);
+  std::unique_ptr<CutSearch> search_for(const std::shared_ptr<const Scene>& scene,
+                                        const SearchDesc& desc, Workers& workers) {
+    check_detail(*scene, desc.lod);
+    if (desc.lod != Lod::cut) return search_of_baseline(scene, desc, workers);
+    if (!scene->damaged_chunks.empty()) return create_host_cut_search(scene, desc.kind, workers);
+    if (desc.kind == Search::exhaustive)
+      return create_exhaustive_search(device_, *scene, scene->tree, desc.weights);
     const auto tree = trees_.of(scene, [&](const Scene& s) {
       return s.streamed() ? std::make_shared<const DeviceTree>(pool_of(s, *device_))
                           : upload_tree(s);
     });
-    return create_partitioned_search(device_, tree, scene, kind, weights);
+    return create_partitioned_search(device_, tree, scene, desc.kind, desc.weights);
+  }
+
+  // Its tree is this view's alone.
+  std::unique_ptr<CutSearch> search_of_baseline(const std::shared_ptr<const Scene>& scene,
+                                                const SearchDesc& desc, Workers& workers) {
+    const DetailTree detail = make_detail_tree(scene->tree, scene->partition, desc.lod, workers,
+                                               std::pmr::get_default_resource());
+    if (desc.kind == Search::exhaustive)
+      return create_exhaustive_search(device_, *scene, detail.tree, desc.weights);
+    return create_partitioned_search(device_,
+                                     std::make_shared<const DeviceTree>(detail.search, detail.tree),
+                                     scene, desc.kind, desc.weights);
   }
 
   std::shared_ptr<const Device> device_;

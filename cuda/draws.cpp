@@ -11,11 +11,11 @@ namespace {
 
 class CutDraws final : public Draws {
  public:
-  explicit CutDraws(std::unique_ptr<CutSearch> search) : search_(std::move(search)) {}
+  CutDraws(std::unique_ptr<CutSearch> search, Lod lod) : search_(std::move(search)), lod_(lod) {}
 
   void update(const CutQuery& query, cudaStream_t stream) override {
     search_->find(query, stream);
-    search_->weigh(query, stream);
+    search_->weigh(weights_query(lod_, query), stream);
   }
   DrawView view() const override { return {search_->list(), nullptr}; }
   void end_frame(cudaStream_t stream) noexcept override { search_->end_frame(stream); }
@@ -37,6 +37,7 @@ class CutDraws final : public Draws {
 
  private:
   std::unique_ptr<CutSearch> search_;
+  Lod lod_;
 };
 
 // A tree's leaves go in the order of their nodes, neighbours together; the contract's
@@ -84,12 +85,9 @@ class LeafDraws final : public Draws {
 
 std::unique_ptr<Draws> create_draws(const Scene& scene, Lod lod,
                                     std::unique_ptr<CutSearch> search) {
-  if (scene.streamed() && lod == Lod::all_leaves)
-    throw Error(ErrorCode::unsupported,
-                "lod: found all leaves, a streamed scene is drawn as a cut: most of its leaves "
-                "are not there");
-  if (scene.flat() || lod == Lod::all_leaves) return std::make_unique<LeafDraws>(scene);
-  return std::make_unique<CutDraws>(std::move(search));
+  check_detail(scene, lod);
+  if (scene.flat() || !draws_cut(lod)) return std::make_unique<LeafDraws>(scene);
+  return std::make_unique<CutDraws>(std::move(search), lod);
 }
 
 }  // namespace voyager::cuda

@@ -28,8 +28,8 @@ class Draws {
   virtual void read_cut(std::pmr::vector<uint32_t>& cut) = 0;
 };
 
-// search: of a scene with a tree whose cut is drawn. Throws Error(unsupported) for all leaves of a
-// streamed scene.
+// search: of a scene with a tree whose cut is drawn. Throws Error(unsupported) for what
+// check_detail() refuses.
 std::unique_ptr<Draws> create_draws(const Scene& scene, Lod lod, std::unique_ptr<CutSearch> search);
 
 }  // namespace voyager::cuda

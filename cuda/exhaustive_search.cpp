@@ -7,14 +7,14 @@ namespace {
 
 class ExhaustiveSearch final : public CutSearch {
  public:
-  ExhaustiveSearch(std::shared_ptr<const Device> device, const Scene& scene, bool weights)
+  ExhaustiveSearch(std::shared_ptr<const Device> device, const LodTree& tree, bool weights)
       : device_(std::move(device)),
-        records_(upload(std::span<const NodeRecord>(scene.tree.records))),
-        parent_(upload(std::span<const uint32_t>(scene.tree.parent))),
-        tree_{records_.data(), parent_.data(), static_cast<uint32_t>(scene.tree.size())},
+        records_(upload(std::span<const NodeRecord>(tree.records))),
+        parent_(upload(std::span<const uint32_t>(tree.parent))),
+        tree_{records_.data(), parent_.data(), static_cast<uint32_t>(tree.size())},
         scratch_(exhaustive_scratch_bytes(tree_)),
-        nodes_(scene.tree.size()),
-        weights_(weights ? scene.tree.size() : 0),
+        nodes_(tree.size()),
+        weights_(weights ? tree.size() : 0),
         count_(1) {
     fill(count_, 0);
   }
@@ -79,13 +79,13 @@ class ExhaustiveSearch final : public CutSearch {
 }  // namespace
 
 std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
-                                                    std::shared_ptr<const Scene> scene,
+                                                    const Scene& scene, const LodTree& tree,
                                                     bool weights) {
-  if (scene->streamed())
+  if (scene.streamed())
     throw Error(ErrorCode::unsupported,
                 "search: found exhaustive, a streamed scene has streaming and temporal");
   device->use();
-  return std::make_unique<ExhaustiveSearch>(std::move(device), *scene, weights);
+  return std::make_unique<ExhaustiveSearch>(std::move(device), tree, weights);
 }
 
 }  // namespace voyager::cuda

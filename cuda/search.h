@@ -57,9 +57,10 @@ std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Devic
                                                      Search kind, bool weights);
 
 // Uploads every node's record and parent for itself: it is a baseline, not what a frame uses.
+// tree: the scene's own, or a DetailTree's; not kept.
 // Throws Error(unsupported) for a streamed scene.
 std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
-                                                    std::shared_ptr<const Scene> scene,
+                                                    const Scene& scene, const LodTree& tree,
                                                     bool weights);
 
 // Runs on the host, for scenes with damaged chunks; find() throws Error(damaged_chunk)

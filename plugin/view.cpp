@@ -42,6 +42,19 @@ Search search_of(VoySearch search) {
   }
 }
 
+Lod lod_of(VoyLod lod) {
+  switch (lod) {
+    case VOY_LOD_ALL_LEAVES:
+      return Lod::all_leaves;
+    case VOY_LOD_BLOCKS:
+      return Lod::blocks;
+    case VOY_LOD_LEVELS:
+      return Lod::levels;
+    default:
+      return Lod::cut;
+  }
+}
+
 Exponential exponential_of(const VoyViewDesc& desc, VoyBackend backend) {
   switch (desc.exponential) {
     case VOY_EXPONENTIAL_EXACT:
@@ -61,7 +74,7 @@ Exponential exponential_of(const VoyViewDesc& desc, VoyBackend backend) {
 
 PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   check_tau(desc.tau);
-  check_enum(desc.lod, VOY_LOD_ALL_LEAVES, "desc.lod");
+  check_enum(desc.lod, VOY_LOD_LEVELS, "desc.lod");
   check_enum(desc.search, VOY_SEARCH_TEMPORAL_VISIT, "desc.search");
   check_enum(desc.alphaFilter, VOY_ALPHA_FILTER_OFF, "desc.alphaFilter");
   check_enum(desc.exponential, VOY_EXPONENTIAL_HALF2, "desc.exponential");
@@ -69,7 +82,7 @@ PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   check_enum(desc.splatting, VOY_SPLATTING_3DGS, "desc.splatting");
   PipelineDesc choices;
   choices.eyes = desc.eyeCount;
-  choices.lod = desc.lod == VOY_LOD_CUT ? Lod::cut : Lod::all_leaves;
+  choices.lod = lod_of(desc.lod);
   choices.search = search_of(desc.search);
   choices.alpha_filter = desc.alphaFilter == VOY_ALPHA_FILTER_ON;
   choices.lut_size = desc.lutSize == 0 ? kDefaultLutSize : desc.lutSize;

@@ -1,6 +1,7 @@
 #include "tools/frame_report.h"
 
 #include "tools/frame_floor.h"
+#include "tools/lod_options.h"
 #include "tools/statistics.h"
 #include "voyager/voyager.h"
 
@@ -54,9 +55,10 @@ double mean_bytes(const FrameRun& run, int stage) {
 
 Json choices(const FrameRow& row, const ReportContext& context) {
   const PipelineDesc& desc = row.desc;
-  const bool searched = desc.lod == Lod::cut && !context.flat;
+  const bool searched = draws_cut(desc.lod) && !context.flat;
   const bool ours = desc.splatting == Splatting::ours;
-  Json json = {{"name", row.name}, {"lod", desc.lod == Lod::cut ? "on" : "off"}};
+  Json json = {{"name", row.name}, {"lod", draws_cut(desc.lod) ? "on" : "off"}};
+  json["select"] = select_name(searched ? desc.lod : Lod::all_leaves);
   json["search"] = searched ? Json(search_name(desc.search)) : Json();
   json["slack"] = searched && desc.search == Search::temporal;
   json["splat"] = splatting_name(desc.splatting);

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "tools/lod_options.h"
+
 namespace voyager::tools {
 namespace {
 
@@ -50,10 +52,11 @@ std::vector<FrameRow> exponential_rows(PipelineDesc desc) {
 }
 
 FrameRow chosen_row(const PipelineDesc& desc, bool flat) {
-  const bool searched = desc.lod == Lod::cut && !flat;
+  const bool searched = draws_cut(desc.lod) && !flat;
   std::string name =
       fmt::format("{}, {}, {}", searched ? search_name(desc.search) : "all leaves",
                   splatting_name(desc.splatting), exponential_name(desc.exponential));
+  if (searched && desc.lod != Lod::cut) name = select_name(desc.lod) + (", " + name);
   if (desc.exponential == Exponential::lut) name += fmt::format(" {}", desc.lut_size);
   return {name, desc};
 }

@@ -68,7 +68,7 @@ Renderer::Renderer(const std::string& scene, const RenderChoices& choices, uint3
       images_(choices.eyes) {}
 
 bool Renderer::draws_cut() const {
-  return choices_.lod == VOY_LOD_CUT && scene_.info().storage != VOY_SCENE_STORAGE_FLAT;
+  return choices_.lod != VOY_LOD_ALL_LEAVES && scene_.info().storage != VOY_SCENE_STORAGE_FLAT;
 }
 
 voy::Target Renderer::create_target(const Camera& camera, RenderedImage& image) const {

@@ -20,7 +20,6 @@
 
 namespace voyager {
 
-enum class Lod { cut, all_leaves };
 // half2: ex2 and what follows it in binary16, two pixels at a time (CUDA only).
 enum class Exponential { exact, ex2, lut, half2 };
 constexpr bool is_base_2(Exponential exponential) {

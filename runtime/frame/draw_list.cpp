@@ -14,14 +14,11 @@ GaussianArrays gaussian_arrays(const Scene& scene) {
 DrawList::DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
                    std::pmr::memory_resource* memory)
     : scene_(std::move(scene)), leaves_(memory) {
-  if (scene_->streamed() && lod == Lod::all_leaves)
-    throw Error(ErrorCode::unsupported,
-                "lod: found all leaves, a streamed scene is drawn as a cut: most of its leaves "
-                "are not there");
-  if (scene_->flat() || lod == Lod::all_leaves)
+  check_detail(*scene_, lod);
+  if (scene_->flat() || !draws_cut(lod))
     list_leaves();
   else
-    search_.emplace(scene_, SearchDesc{search, true}, memory);
+    search_.emplace(scene_, SearchDesc{search, true, lod}, memory);
 }
 
 void DrawList::list_leaves() {

@@ -11,11 +11,16 @@ namespace voyager {
 HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
                        std::pmr::memory_resource* memory)
     : scene_(std::move(scene)), desc_(desc), items_(memory) {
+  check_detail(*scene_, desc.lod);
   if (scene_->streamed() && desc.kind == Search::exhaustive)
     throw Error(ErrorCode::unsupported,
                 "search: found exhaustive, a streamed scene has streaming and temporal");
+  if (desc.lod != Lod::cut) {
+    Workers workers;
+    detail_.emplace(make_detail_tree(scene_->tree, scene_->partition, desc.lod, workers, memory));
+  }
   if (desc.kind != Search::exhaustive) {
-    partitioned_.emplace(scene_->search, memory);
+    partitioned_.emplace(search_tree(), memory);
     return;
   }
   exhaustive_.emplace(memory);
@@ -30,7 +35,7 @@ void HostSearch::run(const CutQuery& query, Workers& workers) {
   times_.search = watch.lap();
   // A view that stands still has its weights.
   const bool stands = weighed == query && partitioned_ && !partitioned_->relisted();
-  if (desc_.weights && !stands) weigh(query, workers);
+  if (desc_.weights && !stands) weigh(weights_query(desc_.lod, query), workers);
   weighed_ = query;
   times_.weights = watch.lap();
 }
@@ -39,7 +44,7 @@ void HostSearch::find(const CutQuery& query, Workers& workers) {
   if (partitioned_)
     partitioned_->run(query, desc_.kind, workers);
   else
-    exhaustive_->run(scene_->tree, missing_, query, workers);
+    exhaustive_->run(tree(), missing_, query, workers);
   if ((partitioned_ ? partitioned_->needed_missing() : exhaustive_->needed_missing()) != kNoNode)
     refuse_damaged();
 }
@@ -60,9 +65,8 @@ void HostSearch::read_cut(std::pmr::vector<uint32_t>& nodes) const {
 
 void HostSearch::weigh(const CutQuery& query, Workers& workers) {
   items_.resize(cut().size());
-  if (partitioned_)
-    return weigh_cut(scene_->tree, scene_->search, *partitioned_, query, items_, workers);
-  const WeightParams weights{scene_->tree.records.data(), scene_->tree.parent.data(),
+  if (partitioned_) return weigh_cut(tree(), search_tree(), *partitioned_, query, items_, workers);
+  const WeightParams weights{tree().records.data(), tree().parent.data(),
                              exhaustive_->sizes().data(), query.target_size};
   workers.for_blocks(items_.size(), 16384, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) items_[i] = voyager::weigh(weights, cut()[i]);

@@ -16,6 +16,8 @@ namespace voyager {
 // runs, and 16 bytes a node of the largest cut.
 class HostSearch {
  public:
+  // Throws Error(unsupported) for what check_detail() refuses, and for the exhaustive search of a
+  // streamed scene.
   HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
              std::pmr::memory_resource* memory);
 
@@ -41,10 +43,13 @@ class HostSearch {
   void find(const CutQuery& query, Workers& workers);
   void weigh(const CutQuery& query, Workers& workers);
   [[noreturn]] void refuse_damaged() const;
+  const LodTree& tree() const { return detail_ ? detail_->tree : scene_->tree; }
+  const SearchTree& search_tree() const { return detail_ ? detail_->search : scene_->search; }
 
   std::shared_ptr<const Scene> scene_;
   SearchDesc desc_;
   std::vector<MissingNodes> missing_;
+  std::optional<DetailTree> detail_;  // of a baseline, in the place of the scene's own
   std::optional<ExhaustiveSearch> exhaustive_;
   std::optional<PartitionedSearch> partitioned_;
   std::pmr::vector<DrawItem> items_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/select/cut.h"
+#include "runtime/select/detail.h"
 #include "runtime/select/search.h"
 
 namespace voyager {
@@ -12,7 +13,14 @@ namespace voyager {
 struct SearchDesc {
   Search kind = Search::temporal;
   bool weights = true;  // also t of each cut node (METHOD §4)
+  Lod lod = Lod::cut;   // all_leaves has no search
 };
+
+struct Scene;
+
+// Throws Error(unsupported) for what a streamed scene cannot be drawn as, and Error(damaged_chunk)
+// for a baseline of a scene with damage.
+void check_detail(const Scene& scene, Lod lod);
 
 // Milliseconds of the last run. A search that finds weights in the same pass counts
 // them as search.

@@ -40,7 +40,7 @@ class View {
 
   size_t instances() const { return scenes_.size(); }
   bool draws_cut(size_t instance) const {
-    return !scenes_[instance]->flat() && desc_.lod == Lod::cut;
+    return !scenes_[instance]->flat() && voyager::draws_cut(desc_.lod);
   }
   bool has_frame() const { return frames_ > 0; }
   // Of the last frame that has ended; a frame into another API's image may still be under way.

@@ -159,6 +159,10 @@ TEST_F(CommandLineBench, AFlatSceneIsDrawnWithoutASearch) {
   }
   const Json leaves = report_of("city.voy", "--stages all --lod off --repeat 1");
   EXPECT_EQ(leaves["rows"][0]["counters"]["cut"], 10000);
+  const Json levels = report_of("city.voy", "--stages all --select levels --repeat 1");
+  ASSERT_EQ(levels["rows"].size(), 1u);
+  EXPECT_EQ(levels["rows"][0]["select"], "levels");
+  EXPECT_EQ(leaves["rows"][0]["select"], "flat");
 }
 
 // A budget that no frame can hold, and one that every frame does.
@@ -233,8 +237,8 @@ TEST_F(CommandLineBench, Refusals) {
   expect_refusal("--stages splat --search all", "--search");
   expect_refusal("--stages search --lut-size 16", "--lut-size");
   expect_refusal("--stages all --verify", "--verify");
-  for (const std::string choice :
-       {"--lod off", "--filter off", "--splat ours", "--exp exact", "--repeat 2"})
+  for (const std::string choice : {"--lod off", "--select blocks", "--filter off", "--splat ours",
+                                   "--exp exact", "--repeat 2"})
     expect_refusal("--stages search " + choice, choice.substr(0, choice.find(' ')));
   expect_refusal("--stages half", "search|splat|all");
 }

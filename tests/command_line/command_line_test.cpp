@@ -79,6 +79,32 @@ TEST_F(CommandLine, AllLeavesEqualTheFlatSceneToTheBitOnEachBackend) {
   }
 }
 
+// Baselines of detail: flat is every leaf, the others are not the cut.
+TEST_F(CommandLine, SelectChoosesWhatIsDrawn) {
+  const auto cut_size = [&](const std::string& select) {
+    EXPECT_EQ(run(render("city.voy", "--backend cpu --tau 15 --select " + select + " -o " +
+                                         file(select + ".pfm") + " --stats " + file("select.json")))
+                  .exit_code,
+              0);
+    return nlohmann::json::parse(file_bytes(file("select.json")))["frames"][0]["cut"].get<int>();
+  };
+  const int cut = cut_size("cut"), levels = cut_size("levels"), blocks = cut_size("blocks");
+  EXPECT_LT(cut, levels);
+  EXPECT_NE(blocks, cut);
+  EXPECT_EQ(cut_size("flat"), 10000);
+  ASSERT_EQ(run(render("city.voy", "--backend cpu --lod off -o " + file("leaves.pfm"))).exit_code,
+            0);
+  EXPECT_TRUE(file_bytes(file("leaves.pfm")) == file_bytes(file("flat.pfm")));
+}
+
+TEST_F(CommandLine, SelectIsRefusedWhereLodSaysOtherwise) {
+  const std::string out = " -o " + file("refused.png");
+  expect_refusal(render("city.voy", "--lod off --select levels" + out), 1, "--select");
+  expect_refusal(render("city.voy", "--lod on --select flat" + out), 1, "--select");
+  expect_refusal(render("city.voy", "--select octree" + out), 1, "cut|flat|blocks|levels");
+  expect_refusal(render("city.voy", "--budget 40 --select blocks" + out), 1, "blocks");
+}
+
 TEST_F(CommandLine, FilterOffGivesTheSameImage) {
   for (const std::string exponential : {"exact", "ex2", "lut"}) {
     ASSERT_EQ(run(render("city.voy", "--exp " + exponential + " -o " + file("on.pfm"))).exit_code,

@@ -8,6 +8,7 @@
 #include "runtime/math/lerp.h"
 #include "tests/gpu/device_test.h"
 #include "tests/support/random_trees.h"
+#include "tests/support/render_scene.h"
 
 namespace voyager::test {
 namespace {
@@ -70,7 +71,7 @@ class SearchTest : public DeviceTest {
     const auto on = device(multiprocessors);
     auto search =
         kind == Search::exhaustive
-            ? cuda::create_exhaustive_search(on, scene, true)
+            ? cuda::create_exhaustive_search(on, *scene, scene->tree, true)
             : cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true);
     return cuda::create_timed_search(on, std::move(search), true);
   }
@@ -103,6 +104,28 @@ class SearchTest : public DeviceTest {
 Vec3f anywhere(std::mt19937& random, float reach) {
   return {reach * (2 * unit(random) - 1), reach * (2 * unit(random) - 1),
           reach * (2 * unit(random) - 1)};
+}
+
+// Of the baselines of detail, through the backend.
+TEST_F(SearchTest, BaselinesOfDetailAsOnTheHost) {
+  const auto scene = baked_scene(random_cloud(20000, 35, 0));
+  const auto on_device = create_backend(), host = create_cpu_backend();
+  Workers workers;
+  std::mt19937 random(36);
+  for (const Lod lod : {Lod::blocks, Lod::levels})
+    for (const Search kind : kSearches) {
+      const SearchDesc desc{kind, true, lod};
+      const auto memory = std::pmr::get_default_resource();
+      const auto found = on_device->create_search(scene, desc, memory, workers);
+      const auto expected = host->create_search(scene, desc, memory, workers);
+      for (int i = 0; i < 20; ++i) {
+        const CutQuery query{anywhere(random, 30), 0.02f + 0.1f * unit(random)};
+        Result of_host;
+        expected->run(query);
+        expected->read(of_host.cut, of_host.weights);
+        ASSERT_EQ(run(*found, query).cut, of_host.cut);
+      }
+    }
 }
 
 // Inside, on faces, an ulp beside them, far away; every kind of target size.

@@ -38,6 +38,16 @@ TEST_F(SplatParity, RandomCloudsOfEveryShDegree) {
   expect_near();
 }
 
+// What detail is chosen by is the host's; what draws it is not.
+TEST_F(SplatParity, BaselinesOfDetail) {
+  const auto scene = baked_scene(random_cloud(20000, 33, 1));
+  for (const Lod lod : {Lod::blocks, Lod::levels})
+    for (const Search search : {Search::exhaustive, Search::streaming, Search::temporal})
+      for (const FrameInput& input : varied_frames())
+        add(scene, {.lod = lod, .search = search}, input);
+  expect_near();
+}
+
 TEST_F(SplatParity, CompactStorage) {
   const auto scene = baked_scene(random_cloud(20000, 31, 3), Quality::compact);
   for (const FrameInput& input : varied_frames()) add(scene, {}, input);

@@ -410,7 +410,8 @@ TEST_F(Streaming, WhatNeedsTheWholeTreeIsRefused) {
   const Bytes bytes = cloud_bytes(2000, 15, 1);
   const std::shared_ptr<const Scene> streamed = open(bytes, 1);
   for (const PipelineDesc& desc :
-       {PipelineDesc{.lod = Lod::all_leaves}, PipelineDesc{.search = Search::exhaustive}})
+       {PipelineDesc{.lod = Lod::all_leaves}, PipelineDesc{.lod = Lod::blocks},
+        PipelineDesc{.lod = Lod::levels}, PipelineDesc{.search = Search::exhaustive}})
     EXPECT_EQ(error_code([&] { view(streamed, desc); }), ErrorCode::unsupported);
   EXPECT_EQ(error_code([&] {
               cuda->create_search(streamed, {Search::exhaustive, true}, memory(), workers);

@@ -68,7 +68,7 @@ TEST(Report, TheStandardOneHasEachAxis) {
     groups.insert(is.group);
     if (is.desc.exponential == Exponential::lut) luts.insert(is.desc.lut_size);
   }
-  for (const char* group : {"default", "tau", "exp", "filter", "sh", "quality", "search"})
+  for (const char* group : {"default", "tau", "select", "exp", "filter", "sh", "quality", "search"})
     EXPECT_TRUE(groups.contains(group)) << group;
   EXPECT_EQ(luts, (std::set<uint32_t>{8, 16, 31, 32, 64, 128}));
 }

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 void refuse_misplaced_budget(const BenchArguments& arguments) {
   if (arguments.stages != BenchStages::all)
     bad_usage("--time-budget: found it with --stages search or splat, expected --stages all");
-  if (arguments.lod == Lod::all_leaves)
+  if (!draws_cut(arguments.lod.value()))
     bad_usage("--time-budget: found it with --lod off, expected --lod on: tau is what it changes");
 }
 
@@ -28,9 +28,10 @@ void refuse_misplaced_budget(const BenchArguments& arguments) {
 void refuse_misplaced(const BenchArguments& arguments) {
   const bool frames = arguments.stages != BenchStages::search;
   const std::pair<const char*, bool> of_frames[] = {
-      {"--lod", arguments.lod.has_value()},           {"--filter", arguments.filter.has_value()},
-      {"--splat", arguments.splatting.has_value()},   {"--exp", arguments.exponential.has_value()},
-      {"--lut-size", arguments.lut_size.has_value()}, {"--repeat", arguments.repeat.has_value()}};
+      {"--lod", arguments.lod.on.has_value()},      {"--select", arguments.lod.select.has_value()},
+      {"--filter", arguments.filter.has_value()},   {"--splat", arguments.splatting.has_value()},
+      {"--exp", arguments.exponential.has_value()}, {"--lut-size", arguments.lut_size.has_value()},
+      {"--repeat", arguments.repeat.has_value()}};
   for (const auto& [option, given] : of_frames)
     if (given && !frames)
       bad_usage(std::string(option) +
@@ -87,9 +88,7 @@ void bench(BenchArguments& arguments) {
 }
 
 void add_choices(CLI::App& command, BenchArguments& arguments) {
-  add_choice<std::optional<Lod>>(command, "--lod", arguments.lod,
-                                 {{"on", Lod::cut}, {"off", Lod::all_leaves}},
-                                 "off draws every leaf");
+  add_lod_options(command, arguments.lod);
   add_choice<std::optional<SearchChoice>>(command, "--search", arguments.search,
                                           {{"all", SearchChoice::all},
                                            {"exhaustive", SearchChoice::exhaustive},

@@ -8,6 +8,7 @@
 #include "runtime/frame/backend.h"
 #include "tools/cameras.h"
 #include "tools/commands/measured_backend.h"
+#include "tools/lod_options.h"
 #include "tools/options.h"
 
 namespace voyager::tools {
@@ -21,7 +22,7 @@ struct BenchArguments {
   std::optional<BenchStages> stages_asked;
   BenchStages stages = BenchStages::search;  // whole frames where only these can be meant
   BackendChoice backend;
-  std::optional<Lod> lod;
+  LodChoice lod;
   std::optional<SearchChoice> search;
   std::optional<bool> slack, filter;
   std::optional<Splatting> splatting;

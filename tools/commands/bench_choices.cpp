@@ -25,7 +25,7 @@ Search chosen_search(const BenchArguments& arguments) {
 // 3DGS has expf only.
 PipelineDesc chosen_desc(const BenchArguments& arguments) {
   PipelineDesc desc;
-  desc.lod = arguments.lod.value_or(Lod::cut);
+  desc.lod = arguments.lod.value();
   desc.search = chosen_search(arguments);
   desc.splatting = arguments.splatting.value_or(Splatting::ours);
   const bool ours = desc.splatting == Splatting::ours;

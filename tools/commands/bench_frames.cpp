@@ -24,7 +24,7 @@ struct Plan {
 
 bool has_choice(const BenchArguments& arguments) {
   const bool one_search = arguments.search.has_value() && *arguments.search != SearchChoice::all;
-  return one_search || arguments.time_budget > 0 || arguments.lod || arguments.slack ||
+  return one_search || arguments.time_budget > 0 || arguments.lod.given() || arguments.slack ||
          arguments.filter || arguments.splatting || arguments.exponential;
 }
 
@@ -90,7 +90,7 @@ class Rows {
  private:
   // In a scene without a tree, steps of the search change nothing.
   bool repeats_another(const FrameRow& row) const {
-    return context_.flat && plan_.compares && row.desc.lod == Lod::cut &&
+    return context_.flat && plan_.compares && draws_cut(row.desc.lod) &&
            row.desc.splatting == Splatting::baseline_3dgs;
   }
 

@@ -7,6 +7,7 @@
 #include "runtime/base/error.h"
 #include "tools/commands/commands.h"
 #include "tools/frame_files.h"
+#include "tools/lod_options.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
@@ -21,6 +22,7 @@ struct Arguments {
   bool all = false, stereo = false;
   ImageSize size;
   std::optional<bool> wait_resident;
+  LodChoice lod;
   RenderChoices choices;
   OutputPaths outputs;
 };
@@ -93,8 +95,23 @@ void settle_streaming(Arguments& arguments) {
   choices.wait_resident = arguments.wait_resident.value_or(choices.keep_going);
 }
 
+VoyLod public_lod(Lod lod) {
+  switch (lod) {
+    case Lod::all_leaves:
+      return VOY_LOD_ALL_LEAVES;
+    case Lod::blocks:
+      return VOY_LOD_BLOCKS;
+    case Lod::levels:
+      return VOY_LOD_LEVELS;
+    case Lod::cut:
+      break;
+  }
+  return VOY_LOD_CUT;
+}
+
 void render(Arguments& arguments) {
   arguments.choices.eyes = arguments.stereo ? 2 : 1;
+  arguments.choices.lod = public_lod(arguments.lod.value());
   settle_outputs(arguments);
   settle_streaming(arguments);
   if (arguments.choices.time_budget > 0 && arguments.choices.lod == VOY_LOD_ALL_LEAVES)
@@ -123,9 +140,8 @@ void render(Arguments& arguments) {
   fmt::print("{}\n", arguments.outputs.image);
 }
 
-void add_cut_choices(CLI::App& command, RenderChoices& choices) {
-  add_choice<VoyLod>(command, "--lod", choices.lod,
-                     {{"on", VOY_LOD_CUT}, {"off", VOY_LOD_ALL_LEAVES}}, "off draws every leaf");
+void add_cut_choices(CLI::App& command, LodChoice& lod, RenderChoices& choices) {
+  add_lod_options(command, lod);
   add_tau_or_budget_options(command, choices.tau, choices.time_budget);
   add_choice<VoySearch>(command, "--search", choices.search,
                         {{"temporal", VOY_SEARCH_TEMPORAL},
@@ -157,7 +173,7 @@ void add_splat_choices(CLI::App& command, RenderChoices& choices) {
       ->capture_default_str();
 }
 
-void add_choices(CLI::App& command, RenderChoices& choices) {
+void add_choices(CLI::App& command, LodChoice& lod, RenderChoices& choices) {
   add_choice<VoyBackend>(
       command, "--backend", choices.backend,
       {{"auto", VOY_BACKEND_AUTO},
@@ -166,7 +182,7 @@ void add_choices(CLI::App& command, RenderChoices& choices) {
        {"reference", VOY_BACKEND_REFERENCE}},
       "Who renders; auto is CUDA where there is a device, else the CPU; reference is "
       "float64, slow, and judges the others");
-  add_cut_choices(command, choices);
+  add_cut_choices(command, lod, choices);
   add_splat_choices(command, choices);
   command
       .add_option_function<std::vector<float>>(
@@ -230,7 +246,7 @@ void add_render(CLI::App& app) {
                     "Cameras two by two, left then right, as the eyes of one view with one cut; "
                     "with --camera I, I and I + 1. Images are numbered by camera, cuts by pair");
   add_size_option(*command, arguments->size);
-  add_choices(*command, arguments->choices);
+  add_choices(*command, arguments->lod, arguments->choices);
   add_streaming(*command, *arguments);
   add_outputs(*command, arguments->outputs, arguments->choices.floats);
   command->footer(

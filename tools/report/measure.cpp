@@ -74,13 +74,12 @@ ReportRow Measurement::run(const ReportCase& is, const std::function<void(size_t
   for (FrameInput& frame : path.frames) frame.tau = row.tau;
   const auto images = draw_images(maker, is.desc, path.frames, plan_.compared);
   pictures_.image = images.front();
-  const bool cut = is.desc.lod == Lod::cut;
-  row.same = compare(images, cut ? std::optional(row.tau) : std::nullopt, false);
-  row.all = compare(images, std::nullopt, true);
+  row.same = compare(images, {is.desc.lod, row.tau}, false);
+  row.all = compare(images, {}, true);
   return row;
 }
 
-ReportError Measurement::compare(const std::vector<RgbaImage>& images, std::optional<double> tau,
+ReportError Measurement::compare(const std::vector<RgbaImage>& images, const Detail& detail,
                                  bool keep_difference) {
   std::vector<RgbaImage> expected;
   ReportError error;
@@ -89,7 +88,7 @@ ReportError Measurement::compare(const std::vector<RgbaImage>& images, std::opti
   bool has_ssim = true;
   for (size_t i = 0; i < images.size(); ++i) {
     const size_t frame = plan_.compared[i];
-    expected.push_back(references_.of(frame, tau));
+    expected.push_back(references_.of(frame, detail));
     const size_t width = references_.width(frame);
     const size_t height = images[i].size() / 4 / width;
     has_ssim = has_ssim && std::min(width, height) >= kSsimWindow;

@@ -39,7 +39,7 @@ class Measurement {
   size_t frames_drawn() const;
 
  private:
-  ReportError compare(const std::vector<RgbaImage>& images, std::optional<double> tau,
+  ReportError compare(const std::vector<RgbaImage>& images, const Detail& detail,
                       bool keep_difference);
 
   Backend& backend_;

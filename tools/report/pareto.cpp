@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "tools/frame_rows.h"
+#include "tools/lod_options.h"
 
 namespace voyager::tools {
 
@@ -41,8 +42,10 @@ std::string render_options(const ReportCase& is, double tau) {
   if (is.time_budget > 0)
     text = fmt::format("--time-budget {:.3g}", is.time_budget);
   else
-    text = is.desc.lod == Lod::cut ? fmt::format("--tau {:g}", tau) : "--lod off";
-  if (is.desc.lod == Lod::cut && is.desc.search != Search::temporal) {
+    text = draws_cut(is.desc.lod) ? fmt::format("--tau {:g}", tau) : "--lod off";
+  if (draws_cut(is.desc.lod) && is.desc.lod != Lod::cut)
+    text += fmt::format(" --select {}", select_name(is.desc.lod));
+  if (draws_cut(is.desc.lod) && is.desc.search != Search::temporal) {
     text += fmt::format(" --search {}", search_name(is.desc.search));
     if (is.desc.search == Search::temporal_visit) text += " --slack off";
   }

@@ -4,6 +4,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/reference/reference_backend.h"
+#include "tools/lod_options.h"
 
 namespace voyager::tools {
 
@@ -17,9 +18,9 @@ ReferenceImages::ReferenceImages(std::shared_ptr<const Scene> scene, std::vector
 
 ReferenceImages::~ReferenceImages() = default;
 
-const RgbaImage& ReferenceImages::of(size_t frame, std::optional<double> tau) {
-  if (scene_->flat()) tau.reset();
-  const Key key{frame, tau};
+const RgbaImage& ReferenceImages::of(size_t frame, Detail detail) {
+  if (scene_->flat() || !draws_cut(detail.lod)) detail = {};
+  const Key key{frame, detail};
   const auto found = images_.find(key);
   if (found != images_.end()) return found->second;
   std::optional<RgbaImage> kept = read(key);
@@ -28,10 +29,10 @@ const RgbaImage& ReferenceImages::of(size_t frame, std::optional<double> tau) {
 
 RgbaImage ReferenceImages::draw(const Key& key) {
   PipelineDesc desc;
-  desc.lod = key.second ? Lod::cut : Lod::all_leaves;
+  desc.lod = key.second.lod;
   desc.search = Search::exhaustive;
   FrameInput frame = frames_[key.first];
-  frame.tau = key.second.value_or(0);
+  frame.tau = key.second.tau;
   RgbaImage image = draw_images({*backend_, scene_, workers_}, desc, {frame}, {0})[0];
   AtomicFile file(path_of(key).string());
   file.write(std::as_bytes(std::span(image)));
@@ -40,8 +41,8 @@ RgbaImage ReferenceImages::draw(const Key& key) {
 }
 
 std::filesystem::path ReferenceImages::path_of(const Key& key) const {
-  return folder_ / (key.second ? fmt::format("reference-{}-tau{:.17g}.f32", key.first, *key.second)
-                               : fmt::format("reference-{}-leaves.f32", key.first));
+  return folder_ / fmt::format("reference-{}-{}-tau{:.17g}.f32", key.first,
+                               select_name(key.second.lod), key.second.tau);
 }
 
 std::optional<RgbaImage> ReferenceImages::read(const Key& key) const {

@@ -10,6 +10,14 @@
 
 namespace voyager::tools {
 
+// Of what an image is.
+struct Detail {
+  Lod lod = Lod::all_leaves;
+  double tau = 0;
+
+  auto operator<=>(const Detail&) const = default;
+};
+
 class ReferenceImages {
  public:
   // Kept in `folder`, so that a report that goes on does not draw them again.
@@ -17,13 +25,12 @@ class ReferenceImages {
                   std::filesystem::path folder, Workers& workers);
   ~ReferenceImages();
 
-  // Of all leaves, or of the cut at a tau.
-  const RgbaImage& of(size_t frame, std::optional<double> tau);
+  const RgbaImage& of(size_t frame, Detail detail);
   size_t width(size_t frame) const { return frames_[frame].eyes[0].camera.width; }
   const std::vector<FrameInput>& frames() const { return frames_; }
 
  private:
-  using Key = std::pair<size_t, std::optional<double>>;
+  using Key = std::pair<size_t, Detail>;
 
   RgbaImage draw(const Key& key);
   std::filesystem::path path_of(const Key& key) const;

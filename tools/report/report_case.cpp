@@ -5,19 +5,22 @@
 #include <algorithm>
 
 #include "tools/frame_rows.h"
+#include "tools/lod_options.h"
 
 namespace voyager::tools {
 namespace {
 
 struct Extents {
-  std::vector<double> taus;
+  std::vector<double> taus, taus_of_baselines;  // beside the default
   std::vector<uint32_t> lut_sizes;
 };
 
 Extents extents_of(ReportExtent extent) {
-  if (extent == ReportExtent::quick) return {{6, 15}, {32}};
-  if (extent == ReportExtent::standard) return {{0, 1, 6, 15}, {8, 16, 31, 32, 64, 128}};
-  return {{0, 0.5, 1, 2, 4, 6, 10, 15, 30, 60}, {4, 8, 16, 24, 31, 32, 48, 64, 128, 256}};
+  if (extent == ReportExtent::quick) return {{6, 15}, {}, {32}};
+  if (extent == ReportExtent::standard) return {{0, 1, 6, 15}, {15}, {8, 16, 31, 32, 64, 128}};
+  return {{0, 0.5, 1, 2, 4, 6, 10, 15, 30, 60},
+          {1, 6, 15, 30, 60},
+          {4, 8, 16, 24, 31, 32, 48, 64, 128, 256}};
 }
 
 class Cases {
@@ -66,8 +69,19 @@ class Cases {
     add("tau", [](ReportCase& c) { c.desc.lod = Lod::all_leaves; });
     for (const double tau : axes_.taus) add("tau", [&](ReportCase& c) { c.tau = tau; });
     if (extent_ == ReportExtent::quick) return;
+    for (const Lod lod : {Lod::blocks, Lod::levels}) add_selection(lod);
     for (const Search search : {Search::exhaustive, Search::streaming, Search::temporal_visit})
       add("search", [&](ReportCase& c) { c.desc.search = search; });
+  }
+
+  // At several τ, so that they can be compared at one error.
+  void add_selection(Lod lod) {
+    add("select", [&](ReportCase& c) { c.desc.lod = lod; });
+    for (const double tau : axes_.taus_of_baselines)
+      add("select", [&](ReportCase& c) {
+        c.desc.lod = lod;
+        c.tau = tau;
+      });
   }
 
   void add_exponentials() {
@@ -128,8 +142,10 @@ std::string ReportCase::name() const {
   if (time_budget > 0)
     text = fmt::format("{:.3g} ms", time_budget);
   else
-    text = desc.lod == Lod::cut ? fmt::format("tau {:g}", tau) : "all leaves";
-  if (desc.lod == Lod::cut && desc.search != Search::temporal)
+    text = draws_cut(desc.lod) ? fmt::format("tau {:g}", tau) : "all leaves";
+  if (draws_cut(desc.lod) && desc.lod != Lod::cut)
+    text += fmt::format(", {}", select_name(desc.lod));
+  if (draws_cut(desc.lod) && desc.search != Search::temporal)
     text += fmt::format(", {}{}", search_name(desc.search),
                         desc.search == Search::temporal_visit ? " without slack" : "");
   if (desc.splatting == Splatting::baseline_3dgs) text += ", 3dgs";

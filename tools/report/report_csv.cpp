@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tools/frame_rows.h"
+#include "tools/lod_options.h"
 #include "voyager/voyager.h"
 
 namespace voyager::tools {
@@ -80,11 +81,11 @@ const char* const kColumns[] = {"scene",
 
 void add_choices(Line& line, const ReportRow& row) {
   const PipelineDesc& desc = row.is.desc;
-  const bool cut = desc.lod == Lod::cut;
+  const bool cut = draws_cut(desc.lod);
   line.text(row.is.group).text(cut ? "on" : "off").where(cut, row.tau);
   line.where(cut, std::string(search_name(desc.search)) +
                       (desc.search == Search::temporal_visit ? " without slack" : ""));
-  line.text(cut ? "cut" : "flat").text(desc.alpha_filter ? "on" : "off");
+  line.text(select_name(desc.lod)).text(desc.alpha_filter ? "on" : "off");
   line.text(splatting_name(desc.splatting)).text(exponential_name(desc.exponential));
   line.where(desc.exponential == Exponential::lut, desc.lut_size);
   line.number(row.is.sh_degree).text(storage_name(row.is.storage));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/frame_rows.h"
+#include "tools/lod_options.h"
 
 namespace voyager::tools {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 std::string axis_label(const ReportRow& row) {
   const ReportCase& is = row.is;
   if (is.group == "tau" || is.group == "default")
-    return is.desc.lod == Lod::cut ? fmt::format("τ {:g}", is.tau) : "all leaves";
+    return draws_cut(is.desc.lod) ? fmt::format("τ {:g}", is.tau) : "all leaves";
   if (is.group == "exp")
     return is.desc.exponential == Exponential::lut ? fmt::format("lut {}", is.desc.lut_size)
                                                    : exponential_name(is.desc.exponential);
@@ -61,19 +62,42 @@ Plot axis_plot(const std::vector<ReportRow>& rows, const std::string& group, boo
   return plot;
 }
 
+// The curves of each way to choose detail, over τ.
+Plot select_plot(const std::vector<ReportRow>& rows) {
+  Plot plot{"select", "ms a frame, median", "PSNR against all leaves, dB", {}, false, false, 400,
+            300};
+  for (const Lod lod : {Lod::cut, Lod::blocks, Lod::levels}) {
+    PlotSeries series{select_name(lod), {}, true};
+    for (const ReportRow& row : rows) {
+      const std::string& group = row.is.group;
+      const bool chosen = group == "default" || group == "tau" || group == "select";
+      if (chosen && row.is.desc.lod == lod && row.tau > 0)
+        series.points.push_back(
+            {row.frame.median, row.all.psnr, fmt::format("τ {:g}", row.tau), group == "default"});
+    }
+    std::sort(series.points.begin(), series.points.end(),
+              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+    plot.series.push_back(series);
+  }
+  return plot;
+}
+
 }  // namespace
 
 std::vector<PagePlot> report_plots(const std::vector<ReportRow>& rows,
                                    const std::vector<size_t>& front) {
   std::vector<PagePlot> plots = {{"front.png", front_plot(rows, front)}};
-  for (const char* group : {"tau", "exp", "filter", "sh", "quality", "search", "time budget"}) {
+  for (const char* group :
+       {"tau", "select", "exp", "filter", "sh", "quality", "search", "time budget"}) {
     const bool there = std::any_of(rows.begin(), rows.end(),
                                    [&](const ReportRow& row) { return row.is.group == group; });
     if (!there) continue;
     const std::string name(group);
     std::string file = name + ".png";
     std::replace(file.begin(), file.end(), ' ', '_');
-    plots.push_back({file, axis_plot(rows, name, name == "tau" || name == "time budget")});
+    plots.push_back({file, name == "select"
+                               ? select_plot(rows)
+                               : axis_plot(rows, name, name == "tau" || name == "time budget")});
   }
   return plots;
 }

@@ -4,6 +4,7 @@
 
 #include "runtime/frame/backend.h"
 #include "tools/frame_rows.h"
+#include "tools/lod_options.h"
 #include "voyager/voyager.h"
 
 namespace voyager::tools {
@@ -45,12 +46,12 @@ ReportTimes times_of(const Json& json) {
 }
 
 Json choices(const ReportCase& is) {
-  const bool cut = is.desc.lod == Lod::cut;
+  const bool cut = draws_cut(is.desc.lod);
   return {{"lod", cut ? "on" : "off"},
           {"time_budget_ms", is.time_budget > 0 ? Json(is.time_budget) : Json()},
           {"search", cut ? Json(search_name(is.desc.search)) : Json()},
           {"slack", cut && is.desc.search == Search::temporal},
-          {"select", cut ? "cut" : "flat"},
+          {"select", select_name(is.desc.lod)},
           {"filter", is.desc.alpha_filter ? "on" : "off"},
           {"splat", splatting_name(is.desc.splatting)},
           {"exp", exponential_name(is.desc.exponential)},
@@ -64,7 +65,7 @@ Json choices(const ReportCase& is) {
 Json to_json(const ReportRow& row) {
   Json json = {{"name", row.is.name()}, {"group", row.is.group}};
   json.update(choices(row.is));
-  json["tau"] = row.is.desc.lod == Lod::cut ? Json(row.tau) : Json();
+  json["tau"] = draws_cut(row.is.desc.lod) ? Json(row.tau) : Json();
   json["cut"] = row.cut;
   json["splats"] = row.splats;
   json["pairs"] = row.pairs;

@@ -437,6 +437,11 @@ typedef enum VoyLod {
   VOY_LOD_CUT =
       0, /* the level-of-detail cut at tau; a flat scene has none and draws every Gaussian */
   VOY_LOD_ALL_LEAVES = 1, /* every leaf, no search, no interpolation */
+  /* Baselines of measurements, without interpolation, of scenes that are loaded whole. */
+  VOY_LOD_BLOCKS = 2, /* all of a block of the scene at one depth of the tree, by the block's
+                         distance, as CityGaussian does it */
+  VOY_LOD_LEVELS = 3, /* by each node's level, log2 of its extent rounded up, and that which its
+                         distance asks for, as Octree-GS does it */
   VOY_LOD_MAX_ENUM = 0x7fffffff
 } VoyLod;
 

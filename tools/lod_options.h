@@ -1,0 +1,24 @@
+#pragma once
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "runtime/select/detail.h"
+
+namespace voyager::tools {
+
+// "--lod on|off" and "--select cut|flat|blocks|levels": what is drawn of a tree. off and flat are
+// the same.
+struct LodChoice {
+  std::optional<bool> on;
+  std::optional<Lod> select;
+
+  bool given() const { return on || select; }
+  // Throws Error(invalid_argument) where the two contradict one another.
+  Lod value() const;
+};
+
+void add_lod_options(CLI::App& command, LodChoice& choice);
+
+const char* select_name(Lod lod);
+
+}  // namespace voyager::tools
