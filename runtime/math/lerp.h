@@ -25,9 +25,16 @@ VOYAGER_HD T lerp(T parent, T node, T t) {
   return parent + t * (node - parent);
 }
 
+// Of values that are not negative. A node's thin axis may be 1e-8 of its parent's, and parent + t·(node − parent)
+// would leave nothing of it as t → 1: two products lose 3 ε of the result (docs/numerics.md).
 template <class T>
-VOYAGER_HD Vec3<T> lerp(const Vec3<T>& parent, const Vec3<T>& node, T t) {
-  return {lerp(parent.x, node.x, t), lerp(parent.y, node.y, t), lerp(parent.z, node.z, t)};
+VOYAGER_HD T lerp_positive(T parent, T node, T t) {
+  return (T(1) - t) * parent + t * node;
+}
+template <class T>
+VOYAGER_HD Vec3<T> lerp_positive(const Vec3<T>& parent, const Vec3<T>& node, T t) {
+  return {lerp_positive(parent.x, node.x, t), lerp_positive(parent.y, node.y, t),
+          lerp_positive(parent.z, node.z, t)};
 }
 
 // The mean orders splats (METHOD §6), so each operation is rounded by itself.

@@ -83,9 +83,10 @@ VOYAGER_HD Shape<T> interpolated_shape(const Arrays& arrays, const DrawItem& ite
     shape.rotation = shape.rotation * cube_rotation<T>(code);
   }
   const T t = T(item.t);
-  shape.scale = lerp(parent.scale, shape.scale, t);
+  shape.scale = lerp_positive(parent.scale, shape.scale, t);
   shape.rotation = lerp(parent.rotation, shape.rotation, t);
-  shape.opacity = lerp(T(arrays.opacity(item.parent)), T(arrays.opacity(item.gaussian)), t);
+  shape.opacity =
+      lerp_positive(T(arrays.opacity(item.parent)), T(arrays.opacity(item.gaussian)), t);
   shape.log_opacity = std::log(shape.opacity);
   return shape;
 }

@@ -52,6 +52,32 @@ double median_tau(const std::vector<FrameStats>& frames) {
   return percentile(taus, 0.5);
 }
 
+// Of one image.
+struct Difference {
+  Flip flip;
+  std::optional<double> ssim;
+};
+
+Difference difference(const RgbaImage& image, const RgbaImage& expected, size_t width) {
+  Difference found{flip(image, expected, width), std::nullopt};
+  if (std::min(width, image.size() / 4 / width) >= kSsimWindow)
+    found.ssim = ssim(image, expected, width);
+  return found;
+}
+
+// Means; no SSIM where one image has none.
+ReportError sum_up(const std::vector<Difference>& found) {
+  const auto count = static_cast<double>(found.size());
+  ReportError error;
+  error.ssim = 0.0;
+  for (const Difference& of : found) {
+    error.flip += of.flip.mean / count;
+    error.ssim =
+        error.ssim && of.ssim ? std::optional(*error.ssim + *of.ssim / count) : std::nullopt;
+  }
+  return error;
+}
+
 }  // namespace
 
 size_t Measurement::frames_drawn() const {
@@ -82,33 +108,28 @@ ReportRow Measurement::run(const ReportCase& is, const std::function<void(size_t
 ReportError Measurement::compare(const std::vector<RgbaImage>& images, const Detail& detail,
                                  bool keep_difference) {
   std::vector<RgbaImage> expected;
-  ReportError error;
-  double ssims = 0, changes = 0;
-  size_t changes_seen = 0;
-  bool has_ssim = true;
-  for (size_t i = 0; i < images.size(); ++i) {
-    const size_t frame = plan_.compared[i];
-    expected.push_back(references_.of(frame, detail));
-    const size_t width = references_.width(frame);
-    const size_t height = images[i].size() / 4 / width;
-    has_ssim = has_ssim && std::min(width, height) >= kSsimWindow;
-    if (has_ssim) ssims += ssim(images[i], expected[i], width);
-    Flip found = flip(images[i], expected[i], width);
-    error.flip += found.mean / static_cast<double>(images.size());
-    if (keep_difference && i == 0) pictures_.difference = std::move(found.map);
-    if (i == 0 || plan_.compared[i - 1] + 1 != frame) continue;
+  for (const size_t frame : plan_.compared) expected.push_back(references_.of(frame, detail));
+  std::vector<Difference> found(images.size());
+  workers_.for_blocks(images.size(), 1, [&](size_t i, size_t) {
+    found[i] = difference(images[i], expected[i], references_.width(plan_.compared[i]));
+    if (!keep_difference || i != 0) found[i].flip.map = {};
+  });
+  ReportError error = sum_up(found);
+  if (keep_difference) pictures_.difference = std::move(found[0].flip.map);
+  size_t changes = 0;
+  for (size_t i = 1; i < images.size(); ++i) {
+    if (plan_.compared[i - 1] + 1 != plan_.compared[i]) continue;
     Popping popping;
     popping.add(images[i - 1], expected[i - 1]);
     popping.add(images[i], expected[i]);
-    changes += popping.mean();
-    ++changes_seen;
+    error.popping += popping.mean();
+    ++changes;
   }
-  const ImageError found = image_error(images, expected);
-  error.psnr = found.psnr;
-  error.largest = found.largest;
-  error.p999 = found.p999;
-  if (has_ssim) error.ssim = ssims / static_cast<double>(images.size());
-  if (changes_seen > 0) error.popping = changes / static_cast<double>(changes_seen);
+  if (changes > 0) error.popping /= static_cast<double>(changes);
+  const ImageError pixels = image_error(images, expected);
+  error.psnr = pixels.psnr;
+  error.largest = pixels.largest;
+  error.p999 = pixels.p999;
   return error;
 }
 

@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+"""Reports of `voyager report`, side by side, as Markdown tables: results.py FOLDER ...
+
+Each FOLDER holds a report.json; what comes out is what docs/results/README.md has of it."""
+import json
+import os
+import sys
+
+
+def decibels(value):
+    return "∞" if value is None else f"{value:.1f}"
+
+
+def change(row):
+    """What a row has in the place of the default's."""
+    if row["group"] in ("default", "tau"):
+        return "every leaf" if row["lod"] == "off" else f"τ {row['tau']:g}"
+    if row["group"] == "select":
+        return f"{row['select']}, τ {row['tau']:g}"
+    if row["group"] == "exp":
+        return f"lut {row['lut_size']}" if row["exp"] == "lut" else row["exp"]
+    return {"sh": f"SH {row['sh_degree']}", "filter": "no α-filter", "splat": f"3dgs, lod {row['lod']}",
+            "quality": row["quality"], "search": f"{row['search']}, slack {'on' if row['slack'] else 'off'}"}.get(row["group"], row["name"])
+
+
+def order(row):
+    if row["group"] in ("default", "tau"):
+        return -1 if row["lod"] == "off" else row["tau"]
+    return row["lut_size"] or 0
+
+
+HEADS = ["", "Gaussians", "pairs", "ms, median / p95", "search", "PSNR, same cut", "PSNR, every leaf", "SSIM", "FLIP", "largest", "popping"]
+
+
+def cells(row):
+    same, all_leaves, ms = row["error"], row["total_error"], row["ms"]
+    return [change(row) + (", the default" if row["group"] == "default" else ""), f"{row['cut']:,.0f}", f"{row['pairs']:,.0f}",
+            f"{ms['frame']['median']:.3f} / {ms['frame']['p95']:.3f}", f"{ms['search']['median']:.3f}", decibels(same["psnr_db"]),
+            decibels(all_leaves["psnr_db"]), "–" if all_leaves["ssim"] is None else f"{all_leaves['ssim']:.4f}", f"{all_leaves['flip']:.4f}",
+            f"{255 * same['max_abs']:.2f}", f"{all_leaves['popping']:.2f}"]
+
+
+def print_report(folder):
+    with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
+        report = json.load(file)
+    rows = report["rows"]
+    print(f"\n### {os.path.basename(os.path.normpath(folder))}\n\n{report['method']} {report['recommendation']}\n")
+    print(f"| {' | '.join(HEADS)} |\n|{'---|' * len(HEADS)}")
+    groups = [("default", "tau")] + [(group,) for group in ("select", "exp", "filter", "splat", "sh", "quality", "search", "time budget")]
+    for group in groups:
+        for row in sorted((r for r in rows if r["group"] in group), key=order if len(group) == 2 or group[0] == "exp" else lambda _: 0):
+            print(f"| {' | '.join(cells(row))} |")
+
+
+for each in sys.argv[1:]:
+    print_report(each)
