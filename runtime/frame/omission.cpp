@@ -11,13 +11,13 @@ constexpr uint64_t kSearchBytes = 24, kResidencyBytes = sizeof(uint32_t);
 
 }  // namespace
 
-std::vector<Omission> omissions_of(const Scene& scene, bool draws_cut, uint64_t splats) {
+std::vector<Omission> omissions_of(const Scene& scene, bool searched, uint64_t splats) {
   std::vector<Omission> all;
   for (const SceneNote& note : scene.notes)
     if (note.kind == SceneNote::Kind::omitted)
       all.push_back({note.what, note.why, note.bytes, splats * note.splat_bytes});
   const uint64_t subtrees = scene.search.subtree_count();
-  if (!scene.flat() && !draws_cut)
+  if (!scene.flat() && !searched)
     all.push_back({"search", "every leaf is drawn", subtrees * kSearchBytes, 0});
   if (!scene.flat() && !scene.streamed())
     all.push_back({"residency", "the scene is all in memory: no table of what is there, no reader",

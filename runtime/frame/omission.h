@@ -25,7 +25,7 @@ struct Scene;
 
 // Of a scene: what it notes itself, and what its view needs no search or residency for.
 // splats: that one eye sees of it; 0: not known.
-std::vector<Omission> omissions_of(const Scene& scene, bool draws_cut, uint64_t splats);
+std::vector<Omission> omissions_of(const Scene& scene, bool searched, uint64_t splats);
 // What every pipeline leaves out alike.
 std::vector<Omission> omissions_of(const ViewShape& shape);
 
