@@ -121,7 +121,7 @@ void BaselinePipeline::launch_projections(const FrameInput& frame, BaselineFrame
   for (size_t i = 0; i < places_.size(); ++i) {
     const DeviceInstance& instance = instances_.all()[i];
     work.places = places_[i];
-    work.gaussians = instance.gaussians->view();
+    work.gaussians = instance.view();
     work.draws = instance.draws->view();
     work.params = project_params(*instance.scene, instance_camera(frame, frame.eyes[0], i),
                                  Exponential::exact);

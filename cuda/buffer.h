@@ -1,5 +1,6 @@
 #pragma once
 // Device memory with an owner.
+#include <atomic>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -8,12 +9,17 @@
 
 namespace voyager::cuda {
 
+// Of all buffers that are there.
+inline std::atomic<size_t> buffer_bytes{0};
+
 template <class T>
 class Buffer {
  public:
   Buffer() = default;
   explicit Buffer(size_t count) : count_(count) {
-    if (count != 0) check(cudaMalloc(&data_, count * sizeof(T)), "allocation");
+    if (count == 0) return;
+    check(cudaMalloc(&data_, count * sizeof(T)), "allocation");
+    buffer_bytes += bytes();
   }
   Buffer(Buffer&& other) noexcept
       : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
@@ -23,7 +29,9 @@ class Buffer {
     return *this;
   }
   ~Buffer() {
-    if (data_ != nullptr) cudaFree(data_);
+    if (data_ == nullptr) return;
+    cudaFree(data_);
+    buffer_bytes -= bytes();
   }
 
   T* data() const { return static_cast<T*>(data_); }

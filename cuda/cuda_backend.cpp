@@ -80,7 +80,14 @@ class CudaBackend final : public Backend {
     });
     const bool searches = !scene->flat() && draws_cut(desc.lod);
     auto search = searches ? search_for(scene, {desc.search, true, desc.lod}, workers) : nullptr;
-    return {scene, std::move(gaussians), create_draws(*scene, desc.lod, std::move(search))};
+    return {scene, std::move(gaussians), searches ? parents_of(scene) : nullptr,
+            create_draws(*scene, desc.lod, std::move(search))};
+  }
+
+  // None of a streamed scene: its pool has them.
+  std::shared_ptr<const DeviceParents> parents_of(const std::shared_ptr<const Scene>& scene) {
+    if (scene->streamed()) return nullptr;
+    return parents_.of(scene, [](const Scene& s) { return std::make_shared<DeviceParents>(s); });
   }
 
   std::unique_ptr<CutSearch> search_for(const std::shared_ptr<const Scene>& scene,
@@ -112,6 +119,7 @@ class CudaBackend final : public Backend {
   std::shared_ptr<const Device> device_;
   SharedByScene<DeviceTree> trees_;
   SharedByScene<DeviceScene> gaussians_;
+  SharedByScene<DeviceParents> parents_;
 };
 
 }  // namespace

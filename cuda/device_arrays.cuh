@@ -58,7 +58,8 @@ struct DeviceArrays {
   __device__ Gaussian gaussian(uint32_t i) const {
     const float4 a = __ldg(gaussians.shapes + 2 * size_t{i});
     const float4 b = __ldg(gaussians.shapes + 2 * size_t{i} + 1);
-    // The opacity is read where it is interpolated: a flat scene has no array of it.
+    // The opacity is read where it is interpolated: where every leaf is drawn there is no array of
+    // it.
     return {{}, 0.0f, {a.x, a.y, a.z}, a.w, {b.x, b.y, b.z, b.w}};
   }
   __device__ float opacity(uint32_t i) const { return __ldg(gaussians.opacities + i); }

@@ -7,26 +7,10 @@
 
 #include "cuda/device_gaussian.h"
 #include "cuda/device_pool.h"
+#include "cuda/upload_made.h"
 
 namespace voyager::cuda {
 namespace {
-
-constexpr size_t kUploadBlock = size_t{1} << 18;  // Gaussians at a time through a host buffer
-
-// count[i] by make(i), block by block.
-template <class T, class Make>
-Buffer<T> upload_made(size_t count, size_t block, const Make& make) {
-  Buffer<T> buffer(count);
-  std::vector<T> staging(std::min(count, block));
-  for (size_t first = 0; first < count; first += block) {
-    const size_t n = std::min(block, count - first);
-    for (size_t i = 0; i < n; ++i) staging[i] = make(first + i);
-    check(cudaMemcpy(buffer.data() + first, staging.data(), n * sizeof(T), cudaMemcpyHostToDevice),
-          "upload of a scene");
-  }
-  check(cudaStreamSynchronize(nullptr), "upload of a scene");
-  return buffer;
-}
 
 bool fits_binary16(const Scene& scene, Workers& workers) {
   std::atomic<bool> fits{true};
@@ -45,19 +29,12 @@ bool fits_binary16(const Scene& scene, Workers& workers) {
 DeviceScene::DeviceScene(const Scene& scene, Workers& workers) {
   upload_gaussians(scene);
   const bool half = upload_coefficients(scene, workers);
-  if (!scene.flat()) {
-    axis_codes_ = upload(std::span<const uint8_t>(scene.axis_code));
-    parents_ = upload(std::span<const uint32_t>(scene.tree.parent));
-    child_counts_ = upload_made<uint32_t>(scene.tree.size(), kUploadBlock, [&](size_t i) {
-      return scene.tree.records[i].child_count;
-    });
-  }
   view_ = {hulls_.data(),
            shapes_.data(),
-           opacities_.data(),
-           axis_codes_.data(),
-           parents_.data(),
-           child_counts_.data(),
+           nullptr,
+           nullptr,
+           nullptr,
+           nullptr,
            half ? static_cast<const void*>(half_coefficients_.data()) : coefficients_.data(),
            scene.sh_degree,
            half,
@@ -67,13 +44,9 @@ DeviceScene::DeviceScene(const Scene& scene, Workers& workers) {
 void DeviceScene::upload_gaussians(const Scene& scene) {
   const auto& gaussians = scene.gaussians;
   const size_t count = gaussians.size();
-  hulls_ =
-      upload_made<float4>(count, kUploadBlock, [&](size_t i) { return device_hull(gaussians[i]); });
-  shapes_ = upload_made<float4>(2 * count, kUploadBlock,
+  hulls_ = upload_made<float4>(count, [&](size_t i) { return device_hull(gaussians[i]); });
+  shapes_ = upload_made<float4>(2 * count,
                                 [&](size_t i) { return device_shape(gaussians[i / 2], i % 2); });
-  if (!scene.flat())
-    opacities_ =
-        upload_made<float>(count, kUploadBlock, [&](size_t i) { return gaussians[i].opacity; });
 }
 
 bool DeviceScene::upload_coefficients(const Scene& scene, Workers& workers) {

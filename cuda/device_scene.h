@@ -19,7 +19,8 @@ class DeviceScene {
   // Of a streamed scene: its pool's, which outlives this.
   explicit DeviceScene(const DevicePool& pool) : pool_(&pool) {}
 
-  // For a frame: a pool may have another size in the next.
+  // For a frame: a pool may have another size in the next. Of a resident scene without what
+  // DeviceParents adds.
   GaussianView view() const;
   // Stored bytes that projection reads of a Gaussian that is visible.
   uint32_t bytes_a_gaussian() const;
@@ -30,9 +31,6 @@ class DeviceScene {
   bool upload_coefficients(const Scene& scene, Workers& workers);
 
   Buffer<float4> hulls_, shapes_;
-  Buffer<float> opacities_;
-  Buffer<uint8_t> axis_codes_;
-  Buffer<uint32_t> parents_, child_counts_;
   Buffer<__half> half_coefficients_;
   Buffer<float> coefficients_;
   GaussianView view_{};

@@ -1,5 +1,7 @@
 #include "cuda/frame_image.h"
 
+#include <algorithm>
+
 #include "runtime/base/clock.h"
 
 namespace voyager::cuda {
@@ -7,6 +9,7 @@ namespace voyager::cuda {
 RasterTarget FrameImage::target(const FrameEye& eye, const Vec3f& background) {
   const Image& image = eye.image;
   const size_t pixels = size_t{image.width} * image.height;
+  pixels_ = std::max<uint64_t>(pixels_, pixels);
   const size_t bytes = pixels * pixel_bytes(image.format);
   if (color_.size() < bytes) color_ = {}, color_ = Buffer<unsigned char>(bytes);
   const bool depth = eye.depth_wanted || image.depth != nullptr;

@@ -15,8 +15,8 @@ struct GaussianView {
   // reaches α* (lower 16), both rounded up to the upper half of a binary32.
   const float4* hulls;
   const float4* shapes;  // two each: scale and log o; rotation (w, x, y, z)
+  // What interpolation reads; null where every leaf is drawn.
   const float* opacities;
-  // Of a tree; null for a flat scene.
   const uint8_t* axis_codes;
   const uint32_t* parents;
   const uint32_t* child_counts;

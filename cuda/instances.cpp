@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 
 #include "runtime/base/error.h"
 #include "runtime/frame/frame_search.h"
@@ -16,6 +17,12 @@ size_t aligned(size_t bytes) {
 }
 
 }  // namespace
+
+GaussianView DeviceInstance::view() const {
+  GaussianView all = gaussians->view();
+  if (parents) parents->add_to(all);
+  return all;
+}
 
 DeviceInstances::DeviceInstances(std::vector<DeviceInstance> all, uint32_t eyes)
     : all_(std::move(all)) {
@@ -60,6 +67,17 @@ bool DeviceInstances::counts_changes() const {
   return std::all_of(all_.begin(), all_.end(), [](const DeviceInstance& instance) {
     return instance.draws->counts_changes();
   });
+}
+
+std::vector<Omission> DeviceInstances::omissions() const {
+  std::vector<Omission> all;
+  std::set<const Scene*> met;
+  for (const DeviceInstance& instance : all_)
+    if (!instance.parents && !instance.scene->flat() && !instance.scene->streamed() &&
+        met.insert(instance.scene.get()).second)
+      all.push_back({"parents, child counts, axes and opacities", "every leaf is drawn",
+                     DeviceParents::bytes(*instance.scene), 0});
+  return all;
 }
 
 size_t DeviceInstances::report_bytes() const {

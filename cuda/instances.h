@@ -2,6 +2,7 @@
 // A view's instances on the device.
 #include <vector>
 
+#include "cuda/device_parents.h"
 #include "cuda/device_scene.h"
 #include "cuda/draws.h"
 
@@ -10,7 +11,11 @@ namespace voyager::cuda {
 struct DeviceInstance {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const DeviceScene> gaussians;  // shared by all instances of the scene
+  std::shared_ptr<const DeviceParents> parents;  // as those; none but where a resident cut is drawn
   std::unique_ptr<Draws> draws;                  // its own, as its cut is
+
+  // For a frame, as DeviceScene's.
+  GaussianView view() const;
 };
 
 class DeviceInstances {
@@ -33,6 +38,8 @@ class DeviceInstances {
   uint32_t bytes_a_gaussian() const;
   uint32_t bytes_a_place() const;
   bool counts_changes() const;
+  // Of the scenes' arrays: those of interpolation, where every leaf of a tree is drawn.
+  std::vector<Omission> omissions() const;
   // As Draws has them, of all instances.
   size_t report_bytes() const;
   void report(unsigned char* into, cudaStream_t stream) const;

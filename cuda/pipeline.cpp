@@ -56,6 +56,7 @@ class SplatPipeline final : public Pipeline {
     instances_.all()[instance].draws->read_cut(cut);
   }
   bool cut_is_near() const override { return false; }
+  std::vector<Omission> omissions() const override;
 
  private:
   using Report = std::unique_ptr<FrameReport>;
@@ -94,7 +95,7 @@ class SplatPipeline final : public Pipeline {
 void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work) {
   for (size_t i = 0; i < instances_.all().size(); ++i) {
     const DeviceInstance& instance = instances_.all()[i];
-    work.gaussians = instance.gaussians->view();
+    work.gaussians = instance.view();
     work.draws = instance.draws->view();
     for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
       work.params[eye] = project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i),
@@ -310,6 +311,19 @@ void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) co
   stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
   stats.bytes[kSort] = 2 * pairs * kKey;
   stats.bytes[kRasterize] = pairs * (kKey + kRecord) + report.target_bytes;
+}
+
+std::vector<Omission> SplatPipeline::omissions() const {
+  ViewShape shape;
+  shape.eyes = desc_.eyes;
+  for (const FrameImage& image : images_) {
+    shape.pixels = std::max(shape.pixels, image.pixels());
+    shape.depth = shape.depth || image.depth();
+  }
+  shape.eye_bytes = splats_.room().places * sizeof(SplatRecord);
+  std::vector<Omission> all = instances_.omissions();
+  for (Omission& omission : omissions_of(shape)) all.push_back(std::move(omission));
+  return all;
 }
 
 }  // namespace

@@ -77,6 +77,21 @@ void log_opening(const Log& log, const Scene& scene) {
                 ("voyOpenScene: " + scene.name + ": " + note.what + ": " + note.why).c_str());
 }
 
+// But for type and next.
+void put_profile(const Scene& scene, VoySceneProfile& out) {
+  const SceneProfile& profile = scene.profile;
+  out.inputShDegree = static_cast<uint32_t>(profile.input_sh_degree);
+  out.merged = profile.merged ? 1 : 0;
+  out.interpolated = profile.interpolated ? 1 : 0;
+  out.streamed = scene.streamed() ? 1 : 0;
+  out.complete = profile.complete ? 1 : 0;
+  out.reserved = 0;
+  std::copy(profile.chunks_of_degree.begin(), profile.chunks_of_degree.end(), out.chunksByShDegree);
+  out.opacitiesAboveOne = profile.opacities_above_one;
+  out.leastAnisotropy = profile.least_anisotropy;
+  out.greatestAnisotropy = profile.greatest_anisotropy;
+}
+
 VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
   VoySceneInfo info = VOY_SCENE_INFO_INIT;
   info.gaussianCount = scene.leaf_count;
@@ -139,8 +154,13 @@ VoyResult voyDestroyScene(VoyScene scene) {
 VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info) {
   return guarded("voyGetSceneInfo", [&](Call& call) {
     const auto object = call.use<SceneObject>(scene);
-    check_structure(info, VOY_STRUCTURE_TYPE_SCENE_INFO, "VoySceneInfo");
+    VoySceneProfile* profile = nullptr;
+    check_structure(info, VOY_STRUCTURE_TYPE_SCENE_INFO, "VoySceneInfo",
+                    Extension{VOY_STRUCTURE_TYPE_SCENE_PROFILE, profile});
+    void* const next = info->next;
     *info = info_of(*object->scene, object->memory.used());
+    info->next = next;
+    if (profile != nullptr) put_profile(*object->scene, *profile);
     return VOY_SUCCESS;
   });
 }

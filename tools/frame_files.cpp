@@ -127,9 +127,11 @@ void FrameFiles::finish(const Renderer& renderer) {
 
 void FrameFiles::write_stats(const Renderer& renderer) const {
   Json omitted = Json::array();
-  for (const VoySceneNote& note : renderer.notes())
-    if (note.kind == VOY_SCENE_NOTE_OMITTED)
-      omitted.push_back({{"what", note.what}, {"why", note.why}, {"bytes", note.bytes}});
+  for (const VoyOmission& o : renderer.omissions())
+    omitted.push_back({{"what", o.what},
+                       {"why", o.why},
+                       {"bytes", o.bytes},
+                       {"ms", o.milliseconds > 0 ? Json(o.milliseconds) : Json()}});
   const Json stats = {
       {"device", renderer.device_name()}, {"frames", frames_}, {"omitted", omitted}};
   write_text(stats_, stats.dump(2) + "\n");

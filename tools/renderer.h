@@ -51,7 +51,7 @@ class Renderer {
   bool draws_cut() const;
   std::vector<uint32_t> cut() const { return view_.cut(); }
   VoyFrameStats stats() const { return view_.stats(); }
-  std::vector<VoySceneNote> notes() const { return scene_.notes(); }
+  std::vector<VoyOmission> omissions() const { return view_.omissions(); }
   std::string device_name() const { return device_.capabilities().deviceName; }
 
  private:

@@ -208,13 +208,14 @@ class Baker {
     const ScratchFile others = ScratchFile::open(folder_.file(kOtherRows));
     GaussianCloud cloud;
     cloud.sh_degree = spool.sh_degree;
+    cloud.left_out_bands = spool.row_degree - spool.sh_degree;
     cloud.antialiased = spool.antialiased;
     cloud.origin = spool.source_origin;
     cloud.report = spool.import;
     const size_t width = other_floats(spool.sh_degree);
     for (const SpoolPiece& piece : spool.pieces) {
       const std::vector<float> position = read_positions(positions, piece);
-      const std::vector<float> other = read_others(others, piece, spool.sh_degree);
+      const std::vector<float> other = read_others(others, piece, spool);
       cloud.position.insert(cloud.position.end(), position.begin(), position.end());
       for (auto row = other.begin(); row != other.end();
            row += static_cast<std::ptrdiff_t>(width)) {

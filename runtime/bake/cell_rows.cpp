@@ -85,7 +85,7 @@ class Distributor {
 
   void put_rows(const SpoolPiece& from, Piece& piece) {
     const std::vector<float> positions = read_positions(positions_, from);
-    const std::vector<float> others = read_others(others_, from, spool_.sh_degree);
+    const std::vector<float> others = read_others(others_, from, spool_);
     const size_t other = other_floats(spool_.sh_degree);
     for (uint32_t i = 0; i < from.count; ++i) {
       float* row = rows_.data() + size_t{piece.count[piece.cell[i]]++} * width_;
@@ -123,7 +123,9 @@ class Distributor {
 void write_info(const WorkFolder& folder, const SpoolInfo& spool, uint32_t cell_level,
                 const std::array<double, 3>& origin) {
   Packer packer;
-  packer.put(spool.gaussians).put(spool.sh_degree).put(spool.antialiased);
+  packer.put(spool.gaussians)
+      .put(std::array{spool.sh_degree, spool.row_degree})
+      .put(spool.antialiased);
   packer.put(spool.source_origin).put(spool.import).put(cell_level).put(origin);
   write_sealed(folder.file(kSplitDone), packer.bytes());
 }
@@ -186,7 +188,8 @@ SplitInfo read_split_info(const WorkFolder& folder) {
   Unpacker from(path, bytes);
   SplitInfo split;
   split.spool.gaussians = from.take<uint32_t>();
-  split.spool.sh_degree = from.take<int32_t>();
+  const auto degrees = from.take<std::array<int32_t, 2>>();
+  split.spool.sh_degree = degrees[0], split.spool.row_degree = degrees[1];
   split.spool.antialiased = from.take<bool>();
   split.spool.source_origin = from.take<std::array<double, 3>>();
   split.spool.import = from.take<ImportReport>();

@@ -20,6 +20,7 @@ class Joiner {
         file_(output) {
     totals_.quality = quality;
     totals_.sh_degree = split.spool.sh_degree;
+    totals_.left_out_bands = split.spool.row_degree - split.spool.sh_degree;
     totals_.antialiased = split.spool.antialiased;
     totals_.leaf_count = plan.gaussians();
     totals_.chunk_bytes = plan.chunk_bytes();

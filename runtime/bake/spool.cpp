@@ -11,6 +11,7 @@
 #include "runtime/lod/build.h"
 #include "runtime/scene/append.h"
 #include "runtime/scene/sanitise.h"
+#include "runtime/scene/sh_bands.h"
 
 namespace voyager {
 namespace {
@@ -25,6 +26,7 @@ struct Job {
   bool antialiased = false;
   ImportReport import;
   std::vector<float> positions, others;
+  int used_sh_degree = 0;
   SpoolPiece piece{};
 };
 
@@ -55,7 +57,7 @@ class Spooler {
         others_(ScratchFile::create(folder.file(kOtherRows))) {
     for (Job& job : jobs_) idle_.push(&job);
     for (const auto& reader : readers_) {
-      info_.sh_degree = std::max(info_.sh_degree, reader->sh_degree());
+      info_.row_degree = std::max(info_.row_degree, reader->sh_degree());
       announced_ += reader->count();
     }
     info_.antialiased = readers_.front()->antialiased();
@@ -88,7 +90,8 @@ class Spooler {
     sanitise(cloud);
     job.import = cloud.report;
     job.positions.assign(cloud.position.begin(), cloud.position.end());
-    job.others = rows_of(cloud, info_.sh_degree);
+    job.others = rows_of(cloud, info_.row_degree);
+    job.used_sh_degree = used_sh_degree(cloud.sh, cloud.sh_degree);
     job.piece.count = static_cast<uint32_t>(cloud.size());
     job.piece.position_sum = checksum(std::as_bytes(std::span(job.positions)));
     job.piece.other_sum = checksum(std::as_bytes(std::span(job.others)));
@@ -101,6 +104,7 @@ class Spooler {
     require_alike(info_.source_origin, info_.antialiased, job.origin, job.antialiased,
                   job.reader->name());
     add(info_.import, job.import);
+    info_.sh_degree = std::max(info_.sh_degree, job.used_sh_degree);
     check_count(uint64_t{info_.gaussians} + job.piece.count);
     job.piece.first = info_.gaussians;
     info_.gaussians += job.piece.count;
@@ -111,7 +115,7 @@ class Spooler {
   void write(Job& job) {
     positions_.write(uint64_t{job.piece.first} * 3 * sizeof(float),
                      std::as_bytes(std::span(job.positions)));
-    others_.write(job.piece.first * other_floats(info_.sh_degree) * sizeof(float),
+    others_.write(job.piece.first * other_floats(info_.row_degree) * sizeof(float),
                   std::as_bytes(std::span(job.others)));
     job = {};
     idle_.push(&job);
@@ -157,7 +161,7 @@ void run(Spooler& spooler) {
 
 void write_info(const WorkFolder& folder, const SpoolInfo& info) {
   Packer packer;
-  packer.put(info.gaussians).put(info.sh_degree).put(info.antialiased);
+  packer.put(info.gaussians).put(std::array{info.sh_degree, info.row_degree}).put(info.antialiased);
   packer.put(info.source_origin).put(info.import).put_all(info.pieces);
   write_sealed(folder.file(kSpoolDone), packer.bytes());
 }
@@ -195,7 +199,8 @@ SpoolInfo read_spool_info(const WorkFolder& folder) {
   Unpacker from(path, bytes);
   SpoolInfo info;
   info.gaussians = from.take<uint32_t>();
-  info.sh_degree = from.take<int32_t>();
+  const auto degrees = from.take<std::array<int32_t, 2>>();
+  info.sh_degree = degrees[0], info.row_degree = degrees[1];
   info.antialiased = from.take<bool>();
   info.source_origin = from.take<std::array<double, 3>>();
   info.import = from.take<ImportReport>();
@@ -207,8 +212,15 @@ std::vector<float> read_positions(const ScratchFile& file, const SpoolPiece& pie
   return read_rows(file, piece, 3, piece.position_sum);
 }
 
-std::vector<float> read_others(const ScratchFile& file, const SpoolPiece& piece, int sh_degree) {
-  return read_rows(file, piece, other_floats(sh_degree), piece.other_sum);
+std::vector<float> read_others(const ScratchFile& file, const SpoolPiece& piece,
+                               const SpoolInfo& spool) {
+  const size_t stored = other_floats(spool.row_degree), used = other_floats(spool.sh_degree);
+  std::vector<float> rows = read_rows(file, piece, stored, piece.other_sum);
+  if (used == stored) return rows;
+  for (size_t i = 0; i < piece.count; ++i)
+    std::copy_n(rows.data() + i * stored, used, rows.data() + i * used);
+  rows.resize(piece.count * used);
+  return rows;
 }
 
 }  // namespace voyager

@@ -34,7 +34,8 @@ struct SpoolPiece {
 // What the inputs are together.
 struct SpoolInfo {
   uint32_t gaussians = 0;
-  int32_t sh_degree = 0;
+  int32_t sh_degree = 0;   // the highest that is used
+  int32_t row_degree = 0;  // of the inputs, and so of the rows in the spool
   bool antialiased = false;
   std::array<double, 3> source_origin{0, 0, 0};
   ImportReport import;
@@ -52,6 +53,7 @@ SpoolInfo read_spool_info(const WorkFolder& folder);
 
 // The rows of one piece. Throws Error(refused_input) where they were altered.
 std::vector<float> read_positions(const ScratchFile& file, const SpoolPiece& piece);
-std::vector<float> read_others(const ScratchFile& file, const SpoolPiece& piece, int sh_degree);
+std::vector<float> read_others(const ScratchFile& file, const SpoolPiece& piece,
+                               const SpoolInfo& spool);
 
 }  // namespace voyager

@@ -60,6 +60,7 @@ class CpuPipeline final : public HostPipeline {
     instances_.read_cut(instance, cut);
   }
   bool cut_is_near() const override { return true; }
+  std::vector<Omission> omissions() const override;
 
  private:
   struct Eye {
@@ -164,6 +165,18 @@ void CpuPipeline::rasterize(const FrameInput& frame, size_t eye) {
                         const auto tile = static_cast<uint32_t>(index);
                         run(params, {tile % columns, tile / columns, bins_.tile(index)});
                       });
+}
+
+std::vector<Omission> CpuPipeline::omissions() const {
+  ViewShape shape;
+  shape.eyes = desc_.eyes;
+  for (const Eye& eye : eyes_) {
+    shape.pixels = std::max<uint64_t>(shape.pixels, eye.pixels.size());
+    shape.depth = shape.depth || !eye.depth.empty();
+    shape.eye_bytes = std::max<uint64_t>(
+        shape.eye_bytes, eye.splats.size() * sizeof(Splat) + eye.pixels.size() * sizeof(Pixel));
+  }
+  return omissions_of(shape);
 }
 
 class CpuBackend final : public Backend {

@@ -7,6 +7,7 @@
 #include "runtime/format/check_chunk.h"
 #include "runtime/format/compact_codec.h"
 #include "runtime/format/lossless_codec.h"
+#include "runtime/scene/sh_bands.h"
 
 namespace voyager {
 namespace {
@@ -41,12 +42,15 @@ ChunkHeader checked_header(std::span<const std::byte> bytes, const ChunkLocation
   check_field(location, "node count", header.node_count, entry.node_count);
   check_field(location, "record count", header.record_count, entry.record_count);
   check_field(location, "quality", header.quality, static_cast<uint32_t>(context.quality));
-  check_field(location, "SH degree", header.sh_degree, static_cast<uint64_t>(context.sh_degree));
+  if (header.sh_degree > context.sh_degree)
+    location.damaged("SH degree " + std::to_string(header.sh_degree),
+                     "at most the file's " + std::to_string(context.sh_degree));
   check_field(location, "stored length", bytes.size(),
               align_up(sizeof header + uint64_t{header.payload_bytes}, alignment));
   if (context.quality == Quality::lossless)
-    check_field(location, "payload length", header.payload_bytes,
-                lossless_payload_bytes(entry, context.coefficients()));
+    check_field(
+        location, "payload length", header.payload_bytes,
+        lossless_payload_bytes(entry, static_cast<size_t>(sh_coefficients(header.sh_degree))));
   if (!sound_scales(header))
     location.damaged("a position step or SH scale out of range", "finite values");
   return header;
@@ -60,7 +64,9 @@ void ChunkLocation::damaged(const std::string& found, const std::string& expecte
                                             ", expected " + expected);
 }
 
-EncodedChunk encode_chunk(const Chunk& chunk, const ChunkContext& context) {
+namespace {
+
+EncodedChunk encode_bands(const Chunk& chunk, const ChunkContext& context) {
   ChunkHeader header{};
   header.tag = kChunkTag;
   header.first_subtree = chunk.first_subtree;
@@ -82,17 +88,36 @@ EncodedChunk encode_chunk(const Chunk& chunk, const ChunkContext& context) {
   return out;
 }
 
+// The file's, but with the bands that the chunk has.
+ChunkContext context_of(int sh_degree, const ChunkContext& file) {
+  ChunkContext own = file;
+  own.sh_degree = sh_degree;
+  return own;
+}
+
+}  // namespace
+
+EncodedChunk encode_chunk(const Chunk& chunk, const ChunkContext& context) {
+  const int stored = stored_sh_degree(chunk.sh, context.sh_degree);
+  if (stored == context.sh_degree) return encode_bands(chunk, context);
+  Chunk lower = chunk;
+  change_sh_degree(lower.sh, context.sh_degree, stored);
+  return encode_bands(lower, context_of(stored, context));
+}
+
 Chunk decode_chunk(std::span<const std::byte> bytes, const ChunkLocation& location,
                    const ChunkContext& context) {
   check_field(location, "checksum", checksum(bytes), location.entry.checksum);
   const ChunkHeader header = checked_header(bytes, location, context);
   const std::span<const std::byte> payload = bytes.subspan(sizeof header, header.payload_bytes);
+  const ChunkContext own = context_of(header.sh_degree, context);
   Chunk chunk;
   chunk.first_subtree = header.first_subtree;
   if (context.quality == Quality::compact)
-    decode_compact(payload, header, location, context, chunk);
+    decode_compact(payload, header, location, own, chunk);
   else
-    decode_lossless(payload, location, context, chunk);
+    decode_lossless(payload, location, own, chunk);
+  change_sh_degree(chunk.sh, own.sh_degree, context.sh_degree);
   check_words(chunk, location, context);
   return chunk;
 }

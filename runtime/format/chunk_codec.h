@@ -35,7 +35,8 @@ struct EncodedChunk {
   float largest_sh = 0;          // |coefficient| as it is restored
 };
 
-// The chunk's arrays are complete and finite; node and first_child are not read.
+// The chunk's arrays are complete and finite; node and first_child are not read. SH bands above
+// the highest that is not +0 throughout the chunk are not stored, and are +0 as they are decoded.
 EncodedChunk encode_chunk(const Chunk& chunk, const ChunkContext& context);
 
 // What the directory says of a chunk, and where: for messages.

@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/scene/export/writer.h"
+#include "runtime/scene/sh_bands.h"
 
 namespace voyager {
 namespace {
@@ -12,6 +13,7 @@ GaussianCloud room_for_leaves(const SceneFileInfo& info) {
   GaussianCloud cloud;
   const size_t n = info.leaf_count;
   cloud.sh_degree = info.sh_degree;
+  cloud.left_out_bands = info.left_out_bands;
   cloud.antialiased = info.antialiased;
   cloud.origin = info.quality == Quality::lossless ? info.source_origin : info.origin;
   cloud.report = info.import;
@@ -63,7 +65,8 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
 }
 
 void export_ply(const SceneFile& scene, const std::string& path, const Progress& progress) {
-  const GaussianCloud cloud = read_leaves(scene, progress);
+  GaussianCloud cloud = read_leaves(scene, progress);
+  put_back_zero_bands(cloud);
   const bool moved = cloud.origin != std::array<double, 3>{0, 0, 0};
   AtomicFile file(path);
   const std::unique_ptr<ByteSink> sink = sink_to(file);

@@ -68,9 +68,9 @@ struct FileHeader {
   uint32_t section_count;
   Section directory;
   Section tiers;
-  float largest_sh;   // |coefficient|, over all that the chunks decode to
-  uint32_t reserved;  // 0
-  uint64_t checksum;  // XXH3-64 of the header's bytes before this field
+  float largest_sh;         // |coefficient|, over all that the chunks decode to
+  uint32_t left_out_bands;  // of the input, above sh_degree: zero in every Gaussian
+  uint64_t checksum;        // XXH3-64 of the header's bytes before this field
 };
 static_assert(sizeof(FileHeader) == 288 && offsetof(FileHeader, checksum) == 280);
 

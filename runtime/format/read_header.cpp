@@ -15,6 +15,8 @@ void check_counts(const FileHeader& h, const Check& check) {
   check.that(h.quality == 1 || h.quality == 2, offsetof(FileHeader, quality), "an unknown quality",
              "1 or 2");
   check.at_most(offsetof(FileHeader, sh_degree), "SH degree", h.sh_degree, kMaxShDegree);
+  check.at_most(offsetof(FileHeader, left_out_bands), "SH bands left out", h.left_out_bands,
+                kMaxShDegree - h.sh_degree);
   check.at_most(offsetof(FileHeader, node_count), "node count", h.node_count, kNoNode - 1);
   check.at_most(offsetof(FileHeader, leaf_count), "leaf count", h.leaf_count, h.node_count);
   check.at_most(offsetof(FileHeader, depth), "depth", h.depth, h.node_count);
@@ -47,7 +49,6 @@ void check_ranges(const FileHeader& h, const Check& check) {
   check.that(h.largest_sh >= 0 && h.largest_sh <= std::numeric_limits<float>::max(),
              offsetof(FileHeader, largest_sh), "a largest SH coefficient out of range",
              "finite, not negative");
-  check.equal(offsetof(FileHeader, reserved), "reserved field", h.reserved, 0);
   const bool empty = h.largest_sh == 0 && (h.flags & kFlagLeafExtents) == 0;
   check.that(h.node_count != 0 || empty, offsetof(FileHeader, largest_sh),
              "SH or extents without nodes", "none");

@@ -11,6 +11,7 @@ SceneFileInfo to_info(const FileHeader& h) {
   SceneFileInfo info{};
   info.quality = static_cast<Quality>(h.quality);
   info.sh_degree = static_cast<int>(h.sh_degree);
+  info.left_out_bands = static_cast<int>(h.left_out_bands);
   info.antialiased = (h.flags & kFlagAntialiased) != 0;
   info.node_count = h.node_count;
   info.leaf_count = h.leaf_count;

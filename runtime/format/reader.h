@@ -14,7 +14,7 @@ namespace voyager {
 
 struct SceneFileInfo {
   Quality quality;
-  int sh_degree;
+  int sh_degree, left_out_bands;
   bool antialiased;
   uint32_t node_count;
   uint32_t leaf_count;

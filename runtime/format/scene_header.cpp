@@ -37,6 +37,7 @@ FileHeader make_header(const SceneTotals& totals, size_t chunks) {
   }
   h.position_error = totals.position_error;
   h.largest_sh = totals.largest_sh;
+  h.left_out_bands = static_cast<uint32_t>(totals.left_out_bands);
   const ImportReport& report = totals.import;
   h.import_read = report.read;
   h.dropped_position = report.dropped_position;

@@ -10,7 +10,7 @@ namespace voyager {
 // The header's facts about a scene.
 struct SceneTotals {
   Quality quality = Quality::lossless;
-  int sh_degree = 0;
+  int sh_degree = 0, left_out_bands = 0;
   bool antialiased = false;
   uint32_t leaf_count = 0;
   uint32_t chunk_bytes = 0;

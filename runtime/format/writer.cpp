@@ -51,6 +51,7 @@ SceneTotals totals_of(const BakedScene& baked, const Partition& partition, Quali
   SceneTotals totals;
   totals.quality = quality;
   totals.sh_degree = baked.leaves.sh_degree;
+  totals.left_out_bands = baked.leaves.left_out_bands;
   totals.antialiased = baked.leaves.antialiased;
   totals.leaf_count = static_cast<uint32_t>(baked.leaves.size());
   totals.chunk_bytes = partition.chunk_bytes;

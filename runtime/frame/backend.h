@@ -13,6 +13,7 @@
 #include "runtime/base/workers.h"
 #include "runtime/frame/external_ring.h"
 #include "runtime/frame/image.h"
+#include "runtime/frame/omission.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
 #include "runtime/math/host_depth.h"
@@ -136,6 +137,8 @@ class Pipeline {
   virtual void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const = 0;
   // Reading a cut is a copy in memory, and waits for no device.
   virtual bool cut_is_near() const = 0;
+  // What the frames so far did without, beside what their scenes do without.
+  virtual std::vector<Omission> omissions() const { return {}; }
 };
 
 // What a device could do at best. Zero where unknown.

@@ -7,6 +7,7 @@
 #include "runtime/base/error.h"
 #include "runtime/frame/load.h"
 #include "runtime/lod/nesting.h"
+#include "runtime/scene/sh_bands.h"
 
 namespace voyager {
 namespace {
@@ -21,6 +22,9 @@ namespace {
 void set_info(const SceneFileInfo& info, Scene& scene) {
   scene.storage = info.quality == Quality::compact ? Storage::compact : Storage::lossless;
   scene.sh_degree = info.sh_degree;
+  scene.profile.input_sh_degree = info.sh_degree + info.left_out_bands;
+  scene.profile.merged = info.node_count > info.leaf_count;
+  scene.profile.interpolated = info.node_count > 1;
   scene.antialiased = info.antialiased;
   scene.tree_depth = info.depth;
   scene.chunk_count = info.chunk_count;
@@ -73,6 +77,7 @@ bool place_leaf(Scene& scene, uint32_t source_index, uint32_t node) {
 // What loading leaves to check when all chunks are there.
 struct ChunkFindings {
   std::string damage;
+  int sh_degree = 0;                                      // that it uses
   std::vector<std::pair<uint32_t, NodeRecord>> repeated;  // node ids with their records
 };
 
@@ -172,6 +177,7 @@ std::vector<ChunkFindings> read_chunks(const SceneFile& file, Workers& workers, 
       try {
         const Chunk chunk = file.read_chunk(static_cast<uint32_t>(index));
         store_nodes(chunk, scene);
+        findings[index].sh_degree = used_sh_degree(chunk.sh, scene.sh_degree);
         store_subtrees(chunk, scene, findings[index]);
         if (!store_leaves(chunk, scene)) leaves_once = false;
       } catch (const Error& error) {
@@ -183,6 +189,8 @@ std::vector<ChunkFindings> read_chunks(const SceneFile& file, Workers& workers, 
   });
   if (!leaves_once) refuse(scene, "two leaves with one source index", "each once");
   report_damage(file, findings, scene);
+  for (const ChunkFindings& f : findings)
+    scene.profile.chunks_of_degree[static_cast<size_t>(f.sh_degree)] += f.damage.empty();
   return findings;
 }
 
@@ -329,6 +337,8 @@ void load_baked(const SceneFile& file, Workers& workers, Scene& scene) {
     check_claims(file.info(), scene, workers);
   }
   add_search(scene, workers);
+  leave_out_zero_bands(scene);
+  complete_profile(scene, workers);
   add_notes(scene);
 }
 

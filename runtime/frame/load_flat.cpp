@@ -32,6 +32,7 @@ void load_flat(const ByteSource& source, Workers& workers, Scene& scene) {
                                             " Gaussians, expected fewer than 2^32 - 1");
   scene.storage = Storage::flat;
   scene.sh_degree = cloud.sh_degree;
+  scene.profile.input_sh_degree = cloud.input_sh_degree();
   scene.antialiased = cloud.antialiased;
   scene.leaf_count = cloud.size();
   scene.import = cloud.report;
@@ -47,6 +48,7 @@ void load_flat(const ByteSource& source, Workers& workers, Scene& scene) {
     }
   });
   set_bounds(scene);
+  complete_profile(scene, workers);
   // What a node costs beside its Gaussian; a tree has at least one a leaf.
   constexpr uint64_t kNodeBytes = sizeof(NodeRecord) + 2 * sizeof(uint32_t) + sizeof(uint8_t);
   scene.notes.push_back(

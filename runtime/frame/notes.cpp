@@ -1,6 +1,21 @@
 #include "runtime/frame/load.h"
 
 namespace voyager {
+namespace {
+
+constexpr uint32_t kLeastCoefficientBytes = 2;  // a device's binary16
+
+// Of the bands above `kept` up to `stored`.
+void add_sh_note(Scene& scene, int kept, int stored, const char* why) {
+  if (kept >= stored) return;
+  const auto missing = static_cast<uint64_t>(sh_coefficients(stored) - sh_coefficients(kept));
+  const uint64_t gaussians = std::max<uint64_t>(scene.gaussians.size(), scene.node_count);
+  scene.notes.push_back({SceneNote::Kind::omitted, 0, gaussians * missing * 3 * sizeof(float),
+                         "SH bands above degree " + std::to_string(kept), why,
+                         static_cast<uint32_t>(missing) * 3 * kLeastCoefficientBytes});
+}
+
+}  // namespace
 
 void add_notes(Scene& scene) {
   using Kind = SceneNote::Kind;
@@ -16,15 +31,9 @@ void add_notes(Scene& scene) {
        "zero or not finite: replaced by the identity");
   note(Kind::repaired, r.repaired_opacity, "opacities", "infinite logit: clamped");
   note(Kind::repaired, r.repaired_sh, "SH coefficients", "not finite: set to 0");
-  if (scene.sh_degree < kMaxShDegree) {
-    const auto missing =
-        static_cast<uint64_t>(sh_coefficients(kMaxShDegree) - scene.coefficients());
-    scene.notes.push_back(
-        {Kind::omitted, 0,
-         std::max<uint64_t>(scene.gaussians.size(), scene.node_count) * missing * 3 * sizeof(float),
-         "SH bands above degree " + std::to_string(scene.sh_degree),
-         "the input has none; bytes are against degree 3"});
-  }
+  const int input = scene.profile.input_sh_degree;
+  add_sh_note(scene, scene.sh_degree, input, "zero in every Gaussian; bytes are against the input");
+  add_sh_note(scene, input, kMaxShDegree, "the input has none; bytes are against degree 3");
 }
 
 }  // namespace voyager

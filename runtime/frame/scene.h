@@ -9,6 +9,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/base/workers.h"
+#include "runtime/frame/scene_profile.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/scene/gaussian_cloud.h"
 #include "runtime/select/search_tree.h"
@@ -24,6 +25,7 @@ struct SceneNote {
   uint64_t count;
   uint64_t bytes;
   std::string what, why;
+  uint32_t splat_bytes = 0;  // omitted: that a device would read more for each splat, at least
 };
 
 // A chunk that could not be read. Its subtrees are in the partition as kLostSubtree,
@@ -68,7 +70,7 @@ struct Scene {
 
   std::string name;
   Storage storage = Storage::flat;
-  int sh_degree = 0;
+  int sh_degree = 0;  // of what is kept: SceneProfile has the input's
   bool antialiased = false;
   uint32_t tree_depth = 0, chunk_count = 0;
   uint64_t leaf_count = 0, node_count = 0;         // of the whole tree
@@ -77,6 +79,7 @@ struct Scene {
   double position_error = 0;
   float largest_sh = 0;  // of a baked scene: no coefficient of it is larger
   ImportReport import;
+  SceneProfile profile;
 
   std::pmr::vector<Gaussian> gaussians;  // by node id; a flat scene's by index
   std::pmr::vector<float> sh;            // coefficients() * 3 each

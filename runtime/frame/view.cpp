@@ -1,6 +1,9 @@
 #include "runtime/frame/view.h"
 
+#include <algorithm>
 #include <cassert>
+#include <iterator>
+#include <set>
 
 #include "runtime/base/error.h"
 #include "runtime/frame/frame_search.h"
@@ -171,6 +174,22 @@ const FrameStats& View::stats() {
   while (finish_one(false)) continue;
   if (!ended_) finish_one(true);
   return stats_;
+}
+
+// A splat may be of any scene, so what each would cost is known where there is one scene.
+std::vector<Omission> View::omissions() const {
+  std::vector<Omission> all;
+  const auto add = [&](std::vector<Omission> more) {
+    std::move(more.begin(), more.end(), std::back_inserter(all));
+  };
+  std::set<const Scene*> met;
+  const bool one = std::all_of(scenes_.begin(), scenes_.end(),
+                               [&](const auto& scene) { return scene == scenes_[0]; });
+  for (size_t i = 0; i < scenes_.size(); ++i)
+    if (met.insert(scenes_[i].get()).second)
+      add(omissions_of(*scenes_[i], draws_cut(i), one ? stats_.splats / desc_.eyes : 0));
+  add(pipeline_->omissions());
+  return all;
 }
 
 const std::pmr::vector<uint32_t>& View::cut(size_t instance) {

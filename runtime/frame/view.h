@@ -46,6 +46,9 @@ class View {
   // Of the last frame that has ended; a frame into another API's image may still be under way.
   // Waits where none has.
   const FrameStats& stats();
+  // What the view does without, its scenes' own omissions first; each scene's once. As far as the
+  // frames so far tell.
+  std::vector<Omission> omissions() const;
   // An instance's of the last frame that was drawn, for which it waits. A frame that threw
   // leaves both.
   // Throws Error(unsupported) where the cut was on a device and a later frame threw.

@@ -3,19 +3,14 @@
 #include <algorithm>
 
 #include "runtime/base/error.h"
+#include "runtime/scene/sh_bands.h"
 
 namespace voyager {
 namespace {
 
-// [k][rgb] with more bands, the new ones zero.
 void raise_degree(GaussianCloud& cloud, int degree) {
   if (cloud.sh_degree >= degree) return;
-  const size_t from = 3 * static_cast<size_t>(cloud.coefficients());
-  const size_t to = 3 * static_cast<size_t>(sh_coefficients(degree));
-  std::pmr::vector<float> sh(cloud.size() * to, 0.0f, cloud.sh.get_allocator());
-  for (size_t i = 0; i < cloud.size(); ++i)
-    std::copy_n(cloud.sh.data() + i * from, from, sh.data() + i * to);
-  cloud.sh = std::move(sh);
+  change_sh_degree(cloud.sh, cloud.sh_degree, degree);
   cloud.sh_degree = degree;
 }
 
@@ -56,8 +51,10 @@ void add(ImportReport& sum, const ImportReport& more) {
 
 void append(GaussianCloud& cloud, GaussianCloud&& more, const std::string& more_name) {
   require_alike(cloud.origin, cloud.antialiased, more.origin, more.antialiased, more_name);
+  const int input_degree = std::max(cloud.input_sh_degree(), more.input_sh_degree());
   raise_degree(cloud, more.sh_degree);
   raise_degree(more, cloud.sh_degree);
+  cloud.left_out_bands = input_degree - cloud.sh_degree;
   append(cloud.position, more.position);
   append(cloud.log_scale, more.log_scale);
   append(cloud.rotation, more.rotation);

@@ -39,6 +39,7 @@ struct GaussianCloud {
 
   size_t size() const { return opacity.size(); }
   int coefficients() const { return sh_coefficients(sh_degree); }
+  int input_sh_degree() const { return sh_degree + left_out_bands; }
   GaussianWords words(size_t i) const {
     return {{position[3 * i], position[3 * i + 1], position[3 * i + 2]},
             {log_scale[3 * i], log_scale[3 * i + 1], log_scale[3 * i + 2]},
@@ -47,6 +48,7 @@ struct GaussianCloud {
   }
 
   int sh_degree = 0;
+  int left_out_bands = 0;    // of the input, above sh_degree: zero in every Gaussian (sh_bands.h)
   bool antialiased = false;  // the input says it was trained with the antialiased low-pass
   std::array<double, 3> origin{0, 0, 0};  // world position = origin + position
   std::pmr::vector<float> position;       // 3 a Gaussian, metres

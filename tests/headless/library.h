@@ -15,7 +15,8 @@
   X(DestroyScene) X(GetSceneInfo) X(GetSceneNotes) X(CreateTarget) \
   X(DestroyTarget) X(CreateView) X(DestroyView) X(SetViewTau) X(SetViewTimeBudget) \
   X(FovFromAngles) X(FovFromIntrinsics) X(RenderFrame) X(GetViewCut) \
-  X(GetFrameStats) X(StageName) X(SetSceneMemoryBudget) X(GetStreamingStats)
+  X(GetFrameStats) X(StageName) X(SetSceneMemoryBudget) X(GetStreamingStats) \
+  X(GetViewOmissions)
 // clang-format on
 
 class Library {

@@ -8,6 +8,7 @@
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sanitise.h"
+#include "runtime/scene/sh_bands.h"
 #include "tests/support/scene_files.h"
 
 namespace voyager {
@@ -99,6 +100,22 @@ class Folder {
   test::TempFolder folder;
   std::vector<std::string> inputs;
 };
+
+// Bands that only some blocks, or none, of the input use.
+TEST(BakeInParts, LeavesOutTheShBandsThatABakeInMemoryLeavesOut) {
+  for (const int used : {0, 2}) {
+    GaussianCloud cloud = test::random_cloud(21841, 4, used);
+    change_sh_degree(cloud.sh, used, 3);
+    cloud.sh_degree = 3;
+    if (used == 0) cloud.sh[48 * size_t{20000} + 4] = 0.5f;  // of band 1
+    for (const Case& c : {Case{}, Case{.most_in_cell = 1u << 20}}) {
+      const Folder folder({cloud});
+      folder.expect_equal(c);
+      EXPECT_EQ(SceneFile(open_file_source(folder.folder.file("parts.voy"))).info().sh_degree,
+                std::max(used, 1));
+    }
+  }
+}
 
 TEST(BakeInParts, GivesTheBytesOfABakeInMemory) {
   for (const size_t count : {size_t{4096}, size_t{5003}, size_t{21841}, size_t{66000}})

@@ -310,7 +310,7 @@ TEST(LoadScene, AHeaderThatContradictsTheTreeIsRefused) {
         changed([](FileHeader& h) { h.largest_sh = std::nextafter(h.largest_sh, 1e9f); }),
         changed([](FileHeader& h) { h.largest_sh = -1; }),
         changed([](FileHeader& h) { h.largest_sh = std::nanf(""); }),
-        changed([](FileHeader& h) { h.reserved = 1; }),
+        changed([](FileHeader& h) { h.left_out_bands = 4; }),
         changed([](FileHeader& h) { h.flags |= 4; }),
         changed([](FileHeader& h) { h.flags |= kFlagLeafExtents; })})
     EXPECT_EQ(test::error_code([&] { load(bytes); }), ErrorCode::refused_input);

@@ -25,6 +25,7 @@
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sanitise.h"
+#include "runtime/scene/sh_bands.h"
 #include "tools/commands/commands.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
@@ -96,6 +97,7 @@ GaussianCloud read_stream(BlockReader& reader, const Progress& progress) {
     report(progress, "reading", done, reader.count());
   }
   sanitise(cloud);
+  leave_out_zero_bands(cloud);
   return cloud;
 }
 

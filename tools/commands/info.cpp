@@ -26,8 +26,25 @@ Partitioning partitioning(const std::string& path, const VoySceneInfo& info) {
   return {file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes};
 }
 
-void print_text(const std::string& path, const VoySceneInfo& info, const Partitioning& partition,
-                const std::vector<VoySceneNote>& notes) {
+void print_profile(const VoySceneInfo& info, const VoySceneProfile& profile) {
+  fmt::print("  SH degree     {}{}\n", info.shDegree,
+             profile.inputShDegree == info.shDegree
+                 ? ""
+                 : fmt::format(" of the input's {}: the bands above are zero everywhere",
+                               profile.inputShDegree));
+  if (profile.complete && info.chunkCount != 0)
+    fmt::print("  SH in chunks  {} of degree 0, {} of 1, {} of 2, {} of 3\n",
+               profile.chunksByShDegree[0], profile.chunksByShDegree[1],
+               profile.chunksByShDegree[2], profile.chunksByShDegree[3]);
+  fmt::print("  merged        {}; {}\n", profile.merged ? "yes" : "no",
+             profile.interpolated ? "cuts are interpolated" : "nothing to interpolate");
+  fmt::print("  opacities     {} above 1\n", profile.opacitiesAboveOne);
+  fmt::print("  anisotropy    {:.4g} to {:.4g}\n", profile.leastAnisotropy,
+             profile.greatestAnisotropy);
+}
+
+void print_text(const std::string& path, const VoySceneInfo& info, const VoySceneProfile& profile,
+                const Partitioning& partition, const std::vector<VoySceneNote>& notes) {
   fmt::print("{}: {} scene\n", path, kStorageNames[info.storage]);
   fmt::print("  Gaussians     {}\n", info.gaussianCount);
   if (info.storage != VOY_SCENE_STORAGE_FLAT)
@@ -36,7 +53,7 @@ void print_text(const std::string& path, const VoySceneInfo& info, const Partiti
   if (info.storage != VOY_SCENE_STORAGE_FLAT)
     fmt::print("  subtrees      {} in {} tiers, chunks of up to {} bytes of search records\n",
                partition.subtrees, partition.tiers, partition.chunk_bytes);
-  fmt::print("  SH degree     {}\n", info.shDegree);
+  print_profile(info, profile);
   fmt::print("  antialiased   {}\n", info.antialiased ? "yes" : "no");
   fmt::print("  origin        {} {} {} m\n", info.origin[0], info.origin[1], info.origin[2]);
   fmt::print("  bounds        {:.3f} {:.3f} {:.3f} to {:.3f} {:.3f} {:.3f} m\n", info.boundsMin[0],
@@ -53,8 +70,18 @@ void print_text(const std::string& path, const VoySceneInfo& info, const Partiti
                                                    : fmt::format("{}", note.count));
 }
 
-void print_json(const std::string& path, const VoySceneInfo& info, const Partitioning& partition,
-                const std::vector<VoySceneNote>& notes) {
+nlohmann::ordered_json to_json(const VoySceneProfile& profile) {
+  return {{"input_sh_degree", profile.inputShDegree},
+          {"chunks_by_sh_degree", profile.chunksByShDegree},
+          {"merged", profile.merged != 0},
+          {"interpolated", profile.interpolated != 0},
+          {"streamed", profile.streamed != 0},
+          {"opacities_above_one", profile.opacitiesAboveOne},
+          {"anisotropy", {profile.leastAnisotropy, profile.greatestAnisotropy}}};
+}
+
+void print_json(const std::string& path, const VoySceneInfo& info, const VoySceneProfile& profile,
+                const Partitioning& partition, const std::vector<VoySceneNote>& notes) {
   nlohmann::ordered_json json = {{"file", path},
                                  {"storage", kStorageNames[info.storage]},
                                  {"gaussians", info.gaussianCount},
@@ -74,6 +101,7 @@ void print_json(const std::string& path, const VoySceneInfo& info, const Partiti
                                  {"resident_bytes", info.residentBytes},
                                  {"dropped", info.droppedCount},
                                  {"repaired", info.repairedCount},
+                                 {"profile", to_json(profile)},
                                  {"notes", nlohmann::json::array()}};
   for (const VoySceneNote& note : notes)
     json["notes"].push_back({{"kind", kNoteKinds[note.kind]},
@@ -98,8 +126,8 @@ void add_info(CLI::App& app) {
     const voy::Device device = voy::Device::create();
     const voy::Scene scene = device.open_scene(*path);
     const VoySceneInfo info = scene.info();
-    (*json ? print_json : print_text)(shown_path(*path), info, partitioning(*path, info),
-                                      scene.notes());
+    (*json ? print_json : print_text)(shown_path(*path), info, scene.profile(),
+                                      partitioning(*path, info), scene.notes());
   });
 }
 

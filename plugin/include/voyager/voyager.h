@@ -106,6 +106,8 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_SCENE_STREAMING = 30,
   VOY_STRUCTURE_TYPE_FRAME_STREAMING = 31,
   VOY_STRUCTURE_TYPE_STREAMING_STATS = 32,
+  VOY_STRUCTURE_TYPE_SCENE_PROFILE = 33,
+  VOY_STRUCTURE_TYPE_OMISSION = 34,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -306,14 +308,14 @@ typedef enum VoySceneStorage {
 } VoySceneStorage;
 
 typedef struct VoySceneInfo {
-  VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_INFO */
-  void* next;
+  VoyStructureType type;  /* VOY_STRUCTURE_TYPE_SCENE_INFO */
+  void* next;             /* NULL or a VoySceneProfile */
   uint64_t gaussianCount; /* the scene's own: the leaves of a tree */
   uint64_t nodeCount;     /* 0 for a flat scene */
   uint32_t treeDepth;     /* levels; 0 for a flat scene */
   uint32_t chunkCount;
   uint32_t damagedChunkCount;
-  uint32_t shDegree; /* 0-3 */
+  uint32_t shDegree; /* 0-3, of what is kept: bands that are zero everywhere are not */
   VoySceneStorage storage;
   uint32_t antialiased; /* 1: the input says it was trained with the antialiased low-pass */
   double origin[3];     /* world position of the scene-local zero, metres */
@@ -330,6 +332,25 @@ typedef struct VoySceneInfo {
     VOY_STRUCTURE_TYPE_SCENE_INFO, NULL, 0, 0, 0, 0, 0, 0, VOY_SCENE_STORAGE_FLAT, 0, {0, 0, 0}, \
         {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0                                                         \
   }
+
+/* In VoySceneInfo.next: what decides what is stored, loaded and launched for a scene
+ * (docs/omissions.md). type and next must be set; the rest is written. */
+typedef struct VoySceneProfile {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_PROFILE */
+  void* next;
+  uint32_t inputShDegree; /* what the input had: at least VoySceneInfo.shDegree */
+  uint32_t merged;        /* 1: a tree with nodes that stand for several Gaussians */
+  uint32_t interpolated;  /* 1: cuts of it draw nodes between their parents and themselves */
+  uint32_t streamed;      /* 1: opened with VoySceneStreaming; 0: all of it is in memory */
+  /* 1: all Gaussians were looked at. 0, of a streamed scene: what follows is 0, not known. */
+  uint32_t complete;
+  uint32_t reserved;                         /* 0 */
+  uint64_t chunksByShDegree[4];              /* chunks by the SH degree that they use */
+  uint64_t opacitiesAboveOne;                /* Gaussians; only merged ones have such */
+  float leastAnisotropy, greatestAnisotropy; /* longest axis over shortest; 0 without Gaussians */
+} VoySceneProfile;
+#define VOY_SCENE_PROFILE_INIT \
+  { VOY_STRUCTURE_TYPE_SCENE_PROFILE, NULL, 0, 0, 0, 0, 0, 0, {0, 0, 0, 0}, 0, 0, 0 }
 
 VOY_API VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info);
 
@@ -672,6 +693,24 @@ VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
  * VOY_ERROR_INVALID_ARGUMENT before any frame, or for an instance that there is not. */
 VOY_API VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint32_t* nodes,
                                 uint32_t* count);
+
+/* What a view does without. Element of an array, so this size is for good. */
+typedef struct VoyOmission {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_OMISSION */
+  void* next;
+  uint64_t bytes; /* of memory that is not taken; 0 where that is not known */
+  /* What the last frame was spared: the bytes that it would have moved, at the rate that the
+   * device's memory has at best, and so the least. 0 where bytes or rate are not known. */
+  double milliseconds;
+  char what[64]; /* UTF-8, terminated */
+  char why[192];
+} VoyOmission;
+
+/* What the view's scenes do without (their VOY_SCENE_NOTE_OMITTED, each scene's once), and what
+ * the view does without beside that, as far as its frames so far tell (docs/omissions.md).
+ * capacity, count and result are as voyGetSceneNotes has them. */
+VOY_API VoyResult voyGetViewOmissions(VoyView view, uint32_t capacity, VoyOmission* omissions,
+                                      uint32_t* count);
 
 typedef enum VoyStage {
   VOY_STAGE_SEARCH = 0,

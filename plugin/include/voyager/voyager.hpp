@@ -61,6 +61,13 @@ class Scene : public Handle<VoyScene, voyDestroyScene> {
     check(voyGetSceneInfo(get(), &info));
     return info;
   }
+  VoySceneProfile profile() const {
+    VoySceneProfile profile = VOY_SCENE_PROFILE_INIT;
+    VoySceneInfo info = VOY_SCENE_INFO_INIT;
+    info.next = &profile;
+    check(voyGetSceneInfo(get(), &info));
+    return profile;
+  }
   std::vector<VoySceneNote> notes() const {
     uint32_t count = 0;
     check(voyGetSceneNotes(get(), 0, nullptr, &count));
@@ -89,6 +96,13 @@ class View : public Handle<VoyView, voyDestroyView> {
     std::vector<uint32_t> nodes(count);
     check(voyGetViewCut(get(), instance, count, nodes.data(), &count));
     return nodes;
+  }
+  std::vector<VoyOmission> omissions() const {
+    uint32_t count = 0;
+    check(voyGetViewOmissions(get(), 0, nullptr, &count));
+    std::vector<VoyOmission> omissions(count);
+    check(voyGetViewOmissions(get(), count, omissions.data(), &count));
+    return omissions;
   }
   VoyFrameStats stats() const {
     VoyFrameStats stats = {};

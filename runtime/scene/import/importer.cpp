@@ -8,6 +8,7 @@
 #include "runtime/scene/import/peek_reader.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/sanitise.h"
+#include "runtime/scene/sh_bands.h"
 
 namespace voyager {
 namespace {
@@ -113,6 +114,7 @@ GaussianCloud import_gaussians(ByteReader& reader, const ImportOptions& options)
   if (!format) refuse(input.name(), input.offset(), "format", in_hex(first), kKnown);
   GaussianCloud cloud = format->import(input, options);
   sanitise(cloud);
+  leave_out_zero_bands(cloud);
   return cloud;
 }
 

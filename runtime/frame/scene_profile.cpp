@@ -1,0 +1,62 @@
+#include "runtime/frame/scene_profile.h"
+
+#include <algorithm>
+#include <mutex>
+
+#include "runtime/frame/scene.h"
+#include "runtime/scene/sh_bands.h"
+
+namespace voyager {
+namespace {
+
+constexpr size_t kGrain = 1 << 16;
+
+float anisotropy(const Vec3f& scale) {
+  const auto [least, greatest] = std::minmax({scale.x, scale.y, scale.z});
+  return greatest / least;
+}
+
+// Of a run of Gaussians; runs are joined in any order.
+struct Shapes {
+  uint64_t above_one = 0;
+  float least = 0, greatest = 0;
+
+  void add(const Gaussian& g) {
+    const float a = anisotropy(g.scale);
+    above_one += g.opacity > 1.0f;
+    least = greatest == 0 ? a : std::min(least, a);
+    greatest = std::max(greatest, a);
+  }
+  void add(const Shapes& more) {
+    above_one += more.above_one;
+    if (more.greatest == 0) return;
+    least = greatest == 0 ? more.least : std::min(least, more.least);
+    greatest = std::max(greatest, more.greatest);
+  }
+};
+
+}  // namespace
+
+void complete_profile(Scene& scene, Workers& workers) {
+  Shapes all;
+  std::mutex joining;
+  workers.for_blocks(scene.gaussians.size(), kGrain, [&](size_t begin, size_t end) {
+    Shapes own;
+    for (size_t i = begin; i < end; ++i) own.add(scene.gaussians[i]);
+    const std::lock_guard lock(joining);
+    all.add(own);
+  });
+  SceneProfile& profile = scene.profile;
+  profile.complete = true;
+  profile.opacities_above_one = all.above_one;
+  profile.least_anisotropy = all.least;
+  profile.greatest_anisotropy = all.greatest;
+}
+
+void leave_out_zero_bands(Scene& scene) {
+  const int used = used_sh_degree(scene.sh, scene.sh_degree);
+  change_sh_degree(scene.sh, scene.sh_degree, used);
+  scene.sh_degree = used;
+}
+
+}  // namespace voyager
