@@ -108,6 +108,7 @@ ReportError Measurement::compare(const std::vector<RgbaImage>& images, std::opti
   error.psnr = found.psnr;
   error.largest = found.largest;
   error.p999 = found.p999;
+  error.not_finite = found.not_finite;
   if (has_ssim) error.ssim = ssims / static_cast<double>(images.size());
   if (changes_seen > 0) error.popping = changes / static_cast<double>(changes_seen);
   return error;
