@@ -8,7 +8,7 @@
 #include "runtime/frame/backend.h"
 #include "tools/cameras.h"
 #include "tools/commands/measured_backend.h"
-#include "tools/options.h"
+#include "tools/image_size.h"
 
 namespace voyager::tools {
 
