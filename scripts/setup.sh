@@ -17,6 +17,7 @@ packages=(
   openxr-layer-corevalidation                            # tests with OpenXR: its rules watched by another eye
   mesa-vulkan-drivers vulkan-validationlayers xvfb       # tests with Vulkan: a CPU that has it, validation, a window's display
   nginx-light openssl                                    # tests with HTTP: a real server, certificates
+  chromium-headless-shell                                # tests of pages that are written: a browser without a window
   libgtest-dev libbenchmark-dev                          # tests and benchmarks
   clang-format clang-tidy                                # checks
   python3 python3-matplotlib                             # bench/: scripts, plots

@@ -6,8 +6,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/setup.sh
 
-# setup.sh has brought lavapipe, the validation layer and nginx: no test may skip for want of them.
-export VOYAGER_REQUIRE_VULKAN=1 VOYAGER_REQUIRE_NGINX=1
+# setup.sh has brought lavapipe, the validation layer, nginx and a browser: no test may skip for want of them.
+export VOYAGER_REQUIRE_VULKAN=1 VOYAGER_REQUIRE_NGINX=1 VOYAGER_REQUIRE_BROWSER=1
 
 step() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
 

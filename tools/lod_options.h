@@ -1,8 +1,11 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <optional>
 
 #include "runtime/select/detail.h"
+
+namespace CLI {
+class App;
+}
 
 namespace voyager::tools {
 

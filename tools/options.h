@@ -5,11 +5,9 @@
 #include <utility>
 #include <vector>
 
-namespace voyager::tools {
+#include "tools/image_size.h"
 
-struct ImageSize {
-  uint32_t width = 0, height = 0;  // 0: the camera's own
-};
+namespace voyager::tools {
 
 // "--size WxH"
 void add_size_option(CLI::App& command, ImageSize& size);

@@ -25,8 +25,8 @@ VOYAGER_HD T lerp(T parent, T node, T t) {
   return parent + t * (node - parent);
 }
 
-// Of values that are not negative. A node's thin axis may be 1e-8 of its parent's, and parent + t·(node − parent)
-// would leave nothing of it as t → 1: two products lose 3 ε of the result (docs/numerics.md).
+// Of values that are not negative. A node's thin axis may be 1e-8 of its parent's: as t → 1,
+// parent + t·(node − parent) leaves nothing of it, and two products lose 3 ε (docs/numerics.md).
 template <class T>
 VOYAGER_HD T lerp_positive(T parent, T node, T t) {
   return (T(1) - t) * parent + t * node;

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tests/command_line/page_check.h"
 #include "tests/command_line/program.h"
+#include "tests/support/needs_browser.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
@@ -56,14 +58,14 @@ TEST_F(Report, LeavesATableAPageAndPlots) {
     }
   EXPECT_EQ(json["provenance"]["scene"]["bytes"].get<uint64_t>(),
             std::filesystem::file_size(file("c.voy")));
-  const std::string page = file_bytes(file("out/report.html"));
-  for (size_t at = page.find("href=\""); at != std::string::npos;
-       at = page.find("href=\"", at + 1)) {
-    const std::string link = page.substr(at + 6, page.find('"', at + 6) - at - 6);
-    if (link[0] == '#' || link.rfind("data:", 0) == 0) continue;
-    EXPECT_TRUE(std::filesystem::exists(file("out/" + link))) << link;
-  }
   EXPECT_FALSE(std::filesystem::exists(file("out/.report")));
+  // The page, as a user sees it: here, for each test of this suite would make a report of its own.
+  if (browser().empty()) VOYAGER_SKIP_WITHOUT_BROWSER();
+  const PageCheck check = check_page(browser(), file("out/report.html"));
+  EXPECT_EQ(check.findings, "");
+  EXPECT_EQ(check.images, 2 * json["front"].size());
+  EXPECT_GE(check.plots, 4u);
+  EXPECT_GT(check.links, check.plots + json["front"].size());
 }
 
 // What was measured before the end is not measured again: its times are the same to the last digit.
@@ -112,6 +114,27 @@ TEST_F(Report, RefusalsAreOneLineAndLeaveNothing) {
   refuse(report("c.voy", "--sms 4 -o " + file("no")), 1, "--sms");
   refuse(report("c.voy", "--target 0 -o " + file("no")), 1, "--target");
   EXPECT_FALSE(std::filesystem::exists(file("no")));
+}
+
+// What the check above relies on: a page that is broken is not passed.
+TEST(ReportPage, WhatIsBrokenOnAPageIsFound) {
+  if (browser().empty()) VOYAGER_SKIP_WITHOUT_BROWSER();
+  const TempFolder folder;
+  const auto findings = [&](const std::string& body) {
+    write_bytes(folder.file("page.html"), "<!DOCTYPE html><html><body>" + body + "</body></html>");
+    return check_page(browser(), folder.file("page.html")).findings;
+  };
+  EXPECT_EQ(findings("<a id=\"here\" href=\"#here\">here</a><a href=\"page.html\">page</a>"), "");
+  const std::string found = findings(
+      "<img alt=\"cut\" src=\"data:image/png;base64,AQI=\"><img alt=\"absent\" src=\"no.png\">"
+      "<svg width=\"0\"></svg><svg><use xlink:href=\"#glyph\"/></svg>"
+      "<a href=\"#row-9\">row</a><a href=\"no.csv\">table</a><a href=\"plot.png\">plot</a>"
+      "<script>console.log('said');</script><script>undefined_function();</script>");
+  for (const char* one :
+       {"image cut:", "image absent:", "svg 0:", "svg 1:", "link #glyph:", "link #row-9:",
+        "link no.csv:", "image plot.png:", "\"said\"", "undefined_function is not defined"})
+    EXPECT_NE(found.find(one), std::string::npos) << one << " is not among\n" << found;
+  EXPECT_EQ(std::count(found.begin(), found.end(), '\n'), 10) << found;
 }
 
 }  // namespace

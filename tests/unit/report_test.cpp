@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -148,6 +149,46 @@ TEST(Report, EachLineOfTheTableHasTheHeadersFields) {
                              ",popping,", ",ms_median,",  ",ms_p95,",      ",ms_p99,",
                              ",bytes,"})
     EXPECT_NE(lines[0].find(column), std::string::npos) << column;
+}
+
+// A pixel that is not finite is counted whichever reference it is compared with, and nobody can
+// miss it.
+TEST(Report, PixelsThatAreNotFiniteAreTold) {
+  ReportRow same = row(3, 9, 0.02), all = row(15, 4, 0.1);
+  same.same.not_finite = 7;
+  all.all.not_finite = 8;
+  const std::vector<ReportRow> rows = {row(1, 30, 0.01), same, all};
+  const std::vector<std::string> lines = lines_of(report_csv({"a", "b", "CPU"}, rows));
+  for (const auto& [line, end] : {std::pair{0, ",not_finite"}, {1, ",0"}, {2, ",7"}, {3, ",8"}})
+    EXPECT_TRUE(lines[line].ends_with(end)) << lines[line];
+  EXPECT_EQ(to_json(same)["error"]["not_finite"], 7);
+  EXPECT_EQ(to_json(all)["total_error"]["not_finite"], 8);
+  const auto page = [](const std::vector<ReportRow>& shown) {
+    return html({"title", {}, "method", "advice", {}, shown, {0}, {}});
+  };
+  const std::string text = page(rows);
+  const size_t told = text.find("<p class=\"wrong\">");
+  ASSERT_NE(told, std::string::npos);
+  EXPECT_LT(told, text.find("<table>"));
+  for (const char* part : {"href=\"#row-1\"", "7 pixels not finite", "href=\"#row-2\"", "8 pixels"})
+    EXPECT_NE(text.find(part, told), std::string::npos) << part;
+  EXPECT_EQ(text.find("0 pixels"), std::string::npos);
+  EXPECT_EQ(page({rows[0]}).find("not finite"), std::string::npos);
+}
+
+// What a build before this one kept lacks what it did not measure: it is measured again.
+TEST(Report, ARowThatLacksAFigureIsMeasuredAgain) {
+  const test::TempFolder folder;
+  KeptRows rows(folder.file("kept"), {{"scene", "a"}});
+  const ReportRow measured = row(3, 9, 0.02);
+  rows.keep({measured, "", ""});
+  ASSERT_TRUE(rows.find(measured.is));
+  auto json = to_json(measured);
+  json["error"].erase("not_finite");
+  for (const auto& entry : std::filesystem::directory_iterator(rows.folder()))
+    if (entry.path().filename().string().starts_with("row-") && entry.path().extension() == ".json")
+      std::ofstream(entry.path()) << json.dump();
+  EXPECT_FALSE(rows.find(measured.is));
 }
 
 TEST(Report, WhatWasMeasuredIsKeptForTheSameReportAlone) {

@@ -5,6 +5,7 @@
 #include "runtime/base/open_source.h"
 #include "tools/commands/bench_arguments.h"
 #include "tools/commands/commands.h"
+#include "tools/options.h"
 #include "tools/output_paths.h"
 
 namespace voyager::tools {

@@ -8,8 +8,8 @@
 #include "runtime/frame/backend.h"
 #include "tools/cameras.h"
 #include "tools/commands/measured_backend.h"
+#include "tools/image_size.h"
 #include "tools/lod_options.h"
-#include "tools/options.h"
 
 namespace voyager::tools {
 

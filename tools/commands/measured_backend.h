@@ -1,9 +1,12 @@
 #pragma once
 // What `voyager bench` and `voyager report` measure.
-#include <CLI/CLI.hpp>
 #include <memory>
 
 #include "runtime/frame/backend.h"
+
+namespace CLI {
+class App;
+}
 
 namespace voyager::tools {
 

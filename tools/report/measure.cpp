@@ -130,6 +130,7 @@ ReportError Measurement::compare(const std::vector<RgbaImage>& images, const Det
   error.psnr = pixels.psnr;
   error.largest = pixels.largest;
   error.p999 = pixels.p999;
+  error.not_finite = pixels.not_finite;
   return error;
 }
 

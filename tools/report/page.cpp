@@ -16,6 +16,7 @@ h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.2rem; }
 .box { background: #f2f6fa; border-left: 4px solid #0072b2; padding: .6rem 1rem; }
 .plots { display: flex; flex-wrap: wrap; gap: 1rem; } .plots figure { margin: 0; }
 svg { max-width: 100%; height: auto; } img { max-width: 100%; image-rendering: auto; }
+.wrong { background: #fdece4; border-left: 4px solid #d55e00; padding: .6rem 1rem; } td .wrong { border: 0; padding: 0 .3rem; }
 .wide { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 13px; } th, td { padding: .2rem .55rem; text-align: right; }
 th:first-child, td:first-child { text-align: left; white-space: nowrap; }
@@ -59,17 +60,34 @@ std::string decibels(double psnr) {
   return std::isfinite(psnr) ? fmt::format("{:.1f}", psnr) : "∞";
 }
 
+std::string not_finite(const ReportRow& row) {
+  return fmt::format("{} pixels not finite", row.not_finite());
+}
+
+// Nothing where all is well.
+std::string warnings(const ReportPage& page) {
+  std::string text;
+  for (size_t i = 0; i < page.rows.size(); ++i)
+    if (page.rows[i].not_finite() > 0)
+      text += fmt::format("<a href=\"#row-{}\">{}</a>: {}. ", i, escaped(page.rows[i].is.name()),
+                          not_finite(page.rows[i]));
+  return text.empty() ? text : "<p class=\"wrong\">" + text + "</p>\n";
+}
+
 std::string table_row(const ReportRow& row, size_t index, bool front) {
   const auto ssim = [](const ReportError& e) {
     return e.ssim ? fmt::format("{:.4f}", *e.ssim) : std::string("–");
   };
   return fmt::format(
-      "<tr id=\"row-{}\"{}><td>{}</td><td>{:.0f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td>"
+      "<tr "
+      "id=\"row-{}\"{}><td>{}{}</td><td>{:.0f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td>"
       "<td>{}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{:.4f}</td><td>{:.4f}</td>"
       "<td>{:.3f}</td></tr>\n",
-      index, front ? " class=\"front\"" : "", escaped(row.is.name()), row.cut, row.frame.median,
-      row.frame.p95, row.frame.p99, decibels(row.same.psnr), decibels(row.all.psnr), ssim(row.all),
-      row.all.flip, row.all.largest, row.all.p999, row.all.popping);
+      index, front ? " class=\"front\"" : "", escaped(row.is.name()),
+      row.not_finite() > 0 ? " <span class=\"wrong\">" + not_finite(row) + "</span>" : "", row.cut,
+      row.frame.median, row.frame.p95, row.frame.p99, decibels(row.same.psnr),
+      decibels(row.all.psnr), ssim(row.all), row.all.flip, row.all.largest, row.all.p999,
+      row.all.popping);
 }
 
 std::string table(const ReportPage& page) {
@@ -126,7 +144,7 @@ std::string html(const ReportPage& page) {
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\"><link rel=\"icon\" href=\"data:,\">"
       "<title>{0}</title><style>{1}</style></head><body>\n<h1>{0}</h1>\n"
-      "<p class=\"box\">{2}</p>\n<p>{3} <a href=\"report.csv\">report.csv</a>, "
+      "<p class=\"box\">{2}</p>\n{8}<p>{3} <a href=\"report.csv\">report.csv</a>, "
       "<a href=\"report.json\">report.json</a>.</p>\n"
       "<h2 id=\"plots\">Error against time</h2>\n{4}"
       "<h2 id=\"pictures\">What is worth its time, and what it costs</h2>\n{5}"
@@ -134,7 +152,7 @@ std::string html(const ReportPage& page) {
       "PSNR of the same cut, errors are against the float64 reference of all leaves.</p>\n{6}"
       "<h2 id=\"provenance\">Provenance</h2>\n{7}</body></html>\n",
       escaped(page.title), kStyle, escaped(page.recommendation), escaped(page.method), plots(page),
-      pictures(page), table(page), provenance_list(page.provenance));
+      pictures(page), table(page), provenance_list(page.provenance), warnings(page));
 }
 
 }  // namespace voyager::tools

@@ -111,6 +111,7 @@ std::string report_csv(const ReportNames& names, const std::vector<ReportRow>& r
   for (size_t stage = 0; stage < static_cast<size_t>(kStageCount); ++stage)
     csv.insert(csv.size() - 1,
                fmt::format(",ms_{}_median", voyStageName(static_cast<VoyStage>(stage))));
+  csv.insert(csv.size() - 1, ",not_finite");
   for (const ReportRow& row : rows) {
     Line line;
     line.text(names.scene).text(names.camera_set).text(names.backend);
@@ -123,6 +124,7 @@ std::string report_csv(const ReportNames& names, const std::vector<ReportRow>& r
     line.number(row.frame.median).number(row.frame.p95).number(row.frame.p99);
     line.where(row.bytes > 0, row.bytes).where(row.joules.has_value(), row.joules.value_or(0));
     for (const ReportTimes& stage : row.stages) line.number(stage.median);
+    line.number(static_cast<double>(row.not_finite()));
     csv += line.take();
   }
   return csv;

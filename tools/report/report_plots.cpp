@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "tools/frame_rows.h"
 #include "tools/lod_options.h"
@@ -67,16 +68,16 @@ Plot select_plot(const std::vector<ReportRow>& rows) {
   Plot plot{"select", "ms a frame, median", "PSNR against all leaves, dB", {}, false, false, 400,
             300};
   for (const Lod lod : {Lod::cut, Lod::blocks, Lod::levels}) {
-    PlotSeries series{select_name(lod), {}, true};
+    std::map<double, PlotPoint> by_tau;
     for (const ReportRow& row : rows) {
       const std::string& group = row.is.group;
       const bool chosen = group == "default" || group == "tau" || group == "select";
       if (chosen && row.is.desc.lod == lod && row.tau > 0)
-        series.points.push_back(
-            {row.frame.median, row.all.psnr, fmt::format("τ {:g}", row.tau), group == "default"});
+        by_tau[row.tau] = {row.frame.median, row.all.psnr, fmt::format("τ {:g}", row.tau),
+                           group == "default"};
     }
-    std::sort(series.points.begin(), series.points.end(),
-              [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
+    PlotSeries series{select_name(lod), {}, true};
+    for (const auto& [tau, point] : by_tau) series.points.push_back(point);
     plot.series.push_back(series);
   }
   return plot;

@@ -27,12 +27,14 @@ Json to_json(const ReportError& error) {
           {"flip", error.flip},
           {"max_abs", error.largest},
           {"p999_abs", error.p999},
-          {"popping", error.popping}};
+          {"popping", error.popping},
+          {"not_finite", error.not_finite}};
 }
 
 ReportError error_of(const Json& json) {
   ReportError error{number_of(json["psnr_db"]), std::nullopt,   json["flip"], json["max_abs"],
                     json["p999_abs"],           json["popping"]};
+  error.not_finite = json.at("not_finite");
   if (!json["ssim"].is_null()) error.ssim = json["ssim"].get<double>();
   return error;
 }

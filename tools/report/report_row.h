@@ -1,5 +1,6 @@
 #pragma once
 // One configuration, measured.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -13,7 +14,8 @@ struct ReportError {
   double psnr = 0;             // dB; infinite where nothing differs
   std::optional<double> ssim;  // none of images smaller than its window
   double flip = 0, largest = 0, p999 = 0;
-  double popping = 0;  // 1/255, mean a frame
+  double popping = 0;     // 1/255, mean a frame
+  size_t not_finite = 0;  // pixels, of all compared frames, where either image has such a colour
 };
 
 struct ReportTimes {
@@ -31,9 +33,12 @@ struct ReportRow {
   std::optional<double> joules;     // a frame
   ReportError same;                 // against the reference of the same cut
   ReportError all;                  // against the reference of all leaves: what is lost in all
+
+  size_t not_finite() const { return std::max(same.not_finite, all.not_finite); }
 };
 
-// Every field; from_json() gives the row back, so that a report can go on.
+// Every field; row_from_json() gives the row back, so that a report can go on, or throws
+// nlohmann::json::exception where a field is missing that rows did not have from the start.
 nlohmann::ordered_json to_json(const ReportRow& row);
 ReportRow row_from_json(const nlohmann::ordered_json& json, const ReportCase& is);
 

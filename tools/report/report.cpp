@@ -1,0 +1,147 @@
+#include "tools/report/report.h"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "tools/output_folder.h"
+#include "tools/output_paths.h"
+#include "tools/progress_bar.h"
+#include "tools/report/kept_rows.h"
+#include "tools/report/measure.h"
+#include "tools/report/pareto.h"
+#include "tools/report/provenance.h"
+#include "tools/report/report_csv.h"
+#include "tools/report/report_plan.h"
+#include "tools/report/report_plots.h"
+#include "tools/report/report_text.h"
+#include "tools/report/thumbnail.h"
+
+namespace voyager::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Report {
+ public:
+  Report(const ReportRequest& request, Backend& backend)
+      : request_(request),
+        output_(request.output),
+        backend_(backend),
+        plan_(report_plan(request.cameras, request.size, request.extent)),
+        provenance_(provenance(request.scene, request.cameras, backend, request.arguments)),
+        kept_(std::filesystem::path(request.output) / ".report", provenance_),
+        scenes_(request.scene, kept_.folder(), workers_, progress_),
+        references_(scenes_.own(), plan_.path, kept_.folder(), workers_),
+        energy_(find_energy_meter(backend.rates().bytes > 0)),
+        measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
+
+  void run() {
+    std::vector<ReportCase> cases = report_cases(request_.extent, subject());
+    const size_t budgets = scenes_.own()->flat() || request_.extent == ReportExtent::quick ? 0 : 2;
+    total_ = cases.size() + budgets;
+    for (const ReportCase& is : cases) add(is);
+    if (budgets != 0 && !rows_.empty())
+      for (const ReportCase& is : time_budget_cases(cases[0], rows_[0].frame.median)) add(is);
+    progress_("measuring", 1, 1);
+    write();
+    kept_.remove();
+  }
+
+ private:
+  ReportSubject subject() const {
+    ReportSubject subject;
+    subject.flat = scenes_.own()->flat();
+    subject.sh_degree = scenes_.own()->sh_degree;
+    subject.storages = scenes_.storages();
+    const bool cuda = backend_.rates().bytes > 0;
+    subject.exponentials = {Exponential::exact, Exponential::ex2, Exponential::lut};
+    if (cuda) subject.exponentials.push_back(Exponential::half2);
+    subject.baseline = cuda;
+    return subject;
+  }
+
+  void add(const ReportCase& is) {
+    const size_t frames = measurement_.frames_drawn();
+    std::optional<KeptRow> kept = kept_.find(is);
+    if (!kept) {
+      const size_t width = plan_.path[plan_.compared[0]].eyes[0].camera.width;
+      KeptRow found{measurement_.run(is,
+                                     [&](size_t drawn) {
+                                       progress_("measuring", done_ * frames + drawn,
+                                                 total_ * frames);
+                                     }),
+                    "", ""};
+      found.picture = picture_png(measurement_.pictures().image, width);
+      found.difference = difference_png(measurement_.pictures().difference, width);
+      kept_.keep(found);
+      kept = std::move(found);
+    }
+    ++done_;
+    rows_.push_back(kept->row);
+    pictures_.push_back({{"image", kept->picture}, {"FLIP against all leaves", kept->difference}});
+  }
+
+  void write_text(const std::string& name, const std::string& text) {
+    AtomicFile file(output_.place(name));
+    file.write(std::as_bytes(std::span(text)));
+    file.commit();
+  }
+
+  void write() {
+    const std::vector<size_t> front = pareto_front(rows_);
+    const auto best = recommend(rows_, front, request_.target);
+    const std::string advice = recommendation_text(rows_, best, front.front(), request_.target);
+    const auto stem = [](const std::string& path) {
+      return std::filesystem::path(path).filename().replace_extension().string();
+    };
+    write_text(
+        "report.csv",
+        report_csv({stem(request_.scene), stem(request_.cameras), backend_.device_name()}, rows_));
+    Json json = {
+        {"provenance", provenance_}, {"method", method_text(plan_)}, {"rows", Json::array()}};
+    for (const ReportRow& row : rows_) json["rows"].push_back(to_json(row));
+    json["front"] = front;
+    json["target_ms"] = request_.target;
+    json["recommended"] = best ? Json(*best) : Json();
+    json["recommendation"] = advice;
+    write_text("report.json", json.dump(1) + "\n");
+    ReportPage page{"Error against run time: " + stem(request_.scene),
+                    provenance_,
+                    method_text(plan_),
+                    advice,
+                    report_plots(rows_, front),
+                    rows_,
+                    front,
+                    {}};
+    for (const size_t i : front) page.shown.push_back({i, pictures_[i]});
+    write_text("report.html", html(page));
+    for (const PagePlot& plot : page.plots) write_plot_png(output_.place(plot.file), plot.plot);
+    output_.commit();
+    fmt::print("{}\n{}/report.html\n", advice, request_.output);
+  }
+
+  const ReportRequest& request_;
+  OutputFolder output_;
+  Workers workers_;
+  const Progress progress_ = progress_bar();
+  Backend& backend_;
+  const ReportPlan plan_;
+  const Json provenance_;
+  KeptRows kept_;
+  ReportScenes scenes_;
+  ReferenceImages references_;
+  std::unique_ptr<EnergyMeter> energy_;
+  Measurement measurement_;
+  size_t done_ = 0, total_ = 1;
+  std::vector<ReportRow> rows_;
+  std::vector<std::vector<PagePicture>> pictures_;
+};
+
+}  // namespace
+
+void make_report(const ReportRequest& request, Backend& backend) {
+  Report(request, backend).run();
+}
+
+}  // namespace voyager::tools
