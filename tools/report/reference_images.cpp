@@ -20,7 +20,7 @@ ReferenceImages::~ReferenceImages() = default;
 
 const RgbaImage& ReferenceImages::of(size_t frame, Detail detail) {
   if (scene_->flat() || !draws_cut(detail.lod)) detail = {};
-  const Key key{frame, detail};
+  const Key key{frame, detail.lod, detail.tau};
   const auto found = images_.find(key);
   if (found != images_.end()) return found->second;
   std::optional<RgbaImage> kept = read(key);
@@ -28,11 +28,12 @@ const RgbaImage& ReferenceImages::of(size_t frame, Detail detail) {
 }
 
 RgbaImage ReferenceImages::draw(const Key& key) {
+  const auto [index, lod, tau] = key;
   PipelineDesc desc;
-  desc.lod = key.second.lod;
+  desc.lod = lod;
   desc.search = Search::exhaustive;
-  FrameInput frame = frames_[key.first];
-  frame.tau = key.second.tau;
+  FrameInput frame = frames_[index];
+  frame.tau = tau;
   RgbaImage image = draw_images({*backend_, scene_, workers_}, desc, {frame}, {0})[0];
   AtomicFile file(path_of(key).string());
   file.write(std::as_bytes(std::span(image)));
@@ -41,15 +42,15 @@ RgbaImage ReferenceImages::draw(const Key& key) {
 }
 
 std::filesystem::path ReferenceImages::path_of(const Key& key) const {
-  return folder_ / fmt::format("reference-{}-{}-tau{:.17g}.f32", key.first,
-                               select_name(key.second.lod), key.second.tau);
+  const auto [index, lod, tau] = key;
+  return folder_ / fmt::format("reference-{}-{}-tau{:.17g}.f32", index, select_name(lod), tau);
 }
 
 std::optional<RgbaImage> ReferenceImages::read(const Key& key) const {
   const std::filesystem::path path = path_of(key);
   if (!std::filesystem::exists(path)) return std::nullopt;
   const auto source = open_file_source(path.string());
-  const auto& camera = frames_[key.first].eyes[0].camera;
+  const auto& camera = frames_[std::get<0>(key)].eyes[0].camera;
   RgbaImage image(size_t{4} * camera.width * camera.height);
   if (source->size() != image.size() * sizeof(float)) return std::nullopt;
   source->read(0, std::as_writable_bytes(std::span(image)));

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "tools/frame_bench.h"
 
@@ -14,8 +15,6 @@ namespace voyager::tools {
 struct Detail {
   Lod lod = Lod::all_leaves;
   double tau = 0;
-
-  auto operator<=>(const Detail&) const = default;
 };
 
 class ReferenceImages {
@@ -30,7 +29,7 @@ class ReferenceImages {
   const std::vector<FrameInput>& frames() const { return frames_; }
 
  private:
-  using Key = std::pair<size_t, Detail>;
+  using Key = std::tuple<size_t, Lod, double>;  // frame; of what
 
   RgbaImage draw(const Key& key);
   std::filesystem::path path_of(const Key& key) const;
