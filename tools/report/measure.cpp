@@ -1,5 +1,6 @@
 #include "tools/report/measure.h"
 
+#include "runtime/base/clock.h"
 #include "tools/metrics/flip.h"
 #include "tools/metrics/image_error.h"
 #include "tools/metrics/popping.h"
@@ -52,6 +53,35 @@ double median_tau(const std::vector<FrameStats>& frames) {
   return percentile(taus, 0.5);
 }
 
+// From the first frame on, without the view's making. Sensors are read every tenth of a second or
+// so: of less than a second there is no figure.
+class FrameEnergy {
+ public:
+  explicit FrameEnergy(EnergyMeter* meter) : meter_(meter) {}
+
+  void frame(size_t drawn) {
+    last_ = drawn;
+    if (begin_) return;
+    begin_ = drawn;
+    watch_ = Stopwatch();
+    if (meter_ != nullptr) before_ = meter_->joules();
+  }
+  std::optional<double> joules_a_frame() {
+    constexpr double kLeast = 1000;  // milliseconds
+    if (!before_ || last_ == *begin_ || watch_.milliseconds() < kLeast) return std::nullopt;
+    const std::optional<double> after = meter_->joules();
+    if (!after) return std::nullopt;
+    return (*after - *before_) / static_cast<double>(last_ - *begin_);
+  }
+
+ private:
+  EnergyMeter* meter_;
+  std::optional<size_t> begin_;
+  size_t last_ = 0;
+  Stopwatch watch_;
+  std::optional<double> before_;
+};
+
 // Of one image.
 struct Difference {
   Flip flip;
@@ -91,10 +121,12 @@ ReportRow Measurement::run(const ReportCase& is, const std::function<void(size_t
   if (is.time_budget > 0) path.time_budget = TimeBudgetDesc{is.time_budget};
   ReportRow row;
   row.is = is;
-  const auto before = energy_ == nullptr ? std::nullopt : energy_->joules();
-  const FrameRun timed = run_frames(maker, is.desc, path, frame_done);
-  const auto after = energy_ == nullptr ? std::nullopt : energy_->joules();
-  if (before && after) row.joules = (*after - *before) / static_cast<double>(path.frames_drawn());
+  FrameEnergy energy(energy_);
+  const FrameRun timed = run_frames(maker, is.desc, path, [&](size_t drawn) {
+    energy.frame(drawn);
+    frame_done(drawn);
+  });
+  row.joules = energy.joules_a_frame();
   set_times(timed.timed, row);
   row.tau = is.time_budget > 0 ? median_tau(timed.timed) : is.tau;
   for (FrameInput& frame : path.frames) frame.tau = row.tau;
