@@ -9,7 +9,8 @@
 
 namespace voyager::cuda {
 
-// Of all buffers that are there.
+// Of all buffers that are there: what tests of omissions count, since a device's free memory is
+// other processes', too.
 inline std::atomic<size_t> buffer_bytes{0};
 
 template <class T>

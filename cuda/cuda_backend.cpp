@@ -68,7 +68,7 @@ class CudaBackend final : public Backend {
                                              const SearchDesc& desc, std::pmr::memory_resource*,
                                              Workers& workers) override {
     device_->use();
-    return create_timed_search(device_, search_for(scene, desc, workers), desc.weights);
+    return create_timed_search(device_, search_for(scene, desc, workers), desc);
   }
 
  private:

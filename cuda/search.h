@@ -68,8 +68,9 @@ std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device
 std::unique_ptr<CutSearch> create_host_cut_search(std::shared_ptr<const Scene> scene, Search kind,
                                                   Workers& workers);
 
-// A search by itself, on a stream of its own, with its times.
+// A search by itself, on a stream of its own, with its times; made for what desc says.
 std::unique_ptr<SceneSearch> create_timed_search(std::shared_ptr<const Device> device,
-                                                 std::unique_ptr<CutSearch> search, bool weights);
+                                                 std::unique_ptr<CutSearch> search,
+                                                 const SearchDesc& desc);
 
 }  // namespace voyager::cuda

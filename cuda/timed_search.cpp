@@ -9,10 +9,11 @@ enum Mark : size_t { kBegin, kFound, kWeighed, kMarks };
 
 class TimedSearch final : public SceneSearch {
  public:
-  TimedSearch(std::shared_ptr<const Device> device, std::unique_ptr<CutSearch> search, bool weights)
+  TimedSearch(std::shared_ptr<const Device> device, std::unique_ptr<CutSearch> search,
+              const SearchDesc& desc)
       : device_(std::move(device)),
         search_(std::move(search)),
-        weights_(weights),
+        desc_(desc),
         timer_(stream_, kMarks),
         report_(search_->report_bytes()) {}
 
@@ -25,7 +26,7 @@ class TimedSearch final : public SceneSearch {
     timer_.mark(kBegin);
     search_->find(query, stream_.get());
     timer_.mark(kFound);
-    if (weights_) search_->weigh(query, stream_.get());
+    if (desc_.weights) search_->weigh(weights_query(desc_.lod, query), stream_.get());
     timer_.mark(kWeighed);
     search_->report(report_.data(), stream_.get());
     search_->end_frame(stream_.get());
@@ -48,7 +49,7 @@ class TimedSearch final : public SceneSearch {
  private:
   std::shared_ptr<const Device> device_;
   std::unique_ptr<CutSearch> search_;
-  bool weights_;
+  SearchDesc desc_;
   Stream stream_;
   FrameTimer timer_;
   PinnedMemory report_;
@@ -57,9 +58,10 @@ class TimedSearch final : public SceneSearch {
 }  // namespace
 
 std::unique_ptr<SceneSearch> create_timed_search(std::shared_ptr<const Device> device,
-                                                 std::unique_ptr<CutSearch> search, bool weights) {
+                                                 std::unique_ptr<CutSearch> search,
+                                                 const SearchDesc& desc) {
   device->use();
-  return std::make_unique<TimedSearch>(std::move(device), std::move(search), weights);
+  return std::make_unique<TimedSearch>(std::move(device), std::move(search), desc);
 }
 
 }  // namespace voyager::cuda

@@ -21,19 +21,16 @@ enum class Lod {
   levels,
 };
 
-// Neither baseline interpolates: t = 1.
-inline bool interpolates(Lod lod) {
-  return lod == Lod::cut;
-}
 inline bool draws_cut(Lod lod) {
   return lod != Lod::all_leaves;
 }
 
 inline constexpr size_t kBlocks = 64;
 
-// Whose weights make t what `lod` has it: with a target of 0 each node is drawn as itself.
+// Whose weights make t what `lod` has it. Neither baseline interpolates: with a target of 0 t is 1
+// everywhere.
 inline CutQuery weights_query(Lod lod, const CutQuery& query) {
-  return interpolates(lod) ? query : CutQuery{query.centre, 0.0f};
+  return lod == Lod::cut ? query : CutQuery{query.centre, 0.0f};
 }
 
 struct DetailTree {

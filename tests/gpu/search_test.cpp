@@ -73,7 +73,7 @@ class SearchTest : public DeviceTest {
         kind == Search::exhaustive
             ? cuda::create_exhaustive_search(on, *scene, scene->tree, true)
             : cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true);
-    return cuda::create_timed_search(on, std::move(search), true);
+    return cuda::create_timed_search(on, std::move(search), {kind, true});
   }
 
   static Result run(SceneSearch& search, const CutQuery& query) {
@@ -123,7 +123,9 @@ TEST_F(SearchTest, BaselinesOfDetailAsOnTheHost) {
         Result of_host;
         expected->run(query);
         expected->read(of_host.cut, of_host.weights);
-        ASSERT_EQ(run(*found, query).cut, of_host.cut);
+        ASSERT_TRUE(same(run(*found, query), of_host));
+        ASSERT_EQ(std::count(of_host.weights.begin(), of_host.weights.end(), 1.0f),
+                  std::ssize(of_host.cut));
       }
     }
 }

@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include "runtime/format/export_ply.h"
-#include "runtime/scene/export/writer.h"
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sh_bands.h"
 #include "tests/support/counting_memory.h"
@@ -23,17 +22,6 @@ GaussianCloud padded_cloud(size_t count, uint32_t seed, int used) {
   for (size_t i = 0; i < cloud.sh.size(); ++i)
     if (i % 48 >= first && i % 2 == 1) cloud.sh[i] = -0.0f;
   return cloud;
-}
-
-Bytes ply_bytes(const GaussianCloud& cloud) {
-  const TempFolder folder;
-  AtomicFile file(folder.file("scene.ply"));
-  const auto sink = sink_to(file);
-  const auto writer = write_ply(*sink, cloud.size(), cloud.sh_degree, false);
-  writer->append(cloud);
-  writer->finish();
-  file.commit();
-  return file_bytes(folder.file("scene.ply"));
 }
 
 GaussianCloud import(const Bytes& ply) {

@@ -1,5 +1,5 @@
 #pragma once
-// .voy files for tests: baked from a cloud, as bytes, with a byte changed.
+// .voy and .ply files for tests: of a cloud, as bytes, with a byte changed.
 #include <fstream>
 #include <iterator>
 #include <vector>
@@ -8,6 +8,7 @@
 #include "runtime/format/reader.h"
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
+#include "runtime/scene/export/writer.h"
 #include "tests/support/sealed.h"
 #include "tests/support/test_support.h"
 
@@ -33,6 +34,17 @@ inline Bytes scene_bytes(const BakedScene& baked, Quality quality, unsigned thre
   write_scene_file(baked, partition_tree(baked.tree, chunk_bytes), folder.file("scene.voy"),
                    quality, workers);
   return file_bytes(folder.file("scene.voy"));
+}
+
+inline Bytes ply_bytes(const GaussianCloud& cloud) {
+  const TempFolder folder;
+  AtomicFile file(folder.file("scene.ply"));
+  const auto sink = sink_to(file);
+  const auto writer = write_ply(*sink, cloud.size(), cloud.sh_degree, false);
+  writer->append(cloud);
+  writer->finish();
+  file.commit();
+  return file_bytes(folder.file("scene.ply"));
 }
 
 inline std::shared_ptr<const ByteSource> source_of(const Bytes& bytes) {

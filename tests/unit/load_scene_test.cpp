@@ -5,7 +5,6 @@
 
 #include "runtime/base/checksum.h"
 #include "runtime/frame/scene.h"
-#include "runtime/scene/export/writer.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
@@ -22,17 +21,6 @@ std::shared_ptr<const Scene> load(std::shared_ptr<const ByteSource> source) {
 
 std::shared_ptr<const Scene> load(const Bytes& bytes) {
   return load(test::source_of(bytes));
-}
-
-Bytes ply_bytes(const GaussianCloud& cloud) {
-  const test::TempFolder folder;
-  AtomicFile file(folder.file("scene.ply"));
-  const auto sink = sink_to(file);
-  const auto writer = write_ply(*sink, cloud.size(), cloud.sh_degree, false);
-  writer->append(cloud);
-  writer->finish();
-  file.commit();
-  return test::file_bytes(folder.file("scene.ply"));
 }
 
 void expect_leaves_equal_flat(const Scene& baked, const Scene& flat) {
@@ -53,7 +41,7 @@ TEST(LoadScene, LeavesOfALosslessBakeEqualTheFlatScene) {
     GaussianCloud cloud = test::random_cloud(3000, 40, 2);
     for (size_t i = 0; i < cloud.size(); ++i) cloud.position[3 * i + 2] += offset;
     cloud.position[4] = -0.0f;
-    const auto flat = load(ply_bytes(cloud));
+    const auto flat = load(test::ply_bytes(cloud));
     const auto baked = load(test::scene_bytes(test::bake(cloud), Quality::lossless));
     EXPECT_EQ(flat->origin.z != 0, offset != 0);
     expect_leaves_equal_flat(*baked, *flat);
@@ -335,7 +323,7 @@ TEST(LoadScene, SaysWhatWasMendedAndWhatIsLeftOut) {
   GaussianCloud cloud = test::random_cloud(20, 46, 1);
   cloud.rotation[0] = cloud.rotation[1] = cloud.rotation[2] = cloud.rotation[3] = 0;
   cloud.opacity[3] = std::numeric_limits<float>::quiet_NaN();
-  const auto scene = load(ply_bytes(cloud));
+  const auto scene = load(test::ply_bytes(cloud));
   EXPECT_EQ(scene->gaussians.size(), 19u);
   uint64_t repaired = 0, dropped = 0, omitted_bytes = 0;
   for (const SceneNote& note : scene->notes) {
@@ -366,7 +354,7 @@ class CountingMemory final : public std::pmr::memory_resource {
 };
 
 TEST(LoadScene, AFlatSceneNeverHoldsItsShTwice) {
-  const Bytes bytes = ply_bytes(test::random_cloud(20000, 47, 3));
+  const Bytes bytes = test::ply_bytes(test::random_cloud(20000, 47, 3));
   CountingMemory memory;
   Workers workers(1);
   load_scene(test::source_of(bytes), &memory, workers);
@@ -377,7 +365,7 @@ TEST(LoadScene, MemoryThatIsRefusedComesOutAsBadAlloc) {
   const GaussianCloud cloud = test::random_cloud(100, 48, 0);
   Workers workers(1);
   for (const Bytes& bytes :
-       {ply_bytes(cloud), test::scene_bytes(test::bake(cloud), Quality::compact)})
+       {test::ply_bytes(cloud), test::scene_bytes(test::bake(cloud), Quality::compact)})
     EXPECT_THROW(load_scene(test::source_of(bytes), std::pmr::null_memory_resource(), workers),
                  std::bad_alloc);
 }

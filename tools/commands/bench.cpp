@@ -22,7 +22,9 @@ void refuse_misplaced_budget(const BenchArguments& arguments) {
   if (arguments.stages != BenchStages::all)
     bad_usage("--time-budget: found it with --stages search or splat, expected --stages all");
   if (!draws_cut(arguments.lod.value()))
-    bad_usage("--time-budget: found it with --lod off, expected --lod on: tau is what it changes");
+    bad_usage(
+        "--time-budget: found it with --lod off or --select flat, expected a cut: tau is what it "
+        "changes");
 }
 
 // An option that the chosen stages make nothing of would be a figure misread.

@@ -115,7 +115,9 @@ void render(Arguments& arguments) {
   settle_outputs(arguments);
   settle_streaming(arguments);
   if (arguments.choices.time_budget > 0 && arguments.choices.lod == VOY_LOD_ALL_LEAVES)
-    bad_usage("--time-budget: found it with --lod off, expected --lod on: tau is what it changes");
+    bad_usage(
+        "--time-budget: found it with --lod off or --select flat, expected a cut: tau is what it "
+        "changes");
   const std::vector<Camera> cameras = choose_cameras(arguments);
   uint32_t width = 0, height = 0;
   for (const Camera& camera : cameras) {

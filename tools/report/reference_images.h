@@ -11,7 +11,7 @@
 
 namespace voyager::tools {
 
-// Of what an image is.
+// What an image shows: every leaf, or what is chosen at a tau.
 struct Detail {
   Lod lod = Lod::all_leaves;
   double tau = 0;
