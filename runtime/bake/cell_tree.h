@@ -21,12 +21,12 @@ struct NodeRow {
 
 std::string cell_tree_name(uint32_t cell);
 
-// Sorts and merges a cell; its file then has the order, and the nodes of the levels that
+// Sorts and merges a cell; its file then has the layout, and the nodes of the levels that
 // are the top's, too.
 void build_cell(const SplitInfo& split, const BakePlan& plan, uint32_t cell,
                 const WorkFolder& folder, Workers& workers);
 
-// The same tree again, from the order.
+// The same tree again, from the layout.
 CellTree rebuild_cell(const SplitInfo& split, const BakePlan& plan, uint32_t cell,
                       const WorkFolder& folder, Workers& workers);
 

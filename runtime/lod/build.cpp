@@ -4,7 +4,7 @@
 #include <string>
 
 #include "runtime/base/error.h"
-#include "runtime/lod/kd_order.h"
+#include "runtime/lod/kd_layout.h"
 #include "runtime/lod/levels.h"
 #include "runtime/scene/sanitise.h"
 
@@ -59,7 +59,7 @@ BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& pro
 
   report(progress, "splitting", 0, baked.leaves.size());
   const std::vector<uint32_t> levels =
-      lay_out_scene(kd_order(baked.leaves, baked.origin, workers), baked);
+      lay_out_scene(kd_layout(baked.leaves, baked.origin, workers), baked);
   report(progress, "splitting", baked.leaves.size(), baked.leaves.size());
   summarise_levels(levels, baked, workers, progress);
   align_levels(levels, baked, workers, progress);

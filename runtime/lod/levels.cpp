@@ -1,26 +1,12 @@
 #include "runtime/lod/levels.h"
 
 #include "runtime/lod/align.h"
-#include "runtime/lod/shape.h"
 #include "runtime/lod/summarise.h"
 
 namespace voyager {
 namespace {
 
 constexpr size_t kGrain = 256;  // nodes
-
-void allocate_merged(BakedScene& baked) {
-  GaussianCloud& merged = baked.merged;
-  const size_t count = baked.tree.size() - baked.leaves.size();
-  merged.sh_degree = baked.leaves.sh_degree;
-  merged.antialiased = baked.leaves.antialiased;
-  merged.origin = baked.origin;
-  merged.position.resize(3 * count);
-  merged.log_scale.resize(3 * count);
-  merged.rotation.resize(4 * count);
-  merged.opacity.resize(count);
-  merged.sh.resize(count * size_t{3} * static_cast<size_t>(merged.coefficients()));
-}
 
 // Nodes of one level depend on other levels only.
 template <class Body>
@@ -32,13 +18,6 @@ void for_level(const std::vector<uint32_t>& levels, size_t level, Workers& worke
 }
 
 }  // namespace
-
-std::vector<uint32_t> lay_out_scene(const std::vector<uint32_t>& order, BakedScene& baked) {
-  std::vector<uint32_t> levels = lay_out(order, baked);
-  baked.axis_code.resize(baked.tree.size());
-  allocate_merged(baked);
-  return levels;
-}
 
 void summarise_levels(const std::vector<uint32_t>& levels, BakedScene& baked, Workers& workers,
                       const Progress& progress) {

@@ -9,10 +9,6 @@
 
 namespace voyager {
 
-// Lays out the tree over baked.leaves in kd order (kd_order.h), and makes room for
-// what the passes fill. Returns the first node of each level, and their number last.
-std::vector<uint32_t> lay_out_scene(const std::vector<uint32_t>& order, BakedScene& baked);
-
 // Boxes of all nodes and Gaussians of interior ones. Progress stage "merging".
 void summarise_levels(const std::vector<uint32_t>& levels, BakedScene& baked, Workers& workers,
                       const Progress& progress = {});

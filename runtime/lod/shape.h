@@ -1,8 +1,7 @@
 #pragma once
-// The shape of the tree: how many children a node over `size` Gaussians has,
+// The shape of a kd tree: how many children a node over `size` Gaussians has,
 // and how many Gaussians each of them. It depends on the size alone.
 #include <cstdint>
-#include <vector>
 
 #include "runtime/lod/build.h"
 
@@ -31,10 +30,5 @@ Parts split_in_parts(uint32_t size);
 
 // Nodes of the tree over `gaussians` Gaussians.
 uint64_t count_nodes(uint32_t gaussians);
-
-// Fills the topology of `baked.tree` and `baked.gaussian`, for Gaussians in
-// `order` (those of every node contiguous, children in order). Gives the first
-// node of each level, and the node count at the end.
-std::vector<uint32_t> lay_out(const std::vector<uint32_t>& order, BakedScene& baked);
 
 }  // namespace voyager

@@ -1,0 +1,22 @@
+#pragma once
+// The topology of a tree, apart from what its nodes hold: what a builder decides, and
+// what a bake in parts keeps of a tree that it builds again.
+#include <cstdint>
+#include <vector>
+
+#include "runtime/lod/baked_scene.h"
+
+namespace voyager {
+
+// The topology of a tree over a cloud, and which Gaussian each leaf is.
+struct TreeLayout {
+  std::vector<uint8_t> child_count;  // of each node, breadth-first; 0: a leaf
+  std::vector<uint32_t> leaf;        // of each leaf, in the order of nodes: its Gaussian
+};
+
+// Fills the topology of baked.tree, `gaussian` and the room for axis codes and merged
+// Gaussians: of interior nodes, in their order. Returns the first node of each level, and
+// the number of nodes last; nothing for an empty layout.
+std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked);
+
+}  // namespace voyager
