@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/lod/tree.h"
+#include "runtime/lod/tree_rule.h"
 #include "runtime/scene/gaussian_cloud.h"
 
 namespace voyager {
@@ -20,6 +21,9 @@ struct BakedScene {
   // Per node: how its stored axes turn to its parent's (runtime/math/axes.h).
   // Merged Gaussians are stored turned already: 0.
   std::pmr::vector<uint8_t> axis_code;
+  TreeKind kind = TreeKind::clustered;
+  // Per node, of a clustered tree: how much of it is seen, in (0, 1] (exposure.h). For building.
+  std::vector<float> exposure;
 };
 
 // A Gaussian's mean in a scene's local metres: the one rounding to binary32 is here.

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "runtime/base/error.h"
-#include "runtime/lod/kd_layout.h"
+#include "runtime/lod/find_layout.h"
 #include "runtime/lod/levels.h"
 #include "runtime/scene/sanitise.h"
 
@@ -42,7 +42,8 @@ void check_mean(size_t gaussian, const Vec3f& mean) {
       refuse(gaussian, "a position", mean[axis], "a magnitude below 1e18 m");
 }
 
-BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& progress) {
+BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& progress,
+                      const TreeRule& rule) {
   const FloatingPointMode mode;
   check_count(cloud.size());
   std::pmr::memory_resource* memory = cloud.position.get_allocator().resource();
@@ -55,11 +56,13 @@ BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& pro
                    origin,
                    LodTree(memory),
                    std::pmr::vector<uint32_t>(memory),
-                   std::pmr::vector<uint8_t>(memory)};
+                   std::pmr::vector<uint8_t>(memory),
+                   rule.kind,
+                   {}};
 
   report(progress, "splitting", 0, baked.leaves.size());
   const std::vector<uint32_t> levels =
-      lay_out_scene(kd_layout(baked.leaves, baked.origin, workers), baked);
+      lay_out_scene(find_layout(baked.leaves, baked.origin, rule, workers, progress), baked);
   report(progress, "splitting", baked.leaves.size(), baked.leaves.size());
   summarise_levels(levels, baked, workers, progress);
   align_levels(levels, baked, workers, progress);

@@ -5,23 +5,19 @@
 
 namespace voyager {
 
-// Children of an interior node: a kd split by the median of the means along
-// the longest side of their bounds, twice. Four children halve the extent of
-// a surface, which is the octave that a child blends over (METHOD §4).
-inline constexpr uint32_t kChildren = 4;
-
 // Builds the tree over a sanitised cloud, which it takes over. Deterministic:
 // the same cloud gives the same tree whatever the number of threads. An empty
 // cloud gives an empty tree, a single Gaussian a single leaf. All
 // of the result comes from the cloud's memory resource. O(n log n) time.
 // Throws Error(refused_input) for coordinates that METHOD §3 excludes, scales
 // beyond kMaxLogScale, and more Gaussians than 32-bit node ids can name.
-BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& progress = {});
+BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& progress = {},
+                      const TreeRule& rule = {});
 
 // What build_tree() refuses of a cloud, for builders that never hold the whole: more
 // Gaussians than kMaxGaussians, and a mean beyond the coordinates of METHOD §3.
-// 0.36 of a merged Gaussian each (shape.h) still leaves node ids below kNoNode.
-inline constexpr uint64_t kMaxGaussians = 3'000'000'000;
+// As many merged Gaussians, of a tree of two children a node, leave node ids below kNoNode.
+inline constexpr uint64_t kMaxGaussians = 2'000'000'000;
 void check_count(uint64_t gaussians);
 void check_mean(size_t gaussian, const Vec3f& mean);
 

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 
-#include "runtime/lod/shape.h"
+#include "runtime/lod/baked_scene.h"
+#include "runtime/lod/summarise.h"
 
 namespace voyager {
 namespace {
@@ -23,26 +24,21 @@ constexpr uint32_t kSerialSize = 8192;  // Gaussians; a task below this costs mo
 
 class KdSorter {
  public:
-  KdSorter(const GaussianCloud& cloud, const std::array<double, 3>& origin)
-      : cloud_(cloud), origin_(origin) {}
+  KdSorter(const GaussianCloud& cloud, const std::array<double, 3>& origin, const KdRule& rule)
+      : cloud_(cloud), origin_(origin), rule_(rule) {}
 
-  void node(Entry* entries, uint32_t size) const {
-    if (size <= kChildren)
+  void sort(Entry* entries, uint32_t size) const {
+    if (size <= rule_.block) {
       std::sort(entries, entries + size,
                 [](const Entry& a, const Entry& b) { return a.index < b.index; });
-    else
-      split(entries, size, split_unit(size), 2);
-  }
-
- private:
-  void split(Entry* entries, uint32_t size, uint32_t unit, int times) const {
-    if (times == 0 || size <= unit) return node(entries, size);
-    const uint32_t lower = lower_part(size, unit);
+      return;
+    }
+    const uint32_t lower = lower_part(size, rule_);
     const int axis = longest_side(entries, size);
     for (uint32_t i = 0; i < size; ++i) entries[i].key = mean(entries[i])[axis];
     std::nth_element(entries, entries + lower, entries + size, before);
-    const auto low = [&] { split(entries, lower, unit, times - 1); };
-    const auto high = [&] { split(entries + lower, size - lower, unit, times - 1); };
+    const auto low = [&] { sort(entries, lower); };
+    const auto high = [&] { sort(entries + lower, size - lower); };
     if (size <= kSerialSize) {
       low();
       high();
@@ -55,15 +51,24 @@ class KdSorter {
     tbb::parallel_invoke([&] { guarded(low); }, [&] { guarded(high); });
   }
 
+ private:
   Vec3f mean(const Entry& entry) const { return local_mean(cloud_, entry.index, origin_); }
 
+  Box bounds(const Entry& entry) const {
+    const Vec3f m = mean(entry);
+    if (!rule_.boxes) return {m, m};
+    GaussianWords words = cloud_.words(entry.index);
+    words.mean = m;
+    return leaf_box(activate(words, true));
+  }
+
   int longest_side(const Entry* entries, uint32_t size) const {
-    Vec3f least = mean(entries[0]), most = least;
+    auto [least, most] = bounds(entries[0]);
     for (uint32_t i = 1; i < size; ++i) {
-      const Vec3f m = mean(entries[i]);
+      const Box box = bounds(entries[i]);
       for (int axis = 0; axis < 3; ++axis) {
-        least[axis] = std::min(least[axis], m[axis]);
-        most[axis] = std::max(most[axis], m[axis]);
+        least[axis] = std::min(least[axis], box.least[axis]);
+        most[axis] = std::max(most[axis], box.most[axis]);
       }
     }
     const Vec3f side = most - least;
@@ -72,18 +77,19 @@ class KdSorter {
 
   const GaussianCloud& cloud_;
   const std::array<double, 3>& origin_;
+  const KdRule& rule_;
 };
 
 }  // namespace
 
 std::vector<uint32_t> kd_order(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-                               Workers& workers) {
+                               const KdRule& rule, Workers& workers) {
   const uint32_t size = static_cast<uint32_t>(cloud.size());
   std::vector<Entry> entries(size);
   for (uint32_t i = 0; i < size; ++i) entries[i] = {0.0f, i};
   workers.run([&] {
     const FloatingPointMode mode;
-    KdSorter(cloud, origin).node(entries.data(), size);
+    KdSorter(cloud, origin, rule).sort(entries.data(), size);
   });
   std::vector<uint32_t> order(size);
   for (uint32_t i = 0; i < size; ++i) order[i] = entries[i].index;

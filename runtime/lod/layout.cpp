@@ -1,5 +1,7 @@
 #include "runtime/lod/layout.h"
 
+#include "runtime/lod/exposure.h"
+
 namespace voyager {
 namespace {
 
@@ -25,6 +27,8 @@ std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked)
   tree.parent.resize(nodes, kNoNode);
   baked.gaussian.resize(nodes);
   baked.axis_code.resize(nodes);
+  const bool exposed = !layout.exposure.empty();
+  if (exposed) baked.exposure.assign(nodes, 0.0f);
   std::vector<uint32_t> levels;
   uint32_t next = 1, level_end = 0, leaf = 0, merged = 0;
   for (uint32_t n = 0; n < nodes; ++n) {
@@ -34,8 +38,12 @@ std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked)
     }
     const uint32_t children = layout.child_count[n];
     tree.records[n].child_count = children;
-    baked.gaussian[n] = children == 0 ? layout.leaf[leaf++] : merged++;
-    if (children == 0) continue;
+    if (children == 0) {
+      if (exposed) baked.exposure[n] = static_cast<float>(exposure_of(layout.exposure[leaf]));
+      baked.gaussian[n] = layout.leaf[leaf++];
+      continue;
+    }
+    baked.gaussian[n] = merged++;
     tree.first_child[n] = next;
     for (uint32_t i = 0; i < children; ++i) tree.parent[next++] = n;
   }

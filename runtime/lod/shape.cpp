@@ -3,30 +3,38 @@
 namespace voyager {
 namespace {
 
-void split(uint32_t size, uint32_t unit, int times, Parts& parts) {
-  if (times == 0 || size <= unit) {
+void split(uint32_t size, const KdRule& rule, uint32_t times, Parts& parts) {
+  if (times == 0 || size <= rule.block) {
     parts.size[parts.count++] = size;
     return;
   }
-  const uint32_t lower = lower_part(size, unit);
-  split(lower, unit, times - 1, parts);
-  split(size - lower, unit, times - 1, parts);
+  const uint32_t lower = lower_part(size, rule);
+  split(lower, rule, times - 1, parts);
+  split(size - lower, rule, times - 1, parts);
+}
+
+void add_parts(Range range, uint32_t most, const KdRule& rule, std::vector<Range>& parts) {
+  if (range.size <= most) {
+    parts.push_back(range);
+    return;
+  }
+  const uint32_t lower = lower_part(range.size, rule);
+  add_parts({range.begin, lower}, most, rule, parts);
+  add_parts({range.begin + lower, range.size - lower}, most, rule, parts);
 }
 
 }  // namespace
 
-Parts split_in_parts(uint32_t size) {
+Parts split_in_parts(uint32_t size, const KdRule& rule) {
   Parts parts{};
-  split(size, split_unit(size), 2, parts);
+  split(size, rule, rule.splits, parts);
   return parts;
 }
 
-uint64_t count_nodes(uint32_t gaussians) {
-  if (gaussians <= 1) return gaussians;
-  const Parts parts = split_in_parts(gaussians);
-  uint64_t nodes = 1;
-  for (uint32_t i = 0; i < parts.count; ++i) nodes += count_nodes(parts.size[i]);
-  return nodes;
+std::vector<Range> parts_of(uint32_t size, uint32_t most, const KdRule& rule) {
+  std::vector<Range> parts;
+  if (size > 0) add_parts({0, size}, most, rule, parts);
+  return parts;
 }
 
 }  // namespace voyager

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "runtime/lod/build.h"
+#include "runtime/lod/shape.h"
+#include "runtime/lod/stand_in.h"
 
 namespace voyager {
 namespace {
@@ -14,8 +15,6 @@ void store(const GaussianWords& words, size_t i, GaussianCloud& cloud) {
   cloud.opacity[i] = words.opacity;
 }
 
-// The longest side of nested boxes never grows downwards: binary32
-// subtraction is monotone.
 void hull_of_children(uint32_t node, LodTree& tree) {
   NodeRecord& r = tree.records[node];
   const NodeRecord* child = &tree.records[tree.first_child[node]];
@@ -27,8 +26,57 @@ void hull_of_children(uint32_t node, LodTree& tree) {
       r.box_max[axis] = std::max(r.box_max[axis], child[i].box_max[axis]);
     }
   }
+}
+
+// HierarchicalGS's extent: of nested boxes it never grows downwards, since binary32 subtraction
+// is monotone.
+float longest_side(const NodeRecord& r) {
   const Vec3f side = r.box_max - r.box_min;
-  r.extent = std::max({side.x, side.y, side.z});
+  return std::max({side.x, side.y, side.z});
+}
+
+// A leaf blends with its parent over the last part of the octave that METHOD §4 gives them: as
+// itself it is exact, and every step towards its parent shows.
+constexpr float kLeafExtent = 0.9f;
+
+Group group_of(std::span<const MergeInput> children, std::span<Blob> blobs,
+               const MergeInput& parent, int coefficients) {
+  const float* colours[kChildren];
+  for (size_t i = 0; i < children.size(); ++i) {
+    blobs[i] = blob_of(children[i].gaussian);
+    colours[i] = children[i].sh;
+  }
+  Group group;
+  group.children = blobs.first(children.size());
+  group.parent = blob_of(parent.gaussian);
+  set_colours({colours, children.size()}, parent.sh, coefficients, group);
+  return group;
+}
+
+// Extent and opacity from what standing in for the children costs.
+void measure(uint32_t node, std::span<const MergeInput> children, BakedScene& baked) {
+  NodeRecord& r = baked.tree.records[node];
+  const uint32_t first = baked.tree.first_child[node];
+  float most = 0, extent = 0;
+  double exposure = 0, weights = 0;
+  for (uint32_t i = 0; i < r.child_count; ++i) {
+    const double weight = merge_weight(children[i].gaussian);
+    exposure += weight * baked.exposure[first + i];
+    weights += weight;
+    most = std::max(most, baked.exposure[first + i]);
+    if (!baked.tree.is_leaf(first + i))
+      extent = std::max(extent, baked.tree.records[first + i].extent);
+  }
+  baked.exposure[node] = weights > 0 ? static_cast<float>(exposure / weights) : most;
+  Blob blobs[kChildren];
+  const MergeInput parent = node_gaussian(node, baked);
+  const Group group = group_of(children, blobs, parent, baked.merged.coefficients());
+  const StandIn found = stand_in(group, baked.exposure[node]);
+  r.extent = std::max(extent, static_cast<float>(extent_of(found.pixel)));
+  baked.merged.opacity[baked.gaussian[node]] = static_cast<float>(found.opacity);
+  for (uint32_t i = 0; i < r.child_count; ++i)
+    if (baked.tree.is_leaf(first + i))
+      baked.tree.records[first + i].extent = kLeafExtent * r.extent;
 }
 
 }  // namespace
@@ -66,6 +114,10 @@ void summarise(uint32_t node, BakedScene& baked) {
   const int coefficients = baked.merged.coefficients();
   float* sh = baked.merged.sh.data() + index * size_t{3} * static_cast<size_t>(coefficients);
   store(merge({children, r.child_count}, coefficients, sh).words, index, baked.merged);
+  if (baked.kind == TreeKind::hierarchicalgs)
+    r.extent = longest_side(r);
+  else
+    measure(node, {children, r.child_count}, baked);
 }
 
 }  // namespace voyager

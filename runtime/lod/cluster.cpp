@@ -1,0 +1,241 @@
+#include "runtime/lod/cluster.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/lod/exposure.h"
+#include "runtime/lod/stand_in.h"
+
+namespace voyager {
+namespace {
+
+constexpr size_t kNeighbours = 8;
+// Of the pairs that a round finds, the better half are made: what is left finds better partners
+// among the new. Few nodes are paired at once.
+constexpr size_t kFewNodes = 16;
+
+struct Cluster {
+  Blob blob;
+  double weight;  // opacity times surface (METHOD §2); the sum of its children's
+  double exposure;
+  double pixel;  // from which on it stands in for its children
+  uint32_t child[2];
+};
+
+struct Pair {
+  double pixel;
+  uint32_t first, second;  // first < second
+
+  bool operator<(const Pair& other) const {
+    if (pixel != other.pixel) return pixel < other.pixel;
+    return first != other.first ? first < other.first : second < other.second;
+  }
+};
+
+class Clustering {
+ public:
+  Clustering(const GaussianCloud& cloud, const std::array<double, 3>& origin,
+             std::span<const uint32_t> leaves, std::span<const uint8_t> exposure)
+      : leaves_(leaves.size()), coefficients_(cloud.coefficients()) {
+    const size_t floats = size_t{3} * static_cast<size_t>(coefficients_);
+    clusters_.reserve(2 * leaves_);
+    colours_.resize(2 * leaves_ * floats);
+    for (size_t i = 0; i < leaves_; ++i) {
+      GaussianWords words = cloud.words(leaves[i]);
+      words.mean = local_mean(cloud, leaves[i], origin);
+      const Gaussian g = activate(words, true);
+      clusters_.push_back(
+          {blob_of(g), merge_weight(g), exposure_of(exposure[leaves[i]]), 0, {0, 0}});
+      std::copy_n(&cloud.sh[leaves[i] * floats], floats, colour(i));
+      active_.push_back(static_cast<uint32_t>(i));
+    }
+  }
+
+  std::vector<Cluster> run() {
+    while (active_.size() > 1) {
+      find_pairs();
+      join_pairs();
+    }
+    return std::move(clusters_);
+  }
+
+ private:
+  float* colour(size_t cluster) {
+    return &colours_[cluster * size_t{3} * static_cast<size_t>(coefficients_)];
+  }
+
+  double share_of(uint32_t first, uint32_t second) const {
+    const double total = clusters_[first].weight + clusters_[second].weight;
+    return total > 0 ? clusters_[first].weight / total : 0.5;
+  }
+
+  // METHOD §2 for two, and the error of it.
+  Cluster joined(uint32_t first, uint32_t second) {
+    const Cluster &a = clusters_[first], &b = clusters_[second];
+    const double share = share_of(first, second), other = 1 - share;
+    const Blob children[2] = {a.blob, b.blob};
+    Group group;
+    group.children = children;
+    group.parent.mean = share * a.blob.mean + other * b.blob.mean;
+    const Vec3d d = b.blob.mean - a.blob.mean;
+    int k = 0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = i; j < 3; ++j, ++k)
+        group.parent.covariance[k] = (share * a.blob.covariance[k] + other * b.blob.covariance[k]) +
+                                     share * other * (d[i] * d[j]);
+    set_colours(share, other, squared_colour_distance(colour(first), colour(second), coefficients_),
+                group);
+    // What is seen of either is wrong where the other's colour shows.
+    const StandIn found = stand_in(group, std::max(a.exposure, b.exposure));
+    Cluster cluster{group.parent,
+                    a.weight + b.weight,
+                    share * a.exposure + other * b.exposure,
+                    std::max({found.pixel, a.pixel, b.pixel}),
+                    {first, second}};
+    cluster.blob.opacity = found.opacity;
+    return cluster;
+  }
+
+  // Pairs each active cluster with its nearest few.
+  void find_pairs() {
+    pairs_.clear();
+    const size_t count = active_.size();
+    x_.resize(count);
+    y_.resize(count);
+    z_.resize(count);
+    distance_.resize(count);
+    const Vec3d& centre = clusters_[active_[0]].blob.mean;
+    for (size_t i = 0; i < count; ++i) {
+      const Vec3d mean = clusters_[active_[i]].blob.mean - centre;
+      x_[i] = static_cast<float>(mean.x);
+      y_[i] = static_cast<float>(mean.y);
+      z_[i] = static_cast<float>(mean.z);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      for (size_t j = 0; j < count; ++j) {
+        const float x = x_[j] - x_[i], y = y_[j] - y_[i], z = z_[j] - z_[i];
+        distance_[j] = (x * x + y * y) + z * z;
+      }
+      add_nearest(static_cast<uint32_t>(i));
+    }
+    std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+      return a.first != b.first ? a.first < b.first : a.second < b.second;
+    });
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end(),
+                             [](const Pair& a, const Pair& b) {
+                               return a.first == b.first && a.second == b.second;
+                             }),
+                 pairs_.end());
+    for (Pair& pair : pairs_) pair.pixel = joined(pair.first, pair.second).pixel;
+    std::sort(pairs_.begin(), pairs_.end());
+  }
+
+  void add_nearest(uint32_t i) {
+    float near[kNeighbours];
+    uint32_t at[kNeighbours];
+    size_t found = 0;
+    for (uint32_t j = 0; j < distance_.size(); ++j) {
+      const float d = distance_[j];
+      if (j == i || (found == kNeighbours && !(d < near[found - 1]))) continue;
+      size_t k = found < kNeighbours ? found++ : found - 1;
+      for (; k > 0 && d < near[k - 1]; --k) {
+        near[k] = near[k - 1];
+        at[k] = at[k - 1];
+      }
+      near[k] = d;
+      at[k] = j;
+    }
+    for (size_t k = 0; k < found; ++k) {
+      const uint32_t a = active_[i], b = active_[at[k]];
+      pairs_.push_back({0, std::min(a, b), std::max(a, b)});
+    }
+  }
+
+  void join_pairs() {
+    taken_.assign(clusters_.size(), false);
+    size_t chosen = 0;
+    for (const Pair& pair : pairs_) {
+      if (taken_[pair.first] || taken_[pair.second]) continue;
+      taken_[pair.first] = taken_[pair.second] = true;
+      pairs_[chosen++] = pair;
+    }
+    const size_t made = active_.size() <= kFewNodes ? chosen : (chosen + 1) / 2;
+    taken_.assign(clusters_.size(), false);
+    std::vector<uint32_t> next;
+    for (size_t i = 0; i < made; ++i) {
+      const auto [pixel, first, second] = pairs_[i];
+      taken_[first] = taken_[second] = true;
+      next.push_back(static_cast<uint32_t>(clusters_.size()));
+      const Cluster cluster = joined(first, second);
+      const double share = share_of(first, second);
+      float* sum = colour(clusters_.size());
+      for (int k = 0; k < 3 * coefficients_; ++k)
+        sum[k] = static_cast<float>(share * colour(first)[k] + (1 - share) * colour(second)[k]);
+      clusters_.push_back(cluster);
+    }
+    for (const uint32_t cluster : active_)
+      if (!taken_[cluster]) next.push_back(cluster);
+    std::sort(next.begin(), next.end());
+    active_ = std::move(next);
+  }
+
+  size_t leaves_;
+  int coefficients_;
+  std::vector<Cluster> clusters_;
+  std::vector<float> colours_;
+  std::vector<uint32_t> active_;
+  std::vector<Pair> pairs_;
+  std::vector<bool> taken_;
+  std::vector<float> x_, y_, z_, distance_;
+};
+
+// Nodes with up to four children: of a cluster's, those that it hardly outlasts make way for
+// their own.
+class Flattening {
+ public:
+  Flattening(const std::vector<Cluster>& clusters, size_t leaves)
+      : clusters_(clusters), leaves_(leaves) {
+    tree_.nodes.resize(leaves);
+  }
+
+  ClusterTree run() {
+    add(static_cast<uint32_t>(clusters_.size() - 1));
+    return std::move(tree_);
+  }
+
+ private:
+  uint32_t add(uint32_t cluster) {
+    if (cluster < leaves_) return cluster;
+    uint32_t child[4] = {clusters_[cluster].child[0], clusters_[cluster].child[1]};
+    uint32_t count = 2;
+    while (count < 4) {
+      uint32_t widest = count;
+      for (uint32_t i = 0; i < count; ++i)
+        if (child[i] >= leaves_ &&
+            (widest == count || clusters_[child[i]].pixel > clusters_[child[widest]].pixel))
+          widest = i;
+      if (widest == count) break;
+      const Cluster& gone = clusters_[child[widest]];
+      child[widest] = gone.child[0];
+      child[count++] = gone.child[1];
+    }
+    ClusterTree::Node node{{}, count};
+    for (uint32_t i = 0; i < count; ++i) node.child[i] = add(child[i]);
+    tree_.nodes.push_back(node);
+    return static_cast<uint32_t>(tree_.nodes.size() - 1);
+  }
+
+  const std::vector<Cluster>& clusters_;
+  size_t leaves_;
+  ClusterTree tree_;
+};
+
+}  // namespace
+
+ClusterTree cluster(const GaussianCloud& cloud, const std::array<double, 3>& origin,
+                    std::span<const uint32_t> leaves, std::span<const uint8_t> exposure) {
+  const std::vector<Cluster> clusters = Clustering(cloud, origin, leaves, exposure).run();
+  return Flattening(clusters, leaves.size()).run();
+}
+
+}  // namespace voyager

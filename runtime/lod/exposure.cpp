@@ -1,0 +1,158 @@
+#include "runtime/lod/exposure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "runtime/lod/stand_in.h"
+
+namespace voyager {
+namespace {
+
+constexpr int kDirections = 12;
+constexpr int kSide = 256;         // pixels
+constexpr double kOutside = 0.02;  // of the means, that may lie beyond the picture on a side
+constexpr float kLowPass = 0.3f;   // pixels², METHOD §5
+constexpr float kThreshold = 255;  // 1 / α*
+constexpr float kLargest = 0.99f;  // α, METHOD §6
+
+struct View {
+  Vec3d forward, right, down;
+};
+
+// Even over the sphere: a Fibonacci lattice.
+View view_of(int index) {
+  const double golden = 2.399963229728653;  // π(3 − √5)
+  const double z = 1 - 2 * (index + 0.5) / kDirections, r = std::sqrt(1 - z * z);
+  const Vec3d f{r * std::cos(golden * index), r * std::sin(golden * index), z};
+  const Vec3d up = std::fabs(f.z) < 0.9 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
+  const auto cross = [](const Vec3d& a, const Vec3d& b) {
+    return Vec3d{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  };
+  const Vec3d c = cross(f, up);
+  const Vec3d right = (1 / std::sqrt(dot(c, c))) * c;
+  return {f, right, cross(f, right)};
+}
+
+// e^(-d/2) to 0.04, enough to tell what hides what: it is cheap, and vectors do it.
+float falloff(float d) {
+  const float x = 1 - d * (1.0f / 16), x2 = x * x, x4 = x2 * x2;
+  return x4 * x4;
+}
+
+class Exposures {
+ public:
+  Exposures(const GaussianCloud& cloud, const std::array<double, 3>& origin,
+            std::span<const uint32_t> leaves)
+      : seen_(leaves.size()), x_(leaves.size()), y_(leaves.size()), z_(leaves.size()) {
+    for (const uint32_t leaf : leaves) {
+      GaussianWords words = cloud.words(leaf);
+      words.mean = local_mean(cloud, leaf, origin);
+      blobs_.push_back(blob_of(activate(words, true)));
+    }
+  }
+
+  const std::vector<double>& run() {
+    for (int i = 0; i < kDirections; ++i) look(view_of(i));
+    return seen_;
+  }
+
+ private:
+  void look(const View& view) {
+    for (size_t i = 0; i < blobs_.size(); ++i) {
+      x_[i] = dot(view.right, blobs_[i].mean);
+      y_[i] = dot(view.down, blobs_[i].mean);
+      z_[i] = dot(view.forward, blobs_[i].mean);
+    }
+    const auto [x0, x1] = middle(x_);
+    const auto [y0, y1] = middle(y_);
+    const double side = std::max({x1 - x0, y1 - y0, 1e-6});
+    pixel_ = side / kSide;
+    left_ = (x0 + x1) / 2 - side / 2;
+    top_ = (y0 + y1) / 2 - side / 2;
+    order_.resize(blobs_.size());
+    std::iota(order_.begin(), order_.end(), 0u);
+    std::sort(order_.begin(), order_.end(),
+              [&](uint32_t a, uint32_t b) { return z_[a] < z_[b] || (z_[a] == z_[b] && a < b); });
+    transmittance_.assign(size_t{kSide} * kSide, 1.0f);
+    for (const uint32_t i : order_) draw(i, view);
+  }
+
+  // Where all but kOutside of the values at each end are.
+  std::pair<double, double> middle(const std::vector<double>& values) {
+    sorted_ = values;
+    const auto skipped = static_cast<std::ptrdiff_t>(kOutside * static_cast<double>(values.size()));
+    const auto low = sorted_.begin() + skipped, high = sorted_.end() - 1 - skipped;
+    std::nth_element(sorted_.begin(), low, sorted_.end());
+    const double least = *low;
+    std::nth_element(sorted_.begin(), high, sorted_.end());
+    return {least, *high};
+  }
+
+  void draw(uint32_t i, const View& view) {
+    const Blob& blob = blobs_[i];
+    const auto opacity = static_cast<float>(blob.opacity);
+    const float reach = 2 * std::log(kThreshold * opacity);
+    if (!(reach > 0)) return;
+    const auto across = [&](const Vec3d& a, const Vec3d& b) {
+      const double* c = blob.covariance;
+      const Vec3d cb{(c[0] * b.x + c[1] * b.y) + c[2] * b.z, (c[1] * b.x + c[3] * b.y) + c[4] * b.z,
+                     (c[2] * b.x + c[4] * b.y) + c[5] * b.z};
+      return dot(a, cb) / (pixel_ * pixel_);
+    };
+    const double xx = across(view.right, view.right) + kLowPass;
+    const double xy = across(view.right, view.down);
+    const double yy = across(view.down, view.down) + kLowPass;
+    const double det = std::max(xx * yy - xy * xy, 1e-14 * xx * yy);
+    const double u = (x_[i] - left_) / pixel_, v = (y_[i] - top_) / pixel_;
+    const int begin_x = first(u, std::sqrt(reach * xx)), end_x = last(u, std::sqrt(reach * xx));
+    const int begin_y = first(v, std::sqrt(reach * yy)), end_y = last(v, std::sqrt(reach * yy));
+    const auto a = static_cast<float>(yy / det), b = static_cast<float>(-2 * xy / det),
+               c = static_cast<float>(xx / det);
+    float covered = 0, through = 0;
+    for (int y = begin_y; y < end_y; ++y) {
+      const auto dy = static_cast<float>(y + 0.5 - v);
+      float* row = &transmittance_[static_cast<size_t>(y) * kSide];
+      const auto from = static_cast<float>(0.5 - u);
+      for (int x = begin_x; x < end_x; ++x) {
+        const float dx = static_cast<float>(x) + from;
+        const float d = (a * dx * dx + b * dx * dy) + c * dy * dy;
+        alpha_[x] = d < reach ? std::min(kLargest, opacity * falloff(d)) : 0.0f;
+      }
+      for (int x = begin_x; x < end_x; ++x) {
+        covered += alpha_[x];
+        through += alpha_[x] * row[x] * row[x];
+      }
+      for (int x = begin_x; x < end_x; ++x) row[x] *= 1 - alpha_[x];
+    }
+    if (covered > 0) seen_[i] += through / covered / kDirections;
+  }
+
+  static int first(double centre, double reach) {
+    return static_cast<int>(std::clamp(std::floor(centre - reach), 0.0, double{kSide}));
+  }
+  static int last(double centre, double reach) {
+    return static_cast<int>(std::clamp(std::ceil(centre + reach), 0.0, double{kSide}));
+  }
+
+  std::vector<Blob> blobs_;
+  std::vector<double> seen_, x_, y_, z_, sorted_;
+  std::vector<uint32_t> order_;
+  std::vector<float> transmittance_;
+  float alpha_[kSide];
+  double pixel_ = 0, left_ = 0, top_ = 0;
+};
+
+}  // namespace
+
+void find_exposure(const GaussianCloud& cloud, const std::array<double, 3>& origin,
+                   std::span<const uint32_t> leaves, std::span<uint8_t> exposure) {
+  Exposures exposures(cloud, origin, leaves);
+  const std::vector<double>& seen = exposures.run();
+  for (size_t i = 0; i < leaves.size(); ++i) {
+    const double steps = std::floor(255 * std::sqrt(seen[i]) + 0.5);
+    exposure[leaves[i]] = static_cast<uint8_t>(std::clamp(steps, double{kLeastExposure}, 255.0));
+  }
+}
+
+}  // namespace voyager

@@ -1,0 +1,135 @@
+#include "runtime/lod/find_layout.h"
+
+#include <mutex>
+
+#include "runtime/lod/cluster.h"
+#include "runtime/lod/exposure.h"
+#include "runtime/lod/kd_order.h"
+#include "runtime/lod/shape.h"
+
+namespace voyager {
+namespace {
+
+// The blocks of a clustered tree, in kd order.
+struct Clusters {
+  std::vector<uint8_t> exposure;  // by Gaussian
+  std::vector<ClusterTree> trees;
+};
+
+// Visits nodes depth-first, as the order has their Gaussians: the nodes of one level are
+// then met in the order that they have breadth-first.
+class LayoutWriter {
+ public:
+  LayoutWriter(const std::vector<uint32_t>& order, const KdRule& rule, const Clusters& clusters)
+      : order_(order), rule_(rule), clusters_(clusters) {}
+
+  void visit(uint32_t size, size_t level = 0) {
+    if (size <= rule_.block) return visit_block(size, level);
+    const Parts parts = split_in_parts(size, rule_);
+    add_node(parts.count, level);
+    for (uint32_t i = 0; i < parts.count; ++i) visit(parts.size[i], level + 1);
+  }
+
+  TreeLayout joined() {
+    TreeLayout layout;
+    size_t nodes = 0;
+    for (const TreeLayout& level : levels_) nodes += level.child_count.size();
+    layout.child_count.reserve(nodes);
+    layout.leaf.reserve(order_.size());
+    for (TreeLayout& level : levels_) {
+      append(level.child_count, layout.child_count);
+      append(level.leaf, layout.leaf);
+      append(level.exposure, layout.exposure);
+      level = {};
+    }
+    return layout;
+  }
+
+ private:
+  template <class T>
+  static void append(const std::vector<T>& from, std::vector<T>& to) {
+    to.insert(to.end(), from.begin(), from.end());
+  }
+
+  void visit_block(uint32_t size, size_t level) {
+    if (clusters_.trees.empty()) return add_leaf(order_[visited_++], level);
+    const ClusterTree& tree = clusters_.trees[block_++];
+    visit_cluster(tree, static_cast<uint32_t>(tree.nodes.size() - 1), level);
+    visited_ += size;
+  }
+
+  void visit_cluster(const ClusterTree& tree, uint32_t index, size_t level) {
+    const ClusterTree::Node& node = tree.nodes[index];
+    if (node.children == 0) return add_leaf(order_[visited_ + index], level);
+    add_node(node.children, level);
+    for (uint32_t i = 0; i < node.children; ++i) visit_cluster(tree, node.child[i], level + 1);
+  }
+
+  TreeLayout& at(size_t level) {
+    if (level == levels_.size()) levels_.emplace_back();
+    return levels_[level];
+  }
+
+  void add_node(uint32_t children, size_t level) {
+    at(level).child_count.push_back(static_cast<uint8_t>(children));
+  }
+
+  void add_leaf(uint32_t gaussian, size_t level) {
+    add_node(0, level);
+    at(level).leaf.push_back(gaussian);
+    if (!clusters_.exposure.empty()) at(level).exposure.push_back(clusters_.exposure[gaussian]);
+  }
+
+  const std::vector<uint32_t>& order_;
+  const KdRule& rule_;
+  const Clusters& clusters_;
+  size_t visited_ = 0, block_ = 0;
+  std::vector<TreeLayout> levels_;
+};
+
+Clusters find_clusters(const GaussianCloud& cloud, const std::array<double, 3>& origin,
+                       const std::vector<uint32_t>& order, const TreeRule& rule, Workers& workers,
+                       const Progress& progress) {
+  const auto size = static_cast<uint32_t>(order.size());
+  const KdRule kd = kd_rule(rule);
+  Clusters clusters;
+  std::mutex telling;
+  uint64_t done = 0;
+  const auto tell = [&](uint32_t gaussians) {
+    const std::lock_guard lock(telling);
+    report(progress, "clustering", done += gaussians, uint64_t{2} * size);
+  };
+  const auto for_parts = [&](uint32_t most, const auto& body) {
+    const std::vector<Range> parts = parts_of(size, most, kd);
+    clusters.trees.resize(parts.size());
+    workers.for_blocks(parts.size(), 1, [&](size_t i, size_t) {
+      body(i, std::span(order).subspan(parts[i].begin, parts[i].size));
+      tell(parts[i].size);
+    });
+  };
+  clusters.exposure.resize(size);
+  for_parts(rule.exposure_block, [&](size_t, std::span<const uint32_t> leaves) {
+    find_exposure(cloud, origin, leaves, clusters.exposure);
+  });
+  for_parts(rule.block, [&](size_t i, std::span<const uint32_t> leaves) {
+    clusters.trees[i] = cluster(cloud, origin, leaves, clusters.exposure);
+  });
+  return clusters;
+}
+
+}  // namespace
+
+TreeLayout find_layout(const GaussianCloud& cloud, const std::array<double, 3>& origin,
+                       const TreeRule& rule, Workers& workers, const Progress& progress) {
+  if (cloud.size() == 0) return {};
+  const KdRule kd = kd_rule(rule);
+  const std::vector<uint32_t> order = kd_order(cloud, origin, kd, workers);
+  Clusters clusters;
+  if (rule.kind == TreeKind::clustered)
+    clusters = find_clusters(cloud, origin, order, rule, workers, progress);
+  LayoutWriter writer(order, kd, clusters);
+  writer.visit(static_cast<uint32_t>(order.size()));
+  return writer.joined();
+}
+
+}  // namespace voyager

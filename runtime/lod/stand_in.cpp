@@ -1,0 +1,136 @@
+#include "runtime/lod/stand_in.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace voyager {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kLowPass = 0.3;     // pixels², METHOD §5
+constexpr double kTolerance = 0.03;  // code values × pixels, at kReferenceTau
+constexpr double kExtentOfPixel = 2 * kReferenceTau + 1;
+// How much what is behind a group differs from it: a lack of coverage shows that.
+constexpr double kContrast = 0.2;  // code values
+constexpr double kCoverage = 3 * kContrast * kContrast;
+constexpr int kRefinements = 4;
+constexpr double kLargestPixel = 1e29;  // metres; an extent stays finite in binary32
+
+// A Gaussian seen along an axis.
+struct Footprint {
+  double u, v;        // centre
+  double uu, uv, vv;  // covariance, blurred
+  double determinant;
+};
+
+constexpr int kAxes = 3;
+constexpr int kAcross[kAxes][2] = {{1, 2}, {0, 2}, {0, 1}};
+constexpr int kCovarianceAt[kAxes][3] = {{3, 4, 5}, {0, 2, 5}, {0, 1, 3}};
+
+double determinant(double uu, double uv, double vv) {
+  // Of a disc seen from its side what is left by cancellation is noise of either sign.
+  return std::max(uu * vv - uv * uv, 1e-14 * uu * vv);
+}
+
+Footprint footprint(const Blob& blob, const Vec3d& centre, int axis, double blur) {
+  const int* at = kCovarianceAt[axis];
+  const int u = kAcross[axis][0], v = kAcross[axis][1];
+  Footprint f{blob.mean[u] - centre[u],      blob.mean[v] - centre[v],
+              blob.covariance[at[0]] + blur, blob.covariance[at[1]],
+              blob.covariance[at[2]] + blur, 0};
+  f.determinant = determinant(f.uu, f.uv, f.vv);
+  return f;
+}
+
+// ∫ G_a G_b over the plane.
+double overlap(const Footprint& a, const Footprint& b) {
+  const double uu = a.uu + b.uu, uv = a.uv + b.uv, vv = a.vv + b.vv;
+  const double sum = determinant(uu, uv, vv);
+  const double u = a.u - b.u, v = a.v - b.v;
+  const double distance = ((vv * u * u - 2 * uv * u * v) + uu * v * v) / sum;
+  if (!(distance < 1000)) return 0;
+  return 2 * kPi * std::sqrt(a.determinant / sum * b.determinant) * std::exp(-0.5 * distance);
+}
+
+struct Error {
+  double error;  // m², squared code values
+  double opacity;
+};
+
+Error error_at(const Group& group, double pixel) {
+  const double blur = kLowPass * pixel * pixel;
+  const size_t count = group.children.size();
+  double error = 0, covered = 0, own = 0;
+  for (int axis = 0; axis < kAxes; ++axis) {
+    Footprint child[kChildren];
+    const Footprint parent = footprint(group.parent, group.parent.mean, axis, blur);
+    for (size_t i = 0; i < count; ++i)
+      child[i] = footprint(group.children[i], group.parent.mean, axis, blur);
+    for (size_t i = 0; i < count; ++i) {
+      covered += group.children[i].opacity * overlap(child[i], parent);
+      for (size_t j = i; j < count; ++j)
+        error += (i == j ? 1 : 2) * group.children[i].opacity * group.children[j].opacity *
+                 overlap(child[i], child[j]) * (group.colours[i][j] + kCoverage);
+    }
+    own += overlap(parent, parent);
+  }
+  if (!(own > 0)) return {0, 0};
+  return {std::max(error - kCoverage * covered * covered / own, 0.0) / kAxes, covered / own};
+}
+
+}  // namespace
+
+Blob blob_of(const Gaussian& gaussian) {
+  const Moments m = moments({{MergeInput{gaussian, nullptr}}});
+  Blob blob{m.mean, {}, gaussian.opacity};
+  std::copy_n(m.covariance, 6, blob.covariance);
+  return blob;
+}
+
+void set_colours(double first_share, double second_share, double squared_distance, Group& group) {
+  group.colours[0][0] = second_share * second_share * squared_distance;
+  group.colours[0][1] = -first_share * second_share * squared_distance;
+  group.colours[1][1] = first_share * first_share * squared_distance;
+}
+
+void set_colours(std::span<const float* const> children, const float* parent, int coefficients,
+                 Group& group) {
+  for (size_t i = 0; i < children.size(); ++i)
+    for (size_t j = i; j < children.size(); ++j) {
+      double sum = 0;
+      for (int k = 0; k < 3 * coefficients; ++k)
+        sum += (double{children[i][k]} - parent[k]) * (double{children[j][k]} - parent[k]);
+      group.colours[i][j] = sum / (4 * kPi);
+    }
+}
+
+double squared_colour_distance(const float* a, const float* b, int coefficients) {
+  double sum = 0;
+  for (int k = 0; k < 3 * coefficients; ++k) {
+    const double d = double{a[k]} - b[k];
+    sum += d * d;
+  }
+  return sum / (4 * kPi);
+}
+
+StandIn stand_in(const Group& group, double exposure) {
+  const double* c = group.parent.covariance;
+  const double reach = std::sqrt(c[0] + c[3] + c[5]);
+  const double spared = std::max<double>(1, static_cast<double>(group.children.size()) - 1);
+  const double scale = exposure / (std::sqrt(spared) * kTolerance * kExtentOfPixel);
+  const auto tolerated = [&](double pixel) {
+    return std::sqrt(error_at(group, std::max(pixel, 1e-4 * reach)).error) * scale;
+  };
+  // A fixed point: what a pixel of that size leaves of the error asks for that size. Halving the
+  // step keeps it from swinging, since a larger pixel leaves less.
+  double pixel = tolerated(0);
+  for (int i = 0; i < kRefinements; ++i) pixel = std::sqrt(pixel * tolerated(pixel));
+  pixel = std::min(pixel, kLargestPixel);
+  return {pixel, error_at(group, std::max(pixel, 1e-4 * reach)).opacity};
+}
+
+double extent_of(double pixel) {
+  return kExtentOfPixel * pixel;
+}
+
+}  // namespace voyager
