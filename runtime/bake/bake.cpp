@@ -17,6 +17,10 @@ uint64_t word_bytes(int sh_degree) {
   return (3 + other_floats(sh_degree)) * sizeof(float);
 }
 
+uint32_t largest_of(const std::vector<uint32_t>& sizes) {
+  return *std::max_element(sizes.begin(), sizes.end());
+}
+
 std::string megabytes(uint64_t bytes) {
   return std::to_string(bytes / 1000000 + 1) + " MB";
 }
@@ -35,11 +39,13 @@ class Baker {
     if (!folder_.has(kSplitDone) && !split()) return bake_whole();
     split_ = read_split_info(folder_);
     for (const char* name : {kPositionRows, kOtherRows, kSpoolDone}) folder_.drop(name);
-    const BakePlan plan(split_.spool.gaussians, split_.cell_level, bake_.chunk_bytes);
-    if (bake_.step == BakeStep::split) return summary(plan);
-    if (bake_.step != BakeStep::encode) build_cells(plan);
-    if (bake_.step == BakeStep::cells) return summary(plan);
-    require_all_built(plan);
+    if (bake_.step == BakeStep::split) return summary();
+    if (bake_.step != BakeStep::encode) build_cells();
+    if (bake_.step == BakeStep::cells) return summary();
+    require_all_built();
+    const BakePlan plan(
+        split_.cell_level, bake_.chunk_bytes,
+        [&](uint32_t cell) { return read_cell_shape(cell, folder_); }, workers_);
     const BakedScene top = build_top(split_, plan, folder_, workers_);
     encode_cells(plan, top);
     if (bake_.step == BakeStep::encode) return summary(plan);
@@ -67,18 +73,17 @@ class Baker {
     const bool spooled = folder_.has(kSpoolDone);
     if (bake_.step == BakeStep::cells || bake_.step == BakeStep::encode ||
         bake_.step == BakeStep::merge)
-      if (!spooled || BakePlan::deepest_level(read_spool_info(folder_).gaussians) != 0)
+      if (!spooled || deepest_cell_level(read_spool_info(folder_).gaussians) != 0)
         throw Error(ErrorCode::invalid_argument,
                     folder_.path() + ": found no finished split, expected --step split before");
     const SpoolInfo spool = spooled ? read_spool_info(folder_) : read_inputs();
     const uint32_t level = choose_level(spool);
     if (level == 0) return false;
-    const BakePlan plan(spool.gaussians, level, bake_.chunk_bytes);
     const std::array<double, 3> origin = origin_of(spool, folder_);
     const SplitTree tree =
-        find_medians(spool, plan, folder_, origin, bake_.memory / 2, workers_, progress_);
+        find_medians(spool, level, folder_, origin, bake_.memory / 2, workers_, progress_);
     in_space(spool.gaussians * (word_bytes(spool.sh_degree) + 4), "sorting the Gaussians", [&] {
-      distribute(spool, plan, tree, origin, folder_, bake_.memory / 2, workers_, progress_);
+      distribute(spool, tree, origin, folder_, bake_.memory / 2, workers_, progress_);
     });
     return true;
   }
@@ -101,10 +106,10 @@ class Baker {
 
   // As few cells as keep all threads busy and fit into the memory.
   uint32_t choose_level(const SpoolInfo& spool) {
-    const uint32_t deepest = BakePlan::deepest_level(spool.gaussians);
+    const uint32_t deepest = deepest_cell_level(spool.gaussians);
     const auto threads = static_cast<uint64_t>(workers_.count());
     for (uint32_t level = 1; level <= deepest; ++level) {
-      const uint64_t largest = BakePlan::largest_cell(spool.gaussians, level);
+      const uint64_t largest = largest_of(cell_sizes(spool.gaussians, level));
       if (bake_.most_in_cell != 0) {
         if (largest <= bake_.most_in_cell || level == deepest) return level;
         continue;
@@ -119,8 +124,8 @@ class Baker {
     return bake_.memory / 5 * 3 / bytes_to_bake(largest_cell, sh_degree);
   }
 
-  size_t lanes(const BakePlan& plan) {
-    const uint64_t largest = BakePlan::largest_cell(plan.gaussians(), plan.cell_level());
+  size_t lanes() {
+    const uint64_t largest = largest_of(split_.cell_sizes);
     const uint64_t fit = cells_at_once(largest, split_.spool.sh_degree);
     if (fit == 0 && bake_.most_in_cell == 0)
       throw Error(ErrorCode::over_budget,
@@ -133,27 +138,30 @@ class Baker {
   }
 
   // The cells of this part that have no file of that name.
-  std::vector<uint32_t> cells_without(const BakePlan& plan, std::string (*name)(uint32_t)) const {
+  std::vector<uint32_t> cells_without(std::string (*name)(uint32_t)) const {
     std::vector<uint32_t> cells;
-    const uint64_t begin = uint64_t{plan.cells()} * bake_.part / bake_.parts;
-    const uint64_t end = uint64_t{plan.cells()} * (bake_.part + 1) / bake_.parts;
+    const uint64_t begin = uint64_t{split_.cells()} * bake_.part / bake_.parts;
+    const uint64_t end = uint64_t{split_.cells()} * (bake_.part + 1) / bake_.parts;
     for (uint64_t cell = begin; cell < end; ++cell)
       if (!folder_.has(name(static_cast<uint32_t>(cell))))
         cells.push_back(static_cast<uint32_t>(cell));
     return cells;
   }
 
-  void build_cells(const BakePlan& plan) {
-    const std::vector<uint32_t> cells = cells_without(plan, cell_tree_name);
-    in_space(cells.size() * uint64_t{sizeof(NodeRow)} + plan.gaussians() * 4, "orders of cells",
-             [&] {
-               for_cells(cells, lanes(plan), workers_, progress_, "merging",
-                         [&](uint32_t cell) { build_cell(split_, plan, cell, folder_, workers_); });
-             });
+  void build_cells() {
+    const std::vector<uint32_t> cells = cells_without(cell_tree_name);
+    // A child count a node and an index a leaf; the topmost nodes of each cell.
+    const uint64_t bytes = split_.spool.gaussians * uint64_t{6} +
+                           cells.size() * (1 + kChildren) * uint64_t{sizeof(NodeRow)};
+    in_space(bytes, "layouts of cells", [&] {
+      for_cells(cells, lanes(), workers_, progress_, "merging", [&](uint32_t cell) {
+        build_cell(split_, cell, bake_.lay_out_cell, folder_, workers_);
+      });
+    });
   }
 
-  void require_all_built(const BakePlan& plan) const {
-    for (uint32_t cell = 0; cell < plan.cells(); ++cell)
+  void require_all_built() const {
+    for (uint32_t cell = 0; cell < split_.cells(); ++cell)
       if (!folder_.has(cell_tree_name(cell)))
         throw Error(ErrorCode::invalid_argument, folder_.path() + ": found no tree of cell " +
                                                      std::to_string(cell) +
@@ -161,10 +169,10 @@ class Baker {
   }
 
   void encode_cells(const BakePlan& plan, const BakedScene& top) {
-    const std::vector<uint32_t> cells = cells_without(plan, cell_chunks_name);
+    const std::vector<uint32_t> cells = cells_without(cell_chunks_name);
     // The rows of each cell go when its chunks are there: those in work are what is more.
-    const uint64_t largest = BakePlan::largest_cell(plan.gaussians(), plan.cell_level());
-    const size_t at_once = lanes(plan);
+    const uint64_t largest = largest_of(split_.cell_sizes);
+    const size_t at_once = lanes();
     in_space(std::min(at_once, cells.size()) * largest * 2 * word_bytes(split_.spool.sh_degree),
              "chunks of cells", [&] {
                for_cells(cells, at_once, workers_, progress_, "encoding", [&](uint32_t cell) {
@@ -228,10 +236,19 @@ class Baker {
     return cloud;
   }
 
+  BakeSummary summary() const {
+    BakeSummary result;
+    result.gaussians = split_.spool.gaussians;
+    result.import = split_.spool.import;
+    result.cells = split_.cells();
+    return result;
+  }
   BakeSummary summary(const BakePlan& plan) const {
-    const Tiers tiers = plan.tiers();
-    return {plan.gaussians(),   tiers.node_count(),  tiers.tier_begin.back(),
-            plan.chunk_count(), split_.spool.import, plan.cells()};
+    BakeSummary result = summary();
+    result.nodes = plan.tiers().node_count();
+    result.subtrees = plan.tiers().tier_begin.back();
+    result.chunks = plan.chunk_count();
+    return result;
   }
 
   const BakeInParts& bake_;
@@ -245,7 +262,7 @@ class Baker {
 }  // namespace
 
 uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree) {
-  // Words of leaves and of 0.36 merged Gaussians, 45 bytes a node, order and sources;
+  // Words of leaves and of 0.36 merged Gaussians, 45 bytes a node, layout and sources;
   // the rest is what is encoded and what allocators keep.
   return gaussians * (word_bytes(sh_degree) * 3 / 2 + 100);
 }

@@ -4,11 +4,13 @@
 // from a work folder in which it goes on after a kill at any moment (docs/baking.md).
 //
 //   split    inputs -> spool -> splits above the cells -> rows of each cell
-//   cells    rows of a cell -> its tree, merged (each cell alone)
-//   encode   roots of all cells -> the top; rows and top -> chunks of a cell (each alone)
+//   cells    rows of a cell -> the layout of its tree, its topmost nodes (each cell alone)
+//   encode   layouts of all cells -> the plan; their roots -> the top; of a cell rows,
+//            layout and top -> chunks (each alone)
 //   merge    top and chunks of all cells -> scene.voy
-#include "runtime/bake/spool.h"
+#include "runtime/bake/cell_tree.h"
 #include "runtime/format/layout.h"
+#include "runtime/lod/kd_layout.h"
 
 namespace voyager {
 
@@ -27,10 +29,14 @@ struct BakeInParts {
   BakeStep step = BakeStep::all;
   uint32_t part = 0, parts = 1;
   uint32_t most_in_cell = 0;  // Gaussians; 0: what memory and threads ask for
+  // Of each cell. With kd_layout() the tree is build_tree()'s; another is to be told in
+  // the request.
+  LayOutCell lay_out_cell = kd_layout;
 };
 
 struct BakeSummary {
-  uint64_t gaussians = 0, nodes = 0, subtrees = 0, chunks = 0;
+  uint64_t gaussians = 0;
+  uint64_t nodes = 0, subtrees = 0, chunks = 0;  // 0 until all cells are built
   ImportReport import;
   uint32_t cells = 0;  // 0: baked in one piece
 };

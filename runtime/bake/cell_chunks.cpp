@@ -72,7 +72,7 @@ ChunkContext encoding_context(const SplitInfo& split, Quality quality) {
 
 void encode_cell(const SplitInfo& split, const BakePlan& plan, const BakedScene& top,
                  Quality quality, uint32_t cell, const WorkFolder& folder, Workers& workers) {
-  CellTree tree = rebuild_cell(split, plan, cell, folder, workers);
+  CellTree tree = rebuild_cell(split, cell, folder, workers);
   align_cell(top, plan, cell, tree, workers);
   const ChunkContext context = encoding_context(split, quality);
   const auto level = [&](uint32_t index) {
@@ -92,6 +92,7 @@ void encode_cell(const SplitInfo& split, const BakePlan& plan, const BakedScene&
   file.write(std::as_bytes(std::span(&footer, 1)));
   file.commit_unflushed();
   folder.drop(cell_rows_name(cell));
+  folder.drop(cell_leaves_name(cell));
 }
 
 CellChunks::CellChunks(const BakePlan& plan, uint32_t cell, const WorkFolder& folder)

@@ -8,8 +8,8 @@ namespace voyager {
 
 std::string cell_chunks_name(uint32_t cell);
 
-// Rebuilds the cell, turns its axes below the top's, encodes it. Its other files are
-// then no longer needed, and removed.
+// Rebuilds the cell, turns its axes below the top's, encodes it. Its rows and leaves
+// are then no longer needed, and removed.
 void encode_cell(const SplitInfo& split, const BakePlan& plan, const BakedScene& top,
                  Quality quality, uint32_t cell, const WorkFolder& folder, Workers& workers);
 

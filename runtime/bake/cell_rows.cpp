@@ -22,8 +22,8 @@ size_t row_words(int sh_degree) {
 
 class Distributor {
  public:
-  Distributor(const SpoolInfo& spool, const BakePlan& plan, const SplitTree& tree,
-              const std::array<double, 3>& origin, const WorkFolder& folder, Workers& workers)
+  Distributor(const SpoolInfo& spool, const SplitTree& tree, const std::array<double, 3>& origin,
+              const WorkFolder& folder, Workers& workers)
       : spool_(spool),
         tree_(tree),
         origin_(origin),
@@ -32,8 +32,8 @@ class Distributor {
         workers_(workers),
         width_(row_words(spool.sh_degree)),
         folder_(folder),
-        ends_(plan.cells()) {
-    for (uint32_t cell = 0; cell < plan.cells(); ++cell) ScratchFile::create(file_of(cell));
+        ends_(tree.cells()) {
+    for (uint32_t cell = 0; cell < tree.cells(); ++cell) ScratchFile::create(file_of(cell));
   }
 
   // Pieces [begin, end) of the spool, in order after those before.
@@ -162,10 +162,10 @@ std::string cell_rows_name(uint32_t cell) {
   return "cell-" + std::to_string(cell) + ".rows";
 }
 
-void distribute(const SpoolInfo& spool, const BakePlan& plan, const SplitTree& tree,
-                const std::array<double, 3>& origin, const WorkFolder& folder, uint64_t memory,
-                Workers& workers, const Progress& progress) {
-  Distributor distributor(spool, plan, tree, origin, folder, workers);
+void distribute(const SpoolInfo& spool, const SplitTree& tree, const std::array<double, 3>& origin,
+                const WorkFolder& folder, uint64_t memory, Workers& workers,
+                const Progress& progress) {
+  Distributor distributor(spool, tree, origin, folder, workers);
   const uint64_t row = row_words(spool.sh_degree) * sizeof(float);
   constexpr uint64_t kMostRows = 1u << 23;  // runs of a cell are then a megabyte or so
   const uint64_t rows = std::min(kMostRows, memory / 2 / row);
@@ -178,7 +178,7 @@ void distribute(const SpoolInfo& spool, const BakePlan& plan, const SplitTree& t
     report(progress, "distributing", pieces[end - 1].first + uint64_t{pieces[end - 1].count},
            spool.gaussians);
   }
-  write_info(folder, spool, plan.cell_level(), origin);
+  write_info(folder, spool, tree.cell_level(), origin);
   for (const char* name : {kPositionRows, kOtherRows, kSpoolDone}) folder.drop(name);
 }
 
@@ -194,14 +194,14 @@ SplitInfo read_split_info(const WorkFolder& folder) {
   split.spool.source_origin = from.take<std::array<double, 3>>();
   split.spool.import = from.take<ImportReport>();
   split.cell_level = from.take<uint32_t>();
+  split.cell_sizes = cell_sizes(split.spool.gaussians, split.cell_level);
   split.origin = from.take<std::array<double, 3>>();
   return split;
 }
 
-CellRows read_cell_rows(const SplitInfo& split, const BakePlan& plan, uint32_t cell,
-                        const WorkFolder& folder) {
+CellRows read_cell_rows(const SplitInfo& split, uint32_t cell, const WorkFolder& folder) {
   const auto source = open_file_source(folder.file(cell_rows_name(cell)));
-  CellRows rows = room_for(split.spool, plan.cell_size(cell));
+  CellRows rows = room_for(split.spool, split.cell_sizes.at(cell));
   const size_t width = row_words(split.spool.sh_degree);
   uint64_t at = 0;
   std::vector<float> run;

@@ -1,6 +1,7 @@
 #pragma once
 // The Gaussians of each cell in a file of its own, in the input's order: all words, and
 // where in the input each was. Also what is known when they are there: the split.
+#include "runtime/bake/cell_sizes.h"
 #include "runtime/bake/medians.h"
 #include "runtime/bake/spool.h"
 
@@ -10,7 +11,10 @@ namespace voyager {
 struct SplitInfo {
   SpoolInfo spool;  // without pieces
   uint32_t cell_level = 0;
+  std::vector<uint32_t> cell_sizes;  // Gaussians of each
   std::array<double, 3> origin{0, 0, 0};
+
+  uint32_t cells() const { return static_cast<uint32_t>(cell_sizes.size()); }
 };
 
 inline constexpr const char* kSplitDone = "split";
@@ -19,9 +23,9 @@ std::string cell_rows_name(uint32_t cell);
 // Sorts the spooled rows into the files of their cells, in at most `memory` bytes; then
 // the file "split" says that it is done, and the spool is removed. Progress stage
 // "distributing".
-void distribute(const SpoolInfo& spool, const BakePlan& plan, const SplitTree& tree,
-                const std::array<double, 3>& origin, const WorkFolder& folder, uint64_t memory,
-                Workers& workers, const Progress& progress);
+void distribute(const SpoolInfo& spool, const SplitTree& tree, const std::array<double, 3>& origin,
+                const WorkFolder& folder, uint64_t memory, Workers& workers,
+                const Progress& progress);
 SplitInfo read_split_info(const WorkFolder& folder);
 
 struct CellRows {
@@ -30,7 +34,6 @@ struct CellRows {
 };
 
 // Throws Error(refused_input) where the file was altered.
-CellRows read_cell_rows(const SplitInfo& split, const BakePlan& plan, uint32_t cell,
-                        const WorkFolder& folder);
+CellRows read_cell_rows(const SplitInfo& split, uint32_t cell, const WorkFolder& folder);
 
 }  // namespace voyager

@@ -2,30 +2,37 @@
 
 #include <algorithm>
 
+#include "runtime/bake/cell_shape.h"
 #include "runtime/bake/sealed_file.h"
-#include "runtime/lod/kd_layout.h"
 #include "runtime/lod/levels.h"
 
 namespace voyager {
 namespace {
 
-struct CellFile {
+struct TreeFile {
   std::vector<NodeRow> nodes;
-  TreeLayout layout;
+  std::vector<uint8_t> child_count;
 };
 
-CellFile read_file(const BakePlan& plan, uint32_t cell, const WorkFolder& folder) {
+TreeFile read_tree(uint32_t cell, const WorkFolder& folder) {
   const std::string path = folder.file(cell_tree_name(cell));
   const std::vector<std::byte> bytes = read_sealed(path);
   Unpacker from(path, bytes);
-  CellFile file;
+  TreeFile file;
   from.take_all(file.nodes);
-  from.take_all(file.layout.child_count);
-  from.take_all(file.layout.leaf);
-  if (file.layout.leaf.size() != plan.cell_size(cell))
-    refuse_folder(path, std::to_string(file.layout.leaf.size()) + " Gaussians",
-                  std::to_string(plan.cell_size(cell)));
+  from.take_all(file.child_count);
   return file;
+}
+
+std::vector<uint32_t> read_leaves(uint32_t gaussians, uint32_t cell, const WorkFolder& folder) {
+  const std::string path = folder.file(cell_leaves_name(cell));
+  const std::vector<std::byte> bytes = read_sealed(path);
+  Unpacker from(path, bytes);
+  std::vector<uint32_t> leaf;
+  from.take_all(leaf);
+  if (leaf.size() != gaussians)
+    refuse_folder(path, std::to_string(leaf.size()) + " Gaussians", std::to_string(gaussians));
+  return leaf;
 }
 
 CellTree merge_cell(CellRows rows, const TreeLayout& layout, const std::array<double, 3>& origin,
@@ -55,28 +62,38 @@ std::string cell_tree_name(uint32_t cell) {
   return "cell-" + std::to_string(cell) + ".tree";
 }
 
-void build_cell(const SplitInfo& split, const BakePlan& plan, uint32_t cell,
+std::string cell_leaves_name(uint32_t cell) {
+  return "cell-" + std::to_string(cell) + ".leaves";
+}
+
+void build_cell(const SplitInfo& split, uint32_t cell, const LayOutCell& lay_out,
                 const WorkFolder& folder, Workers& workers) {
-  CellRows rows = read_cell_rows(split, plan, cell, folder);
-  const TreeLayout layout = kd_layout(rows.cloud, split.origin, workers);
+  CellRows rows = read_cell_rows(split, cell, folder);
+  const TreeLayout layout = lay_out(rows.cloud, split.origin, workers);
+  const uint32_t shared = cell_levels(layout.child_count)[kSharedLevels];
   const CellTree tree = merge_cell(std::move(rows), layout, split.origin, workers);
   std::vector<NodeRow> nodes;
-  const uint32_t end = tree.levels[plan.top_levels() - plan.cell_level()];
-  for (uint32_t node = 0; node < end; ++node) nodes.push_back(row_of(tree.baked, node));
-  Packer packer;
-  packer.put_all(nodes).put_all(layout.child_count).put_all(layout.leaf);
-  write_sealed(folder.file(cell_tree_name(cell)), packer.bytes());
+  for (uint32_t node = 0; node < shared; ++node) nodes.push_back(row_of(tree.baked, node));
+  Packer leaves, shape;
+  leaves.put_all(layout.leaf);
+  shape.put_all(nodes).put_all(layout.child_count);
+  write_sealed(folder.file(cell_leaves_name(cell)), leaves.bytes());
+  write_sealed(folder.file(cell_tree_name(cell)), shape.bytes());
 }
 
-CellTree rebuild_cell(const SplitInfo& split, const BakePlan& plan, uint32_t cell,
-                      const WorkFolder& folder, Workers& workers) {
-  const CellFile file = read_file(plan, cell, folder);
-  return merge_cell(read_cell_rows(split, plan, cell, folder), file.layout, split.origin, workers);
+CellTree rebuild_cell(const SplitInfo& split, uint32_t cell, const WorkFolder& folder,
+                      Workers& workers) {
+  const TreeLayout layout{read_cell_shape(cell, folder),
+                          read_leaves(split.cell_sizes.at(cell), cell, folder)};
+  return merge_cell(read_cell_rows(split, cell, folder), layout, split.origin, workers);
 }
 
-std::vector<NodeRow> read_cell_nodes(const BakePlan& plan, uint32_t cell,
-                                     const WorkFolder& folder) {
-  return read_file(plan, cell, folder).nodes;
+std::vector<uint8_t> read_cell_shape(uint32_t cell, const WorkFolder& folder) {
+  return read_tree(cell, folder).child_count;
+}
+
+std::vector<NodeRow> read_cell_nodes(uint32_t cell, const WorkFolder& folder) {
+  return read_tree(cell, folder).nodes;
 }
 
 }  // namespace voyager

@@ -1,7 +1,9 @@
 #pragma once
-// The tree of one cell, and what the top needs of it.
+// The tree of one cell, and what the plan and the top need of it.
+#include <functional>
+
 #include "runtime/bake/cell_rows.h"
-#include "runtime/lod/baked_scene.h"
+#include "runtime/lod/layout.h"
 
 namespace voyager {
 
@@ -19,18 +21,30 @@ struct NodeRow {
   float sh[3 * sh_coefficients(kMaxShDegree)];
 };
 
-std::string cell_tree_name(uint32_t cell);
+// Decides the tree over a cell: kd_layout(), or another that cell_levels() takes
+// (cell_shape.h). It depends on the cloud and the origin alone.
+using LayOutCell = std::function<TreeLayout(const GaussianCloud& cloud,
+                                            const std::array<double, 3>& origin, Workers& workers)>;
 
-// Sorts and merges a cell; its file then has the layout, and the nodes of the levels that
-// are the top's, too.
-void build_cell(const SplitInfo& split, const BakePlan& plan, uint32_t cell,
+// Child counts and topmost nodes of a cell: what all cells need of each other. It is
+// written last: a cell that has it is built.
+std::string cell_tree_name(uint32_t cell);
+// The rest of the layout: which Gaussian each leaf is.
+std::string cell_leaves_name(uint32_t cell);
+
+// Lays out and merges a cell, and writes its files. Throws Error(internal) for a layout
+// that cell_levels() refuses.
+void build_cell(const SplitInfo& split, uint32_t cell, const LayOutCell& lay_out,
                 const WorkFolder& folder, Workers& workers);
 
-// The same tree again, from the layout.
-CellTree rebuild_cell(const SplitInfo& split, const BakePlan& plan, uint32_t cell,
-                      const WorkFolder& folder, Workers& workers);
+// The same tree again, from its layout.
+CellTree rebuild_cell(const SplitInfo& split, uint32_t cell, const WorkFolder& folder,
+                      Workers& workers);
 
-// Of the levels that are the top's, too, in order.
-std::vector<NodeRow> read_cell_nodes(const BakePlan& plan, uint32_t cell, const WorkFolder& folder);
+// Of the whole cell, breadth-first.
+std::vector<uint8_t> read_cell_shape(uint32_t cell, const WorkFolder& folder);
+
+// Of its first kSharedLevels levels, in order.
+std::vector<NodeRow> read_cell_nodes(uint32_t cell, const WorkFolder& folder);
 
 }  // namespace voyager

@@ -22,7 +22,7 @@ class Joiner {
     totals_.sh_degree = split.spool.sh_degree;
     totals_.left_out_bands = split.spool.row_degree - split.spool.sh_degree;
     totals_.antialiased = split.spool.antialiased;
-    totals_.leaf_count = plan.gaussians();
+    totals_.leaf_count = split.spool.gaussians;
     totals_.chunk_bytes = plan.chunk_bytes();
     totals_.tiers = plan.tiers();
     totals_.origin = split.origin;

@@ -120,10 +120,10 @@ struct Candidate {
 
 class MedianFinder {
  public:
-  MedianFinder(const SpoolInfo& spool, const BakePlan& plan, const WorkFolder& folder,
+  MedianFinder(const SpoolInfo& spool, uint32_t cell_level, const WorkFolder& folder,
                const std::array<double, 3>& origin, uint64_t memory, Workers& workers)
       : spool_(spool),
-        levels_(2 * plan.cell_level()),
+        levels_(2 * cell_level),
         file_(ScratchFile::open(folder.file(kPositionRows))),
         origin_(origin),
         most_candidates_(
@@ -308,10 +308,10 @@ std::array<double, 3> origin_of(const SpoolInfo& spool, const WorkFolder& folder
   return scene_origin(sample);
 }
 
-SplitTree find_medians(const SpoolInfo& spool, const BakePlan& plan, const WorkFolder& folder,
+SplitTree find_medians(const SpoolInfo& spool, uint32_t cell_level, const WorkFolder& folder,
                        const std::array<double, 3>& origin, uint64_t memory, Workers& workers,
                        const Progress& progress) {
-  return MedianFinder(spool, plan, folder, origin, memory, workers).run(progress);
+  return MedianFinder(spool, cell_level, folder, origin, memory, workers).run(progress);
 }
 
 }  // namespace voyager

@@ -4,12 +4,12 @@
 // among the few that are left.
 #include <vector>
 
-#include "runtime/bake/plan.h"
 #include "runtime/bake/spool.h"
 
 namespace voyager {
 
-// A perfect binary tree of splits, two levels of it for each of the LoD tree's.
+// A perfect binary tree of splits, two levels of it for each of the LoD tree's, down to
+// the cells.
 class SplitTree {
  public:
   struct Split {
@@ -19,8 +19,9 @@ class SplitTree {
     uint32_t index;
   };
 
-  uint32_t depth() const { return depth_; }
-  // The node on level `depth` over a Gaussian, from 0, through the levels above.
+  uint32_t cell_level() const { return depth_ / 2; }
+  uint32_t cells() const { return 1u << depth_; }
+  // The node on level `depth_` over a Gaussian, from 0, through the levels above.
   uint32_t node_of(const Vec3f& mean, uint32_t index) const {
     uint32_t node = 1;
     for (uint32_t level = 0; level < depth_; ++level) {
@@ -42,10 +43,10 @@ class SplitTree {
 // The scene's origin, as build_tree() chooses it.
 std::array<double, 3> origin_of(const SpoolInfo& spool, const WorkFolder& folder);
 
-// Splits down to the plan's cells: node_of() is then the cell. In about `memory` bytes.
+// Splits down to the cells of a level: node_of() is then the cell. In about `memory` bytes.
 // Throws Error(refused_input) for means that build_tree() refuses. Progress stage
 // "splitting".
-SplitTree find_medians(const SpoolInfo& spool, const BakePlan& plan, const WorkFolder& folder,
+SplitTree find_medians(const SpoolInfo& spool, uint32_t cell_level, const WorkFolder& folder,
                        const std::array<double, 3>& origin, uint64_t memory, Workers& workers,
                        const Progress& progress);
 

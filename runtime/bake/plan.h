@@ -1,17 +1,17 @@
 #pragma once
-// What a bake in parts knows from counts alone, because the shape of the tree depends
-// on the number of Gaussians only (runtime/lod/shape.h): which part of the tree each
-// cell holds, and which subtrees and chunks of the file are in it.
+// Which part of the file each cell has: made when all cells are built, from the topology
+// of their trees. Cells of one size may differ in shape and in depth.
 //
 // The nodes of one level, the cells' roots, cut the tree into cells and a top. Chunks
 // are runs of subtrees, tier by tier; the first tier whose roots lie on the cells'
 // level or below it and all after it are the cells' ("cell tiers"), those before it
 // the top's. A segment is what one cell, or the top, has of one tier.
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "runtime/base/workers.h"
 #include "runtime/lod/subtree_cursor.h"
 
 namespace voyager {
@@ -30,21 +30,18 @@ struct Segment {
 class BakePlan {
  public:
   static constexpr uint32_t kTop = 0xffffffffu;
-  // Least Gaussians of a cell: the splits above it, and two levels below its root, are full.
-  static constexpr uint32_t kLeastCell = 1024;
 
-  // The deepest level that cells may be on; 0 where the scene is too small for any.
-  static uint32_t deepest_level(uint32_t gaussians);
-  // Gaussians of the largest cell of a level.
-  static uint32_t largest_cell(uint32_t gaussians, uint32_t level);
+  // The child counts of a cell's nodes, as cell_levels() takes them (cell_shape.h).
+  using ShapeOf = std::function<std::vector<uint8_t>(uint32_t cell)>;
 
-  // cell_level is 1 to deepest_level(); chunk_bytes as partition_tree() takes them.
-  BakePlan(uint32_t gaussians, uint32_t cell_level, uint32_t chunk_bytes);
+  // Above cell_level ≥ 1 every node has kChildren children. chunk_bytes as
+  // partition_tree() takes them. `shape_of` is called twice for each cell, by several
+  // threads. While the plan is made, there is a byte for each subtree of the cells.
+  // Throws Error(internal) for a cell that cell_levels() refuses.
+  BakePlan(uint32_t cell_level, uint32_t chunk_bytes, const ShapeOf& shape_of, Workers& workers);
 
-  uint32_t gaussians() const { return gaussians_; }
   uint32_t cell_level() const { return cell_level_; }
-  uint32_t cells() const { return static_cast<uint32_t>(cell_sizes_.size()); }
-  uint32_t cell_size(uint32_t cell) const { return cell_sizes_[cell]; }
+  uint32_t cells() const { return cells_; }
   uint32_t chunk_count() const { return chunk_count_; }
   uint32_t chunk_bytes() const { return chunk_bytes_; }
   Tiers tiers() const { return {first_tier_levels_, level_begin_, tier_begin_}; }
@@ -54,39 +51,31 @@ class BakePlan {
   uint32_t first_cell_tier() const { return first_cell_tier_; }
   // Of the roots of a cell tier, in the cell's own tree.
   uint32_t cell_level_of(uint32_t tier) const;
-  // The cell's first node on one of its own levels.
+  // The cell's first node on one of its own levels, or where it would be; of cell
+  // cells(): the end of the level.
   uint32_t first_node(uint32_t cell, uint32_t level) const;
 
   // In the order of the file; those of a tier are consecutive.
   std::span<const Segment> segments(uint32_t tier) const;
 
  private:
-  // What cells of one size have in common.
-  struct CellShape {
-    std::vector<uint32_t> levels;                  // nodes of each
-    std::vector<std::vector<uint8_t>> tier_nodes;  // of each subtree of each cell tier
-  };
+  using Lists = std::vector<std::vector<uint32_t>>;
 
-  void lay_out_levels();
-  void lay_out_cells();
-  void lay_out_segments();
-  CellShape shape_of(uint32_t size) const;
+  void lay_out_levels(const Lists& cell_levels);
+  void lay_out_tiers();
+  void lay_out_segments(const ShapeOf& shape_of, Workers& workers);
   void add_segment(uint32_t tier, uint32_t cell, const SubtreePlace& place,
                    const std::vector<uint8_t>& nodes);
   SubtreePlace top_place(uint32_t tier) const;
+  std::vector<uint8_t> top_subtree_nodes(uint32_t tier) const;
 
-  uint32_t gaussians_, cell_level_, chunk_bytes_;
+  uint32_t cell_level_, cells_, chunk_bytes_;
   uint32_t first_tier_levels_ = 0, top_levels_ = 0, first_cell_tier_ = 0, chunk_count_ = 0;
   std::vector<uint32_t> level_begin_, tier_begin_;
-  std::vector<uint32_t> cell_sizes_;
-  std::map<uint32_t, CellShape> shapes_;          // by size: few
-  std::vector<std::vector<uint32_t>> cell_node_;  // of each cell's level, the first node
+  Lists cell_node_;  // of each level of cells: first_node() of each
   std::vector<Segment> segments_;
   std::vector<uint32_t> tier_segment_;  // first of each tier, and their number
   uint32_t open_bytes_ = 0, subtrees_ = 0;
 };
-
-// Gaussians under each node of a level, in order; level 0 is the root.
-std::vector<uint32_t> sizes_on_level(uint32_t gaussians, uint32_t level);
 
 }  // namespace voyager

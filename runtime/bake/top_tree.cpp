@@ -2,29 +2,17 @@
 
 #include <algorithm>
 
+#include "runtime/lod/build.h"
 #include "runtime/lod/levels.h"
-#include "runtime/lod/shape.h"
 #include "runtime/lod/summarise.h"
 
 namespace voyager {
 namespace {
 
-void lay_out_top(const BakePlan& plan, BakedScene& top) {
-  const uint32_t nodes = plan.tiers().level_begin[plan.top_levels()];
-  LodTree& tree = top.tree;
-  tree.records.resize(nodes);
-  tree.first_child.resize(nodes);
-  tree.parent.resize(nodes, kNoNode);
-  uint32_t node = 0, next = 1;
-  for (uint32_t level = 0; level < plan.top_levels(); ++level)
-    for (const uint32_t size : sizes_on_level(plan.gaussians(), level)) {
-      const uint32_t children = split_in_parts(size).count;
-      tree.records[node].child_count = children;
-      tree.first_child[node] = next;
-      for (uint32_t i = 0; i < children && next + i < nodes; ++i) tree.parent[next + i] = node;
-      next += children;
-      ++node;
-    }
+void make_room(uint32_t nodes, BakedScene& top) {
+  top.tree.records.resize(nodes);
+  top.tree.first_child.resize(nodes);
+  top.tree.parent.resize(nodes, kNoNode);
   GaussianCloud& merged = top.merged;
   merged.sh_degree = top.leaves.sh_degree;
   merged.origin = top.origin;
@@ -52,17 +40,25 @@ void put_node(const NodeRow& row, uint32_t node, BakedScene& top) {
 void put_cells(const BakePlan& plan, const WorkFolder& folder, BakedScene& top, Workers& workers) {
   workers.for_blocks(plan.cells(), 1, [&](size_t index, size_t) {
     const auto cell = static_cast<uint32_t>(index);
-    const std::vector<NodeRow> rows = read_cell_nodes(plan, cell, folder);
+    const std::vector<NodeRow> rows = read_cell_nodes(cell, folder);
     size_t row = 0;
     for (uint32_t level = 0; plan.cell_level() + level < plan.top_levels(); ++level) {
       // The cells' nodes of a level lie one cell after the other.
-      const uint32_t begin = plan.first_node(cell, level);
-      const uint32_t end = cell + 1 < plan.cells()
-                               ? plan.first_node(cell + 1, level)
-                               : plan.tiers().level_begin[plan.cell_level() + level + 1];
+      const uint32_t begin = plan.first_node(cell, level), end = plan.first_node(cell + 1, level);
       for (uint32_t node = begin; node < end; ++node) put_node(rows.at(row++), node, top);
     }
   });
+}
+
+// The cells' nodes have their child counts. Children may be below the top.
+void link(const BakePlan& plan, LodTree& tree) {
+  const auto nodes = static_cast<uint32_t>(tree.size());
+  for (uint32_t node = 0, next = 1; node < nodes; ++node) {
+    if (node < plan.first_node(0, 0)) tree.records[node].child_count = kChildren;
+    tree.first_child[node] = next;
+    for (const uint32_t end = next + tree.records[node].child_count; next < end; ++next)
+      if (next < nodes) tree.parent[next] = node;
+  }
 }
 
 }  // namespace
@@ -73,10 +69,11 @@ BakedScene build_top(const SplitInfo& split, const BakePlan& plan, const WorkFol
   top.leaves.sh_degree = split.spool.sh_degree;
   top.leaves.origin = split.spool.source_origin;
   top.origin = split.origin;
-  lay_out_top(plan, top);
-  put_cells(plan, folder, top, workers);
   const auto all = plan.tiers().level_begin;
-  for (uint32_t node = all[plan.cell_level()]; node-- > 0;) summarise(node, top);
+  make_room(all[plan.top_levels()], top);
+  put_cells(plan, folder, top, workers);
+  link(plan, top.tree);
+  for (uint32_t node = plan.first_node(0, 0); node-- > 0;) summarise(node, top);
   // Levels whose nodes have their children here, and the end of them.
   const std::vector<uint32_t> levels(all.begin(), all.begin() + plan.top_levels());
   align_levels(levels, top, workers);

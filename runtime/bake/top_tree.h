@@ -1,6 +1,7 @@
 #pragma once
 // The levels above the cells, and those of the cells that the file has among them.
 #include "runtime/bake/cell_tree.h"
+#include "runtime/bake/plan.h"
 
 namespace voyager {
 

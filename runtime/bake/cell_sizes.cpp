@@ -1,0 +1,38 @@
+#include "runtime/bake/cell_sizes.h"
+
+#include <algorithm>
+
+#include "runtime/lod/shape.h"
+
+namespace voyager {
+namespace {
+
+// Of the level below.
+std::vector<uint32_t> children_of(const std::vector<uint32_t>& sizes) {
+  std::vector<uint32_t> below;
+  for (const uint32_t size : sizes) {
+    if (size < 2) continue;
+    const Parts parts = split_in_parts(size);
+    below.insert(below.end(), parts.size, parts.size + parts.count);
+  }
+  return below;
+}
+
+}  // namespace
+
+uint32_t deepest_cell_level(uint32_t gaussians) {
+  uint32_t level = 0;
+  for (std::vector<uint32_t> sizes{gaussians}; level < 8; ++level) {
+    sizes = children_of(sizes);
+    if (sizes.empty() || *std::min_element(sizes.begin(), sizes.end()) < kLeastCell) break;
+  }
+  return level;
+}
+
+std::vector<uint32_t> cell_sizes(uint32_t gaussians, uint32_t level) {
+  std::vector<uint32_t> sizes{gaussians};
+  for (uint32_t i = 0; i < level; ++i) sizes = children_of(sizes);
+  return sizes;
+}
+
+}  // namespace voyager
