@@ -37,7 +37,7 @@ class Baker {
 
   BakeSummary run() {
     if (!folder_.has(kSplitDone) && !split()) return bake_whole();
-    split_ = read_split_info(folder_);
+    split_ = read_split_info(folder_, bake_.rule);
     for (const char* name : {kPositionRows, kOtherRows, kSpoolDone}) folder_.drop(name);
     if (bake_.step == BakeStep::split) return summary();
     if (bake_.step != BakeStep::encode) build_cells();
@@ -73,15 +73,15 @@ class Baker {
     const bool spooled = folder_.has(kSpoolDone);
     if (bake_.step == BakeStep::cells || bake_.step == BakeStep::encode ||
         bake_.step == BakeStep::merge)
-      if (!spooled || deepest_cell_level(read_spool_info(folder_).gaussians) != 0)
+      if (!spooled || deepest_cell_level(read_spool_info(folder_).gaussians, bake_.rule) != 0)
         throw Error(ErrorCode::invalid_argument,
                     folder_.path() + ": found no finished split, expected --step split before");
     const SpoolInfo spool = spooled ? read_spool_info(folder_) : read_inputs();
     const uint32_t level = choose_level(spool);
     if (level == 0) return false;
     const std::array<double, 3> origin = origin_of(spool, folder_);
-    const SplitTree tree =
-        find_medians(spool, level, folder_, origin, bake_.memory / 2, workers_, progress_);
+    const SplitTree tree = find_medians(spool, level, kd_rule(bake_.rule), folder_, origin,
+                                        bake_.memory / 2, workers_, progress_);
     in_space(spool.gaussians * (word_bytes(spool.sh_degree) + 4), "sorting the Gaussians", [&] {
       distribute(spool, tree, origin, folder_, bake_.memory / 2, workers_, progress_);
     });
@@ -106,10 +106,10 @@ class Baker {
 
   // As few cells as keep all threads busy and fit into the memory.
   uint32_t choose_level(const SpoolInfo& spool) {
-    const uint32_t deepest = deepest_cell_level(spool.gaussians);
+    const uint32_t deepest = deepest_cell_level(spool.gaussians, bake_.rule);
     const auto threads = static_cast<uint64_t>(workers_.count());
     for (uint32_t level = 1; level <= deepest; ++level) {
-      const uint64_t largest = largest_of(cell_sizes(spool.gaussians, level));
+      const uint64_t largest = largest_of(cell_sizes(spool.gaussians, level, bake_.rule));
       if (bake_.most_in_cell != 0) {
         if (largest <= bake_.most_in_cell || level == deepest) return level;
         continue;
@@ -154,9 +154,8 @@ class Baker {
     const uint64_t bytes = split_.spool.gaussians * uint64_t{6} +
                            cells.size() * (1 + kChildren) * uint64_t{sizeof(NodeRow)};
     in_space(bytes, "layouts of cells", [&] {
-      for_cells(cells, lanes(), workers_, progress_, "merging", [&](uint32_t cell) {
-        build_cell(split_, cell, bake_.lay_out_cell, folder_, workers_);
-      });
+      for_cells(cells, lanes(), workers_, progress_, "merging",
+                [&](uint32_t cell) { build_cell(split_, cell, bake_.rule, folder_, workers_); });
     });
   }
 
@@ -201,7 +200,7 @@ class Baker {
     result.gaussians = spool.gaussians;
     result.import = spool.import;
     if (bake_.step != BakeStep::all && bake_.step != BakeStep::merge) return result;
-    const BakedScene baked = build_tree(read_cloud(spool), workers_, progress_);
+    const BakedScene baked = build_tree(read_cloud(spool), workers_, progress_, bake_.rule);
     const Partition partition = partition_tree(baked.tree, bake_.chunk_bytes);
     write_scene_file(baked, partition, bake_.output, bake_.quality, workers_, progress_);
     result.nodes = baked.tree.size();

@@ -10,7 +10,6 @@
 //   merge    top and chunks of all cells -> scene.voy
 #include "runtime/bake/cell_tree.h"
 #include "runtime/format/layout.h"
-#include "runtime/lod/kd_layout.h"
 
 namespace voyager {
 
@@ -29,9 +28,7 @@ struct BakeInParts {
   BakeStep step = BakeStep::all;
   uint32_t part = 0, parts = 1;
   uint32_t most_in_cell = 0;  // Gaussians; 0: what memory and threads ask for
-  // Of each cell. With kd_layout() the tree is build_tree()'s; another is to be told in
-  // the request.
-  LayOutCell lay_out_cell = kd_layout;
+  TreeRule rule;              // of a clustered tree
 };
 
 struct BakeSummary {
@@ -53,7 +50,7 @@ BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Worke
 // nothing can be told; files count with size and time of change, URLs with size. Throws
 // Error(file_not_found), and for a URL what open_source() does.
 std::string bake_request(const std::vector<std::string>& inputs, Quality quality,
-                         uint32_t chunk_bytes);
+                         uint32_t chunk_bytes, const TreeRule& rule = {});
 
 // Bytes that baking in memory takes at most, about.
 uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree);

@@ -14,6 +14,7 @@ struct Footer {
 
 void pack_segment(const EncodedSegment& segment, Packer& packer) {
   packer.put_all(segment.entries).put(segment.position_error).put(segment.largest_sh);
+  packer.put(segment.leaves_have_extent);
   pack(segment.head, packer);
   pack(segment.tail, packer);
 }
@@ -23,6 +24,7 @@ EncodedSegment unpack_segment(Unpacker& from) {
   from.take_all(segment.entries);
   segment.position_error = from.take<double>();
   segment.largest_sh = from.take<float>();
+  segment.leaves_have_extent = from.take<bool>();
   segment.head = unpack_piece(from);
   segment.tail = unpack_piece(from);
   return segment;

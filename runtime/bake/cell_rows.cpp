@@ -182,7 +182,7 @@ void distribute(const SpoolInfo& spool, const SplitTree& tree, const std::array<
   for (const char* name : {kPositionRows, kOtherRows, kSpoolDone}) folder.drop(name);
 }
 
-SplitInfo read_split_info(const WorkFolder& folder) {
+SplitInfo read_split_info(const WorkFolder& folder, const TreeRule& rule) {
   const std::string path = folder.file(kSplitDone);
   const std::vector<std::byte> bytes = read_sealed(path);
   Unpacker from(path, bytes);
@@ -194,7 +194,7 @@ SplitInfo read_split_info(const WorkFolder& folder) {
   split.spool.source_origin = from.take<std::array<double, 3>>();
   split.spool.import = from.take<ImportReport>();
   split.cell_level = from.take<uint32_t>();
-  split.cell_sizes = cell_sizes(split.spool.gaussians, split.cell_level);
+  split.cell_sizes = cell_sizes(split.spool.gaussians, split.cell_level, rule);
   split.origin = from.take<std::array<double, 3>>();
   return split;
 }

@@ -26,7 +26,7 @@ std::string cell_rows_name(uint32_t cell);
 void distribute(const SpoolInfo& spool, const SplitTree& tree, const std::array<double, 3>& origin,
                 const WorkFolder& folder, uint64_t memory, Workers& workers,
                 const Progress& progress);
-SplitInfo read_split_info(const WorkFolder& folder);
+SplitInfo read_split_info(const WorkFolder& folder, const TreeRule& rule);
 
 struct CellRows {
   GaussianCloud cloud;            // the input's words

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "runtime/base/error.h"
-#include "runtime/lod/build.h"
+#include "runtime/lod/shape.h"
 
 namespace voyager {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "runtime/bake/cell_shape.h"
 #include "runtime/bake/sealed_file.h"
+#include "runtime/lod/find_layout.h"
 #include "runtime/lod/levels.h"
 
 namespace voyager {
@@ -24,15 +25,16 @@ TreeFile read_tree(uint32_t cell, const WorkFolder& folder) {
   return file;
 }
 
-std::vector<uint32_t> read_leaves(uint32_t gaussians, uint32_t cell, const WorkFolder& folder) {
+// Into the leaves of a layout.
+void read_leaves(uint32_t gaussians, uint32_t cell, const WorkFolder& folder, TreeLayout& layout) {
   const std::string path = folder.file(cell_leaves_name(cell));
   const std::vector<std::byte> bytes = read_sealed(path);
   Unpacker from(path, bytes);
-  std::vector<uint32_t> leaf;
-  from.take_all(leaf);
-  if (leaf.size() != gaussians)
-    refuse_folder(path, std::to_string(leaf.size()) + " Gaussians", std::to_string(gaussians));
-  return leaf;
+  from.take_all(layout.leaf);
+  from.take_all(layout.exposure);
+  for (const size_t found : {layout.leaf.size(), layout.exposure.size()})
+    if (found != gaussians)
+      refuse_folder(path, std::to_string(found) + " Gaussians", std::to_string(gaussians));
 }
 
 CellTree merge_cell(CellRows rows, const TreeLayout& layout, const std::array<double, 3>& origin,
@@ -51,6 +53,7 @@ NodeRow row_of(const BakedScene& baked, uint32_t node) {
   row.record = baked.tree.records[node];
   const size_t i = baked.gaussian[node];
   row.words = baked.merged.words(i);
+  row.exposure = baked.exposure[node];
   const size_t floats = static_cast<size_t>(baked.merged.coefficients()) * 3;
   std::copy_n(baked.merged.sh.data() + i * floats, floats, row.sh);
   return row;
@@ -66,16 +69,16 @@ std::string cell_leaves_name(uint32_t cell) {
   return "cell-" + std::to_string(cell) + ".leaves";
 }
 
-void build_cell(const SplitInfo& split, uint32_t cell, const LayOutCell& lay_out,
+void build_cell(const SplitInfo& split, uint32_t cell, const TreeRule& rule,
                 const WorkFolder& folder, Workers& workers) {
   CellRows rows = read_cell_rows(split, cell, folder);
-  const TreeLayout layout = lay_out(rows.cloud, split.origin, workers);
+  const TreeLayout layout = find_layout(rows.cloud, split.origin, rule, workers);
   const uint32_t shared = cell_levels(layout.child_count)[kSharedLevels];
   const CellTree tree = merge_cell(std::move(rows), layout, split.origin, workers);
   std::vector<NodeRow> nodes;
   for (uint32_t node = 0; node < shared; ++node) nodes.push_back(row_of(tree.baked, node));
   Packer leaves, shape;
-  leaves.put_all(layout.leaf);
+  leaves.put_all(layout.leaf).put_all(layout.exposure);
   shape.put_all(nodes).put_all(layout.child_count);
   write_sealed(folder.file(cell_leaves_name(cell)), leaves.bytes());
   write_sealed(folder.file(cell_tree_name(cell)), shape.bytes());
@@ -83,8 +86,9 @@ void build_cell(const SplitInfo& split, uint32_t cell, const LayOutCell& lay_out
 
 CellTree rebuild_cell(const SplitInfo& split, uint32_t cell, const WorkFolder& folder,
                       Workers& workers) {
-  const TreeLayout layout{read_cell_shape(cell, folder),
-                          read_leaves(split.cell_sizes.at(cell), cell, folder)};
+  TreeLayout layout;
+  layout.child_count = read_cell_shape(cell, folder);
+  read_leaves(split.cell_sizes.at(cell), cell, folder, layout);
   return merge_cell(read_cell_rows(split, cell, folder), layout, split.origin, workers);
 }
 

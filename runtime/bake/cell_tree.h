@@ -1,7 +1,5 @@
 #pragma once
 // The tree of one cell, and what the plan and the top need of it.
-#include <functional>
-
 #include "runtime/bake/cell_rows.h"
 #include "runtime/lod/layout.h"
 
@@ -18,23 +16,19 @@ struct CellTree {
 struct NodeRow {
   NodeRecord record;
   GaussianWords words;
+  float exposure;
   float sh[3 * sh_coefficients(kMaxShDegree)];
 };
-
-// Decides the tree over a cell: kd_layout(), or another that cell_levels() takes
-// (cell_shape.h). It depends on the cloud and the origin alone.
-using LayOutCell = std::function<TreeLayout(const GaussianCloud& cloud,
-                                            const std::array<double, 3>& origin, Workers& workers)>;
 
 // Child counts and topmost nodes of a cell: what all cells need of each other. It is
 // written last: a cell that has it is built.
 std::string cell_tree_name(uint32_t cell);
-// The rest of the layout: which Gaussian each leaf is.
+// The rest of the layout: which Gaussian each leaf is, and how much of it is seen.
 std::string cell_leaves_name(uint32_t cell);
 
 // Lays out and merges a cell, and writes its files. Throws Error(internal) for a layout
-// that cell_levels() refuses.
-void build_cell(const SplitInfo& split, uint32_t cell, const LayOutCell& lay_out,
+// that cell_levels() refuses: no clustered tree's.
+void build_cell(const SplitInfo& split, uint32_t cell, const TreeRule& rule,
                 const WorkFolder& folder, Workers& workers);
 
 // The same tree again, from its layout.

@@ -22,6 +22,7 @@ class Joiner {
     totals_.sh_degree = split.spool.sh_degree;
     totals_.left_out_bands = split.spool.row_degree - split.spool.sh_degree;
     totals_.antialiased = split.spool.antialiased;
+    totals_.clustered = true;
     totals_.leaf_count = split.spool.gaussians;
     totals_.chunk_bytes = plan.chunk_bytes();
     totals_.tiers = plan.tiers();
@@ -111,7 +112,7 @@ class Joiner {
       end_ += entry.bytes;
       entries_.push_back(entry);
     }
-    note(segment.position_error, segment.largest_sh);
+    note(segment);
     open_ = segment.tail;
   }
 
@@ -121,7 +122,7 @@ class Joiner {
     entry.offset = end_;
     end_ += entry.bytes;
     entries_.push_back(entry);
-    note(encoded.position_error, encoded.largest_sh);
+    note(encoded);
     finished_.emplace_back(entry.offset, std::move(encoded.bytes));
     open_ = {};
   }
@@ -131,9 +132,12 @@ class Joiner {
     finished_.clear();
   }
 
-  void note(double position_error, float largest_sh) {
-    totals_.position_error = std::max(totals_.position_error, position_error);
-    totals_.largest_sh = std::max(totals_.largest_sh, largest_sh);
+  // Of an encoded segment or chunk.
+  template <class Encoded>
+  void note(const Encoded& encoded) {
+    totals_.position_error = std::max(totals_.position_error, encoded.position_error);
+    totals_.largest_sh = std::max(totals_.largest_sh, encoded.largest_sh);
+    totals_.leaves_have_extent |= encoded.leaves_have_extent;
   }
 
   // Of the last `count` entries, in parts that one thread copies.

@@ -120,10 +120,12 @@ struct Candidate {
 
 class MedianFinder {
  public:
-  MedianFinder(const SpoolInfo& spool, uint32_t cell_level, const WorkFolder& folder,
-               const std::array<double, 3>& origin, uint64_t memory, Workers& workers)
+  MedianFinder(const SpoolInfo& spool, uint32_t cell_level, const KdRule& rule,
+               const WorkFolder& folder, const std::array<double, 3>& origin, uint64_t memory,
+               Workers& workers)
       : spool_(spool),
-        levels_(2 * cell_level),
+        levels_(rule.splits * cell_level),
+        rule_(rule),
         file_(ScratchFile::open(folder.file(kPositionRows))),
         origin_(origin),
         most_candidates_(
@@ -181,7 +183,7 @@ class MedianFinder {
     for (size_t i = 0; i < nodes; ++i) {
       const int axis = bounds_[i].longest_side();
       searches_[i] = {axis,
-                      lower_part(sizes_[i], kChildren * kChildren),
+                      lower_part(sizes_[i], rule_),
                       sizes_[i],
                       bounds_[i].least[axis] + 0.0f,
                       bounds_[i].most[axis] + 0.0f,
@@ -254,7 +256,7 @@ class MedianFinder {
     tree_.add_level(splits);
     std::vector<uint32_t> sizes;
     for (const uint32_t size : sizes_) {
-      const uint32_t lower = lower_part(size, kChildren * kChildren);
+      const uint32_t lower = lower_part(size, rule_);
       sizes.insert(sizes.end(), {lower, size - lower});
     }
     sizes_ = std::move(sizes);
@@ -277,6 +279,7 @@ class MedianFinder {
 
   const SpoolInfo& spool_;
   uint32_t levels_;
+  const KdRule rule_;
   ScratchFile file_;
   const std::array<double, 3>& origin_;
   uint64_t most_candidates_;
@@ -308,10 +311,10 @@ std::array<double, 3> origin_of(const SpoolInfo& spool, const WorkFolder& folder
   return scene_origin(sample);
 }
 
-SplitTree find_medians(const SpoolInfo& spool, uint32_t cell_level, const WorkFolder& folder,
-                       const std::array<double, 3>& origin, uint64_t memory, Workers& workers,
-                       const Progress& progress) {
-  return MedianFinder(spool, cell_level, folder, origin, memory, workers).run(progress);
+SplitTree find_medians(const SpoolInfo& spool, uint32_t cell_level, const KdRule& rule,
+                       const WorkFolder& folder, const std::array<double, 3>& origin,
+                       uint64_t memory, Workers& workers, const Progress& progress) {
+  return MedianFinder(spool, cell_level, rule, folder, origin, memory, workers).run(progress);
 }
 
 }  // namespace voyager

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/bake/spool.h"
+#include "runtime/lod/shape.h"
 
 namespace voyager {
 
@@ -46,8 +47,8 @@ std::array<double, 3> origin_of(const SpoolInfo& spool, const WorkFolder& folder
 // Splits down to the cells of a level: node_of() is then the cell. In about `memory` bytes.
 // Throws Error(refused_input) for means that build_tree() refuses. Progress stage
 // "splitting".
-SplitTree find_medians(const SpoolInfo& spool, uint32_t cell_level, const WorkFolder& folder,
-                       const std::array<double, 3>& origin, uint64_t memory, Workers& workers,
-                       const Progress& progress);
+SplitTree find_medians(const SpoolInfo& spool, uint32_t cell_level, const KdRule& rule,
+                       const WorkFolder& folder, const std::array<double, 3>& origin,
+                       uint64_t memory, Workers& workers, const Progress& progress);
 
 }  // namespace voyager

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "runtime/bake/cell_shape.h"
-#include "runtime/lod/build.h"
+#include "runtime/lod/shape.h"
 
 namespace voyager {
 namespace {

@@ -11,7 +11,7 @@
 namespace voyager {
 namespace {
 
-constexpr int kWorkVersion = 2;  // of the files in the folder
+constexpr int kWorkVersion = 3;  // of the files in the folder
 
 std::string line_of(const std::string& path) {
   if (path == "-") return "input standard input\n";
@@ -31,11 +31,12 @@ std::string line_of(const std::string& path) {
 }  // namespace
 
 std::string bake_request(const std::vector<std::string>& inputs, Quality quality,
-                         uint32_t chunk_bytes) {
+                         uint32_t chunk_bytes, const TreeRule& rule) {
   std::string text = "work folder version " + std::to_string(kWorkVersion) + "\n.voy version " +
                      std::to_string(kSceneVersion) + "\nquality " +
                      (quality == Quality::compact ? "compact" : "lossless") + "\nchunk bytes " +
-                     std::to_string(chunk_bytes) + "\n";
+                     std::to_string(chunk_bytes) + "\nblocks of " + std::to_string(rule.block) +
+                     " and " + std::to_string(rule.exposure_block) + "\n";
   for (const std::string& input : inputs) text += line_of(input);
   return text;
 }

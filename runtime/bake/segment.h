@@ -24,6 +24,7 @@ struct EncodedSegment {
   Piece tail;  // of the chunk that is begun last, which may go on
   double position_error = 0;
   float largest_sh = 0;
+  bool leaves_have_extent = false;
 };
 
 // `write` is called with the bytes of each whole chunk, in order.
@@ -70,6 +71,7 @@ EncodedSegment encode_segment(const Segment& segment, const SegmentNodes& nodes,
       out.entries.push_back(entries[i]);
       out.position_error = std::max(out.position_error, batch[i].position_error);
       out.largest_sh = std::max(out.largest_sh, batch[i].largest_sh);
+      out.leaves_have_extent |= batch[i].leaves_have_extent;
     }
   }
   return out;

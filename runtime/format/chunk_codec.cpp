@@ -1,5 +1,6 @@
 #include "runtime/format/chunk_codec.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "runtime/base/checksum.h"
@@ -76,6 +77,9 @@ EncodedChunk encode_bands(const Chunk& chunk, const ChunkContext& context) {
   header.quality = static_cast<uint16_t>(context.quality);
   header.sh_degree = static_cast<uint16_t>(context.sh_degree);
   EncodedChunk out;
+  out.leaves_have_extent =
+      std::any_of(chunk.records.begin(), chunk.records.end(),
+                  [](const NodeRecord& r) { return r.child_count == 0 && r.extent != 0; });
   out.bytes.resize(sizeof header);
   if (context.quality == Quality::compact)
     encode_compact(chunk, context, header, out);

@@ -33,6 +33,7 @@ struct EncodedChunk {
   uint64_t checksum = 0;         // XXH3-64 of bytes
   double position_error = 0;     // largest distance of a restored mean, metres; lossless 0
   float largest_sh = 0;          // |coefficient| as it is restored
+  bool leaves_have_extent = false;
 };
 
 // The chunk's arrays are complete and finite; node and first_child are not read. SH bands above

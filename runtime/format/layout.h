@@ -24,7 +24,8 @@ inline constexpr unsigned char kSceneMagic[8] = {0x89, 'V', 'O', 'Y', '\r', '\n'
 inline constexpr uint32_t kSceneVersion = 3;
 inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0
-inline constexpr uint32_t kFlags = kFlagAntialiased | kFlagLeafExtents;
+inline constexpr uint32_t kFlagClustered = 4;    // the rule of the tree (tree_rule.h)
+inline constexpr uint32_t kFlags = kFlagAntialiased | kFlagLeafExtents | kFlagClustered;
 inline constexpr uint32_t kChunkTag = 0x4b484356;  // "VCHK"
 
 enum class SectionKind : uint32_t { chunk_directory = 1, tiers = 2 };

@@ -13,6 +13,7 @@ SceneFileInfo to_info(const FileHeader& h) {
   info.sh_degree = static_cast<int>(h.sh_degree);
   info.left_out_bands = static_cast<int>(h.left_out_bands);
   info.antialiased = (h.flags & kFlagAntialiased) != 0;
+  info.tree = (h.flags & kFlagClustered) != 0 ? TreeKind::clustered : TreeKind::hierarchicalgs;
   info.node_count = h.node_count;
   info.leaf_count = h.leaf_count;
   info.chunk_count = h.chunk_count;

@@ -8,6 +8,7 @@
 #include "runtime/base/file.h"
 #include "runtime/format/chunk.h"
 #include "runtime/format/layout.h"
+#include "runtime/lod/tree_rule.h"
 #include "runtime/scene/gaussian_cloud.h"
 
 namespace voyager {
@@ -16,6 +17,7 @@ struct SceneFileInfo {
   Quality quality;
   int sh_degree, left_out_bands;
   bool antialiased;
+  TreeKind tree;
   uint32_t node_count;
   uint32_t leaf_count;
   uint32_t chunk_count;

@@ -18,7 +18,8 @@ FileHeader make_header(const SceneTotals& totals, size_t chunks) {
   std::memcpy(h.magic, kSceneMagic, sizeof h.magic);
   h.version = kSceneVersion;
   h.flags = (totals.antialiased ? kFlagAntialiased : 0) |
-            (totals.leaves_have_extent ? kFlagLeafExtents : 0);
+            (totals.leaves_have_extent ? kFlagLeafExtents : 0) |
+            (totals.clustered ? kFlagClustered : 0);
   h.quality = static_cast<uint32_t>(totals.quality);
   h.sh_degree = static_cast<uint32_t>(totals.sh_degree);
   h.node_count = totals.tiers.node_count();

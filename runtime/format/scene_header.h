@@ -11,7 +11,7 @@ namespace voyager {
 struct SceneTotals {
   Quality quality = Quality::lossless;
   int sh_degree = 0, left_out_bands = 0;
-  bool antialiased = false;
+  bool antialiased = false, clustered = false;
   uint32_t leaf_count = 0;
   uint32_t chunk_bytes = 0;
   Tiers tiers;

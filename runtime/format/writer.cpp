@@ -42,11 +42,6 @@ std::vector<ChunkEntry> make_entries(const LodTree& tree, const Partition& parti
   return entries;
 }
 
-bool leaves_have_extent(const LodTree& tree) {
-  return std::any_of(tree.records.begin(), tree.records.end(),
-                     [](const NodeRecord& r) { return r.child_count == 0 && r.extent != 0; });
-}
-
 SceneTotals totals_of(const BakedScene& baked, const Partition& partition, Quality quality) {
   SceneTotals totals;
   totals.quality = quality;
@@ -63,7 +58,7 @@ SceneTotals totals_of(const BakedScene& baked, const Partition& partition, Quali
     totals.bounds_max = baked.tree.records[0].box_max;
   }
   totals.import = baked.leaves.report;
-  totals.leaves_have_extent = leaves_have_extent(baked.tree);
+  totals.clustered = baked.kind == TreeKind::clustered;
   return totals;
 }
 
@@ -106,6 +101,7 @@ void write_scene_file(const BakedScene& baked, const Partition& partition, const
       file.write(batch[i].bytes);
       totals.position_error = std::max(totals.position_error, batch[i].position_error);
       totals.largest_sh = std::max(totals.largest_sh, batch[i].largest_sh);
+      totals.leaves_have_extent |= batch[i].leaves_have_extent;
     }
   }
   file.write_at(0, encode_head(totals, entries, file.position()));

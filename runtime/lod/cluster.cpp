@@ -189,8 +189,9 @@ class Clustering {
   std::vector<float> x_, y_, z_, distance_;
 };
 
-// Nodes with up to four children: of a cluster's, those that it hardly outlasts make way for
-// their own.
+// Of a cluster's two, those that are no better than it by much make way for their own: a node
+// between would hold a Gaussian that is drawn from few distances only.
+constexpr double kWorthwhile = 0.5;
 class Flattening {
  public:
   Flattening(const std::vector<Cluster>& clusters, size_t leaves)
@@ -212,6 +213,7 @@ class Flattening {
       uint32_t widest = count;
       for (uint32_t i = 0; i < count; ++i)
         if (child[i] >= leaves_ &&
+            clusters_[child[i]].pixel >= kWorthwhile * clusters_[cluster].pixel &&
             (widest == count || clusters_[child[i]].pixel > clusters_[child[widest]].pixel))
           widest = i;
       if (widest == count) break;

@@ -28,7 +28,7 @@ std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked)
   baked.gaussian.resize(nodes);
   baked.axis_code.resize(nodes);
   const bool exposed = !layout.exposure.empty();
-  if (exposed) baked.exposure.assign(nodes, 0.0f);
+  if (baked.kind == TreeKind::clustered) baked.exposure.assign(nodes, 1.0f);
   std::vector<uint32_t> levels;
   uint32_t next = 1, level_end = 0, leaf = 0, merged = 0;
   for (uint32_t n = 0; n < nodes; ++n) {

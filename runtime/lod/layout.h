@@ -12,7 +12,7 @@ namespace voyager {
 struct TreeLayout {
   std::vector<uint8_t> child_count;  // of each node, breadth-first; 0: a leaf
   std::vector<uint32_t> leaf;        // of each leaf, in the order of nodes: its Gaussian
-  std::vector<uint8_t> exposure;     // of each leaf, of a clustered tree (exposure.h)
+  std::vector<uint8_t> exposure;     // of each leaf (exposure.h); empty: all is seen
 };
 
 // Fills the topology of baked.tree, `gaussian` and the room for axis codes and merged

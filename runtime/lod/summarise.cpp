@@ -37,7 +37,7 @@ float longest_side(const NodeRecord& r) {
 
 // A leaf blends with its parent over the last part of the octave that METHOD §4 gives them: as
 // itself it is exact, and every step towards its parent shows.
-constexpr float kLeafExtent = 0.9f;
+constexpr float kLeafExtent = 0.95f;
 
 Group group_of(std::span<const MergeInput> children, std::span<Blob> blobs,
                const MergeInput& parent, int coefficients) {

@@ -44,6 +44,7 @@ struct Arguments {
   std::string output;
   Quality quality = Quality::compact;
   uint32_t chunk_bytes = kDefaultChunkBytes;
+  TreeKind tree = TreeKind::clustered;
   bool verify = false;
   uint64_t memory = half_of_memory() / 1'000'000;  // MB
   std::string work;
@@ -163,8 +164,8 @@ void print_summary(const Arguments& arguments, const BakeSummary& result, const 
 BakeSummary bake_in_memory(const Arguments& arguments, const Readers& readers,
                            const Progress& progress) {
   Workers workers;
-  const BakedScene baked =
-      build_tree(read_all(arguments.inputs, readers, progress), workers, progress);
+  const BakedScene baked = build_tree(read_all(arguments.inputs, readers, progress), workers,
+                                      progress, {.kind = arguments.tree});
   if (arguments.verify) require_sound(arguments.output, validate(baked));
   const Partition partition = partition_tree(baked.tree, arguments.chunk_bytes);
   if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
@@ -195,6 +196,9 @@ BakeSummary bake_from_folder(const Arguments& arguments, const OpenInputs& open,
     throw Error(ErrorCode::unsupported,
                 "--verify: found a bake in a work folder, expected one in memory: the file is "
                 "compared with the whole tree");
+  if (arguments.tree != TreeKind::clustered)
+    throw Error(ErrorCode::unsupported,
+                "--tree hierarchicalgs: found a bake in a work folder, expected one in memory");
   BakeInParts bake;
   bake.request = bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes);
   bake.output = arguments.output;
@@ -291,6 +295,11 @@ void add_bake(CLI::App& app) {
       *command, "--quality", arguments->quality,
       {{"compact", Quality::compact}, {"lossless", Quality::lossless}},
       "compact quantises (errors in docs/voy-format.md); lossless keeps the input's own words");
+  add_choice<TreeKind>(
+      *command, "--tree", arguments->tree,
+      {{"clustered", TreeKind::clustered}, {"hierarchicalgs", TreeKind::hierarchicalgs}},
+      "clustered puts together what looks alike; hierarchicalgs builds as HierarchicalGS does, "
+      "for comparison (in memory only)");
   command
       ->add_option("--chunk-bytes", arguments->chunk_bytes,
                    "Bytes of search records a chunk, at most; the default is a warp's part of "
