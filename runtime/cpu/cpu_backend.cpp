@@ -26,7 +26,7 @@ class CpuPipeline final : public HostPipeline {
               Workers& workers)
       : desc_(desc),
         workers_(workers),
-        instances_(scenes, desc, kProjectBlock, memory),
+        instances_(scenes, desc, kProjectBlock, memory, workers),
         keys_(memory),
         order_(memory),
         bins_(memory),
