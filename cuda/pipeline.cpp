@@ -328,7 +328,7 @@ std::vector<Omission> SplatPipeline::omissions() const {
   for (const auto& more : {omissions_of(shape), omissions_of(choices, shape)})
     all.insert(all.end(), more.begin(), more.end());
   // Of kernels that are compiled without: registers and instructions, no memory.
-  if (!instances_.siblings())
+  if (!instances_.siblings() && !desc_.count_pixels)
     all.push_back({"weights of siblings", "nothing that is drawn has a parent", 0, 0});
   if (!desc_.count_pixels)
     all.push_back({"counting of pixels", "no measurement asked for it", 0, 0});
