@@ -37,7 +37,7 @@ def cells(row):
     return [change(row) + (", the default" if row["group"] == "default" else ""), f"{row['cut']:,.0f}", f"{row['pairs']:,.0f}",
             f"{ms['frame']['median']:.3f} / {ms['frame']['p95']:.3f}", f"{ms['search']['median']:.3f}", decibels(same["psnr_db"]),
             decibels(all_leaves["psnr_db"]), "–" if all_leaves["ssim"] is None else f"{all_leaves['ssim']:.4f}", f"{all_leaves['flip']:.4f}",
-            f"{255 * same['max_abs']:.2f}", f"{all_leaves['popping']:.2f}"]
+            f"{255 * same['max_abs']:.2f}", "–" if all_leaves["popping"] is None else f"{all_leaves['popping']:.2f}"]
 
 
 def print_report(folder):

@@ -1,10 +1,7 @@
 #include "tools/report/measure.h"
 
 #include "runtime/base/clock.h"
-#include "tools/metrics/flip.h"
-#include "tools/metrics/image_error.h"
-#include "tools/metrics/popping.h"
-#include "tools/metrics/ssim.h"
+#include "tools/report/compare_images.h"
 #include "tools/statistics.h"
 
 namespace voyager::tools {
@@ -82,30 +79,10 @@ class FrameEnergy {
   std::optional<double> before_;
 };
 
-// Of one image.
-struct Difference {
-  Flip flip;
-  std::optional<double> ssim;
-};
-
-Difference difference(const RgbaImage& image, const RgbaImage& expected, size_t width) {
-  Difference found{flip(image, expected, width), std::nullopt};
-  if (std::min(width, image.size() / 4 / width) >= kSsimWindow)
-    found.ssim = ssim(image, expected, width);
-  return found;
-}
-
-// Means; no SSIM where one image has none.
-ReportError sum_up(const std::vector<Difference>& found) {
-  const auto count = static_cast<double>(found.size());
-  ReportError error;
-  error.ssim = 0.0;
-  for (const Difference& of : found) {
-    error.flip += of.flip.mean / count;
-    error.ssim =
-        error.ssim && of.ssim ? std::optional(*error.ssim + *of.ssim / count) : std::nullopt;
-  }
-  return error;
+std::vector<ComparedFrame> compared_frames(const ReportPlan& plan) {
+  std::vector<ComparedFrame> frames;
+  for (const size_t i : plan.compared) frames.push_back({i, plan.path[i].eyes[0].camera.width});
+  return frames;
 }
 
 }  // namespace
@@ -132,38 +109,11 @@ ReportRow Measurement::run(const ReportCase& is, const std::function<void(size_t
   for (FrameInput& frame : path.frames) frame.tau = row.tau;
   const auto images = draw_images(maker, is.desc, path.frames, plan_.compared);
   pictures_.image = images.front();
-  row.same = compare(images, {is.desc.lod, row.tau}, false);
-  row.all = compare(images, {}, true);
+  const std::vector<ComparedFrame> frames = compared_frames(plan_);
+  const std::vector<double> taus(frames.size(), row.tau);
+  row.same = compare_images(images, references_.of({is.desc.lod, taus}), frames, workers_);
+  row.all = compare_images(images, references_.of({}), frames, workers_, &pictures_.difference);
   return row;
-}
-
-ReportError Measurement::compare(const std::vector<RgbaImage>& images, const Detail& detail,
-                                 bool keep_difference) {
-  std::vector<RgbaImage> expected;
-  for (const size_t frame : plan_.compared) expected.push_back(references_.of(frame, detail));
-  std::vector<Difference> found(images.size());
-  workers_.for_blocks(images.size(), 1, [&](size_t i, size_t) {
-    found[i] = difference(images[i], expected[i], references_.width(plan_.compared[i]));
-    if (!keep_difference || i != 0) found[i].flip.map = {};
-  });
-  ReportError error = sum_up(found);
-  if (keep_difference) pictures_.difference = std::move(found[0].flip.map);
-  size_t changes = 0;
-  for (size_t i = 1; i < images.size(); ++i) {
-    if (plan_.compared[i - 1] + 1 != plan_.compared[i]) continue;
-    Popping popping;
-    popping.add(images[i - 1], expected[i - 1]);
-    popping.add(images[i], expected[i]);
-    error.popping += popping.mean();
-    ++changes;
-  }
-  if (changes > 0) error.popping /= static_cast<double>(changes);
-  const ImageError pixels = image_error(images, expected);
-  error.psnr = pixels.psnr;
-  error.largest = pixels.largest;
-  error.p999 = pixels.p999;
-  error.not_finite = pixels.not_finite;
-  return error;
 }
 
 }  // namespace voyager::tools

@@ -39,9 +39,6 @@ class Measurement {
   size_t frames_drawn() const;
 
  private:
-  ReportError compare(const std::vector<RgbaImage>& images, const Detail& detail,
-                      bool keep_difference);
-
   Backend& backend_;
   ReportScenes& scenes_;
   ReferenceImages& references_;

@@ -60,6 +60,10 @@ std::string decibels(double psnr) {
   return std::isfinite(psnr) ? fmt::format("{:.1f}", psnr) : "∞";
 }
 
+std::string fixed(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "–";
+}
+
 std::string not_finite(const ReportRow& row) {
   return fmt::format("{} pixels not finite", row.not_finite());
 }
@@ -75,19 +79,16 @@ std::string warnings(const ReportPage& page) {
 }
 
 std::string table_row(const ReportRow& row, size_t index, bool front) {
-  const auto ssim = [](const ReportError& e) {
-    return e.ssim ? fmt::format("{:.4f}", *e.ssim) : std::string("–");
-  };
   return fmt::format(
       "<tr "
       "id=\"row-{}\"{}><td>{}{}</td><td>{:.0f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td>"
       "<td>{}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{:.4f}</td><td>{:.4f}</td>"
-      "<td>{:.3f}</td></tr>\n",
+      "<td>{}</td></tr>\n",
       index, front ? " class=\"front\"" : "", escaped(row.is.name()),
       row.not_finite() > 0 ? " <span class=\"wrong\">" + not_finite(row) + "</span>" : "", row.cut,
       row.frame.median, row.frame.p95, row.frame.p99, decibels(row.same.psnr),
-      decibels(row.all.psnr), ssim(row.all), row.all.flip, row.all.largest, row.all.p999,
-      row.all.popping);
+      decibels(row.all.psnr), fixed(row.all.ssim, 4), row.all.flip, row.all.largest, row.all.p999,
+      fixed(row.all.popping, 3));
 }
 
 std::string table(const ReportPage& page) {

@@ -32,7 +32,7 @@ class Report {
         provenance_(provenance(request.scene, request.cameras, backend, request.arguments)),
         kept_(std::filesystem::path(request.output) / ".report", provenance_),
         scenes_(request.scene, kept_.folder(), workers_, progress_),
-        references_(scenes_.own(), plan_.path, kept_.folder(), workers_),
+        references_(scenes_.own(), plan_.path, plan_.compared, kept_.folder(), workers_),
         energy_(find_energy_meter(backend.rates().bytes > 0)),
         measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
 

@@ -3,19 +3,39 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
+#include <tuple>
 
 #include "tools/frame_rows.h"
 #include "tools/report/pareto.h"
 
 namespace voyager::tools {
 
+namespace {
+
+// "960 x 540"; cameras of a file may differ, then the least and the largest by area.
+std::string sizes_text(const std::vector<FrameInput>& path) {
+  std::set<std::tuple<uint64_t, uint32_t, uint32_t>> sizes;
+  for (const FrameInput& frame : path) {
+    const Camera& camera = frame.eyes[0].camera;
+    sizes.insert({uint64_t{camera.width} * camera.height, camera.width, camera.height});
+  }
+  const auto text = [](const auto& size) {
+    return fmt::format("{} x {}", std::get<1>(size), std::get<2>(size));
+  };
+  if (sizes.size() == 1) return text(*sizes.begin());
+  return fmt::format("{} sizes from {} to {}", sizes.size(), text(*sizes.begin()),
+                     text(*sizes.rbegin()));
+}
+
+}  // namespace
+
 std::string method_text(const ReportPlan& plan) {
-  const auto& camera = plan.path[0].eyes[0].camera;
   return fmt::format(
-      "{} frames of {} x {} along the cameras, {} times after a start on the first {}; errors over "
+      "{} frames of {} along the cameras, {} times after a start on the first {}; errors over "
       "{} of them, against the float64 reference. Figures:",
-      plan.path.size(), camera.width, camera.height, plan.repeats,
-      std::min<size_t>(plan.path.size(), 32), plan.compared.size());
+      plan.path.size(), sizes_text(plan.path), plan.repeats, std::min<size_t>(plan.path.size(), 32),
+      plan.compared.size());
 }
 
 std::string recommendation_text(const std::vector<ReportRow>& rows, std::optional<size_t> best,
