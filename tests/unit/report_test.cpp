@@ -94,15 +94,6 @@ TEST(Report, TheFrontIsWhatNothingBeats) {
   }
 }
 
-TEST(Report, TheBestOfWhatIsInTimeIsRecommended) {
-  const std::vector<ReportRow> rows = {row(1, 30, 0.01), row(6, 9, 0.03), row(15, 4, 0.08)};
-  const std::vector<size_t> front = pareto_front(rows);
-  EXPECT_EQ(recommend(rows, front, 11.1), 1u);
-  EXPECT_EQ(recommend(rows, front, 1000), 0u);
-  EXPECT_EQ(recommend(rows, front, 9.5), 2u);  // by its p95 the second is late
-  EXPECT_EQ(recommend(rows, front, 1), std::nullopt);
-}
-
 TEST(Report, OptionsAreThoseOfRender) {
   ReportCase is = report_cases(ReportExtent::quick, city())[0];
   EXPECT_EQ(render_options(is, 3), "--tau 3 --exp exact");

@@ -90,8 +90,8 @@ class Report {
 
   void write() {
     const std::vector<size_t> front = pareto_front(rows_);
-    const auto best = recommend(rows_, front, request_.target);
-    const std::string advice = recommendation_text(rows_, best, front.front(), request_.target);
+    const Advice advised = advise(rows_, request_.target);
+    const std::string advice = advice_text(rows_, advised, request_.target);
     const auto stem = [](const std::string& path) {
       return std::filesystem::path(path).filename().replace_extension().string();
     };
@@ -103,7 +103,7 @@ class Report {
     for (const ReportRow& row : rows_) json["rows"].push_back(to_json(row));
     json["front"] = front;
     json["target_ms"] = request_.target;
-    json["recommended"] = best ? Json(*best) : Json();
+    json["recommended"] = advised.in_time ? Json(advised.row) : Json();
     json["recommendation"] = advice;
     write_text("report.json", json.dump(1) + "\n");
     ReportPage page{"Error against run time: " + stem(request_.scene),

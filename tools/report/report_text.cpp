@@ -6,9 +6,6 @@
 #include <set>
 #include <tuple>
 
-#include "tools/frame_rows.h"
-#include "tools/report/pareto.h"
-
 namespace voyager::tools {
 
 namespace {
@@ -38,20 +35,18 @@ std::string method_text(const ReportPlan& plan) {
       plan.compared.size());
 }
 
-std::string recommendation_text(const std::vector<ReportRow>& rows, std::optional<size_t> best,
-                                size_t fastest, double target) {
-  const ReportRow& row = rows[best.value_or(fastest)];
-  const std::string options = render_options(row.is, row.tau);
-  if (best)
-    return fmt::format(
-        "For {:.4g} ms a frame: {} (SH degree {}, {}). It takes {:.3f} ms, {:.3f} at p95, for a "
-        "FLIP of {:.4f} against all leaves.",
-        target, options, row.is.sh_degree, storage_name(row.is.storage), row.frame.median,
-        row.frame.p95, row.all.flip);
-  return fmt::format(
-      "Nothing that was measured stays within {:.4g} ms at p95. The fastest, {}, takes {:.3f} ms, "
-      "{:.3f} at p95.",
-      target, options, row.frame.median, row.frame.p95);
+std::string advice_text(const std::vector<ReportRow>& rows, const Advice& advice, double target) {
+  const ReportRow& row = rows[advice.row];
+  const std::string head =
+      advice.in_time
+          ? fmt::format("For {:.4g} ms a frame: ", target)
+          : fmt::format("Nothing that was measured stays within {:.4g} ms at p95. The fastest: ",
+                        target);
+  return head + fmt::format(
+                    "{} (SH degree {}, {}). It takes {:.3f} ms, {:.3f} at p95, for a FLIP of "
+                    "{:.4f} against all leaves.",
+                    render_options(row.is, row.tau), row.is.sh_degree, storage_name(row.is.storage),
+                    row.frame.median, row.frame.p95, row.all.flip);
 }
 
 }  // namespace voyager::tools
