@@ -49,7 +49,7 @@ TEST(ReportImages, PoppingThatIsNotKnownIsEmpty) {
   EXPECT_NE(unknown.find(",0,,,0,0,0,,"), std::string::npos) << unknown;
 }
 
-TEST(ReportImages, TheMethodSaysEachSize) {
+TEST(ReportImages, TheMethodSaysTheSizesAndTheSensor) {
   ReportPlan plan;
   plan.path.resize(3);
   plan.compared = {0};
@@ -58,11 +58,12 @@ TEST(ReportImages, TheMethodSaysEachSize) {
     plan.path[i].eyes[0].camera.height = height;
   };
   for (size_t i = 0; i < 3; ++i) resize(i, 96, 54);
-  EXPECT_EQ(method_text(plan).find("3 frames of 96 x 54 along"), 0u) << method_text(plan);
+  EXPECT_EQ(method_text(plan, "").find("3 frames of 96 x 54 along"), 0u) << method_text(plan, "");
   resize(0, 128, 72);
   resize(2, 64, 36);
-  EXPECT_EQ(method_text(plan).find("3 frames of 3 sizes from 64 x 36 to 128 x 72 along"), 0u)
-      << method_text(plan);
+  EXPECT_NE(method_text(plan, "a rail").find(" Energy by a rail, over 1.5 s"), std::string::npos);
+  EXPECT_EQ(method_text(plan, "").find("3 frames of 3 sizes from 64 x 36 to 128 x 72 along"), 0u)
+      << method_text(plan, "");
 }
 
 TEST(ReportImages, ReferencesAreTheSameFromDisk) {

@@ -1,7 +1,7 @@
 #include "tools/report/measure.h"
 
-#include "runtime/base/clock.h"
 #include "tools/report/compare_images.h"
+#include "tools/report/frame_energy.h"
 #include "tools/statistics.h"
 
 namespace voyager::tools {
@@ -50,34 +50,11 @@ double median_tau(const std::vector<FrameStats>& frames) {
   return percentile(taus, 0.5);
 }
 
-// From the first frame on, without the view's making. Sensors are read every tenth of a second or
-// so: of less than a second there is no figure.
-class FrameEnergy {
- public:
-  explicit FrameEnergy(EnergyMeter* meter) : meter_(meter) {}
-
-  void frame(size_t drawn) {
-    last_ = drawn;
-    if (begin_) return;
-    begin_ = drawn;
-    watch_ = Stopwatch();
-    if (meter_ != nullptr) before_ = meter_->joules();
-  }
-  std::optional<double> joules_a_frame() {
-    constexpr double kLeast = 1000;  // milliseconds
-    if (!before_ || last_ == *begin_ || watch_.milliseconds() < kLeast) return std::nullopt;
-    const std::optional<double> after = meter_->joules();
-    if (!after) return std::nullopt;
-    return (*after - *before_) / static_cast<double>(last_ - *begin_);
-  }
-
- private:
-  EnergyMeter* meter_;
-  std::optional<size_t> begin_;
-  size_t last_ = 0;
-  Stopwatch watch_;
-  std::optional<double> before_;
-};
+// Of the last time along the path.
+void set_drawn_taus(const std::vector<FrameStats>& timed, std::vector<FrameInput>& path) {
+  const size_t last = timed.size() - path.size();
+  for (size_t i = 0; i < path.size(); ++i) path[i].tau = timed[last + i].tau;
+}
 
 std::vector<ComparedFrame> compared_frames(const ReportPlan& plan) {
   std::vector<ComparedFrame> frames;
@@ -87,31 +64,40 @@ std::vector<ComparedFrame> compared_frames(const ReportPlan& plan) {
 
 }  // namespace
 
-size_t Measurement::frames_drawn() const {
-  return FramePath{plan_.path, plan_.repeats, {}, false}.frames_drawn();
+FramePath Measurement::path_of(const ReportCase& is) const {
+  FramePath path{plan_.path, plan_.repeats, {}, false};
+  for (FrameInput& frame : path.frames) frame.tau = is.tau;
+  if (is.time_budget > 0) path.time_budget = TimeBudgetDesc{is.time_budget};
+  path.settles = is.time_budget > 0;
+  return path;
+}
+
+size_t Measurement::frames_drawn(const ReportCase& is) const {
+  return path_of(is).frames_drawn();
 }
 
 ReportRow Measurement::run(const ReportCase& is, const std::function<void(size_t)>& frame_done) {
   const FrameMaker maker{backend_, scenes_.get(is.storage, is.sh_degree), workers_};
-  FramePath path{plan_.path, plan_.repeats, {}, false};
-  for (FrameInput& frame : path.frames) frame.tau = is.tau;
-  if (is.time_budget > 0) path.time_budget = TimeBudgetDesc{is.time_budget};
-  ReportRow row;
-  row.is = is;
-  FrameEnergy energy(energy_);
+  FramePath path = path_of(is);
+  const size_t timed_frames = path.repeats * path.frames.size();
+  FrameEnergy energy(energy_, path.frames_drawn() - timed_frames);
+  path.goes_on = [&] { return energy.wants_more(); };
   const FrameRun timed = run_frames(maker, is.desc, path, [&](size_t drawn) {
     energy.frame(drawn);
     frame_done(drawn);
   });
+  ReportRow row;
+  row.is = is;
   row.joules = energy.joules_a_frame();
   set_times(timed.timed, row);
-  row.tau = is.time_budget > 0 ? median_tau(timed.timed) : is.tau;
-  for (FrameInput& frame : path.frames) frame.tau = row.tau;
+  row.tau = median_tau(timed.timed);
+  set_drawn_taus(timed.timed, path.frames);
   const auto images = draw_images(maker, is.desc, path.frames, plan_.compared);
   pictures_.image = images.front();
+  Detail same{is.desc.lod, {}};
+  for (const size_t i : plan_.compared) same.taus.push_back(path.frames[i].tau);
   const std::vector<ComparedFrame> frames = compared_frames(plan_);
-  const std::vector<double> taus(frames.size(), row.tau);
-  row.same = compare_images(images, references_.of({is.desc.lod, taus}), frames, workers_);
+  row.same = compare_images(images, references_.of(same), frames, workers_);
   row.all = compare_images(images, references_.of({}), frames, workers_, &pictures_.difference);
   return row;
 }

@@ -145,7 +145,7 @@ std::string html(const ReportPage& page) {
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\"><link rel=\"icon\" href=\"data:,\">"
       "<title>{0}</title><style>{1}</style></head><body>\n<h1>{0}</h1>\n"
-      "<p class=\"box\">{2}</p>\n{8}<p>{3} <a href=\"report.csv\">report.csv</a>, "
+      "<p class=\"box\">{2}</p>\n{8}<p>{3} Figures: <a href=\"report.csv\">report.csv</a>, "
       "<a href=\"report.json\">report.json</a>.</p>\n"
       "<h2 id=\"plots\">Error against time</h2>\n{4}"
       "<h2 id=\"pictures\">What is worth its time, and what it costs</h2>\n{5}"

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tools/output_folder.h"
@@ -33,7 +34,7 @@ class Report {
         kept_(std::filesystem::path(request.output) / ".report", provenance_),
         scenes_(request.scene, kept_.folder(), workers_, progress_),
         references_(scenes_.own(), plan_.path, plan_.compared, kept_.folder(), workers_),
-        energy_(find_energy_meter(backend.rates().bytes > 0)),
+        energy_(find_energy_meter(backend.device_uuid())),
         measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
 
   void run() {
@@ -62,13 +63,14 @@ class Report {
   }
 
   void add(const ReportCase& is) {
-    const size_t frames = measurement_.frames_drawn();
+    const size_t frames = measurement_.frames_drawn(is);
     std::optional<KeptRow> kept = kept_.find(is);
     if (!kept) {
       const size_t width = plan_.path[plan_.compared[0]].eyes[0].camera.width;
       KeptRow found{measurement_.run(is,
                                      [&](size_t drawn) {
-                                       progress_("measuring", done_ * frames + drawn,
+                                       progress_("measuring",
+                                                 done_ * frames + std::min(drawn, frames),
                                                  total_ * frames);
                                      }),
                     "", ""};
@@ -88,6 +90,8 @@ class Report {
     file.commit();
   }
 
+  std::string method() const { return method_text(plan_, energy_ ? energy_->name() : ""); }
+
   void write() {
     const std::vector<size_t> front = pareto_front(rows_);
     const Advice advised = advise(rows_, request_.target);
@@ -98,8 +102,7 @@ class Report {
     write_text(
         "report.csv",
         report_csv({stem(request_.scene), stem(request_.cameras), backend_.device_name()}, rows_));
-    Json json = {
-        {"provenance", provenance_}, {"method", method_text(plan_)}, {"rows", Json::array()}};
+    Json json = {{"provenance", provenance_}, {"method", method()}, {"rows", Json::array()}};
     for (const ReportRow& row : rows_) json["rows"].push_back(to_json(row));
     json["front"] = front;
     json["target_ms"] = request_.target;
@@ -108,7 +111,7 @@ class Report {
     write_text("report.json", json.dump(1) + "\n");
     ReportPage page{"Error against run time: " + stem(request_.scene),
                     provenance_,
-                    method_text(plan_),
+                    method(),
                     advice,
                     report_plots(rows_, front),
                     rows_,

@@ -9,8 +9,8 @@
 
 namespace voyager::tools {
 
-// How it was timed and compared.
-std::string method_text(const ReportPlan& plan);
+// How it was timed and compared. sensor: of energy; empty where there is none.
+std::string method_text(const ReportPlan& plan, const std::string& sensor);
 // Whole: every choice that the figures depend on.
 std::string advice_text(const std::vector<ReportRow>& rows, const Advice& advice, double target);
 
