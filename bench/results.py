@@ -19,8 +19,10 @@ def change(row):
         return f"{row['select']}, τ {row['tau']:g}"
     if row["group"] == "exp":
         return f"lut {row['lut_size']}" if row["exp"] == "lut" else row["exp"]
+    if row["group"] == "search":  # slack is the temporal one's
+        return row["search"] + (", slack off" if row["search"] == "temporal" and not row["slack"] else "")
     return {"sh": f"SH {row['sh_degree']}", "filter": "no α-filter", "splat": f"3dgs, lod {row['lod']}",
-            "quality": row["quality"], "search": f"{row['search']}, slack {'on' if row['slack'] else 'off'}"}.get(row["group"], row["name"])
+            "quality": row["quality"]}.get(row["group"], row["name"])
 
 
 def order(row):

@@ -241,6 +241,7 @@ TEST(Report, ThePageIsWholeByItself) {
   const std::string text = html(page);
   EXPECT_NE(text.find("<title>a &lt;city&gt; &amp; more</title>"), std::string::npos);
   EXPECT_EQ(text.find("<script>"), std::string::npos);
+  EXPECT_NE(text.find("<p>method Figures: <a href=\"report.csv\">"), std::string::npos);
   EXPECT_NE(text.find("data:image/png;base64,AQI="), std::string::npos);
   EXPECT_NE(text.find("<svg"), std::string::npos);
   EXPECT_EQ(text.find("http://") == std::string::npos || text.find("xmlns") != std::string::npos,
