@@ -7,9 +7,11 @@ namespace voyager::tools {
 
 // A folder that fills in one step: files are written to a hidden folder inside
 // it and take their places in commit(). Destroyed before that, it removes what
-// it wrote, and the folder itself if it made it. Throws Error(io).
+// it wrote, and the folder itself if it made it. What a process that was killed
+// left there is removed by the next. Throws Error(io).
 class OutputFolder {
  public:
+  // At most one of a path at a time in a process.
   explicit OutputFolder(const std::string& path);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
