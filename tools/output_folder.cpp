@@ -1,12 +1,12 @@
 #include "tools/output_folder.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
-#include <signal.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
-#include <string_view>
+#include <cstdlib>
 
 #include "runtime/base/error.h"
 
@@ -17,42 +17,48 @@ namespace {
   throw Error(ErrorCode::io, fmt::format("{}: folder: {}", path.string(), error.message()));
 }
 
-constexpr std::string_view kStaging = ".partial-";
+constexpr const char* kStaging = ".partial-";
 
-// The folder's name has the number of a process that is no more: that process was killed. One of
-// this process's number is another's, of before.
-bool is_left_over(const std::filesystem::path& folder) {
-  const std::string name = folder.filename().string();
-  if (!name.starts_with(kStaging)) return false;
-  pid_t process = 0;
-  const char* end = name.data() + name.size();
-  const auto [stop, error] = std::from_chars(name.data() + kStaging.size(), end, process);
-  if (error != std::errc() || stop != end || process <= 0) return false;
-  return process == ::getpid() || (::kill(process, 0) != 0 && errno == ESRCH);
+// Held for as long as its process lives, in whatever container; -1 where another holds it.
+int lock(const std::filesystem::path& folder) {
+  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0 || ::flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
+  ::close(fd);
+  return -1;
 }
 
+// What nobody has locked is a killed process's.
 void clear_left_over(const std::filesystem::path& path) {
   std::error_code error;
   std::vector<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::directory_iterator(path, error))
-    if (is_left_over(entry.path())) found.push_back(entry.path());
-  for (const auto& folder : found) std::filesystem::remove_all(folder, error);
+    if (entry.path().filename().string().starts_with(kStaging)) found.push_back(entry.path());
+  for (const auto& folder : found)
+    if (const int fd = lock(folder); fd >= 0) {
+      std::filesystem::remove_all(folder, error);
+      ::close(fd);
+    }
 }
 
 }  // namespace
 
-OutputFolder::OutputFolder(const std::string& path)
-    : path_(path), staging_(path_ / fmt::format("{}{}", kStaging, ::getpid())) {
+OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   created_ = !std::filesystem::exists(path_);
   clear_left_over(path_);
   std::error_code error;
-  std::filesystem::create_directories(staging_, error);
+  std::filesystem::create_directories(path_, error);
   if (error) fail(path_, error);
+  std::string name = (path_ / kStaging).string() + "XXXXXX";
+  if (::mkdtemp(name.data()) == nullptr)
+    fail(path_, std::error_code(errno, std::generic_category()));
+  staging_ = name;
+  lock_ = lock(staging_);
 }
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(staging_, ignored);
+  if (lock_ >= 0) ::close(lock_);
   if (created_) std::filesystem::remove(path_, ignored);  // only if it is empty
 }
 

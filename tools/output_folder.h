@@ -11,7 +11,6 @@ namespace voyager::tools {
 // left there is removed by the next. Throws Error(io).
 class OutputFolder {
  public:
-  // At most one of a path at a time in a process.
   explicit OutputFolder(const std::string& path);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -25,6 +24,7 @@ class OutputFolder {
   std::filesystem::path path_, staging_;
   std::vector<std::string> names_;
   bool created_ = false;
+  int lock_ = -1;  // of staging_
 };
 
 }  // namespace voyager::tools

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 #include <set>
 
@@ -17,14 +19,6 @@ std::set<std::string> names_in(const std::string& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     names.insert(entry.path().filename().string());
   return names;
-}
-
-// Of a process that has ended.
-pid_t dead_process() {
-  const pid_t child = ::fork();
-  if (child == 0) ::_exit(0);
-  ::waitpid(child, nullptr, 0);
-  return child;
 }
 
 TEST(OutputFolder, IsWholeOrNotThere) {
@@ -46,16 +40,23 @@ TEST(OutputFolder, IsWholeOrNotThere) {
 
 TEST(OutputFolder, WhatTheKilledLeftIsRemovedAndNothingElse) {
   const test::TempFolder folder;
-  const std::string alive = ".partial-" + std::to_string(::getppid());
-  const std::set<std::string> others = {alive, ".partial-", ".partial-1x", ".report", "a"};
-  for (const std::string& name : others) std::filesystem::create_directory(folder.file(name));
-  for (const pid_t process : {dead_process(), ::getpid()}) {
-    const std::string left = folder.file(".partial-" + std::to_string(process));
-    std::filesystem::create_directory(left);
-    std::ofstream(left + "/image.png") << "half of it";
+  const std::string path = folder.file("");
+  OutputFolder living(path);
+  std::ofstream(living.place("b")) << "b";
+  const pid_t child = ::fork();
+  if (child == 0) {
+    OutputFolder killed(path);
+    std::ofstream(killed.place("c")) << "half of it";
+    ::raise(SIGKILL);
   }
-  { OutputFolder output(folder.file("")); }
-  EXPECT_EQ(names_in(folder.file("")), others);
+  ::waitpid(child, nullptr, 0);
+  std::filesystem::create_directory(folder.file(".report"));
+  EXPECT_EQ(names_in(path).size(), 3u);
+  { OutputFolder next(path); }
+  EXPECT_EQ(names_in(path).size(), 2u);
+  EXPECT_TRUE(names_in(path).contains(".report"));
+  living.commit();
+  EXPECT_TRUE(names_in(path).contains("b"));
 }
 
 }  // namespace
