@@ -119,6 +119,17 @@ class ReportMeasure : public ::testing::Test {
   ScriptedBackend backend_;
 };
 
+TEST_F(ReportMeasure, WithoutItsBandsASceneIsThatOfALowerDegree) {
+  ReportScenes scenes(folder_.file("scene.voy"), folder_.file(""), workers_, progress_);
+  const Scene& whole = *scenes.own();
+  const auto lower = scenes.get(Storage::lossless, 0);
+  ASSERT_EQ(whole.sh_degree, 1);
+  EXPECT_EQ(lower->sh_degree, 0);
+  ASSERT_EQ(lower->sh.size() * 4, whole.sh.size());
+  for (uint32_t i = 0; i < lower->sh.size() / 3; ++i)
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(lower->sh_of(i)[k], whole.sh_of(i)[k]);
+}
+
 // τ starts far from its place: what it takes to get there is no part of the figures.
 TEST_F(ReportMeasure, ABudgetIsTimedOnceItHasSettled) {
   backend_.script.milliseconds = [](size_t frame) { return frame < 24 ? 100 : 0.9; };

@@ -13,7 +13,6 @@
 #include "tools/report/plot_axis.h"
 #include "tools/report/report_csv.h"
 #include "tools/report/report_plots.h"
-#include "tools/report/report_scenes.h"
 
 namespace voyager::tools {
 namespace {
@@ -207,6 +206,16 @@ TEST(Report, WhatWasMeasuredIsKeptForTheSameReportAlone) {
   EXPECT_FALSE(std::filesystem::exists(kept));
 }
 
+TEST(Report, ANameThatIsNotUtf8IsShownAsFarAsItCanBe) {
+  const test::TempFolder folder;
+  const nlohmann::ordered_json provenance = {{"scene", {{"name", "caf\xe9.voy"}}}};
+  KeptRows(folder.file("kept"), provenance).keep({row(3, 9, 0.02), "", ""});
+  EXPECT_TRUE(KeptRows(folder.file("kept"), provenance).find(row(3, 9, 0.02).is));
+  const std::vector<ReportRow> rows = {row(3, 9, 0.02)};
+  const std::string text = html({"title", provenance, "method", "advice", {}, rows, {0}, {}});
+  EXPECT_NE(text.find("caf\xef\xbf\xbd.voy"), std::string::npos);
+}
+
 TEST(Report, AxesHoldTheirValuesAndLabelRoundNumbers) {
   for (const bool logarithmic : {false, true})
     for (const auto& values : {std::vector<double>{3, 4.5, 17}, {1e-3, 2e4}, {5}, {}}) {
@@ -256,18 +265,6 @@ TEST(Report, ThePageIsWholeByItself) {
     const std::string id = text.substr(at + 7, text.find('"', at + 7) - at - 7);
     EXPECT_NE(text.find("id=\"" + id + "\""), std::string::npos) << id;
   }
-}
-
-TEST(Report, WithoutItsBandsASceneIsThatOfALowerDegree) {
-  Scene scene(std::pmr::get_default_resource());
-  scene.sh_degree = 2;
-  for (int i = 0; i < 3 * 27; ++i) scene.sh.push_back(static_cast<float>(i));
-  drop_sh_bands(scene, 1);
-  ASSERT_EQ(scene.sh.size(), 3u * 12);
-  EXPECT_EQ(scene.sh_degree, 1);
-  for (uint32_t i = 0; i < 3; ++i)
-    for (int k = 0; k < 12; ++k)
-      EXPECT_EQ(scene.sh_of(i)[k], static_cast<float>(27 * static_cast<int>(i) + k));
 }
 
 }  // namespace

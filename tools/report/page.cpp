@@ -104,9 +104,12 @@ std::string table(const ReportPage& page) {
 
 std::string provenance_list(const nlohmann::ordered_json& json) {
   std::string text = "<dl>\n";
-  for (const auto& [key, value] : json.items())
-    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(key),
-                        escaped(value.is_string() ? value.get<std::string>() : value.dump()));
+  for (const auto& [key, value] : json.items()) {
+    const std::string shown =
+        value.is_string() ? value.get<std::string>()
+                          : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(key), escaped(shown));
+  }
   return text + "</dl>\n";
 }
 

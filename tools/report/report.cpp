@@ -30,10 +30,11 @@ class Report {
         output_(request.output),
         backend_(backend),
         plan_(report_plan(request.cameras, request.size, request.extent)),
-        provenance_(provenance(request.scene, request.cameras, backend, request.arguments)),
-        kept_(std::filesystem::path(request.output) / ".report", provenance_),
-        scenes_(request.scene, kept_.folder(), workers_, progress_),
-        references_(scenes_.own(), plan_.path, plan_.compared, kept_.folder(), workers_),
+        folder_(std::filesystem::path(request.output) / ".report"),
+        scenes_(request.scene, folder_, workers_, progress_),
+        provenance_(tools::provenance(request.scene, request.cameras, backend, request.arguments)),
+        kept_(folder_, provenance_),
+        references_(scenes_.own(), plan_.path, plan_.compared, folder_, workers_),
         energy_(find_energy_meter(backend.device_uuid())),
         measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
 
@@ -90,6 +91,13 @@ class Report {
     file.commit();
   }
 
+  // With what the advice depends on, and no measurement.
+  Json provenance() const {
+    Json shown = provenance_;
+    shown["arguments"].push_back(fmt::format("--target {:.4g}", request_.target));
+    return shown;
+  }
+
   std::string method() const { return method_text(plan_, energy_ ? energy_->name() : ""); }
 
   void write() {
@@ -108,9 +116,9 @@ class Report {
     json["target_ms"] = request_.target;
     json["recommended"] = advised.in_time ? Json(advised.row) : Json();
     json["recommendation"] = advice;
-    write_text("report.json", json.dump(1) + "\n");
+    write_text("report.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     ReportPage page{"Error against run time: " + stem(request_.scene),
-                    provenance_,
+                    provenance(),
                     method(),
                     advice,
                     report_plots(rows_, front),
@@ -130,9 +138,10 @@ class Report {
   const Progress progress_ = progress_bar();
   Backend& backend_;
   const ReportPlan plan_;
+  const std::filesystem::path folder_;
+  ReportScenes scenes_;  // before what writes: a file that is refused leaves nothing
   const Json provenance_;
   KeptRows kept_;
-  ReportScenes scenes_;
   ReferenceImages references_;
   std::unique_ptr<EnergyMeter> energy_;
   Measurement measurement_;
