@@ -114,8 +114,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 TEST(Report, EachLineOfTheTableHasTheHeadersFields) {
+  ReportRow city_row = row(3, 9, 0.02);
+  city_row.cut = 4303386.25;
   const std::vector<std::string> lines =
-      lines_of(report_csv({"a, \"city\"", "walk", "CPU"}, {row(3, 9, 0.02), row(15, 4, 0.1)}));
+      lines_of(report_csv({"a, \"city\"", "walk", "CPU"}, {city_row, row(15, 4, 0.1)}));
   ASSERT_EQ(lines.size(), 3u);
   const auto fields = [](const std::string& line) {
     bool quoted = false;
@@ -126,6 +128,7 @@ TEST(Report, EachLineOfTheTableHasTheHeadersFields) {
     }
     return count;
   };
+  EXPECT_NE(lines[1].find(",4303386.25,"), std::string::npos) << lines[1];
   EXPECT_EQ(fields(lines[1]), fields(lines[0]));
   EXPECT_EQ(fields(lines[2]), fields(lines[0]));
   EXPECT_EQ(lines[1].find("\"a, \"\"city\"\"\",walk,CPU,default,on,3,temporal,cut,on,ours,"), 0u)
@@ -218,7 +221,13 @@ TEST(Report, ANameThatIsNotUtf8IsShownAsFarAsItCanBe) {
 
 TEST(Report, AxesHoldTheirValuesAndLabelRoundNumbers) {
   for (const bool logarithmic : {false, true})
-    for (const auto& values : {std::vector<double>{3, 4.5, 17}, {1e-3, 2e4}, {5}, {}}) {
+    for (const auto& values : {std::vector<double>{3, 4.5, 17},
+                               {1e-3, 2e4},
+                               {5},
+                               {},
+                               {100, std::nextafter(100, 200)},
+                               {1e-300, 3e-300},
+                               {1e15, std::nextafter(1e15, 0)}}) {
       const PlotAxis axis(values, logarithmic);
       for (const double value : values) {
         EXPECT_GE(axis.at(value), 0);
@@ -226,6 +235,10 @@ TEST(Report, AxesHoldTheirValuesAndLabelRoundNumbers) {
       }
       const auto ticks = axis.ticks();
       EXPECT_LE(ticks.size(), 24u);
+      if (values.size() == 2 && !logarithmic) {
+        EXPECT_GE(ticks.size(), 3u);
+        EXPECT_NE(ticks[0].label, ticks[1].label);
+      }
       for (const PlotAxis::Tick& tick : ticks) {
         EXPECT_GE(tick.at, -1e-9);
         EXPECT_LE(tick.at, 1 + 1e-9);
