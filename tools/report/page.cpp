@@ -79,23 +79,35 @@ std::string warnings(const ReportPage& page) {
 }
 
 std::string table_row(const ReportRow& row, size_t index, bool front) {
-  return fmt::format(
-      "<tr "
-      "id=\"row-{}\"{}><td>{}{}</td><td>{:.0f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td>"
-      "<td>{}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{:.4f}</td><td>{:.4f}</td>"
-      "<td>{}</td></tr>\n",
-      index, front ? " class=\"front\"" : "", escaped(row.is.name()),
-      row.not_finite() > 0 ? " <span class=\"wrong\">" + not_finite(row) + "</span>" : "", row.cut,
-      row.frame.median, row.frame.p95, row.frame.p99, decibels(row.same.psnr),
-      decibels(row.all.psnr), fixed(row.all.ssim, 4), row.all.flip, row.all.largest, row.all.p999,
-      fixed(row.all.popping, 3));
+  const std::string cells[] = {
+      fmt::format("{:.0f}", row.cut),
+      fmt::format("{:.3f}", row.frame.median),
+      fmt::format("{:.3f}", row.frame.p95),
+      fmt::format("{:.3f}", row.frame.p99),
+      row.bytes > 0 ? fmt::format("{:.1f}", row.bytes / 1e6) : "–",
+      row.joules ? fmt::format("{:.3g}", *row.joules) : "–",
+      decibels(row.same.psnr),
+      decibels(row.all.psnr),
+      fixed(row.all.ssim, 4),
+      fmt::format("{:.4f}", row.all.flip),
+      fmt::format("{:.4f}", row.all.largest),
+      fmt::format("{:.4f}", row.all.p999),
+      fixed(row.all.popping, 3),
+  };
+  std::string text = fmt::format(
+      "<tr id=\"row-{}\"{}><td>{}{}</td>", index, front ? " class=\"front\"" : "",
+      escaped(row.is.name()),
+      row.not_finite() > 0 ? " <span class=\"wrong\">" + not_finite(row) + "</span>" : "");
+  for (const std::string& cell : cells) text += "<td>" + cell + "</td>";
+  return text + "</tr>\n";
 }
 
 std::string table(const ReportPage& page) {
   std::string text =
       "<div class=\"wide\"><table><tr><th>configuration</th><th>cut</th><th>ms</th><th>p95</th>"
-      "<th>p99</th><th>PSNR, same cut, dB</th><th>PSNR, all leaves, dB</th><th>SSIM</th>"
-      "<th>FLIP</th><th>max</th><th>p99.9</th><th>popping, 1/255</th></tr>\n";
+      "<th>p99</th><th>MB moved</th><th>joules</th><th>PSNR, same cut, dB</th>"
+      "<th>PSNR, all leaves, dB</th><th>SSIM</th><th>FLIP</th><th>max</th><th>p99.9</th>"
+      "<th>popping, 1/255</th></tr>\n";
   for (size_t i = 0; i < page.rows.size(); ++i)
     text += table_row(page.rows[i], i,
                       std::find(page.front.begin(), page.front.end(), i) != page.front.end());

@@ -26,7 +26,7 @@ class Line {
     line_ += quoted(value);
     return *this;
   }
-  Line& number(double value) { return text(fmt::format("{:.6g}", value)); }
+  Line& number(double value) { return text(fmt::format("{:.10g}", value)); }
   Line& empty() { return text(""); }
   Line& number(const std::optional<double>& value) { return value ? number(*value) : empty(); }
   template <class Value>
