@@ -59,6 +59,7 @@ TEST_F(Report, LeavesATableAPageAndPlots) {
     }
   EXPECT_EQ(json["provenance"]["scene"]["bytes"].get<uint64_t>(),
             std::filesystem::file_size(file("c.voy")));
+  EXPECT_EQ(json["provenance"]["arguments"].back(), "--target 10000");
   EXPECT_FALSE(std::filesystem::exists(file("out/.report")));
   // The page, as a user sees it: here, for each test of this suite would make a report of its own.
   if (browser().empty()) VOYAGER_SKIP_WITHOUT_BROWSER();

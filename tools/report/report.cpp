@@ -94,7 +94,7 @@ class Report {
   // With what the advice depends on, and no measurement.
   Json provenance() const {
     Json shown = provenance_;
-    shown["arguments"].push_back(fmt::format("--target {:.4g}", request_.target));
+    shown["arguments"].push_back(fmt::format("--target {:g}", request_.target));
     return shown;
   }
 
@@ -110,7 +110,7 @@ class Report {
     write_text(
         "report.csv",
         report_csv({stem(request_.scene), stem(request_.cameras), backend_.device_name()}, rows_));
-    Json json = {{"provenance", provenance_}, {"method", method()}, {"rows", Json::array()}};
+    Json json = {{"provenance", provenance()}, {"method", method()}, {"rows", Json::array()}};
     for (const ReportRow& row : rows_) json["rows"].push_back(to_json(row));
     json["front"] = front;
     json["target_ms"] = request_.target;
