@@ -30,14 +30,15 @@ std::string sizes_text(const std::vector<FrameInput>& path) {
 }  // namespace
 
 std::string method_text(const ReportPlan& plan, const std::string& sensor) {
-  const std::string text = fmt::format(
+  std::string text = fmt::format(
       "{} frames of {} along the cameras, {} times after a start on the first {}; errors over "
       "{} of them, against the float64 reference.",
       plan.path.size(), sizes_text(plan.path), plan.repeats, std::min<size_t>(plan.path.size(), 32),
       plan.compared.size());
-  if (sensor.empty()) return text;
-  return text + fmt::format(" Energy by {}, over {:g} s or more of the same frames.", sensor,
-                            FrameEnergy::kLeast / 1000);
+  if (!sensor.empty())
+    text += fmt::format(" Energy by {}, over {:g} s or more of the same frames.", sensor,
+                        FrameEnergy::kLeast / 1000);
+  return text;
 }
 
 std::string advice_text(const std::vector<ReportRow>& rows, const Advice& advice, double target) {
