@@ -19,8 +19,10 @@ def change(row):
         return f"{row['select']}, τ {row['tau']:g}"
     if row["group"] == "exp":
         return f"lut {row['lut_size']}" if row["exp"] == "lut" else row["exp"]
+    if row["group"] == "search":  # slack is the temporal one's
+        return row["search"] + (", slack off" if row["search"] == "temporal" and not row["slack"] else "")
     return {"sh": f"SH {row['sh_degree']}", "filter": "no α-filter", "splat": f"3dgs, lod {row['lod']}",
-            "quality": row["quality"], "search": f"{row['search']}, slack {'on' if row['slack'] else 'off'}"}.get(row["group"], row["name"])
+            "quality": row["quality"]}.get(row["group"], row["name"])
 
 
 def order(row):
@@ -37,7 +39,7 @@ def cells(row):
     return [change(row) + (", the default" if row["group"] == "default" else ""), f"{row['cut']:,.0f}", f"{row['pairs']:,.0f}",
             f"{ms['frame']['median']:.3f} / {ms['frame']['p95']:.3f}", f"{ms['search']['median']:.3f}", decibels(same["psnr_db"]),
             decibels(all_leaves["psnr_db"]), "–" if all_leaves["ssim"] is None else f"{all_leaves['ssim']:.4f}", f"{all_leaves['flip']:.4f}",
-            f"{255 * same['max_abs']:.2f}", f"{all_leaves['popping']:.2f}"]
+            f"{255 * same['max_abs']:.2f}", "–" if all_leaves["popping"] is None else f"{all_leaves['popping']:.2f}"]
 
 
 def print_report(folder):

@@ -11,6 +11,8 @@ class FrameLimits {
  public:
   // Makes room for them, if there are any. May allocate.
   void fit(const FrameEye& eye);
+  // Whether some frame had them.
+  bool any() const { return values_.size() != 0; }
   // As kernels on the stream take them; there is room.
   DepthLimits upload(const FrameEye& eye, cudaStream_t stream) const;
 

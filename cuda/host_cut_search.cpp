@@ -9,7 +9,7 @@ class HostCutSearch final : public CutSearch {
  public:
   HostCutSearch(std::shared_ptr<const Scene> scene, Search kind, Workers& workers)
       : workers_(workers),
-        search_(scene, {kind, true}, std::pmr::get_default_resource()),
+        search_(scene, {kind, true}, std::pmr::get_default_resource(), workers),
         nodes_(scene->tree.size()),
         weights_(scene->tree.size()),
         size_(1) {}

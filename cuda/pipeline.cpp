@@ -11,6 +11,7 @@
 #include "cuda/frame_report.h"
 #include "cuda/splat_state.h"
 #include "runtime/base/error.h"
+#include "runtime/frame/choice_omission.h"
 #include "runtime/frame/instance.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/math/alpha_lut.h"
@@ -321,8 +322,16 @@ std::vector<Omission> SplatPipeline::omissions() const {
     shape.depth = shape.depth || image.depth();
   }
   shape.eye_bytes = splats_.room().places * sizeof(SplatRecord);
+  ViewChoices choices{desc_, false, sizeof(float)};
+  for (const FrameLimits& limits : limits_) choices.limits = choices.limits || limits.any();
   std::vector<Omission> all = instances_.omissions();
-  for (Omission& omission : omissions_of(shape)) all.push_back(std::move(omission));
+  for (const auto& more : {omissions_of(shape), omissions_of(choices, shape)})
+    all.insert(all.end(), more.begin(), more.end());
+  // Of kernels that are compiled without: registers and instructions, no memory.
+  if (!instances_.siblings() && !desc_.count_pixels)
+    all.push_back({"weights of siblings", "nothing that is drawn has a parent", 0, 0});
+  if (!desc_.count_pixels)
+    all.push_back({"counting of pixels", "no measurement asked for it", 0, 0});
   return all;
 }
 

@@ -39,7 +39,7 @@ void export_cut(const std::string& scene_path, const Camera& camera, double tau,
   seen.eye = {camera.pose.position[0], camera.pose.position[1], camera.pose.position[2]};
   const VoyFrustum f = camera.frustum();
   seen.fx = camera.width / (f.right - f.left);
-  DrawList draws(scene, Lod::cut, Search::exhaustive, std::pmr::get_default_resource());
+  DrawList draws(scene, Lod::cut, Search::exhaustive, std::pmr::get_default_resource(), workers);
   draws.update(cut_query(seen, tau, scene->origin), workers);
 
   GaussianCloud cloud;

@@ -13,6 +13,11 @@ size_t warm_up_frames(const FramePath& path) {
   return std::min(path.frames.size(), kWarmUpFrames);
 }
 
+size_t settling_frames(const FramePath& path) {
+  const size_t frames = path.frames.size();
+  return path.settles ? (kWarmUpFrames + frames - 1) / frames * frames : 0;
+}
+
 View make_view(const FrameMaker& maker, const PipelineDesc& desc) {
   return View(maker.scene, maker.backend, desc, std::pmr::get_default_resource(), maker.workers);
 }
@@ -39,7 +44,7 @@ bool counts_pixels(const FrameStats& stats) {
 
 size_t FramePath::frames_drawn() const {
   const size_t passes = repeats + (counts_pixels ? 1 : 0);
-  return warm_up_frames(*this) + 1 + frames.size() * passes;
+  return warm_up_frames(*this) + 1 + settling_frames(*this) + frames.size() * passes;
 }
 
 FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const FramePath& path,
@@ -56,11 +61,16 @@ FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const Fra
     for (size_t i = 0; i < warm_up_frames(path); ++i) draw(view, path.frames[i]);
     draw(view, path.frames[0]);
     if (path.time_budget) view.set_time_budget(*path.time_budget, path.frames[0].tau);
-    for (size_t i = 0; i < path.repeats * path.frames.size(); ++i) {
+    const auto steered = [&](size_t i) {
       FrameInput frame = path.frames[i % path.frames.size()];
       frame.tau = view.next_tau(frame.tau);
-      run.timed.push_back(draw(view, frame));
-    }
+      return frame;
+    };
+    for (size_t i = 0; i < settling_frames(path); ++i) draw(view, steered(i));
+    for (size_t i = 0; i < path.repeats * path.frames.size(); ++i)
+      run.timed.push_back(draw(view, steered(i)));
+    while (path.goes_on && path.goes_on())
+      for (size_t i = 0; i < path.frames.size(); ++i) draw(view, steered(i));
   }
   if (path.time_budget || !path.counts_pixels) return run;
   PipelineDesc counting = desc;

@@ -17,8 +17,11 @@ struct FramePath {
   std::optional<TimeBudgetDesc> time_budget =
       {};                     // it chooses timed frames' tau, from the first's on
   bool counts_pixels = true;  // in a pass of its own
+  bool settles = false;       // the path is drawn under the budget before it is timed
+  // Where given, the path is drawn on after it was timed, whole, for as long as it says so.
+  std::function<bool()> goes_on = {};
 
-  // Frames that run_frames() draws, at most.
+  // Frames that run_frames() draws, at most, before what goes_on asks for.
   size_t frames_drawn() const;
 };
 
@@ -35,7 +38,8 @@ struct FrameMaker {
 };
 
 // Images are 8-bit and handed to nobody. After a start on the path's first 32 frames and
-// on the first again, each camera in order. frame_done(frames drawn so far) follows each.
+// on the first again, each camera in order. To settle is to draw the path, whole, until that is 32
+// frames or more. frame_done(frames drawn so far) follows each.
 // Throws Error(unsupported) for a choice that the backend lacks.
 FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const FramePath& path,
                     const std::function<void(size_t)>& frame_done);

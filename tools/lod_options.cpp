@@ -15,6 +15,14 @@ Lod LodChoice::value() const {
   return chosen;
 }
 
+void LodChoice::refuse_without_tree(const std::string& scene) const {
+  if (!given() || !draws_cut(value())) return;
+  throw Error(ErrorCode::invalid_argument,
+              std::string(select ? "--select: found " : "--lod: found ") +
+                  (select ? select_name(*select) : "on") + " for " + scene +
+                  ", which has no tree, expected " + (select ? "flat" : "off") + " or a .voy");
+}
+
 void add_lod_options(CLI::App& command, LodChoice& choice) {
   add_choice<std::optional<bool>>(command, "--lod", choice.on, {{"on", true}, {"off", false}},
                                   "off draws every leaf");

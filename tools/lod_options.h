@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 
 #include "runtime/select/detail.h"
 
@@ -18,6 +19,9 @@ struct LodChoice {
   bool given() const { return on || select; }
   // Throws Error(invalid_argument) where the two contradict one another.
   Lod value() const;
+  // Throws Error(invalid_argument) where one asks for detail of a scene that has no tree to
+  // choose it from. That it is drawn flat where none is given needs no asking.
+  void refuse_without_tree(const std::string& scene) const;
 };
 
 void add_lod_options(CLI::App& command, LodChoice& choice);

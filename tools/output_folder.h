@@ -7,7 +7,8 @@ namespace voyager::tools {
 
 // A folder that fills in one step: files are written to a hidden folder inside
 // it and take their places in commit(). Destroyed before that, it removes what
-// it wrote, and the folder itself if it made it. Throws Error(io).
+// it wrote, and the folder itself if it made it. What a process that was killed
+// left there is removed by the next. Throws Error(io).
 class OutputFolder {
  public:
   explicit OutputFolder(const std::string& path);
@@ -23,6 +24,7 @@ class OutputFolder {
   std::filesystem::path path_, staging_;
   std::vector<std::string> names_;
   bool created_ = false;
+  int lock_ = -1;  // of staging_
 };
 
 }  // namespace voyager::tools

@@ -67,10 +67,6 @@ Renderer::Renderer(const std::string& scene, const RenderChoices& choices, uint3
       view_(create_view(device_, scene_.get(), choices, max_width, max_height)),
       images_(choices.eyes) {}
 
-bool Renderer::draws_cut() const {
-  return choices_.lod != VOY_LOD_ALL_LEAVES && scene_.info().storage != VOY_SCENE_STORAGE_FLAT;
-}
-
 voy::Target Renderer::create_target(const Camera& camera, RenderedImage& image) const {
   const size_t pixels = size_t{camera.width} * camera.height;
   VoyTargetDesc desc = VOY_TARGET_DESC_INIT;

@@ -48,7 +48,8 @@ class Renderer {
 
   // Of the last frame.
   const RenderedImage& image(size_t eye) const { return images_[eye]; }
-  bool draws_cut() const;
+  bool has_tree() const { return scene_.info().storage != VOY_SCENE_STORAGE_FLAT; }
+  bool draws_cut() const { return choices_.lod != VOY_LOD_ALL_LEAVES && has_tree(); }
   std::vector<uint32_t> cut() const { return view_.cut(); }
   VoyFrameStats stats() const { return view_.stats(); }
   std::vector<VoyOmission> omissions() const { return view_.omissions(); }

@@ -6,6 +6,7 @@
 #include "runtime/base/error.h"
 #include "runtime/cpu/bin.h"
 #include "runtime/cpu/rasterize.h"
+#include "runtime/frame/choice_omission.h"
 #include "runtime/frame/depth_order.h"
 #include "runtime/frame/host_instances.h"
 #include "runtime/frame/host_pipeline.h"
@@ -26,7 +27,7 @@ class CpuPipeline final : public HostPipeline {
               Workers& workers)
       : desc_(desc),
         workers_(workers),
-        instances_(scenes, desc, kProjectBlock, memory),
+        instances_(scenes, desc, kProjectBlock, memory, workers),
         keys_(memory),
         order_(memory),
         bins_(memory),
@@ -84,6 +85,7 @@ class CpuPipeline final : public HostPipeline {
   std::pmr::vector<uint32_t> order_;  // splats by depth
   TileBins bins_;
   std::pmr::vector<float> lut_;
+  bool limited_ = false;  // some frame was
 };
 
 void CpuPipeline::project(const FrameInput&) {
@@ -149,6 +151,7 @@ void CpuPipeline::rasterize(const FrameInput& frame, size_t eye) {
   if (of.pixels.size() < count) of.pixels.resize(count);
   const bool limits = wanted.limits.values != nullptr, depth = wanted.depth_wanted || limits;
   if (depth && of.depth.size() < count) of.depth.resize(count);
+  limited_ = limited_ || limits;
   const RasterParams params{of.splats.data(),
                             lut_.data(),
                             static_cast<float>(desc_.lut_size) / kLutRange,
@@ -176,7 +179,11 @@ std::vector<Omission> CpuPipeline::omissions() const {
     shape.eye_bytes = std::max<uint64_t>(
         shape.eye_bytes, eye.splats.size() * sizeof(Splat) + eye.pixels.size() * sizeof(Pixel));
   }
-  return omissions_of(shape);
+  std::vector<Omission> all = omissions_of(shape);
+  // Limits are read where the host has them.
+  for (Omission& omission : omissions_of(ViewChoices{desc_, limited_, 0}, shape))
+    all.push_back(std::move(omission));
+  return all;
 }
 
 class CpuBackend final : public Backend {

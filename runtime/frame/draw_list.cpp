@@ -12,13 +12,13 @@ GaussianArrays gaussian_arrays(const Scene& scene) {
 }
 
 DrawList::DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
-                   std::pmr::memory_resource* memory)
+                   std::pmr::memory_resource* memory, Workers& workers)
     : scene_(std::move(scene)), leaves_(memory) {
   check_detail(*scene_, lod);
   if (scene_->flat() || !draws_cut(lod))
     list_leaves();
   else
-    search_.emplace(scene_, SearchDesc{search, true, lod}, memory);
+    search_.emplace(scene_, SearchDesc{search, true, lod}, memory, workers);
 }
 
 void DrawList::list_leaves() {

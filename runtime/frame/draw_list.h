@@ -14,7 +14,7 @@ namespace voyager {
 class DrawList {
  public:
   DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
-           std::pmr::memory_resource* memory);
+           std::pmr::memory_resource* memory, Workers& workers);
 
   // Throws Error(damaged_chunk) where the frame needs a node that is not there. After a call
   // that threw, the next is right all the same.

@@ -7,9 +7,9 @@
 namespace voyager {
 
 HostInstances::HostInstances(const Scenes& scenes, const PipelineDesc& desc, size_t grain,
-                             std::pmr::memory_resource* memory)
+                             std::pmr::memory_resource* memory, Workers& workers)
     : grain_(grain) {
-  for (const auto& scene : scenes) all_.emplace_back(scene, desc, memory);
+  for (const auto& scene : scenes) all_.emplace_back(scene, desc, memory, workers);
 }
 
 void HostInstances::update(const FrameInput& frame, Workers& workers) {

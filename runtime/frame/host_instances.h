@@ -9,8 +9,8 @@ namespace voyager {
 
 struct HostInstance {
   HostInstance(const std::shared_ptr<const Scene>& drawn, const PipelineDesc& desc,
-               std::pmr::memory_resource* memory)
-      : scene(drawn), draws(drawn, desc.lod, desc.search, memory) {}
+               std::pmr::memory_resource* memory, Workers& workers)
+      : scene(drawn), draws(drawn, desc.lod, desc.search, memory, workers) {}
 
   std::shared_ptr<const Scene> scene;
   DrawList draws;
@@ -25,7 +25,7 @@ class HostInstances {
  public:
   // grain: of places; an instance's first is a multiple of it.
   HostInstances(const Scenes& scenes, const PipelineDesc& desc, size_t grain,
-                std::pmr::memory_resource* memory);
+                std::pmr::memory_resource* memory, Workers& workers);
 
   // Throws Error as DrawList does; the next call is right all the same.
   void update(const FrameInput& frame, Workers& workers);

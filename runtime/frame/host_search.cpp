@@ -9,16 +9,14 @@
 namespace voyager {
 
 HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
-                       std::pmr::memory_resource* memory)
+                       std::pmr::memory_resource* memory, Workers& workers)
     : scene_(std::move(scene)), desc_(desc), items_(memory) {
   check_detail(*scene_, desc.lod);
   if (scene_->streamed() && desc.kind == Search::exhaustive)
     throw Error(ErrorCode::unsupported,
                 "search: found exhaustive, a streamed scene has streaming and temporal");
-  if (desc.lod != Lod::cut) {
-    Workers workers;
+  if (desc.lod != Lod::cut)
     detail_.emplace(make_detail_tree(scene_->tree, scene_->partition, desc.lod, workers, memory));
-  }
   if (desc.kind != Search::exhaustive) {
     partitioned_.emplace(search_tree(), memory);
     return;
@@ -104,7 +102,7 @@ class SearchOfHost final : public SceneSearch {
  public:
   SearchOfHost(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
                std::pmr::memory_resource* memory, Workers& workers)
-      : search_(std::move(scene), desc, memory), workers_(workers) {}
+      : search_(std::move(scene), desc, memory, workers), workers_(workers) {}
 
   void run(const CutQuery& query) override { search_.run(query, workers_); }
   SearchTimes times() override { return search_.times(); }

@@ -17,9 +17,9 @@ namespace voyager {
 class HostSearch {
  public:
   // Throws Error(unsupported) for what check_detail() refuses, and for the exhaustive search of a
-  // streamed scene.
+  // streamed scene. A baseline's tree is made by the workers given.
   HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
-             std::pmr::memory_resource* memory);
+             std::pmr::memory_resource* memory, Workers& workers);
 
   // Throws Error(damaged_chunk) where the cut needs a node that is not there, and
   // std::bad_alloc; the next run is right all the same.

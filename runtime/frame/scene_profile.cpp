@@ -16,6 +16,21 @@ float anisotropy(const Vec3f& scale) {
   return greatest / least;
 }
 
+// Calls visit(node) for each of [begin, end) whose chunk was read: the others' Gaussians are
+// stand-ins, and say nothing of the scene.
+template <class Visit>
+void each_sound(const std::vector<DamagedNodes>& damaged, size_t begin, size_t end,
+                const Visit& visit) {
+  auto lost = std::partition_point(damaged.begin(), damaged.end(), [&](const DamagedNodes& range) {
+    return size_t{range.first} + range.count <= begin;
+  });
+  for (size_t node = begin; node < end; ++node) {
+    for (; lost != damaged.end() && node >= lost->first; ++lost)
+      node = size_t{lost->first} + lost->count;
+    if (node < end) visit(node);
+  }
+}
+
 // Of a run of Gaussians; runs are joined in any order.
 struct Shapes {
   uint64_t above_one = 0;
@@ -42,7 +57,7 @@ void complete_profile(Scene& scene, Workers& workers) {
   std::mutex joining;
   workers.for_blocks(scene.gaussians.size(), kGrain, [&](size_t begin, size_t end) {
     Shapes own;
-    for (size_t i = begin; i < end; ++i) own.add(scene.gaussians[i]);
+    each_sound(scene.damaged, begin, end, [&](size_t i) { own.add(scene.gaussians[i]); });
     const std::lock_guard lock(joining);
     all.add(own);
   });

@@ -54,7 +54,7 @@ class ReferencePipeline final : public HostPipeline {
                     std::pmr::memory_resource* memory, Workers& workers)
       : alpha_filter_(desc.alpha_filter),
         workers_(workers),
-        instances_(scenes, desc, 1, memory),
+        instances_(scenes, desc, 1, memory, workers),
         keys_(memory) {
     for (uint32_t eye = 0; eye < desc.eyes; ++eye) eyes_.emplace_back(memory);
   }

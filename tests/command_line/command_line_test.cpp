@@ -105,6 +105,21 @@ TEST_F(CommandLine, SelectIsRefusedWhereLodSaysOtherwise) {
   expect_refusal(render("city.voy", "--budget 40 --select blocks" + out), 1, "blocks");
 }
 
+// Drawn flat all the same, its figures would pass for those of the way that was asked for.
+TEST_F(CommandLine, AWayToChooseDetailIsRefusedWhereThereIsNoTree) {
+  const std::string out = " -o " + file("refused.png"), city = "city.ply";
+  for (const std::string choice :
+       {"--select cut", "--select blocks", "--select levels", "--lod on"})
+    for (const std::string& command :
+         {render(city, "--backend cpu " + choice + out),
+          "voyager bench " + file(city) + " --cameras " + file("city.cameras.json") +
+              " --stages all --backend cpu " + choice + " --json " + file("refused.json")})
+      expect_refusal(command, 1, "city.ply, which has no tree");
+  const std::string drawn = " --backend cpu -o " + file("flat.png");
+  for (const std::string choice : {"--select flat", "--lod off", "--tau 15"})
+    EXPECT_EQ(run(render(city, choice + drawn)).exit_code, 0) << choice;
+}
+
 TEST_F(CommandLine, FilterOffGivesTheSameImage) {
   for (const std::string exponential : {"exact", "ex2", "lut"}) {
     ASSERT_EQ(run(render("city.voy", "--exp " + exponential + " -o " + file("on.pfm"))).exit_code,

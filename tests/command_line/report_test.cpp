@@ -28,9 +28,10 @@ class Report : public ::testing::Test {
   void SetUp() override { ASSERT_EQ(failure_, ""); }
 
   static std::string file(const std::string& name) { return folder_->file(name); }
-  static std::string report(const std::string& scene, const std::string& rest) {
-    return "voyager report " + file(scene) + " --cameras " + file("three.json") +
-           " --backend cpu --size 64x36 --quick " + rest;
+  static std::string report(const std::string& scene, const std::string& rest,
+                            const std::string& cameras = "three.json") {
+    return "voyager report '" + file(scene) + "' --cameras " + file(cameras) +
+           " --backend cpu --quick " + rest;
   }
 
   static inline TempFolder* folder_ = nullptr;
@@ -38,7 +39,7 @@ class Report : public ::testing::Test {
 };
 
 TEST_F(Report, LeavesATableAPageAndPlots) {
-  const Outcome outcome = run(report("c.voy", "--target 10000 -o " + file("out")));
+  const Outcome outcome = run(report("c.voy", "--size 64x36 --target 10000 -o " + file("out")));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("For 1e+04 ms a frame: --"), std::string::npos) << outcome.output;
   const auto json = nlohmann::json::parse(file_bytes(file("out/report.json")));
@@ -58,6 +59,7 @@ TEST_F(Report, LeavesATableAPageAndPlots) {
     }
   EXPECT_EQ(json["provenance"]["scene"]["bytes"].get<uint64_t>(),
             std::filesystem::file_size(file("c.voy")));
+  EXPECT_EQ(json["provenance"]["arguments"].back(), "--target 10000");
   EXPECT_FALSE(std::filesystem::exists(file("out/.report")));
   // The page, as a user sees it: here, for each test of this suite would make a report of its own.
   if (browser().empty()) VOYAGER_SKIP_WITHOUT_BROWSER();
@@ -71,11 +73,13 @@ TEST_F(Report, LeavesATableAPageAndPlots) {
 // What was measured before the end is not measured again: its times are the same to the last digit.
 TEST_F(Report, GoesOnWhereItWasEnded) {
   Outcome outcome{137, ""};
-  const std::string command = report("c.voy", "-o " + file("ended"));
+  const std::string command = report("c.voy", "--size 64x36 -o " + file("ended"));
   int ended = 0;
   std::string first;
-  for (int tenths = 5; outcome.exit_code == 137 && tenths < 600; tenths += 5) {
-    outcome = run_shell("timeout -s KILL " + std::to_string(0.1 * tenths) + " " + program(command));
+  for (int tenths = 1; outcome.exit_code == 137 && tenths < 600; tenths += 1 + tenths / 3) {
+    // The target is no part of what is measured: another one throws nothing away.
+    outcome = run_shell("timeout --foreground -s KILL " + std::to_string(0.1 * tenths) + " " +
+                        program(command + " --target " + std::to_string(tenths)));
     ended += outcome.exit_code == 137;
     if (!first.empty() || !std::filesystem::exists(file("ended/.report"))) continue;
     for (const auto& entry : std::filesystem::directory_iterator(file("ended/.report")))
@@ -85,6 +89,9 @@ TEST_F(Report, GoesOnWhereItWasEnded) {
   }
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_GT(ended, 0);
+  // Nor is anything left of those that were ended.
+  for (const auto& entry : std::filesystem::directory_iterator(file("ended")))
+    EXPECT_NE(entry.path().filename().string()[0], '.') << entry.path();
   if (first.empty()) return;
   const auto kept = nlohmann::json::parse(first);
   const auto json = nlohmann::json::parse(file_bytes(file("ended/report.json")));
@@ -94,11 +101,32 @@ TEST_F(Report, GoesOnWhereItWasEnded) {
 }
 
 TEST_F(Report, AFlatSceneIsBakedForIt) {
-  const Outcome outcome = run(report("c.ply", "-o " + file("flat")));
+  const Outcome outcome = run(report("c.ply", "--size 64x36 -o " + file("flat")));
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   const std::string csv = file_bytes(file("flat/report.csv"));
   for (const char* quality : {",flat,", ",lossless,", ",compact,"})
     EXPECT_NE(csv.find(quality), std::string::npos) << quality;
+}
+
+// Photographs of one capture often have several sizes, and names are of any bytes.
+TEST_F(Report, CamerasMayDifferInSizeAndNamesNeedNotBeUtf8) {
+  auto cameras = nlohmann::json::parse(file_bytes(file("three.json")));
+  for (size_t i = 0; i < 3; ++i) {
+    cameras[i]["width"] = 32 * (i + 2);
+    cameras[i]["height"] = 18 * (i + 2);
+  }
+  write_bytes(file("sizes.json"), cameras.dump());
+  std::filesystem::copy_file(file("c.voy"), file("caf\xe9.voy"));
+  const Outcome outcome = run(report("caf\xe9.voy", "-o " + file("sizes"), "sizes.json"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const auto json = nlohmann::json::parse(file_bytes(file("sizes/report.json")));
+  EXPECT_EQ(json["provenance"]["scene"]["name"], "caf\xef\xbf\xbd.voy");
+  const std::string method = json["method"];
+  EXPECT_NE(method.find("3 sizes from 64 x 36 to 128 x 72"), std::string::npos) << method;
+  for (const auto& row : json["rows"]) {
+    EXPECT_TRUE(row["error"]["popping"].is_null()) << row.dump();
+    EXPECT_TRUE(row["total_error"]["popping"].is_null()) << row.dump();
+  }
 }
 
 TEST_F(Report, RefusalsAreOneLineAndLeaveNothing) {
@@ -109,10 +137,13 @@ TEST_F(Report, RefusalsAreOneLineAndLeaveNothing) {
     EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
   };
   write_bytes(file("none.json"), "[]");
+  refuse(report("none.json", "-o " + file("no")), 2, "none.json");
+  refuse(report("c.voy", "-o " + file("no"), "none.json"), 2, "none.json");
   refuse(report("absent.voy", "-o " + file("no")), 2, "absent.voy");
   refuse(report("c.voy", "--full -o " + file("no")), 1, "--full");
   refuse(report("c.voy", "--sms 4 -o " + file("no")), 1, "--sms");
-  refuse(report("c.voy", "--target 0 -o " + file("no")), 1, "--target");
+  for (const char* target : {"0", "nan", "inf"})
+    refuse(report("c.voy", std::string("--target ") + target + " -o " + file("no")), 1, "--target");
   EXPECT_FALSE(std::filesystem::exists(file("no")));
 }
 

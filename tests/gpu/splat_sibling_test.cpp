@@ -71,7 +71,7 @@ class SplatSibling : public SplatTest {
   }
   // Of the nodes that a frame draws, those between their parent and themselves.
   double interpolated_share(const std::shared_ptr<const Scene>& scene, const FrameInput& input) {
-    DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
+    DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource(), workers);
     draws.update(cut_query(input, 0, scene->origin), workers);
     size_t count = 0;
     for (const DrawItem& item : draws.items()) count += item.t < 1;

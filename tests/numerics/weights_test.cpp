@@ -50,8 +50,8 @@ TEST(WeightEnds, TheWeightOfGivenSizesIsWithinAnEpsilon) {
   test::record("weight_units", worst / kEpsilon);
 }
 
-// Of the larger of the two: a thin axis under a thick parent's loses its own digits as t goes
-// to 1, which shows only where ε of the parent's is wide in the image. It stays positive.
+// Their own, however thin an axis is under its parent's: both terms are positive, so nothing
+// cancels as t goes to 1. The textbook's parent + t (node − parent) keeps the parent's digits only.
 TEST(WeightEnds, ScalesAndOpacitiesKeepTheirDigits) {
   std::mt19937 random(2);
   std::uniform_real_distribution<float> uniform(0, 1);

@@ -92,7 +92,7 @@ TEST(Backends, ExponentialsHaveTheErrorsStatedForThem) {
 std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const FrameInput& input,
                              Exponential exponential) {
   Workers workers(1);
-  DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
+  DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource(), workers);
   draws.update(cut_query(input, 0, scene->origin), workers);
   const ProjectParams params = project_params(*scene, input.eyes[0].camera, exponential);
   const GaussianArrays arrays = gaussian_arrays(*scene);

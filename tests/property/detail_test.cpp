@@ -2,6 +2,9 @@
 // search.
 #include "runtime/select/detail.h"
 
+#include <tbb/task_scheduler_observer.h>
+
+#include <atomic>
 #include <cmath>
 
 #include "runtime/frame/draw_list.h"
@@ -140,7 +143,7 @@ TEST(Detail, BaselinesDrawNodesAsTheyAre) {
   Workers workers(2);
   for (const Lod lod : kBaselines)
     for (const Search search : {Search::exhaustive, Search::temporal}) {
-      DrawList draws(scene, lod, search, std::pmr::get_default_resource());
+      DrawList draws(scene, lod, search, std::pmr::get_default_resource(), workers);
       draws.update({{0, 0, -20}, 0.05f}, workers);
       std::pmr::vector<uint32_t> cut;
       draws.read_cut(cut);
@@ -151,6 +154,32 @@ TEST(Detail, BaselinesDrawNodesAsTheyAre) {
         ASSERT_EQ(draws.items()[i].t, 1.0f);
       }
     }
+}
+
+// How often a thread took up work of these workers.
+class Entries final : public tbb::task_scheduler_observer {
+ public:
+  explicit Entries(Workers& workers) {
+    workers.run([this] { observe(true); });
+  }
+  ~Entries() override { observe(false); }
+  void on_scheduler_entry(bool) override { ++count_; }
+  int count() const { return count_; }
+
+ private:
+  std::atomic<int> count_{0};
+};
+
+// A device's limit of threads binds what its views do, this as all else.
+TEST(Detail, ABaselinesTreeIsMadeByTheViewsWorkers) {
+  const auto scene = test::baked_scene(test::random_cloud(20000, 4, 0));
+  for (const Lod lod : kBaselines) {
+    Workers workers(1);
+    const Entries entries(workers);
+    const int before = entries.count();
+    const DrawList draws(scene, lod, Search::temporal, std::pmr::get_default_resource(), workers);
+    EXPECT_GT(entries.count(), before);
+  }
 }
 
 TEST(Detail, AStreamedSceneHasNoBaselines) {

@@ -5,6 +5,7 @@
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/open_streamed.h"
 #include "tests/support/counting_memory.h"
+#include "tests/support/depth_limits.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/stereo.h"
@@ -81,6 +82,16 @@ TEST_F(Omissions, DepthThatNoFrameAskedForTakesNoMemory) {
   EXPECT_EQ(find(listed, "depth"), nullptr);
 }
 
+// Limits that hide nothing give the image of none.
+TEST_F(Omissions, DepthLimitsAreLeftOutUntilAFrameHasThem) {
+  const LimitImage everywhere(input.eyes[0].camera, INFINITY);
+  const Frame frame = draw(baked, {}, input);
+  EXPECT_NE(find(listed, "depth limits"), nullptr);
+  const Frame with = draw(baked, {}, limited(input, everywhere));
+  EXPECT_EQ(find(listed, "depth limits"), nullptr);
+  EXPECT_EQ(different_bits(frame.rgba, with.rgba), 0u);
+}
+
 TEST_F(Omissions, AViewOfOneEyeHasNoBuffersOfASecond) {
   FrameInput pair = input;
   pair.eyes.push_back(pair.eyes[0]);
@@ -101,6 +112,10 @@ TEST_F(Omissions, OnlyTheLutsExponentialHasALut) {
                     workers);
     return memory.used() - before;
   };
+  draw(flat, {.exponential = Exponential::ex2, .lut_size = 4096}, input);
+  EXPECT_EQ(find(listed, "table of the exponential")->bytes, 4097 * sizeof(float));
+  draw(flat, {.exponential = Exponential::lut}, input);
+  EXPECT_EQ(find(listed, "table of the exponential"), nullptr);
   const size_t without = used_by(Exponential::exact, 4096);
   EXPECT_EQ(used_by(Exponential::ex2, 32), without);
   EXPECT_EQ(used_by(Exponential::lut, 4096), without + 4097 * sizeof(float));

@@ -34,7 +34,7 @@ TEST(Weights, FollowTheMethodInDouble) {
   const auto scene = test::baked_scene(test::random_cloud(5000, 1, 0));
   const LodTree& tree = scene->tree;
   Workers workers(2);
-  DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource());
+  DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource(), workers);
   size_t between = 0;
   for (const FrameInput& input : frames()) {
     draws.update(cut_query(input, 0, scene->origin), workers);
@@ -86,7 +86,8 @@ TEST(Weights, AllLeavesAreDrawnInTheInputsOrder) {
   const GaussianCloud cloud = test::random_cloud(3000, 3, 0);
   const auto scene = test::baked_scene(cloud);
   Workers workers(2);
-  DrawList draws(scene, Lod::all_leaves, Search::temporal, std::pmr::get_default_resource());
+  DrawList draws(scene, Lod::all_leaves, Search::temporal, std::pmr::get_default_resource(),
+                 workers);
   draws.update(cut_query(frames()[0], 0, scene->origin), workers);
   ASSERT_EQ(draws.items().size(), cloud.size());
   for (size_t i = 0; i < cloud.size(); ++i) {

@@ -103,6 +103,31 @@ TEST(LoadScene, ADamagedChunkIsReportedAndTheRestIsThere) {
   }
 }
 
+TEST(LoadScene, ADamagedScenesProfileIsOfWhatWasRead) {
+  const Bytes bytes = test::scene_bytes(test::bake(test::random_cloud(4000, 43, 0)),
+                                        Quality::lossless, 0, kMinChunkBytes);
+  const SceneFile file(test::source_of(bytes));
+  const auto sound = load(bytes);
+  for (uint32_t index = 1; index < file.chunks().size(); index += 7) {
+    const uint64_t at = file.chunks()[index].offset + 70;
+    const auto damaged = load(std::make_shared<test::FlippedSource>(bytes, at, std::byte{1}));
+    const std::vector<NodeRange> lost = file.nodes_of(index);
+    float least = INFINITY, greatest = 0;
+    uint64_t above_one = 0;
+    for (uint32_t n = 0; n < sound->gaussians.size(); ++n) {
+      if (test::holds(lost, n)) continue;
+      const Gaussian& g = sound->gaussians[n];
+      const auto [thin, thick] = std::minmax({g.scale.x, g.scale.y, g.scale.z});
+      least = std::min(least, thick / thin);
+      greatest = std::max(greatest, thick / thin);
+      above_one += g.opacity > 1;
+    }
+    ASSERT_EQ(damaged->profile.least_anisotropy, least) << index;
+    ASSERT_EQ(damaged->profile.greatest_anisotropy, greatest);
+    ASSERT_EQ(damaged->profile.opacities_above_one, above_one);
+  }
+}
+
 void expect_same_partition(const Partition& a, const Partition& b) {
   EXPECT_EQ(a.first_tier_levels, b.first_tier_levels);
   EXPECT_EQ(a.chunk_bytes, b.chunk_bytes);

@@ -13,7 +13,6 @@
 #include "tools/report/plot_axis.h"
 #include "tools/report/report_csv.h"
 #include "tools/report/report_plots.h"
-#include "tools/report/report_scenes.h"
 
 namespace voyager::tools {
 namespace {
@@ -94,15 +93,6 @@ TEST(Report, TheFrontIsWhatNothingBeats) {
   }
 }
 
-TEST(Report, TheBestOfWhatIsInTimeIsRecommended) {
-  const std::vector<ReportRow> rows = {row(1, 30, 0.01), row(6, 9, 0.03), row(15, 4, 0.08)};
-  const std::vector<size_t> front = pareto_front(rows);
-  EXPECT_EQ(recommend(rows, front, 11.1), 1u);
-  EXPECT_EQ(recommend(rows, front, 1000), 0u);
-  EXPECT_EQ(recommend(rows, front, 9.5), 2u);  // by its p95 the second is late
-  EXPECT_EQ(recommend(rows, front, 1), std::nullopt);
-}
-
 TEST(Report, OptionsAreThoseOfRender) {
   ReportCase is = report_cases(ReportExtent::quick, city())[0];
   EXPECT_EQ(render_options(is, 3), "--tau 3 --exp exact");
@@ -124,8 +114,10 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 TEST(Report, EachLineOfTheTableHasTheHeadersFields) {
+  ReportRow city_row = row(3, 9, 0.02);
+  city_row.cut = 4303386.25;
   const std::vector<std::string> lines =
-      lines_of(report_csv({"a, \"city\"", "walk", "CPU"}, {row(3, 9, 0.02), row(15, 4, 0.1)}));
+      lines_of(report_csv({"a, \"city\"", "walk", "CPU"}, {city_row, row(15, 4, 0.1)}));
   ASSERT_EQ(lines.size(), 3u);
   const auto fields = [](const std::string& line) {
     bool quoted = false;
@@ -136,6 +128,7 @@ TEST(Report, EachLineOfTheTableHasTheHeadersFields) {
     }
     return count;
   };
+  EXPECT_NE(lines[1].find(",4303386.25,"), std::string::npos) << lines[1];
   EXPECT_EQ(fields(lines[1]), fields(lines[0]));
   EXPECT_EQ(fields(lines[2]), fields(lines[0]));
   EXPECT_EQ(lines[1].find("\"a, \"\"city\"\"\",walk,CPU,default,on,3,temporal,cut,on,ours,"), 0u)
@@ -216,9 +209,25 @@ TEST(Report, WhatWasMeasuredIsKeptForTheSameReportAlone) {
   EXPECT_FALSE(std::filesystem::exists(kept));
 }
 
+TEST(Report, ANameThatIsNotUtf8IsShownAsFarAsItCanBe) {
+  const test::TempFolder folder;
+  const nlohmann::ordered_json provenance = {{"scene", {{"name", "caf\xe9.voy"}}}};
+  KeptRows(folder.file("kept"), provenance).keep({row(3, 9, 0.02), "", ""});
+  EXPECT_TRUE(KeptRows(folder.file("kept"), provenance).find(row(3, 9, 0.02).is));
+  const std::vector<ReportRow> rows = {row(3, 9, 0.02)};
+  const std::string text = html({"title", provenance, "method", "advice", {}, rows, {0}, {}});
+  EXPECT_NE(text.find("caf\xef\xbf\xbd.voy"), std::string::npos);
+}
+
 TEST(Report, AxesHoldTheirValuesAndLabelRoundNumbers) {
   for (const bool logarithmic : {false, true})
-    for (const auto& values : {std::vector<double>{3, 4.5, 17}, {1e-3, 2e4}, {5}, {}}) {
+    for (const auto& values : {std::vector<double>{3, 4.5, 17},
+                               {1e-3, 2e4},
+                               {5},
+                               {},
+                               {100, std::nextafter(100, 200)},
+                               {1e-300, 3e-300},
+                               {1e15, std::nextafter(1e15, 0)}}) {
       const PlotAxis axis(values, logarithmic);
       for (const double value : values) {
         EXPECT_GE(axis.at(value), 0);
@@ -226,6 +235,10 @@ TEST(Report, AxesHoldTheirValuesAndLabelRoundNumbers) {
       }
       const auto ticks = axis.ticks();
       EXPECT_LE(ticks.size(), 24u);
+      if (values.size() == 2 && !logarithmic) {
+        EXPECT_GE(ticks.size(), 3u);
+        EXPECT_NE(ticks[0].label, ticks[1].label);
+      }
       for (const PlotAxis::Tick& tick : ticks) {
         EXPECT_GE(tick.at, -1e-9);
         EXPECT_LE(tick.at, 1 + 1e-9);
@@ -250,6 +263,7 @@ TEST(Report, ThePageIsWholeByItself) {
   const std::string text = html(page);
   EXPECT_NE(text.find("<title>a &lt;city&gt; &amp; more</title>"), std::string::npos);
   EXPECT_EQ(text.find("<script>"), std::string::npos);
+  EXPECT_NE(text.find("<p>method Figures: <a href=\"report.csv\">"), std::string::npos);
   EXPECT_NE(text.find("data:image/png;base64,AQI="), std::string::npos);
   EXPECT_NE(text.find("<svg"), std::string::npos);
   EXPECT_EQ(text.find("http://") == std::string::npos || text.find("xmlns") != std::string::npos,
@@ -264,18 +278,6 @@ TEST(Report, ThePageIsWholeByItself) {
     const std::string id = text.substr(at + 7, text.find('"', at + 7) - at - 7);
     EXPECT_NE(text.find("id=\"" + id + "\""), std::string::npos) << id;
   }
-}
-
-TEST(Report, WithoutItsBandsASceneIsThatOfALowerDegree) {
-  Scene scene(std::pmr::get_default_resource());
-  scene.sh_degree = 2;
-  for (int i = 0; i < 3 * 27; ++i) scene.sh.push_back(static_cast<float>(i));
-  drop_sh_bands(scene, 1);
-  ASSERT_EQ(scene.sh.size(), 3u * 12);
-  EXPECT_EQ(scene.sh_degree, 1);
-  for (uint32_t i = 0; i < 3; ++i)
-    for (int k = 0; k < 12; ++k)
-      EXPECT_EQ(scene.sh_of(i)[k], static_cast<float>(27 * static_cast<int>(i) + k));
 }
 
 }  // namespace

@@ -70,6 +70,7 @@ void bench(BenchArguments& arguments) {
   if (search && scene->tree.size() == 0)
     throw Error(ErrorCode::refused_input,
                 scene->name + ": found a scene without a tree, expected a .voy that is not empty");
+  if (scene->flat()) arguments.lod.refuse_without_tree(scene->name);
   if (arguments.time_budget > 0 && scene->flat())
     throw Error(ErrorCode::refused_input, scene->name +
                                               ": found a scene without a tree, "

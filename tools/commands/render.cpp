@@ -126,6 +126,7 @@ void render(Arguments& arguments) {
   }
   arguments.choices.start = cameras.front().pose.position;
   Renderer renderer(arguments.scene, arguments.choices, width, height);
+  if (!renderer.has_tree()) arguments.lod.refuse_without_tree(arguments.scene);
   if (!arguments.outputs.cut.empty() && !renderer.draws_cut())
     bad_usage("--dump-cut: found a scene drawn without a cut, expected a .voy with --lod on");
   FrameFiles files(arguments.outputs);

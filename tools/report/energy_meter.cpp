@@ -1,25 +1,26 @@
 #include "tools/report/energy_meter.h"
 
 #include <dlfcn.h>
+#include <fmt/core.h>
 
 #include <atomic>
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <thread>
 
 namespace voyager::tools {
 namespace {
 
-// Of the first device. NVML is loaded where there is one: a driver brings it.
+// NVML is loaded where there is one: a driver brings it.
 class Nvml final : public EnergyMeter {
  public:
-  Nvml() : library_(dlopen("libnvidia-ml.so.1", RTLD_NOW | RTLD_LOCAL)) {
+  explicit Nvml(const std::string& uuid)
+      : library_(dlopen("libnvidia-ml.so.1", RTLD_NOW | RTLD_LOCAL)) {
     if (library_ == nullptr) return;
     const auto init = find<int (*)()>("nvmlInit_v2");
-    const auto device = find<int (*)(unsigned, void**)>("nvmlDeviceGetHandleByIndex_v2");
+    const auto device = find<int (*)(const char*, void**)>("nvmlDeviceGetHandleByUUID");
     energy_ = find<int (*)(void*, unsigned long long*)>("nvmlDeviceGetTotalEnergyConsumption");
-    if (init == nullptr || device == nullptr || init() != 0 || device(0, &device_) != 0)
+    if (init == nullptr || device == nullptr || init() != 0 || device(uuid.c_str(), &device_) != 0)
       energy_ = nullptr;
   }
   ~Nvml() override {
@@ -40,7 +41,7 @@ class Nvml final : public EnergyMeter {
     return reinterpret_cast<Function>(dlsym(library_, symbol));
   }
 
-  const std::string name_ = "NVML, device 0";
+  const std::string name_ = "NVML, of the whole GPU";
   void* library_;
   void* device_ = nullptr;
   int (*energy_)(void*, unsigned long long*) = nullptr;
@@ -88,9 +89,19 @@ class Rail final : public EnergyMeter {
   std::thread thread_;
 };
 
-std::unique_ptr<EnergyMeter> find_rail() {
+}  // namespace
+
+std::string nvml_uuid(const std::array<uint8_t, 16>& uuid) {
+  std::string text = "GPU";
+  for (size_t i = 0; i < uuid.size(); ++i)
+    text += fmt::format("{}{:02x}", i == 0 || i == 4 || i == 6 || i == 8 || i == 10 ? "-" : "",
+                        uuid[i]);
+  return text;
+}
+
+std::unique_ptr<EnergyMeter> find_gpu_rail(const std::filesystem::path& sensors) {
   std::error_code none;
-  for (const auto& sensor : std::filesystem::directory_iterator("/sys/class/hwmon", none))
+  for (const auto& sensor : std::filesystem::directory_iterator(sensors, none))
     for (const char* channel : {"1", "2", "3"}) {
       const auto file = [&](const std::string& name) { return sensor.path() / name; };
       const std::string label = first_line(file(std::string("in") + channel + "_label"));
@@ -101,13 +112,11 @@ std::unique_ptr<EnergyMeter> find_rail() {
   return nullptr;
 }
 
-}  // namespace
-
-std::unique_ptr<EnergyMeter> find_energy_meter(bool on_gpu) {
-  if (!on_gpu) return nullptr;
-  auto nvml = std::make_unique<Nvml>();
+std::unique_ptr<EnergyMeter> find_energy_meter(const std::array<uint8_t, 16>& device_uuid) {
+  if (device_uuid == std::array<uint8_t, 16>{}) return nullptr;
+  auto nvml = std::make_unique<Nvml>(nvml_uuid(device_uuid));
   if (nvml->joules()) return nvml;
-  return find_rail();
+  return find_gpu_rail("/sys/class/hwmon");
 }
 
 }  // namespace voyager::tools

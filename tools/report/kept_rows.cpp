@@ -30,7 +30,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 KeptRows::KeptRows(std::filesystem::path folder, const Json& provenance)
     : folder_(std::move(folder)) {
   const std::filesystem::path key = folder_ / "provenance.json";
-  const std::string text = provenance.dump(2) + "\n";
+  const std::string text = provenance.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (text_of(key) == text) return;
   std::error_code error;
   std::filesystem::remove_all(folder_, error);

@@ -1,10 +1,7 @@
 #include "tools/report/measure.h"
 
-#include "runtime/base/clock.h"
-#include "tools/metrics/flip.h"
-#include "tools/metrics/image_error.h"
-#include "tools/metrics/popping.h"
-#include "tools/metrics/ssim.h"
+#include "tools/report/compare_images.h"
+#include "tools/report/frame_energy.h"
 #include "tools/statistics.h"
 
 namespace voyager::tools {
@@ -53,117 +50,56 @@ double median_tau(const std::vector<FrameStats>& frames) {
   return percentile(taus, 0.5);
 }
 
-// From the first frame on, without the view's making. Sensors are read every tenth of a second or
-// so: of less than a second there is no figure.
-class FrameEnergy {
- public:
-  explicit FrameEnergy(EnergyMeter* meter) : meter_(meter) {}
-
-  void frame(size_t drawn) {
-    last_ = drawn;
-    if (begin_) return;
-    begin_ = drawn;
-    watch_ = Stopwatch();
-    if (meter_ != nullptr) before_ = meter_->joules();
-  }
-  std::optional<double> joules_a_frame() {
-    constexpr double kLeast = 1000;  // milliseconds
-    if (!before_ || last_ == *begin_ || watch_.milliseconds() < kLeast) return std::nullopt;
-    const std::optional<double> after = meter_->joules();
-    if (!after) return std::nullopt;
-    return (*after - *before_) / static_cast<double>(last_ - *begin_);
-  }
-
- private:
-  EnergyMeter* meter_;
-  std::optional<size_t> begin_;
-  size_t last_ = 0;
-  Stopwatch watch_;
-  std::optional<double> before_;
-};
-
-// Of one image.
-struct Difference {
-  Flip flip;
-  std::optional<double> ssim;
-};
-
-Difference difference(const RgbaImage& image, const RgbaImage& expected, size_t width) {
-  Difference found{flip(image, expected, width), std::nullopt};
-  if (std::min(width, image.size() / 4 / width) >= kSsimWindow)
-    found.ssim = ssim(image, expected, width);
-  return found;
+// Of the last time along the path.
+void set_drawn_taus(const std::vector<FrameStats>& timed, std::vector<FrameInput>& path) {
+  const size_t last = timed.size() - path.size();
+  for (size_t i = 0; i < path.size(); ++i) path[i].tau = timed[last + i].tau;
 }
 
-// Means; no SSIM where one image has none.
-ReportError sum_up(const std::vector<Difference>& found) {
-  const auto count = static_cast<double>(found.size());
-  ReportError error;
-  error.ssim = 0.0;
-  for (const Difference& of : found) {
-    error.flip += of.flip.mean / count;
-    error.ssim =
-        error.ssim && of.ssim ? std::optional(*error.ssim + *of.ssim / count) : std::nullopt;
-  }
-  return error;
+std::vector<ComparedFrame> compared_frames(const ReportPlan& plan) {
+  std::vector<ComparedFrame> frames;
+  for (const size_t i : plan.compared) frames.push_back({i, plan.path[i].eyes[0].camera.width});
+  return frames;
 }
 
 }  // namespace
 
-size_t Measurement::frames_drawn() const {
-  return FramePath{plan_.path, plan_.repeats, {}, false}.frames_drawn();
+FramePath Measurement::path_of(const ReportCase& is) const {
+  FramePath path{plan_.path, plan_.repeats, {}, false};
+  for (FrameInput& frame : path.frames) frame.tau = is.tau;
+  if (is.time_budget > 0) path.time_budget = TimeBudgetDesc{is.time_budget};
+  path.settles = is.time_budget > 0;
+  return path;
+}
+
+size_t Measurement::frames_drawn(const ReportCase& is) const {
+  return path_of(is).frames_drawn();
 }
 
 ReportRow Measurement::run(const ReportCase& is, const std::function<void(size_t)>& frame_done) {
   const FrameMaker maker{backend_, scenes_.get(is.storage, is.sh_degree), workers_};
-  FramePath path{plan_.path, plan_.repeats, {}, false};
-  for (FrameInput& frame : path.frames) frame.tau = is.tau;
-  if (is.time_budget > 0) path.time_budget = TimeBudgetDesc{is.time_budget};
-  ReportRow row;
-  row.is = is;
-  FrameEnergy energy(energy_);
+  FramePath path = path_of(is);
+  const size_t timed_frames = path.repeats * path.frames.size();
+  FrameEnergy energy(energy_, path.frames_drawn() - timed_frames);
+  path.goes_on = [&] { return energy.wants_more(); };
   const FrameRun timed = run_frames(maker, is.desc, path, [&](size_t drawn) {
     energy.frame(drawn);
     frame_done(drawn);
   });
+  ReportRow row;
+  row.is = is;
   row.joules = energy.joules_a_frame();
   set_times(timed.timed, row);
-  row.tau = is.time_budget > 0 ? median_tau(timed.timed) : is.tau;
-  for (FrameInput& frame : path.frames) frame.tau = row.tau;
+  row.tau = median_tau(timed.timed);
+  set_drawn_taus(timed.timed, path.frames);
   const auto images = draw_images(maker, is.desc, path.frames, plan_.compared);
   pictures_.image = images.front();
-  row.same = compare(images, {is.desc.lod, row.tau}, false);
-  row.all = compare(images, {}, true);
+  Detail same{is.desc.lod, {}};
+  for (const size_t i : plan_.compared) same.taus.push_back(path.frames[i].tau);
+  const std::vector<ComparedFrame> frames = compared_frames(plan_);
+  row.same = compare_images(images, references_.of(same), frames, workers_);
+  row.all = compare_images(images, references_.of({}), frames, workers_, &pictures_.difference);
   return row;
-}
-
-ReportError Measurement::compare(const std::vector<RgbaImage>& images, const Detail& detail,
-                                 bool keep_difference) {
-  std::vector<RgbaImage> expected;
-  for (const size_t frame : plan_.compared) expected.push_back(references_.of(frame, detail));
-  std::vector<Difference> found(images.size());
-  workers_.for_blocks(images.size(), 1, [&](size_t i, size_t) {
-    found[i] = difference(images[i], expected[i], references_.width(plan_.compared[i]));
-    if (!keep_difference || i != 0) found[i].flip.map = {};
-  });
-  ReportError error = sum_up(found);
-  if (keep_difference) pictures_.difference = std::move(found[0].flip.map);
-  size_t changes = 0;
-  for (size_t i = 1; i < images.size(); ++i) {
-    if (plan_.compared[i - 1] + 1 != plan_.compared[i]) continue;
-    Popping popping;
-    popping.add(images[i - 1], expected[i - 1]);
-    popping.add(images[i], expected[i]);
-    error.popping += popping.mean();
-    ++changes;
-  }
-  if (changes > 0) error.popping /= static_cast<double>(changes);
-  const ImageError pixels = image_error(images, expected);
-  error.psnr = pixels.psnr;
-  error.largest = pixels.largest;
-  error.p999 = pixels.p999;
-  error.not_finite = pixels.not_finite;
-  return error;
 }
 
 }  // namespace voyager::tools

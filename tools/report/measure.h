@@ -36,11 +36,11 @@ class Measurement {
   ReportRow run(const ReportCase& is, const std::function<void(size_t)>& frame_done);
   // Of the last run.
   const ReportPictures& pictures() const { return pictures_; }
-  size_t frames_drawn() const;
+  // By run(), before those that a sensor of energy asks for.
+  size_t frames_drawn(const ReportCase& is) const;
 
  private:
-  ReportError compare(const std::vector<RgbaImage>& images, const Detail& detail,
-                      bool keep_difference);
+  FramePath path_of(const ReportCase& is) const;
 
   Backend& backend_;
   ReportScenes& scenes_;

@@ -60,6 +60,10 @@ std::string decibels(double psnr) {
   return std::isfinite(psnr) ? fmt::format("{:.1f}", psnr) : "∞";
 }
 
+std::string fixed(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "–";
+}
+
 std::string not_finite(const ReportRow& row) {
   return fmt::format("{} pixels not finite", row.not_finite());
 }
@@ -75,26 +79,35 @@ std::string warnings(const ReportPage& page) {
 }
 
 std::string table_row(const ReportRow& row, size_t index, bool front) {
-  const auto ssim = [](const ReportError& e) {
-    return e.ssim ? fmt::format("{:.4f}", *e.ssim) : std::string("–");
+  const std::string cells[] = {
+      fmt::format("{:.0f}", row.cut),
+      fmt::format("{:.3f}", row.frame.median),
+      fmt::format("{:.3f}", row.frame.p95),
+      fmt::format("{:.3f}", row.frame.p99),
+      row.bytes > 0 ? fmt::format("{:.1f}", row.bytes / 1e6) : "–",
+      row.joules ? fmt::format("{:.3g}", *row.joules) : "–",
+      decibels(row.same.psnr),
+      decibels(row.all.psnr),
+      fixed(row.all.ssim, 4),
+      fmt::format("{:.4f}", row.all.flip),
+      fmt::format("{:.4f}", row.all.largest),
+      fmt::format("{:.4f}", row.all.p999),
+      fixed(row.all.popping, 3),
   };
-  return fmt::format(
-      "<tr "
-      "id=\"row-{}\"{}><td>{}{}</td><td>{:.0f}</td><td>{:.3f}</td><td>{:.3f}</td><td>{:.3f}</td>"
-      "<td>{}</td><td>{}</td><td>{}</td><td>{:.4f}</td><td>{:.4f}</td><td>{:.4f}</td>"
-      "<td>{:.3f}</td></tr>\n",
-      index, front ? " class=\"front\"" : "", escaped(row.is.name()),
-      row.not_finite() > 0 ? " <span class=\"wrong\">" + not_finite(row) + "</span>" : "", row.cut,
-      row.frame.median, row.frame.p95, row.frame.p99, decibels(row.same.psnr),
-      decibels(row.all.psnr), ssim(row.all), row.all.flip, row.all.largest, row.all.p999,
-      row.all.popping);
+  std::string text = fmt::format(
+      "<tr id=\"row-{}\"{}><td>{}{}</td>", index, front ? " class=\"front\"" : "",
+      escaped(row.is.name()),
+      row.not_finite() > 0 ? " <span class=\"wrong\">" + not_finite(row) + "</span>" : "");
+  for (const std::string& cell : cells) text += "<td>" + cell + "</td>";
+  return text + "</tr>\n";
 }
 
 std::string table(const ReportPage& page) {
   std::string text =
       "<div class=\"wide\"><table><tr><th>configuration</th><th>cut</th><th>ms</th><th>p95</th>"
-      "<th>p99</th><th>PSNR, same cut, dB</th><th>PSNR, all leaves, dB</th><th>SSIM</th>"
-      "<th>FLIP</th><th>max</th><th>p99.9</th><th>popping, 1/255</th></tr>\n";
+      "<th>p99</th><th>MB moved</th><th>joules</th><th>PSNR, same cut, dB</th>"
+      "<th>PSNR, all leaves, dB</th><th>SSIM</th><th>FLIP</th><th>max</th><th>p99.9</th>"
+      "<th>popping, 1/255</th></tr>\n";
   for (size_t i = 0; i < page.rows.size(); ++i)
     text += table_row(page.rows[i], i,
                       std::find(page.front.begin(), page.front.end(), i) != page.front.end());
@@ -103,9 +116,12 @@ std::string table(const ReportPage& page) {
 
 std::string provenance_list(const nlohmann::ordered_json& json) {
   std::string text = "<dl>\n";
-  for (const auto& [key, value] : json.items())
-    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(key),
-                        escaped(value.is_string() ? value.get<std::string>() : value.dump()));
+  for (const auto& [key, value] : json.items()) {
+    const std::string shown =
+        value.is_string() ? value.get<std::string>()
+                          : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    text += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(key), escaped(shown));
+  }
   return text + "</dl>\n";
 }
 
@@ -144,7 +160,7 @@ std::string html(const ReportPage& page) {
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\"><link rel=\"icon\" href=\"data:,\">"
       "<title>{0}</title><style>{1}</style></head><body>\n<h1>{0}</h1>\n"
-      "<p class=\"box\">{2}</p>\n{8}<p>{3} <a href=\"report.csv\">report.csv</a>, "
+      "<p class=\"box\">{2}</p>\n{8}<p>{3} Figures: <a href=\"report.csv\">report.csv</a>, "
       "<a href=\"report.json\">report.json</a>.</p>\n"
       "<h2 id=\"plots\">Error against time</h2>\n{4}"
       "<h2 id=\"pictures\">What is worth its time, and what it costs</h2>\n{5}"

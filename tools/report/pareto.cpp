@@ -5,11 +5,31 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "tools/frame_rows.h"
 #include "tools/lod_options.h"
 
 namespace voyager::tools {
+namespace {
+
+bool can_be_advised(const ReportRow& row, const ReportRow& first) {
+  return row.is.sh_degree == first.is.sh_degree && row.is.group != "search" &&
+         row.is.group != "filter";
+}
+
+// Of the same error the first row, then the fastest.
+std::vector<size_t> by_error(const std::vector<ReportRow>& rows) {
+  std::vector<size_t> order(rows.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  const auto key = [&](size_t i) {
+    return std::tuple(rows[i].all.flip, i != 0, rows[i].frame.median);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return key(a) < key(b); });
+  return order;
+}
+
+}  // namespace
 
 std::vector<size_t> pareto_front(const std::vector<ReportRow>& rows) {
   std::vector<size_t> order(rows.size());
@@ -29,11 +49,13 @@ std::vector<size_t> pareto_front(const std::vector<ReportRow>& rows) {
   return front;
 }
 
-std::optional<size_t> recommend(const std::vector<ReportRow>& rows,
-                                const std::vector<size_t>& front, double target) {
-  std::optional<size_t> best;
-  for (const size_t i : front)
-    if (rows[i].frame.p95 <= target && (!best || rows[i].all.flip < rows[*best].all.flip)) best = i;
+Advice advise(const std::vector<ReportRow>& rows, double target) {
+  Advice best;
+  for (size_t i = 1; i < rows.size(); ++i)
+    if (can_be_advised(rows[i], rows[0]) && rows[i].frame.median < rows[best.row].frame.median)
+      best.row = i;
+  for (const size_t i : by_error(rows))
+    if (can_be_advised(rows[i], rows[0]) && rows[i].frame.p95 <= target) return {i, true};
   return best;
 }
 

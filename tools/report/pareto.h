@@ -1,6 +1,6 @@
 #pragma once
 // Which configurations are worth their time.
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "tools/report/report_row.h"
@@ -11,10 +11,17 @@ namespace voyager::tools {
 // leaves. By time, the fastest first; of equal rows the first.
 std::vector<size_t> pareto_front(const std::vector<ReportRow>& rows);
 
-// The least error on the front whose frames' p95 is within the target, in milliseconds; none
-// where none is.
-std::optional<size_t> recommend(const std::vector<ReportRow>& rows,
-                                const std::vector<size_t>& front, double target);
+struct Advice {
+  size_t row = 0;
+  bool in_time = false;  // else nothing is, and it is the fastest
+};
+
+// The least error of rows whose frames' p95 is within the target, in milliseconds; of the same
+// error the first row, the default, else the fastest. Of rows that a host can ask for and that
+// change the image: not of fewer SH bands than the first row's, which no option drops, nor of other
+// searches and without the α-filter, which draw the same and differ by the clock's noise alone. The
+// first row is neither.
+Advice advise(const std::vector<ReportRow>& rows, double target);
 
 // As options of `voyager render`: "--tau 6 --exp lut --lut-size 32". What has no option there (SH
 // bands, storage) is said in words.

@@ -10,6 +10,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
+#include "tools/report/label_room.h"
 #include "tools/report/plot_axis.h"
 
 namespace voyager::tools {
@@ -55,6 +56,7 @@ class Canvas {
     for (size_t i = 0; i < plot_.series.size(); ++i)
       draw_series(plot_.series[i], kSeries[i % std::size(kSeries)]);
     draw_legend();
+    draw_labels();
   }
 
  private:
@@ -112,20 +114,41 @@ class Canvas {
       if (series.joined && can_be_drawn(plot_, point))
         cairo_line_to(c_, px(x_.at(point.x)), py(y_.at(point.y)));
     cairo_stroke(c_);
-    bool below = false;  // by turns: labels of neighbours cover one another less
     for (const PlotPoint& point : series.points) {
       if (!can_be_drawn(plot_, point)) continue;
-      const double x = px(x_.at(point.x)), y = py(y_.at(point.y));
-      colour(rgb);
-      cairo_arc(c_, x, y, point.marked ? 4.5 : 3, 0, 2 * std::numbers::pi);
+      cairo_arc(c_, px(x_.at(point.x)), py(y_.at(point.y)), point.marked ? 4.5 : 3, 0,
+                2 * std::numbers::pi);
       cairo_fill(c_);
-      colour(kInk);
-      if (!point.label.empty()) {
-        const bool beside = x < plot_.width - 150;
-        text(x + (beside ? 6 : -6), y + (below ? 11 : -5), point.label, 9, beside ? 0 : 1);
-        below = !below;
-      }
     }
+  }
+
+  // Those of marked points first. One that finds no room above or below its point is left out.
+  void draw_labels() {
+    colour(kInk);
+    for (const bool marked : {true, false})
+      for (const PlotSeries& series : plot_.series)
+        for (const PlotPoint& point : series.points)
+          if (point.marked == marked && !point.label.empty() && can_be_drawn(plot_, point))
+            draw_label(point);
+  }
+
+  void draw_label(const PlotPoint& point) {
+    const double x = px(x_.at(point.x)), y = py(y_.at(point.y));
+    const bool beside = x < plot_.width - 150;
+    for (const double down : {-5, 11})
+      if (text_where_there_is_room(x + (beside ? 6 : -6), y + down, point.label, 9, beside ? 0 : 1))
+        return;
+  }
+
+  bool text_where_there_is_room(double x, double y, const std::string& of, double size,
+                                double align) {
+    cairo_set_font_size(c_, size);
+    cairo_text_extents_t extents;
+    cairo_text_extents(c_, of.c_str(), &extents);
+    const double left = x - align * extents.x_advance;
+    if (!room_.take({left, y - 0.8 * size, left + extents.x_advance, y + 0.2 * size})) return false;
+    text(x, y, of, size, align);
+    return true;
   }
 
   void draw_legend() {
@@ -136,7 +159,7 @@ class Canvas {
       cairo_arc(c_, px(1) - 8, y, 3.5, 0, 2 * std::numbers::pi);
       cairo_fill(c_);
       colour(kInk);
-      text(px(1) - 16, y + 3.5, plot_.series[i].name, 10, 1);
+      text_where_there_is_room(px(1) - 16, y + 3.5, plot_.series[i].name, 10, 1);
       y += 14;
     }
   }
@@ -144,6 +167,7 @@ class Canvas {
   cairo_t* c_;
   const Plot& plot_;
   PlotAxis x_, y_;
+  LabelRoom room_;
 };
 
 void require_success(cairo_status_t status) {

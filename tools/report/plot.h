@@ -8,8 +8,8 @@ namespace voyager::tools {
 
 struct PlotPoint {
   double x = 0, y = 0;
-  std::string label;  // beside the point; may be empty
-  bool marked = false;
+  std::string label;    // beside the point, where no other is in the way; may be empty
+  bool marked = false;  // larger, and its label goes before others
 };
 
 struct PlotSeries {

@@ -16,6 +16,12 @@ double round_step(double range) {
   return 10 * power;
 }
 
+// That tell one step from the next; not fewer than four.
+int digits(double low, double high, double step) {
+  const double steps = std::max(std::fabs(low), std::fabs(high)) / step;
+  return std::max(4, static_cast<int>(std::ceil(std::log10(steps))) + 1);
+}
+
 }  // namespace
 
 PlotAxis::PlotAxis(const std::vector<double>& values, bool logarithmic)
@@ -27,7 +33,9 @@ PlotAxis::PlotAxis(const std::vector<double>& values, bool logarithmic)
     most_ = first ? x : std::max(most_, x);
     first = false;
   }
-  const double margin = most_ > least_ ? 0.06 * (most_ - least_) : 0.5;
+  // Of values that are nearly the same a range in which steps can be told from one another.
+  const double narrowest = 1e-9 * std::max(std::fabs(least_), std::fabs(most_));
+  const double margin = std::max(most_ > least_ ? 0.06 * (most_ - least_) : 0.5, narrowest);
   least_ -= margin;
   most_ += margin;
 }
@@ -47,9 +55,13 @@ std::vector<PlotAxis::Tick> PlotAxis::ticks() const {
     const double low = logarithmic_ ? std::pow(10, least_) : least_;
     const double high = logarithmic_ ? std::pow(10, most_) : most_;
     const double step = round_step(high - low);
-    for (double i = std::ceil(low / step); i * step <= high; ++i)
-      if (!logarithmic_ || i > 0)
-        found.push_back({at(i * step), fmt::format("{:.4g}", i * step + 0.0)});
+    const double first = std::ceil(low / step);
+    const auto count = static_cast<int>(std::floor(high / step) - first) + 1;
+    for (int k = 0; k < count; ++k) {
+      const double value = (first + k) * step;
+      if (!logarithmic_ || value > 0)
+        found.push_back({at(value), fmt::format("{:.{}g}", value + 0.0, digits(low, high, step))});
+    }
     return found;
   }
   for (double power = std::floor(least_); power <= most_; ++power)

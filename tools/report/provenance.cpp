@@ -63,6 +63,7 @@ Json provenance(const std::string& scene, const std::string& cameras, const Back
   return {{"scene", identity(*open_source(scene))},
           {"cameras", identity(*open_file_source(cameras))},
           {"version", VOYAGER_VERSION},
+          {"source", known(VOYAGER_SOURCE)},
           {"device", backend.device_name()},
           {"machine", machine()},
           {"arguments", arguments}};

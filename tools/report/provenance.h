@@ -8,7 +8,8 @@
 namespace voyager::tools {
 
 // Where figures are from: the scene's name, bytes and XXH3 (of its megabytes' XXH3), the cameras',
-// Voyager's version, what drew and by which driver, the processor and system, the arguments.
+// Voyager's version and the commit that it was built from, what drew and by which driver, the
+// processor and system, the arguments.
 nlohmann::ordered_json provenance(const std::string& scene, const std::string& cameras,
                                   const Backend& backend,
                                   const std::vector<std::string>& arguments);

@@ -8,32 +8,41 @@
 
 namespace voyager::tools {
 
-ReferenceImages::ReferenceImages(std::shared_ptr<const Scene> scene, std::vector<FrameInput> frames,
-                                 std::filesystem::path folder, Workers& workers)
+ReferenceImages::ReferenceImages(std::shared_ptr<const Scene> scene, std::vector<FrameInput> path,
+                                 std::vector<size_t> chosen, std::filesystem::path folder,
+                                 Workers& workers)
     : scene_(std::move(scene)),
-      frames_(std::move(frames)),
+      path_(std::move(path)),
+      chosen_(std::move(chosen)),
       folder_(std::move(folder)),
       workers_(workers),
       backend_(create_reference_backend()) {}
 
 ReferenceImages::~ReferenceImages() = default;
 
-const RgbaImage& ReferenceImages::of(size_t frame, Detail detail) {
-  if (scene_->flat() || !draws_cut(detail.lod)) detail = {};
-  const Key key{frame, detail.lod, detail.tau};
-  const auto found = images_.find(key);
-  if (found != images_.end()) return found->second;
+const std::vector<RgbaImage>& ReferenceImages::of(Detail detail) {
+  const bool cut = !scene_->flat() && draws_cut(detail.lod);
+  if (!cut) detail = {};
+  Held& held = cut ? cut_ : all_leaves_;
+  if (!held.images.empty() && held.detail == detail) return held.images;
+  held = {};  // first, so that there are never those of three
+  for (size_t i = 0; i < chosen_.size(); ++i)
+    held.images.push_back(image({chosen_[i], detail.lod, cut ? detail.taus[i] : 0}));
+  held.detail = std::move(detail);
+  return held.images;
+}
+
+RgbaImage ReferenceImages::image(const Key& key) {
   std::optional<RgbaImage> kept = read(key);
-  return images_.emplace(key, kept ? std::move(*kept) : draw(key)).first->second;
+  return kept ? std::move(*kept) : draw(key);
 }
 
 RgbaImage ReferenceImages::draw(const Key& key) {
-  const auto [index, lod, tau] = key;
   PipelineDesc desc;
-  desc.lod = lod;
+  desc.lod = key.lod;
   desc.search = Search::exhaustive;
-  FrameInput frame = frames_[index];
-  frame.tau = tau;
+  FrameInput frame = path_[key.frame];
+  frame.tau = key.tau;
   RgbaImage image = draw_images({*backend_, scene_, workers_}, desc, {frame}, {0})[0];
   AtomicFile file(path_of(key).string());
   file.write(std::as_bytes(std::span(image)));
@@ -42,15 +51,15 @@ RgbaImage ReferenceImages::draw(const Key& key) {
 }
 
 std::filesystem::path ReferenceImages::path_of(const Key& key) const {
-  const auto [index, lod, tau] = key;
-  return folder_ / fmt::format("reference-{}-{}-tau{:.17g}.f32", index, select_name(lod), tau);
+  return folder_ /
+         fmt::format("reference-{}-{}-tau{:.17g}.f32", key.frame, select_name(key.lod), key.tau);
 }
 
 std::optional<RgbaImage> ReferenceImages::read(const Key& key) const {
   const std::filesystem::path path = path_of(key);
   if (!std::filesystem::exists(path)) return std::nullopt;
   const auto source = open_file_source(path.string());
-  const auto& camera = frames_[std::get<0>(key)].eyes[0].camera;
+  const auto& camera = path_[key.frame].eyes[0].camera;
   RgbaImage image(size_t{4} * camera.width * camera.height);
   if (source->size() != image.size() * sizeof(float)) return std::nullopt;
   source->read(0, std::as_writable_bytes(std::span(image)));

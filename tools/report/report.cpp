@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tools/output_folder.h"
@@ -29,11 +30,12 @@ class Report {
         output_(request.output),
         backend_(backend),
         plan_(report_plan(request.cameras, request.size, request.extent)),
-        provenance_(provenance(request.scene, request.cameras, backend, request.arguments)),
-        kept_(std::filesystem::path(request.output) / ".report", provenance_),
-        scenes_(request.scene, kept_.folder(), workers_, progress_),
-        references_(scenes_.own(), plan_.path, kept_.folder(), workers_),
-        energy_(find_energy_meter(backend.rates().bytes > 0)),
+        folder_(std::filesystem::path(request.output) / ".report"),
+        scenes_(request.scene, folder_, workers_, progress_),
+        provenance_(tools::provenance(request.scene, request.cameras, backend, request.arguments)),
+        kept_(folder_, provenance_),
+        references_(scenes_.own(), plan_.path, plan_.compared, folder_, workers_),
+        energy_(find_energy_meter(backend.device_uuid())),
         measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
 
   void run() {
@@ -62,13 +64,14 @@ class Report {
   }
 
   void add(const ReportCase& is) {
-    const size_t frames = measurement_.frames_drawn();
+    const size_t frames = measurement_.frames_drawn(is);
     std::optional<KeptRow> kept = kept_.find(is);
     if (!kept) {
       const size_t width = plan_.path[plan_.compared[0]].eyes[0].camera.width;
       KeptRow found{measurement_.run(is,
                                      [&](size_t drawn) {
-                                       progress_("measuring", done_ * frames + drawn,
+                                       progress_("measuring",
+                                                 done_ * frames + std::min(drawn, frames),
                                                  total_ * frames);
                                      }),
                     "", ""};
@@ -88,27 +91,35 @@ class Report {
     file.commit();
   }
 
+  // With what the advice depends on, and no measurement.
+  Json provenance() const {
+    Json shown = provenance_;
+    shown["arguments"].push_back(fmt::format("--target {:g}", request_.target));
+    return shown;
+  }
+
+  std::string method() const { return method_text(plan_, energy_ ? energy_->name() : ""); }
+
   void write() {
     const std::vector<size_t> front = pareto_front(rows_);
-    const auto best = recommend(rows_, front, request_.target);
-    const std::string advice = recommendation_text(rows_, best, front.front(), request_.target);
+    const Advice advised = advise(rows_, request_.target);
+    const std::string advice = advice_text(rows_, advised, request_.target);
     const auto stem = [](const std::string& path) {
       return std::filesystem::path(path).filename().replace_extension().string();
     };
     write_text(
         "report.csv",
         report_csv({stem(request_.scene), stem(request_.cameras), backend_.device_name()}, rows_));
-    Json json = {
-        {"provenance", provenance_}, {"method", method_text(plan_)}, {"rows", Json::array()}};
+    Json json = {{"provenance", provenance()}, {"method", method()}, {"rows", Json::array()}};
     for (const ReportRow& row : rows_) json["rows"].push_back(to_json(row));
     json["front"] = front;
     json["target_ms"] = request_.target;
-    json["recommended"] = best ? Json(*best) : Json();
+    json["recommended"] = advised.in_time ? Json(advised.row) : Json();
     json["recommendation"] = advice;
-    write_text("report.json", json.dump(1) + "\n");
+    write_text("report.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     ReportPage page{"Error against run time: " + stem(request_.scene),
-                    provenance_,
-                    method_text(plan_),
+                    provenance(),
+                    method(),
                     advice,
                     report_plots(rows_, front),
                     rows_,
@@ -127,9 +138,10 @@ class Report {
   const Progress progress_ = progress_bar();
   Backend& backend_;
   const ReportPlan plan_;
+  const std::filesystem::path folder_;
+  ReportScenes scenes_;  // before what writes: a file that is refused leaves nothing
   const Json provenance_;
   KeptRows kept_;
-  ReportScenes scenes_;
   ReferenceImages references_;
   std::unique_ptr<EnergyMeter> energy_;
   Measurement measurement_;

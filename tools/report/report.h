@@ -15,8 +15,8 @@ struct ReportRequest {
   ReportExtent extent = ReportExtent::standard;
   ImageSize size;
   double target = 1000.0 / 90;  // milliseconds a frame, for the recommendation
-  // How the request was put, for the provenance: with the files and the machine, all that a report
-  // depends on. One that was ended goes on where these are the same.
+  // How the request was put, without the target: with the files and the machine, all that
+  // measurements depend on. A report that was ended goes on where these are the same.
   std::vector<std::string> arguments;
 };
 

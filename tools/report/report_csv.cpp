@@ -26,8 +26,9 @@ class Line {
     line_ += quoted(value);
     return *this;
   }
-  Line& number(double value) { return text(fmt::format("{:.6g}", value)); }
+  Line& number(double value) { return text(fmt::format("{:.10g}", value)); }
   Line& empty() { return text(""); }
+  Line& number(const std::optional<double>& value) { return value ? number(*value) : empty(); }
   template <class Value>
   Line& where(bool known, const Value& value) {
     if (!known) return empty();
@@ -98,7 +99,7 @@ void add_psnr(Line& line, double psnr) {
 }
 
 void add_errors(Line& line, const ReportError& error) {
-  line.where(error.ssim.has_value(), error.ssim.value_or(0)).number(error.flip);
+  line.number(error.ssim).number(error.flip);
   line.number(error.largest).number(error.p999).number(error.popping);
 }
 
@@ -122,7 +123,7 @@ std::string report_csv(const ReportNames& names, const std::vector<ReportRow>& r
     add_errors(line, row.same);
     add_errors(line, row.all);
     line.number(row.frame.median).number(row.frame.p95).number(row.frame.p99);
-    line.where(row.bytes > 0, row.bytes).where(row.joules.has_value(), row.joules.value_or(0));
+    line.where(row.bytes > 0, row.bytes).number(row.joules);
     for (const ReportTimes& stage : row.stages) line.number(stage.median);
     line.number(static_cast<double>(row.not_finite()));
     csv += line.take();

@@ -12,21 +12,19 @@
 namespace voyager::tools {
 namespace {
 
-// What a case has on its own axis.
-std::string axis_label(const ReportRow& row) {
-  const ReportCase& is = row.is;
-  if (is.group == "tau" || is.group == "default")
-    return draws_cut(is.desc.lod) ? fmt::format("τ {:g}", is.tau) : "all leaves";
-  if (is.group == "exp")
+// What a case has on an axis.
+std::string axis_label(const ReportCase& is, const std::string& axis) {
+  if (axis == "tau") return draws_cut(is.desc.lod) ? fmt::format("τ {:g}", is.tau) : "all leaves";
+  if (axis == "exp")
     return is.desc.exponential == Exponential::lut ? fmt::format("lut {}", is.desc.lut_size)
                                                    : exponential_name(is.desc.exponential);
-  if (is.group == "sh") return fmt::format("SH {}", is.sh_degree);
-  if (is.group == "quality") return storage_name(is.storage);
-  if (is.group == "filter") return "no filter";
-  if (is.group == "time budget") return fmt::format("{:.3g} ms", is.time_budget);
-  if (is.group == "search")
-    return is.desc.search == Search::temporal_visit ? "no slack" : search_name(is.desc.search);
-  return is.name();
+  if (axis == "sh") return fmt::format("SH {}", is.sh_degree);
+  if (axis == "quality") return storage_name(is.storage);
+  if (axis == "filter") return is.desc.alpha_filter ? "filter" : "no filter";
+  if (axis == "time budget")
+    return is.time_budget > 0 ? fmt::format("{:.3g} ms", is.time_budget)
+                              : fmt::format("τ {:g}", is.tau);
+  return is.desc.search == Search::temporal_visit ? "no slack" : search_name(is.desc.search);
 }
 
 Plot front_plot(const std::vector<ReportRow>& rows, const std::vector<size_t>& front) {
@@ -57,29 +55,31 @@ Plot axis_plot(const std::vector<ReportRow>& rows, const std::string& group, boo
   for (const ReportRow& row : rows)
     if (row.is.group == group || row.is.group == "default")
       series.points.push_back({row.frame.median, all ? row.all.psnr : row.same.psnr,
-                               row.is.group == "default" ? "default" : axis_label(row),
-                               row.is.group == "default"});
+                               axis_label(row.is, group), row.is.group == "default"});
   plot.series = {series};
   return plot;
 }
 
-// The curves of each way to choose detail, over τ.
+// A way to choose detail, over τ; `flat`, every leaf, is a point.
+PlotSeries select_series(const std::vector<ReportRow>& rows, Lod lod) {
+  std::map<double, PlotPoint> by_tau;
+  for (const ReportRow& row : rows) {
+    const std::string& group = row.is.group;
+    const bool chosen = group == "default" || group == "tau" || group == "select";
+    if (!chosen || row.is.desc.lod != lod || (draws_cut(lod) && row.tau == 0)) continue;
+    by_tau[row.tau] = {row.frame.median, row.all.psnr,
+                       draws_cut(lod) ? fmt::format("τ {:g}", row.tau) : "", group == "default"};
+  }
+  PlotSeries series{select_name(lod), {}, true};
+  for (const auto& [tau, point] : by_tau) series.points.push_back(point);
+  return series;
+}
+
 Plot select_plot(const std::vector<ReportRow>& rows) {
   Plot plot{"select", "ms a frame, median", "PSNR against all leaves, dB", {}, false, false, 400,
             300};
-  for (const Lod lod : {Lod::cut, Lod::blocks, Lod::levels}) {
-    std::map<double, PlotPoint> by_tau;
-    for (const ReportRow& row : rows) {
-      const std::string& group = row.is.group;
-      const bool chosen = group == "default" || group == "tau" || group == "select";
-      if (chosen && row.is.desc.lod == lod && row.tau > 0)
-        by_tau[row.tau] = {row.frame.median, row.all.psnr, fmt::format("τ {:g}", row.tau),
-                           group == "default"};
-    }
-    PlotSeries series{select_name(lod), {}, true};
-    for (const auto& [tau, point] : by_tau) series.points.push_back(point);
-    plot.series.push_back(series);
-  }
+  for (const Lod lod : {Lod::cut, Lod::blocks, Lod::levels, Lod::all_leaves})
+    plot.series.push_back(select_series(rows, lod));
   return plot;
 }
 

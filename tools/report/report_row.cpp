@@ -17,25 +17,37 @@ Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
 
+Json number(const std::optional<double>& value) {
+  return value ? number(*value) : Json();
+}
+
+std::optional<double> optional_of(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
+}
+
 double number_of(const Json& json) {
   return json.is_null() ? INFINITY : json.get<double>();
 }
 
 Json to_json(const ReportError& error) {
   return {{"psnr_db", number(error.psnr)},
-          {"ssim", error.ssim ? Json(*error.ssim) : Json()},
+          {"ssim", number(error.ssim)},
           {"flip", error.flip},
           {"max_abs", error.largest},
           {"p999_abs", error.p999},
-          {"popping", error.popping},
+          {"popping", number(error.popping)},
           {"not_finite", error.not_finite}};
 }
 
 ReportError error_of(const Json& json) {
-  ReportError error{number_of(json["psnr_db"]), std::nullopt,   json["flip"], json["max_abs"],
-                    json["p999_abs"],           json["popping"]};
+  ReportError error;
+  error.psnr = number_of(json["psnr_db"]);
+  error.ssim = optional_of(json["ssim"]);
+  error.flip = json["flip"];
+  error.largest = json["max_abs"];
+  error.p999 = json["p999_abs"];
+  error.popping = optional_of(json["popping"]);
   error.not_finite = json.at("not_finite");
-  if (!json["ssim"].is_null()) error.ssim = json["ssim"].get<double>();
   return error;
 }
 
@@ -73,7 +85,7 @@ Json to_json(const ReportRow& row) {
   json["pairs"] = row.pairs;
   json["bytes"] = row.bytes;
   json["timed_frames"] = row.timed;
-  json["joules"] = row.joules ? Json(*row.joules) : Json();
+  json["joules"] = number(row.joules);
   json["ms"]["frame"] = to_json(row.frame);
   for (size_t stage = 0; stage < row.stages.size(); ++stage)
     json["ms"][voyStageName(static_cast<VoyStage>(stage))] = to_json(row.stages[stage]);
@@ -91,7 +103,7 @@ ReportRow row_from_json(const Json& json, const ReportCase& is) {
   row.pairs = json["pairs"];
   row.bytes = json["bytes"];
   row.timed = json["timed_frames"];
-  if (!json["joules"].is_null()) row.joules = json["joules"].get<double>();
+  row.joules = optional_of(json["joules"]);
   row.frame = times_of(json["ms"]["frame"]);
   for (int stage = 0; stage < kStageCount; ++stage)
     row.stages.push_back(times_of(json["ms"][voyStageName(static_cast<VoyStage>(stage))]));

@@ -14,7 +14,7 @@ struct ReportError {
   double psnr = 0;             // dB; infinite where nothing differs
   std::optional<double> ssim;  // none of images smaller than its window
   double flip = 0, largest = 0, p999 = 0;
-  double popping = 0;     // 1/255, mean a frame
+  std::optional<double> popping;  // 1/255, mean a frame; none where no frame follows another
   size_t not_finite = 0;  // pixels, of all compared frames, where either image has such a colour
 };
 

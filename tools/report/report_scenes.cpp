@@ -1,12 +1,11 @@
 #include "tools/report/report_scenes.h"
 
-#include <algorithm>
-
 #include "runtime/base/open_source.h"
 #include "runtime/format/export_ply.h"
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
 #include "runtime/scene/import/importer.h"
+#include "runtime/scene/sh_bands.h"
 
 namespace voyager::tools {
 namespace {
@@ -32,7 +31,10 @@ std::shared_ptr<const Scene> ReportScenes::get(Storage storage, int sh_degree) {
   other_.reset();
   const std::shared_ptr<Scene> scene =
       load_scene(open_source(path_of(storage)), std::pmr::get_default_resource(), workers_);
-  drop_sh_bands(*scene, sh_degree);
+  if (sh_degree < scene->sh_degree) {
+    change_sh_degree(scene->sh, scene->sh_degree, sh_degree);
+    scene->sh_degree = sh_degree;
+  }
   other_storage_ = storage;
   other_ = scene;
   return scene;
@@ -59,18 +61,6 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
                    storage == Storage::compact ? Quality::compact : Quality::lossless, workers_,
                    progress_);
   if (own_->storage != Storage::flat) std::filesystem::remove(input);
-}
-
-void drop_sh_bands(Scene& scene, int degree) {
-  if (degree >= scene.sh_degree) return;
-  const size_t before = 3 * static_cast<size_t>(scene.coefficients());
-  const size_t after = 3 * static_cast<size_t>(sh_coefficients(degree));
-  const size_t count = scene.sh.size() / before;
-  for (size_t i = 0; i < count; ++i)
-    std::copy_n(scene.sh.data() + i * before, after, scene.sh.data() + i * after);
-  scene.sh.resize(count * after);
-  scene.sh.shrink_to_fit();
-  scene.sh_degree = degree;
 }
 
 }  // namespace voyager::tools

@@ -35,7 +35,4 @@ class ReportScenes {
   Storage other_storage_ = Storage::flat;
 };
 
-// Drops the bands above a degree, of a scene that is there whole.
-void drop_sh_bands(Scene& scene, int degree);
-
 }  // namespace voyager::tools

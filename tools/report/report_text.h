@@ -1,18 +1,17 @@
 #pragma once
 // What a report says in words.
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "tools/report/measure.h"
+#include "tools/report/pareto.h"
 #include "tools/report/report_row.h"
 
 namespace voyager::tools {
 
-// How it was timed and compared.
-std::string method_text(const ReportPlan& plan);
-// The best row within the target, milliseconds; where there is none, the fastest.
-std::string recommendation_text(const std::vector<ReportRow>& rows, std::optional<size_t> best,
-                                size_t fastest, double target);
+// How it was timed and compared. sensor: of energy; empty where there is none.
+std::string method_text(const ReportPlan& plan, const std::string& sensor);
+// Whole: every choice that the figures depend on.
+std::string advice_text(const std::vector<ReportRow>& rows, const Advice& advice, double target);
 
 }  // namespace voyager::tools
