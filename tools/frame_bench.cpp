@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "runtime/frame/view.h"
-
 namespace voyager::tools {
 namespace {
 
@@ -87,21 +85,24 @@ FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const Fra
   return run;
 }
 
+RgbaImage draw_image(View& view, const FrameInput& frame) {
+  Image image = unseen_image(frame.eyes[0]);
+  RgbaImage pixels(size_t{4} * image.width * image.height);
+  image.format = ColorFormat::rgba32f;
+  image.color = pixels.data();
+  image.color_pitch = pixel_bytes(image.format) * image.width;
+  FrameInput seen = unseen(frame);
+  seen.eyes[0].image = image;
+  view.render(seen);
+  return pixels;
+}
+
 std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& desc,
                                    const std::vector<FrameInput>& frames,
                                    const std::vector<size_t>& chosen) {
   View view = make_view(maker, desc);
   std::vector<RgbaImage> images;
-  for (const size_t i : chosen) {
-    Image image = unseen_image(frames[i].eyes[0]);
-    RgbaImage& pixels = images.emplace_back(size_t{4} * image.width * image.height);
-    image.format = ColorFormat::rgba32f;
-    image.color = pixels.data();
-    image.color_pitch = pixel_bytes(image.format) * image.width;
-    FrameInput frame = unseen(frames[i]);
-    frame.eyes[0].image = image;
-    view.render(frame);
-  }
+  for (const size_t i : chosen) images.push_back(draw_image(view, frames[i]));
   return images;
 }
 

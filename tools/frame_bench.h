@@ -7,6 +7,7 @@
 
 #include "runtime/frame/backend.h"
 #include "runtime/frame/time_budget.h"
+#include "runtime/frame/view.h"
 #include "tools/metrics/image_error.h"
 
 namespace voyager::tools {
@@ -44,7 +45,9 @@ struct FrameMaker {
 FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const FramePath& path,
                     const std::function<void(size_t)>& frame_done);
 
-// The chosen frames, of two eyes the left, as floats before clamping.
+// The view's next frame, of two eyes the left, as floats before clamping.
+RgbaImage draw_image(View& view, const FrameInput& frame);
+// The chosen frames, by a view of their own.
 std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& desc,
                                    const std::vector<FrameInput>& frames,
                                    const std::vector<size_t>& chosen);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/report/plot.h"
+#include "tools/report/page_parts.h"
 #include "tools/report/report_row.h"
 
 namespace voyager::tools {
@@ -17,11 +17,6 @@ struct PagePicture {
 struct PageRow {
   size_t row;
   std::vector<PagePicture> pictures;
-};
-
-struct PagePlot {
-  std::string file;  // its PNG's name, beside the page
-  Plot plot;
 };
 
 struct ReportPage {

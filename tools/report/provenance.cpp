@@ -17,21 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json identity(const ByteSource& source) {
-  constexpr uint64_t kBlock = 1 << 20;
-  std::vector<std::byte> block(kBlock);
-  std::vector<uint64_t> sums;
-  for (uint64_t at = 0; at < source.size(); at += kBlock) {
-    const auto part = std::span(block).first(std::min(kBlock, source.size() - at));
-    source.read(at, part);
-    sums.push_back(checksum(part));
-  }
-  const uint64_t sum = checksum(std::as_bytes(std::span(sums)));
-  return {{"name", std::filesystem::path(source.name()).filename().string()},
-          {"bytes", source.size()},
-          {"xxh3", fmt::format("{:016x}", sum)}};
-}
-
 // What follows "key ... : ", of the first line that begins with the key.
 std::string value_in(const char* path, const std::string& key) {
   std::ifstream file(path);
@@ -58,10 +43,25 @@ Json machine() {
 
 }  // namespace
 
+Json file_identity(const ByteSource& source) {
+  constexpr uint64_t kBlock = 1 << 20;
+  std::vector<std::byte> block(kBlock);
+  std::vector<uint64_t> sums;
+  for (uint64_t at = 0; at < source.size(); at += kBlock) {
+    const auto part = std::span(block).first(std::min(kBlock, source.size() - at));
+    source.read(at, part);
+    sums.push_back(checksum(part));
+  }
+  const uint64_t sum = checksum(std::as_bytes(std::span(sums)));
+  return {{"name", std::filesystem::path(source.name()).filename().string()},
+          {"bytes", source.size()},
+          {"xxh3", fmt::format("{:016x}", sum)}};
+}
+
 Json provenance(const std::string& scene, const std::string& cameras, const Backend& backend,
                 const std::vector<std::string>& arguments) {
-  return {{"scene", identity(*open_source(scene))},
-          {"cameras", identity(*open_file_source(cameras))},
+  return {{"scene", file_identity(*open_source(scene))},
+          {"cameras", file_identity(*open_file_source(cameras))},
           {"version", VOYAGER_VERSION},
           {"source", known(VOYAGER_SOURCE)},
           {"device", backend.device_name()},

@@ -2,47 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-
 #include "tools/frame_rows.h"
 #include "tools/lod_options.h"
+#include "tools/report/csv_line.h"
 #include "voyager/voyager.h"
 
 namespace voyager::tools {
 namespace {
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
-class Line {
- public:
-  Line& text(const std::string& value) {
-    if (!line_.empty() || began_) line_ += ',';
-    began_ = true;
-    line_ += quoted(value);
-    return *this;
-  }
-  Line& number(double value) { return text(fmt::format("{:.10g}", value)); }
-  Line& empty() { return text(""); }
-  Line& number(const std::optional<double>& value) { return value ? number(*value) : empty(); }
-  template <class Value>
-  Line& where(bool known, const Value& value) {
-    if (!known) return empty();
-    if constexpr (std::is_arithmetic_v<Value>)
-      return number(static_cast<double>(value));
-    else
-      return text(value);
-  }
-  std::string take() { return line_ + "\n"; }
-
- private:
-  std::string line_;
-  bool began_ = false;
-};
 
 const char* const kColumns[] = {"scene",
                                 "camera_set",
@@ -80,7 +46,7 @@ const char* const kColumns[] = {"scene",
                                 "bytes",
                                 "joules"};
 
-void add_choices(Line& line, const ReportRow& row) {
+void add_choices(CsvLine& line, const ReportRow& row) {
   const PipelineDesc& desc = row.is.desc;
   const bool cut = draws_cut(desc.lod);
   line.text(row.is.group).text(cut ? "on" : "off").where(cut, row.tau);
@@ -93,12 +59,7 @@ void add_choices(Line& line, const ReportRow& row) {
   line.where(row.is.time_budget > 0, row.is.time_budget);
 }
 
-// "inf" where nothing differs.
-void add_psnr(Line& line, double psnr) {
-  std::isfinite(psnr) ? line.number(psnr) : line.text("inf");
-}
-
-void add_errors(Line& line, const ReportError& error) {
+void add_errors(CsvLine& line, const ReportError& error) {
   line.number(error.ssim).number(error.flip);
   line.number(error.largest).number(error.p999).number(error.popping);
 }
@@ -106,7 +67,7 @@ void add_errors(Line& line, const ReportError& error) {
 }  // namespace
 
 std::string report_csv(const ReportNames& names, const std::vector<ReportRow>& rows) {
-  Line header;
+  CsvLine header;
   for (const char* column : kColumns) header.text(column);
   std::string csv = header.take();
   for (size_t stage = 0; stage < static_cast<size_t>(kStageCount); ++stage)
@@ -114,12 +75,12 @@ std::string report_csv(const ReportNames& names, const std::vector<ReportRow>& r
                fmt::format(",ms_{}_median", voyStageName(static_cast<VoyStage>(stage))));
   csv.insert(csv.size() - 1, ",not_finite");
   for (const ReportRow& row : rows) {
-    Line line;
+    CsvLine line;
     line.text(names.scene).text(names.camera_set).text(names.backend);
     add_choices(line, row);
     line.number(row.cut).number(row.splats).number(row.pairs);
-    add_psnr(line, row.same.psnr);
-    add_psnr(line, row.all.psnr);
+    line.decibels(row.same.psnr);
+    line.decibels(row.all.psnr);
     add_errors(line, row.same);
     add_errors(line, row.all);
     line.number(row.frame.median).number(row.frame.p95).number(row.frame.p99);

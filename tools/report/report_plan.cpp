@@ -19,6 +19,16 @@ Frames frames_of(ReportExtent extent) {
   return {60, 3, 40};
 }
 
+// Each of `spread` frames, and the one behind it where there is one.
+std::vector<size_t> compared_frames(size_t path, size_t spread) {
+  std::vector<size_t> compared;
+  for (const size_t i : spread_indices(path, spread)) {
+    if (compared.empty() || compared.back() < i) compared.push_back(i);
+    if (i + 1 < path) compared.push_back(i + 1);
+  }
+  return compared;
+}
+
 }  // namespace
 
 ReportPlan report_plan(const std::string& file, const ImageSize& size, ReportExtent extent) {
@@ -32,10 +42,16 @@ ReportPlan report_plan(const std::string& file, const ImageSize& size, ReportExt
   ReportPlan plan;
   plan.path = frame_path(cameras, 0);
   plan.repeats = std::max<size_t>(1, frames.timed / plan.path.size());
-  for (const size_t i : spread_indices(plan.path.size(), frames.compared)) {
-    if (plan.compared.empty() || plan.compared.back() < i) plan.compared.push_back(i);
-    if (i + 1 < plan.path.size()) plan.compared.push_back(i + 1);
-  }
+  plan.compared = compared_frames(plan.path.size(), frames.compared);
+  return plan;
+}
+
+ReportPlan curve_plan(const std::string& file, const ImageSize& size, ReportExtent extent) {
+  constexpr size_t kViews = 4;
+  ReportPlan plan = report_plan(file, size, extent);
+  const size_t path = plan.path.size(), least = std::min(path, kViews);
+  for (size_t spread = frames_of(extent).compared; plan.compared.size() < least; ++spread)
+    plan.compared = compared_frames(path, spread);
   return plan;
 }
 

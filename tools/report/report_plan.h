@@ -11,5 +11,7 @@ namespace voyager::tools {
 // some to be compared, each with the one behind it where there is one. Throws Error(refused_input)
 // for a file without cameras, else as read_cameras() does.
 ReportPlan report_plan(const std::string& cameras, const ImageSize& size, ReportExtent extent);
+// The same, but that four are compared, or all where there are fewer.
+ReportPlan curve_plan(const std::string& cameras, const ImageSize& size, ReportExtent extent);
 
 }  // namespace voyager::tools

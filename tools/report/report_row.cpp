@@ -29,16 +29,6 @@ double number_of(const Json& json) {
   return json.is_null() ? INFINITY : json.get<double>();
 }
 
-Json to_json(const ReportError& error) {
-  return {{"psnr_db", number(error.psnr)},
-          {"ssim", number(error.ssim)},
-          {"flip", error.flip},
-          {"max_abs", error.largest},
-          {"p999_abs", error.p999},
-          {"popping", number(error.popping)},
-          {"not_finite", error.not_finite}};
-}
-
 ReportError error_of(const Json& json) {
   ReportError error;
   error.psnr = number_of(json["psnr_db"]);
@@ -75,6 +65,16 @@ Json choices(const ReportCase& is) {
 }
 
 }  // namespace
+
+Json to_json(const ReportError& error) {
+  return {{"psnr_db", number(error.psnr)},
+          {"ssim", number(error.ssim)},
+          {"flip", error.flip},
+          {"max_abs", error.largest},
+          {"p999_abs", error.p999},
+          {"popping", number(error.popping)},
+          {"not_finite", error.not_finite}};
+}
 
 Json to_json(const ReportRow& row) {
   Json json = {{"name", row.is.name()}, {"group", row.is.group}};

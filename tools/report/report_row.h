@@ -37,6 +37,8 @@ struct ReportRow {
   size_t not_finite() const { return std::max(same.not_finite, all.not_finite); }
 };
 
+// Infinity, which JSON has not, is null; so is what is not known.
+nlohmann::ordered_json to_json(const ReportError& error);
 // Every field; row_from_json() gives the row back, so that a report can go on, or throws
 // nlohmann::json::exception where a field is missing that rows did not have from the start.
 nlohmann::ordered_json to_json(const ReportRow& row);

@@ -10,9 +10,6 @@
 
 namespace voyager::tools {
 
-namespace {
-
-// "960 x 540"; cameras of a file may differ, then the least and the largest by area.
 std::string sizes_text(const std::vector<FrameInput>& path) {
   std::set<std::tuple<uint64_t, uint32_t, uint32_t>> sizes;
   for (const FrameInput& frame : path) {
@@ -26,8 +23,6 @@ std::string sizes_text(const std::vector<FrameInput>& path) {
   return fmt::format("{} sizes from {} to {}", sizes.size(), text(*sizes.begin()),
                      text(*sizes.rbegin()));
 }
-
-}  // namespace
 
 std::string method_text(const ReportPlan& plan, const std::string& sensor) {
   std::string text = fmt::format(
