@@ -107,6 +107,10 @@ class Exposures {
     const double u = (x_[i] - left_) / pixel_, v = (y_[i] - top_) / pixel_;
     const int begin_x = first(u, std::sqrt(reach * xx)), end_x = last(u, std::sqrt(reach * xx));
     const int begin_y = first(v, std::sqrt(reach * yy)), end_y = last(v, std::sqrt(reach * yy));
+    if (begin_x == end_x || begin_y == end_y) {
+      seen_[i] += 1.0 / kDirections;  // beyond the picture: nothing is known to hide it
+      return;
+    }
     const auto a = static_cast<float>(yy / det), b = static_cast<float>(-2 * xy / det),
                c = static_cast<float>(xx / det);
     float covered = 0, through = 0;
