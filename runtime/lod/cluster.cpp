@@ -130,21 +130,27 @@ class Clustering {
     std::sort(pairs_.begin(), pairs_.end());
   }
 
+  // Of equally near ones those that follow it: where all are in one place, each has others near
+  // than the rest, so that many pairs are found in a round.
   void add_nearest(uint32_t i) {
     float near[kNeighbours];
     uint32_t at[kNeighbours];
     size_t found = 0;
-    for (uint32_t j = 0; j < distance_.size(); ++j) {
-      const float d = distance_[j];
-      if (j == i || (found == kNeighbours && !(d < near[found - 1]))) continue;
-      size_t k = found < kNeighbours ? found++ : found - 1;
-      for (; k > 0 && d < near[k - 1]; --k) {
-        near[k] = near[k - 1];
-        at[k] = at[k - 1];
+    const auto look = [&](uint32_t begin, uint32_t end) {
+      for (uint32_t j = begin; j < end; ++j) {
+        const float d = distance_[j];
+        if (found == kNeighbours && !(d < near[found - 1])) continue;
+        size_t k = found < kNeighbours ? found++ : found - 1;
+        for (; k > 0 && d < near[k - 1]; --k) {
+          near[k] = near[k - 1];
+          at[k] = at[k - 1];
+        }
+        near[k] = d;
+        at[k] = j;
       }
-      near[k] = d;
-      at[k] = j;
-    }
+    };
+    look(i + 1, static_cast<uint32_t>(distance_.size()));
+    look(0, i);
     for (size_t k = 0; k < found; ++k) {
       const uint32_t a = active_[i], b = active_[at[k]];
       pairs_.push_back({0, std::min(a, b), std::max(a, b)});

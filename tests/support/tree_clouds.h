@@ -7,6 +7,7 @@
 #include "runtime/lod/build.h"
 #include "runtime/scene/sanitise.h"
 #include "tests/support/test_support.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager::test {
 
@@ -24,7 +25,7 @@ NamedCloud edited_cloud(const std::string& name, size_t count, const Edit& edit)
 
 inline std::vector<NamedCloud> degenerate_clouds() {
   std::vector<NamedCloud> clouds;
-  clouds.push_back(edited_cloud("one point", 500, [](GaussianCloud& c, size_t i) {
+  clouds.push_back(edited_cloud("one point", 150, [](GaussianCloud& c, size_t i) {
     for (size_t k = 0; k < 3; ++k) c.position[3 * i + k] = 1.5f;
   }));
   clouds.push_back(edited_cloud("identical", 100, [](GaussianCloud& c, size_t i) {
@@ -42,11 +43,11 @@ inline std::vector<NamedCloud> degenerate_clouds() {
   clouds.push_back(edited_cloud("transparent", 300, [](GaussianCloud& c, size_t i) {
     c.opacity[i] = i < 200 ? -200.0f : -88.0f;  // sigmoid 0, and subnormal
   }));
-  clouds.push_back(edited_cloud("needles", 500, [](GaussianCloud& c, size_t i) {
+  clouds.push_back(edited_cloud("needles", 150, [](GaussianCloud& c, size_t i) {
     c.log_scale[3 * i] = std::log(10.0f);
     c.log_scale[3 * i + 1] = c.log_scale[3 * i + 2] = std::log(1e-7f);
   }));
-  clouds.push_back(edited_cloud("extreme scales", 500, [](GaussianCloud& c, size_t i) {
+  clouds.push_back(edited_cloud("extreme scales", 150, [](GaussianCloud& c, size_t i) {
     for (size_t k = 0; k < 3; ++k)
       c.log_scale[3 * i + k] = (i + k) % 2 ? kMinLogScale : kMaxLogScale;
   }));
@@ -57,12 +58,19 @@ inline std::vector<NamedCloud> degenerate_clouds() {
   clouds.push_back(edited_cloud("subnormal SH", 500, [](GaussianCloud& c, size_t i) {
     for (size_t k = 0; k < 12; ++k) c.sh[12 * i + k] *= 1e-42f;
   }));
+  clouds.push_back(edited_cloud("largest SH", 200, [](GaussianCloud& c, size_t i) {
+    for (size_t k = 0; k < 12; ++k) c.sh[12 * i + k] = (i + k) % 2 ? 3.4e38f : -3.4e38f;
+  }));
+  clouds.push_back(edited_cloud("far apart", 200, [](GaussianCloud& c, size_t i) {
+    for (size_t k = 0; k < 3; ++k) c.position[3 * i + k] *= 9e17f / 10.0f;
+    c.opacity[i] = i % 2 ? 88.0f : -88.0f;
+  }));
   return clouds;
 }
 
 inline std::vector<NamedCloud> all_clouds() {
   std::vector<NamedCloud> clouds = degenerate_clouds();
-  for (const size_t count : {1, 2, 3, 4, 5, 17, 1000, 20000})
+  for (const size_t count : {1, 2, 3, 4, 5, 17, 1000, 3000})
     clouds.push_back({std::to_string(count) + " random", random_cloud(count, 11, 1)});
   return clouds;
 }
