@@ -119,13 +119,13 @@ StandIn stand_in(const Group& group, double exposure) {
   const double spared = std::max<double>(1, static_cast<double>(group.children.size()) - 1);
   const double scale = exposure / (std::sqrt(spared) * kTolerance * kExtentOfPixel);
   const auto tolerated = [&](double pixel) {
-    return std::sqrt(error_at(group, std::max(pixel, 1e-4 * reach)).error) * scale;
+    const double error = error_at(group, std::max(pixel, 1e-4 * reach)).error;
+    return std::min(std::sqrt(error) * scale, kLargestPixel);
   };
   // A fixed point: what a pixel of that size leaves of the error asks for that size. Halving the
   // step keeps it from swinging, since a larger pixel leaves less.
   double pixel = tolerated(0);
   for (int i = 0; i < kRefinements; ++i) pixel = std::sqrt(pixel * tolerated(pixel));
-  pixel = std::min(pixel, kLargestPixel);
   return {pixel, error_at(group, std::max(pixel, 1e-4 * reach)).opacity};
 }
 
