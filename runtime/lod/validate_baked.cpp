@@ -115,10 +115,14 @@ void check_moments(uint32_t n, const BakedScene& baked, std::vector<MergeInput>&
     const double floor = diagonal ? kMinMergedScale * kMinMergedScale : 0.0;
     check_near(n, "covariance", found.covariance[k], c[k], slack + floor, findings);
   }
-  const double least = 1e-38;  // where the opacity's word becomes subnormal, digits go
-  if (baked.kind == TreeKind::hierarchicalgs)
+  if (baked.kind == TreeKind::hierarchicalgs) {
+    const double least = 1e-38;  // where the opacity's word becomes subnormal, digits go
     check_near(n, "opacity times surface", found.weight, expected.weight,
                kWeightTolerance * expected.weight + least * std::max(trace, 1.0), findings);
+  } else if (const float opacity = parent.gaussian.opacity;
+             !(opacity >= 0 && opacity <= std::numeric_limits<float>::max())) {
+    findings.add(name_of(n, "opacity"), text(opacity), "a finite one of at least 0");
+  }
   check_sh(n, baked, children, expected.weight, findings);
 }
 

@@ -3,13 +3,14 @@
 
 #include "runtime/lod/build.h"
 #include "tests/support/test_support.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
 
-BakedScene sound() {
+BakedScene sound(const TreeRule& rule) {
   Workers workers(1);
-  return build_tree(test::random_cloud(300, 1), workers);
+  return build_tree(test::random_cloud(300, 1), workers, {}, rule);
 }
 
 uint32_t first_leaf(const LodTree& tree) {
@@ -19,8 +20,8 @@ uint32_t first_leaf(const LodTree& tree) {
 }
 
 template <class Edit>
-void expect_caught(const std::string& says, const Edit& edit) {
-  BakedScene baked = sound();
+void expect_caught(const TreeRule& rule, const std::string& says, const Edit& edit) {
+  BakedScene baked = sound(rule);
   ASSERT_TRUE(validate(baked).empty());
   edit(baked);
   const std::vector<std::string> messages = validate(baked);
@@ -32,6 +33,15 @@ void expect_caught(const std::string& says, const Edit& edit) {
     EXPECT_NE(message.find(", expected "), std::string::npos) << message;
   }
   EXPECT_TRUE(named) << says << "\nfirst message: " << messages[0];
+}
+
+// In trees of every rule.
+template <class Edit>
+void expect_caught(const std::string& says, const Edit& edit) {
+  for (const test::NamedRule& named : test::all_rules()) {
+    SCOPED_TRACE(named.name);
+    expect_caught(named.rule, says, edit);
+  }
 }
 
 TEST(Validate, Topology) {
@@ -90,11 +100,12 @@ TEST(Validate, Moments) {
   expect_caught("node 0, mean", [](BakedScene& b) { b.merged.position[0] += 1e-3f; });
   expect_caught("node 0, covariance", [](BakedScene& b) { b.merged.log_scale[1] += 1e-3f; });
   expect_caught("node 0, covariance", [](BakedScene& b) { b.merged.rotation[2] += 1e-2f; });
-  expect_caught("node 0, opacity times surface",
+  expect_caught(test::kHierarchicalGs, "node 0, opacity times surface",
                 [](BakedScene& b) { b.merged.opacity[0] *= 1.001f; });
   expect_caught("node 0, SH", [](BakedScene& b) { b.merged.sh[4] += 1e-3f; });
   expect_caught("node 0, mean", [](BakedScene& b) { b.merged.position[2] = NAN; });
-  expect_caught("node 0, opacity", [](BakedScene& b) { b.merged.opacity[0] = INFINITY; });
+  for (const float opacity : {INFINITY, NAN, -0.1f})
+    expect_caught("node 0, opacity", [&](BakedScene& b) { b.merged.opacity[0] = opacity; });
 }
 
 TEST(Validate, AxisCodes) {
@@ -107,7 +118,7 @@ TEST(Validate, AxisCodes) {
 }
 
 TEST(Validate, AnyExtentThatNeverGrowsDownwardsIsSound) {
-  BakedScene baked = sound();
+  BakedScene baked = sound({});
   for (NodeRecord& r : baked.tree.records) r.extent = 7.0f;
   EXPECT_TRUE(validate(baked).empty());
   baked.tree.records[0].extent = INFINITY;
@@ -115,7 +126,7 @@ TEST(Validate, AnyExtentThatNeverGrowsDownwardsIsSound) {
 }
 
 TEST(Validate, StopsAtTheLimit) {
-  BakedScene baked = sound();
+  BakedScene baked = sound({});
   for (NodeRecord& r : baked.tree.records) r.extent = -1.0f;
   EXPECT_EQ(validate(baked, 5).size(), 5u);
   EXPECT_EQ(validate(baked.tree, 1).size(), 1u);
