@@ -261,9 +261,9 @@ class Baker {
 }  // namespace
 
 uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree) {
-  // Words of leaves and of 0.36 merged Gaussians, 45 bytes a node, layout and sources;
-  // the rest is what is encoded and what allocators keep.
-  return gaussians * (word_bytes(sh_degree) * 3 / 2 + 100);
+  // Words of leaves and of 2/3 of a merged Gaussian each, 49 bytes a node, layout and
+  // sources; the rest is what is encoded and what allocators keep.
+  return gaussians * (word_bytes(sh_degree) * 5 / 3 + 140);
 }
 
 BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Workers& workers,

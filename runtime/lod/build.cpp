@@ -60,10 +60,8 @@ BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& pro
                    rule.kind,
                    {}};
 
-  report(progress, "splitting", 0, baked.leaves.size());
   const std::vector<uint32_t> levels =
       lay_out_scene(find_layout(baked.leaves, baked.origin, rule, workers, progress), baked);
-  report(progress, "splitting", baked.leaves.size(), baked.leaves.size());
   summarise_levels(levels, baked, workers, progress);
   align_levels(levels, baked, workers, progress);
   return baked;

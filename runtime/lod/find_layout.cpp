@@ -123,7 +123,9 @@ TreeLayout find_layout(const GaussianCloud& cloud, const std::array<double, 3>& 
                        const TreeRule& rule, Workers& workers, const Progress& progress) {
   if (cloud.size() == 0) return {};
   const KdRule kd = kd_rule(rule);
+  report(progress, "splitting", 0, cloud.size());
   const std::vector<uint32_t> order = kd_order(cloud, origin, kd, workers);
+  report(progress, "splitting", cloud.size(), cloud.size());
   Clusters clusters;
   if (rule.kind == TreeKind::clustered)
     clusters = find_clusters(cloud, origin, order, rule, workers, progress);

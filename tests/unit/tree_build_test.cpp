@@ -7,87 +7,95 @@
 #include "runtime/lod/validate.h"
 #include "runtime/scene/sanitise.h"
 #include "tests/support/test_support.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
 
 TEST(TreeBuild, NothingGivesNothing) {
   Workers workers(2);
-  const BakedScene baked = build_tree(GaussianCloud(), workers);
-  EXPECT_EQ(baked.tree.size(), 0u);
-  EXPECT_EQ(baked.merged.size(), 0u);
-  EXPECT_TRUE(validate(baked).empty());
+  for (const test::NamedRule& named : test::all_rules()) {
+    const BakedScene baked = build_tree(GaussianCloud(), workers, {}, named.rule);
+    EXPECT_EQ(baked.tree.size(), 0u);
+    EXPECT_EQ(baked.merged.size(), 0u);
+    EXPECT_EQ(baked.kind, named.rule.kind);
+    EXPECT_TRUE(validate(baked).empty());
+  }
 }
 
 TEST(TreeBuild, OneGaussianIsALeafRoot) {
   Workers workers(2);
-  const BakedScene baked = build_tree(test::random_cloud(1, 1), workers);
-  ASSERT_EQ(baked.tree.size(), 1u);
-  EXPECT_TRUE(baked.tree.is_leaf(0));
-  EXPECT_EQ(baked.tree.records[0].extent, 0.0f);
-  EXPECT_EQ(baked.merged.size(), 0u);
-}
-
-TEST(TreeBuild, UpToFourGaussiansAreTheRootsChildren) {
-  Workers workers(1);
-  for (uint32_t count = 2; count <= kChildren; ++count) {
-    const BakedScene baked = build_tree(test::random_cloud(count, count), workers);
-    EXPECT_EQ(baked.tree.size(), count + 1);
-    EXPECT_EQ(baked.tree.records[0].child_count, count);
+  for (const test::NamedRule& named : test::all_rules()) {
+    const BakedScene baked = build_tree(test::random_cloud(1, 1), workers, {}, named.rule);
+    ASSERT_EQ(baked.tree.size(), 1u);
+    EXPECT_TRUE(baked.tree.is_leaf(0));
+    EXPECT_EQ(baked.tree.records[0].extent, 0.0f);
+    EXPECT_EQ(baked.merged.size(), 0u);
   }
 }
 
-TEST(TreeBuild, ShapeHasTwoToFourChildrenAndFewMergedNodes) {
-  for (uint32_t size = 2; size < 5000; ++size) {
-    const Parts parts = split_in_parts(size);
-    ASSERT_GE(parts.count, 2u) << size;
-    ASSERT_LE(parts.count, kChildren) << size;
-    uint32_t sum = 0;
-    for (uint32_t i = 0; i < parts.count; ++i) {
-      ASSERT_GT(parts.size[i], 0u) << size;
-      sum += parts.size[i];
-    }
-    ASSERT_EQ(sum, size);
-    if (size > 16) {
-      ASSERT_LE(static_cast<double>(count_nodes(size) - size), 0.36 * size + 3) << size;
-    }
-  }
-  EXPECT_LE(count_nodes(10'000'000), 13'600'000u);
-  EXPECT_LE(count_nodes(1u << 23),
-            11'450'000u);  // twice a power of four, the worst of plain halving
-}
-
-TEST(TreeBuild, LevelsHalveTheExtentOfASurface) {
+TEST(TreeBuild, NodesHaveTwoToFourChildren) {
   Workers workers(2);
-  GaussianCloud cloud = test::random_cloud(16384, 2, 0);
-  for (size_t i = 0; i < cloud.size(); ++i) {
-    cloud.position[3 * i + 2] = 0.0f;
-    for (size_t k = 0; k < 3; ++k) cloud.log_scale[3 * i + k] = -12.0f;
-  }
-  const BakedScene baked = build_tree(std::move(cloud), workers);
-  double ratio = 0.0;
-  int measured = 0;
-  for (uint32_t n = 1; n < 85; ++n, ++measured)  // three levels under the root
-    ratio += baked.tree.records[n].extent / baked.tree.records[baked.tree.parent[n]].extent;
-  EXPECT_NEAR(ratio / measured, 0.5, 0.05);
+  for (const test::NamedRule& named : test::all_rules())
+    for (const size_t count : {2, 3, 17, 1025, 3000}) {
+      const BakedScene baked = build_tree(test::random_cloud(count, 2, 0), workers, {}, named.rule);
+      const uint32_t most = named.rule.kind == TreeKind::hierarchicalgs ? 2 : kChildren;
+      for (const NodeRecord& r : baked.tree.records) {
+        if (r.child_count == 0) continue;
+        ASSERT_GE(r.child_count, 2u) << named.name;
+        ASSERT_LE(r.child_count, most) << named.name;
+      }
+    }
 }
 
-TEST(TreeBuild, SplitsAtTheMedianOfTheLongestSide) {
-  Workers workers(1);
-  GaussianCloud cloud = test::random_cloud(64, 3, 0);
-  for (size_t i = 0; i < 64; ++i) cloud.position[3 * i + 1] *= 100.0f;
-  const BakedScene baked = build_tree(cloud, workers);
-  ASSERT_EQ(baked.tree.records[0].child_count, 4u);
-  std::vector<float> largest(4, -1e30f), least(4, 1e30f);
-  for (uint32_t n = 0; n < baked.tree.size(); ++n) {
+// Of a clustered tree: a leaf is drawn as itself until shortly before its parent takes over.
+TEST(TreeBuild, LeavesOfAClusteredTreeHaveTheGreaterPartOfTheirParentsExtent) {
+  Workers workers(2);
+  const BakedScene baked = build_tree(test::random_cloud(2000, 3), workers);
+  for (uint32_t n = 1; n < baked.tree.size(); ++n) {
     if (!baked.tree.is_leaf(n)) continue;
-    uint32_t child = n;
-    while (baked.tree.parent[child] != 0) child = baked.tree.parent[child];
-    const float y = cloud.position[3 * size_t{baked.gaussian[n]} + 1];
-    largest[child - 1] = std::max(largest[child - 1], y);
-    least[child - 1] = std::min(least[child - 1], y);
+    const float parent = baked.tree.records[baked.tree.parent[n]].extent;
+    ASSERT_GT(parent, 0.0f);
+    ASSERT_NEAR(baked.tree.records[n].extent / parent, 0.95, 1e-6) << n;
   }
-  EXPECT_LE(std::max(largest[0], largest[1]), std::min(least[2], least[3]));
+}
+
+TEST(TreeBuild, PartsOfANodeAreTwoToFourAndAllButTheLastFullBlocks) {
+  for (const test::NamedRule& named : test::all_rules()) {
+    const KdRule rule = kd_rule(named.rule);
+    for (uint32_t size = rule.block + 1; size < rule.block + 5000; ++size) {
+      const Parts parts = split_in_parts(size, rule);
+      ASSERT_GE(parts.count, 2u) << size;
+      ASSERT_LE(parts.count, kChildren) << size;
+      uint32_t sum = 0;
+      for (uint32_t i = 0; i < parts.count; ++i) {
+        ASSERT_GT(parts.size[i], 0u) << size;
+        if (i + 1 < parts.count) {
+          ASSERT_EQ(parts.size[i] % rule.block, 0u) << size;
+        }
+        sum += parts.size[i];
+      }
+      ASSERT_EQ(sum, size);
+    }
+  }
+}
+
+TEST(TreeBuild, BlocksFollowOneAnotherAndAreAsFewAsCanBe) {
+  const KdRule rule = kd_rule(test::kSmallBlocks);
+  for (uint32_t size = 0; size < 5000; size += 7)
+    for (const uint32_t most : {16u, 100u, 256u}) {
+      uint32_t end = 0;
+      for (const Range& part : parts_of(size, most, rule)) {
+        ASSERT_EQ(part.begin, end);
+        ASSERT_GT(part.size, 0u);
+        ASSERT_LE(part.size, most);
+        end += part.size;
+      }
+      ASSERT_EQ(end, size);
+      if (most == rule.block) {
+        ASSERT_EQ(parts_of(size, most, rule).size(), (size + most - 1) / most) << size;
+      }
+    }
 }
 
 TEST(TreeBuild, OriginIsZeroNearAndAMultipleOf1024MetresFar) {
@@ -173,16 +181,19 @@ TEST(TreeBuild, MemoryComesFromTheCloudsResource) {
 
 TEST(TreeBuild, ProgressReachesItsTotals) {
   Workers workers(2);
-  std::vector<std::pair<std::string, uint64_t>> ends;
-  build_tree(test::random_cloud(1000, 10), workers,
-             [&](const char* stage, uint64_t done, uint64_t total) {
-               EXPECT_LE(done, total);
-               if (done == total) ends.push_back({stage, total});
-             });
-  ASSERT_EQ(ends.size(), 3u);
-  EXPECT_EQ(ends[0].first, "splitting");
-  EXPECT_EQ(ends[1].first, "merging");
-  EXPECT_EQ(ends[2].first, "aligning");
+  for (const test::NamedRule& named : test::all_rules()) {
+    std::vector<std::string> ends;
+    build_tree(
+        test::random_cloud(3000, 10), workers,
+        [&](const char* stage, uint64_t done, uint64_t total) {
+          EXPECT_LE(done, total);
+          if (done == total) ends.push_back(stage);
+        },
+        named.rule);
+    std::vector<std::string> expected = {"splitting", "clustering", "merging", "aligning"};
+    if (named.rule.kind == TreeKind::hierarchicalgs) expected.erase(expected.begin() + 1);
+    EXPECT_EQ(ends, expected) << named.name;
+  }
 }
 
 }  // namespace
