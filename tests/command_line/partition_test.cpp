@@ -49,6 +49,29 @@ TEST(CommandLinePartition, ChunkBytesAreKeptInTheFileAndToldByInfo) {
   }
 }
 
+TEST(CommandLineTree, TheKindOfTheTreeIsChosenAndKeptInTheFile) {
+  const TempFolder folder;
+  const std::string city = folder.file("city.ply"), scene = folder.file("city.voy");
+  ASSERT_EQ(run("voyager synth city --gaussians 10000 --sh-degree 0 -o " + city).exit_code, 0);
+  const std::string bake = "voyager bake " + city + " -o " + scene + " --verify";
+  const auto tree_of = [&](const std::string& option) {
+    const Outcome baked = run(bake + option);
+    EXPECT_EQ(baked.exit_code, 0) << baked.output;
+    return SceneFile(open_file_source(scene)).info();
+  };
+  EXPECT_EQ(tree_of("").tree, TreeKind::clustered);
+  EXPECT_EQ(tree_of(" --tree clustered").tree, TreeKind::clustered);
+  const SceneFileInfo compatible = tree_of(" --tree hierarchicalgs");
+  EXPECT_EQ(compatible.tree, TreeKind::hierarchicalgs);
+  EXPECT_EQ(compatible.node_count, 2 * 10000u - 1);
+
+  for (const std::string value : {"nonsense", "", "Clustered"}) {
+    const Outcome refused = run(bake + " --tree '" + value + "'");
+    EXPECT_EQ(refused.exit_code, 1) << value;
+    EXPECT_NE(refused.output.find("--tree"), std::string::npos) << refused.output;
+  }
+}
+
 TEST(CommandLinePartition, FilesOfOlderVersionsAreRefusedAndSayToBakeAgain) {
   const TempFolder folder;
   for (const std::string version : {"1", "2"}) {

@@ -10,6 +10,7 @@
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/sh_bands.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
@@ -37,6 +38,7 @@ struct Case {
   uint32_t chunk_bytes = kDefaultChunkBytes, most_in_cell = 1300;
   uint64_t memory = 1'000'000;
   unsigned threads = 0;
+  TreeRule rule = test::kSmallBlocks;
 };
 
 void write_all(const std::string& path, const Bytes& bytes) {
@@ -56,7 +58,8 @@ class Folder {
 
   BakeInParts request(const Case& c) const {
     BakeInParts bake;
-    bake.request = bake_request(inputs, c.quality, c.chunk_bytes);
+    bake.request = bake_request(inputs, c.quality, c.chunk_bytes, c.rule);
+    bake.rule = c.rule;
     bake.output = folder.file("parts.voy");
     bake.work = folder.file("work");
     bake.quality = c.quality;
@@ -82,7 +85,7 @@ class Folder {
       else
         append(all, std::move(cloud), inputs[i]);
     }
-    const BakedScene baked = build_tree(std::move(all), workers);
+    const BakedScene baked = build_tree(std::move(all), workers, {}, c.rule);
     return test::scene_bytes(baked, c.quality, 0, c.chunk_bytes);
   }
 

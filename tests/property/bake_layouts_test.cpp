@@ -8,6 +8,7 @@
 #include "runtime/lod/levels.h"
 #include "tests/support/random_layouts.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
@@ -19,7 +20,8 @@ class BakeLayouts : public ::testing::Test {
     std::ofstream(input, std::ios::binary)
         .write(reinterpret_cast<const char*>(ply.data()), static_cast<std::streamsize>(ply.size()));
     BakeInParts bake;
-    bake.request = bake_request({input}, quality, kDefaultChunkBytes);
+    bake.rule = test::kSmallBlocks;
+    bake.request = bake_request({input}, quality, kDefaultChunkBytes, bake.rule);
     bake.output = folder.file("parts.voy");
     bake.work = folder.file("work");
     bake.quality = quality;

@@ -93,20 +93,21 @@ TEST(Cut, EqualsTheRecursiveDefinitionAndMeetsEveryPathOnce) {
   Workers workers(2);
   std::mt19937 random(1);
   ExhaustiveSearch search;
-  for (test::NamedCloud& named : test::all_clouds()) {
-    SCOPED_TRACE(named.name);
-    const LodTree tree = build_tree(std::move(named.cloud), workers).tree;
-    for (const CutQuery& query : queries(tree, random)) {
-      search.run(tree, {}, query, workers);
-      const Expected expected = recursive_cut(tree, {}, query);
-      ASSERT_TRUE(std::equal(search.cut().begin(), search.cut().end(), expected.cut.begin(),
-                             expected.cut.end()))
-          << "target size " << query.target_size;
-      expect_every_path_met_once(tree, search.cut());
-      EXPECT_EQ(search.nodes_tested(), tree.size());
-      EXPECT_EQ(search.needed_missing(), kNoNode);
+  for (const test::NamedRule& rule : test::all_rules())
+    for (const test::NamedCloud& named : test::all_clouds()) {
+      SCOPED_TRACE(named.name + ", " + rule.name);
+      const LodTree tree = build_tree(named.cloud, workers, {}, rule.rule).tree;
+      for (const CutQuery& query : queries(tree, random)) {
+        search.run(tree, {}, query, workers);
+        const Expected expected = recursive_cut(tree, {}, query);
+        ASSERT_TRUE(std::equal(search.cut().begin(), search.cut().end(), expected.cut.begin(),
+                               expected.cut.end()))
+            << "target size " << query.target_size;
+        expect_every_path_met_once(tree, search.cut());
+        EXPECT_EQ(search.nodes_tested(), tree.size());
+        EXPECT_EQ(search.needed_missing(), kNoNode);
+      }
     }
-  }
 }
 
 TEST(Cut, MissingNodesAreLeftOutAndNamed) {

@@ -9,6 +9,7 @@
 #include "runtime/bake/cell_shape.h"
 #include "runtime/lod/build.h"
 #include "runtime/lod/layout.h"
+#include "runtime/lod/shape.h"
 
 namespace voyager::test {
 

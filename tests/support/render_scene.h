@@ -29,10 +29,11 @@ inline std::shared_ptr<Scene> flat_scene(const GaussianCloud& cloud) {
 
 // Through build_tree(), a file and load_scene().
 inline std::shared_ptr<const Scene> baked_scene(const GaussianCloud& cloud,
-                                                Quality quality = Quality::lossless) {
+                                                Quality quality = Quality::lossless,
+                                                const TreeRule& rule = {}) {
   Workers workers;
   const TempFolder folder;
-  const BakedScene baked = build_tree(cloud, workers);
+  const BakedScene baked = build_tree(cloud, workers, {}, rule);
   write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), folder.file("scene.voy"),
                    quality, workers);
   return load_scene(open_file_source(folder.file("scene.voy")), std::pmr::get_default_resource(),

@@ -22,9 +22,9 @@ inline Bytes file_bytes(const std::string& path) {
   return Bytes(first, first + chars.size());
 }
 
-inline BakedScene bake(const GaussianCloud& cloud) {
+inline BakedScene bake(const GaussianCloud& cloud, const TreeRule& rule = {}) {
   Workers workers;
-  return build_tree(cloud, workers);
+  return build_tree(cloud, workers, {}, rule);
 }
 
 inline Bytes scene_bytes(const BakedScene& baked, Quality quality, unsigned threads = 0,

@@ -2,6 +2,7 @@
 
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
@@ -135,6 +136,17 @@ TEST(SceneFile, TheHeaderTellsWhetherLeavesHaveExtents) {
       EXPECT_EQ(some, extents == test::Extents::any);
       const Bytes bytes = test::scene_bytes(baked, quality);
       EXPECT_EQ(SceneFile(test::source_of(bytes)).info().leaves_have_extent, some);
+    }
+}
+
+TEST(SceneFile, TheHeaderTellsTheKindOfTheTree) {
+  for (const test::NamedRule& named : test::all_rules())
+    for (const Quality quality : {Quality::lossless, Quality::compact}) {
+      const BakedScene baked = test::bake(test::random_cloud(100, 9, 0), named.rule);
+      const Bytes bytes = test::scene_bytes(baked, quality);
+      const SceneFileInfo info = SceneFile(test::source_of(bytes)).info();
+      EXPECT_EQ(info.tree, named.rule.kind) << named.name;
+      EXPECT_EQ(info.leaves_have_extent, named.rule.kind == TreeKind::clustered) << named.name;
     }
 }
 
