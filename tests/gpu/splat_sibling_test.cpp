@@ -9,6 +9,7 @@
 #include "tests/gpu/splat_test.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager::test {
 namespace {
@@ -111,7 +112,8 @@ TEST_F(SplatSibling, AtTheirParentsPlaceTheyAddUpToIt) {
 }
 
 TEST_F(SplatSibling, MostNodesBetweenTheirParentsAndThemselves) {
-  const auto scene = baked_scene(random_cloud(20000, 4, 2));
+  // Whose leaves blend over a whole octave.
+  const auto scene = baked_scene(random_cloud(20000, 4, 2), Quality::lossless, kHierarchicalGs);
   Agreement with_reference("interpolated nodes, CUDA against the reference"),
       with_cpu("interpolated nodes, CUDA against the CPU");
   double most = 0;

@@ -8,6 +8,7 @@
 #include "tests/gpu/splat_test.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/stream_rig.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager::test {
 namespace {
@@ -180,7 +181,8 @@ TEST_F(Streaming, AStandingViewerConvergesToTheResidentFrameAndThenNothingMoves)
 TEST_F(Streaming, RoomForWhatIsSeenIsRoomForTheResidentImage) {
   GaussianCloud cloud = random_cloud(20000, 6, 1);
   for (float& x : cloud.position) x *= 20;
-  const Bytes bytes = scene_bytes(bake(cloud), Quality::lossless, 0, kMinChunkBytes);
+  const Bytes bytes =
+      scene_bytes(bake(cloud, kHierarchicalGs), Quality::lossless, 0, kMinChunkBytes);
   const auto whole = resident(bytes);
   const auto all = view(whole), part = view(open(bytes, 0.6, 2));
   size_t coarse = 0, refused = 0;

@@ -60,7 +60,7 @@ TEST_P(Tree, EveryGaussianIsExactlyOneLeaf) {
 
 TEST_P(Tree, DoesNotDependOnThreads) {
   std::vector<test::NamedCloud> clouds = test::all_clouds();
-  clouds.push_back({"9000 random", test::random_cloud(9000, 11, 0)});  // halved by several threads
+  clouds.push_back({"9000 random", test::specks(9000, 11, 0)});  // halved by several threads
   for (const test::NamedCloud& named : clouds) {
     Workers one(1), two(2), five(5);
     const BakedScene baked = build(named.cloud, one);

@@ -16,6 +16,13 @@ struct NamedCloud {
   GaussianCloud cloud;
 };
 
+// As random_cloud(), but small: what is seen of them is soon found out.
+inline GaussianCloud specks(size_t count, uint32_t seed, int sh_degree) {
+  GaussianCloud cloud = random_cloud(count, seed, sh_degree);
+  for (float& s : cloud.log_scale) s -= 4;
+  return cloud;
+}
+
 template <class Edit>
 NamedCloud edited_cloud(const std::string& name, size_t count, const Edit& edit) {
   NamedCloud named{name, random_cloud(count, 7, 1)};
