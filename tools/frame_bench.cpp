@@ -102,6 +102,7 @@ std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& 
                                    const std::vector<size_t>& chosen) {
   View view = make_view(maker, desc);
   std::vector<RgbaImage> images;
+  images.reserve(chosen.size());
   for (const size_t i : chosen) images.push_back(draw_image(view, frames[i]));
   return images;
 }

@@ -13,9 +13,9 @@
 namespace voyager::tools {
 namespace {
 
-// Timed: at most so many frames, and no more after a second once there are three.
+// Timed: at most so many frames, and no more than the least where these are long enough.
 constexpr size_t kMostFrames = 5, kLeastFrames = 3;
-constexpr double kEnough = 1000;  // milliseconds
+constexpr double kEnough = 250;  // milliseconds
 
 // Search to rasterize: resolve, which hands the image out, is apart.
 double frame_milliseconds(const FrameStats& stats) {

@@ -21,7 +21,7 @@ PlotSeries series_of(const std::string& tree, const std::vector<CurveRow>& rows,
 }
 
 Plot plot_of(const std::string& title, const char* x_label) {
-  return {title, x_label, kDecibels, {}, false, false, 560, 400};
+  return {title, x_label, kDecibels, {}, false, false, 560, 400, true};
 }
 
 std::string row_cells(const CurveRow& row) {

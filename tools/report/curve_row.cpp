@@ -1,5 +1,6 @@
 #include "tools/report/curve_row.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace voyager::tools {
@@ -44,12 +45,14 @@ std::vector<Curve> mean_curves(const std::vector<CurveRow>& rows) {
   std::vector<Curve> curves;
   for (const CurveRow& row : rows) {
     if (!curves.empty() && curves.back().tree == row.tree) continue;
-    Curve& curve = curves.emplace_back(Curve{row.tree, {}});
+    Curve& curve = curves.emplace_back(Curve{row.tree, {}, {}});
     for (const double share : kCurveShares) {
       std::vector<CurveRow> views;
       for (const CurveRow& of : rows)
         if (of.tree == row.tree && of.share == share && of.view != kFlight) views.push_back(of);
       curve.means.push_back(mean_row(views, "mean"));
+      curve.everywhere.push_back(std::all_of(views.begin(), views.end(),
+                                             [](const CurveRow& of) { return of.has_share(); }));
     }
   }
   return curves;

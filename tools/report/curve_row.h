@@ -32,6 +32,7 @@ CurveRow mean_row(const std::vector<CurveRow>& rows, const std::string& view);
 struct Curve {
   std::string tree;
   std::vector<CurveRow> means;
+  std::vector<bool> everywhere;  // every view has a cut of that share
 };
 
 // Of the trees in their order.

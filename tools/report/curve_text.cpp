@@ -62,7 +62,7 @@ std::vector<CurveLine> curve_lines(const std::vector<Curve>& curves) {
     CurveLine psnr{curve.tree, {}}, above{"  above " + last.tree, {}};
     for (size_t i = 0; i < curve.means.size(); ++i) {
       const CurveRow& mean = curve.means[i];
-      psnr.cells.push_back(decibels(mean.error.psnr, 2) + (mean.has_share() ? "" : "*"));
+      psnr.cells.push_back(decibels(mean.error.psnr, 2) + (curve.everywhere[i] ? "" : "*"));
       above.cells.push_back(difference(mean.error.psnr, last.means[i].error.psnr));
     }
     lines.push_back(psnr);

@@ -152,7 +152,9 @@ class Canvas {
   }
 
   void draw_legend() {
-    double y = kTop + 4;
+    constexpr double kLine = 14;
+    const auto below = static_cast<double>(plot_.series.size());
+    double y = plot_.legend_at_bottom ? py(0) - kLine * below : kTop + 4;
     for (size_t i = 0; i < plot_.series.size(); ++i) {
       if (plot_.series[i].name.empty()) continue;
       colour(kSeries[i % std::size(kSeries)]);
@@ -160,7 +162,7 @@ class Canvas {
       cairo_fill(c_);
       colour(kInk);
       text_where_there_is_room(px(1) - 16, y + 3.5, plot_.series[i].name, 10, 1);
-      y += 14;
+      y += kLine;
     }
   }
 

@@ -24,6 +24,7 @@ struct Plot {
   std::vector<PlotSeries> series;
   bool log_x = false, log_y = false;
   double width = 640, height = 420;  // points
+  bool legend_at_bottom = false;     // for what rises to the right
 };
 
 // A complete <svg> element; text is drawn as outlines, so that it needs no font. `id` begins the
