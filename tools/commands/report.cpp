@@ -82,7 +82,7 @@ void add_report(CLI::App& app) {
       ->add_option("--trees", arguments->trees,
                    "With --curve: other trees of the same scene; the last is what the others are "
                    "compared with on standard output")
-      ->type_name("FILE ...")
+      ->type_name("FILE")
       ->needs(curve);
   add_backend_options(*command, arguments->backend);
   add_size_option(*command, arguments->request.size);
