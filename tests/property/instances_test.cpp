@@ -3,6 +3,7 @@
 #include "runtime/base/error.h"
 #include "runtime/scene/append.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
@@ -52,9 +53,11 @@ TEST_F(Instances, HalvesThatOverlapAreTheWholeSceneToTheBit) {
 TEST_F(Instances, TreesOfTheHalvesGiveTheWholeTreesCutAndPicture) {
   constexpr size_t kHalf = 8192;
   const GaussianCloud cloud = test::two_clusters(kHalf, 1);
-  const Scenes whole{test::baked_scene(cloud)},
-      halves{test::baked_scene(test::part_of(cloud, 0, kHalf)),
-             test::baked_scene(test::part_of(cloud, kHalf, 2 * kHalf))};
+  const auto baked = [](const GaussianCloud& part) {  // of blocks that no cluster shares
+    return test::baked_scene(part, Quality::lossless, test::kSmallBlocks);
+  };
+  const Scenes whole{baked(cloud)},
+      halves{baked(test::part_of(cloud, 0, kHalf)), baked(test::part_of(cloud, kHalf, 2 * kHalf))};
   View one = view(*cpu, whole), two = view(*cpu, halves);
   for (const double tau : {0.0, 1.0, 3.0, 9.0}) {
     const FrameInput input = frame_input(look({3, -6, -34}, {0.1, 0.2, 5}, 240, 160), tau);

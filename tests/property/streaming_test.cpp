@@ -4,6 +4,7 @@
 
 #include "tests/support/random_trees.h"
 #include "tests/support/stream_rig.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
@@ -121,7 +122,7 @@ TEST(Streaming, RoomForWhatIsSeenIsRoomForTheResidentImage) {
   for (float& x : cloud.position) x *= 20;
   size_t smaller = 0, refused = 0;
   for (const double share : {0.2, 0.4, 0.6, 0.8}) {
-    StreamRig rig(test::bake(cloud), share);
+    StreamRig rig(test::bake(cloud, test::kHierarchicalGs), share);
     for (int i = 0; i < 12; ++i) {
       const double angle = 0.5 * i;
       const Vec3d out{std::cos(angle), -0.1, std::sin(angle)};
@@ -153,7 +154,7 @@ TEST(Streaming, WhatIsLargeFromTheStartIsThereInTheFirstFrame) {
   GaussianCloud cloud = test::random_cloud(100000, 8, 1);
   for (float& x : cloud.position) x *= 20;
   cloud.origin = {origin.x, origin.y, origin.z};
-  const StreamRig rig(test::bake(cloud), 1.0);
+  const StreamRig rig(test::bake(cloud, test::kHierarchicalGs), 1.0);
   const uint64_t first_bytes = rig.bytes.size() / 4;
   for (int i = 0; i < 4; ++i) {
     const Vec3d out{std::cos(1.5 * i), 0, std::sin(1.5 * i)};

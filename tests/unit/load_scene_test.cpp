@@ -8,6 +8,7 @@
 #include "runtime/scene/import/importer.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
@@ -304,8 +305,8 @@ TEST(LoadScene, TwoLeavesOfOneGaussianAreRefused) {
 }
 
 TEST(LoadScene, AHeaderThatContradictsTheTreeIsRefused) {
-  const Bytes sound =
-      test::scene_bytes(test::bake(test::random_cloud(100, 45, 0)), Quality::lossless);
+  const Bytes sound = test::scene_bytes(
+      test::bake(test::random_cloud(100, 45, 0), test::kHierarchicalGs), Quality::lossless);
   const auto changed = [&](const auto& change) {
     Bytes bytes = sound;
     FileHeader header;
@@ -324,7 +325,7 @@ TEST(LoadScene, AHeaderThatContradictsTheTreeIsRefused) {
         changed([](FileHeader& h) { h.largest_sh = -1; }),
         changed([](FileHeader& h) { h.largest_sh = std::nanf(""); }),
         changed([](FileHeader& h) { h.left_out_bands = 4; }),
-        changed([](FileHeader& h) { h.flags |= 4; }),
+        changed([](FileHeader& h) { h.flags |= kFlags + 1; }),
         changed([](FileHeader& h) { h.flags |= kFlagLeafExtents; })})
     EXPECT_EQ(test::error_code([&] { load(bytes); }), ErrorCode::refused_input);
 }
