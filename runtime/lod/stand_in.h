@@ -38,9 +38,9 @@ struct StandIn {
   double opacity;  // the best at that size: the least squares' of coverage
 };
 
-// Good enough: an error of 0.01·(2·kReferenceTau + 1) code values × pixels, root of the squares, for
-// each Gaussian that is spared; exposure in (0, 1]
-// scales it. Finite and ≥ 0 for finite input. Deterministic; thread-safe.
+// Good enough: an error of 0.01·(2·kReferenceTau + 1) code values × pixels, root of the squares,
+// for each Gaussian that is spared; exposure in (0, 1] scales it. Finite and ≥ 0 for finite input.
+// Deterministic; thread-safe.
 StandIn stand_in(const Group& group, double exposure);
 
 // The extent of a node with that stand-in: at kReferenceTau its size is τ* where a pixel is

@@ -6,6 +6,7 @@
 
 #include "tests/support/simulated_disk.h"
 #include "tests/support/stream_rig.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
@@ -47,8 +48,9 @@ class FailingPool final : public ChunkPool {
 // A scene on a disk, and a view of it that draws a frame each 1/60 s.
 class Flight {
  public:
-  explicit Flight(double share, double latency = 0.002, double bandwidth = 20e6)
-      : rig_(test::bake(wide_cloud()), share),
+  explicit Flight(double share, double latency = 0.002, double bandwidth = 20e6,
+                  const TreeRule& rule = {})
+      : rig_(test::bake(wide_cloud(), rule), share),
         disk_(std::make_shared<SimulatedDisk>(rig_.bytes, latency, bandwidth)),
         scene_(rig_.open(disk_, share)),
         view_(scene_, *rig_.backend, {}, rig_.memory(), rig_.workers,
@@ -117,7 +119,7 @@ TEST(StreamingDisk, AnEvenFlightFindsMostOfItsWayThere) {
 }
 
 TEST(StreamingDisk, AJumpTakesBackWhatIsNoLongerWanted) {
-  Flight flight(1.0, 0.02, 1e6);
+  Flight flight(1.0, 0.02, 1e6, test::kHierarchicalGs);
   for (int i = 0; i < 5; ++i) flight.draw(ahead({0, -3, -150}, kForward, 12));
   ASSERT_EQ(flight.counters().chunks.flushed, 0u);
   flight.draw(ahead({0, -3, 150}, Vec3d{0, 0.02, -1}, 12));
