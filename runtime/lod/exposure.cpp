@@ -10,7 +10,8 @@ namespace voyager {
 namespace {
 
 constexpr int kDirections = 12;
-constexpr int kSide = 256;         // pixels
+constexpr int kMostSide = 256;     // pixels
+constexpr double kSideOfRoot = 4;  // pixels for the root of the Gaussians' number
 constexpr double kOutside = 0.02;  // of the means, that may lie beyond the picture on a side
 constexpr float kLowPass = 0.3f;   // pixels², METHOD §5
 constexpr float kThreshold = 255;  // 1 / α*
@@ -44,7 +45,13 @@ class Exposures {
  public:
   Exposures(const GaussianCloud& cloud, const std::array<double, 3>& origin,
             std::span<const uint32_t> leaves)
-      : seen_(leaves.size()), x_(leaves.size()), y_(leaves.size()), z_(leaves.size()) {
+      : seen_(leaves.size()),
+        x_(leaves.size()),
+        y_(leaves.size()),
+        z_(leaves.size()),
+        side_(std::min(kMostSide,
+                       static_cast<int>(std::ceil(
+                           kSideOfRoot * std::sqrt(static_cast<double>(leaves.size())))))) {
     for (const uint32_t leaf : leaves) {
       GaussianWords words = cloud.words(leaf);
       words.mean = local_mean(cloud, leaf, origin);
@@ -67,14 +74,14 @@ class Exposures {
     const auto [x0, x1] = middle(x_);
     const auto [y0, y1] = middle(y_);
     const double side = std::max({x1 - x0, y1 - y0, 1e-6});
-    pixel_ = side / kSide;
+    pixel_ = side / side_;
     left_ = (x0 + x1) / 2 - side / 2;
     top_ = (y0 + y1) / 2 - side / 2;
     order_.resize(blobs_.size());
     std::iota(order_.begin(), order_.end(), 0u);
     std::sort(order_.begin(), order_.end(),
               [&](uint32_t a, uint32_t b) { return z_[a] < z_[b] || (z_[a] == z_[b] && a < b); });
-    transmittance_.assign(size_t{kSide} * kSide, 1.0f);
+    transmittance_.assign(static_cast<size_t>(side_) * static_cast<size_t>(side_), 1.0f);
     for (const uint32_t i : order_) draw(i, view);
   }
 
@@ -116,7 +123,7 @@ class Exposures {
     float covered = 0, through = 0;
     for (int y = begin_y; y < end_y; ++y) {
       const auto dy = static_cast<float>(y + 0.5 - v);
-      float* row = &transmittance_[static_cast<size_t>(y) * kSide];
+      float* row = &transmittance_[static_cast<size_t>(y) * static_cast<size_t>(side_)];
       const auto from = static_cast<float>(0.5 - u);
       for (int x = begin_x; x < end_x; ++x) {
         const float dx = static_cast<float>(x) + from;
@@ -132,18 +139,20 @@ class Exposures {
     if (covered > 0) seen_[i] += through / covered / kDirections;
   }
 
-  static int first(double centre, double reach) {
-    return static_cast<int>(std::clamp(std::floor(centre - reach), 0.0, double{kSide}));
+  int first(double centre, double reach) const {
+    return static_cast<int>(
+        std::clamp(std::floor(centre - reach), 0.0, static_cast<double>(side_)));
   }
-  static int last(double centre, double reach) {
-    return static_cast<int>(std::clamp(std::ceil(centre + reach), 0.0, double{kSide}));
+  int last(double centre, double reach) const {
+    return static_cast<int>(std::clamp(std::ceil(centre + reach), 0.0, static_cast<double>(side_)));
   }
 
   std::vector<Blob> blobs_;
   std::vector<double> seen_, x_, y_, z_, sorted_;
   std::vector<uint32_t> order_;
   std::vector<float> transmittance_;
-  float alpha_[kSide];
+  float alpha_[kMostSide];
+  int side_;
   double pixel_ = 0, left_ = 0, top_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "runtime/scene/import/importer.h"
 #include "tests/support/search_rig.h"
 #include "tests/support/test_support.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager {
 namespace {
@@ -49,7 +50,8 @@ TEST(SearchScene, TheDistrictAlongBothPaths) {
   VOYAGER_NEEDS_SCENES(folder);
   const auto source = open_file_source(folder + "/district.spz");
   Workers workers;
-  BakedScene baked = build_tree(import_gaussians(*read_source(*source)), workers);
+  BakedScene baked =
+      build_tree(import_gaussians(*read_source(*source)), workers, {}, test::kLargeScene);
   const Vec3d origin{baked.origin[0], baked.origin[1], baked.origin[2]};
   SearchRig rig(std::move(baked.tree));
   for (const auto& places : {read_places(folder + "/district.flight.cameras.json"),

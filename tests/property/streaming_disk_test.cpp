@@ -119,10 +119,10 @@ TEST(StreamingDisk, AnEvenFlightFindsMostOfItsWayThere) {
 }
 
 TEST(StreamingDisk, AJumpTakesBackWhatIsNoLongerWanted) {
-  Flight flight(1.0, 0.02, 1e6, test::kHierarchicalGs);
-  for (int i = 0; i < 5; ++i) flight.draw(ahead({0, -3, -150}, kForward, 12));
+  Flight flight(0.5, 0.02, 1e6, test::kHierarchicalGs);
+  for (int i = 0; i < 40; ++i) flight.draw(ahead({0, -3, -150}, kForward, 40));
   ASSERT_EQ(flight.counters().chunks.flushed, 0u);
-  flight.draw(ahead({0, -3, 150}, Vec3d{0, 0.02, -1}, 12));
+  for (int i = 0; i < 5; ++i) flight.draw(ahead({0, -3, 150}, Vec3d{0, 0.02, -1}, 40));
   EXPECT_GT(flight.counters().chunks.flushed, 0u);
 }
 
