@@ -422,7 +422,7 @@ TEST(StreamingDisk, WhatHasFailedCountsAsMissing) {
 // A node that lies outside of what it hangs from shows when its chunk is linked: a frame that waits
 // fails, however late that is, and the chunk is read twice at most.
 TEST(StreamingDisk, AChunkThatFitsNoParentIsDamaged) {
-  BakedScene baked = test::bake(wide_cloud(4000));
+  BakedScene baked = test::bake(wide_cloud(4000), test::kHierarchicalGs);
   test::StreamRig sound(baked, 1.0);
   const SceneFile file(test::source_of(sound.bytes));
   const auto victim = static_cast<uint32_t>(file.chunks().size()) - 5;
