@@ -8,8 +8,9 @@
 //   encode   layouts of all cells -> the plan; their roots -> the top; of a cell rows,
 //            layout and top -> chunks (each alone)
 //   merge    top and chunks of all cells -> scene.voy
-#include "runtime/bake/cell_tree.h"
+#include "runtime/bake/spool.h"
 #include "runtime/format/layout.h"
+#include "runtime/lod/tree_rule.h"
 
 namespace voyager {
 
@@ -28,7 +29,7 @@ struct BakeInParts {
   BakeStep step = BakeStep::all;
   uint32_t part = 0, parts = 1;
   uint32_t most_in_cell = 0;  // Gaussians; 0: what memory and threads ask for
-  TreeRule rule;              // of a clustered tree
+  TreeRule rule;              // of a clustered tree: no other is baked in parts
 };
 
 struct BakeSummary {

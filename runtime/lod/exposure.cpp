@@ -17,12 +17,12 @@ constexpr float kLowPass = 0.3f;   // pixels², METHOD §5
 constexpr float kThreshold = 255;  // 1 / α*
 constexpr float kLargest = 0.99f;  // α, METHOD §6
 
-struct View {
+struct Direction {
   Vec3d forward, right, down;
 };
 
 // Even over the sphere: a Fibonacci lattice.
-View view_of(int index) {
+Direction direction(int index) {
   const double golden = 2.399963229728653;  // π(3 − √5)
   const double z = 1 - 2 * (index + 0.5) / kDirections, r = std::sqrt(1 - z * z);
   const Vec3d f{r * std::cos(golden * index), r * std::sin(golden * index), z};
@@ -60,16 +60,16 @@ class Exposures {
   }
 
   const std::vector<double>& run() {
-    for (int i = 0; i < kDirections; ++i) look(view_of(i));
+    for (int i = 0; i < kDirections; ++i) look(direction(i));
     return seen_;
   }
 
  private:
-  void look(const View& view) {
+  void look(const Direction& along) {
     for (size_t i = 0; i < blobs_.size(); ++i) {
-      x_[i] = dot(view.right, blobs_[i].mean);
-      y_[i] = dot(view.down, blobs_[i].mean);
-      z_[i] = dot(view.forward, blobs_[i].mean);
+      x_[i] = dot(along.right, blobs_[i].mean);
+      y_[i] = dot(along.down, blobs_[i].mean);
+      z_[i] = dot(along.forward, blobs_[i].mean);
     }
     const auto [x0, x1] = middle(x_);
     const auto [y0, y1] = middle(y_);
@@ -82,7 +82,7 @@ class Exposures {
     std::sort(order_.begin(), order_.end(),
               [&](uint32_t a, uint32_t b) { return z_[a] < z_[b] || (z_[a] == z_[b] && a < b); });
     transmittance_.assign(static_cast<size_t>(side_) * static_cast<size_t>(side_), 1.0f);
-    for (const uint32_t i : order_) draw(i, view);
+    for (const uint32_t i : order_) draw(i, along);
   }
 
   // Where all but kOutside of the values at each end are.
@@ -96,7 +96,7 @@ class Exposures {
     return {least, *high};
   }
 
-  void draw(uint32_t i, const View& view) {
+  void draw(uint32_t i, const Direction& along) {
     const Blob& blob = blobs_[i];
     const auto opacity = static_cast<float>(blob.opacity);
     const float reach = 2 * std::log(kThreshold * opacity);
@@ -107,9 +107,9 @@ class Exposures {
                      (c[2] * b.x + c[4] * b.y) + c[5] * b.z};
       return dot(a, cb) / (pixel_ * pixel_);
     };
-    const double xx = across(view.right, view.right) + kLowPass;
-    const double xy = across(view.right, view.down);
-    const double yy = across(view.down, view.down) + kLowPass;
+    const double xx = across(along.right, along.right) + kLowPass;
+    const double xy = across(along.right, along.down);
+    const double yy = across(along.down, along.down) + kLowPass;
     const double det = std::max(xx * yy - xy * xy, 1e-14 * xx * yy);
     const double u = (x_[i] - left_) / pixel_, v = (y_[i] - top_) / pixel_;
     const int begin_x = first(u, std::sqrt(reach * xx)), end_x = last(u, std::sqrt(reach * xx));

@@ -101,7 +101,6 @@ Clusters find_clusters(const GaussianCloud& cloud, const std::array<double, 3>& 
   };
   const auto for_parts = [&](uint32_t most, const auto& body) {
     const std::vector<Range> parts = parts_of(size, most, kd);
-    clusters.trees.resize(parts.size());
     workers.for_blocks(parts.size(), 1, [&](size_t i, size_t) {
       body(i, std::span(order).subspan(parts[i].begin, parts[i].size));
       tell(parts[i].size);
@@ -111,6 +110,7 @@ Clusters find_clusters(const GaussianCloud& cloud, const std::array<double, 3>& 
   for_parts(rule.exposure_block, [&](size_t, std::span<const uint32_t> leaves) {
     find_exposure(cloud, origin, leaves, clusters.exposure);
   });
+  clusters.trees.resize(parts_of(size, rule.block, kd).size());
   for_parts(rule.block, [&](size_t i, std::span<const uint32_t> leaves) {
     clusters.trees[i] = cluster(cloud, origin, leaves, clusters.exposure);
   });

@@ -40,8 +40,8 @@ Parts split_in_parts(uint32_t size, const KdRule& rule);
 struct Range {
   uint32_t begin, size;
 };
-// The parts of `size` Gaussians in kd order that halving leaves where it ends at `most` in one,
-// which is at least the rule's block.
+// What halving makes of `size` Gaussians, in kd order, where it ends at parts of at most `most`,
+// which is no less than the rule's block.
 std::vector<Range> parts_of(uint32_t size, uint32_t most, const KdRule& rule);
 
 }  // namespace voyager

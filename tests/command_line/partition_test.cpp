@@ -60,10 +60,13 @@ TEST(CommandLineTree, TheKindOfTheTreeIsChosenAndKeptInTheFile) {
     return SceneFile(open_file_source(scene)).info();
   };
   EXPECT_EQ(tree_of("").tree, TreeKind::clustered);
+  EXPECT_NE(run("voyager info " + scene).output.find("tree          clustered"), std::string::npos);
   EXPECT_EQ(tree_of(" --tree clustered").tree, TreeKind::clustered);
   const SceneFileInfo compatible = tree_of(" --tree hierarchicalgs");
   EXPECT_EQ(compatible.tree, TreeKind::hierarchicalgs);
   EXPECT_EQ(compatible.node_count, 2 * 10000u - 1);
+  EXPECT_NE(run("voyager info " + scene + " --json").output.find("\"hierarchicalgs\""),
+            std::string::npos);
 
   for (const std::string value : {"nonsense", "", "Clustered"}) {
     const Outcome refused = run(bake + " --tree '" + value + "'");

@@ -8,6 +8,7 @@
 
 #include "tests/command_line/page_check.h"
 #include "tests/command_line/program.h"
+#include "tests/support/camera_files.h"
 #include "tests/support/needs_browser.h"
 #include "tests/support/test_support.h"
 
@@ -27,9 +28,7 @@ class ReportCurve : public ::testing::Test {
     if (!failure_.empty()) return;
     std::filesystem::create_directory(file("copy"));
     std::filesystem::copy_file(file("c.voy"), file("copy/c.voy"));
-    auto cameras = nlohmann::json::parse(file_bytes(file("c.cameras.json")));
-    cameras.erase(cameras.begin() + 3, cameras.end());
-    write_bytes(file("three.json"), cameras.dump());
+    write_first_cameras(file("c.cameras.json"), 3, file("three.json"));
   }
   static void TearDownTestSuite() { delete folder_; }
   void SetUp() override { ASSERT_EQ(failure_, ""); }

@@ -7,6 +7,7 @@
 
 #include "tests/command_line/page_check.h"
 #include "tests/command_line/program.h"
+#include "tests/support/camera_files.h"
 #include "tests/support/needs_browser.h"
 #include "tests/support/test_support.h"
 
@@ -20,9 +21,7 @@ class Report : public ::testing::Test {
     failure_ = failure_of({"voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("c.ply"),
                            "voyager bake " + file("c.ply") + " -o " + file("c.voy")});
     if (!failure_.empty()) return;
-    auto cameras = nlohmann::json::parse(file_bytes(file("c.cameras.json")));
-    cameras.erase(cameras.begin() + 3, cameras.end());
-    write_bytes(file("three.json"), cameras.dump());
+    write_first_cameras(file("c.cameras.json"), 3, file("three.json"));
   }
   static void TearDownTestSuite() { delete folder_; }
   void SetUp() override { ASSERT_EQ(failure_, ""); }

@@ -138,6 +138,21 @@ TEST(BakeInParts, HoldsForEverySizeOfCellsChunksMemoryAndThreads) {
       folder.expect_equal({.memory = memory, .threads = threads});
 }
 
+TEST(BakeInParts, SaysWhatIsKnownAfterEachStep) {
+  const Folder folder({test::random_cloud(6000, 32, 0)});
+  BakeInParts bake = folder.request({});
+  for (const BakeStep step : {BakeStep::split, BakeStep::cells, BakeStep::encode}) {
+    bake.step = step;
+    const BakeSummary summary = folder.run(bake);
+    EXPECT_EQ(summary.gaussians, 6000u);
+    EXPECT_EQ(summary.cells, 4u);
+    const bool planned = step == BakeStep::encode;
+    EXPECT_EQ(summary.nodes > 6000, planned);
+    EXPECT_EQ(summary.subtrees > 0, planned);
+    EXPECT_EQ(summary.chunks > 0, planned);
+  }
+}
+
 TEST(BakeInParts, HoldsForEveryShDegree) {
   for (const int degree : {0, 1, 2, 3}) Folder({test::specks(6000, 5, degree)}).expect_equal({});
 }

@@ -42,6 +42,14 @@ inline std::vector<Camera> read_cameras(const std::string& path) {
   return cameras_of(nlohmann::json::parse(file));
 }
 
+// A file with the first `count` of another's.
+inline void write_first_cameras(const std::string& from, size_t count, const std::string& to) {
+  std::ifstream file(from);
+  nlohmann::json cameras = nlohmann::json::parse(file);
+  cameras.erase(cameras.begin() + static_cast<std::ptrdiff_t>(count), cameras.end());
+  std::ofstream(to) << cameras.dump();
+}
+
 // The same view in another size.
 inline Camera resized(Camera camera, uint32_t width, uint32_t height) {
   const double x = static_cast<double>(width) / camera.width,

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/metric_images.h"
+#include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 #include "tools/report/compare_images.h"
 #include "tools/report/reference_images.h"
@@ -72,14 +73,8 @@ TEST(ReportImages, ReferencesAreTheSameFromDisk) {
   const test::Bytes bytes =
       test::scene_bytes(test::bake(test::random_cloud(300, 5)), Quality::lossless);
   const auto scene = load_scene(test::source_of(bytes), std::pmr::get_default_resource(), workers);
-  FrameInput frame;
-  Camera& camera = frame.eyes[0].camera;
-  camera.eye = {0, 0, -30};
-  camera.world_to_view = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  camera.width = camera.height = 24;
-  camera.fx = camera.fy = 24;
-  camera.cx = camera.cy = 12;
-  const std::vector<FrameInput> path(3, frame);
+  const std::vector<FrameInput> path(3,
+                                     test::frame_input(test::look({0, 0, -30}, {0, 0, 0}, 24, 24)));
   const auto references = [&] {
     return ReferenceImages(scene, path, {0, 2}, folder.file(""), workers);
   };

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "runtime/cpu/cpu_backend.h"
+#include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 #include "tools/report/measure.h"
 
@@ -88,14 +89,7 @@ class ReportMeasure : public ::testing::Test {
     std::ofstream(folder_.file("scene.voy"), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
-    FrameInput frame;
-    Camera& camera = frame.eyes[0].camera;
-    camera.eye = {0, 0, -30};
-    camera.world_to_view = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    camera.width = camera.height = 24;
-    camera.fx = camera.fy = 24;
-    camera.cx = camera.cy = 12;
-    plan_.path.assign(3, frame);
+    plan_.path.assign(3, test::frame_input(test::look({0, 0, -30}, {0, 0, 0}, 24, 24)));
     plan_.repeats = 13;
     plan_.compared = {0, 2};
   }

@@ -15,15 +15,18 @@ namespace {
 constexpr const char* kStorageNames[] = {"flat", "lossless", "compact"};
 constexpr const char* kNoteKinds[] = {"omitted", "repaired", "dropped", "damaged"};
 
-// What only the file says: how the tree is cut up. Zeros for a flat scene.
-struct Partitioning {
+// What only the file says: how the tree was built (docs/lod-tree.md) and how it is cut up. Zeros
+// and no rule for a flat scene.
+struct TreeFacts {
+  const char* rule = nullptr;
   uint32_t subtrees = 0, tiers = 0, chunk_bytes = 0;
 };
 
-Partitioning partitioning(const std::string& path, const VoySceneInfo& info) {
+TreeFacts tree_facts(const std::string& path, const VoySceneInfo& info) {
   if (info.storage == VOY_SCENE_STORAGE_FLAT) return {};
   const SceneFile file(open_source(path));
-  return {file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes};
+  return {file.info().tree == TreeKind::clustered ? "clustered" : "hierarchicalgs",
+          file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes};
 }
 
 void print_profile(const VoySceneInfo& info, const VoySceneProfile& profile) {
@@ -44,15 +47,16 @@ void print_profile(const VoySceneInfo& info, const VoySceneProfile& profile) {
 }
 
 void print_text(const std::string& path, const VoySceneInfo& info, const VoySceneProfile& profile,
-                const Partitioning& partition, const std::vector<VoySceneNote>& notes) {
+                const TreeFacts& tree, const std::vector<VoySceneNote>& notes) {
   fmt::print("{}: {} scene\n", path, kStorageNames[info.storage]);
   fmt::print("  Gaussians     {}\n", info.gaussianCount);
+  if (tree.rule != nullptr) fmt::print("  tree          {}\n", tree.rule);
   if (info.storage != VOY_SCENE_STORAGE_FLAT)
     fmt::print("  nodes         {} in {} levels, {} chunks ({} damaged)\n", info.nodeCount,
                info.treeDepth, info.chunkCount, info.damagedChunkCount);
   if (info.storage != VOY_SCENE_STORAGE_FLAT)
     fmt::print("  subtrees      {} in {} tiers, chunks of up to {} bytes of search records\n",
-               partition.subtrees, partition.tiers, partition.chunk_bytes);
+               tree.subtrees, tree.tiers, tree.chunk_bytes);
   print_profile(info, profile);
   fmt::print("  antialiased   {}\n", info.antialiased ? "yes" : "no");
   fmt::print("  origin        {} {} {} m\n", info.origin[0], info.origin[1], info.origin[2]);
@@ -81,28 +85,30 @@ nlohmann::ordered_json to_json(const VoySceneProfile& profile) {
 }
 
 void print_json(const std::string& path, const VoySceneInfo& info, const VoySceneProfile& profile,
-                const Partitioning& partition, const std::vector<VoySceneNote>& notes) {
-  nlohmann::ordered_json json = {{"file", path},
-                                 {"storage", kStorageNames[info.storage]},
-                                 {"gaussians", info.gaussianCount},
-                                 {"nodes", info.nodeCount},
-                                 {"tree_depth", info.treeDepth},
-                                 {"chunks", info.chunkCount},
-                                 {"damaged_chunks", info.damagedChunkCount},
-                                 {"subtrees", partition.subtrees},
-                                 {"tiers", partition.tiers},
-                                 {"chunk_bytes", partition.chunk_bytes},
-                                 {"sh_degree", info.shDegree},
-                                 {"antialiased", info.antialiased != 0},
-                                 {"origin", info.origin},
-                                 {"bounds_min", info.boundsMin},
-                                 {"bounds_max", info.boundsMax},
-                                 {"position_error", info.positionError},
-                                 {"resident_bytes", info.residentBytes},
-                                 {"dropped", info.droppedCount},
-                                 {"repaired", info.repairedCount},
-                                 {"profile", to_json(profile)},
-                                 {"notes", nlohmann::json::array()}};
+                const TreeFacts& tree, const std::vector<VoySceneNote>& notes) {
+  nlohmann::ordered_json json = {
+      {"file", path},
+      {"storage", kStorageNames[info.storage]},
+      {"gaussians", info.gaussianCount},
+      {"tree", tree.rule == nullptr ? nlohmann::ordered_json() : nlohmann::ordered_json(tree.rule)},
+      {"nodes", info.nodeCount},
+      {"tree_depth", info.treeDepth},
+      {"chunks", info.chunkCount},
+      {"damaged_chunks", info.damagedChunkCount},
+      {"subtrees", tree.subtrees},
+      {"tiers", tree.tiers},
+      {"chunk_bytes", tree.chunk_bytes},
+      {"sh_degree", info.shDegree},
+      {"antialiased", info.antialiased != 0},
+      {"origin", info.origin},
+      {"bounds_min", info.boundsMin},
+      {"bounds_max", info.boundsMax},
+      {"position_error", info.positionError},
+      {"resident_bytes", info.residentBytes},
+      {"dropped", info.droppedCount},
+      {"repaired", info.repairedCount},
+      {"profile", to_json(profile)},
+      {"notes", nlohmann::json::array()}};
   for (const VoySceneNote& note : notes)
     json["notes"].push_back({{"kind", kNoteKinds[note.kind]},
                              {"what", note.what},
@@ -127,7 +133,7 @@ void add_info(CLI::App& app) {
     const voy::Scene scene = device.open_scene(*path);
     const VoySceneInfo info = scene.info();
     (*json ? print_json : print_text)(shown_path(*path), info, scene.profile(),
-                                      partitioning(*path, info), scene.notes());
+                                      tree_facts(*path, info), scene.notes());
   });
 }
 

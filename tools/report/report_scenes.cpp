@@ -50,13 +50,16 @@ std::string ReportScenes::path_of(Storage storage) {
 
 void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
   std::filesystem::path input = path_;
+  TreeRule rule;
   if (own_->storage != Storage::flat) {
+    const SceneFile file(open_source(path_));
+    rule.kind = file.info().tree;  // another would be compared, too
     input = folder_ / "leaves.ply";
-    export_ply(SceneFile(open_source(path_)), input.string(), progress_);
+    export_ply(file, input.string(), progress_);
   }
   const auto source = open_source(input.string());
   GaussianCloud cloud = import_gaussians(*read_source(*source));
-  const BakedScene baked = build_tree(std::move(cloud), workers_, progress_);
+  const BakedScene baked = build_tree(std::move(cloud), workers_, progress_, rule);
   write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), output.string(),
                    storage == Storage::compact ? Quality::compact : Quality::lossless, workers_,
                    progress_);
