@@ -6,6 +6,7 @@
 #include "runtime/cpu/cpu_backend.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_rules.h"
 #include "tools/report/measure.h"
 
 namespace voyager::tools {
@@ -157,6 +158,25 @@ TEST_F(ReportMeasure, EnergyIsOfTheTimedFramesAndAsManyMoreAsTheSensorNeeds) {
   EXPECT_EQ(row.frame.p99, 1);
   EXPECT_GT(backend_.script.drawn.size(), 4u + 39 + 3);
   EXPECT_EQ(measure(0).joules, std::nullopt);
+}
+
+TEST(ReportScenes, OtherStorageIsOfTheSameTree) {
+  const test::TempFolder folder;
+  Workers workers;
+  const auto nodes = [&](Storage storage, const TreeRule& rule) {
+    const auto bytes =
+        test::scene_bytes(test::bake(test::random_cloud(300, 5), rule), Quality::lossless);
+    const std::string path = folder.file(rule.kind == TreeKind::clustered ? "c.voy" : "h.voy");
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    std::filesystem::remove(folder.file("compact.voy"));
+    ReportScenes scenes(path, folder.file(""), workers, {});
+    return scenes.get(storage, scenes.own()->sh_degree)->tree.size();
+  };
+  for (const TreeRule& rule : {TreeRule{}, test::kHierarchicalGs})
+    EXPECT_EQ(nodes(Storage::compact, rule), nodes(Storage::lossless, rule));
+  EXPECT_NE(nodes(Storage::compact, {}), nodes(Storage::compact, test::kHierarchicalGs));
 }
 
 }  // namespace
