@@ -44,7 +44,8 @@ TEST(ReportPlots, EachPointIsLabelledByItsValueOnTheAxis) {
                                     {"filter.png", "filter"},
                                     {"search.png", "temporal"}}) {
     size_t marked = 0;
-    for (const PlotPoint& point : plot_of(file).series[0].points)
+    const Plot plot = plot_of(file);
+    for (const PlotPoint& point : plot.series[0].points)
       if (point.marked) {
         ++marked;
         EXPECT_EQ(point.label, value) << file;

@@ -19,8 +19,8 @@ std::vector<Storage> storages_of(Storage own) {
 }  // namespace
 
 ReportScenes::ReportScenes(const std::string& path, const std::filesystem::path& folder,
-                           Workers& workers, const Progress& progress)
-    : path_(path), folder_(folder), workers_(workers), progress_(progress) {
+                           Workers& workers, Progress progress)
+    : path_(path), folder_(folder), workers_(workers), progress_(std::move(progress)) {
   own_ = load_scene(open_source(path), std::pmr::get_default_resource(), workers);
   storages_ = storages_of(own_->storage);
 }

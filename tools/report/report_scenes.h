@@ -14,7 +14,7 @@ class ReportScenes {
   // folder: for the bakes that the scene's own file lacks. A flat file, and a lossless .voy, also
   // come compact; a compact one does not come back. Throws as load_scene() does.
   ReportScenes(const std::string& path, const std::filesystem::path& folder, Workers& workers,
-               const Progress& progress);
+               Progress progress);
 
   // The file's own first.
   const std::vector<Storage>& storages() const { return storages_; }
@@ -29,7 +29,7 @@ class ReportScenes {
   std::string path_;
   std::filesystem::path folder_;
   Workers& workers_;
-  const Progress& progress_;
+  Progress progress_;
   std::vector<Storage> storages_;
   std::shared_ptr<const Scene> own_, other_;
   Storage other_storage_ = Storage::flat;
