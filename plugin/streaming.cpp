@@ -58,8 +58,8 @@ void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>&
 
 void log_streaming(const DeviceObject& device, const Scene& scene) {
   if (!scene.streamed()) return;
-  for (const std::string& message : scene.stream->take_messages())
-    device.log.write(VOY_LOG_WARNING, ("streaming: " + message).c_str());
+  for (const std::string& line : scene.stream->take_messages())
+    device.log.write(VOY_LOG_WARNING, ("streaming: " + line).c_str());
 }
 
 }  // namespace voyager

@@ -12,13 +12,13 @@
 namespace voyager::tools {
 namespace {
 
-using Json = nlohmann::json;
+using Value = nlohmann::json;  // an ordered one copies by recursion: 150,000 levels are too many
 
 constexpr uint64_t kLargestFile = uint64_t{1} << 30;
 
 class CameraReader {
  public:
-  CameraReader(const std::string& file, size_t index, const Json& json)
+  CameraReader(const std::string& file, size_t index, const Value& json)
       : file_(file), index_(index), json_(json) {}
 
   Camera read() const {
@@ -40,7 +40,7 @@ class CameraReader {
   }
 
  private:
-  [[noreturn]] void refuse(const std::string& name, const Json& found,
+  [[noreturn]] void refuse(const std::string& name, const Value& found,
                            const std::string& expected) const {
     std::string text = found.is_structured()
                            ? fmt::format("an {} of {}", found.type_name(), found.size())
@@ -51,7 +51,7 @@ class CameraReader {
                             name.empty() ? "" : ": ", name, text, expected));
   }
 
-  const Json& field(const std::string& name) const {
+  const Value& field(const std::string& name) const {
     const auto found = json_.find(name);
     if (found == json_.end())
       throw Error(
@@ -70,7 +70,7 @@ class CameraReader {
   }
 
   double number(const std::string& name) const {
-    const Json& value = field(name);
+    const Value& value = field(name);
     if (!value.is_number() || !std::isfinite(value.get<double>()))
       refuse(name, value, "a finite number");
     return value.get<double>();
@@ -86,7 +86,7 @@ class CameraReader {
       refuse(name, field(name), fmt::format("a whole number from 1 to {}", kLargestSide));
     return static_cast<uint32_t>(value);
   }
-  Eigen::Vector3d vector(const Json& value, const std::string& name) const {
+  Eigen::Vector3d vector(const Value& value, const std::string& name) const {
     Eigen::Vector3d v = Eigen::Vector3d::Zero();
     if (!value.is_array() || value.size() != 3) refuse(name, value, "three numbers");
     for (size_t i = 0; i < 3; ++i) {
@@ -101,7 +101,7 @@ class CameraReader {
   // forward. Written in decimal, they are not quite orthonormal: forward is kept
   // as it is, because it orders the splats (METHOD §6).
   void set_orientation(VoyPose& pose) const {
-    const Json& rows = field("rotation");
+    const Value& rows = field("rotation");
     if (!rows.is_array() || rows.size() != 3)
       refuse("rotation", rows, "three rows of three numbers");
     Eigen::Matrix3d m;
@@ -122,7 +122,7 @@ class CameraReader {
 
   const std::string& file_;
   size_t index_;
-  const Json& json_;
+  const Value& json_;
 };
 
 }  // namespace
@@ -155,14 +155,14 @@ std::vector<Camera> read_cameras(const std::string& path) {
                             source->size(), kLargestFile));
   std::string text(source->size(), '\0');
   source->read(0, std::as_writable_bytes(std::span(text)));
-  Json json;
+  Value json;
   try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& error) {
+    json = Value::parse(text);
+  } catch (const Value::parse_error& error) {
     throw Error(ErrorCode::refused_input,
                 fmt::format("{}: offset {}: found no JSON there, expected a cameras.json", path,
                             error.byte));
-  } catch (const Json::exception& error) {
+  } catch (const Value::exception& error) {
     throw Error(ErrorCode::refused_input,
                 fmt::format("{}: found {}, expected a cameras.json", path, error.what()));
   }

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "runtime/lod/stand_in.h"
+#include "runtime/math/projection.h"
 
 namespace voyager {
 namespace {
@@ -13,7 +14,6 @@ constexpr int kDirections = 12;
 constexpr int kMostSide = 256;     // pixels
 constexpr double kSideOfRoot = 4;  // pixels for the root of the Gaussians' number
 constexpr double kOutside = 0.02;  // of the means, that may lie beyond the picture on a side
-constexpr float kLowPass = 0.3f;   // pixels², METHOD §5
 constexpr float kThreshold = 255;  // 1 / α*
 constexpr float kLargest = 0.99f;  // α, METHOD §6
 

@@ -4,6 +4,10 @@
 
 namespace voyager {
 
+inline std::string name_of(size_t node, const char* what) {
+  return "node " + std::to_string(node) + ", " + what;
+}
+
 // What a validator has found so far, up to a limit.
 class Findings {
  public:

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/math/projection.h"
+
 namespace voyager {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kLowPass = 0.3;     // pixels², METHOD §5
 constexpr double kTolerance = 0.01;  // code values × pixels, times 2τ + 1
 constexpr double kExtentOfPixel = 2 * kReferenceTau + 1;
 // How much what is behind a group differs from it: a lack of coverage shows that.

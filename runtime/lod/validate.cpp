@@ -8,10 +8,6 @@
 namespace voyager {
 namespace {
 
-std::string name_of(size_t node, const char* what) {
-  return "node " + std::to_string(node) + ", " + what;
-}
-
 std::string text(float value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.9g", static_cast<double>(value));

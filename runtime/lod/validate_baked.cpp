@@ -12,10 +12,6 @@
 namespace voyager {
 namespace {
 
-std::string name_of(size_t node, const char* what) {
-  return "node " + std::to_string(node) + ", " + what;
-}
-
 std::string text(double value) {
   std::ostringstream out;
   out.precision(9);

@@ -5,7 +5,7 @@
 namespace voyager {
 namespace {
 
-constexpr size_t kBlock = 8192;  // nodes: 256 KiB of records, so a block's results stay in cache
+constexpr size_t kNodesAtOnce = 8192;  // 256 KiB of records, so a block's results stay in cache
 
 }  // namespace
 
@@ -17,12 +17,12 @@ void ExhaustiveSearch::run(const LodTree& tree, std::span<const MissingNodes> mi
   const size_t nodes = tree.size();
   sizes_.resize(nodes);
   selected_.resize(nodes);
-  blocks_.resize((nodes + kBlock - 1) / kBlock);
+  blocks_.resize((nodes + kNodesAtOnce - 1) / kNodesAtOnce);
   cut_.reserve(nodes);
-  workers.for_blocks(nodes, kBlock,
+  workers.for_blocks(nodes, kNodesAtOnce,
                      [&](size_t begin, size_t end) { measure(tree, missing, query, begin, end); });
-  workers.for_blocks(nodes, kBlock, [&](size_t begin, size_t end) {
-    blocks_[begin / kBlock] = select(tree, query.target_size, begin, end);
+  workers.for_blocks(nodes, kNodesAtOnce, [&](size_t begin, size_t end) {
+    blocks_[begin / kNodesAtOnce] = select(tree, query.target_size, begin, end);
   });
   nodes_tested_ = nodes;
   for (const MissingNodes& range : missing) nodes_tested_ -= range.count;
@@ -76,7 +76,7 @@ void ExhaustiveSearch::gather() {
   cut_.resize(total);
   auto into = cut_.begin();
   for (size_t block = 0; block < blocks_.size(); ++block)
-    into = std::copy_n(selected_.begin() + static_cast<std::ptrdiff_t>(block * kBlock),
+    into = std::copy_n(selected_.begin() + static_cast<std::ptrdiff_t>(block * kNodesAtOnce),
                        blocks_[block].selected, into);
 }
 

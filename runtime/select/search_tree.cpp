@@ -11,7 +11,7 @@
 namespace voyager {
 namespace {
 
-constexpr size_t kBlock = 1024;  // subtrees
+constexpr size_t kSubtreesAtOnce = 1024;
 
 class Builder {
  public:
@@ -23,13 +23,13 @@ class Builder {
     const size_t count = partition_.subtrees.size();
     out_.subtrees.resize(count);
     out_.tier_begin.assign(partition_.tier_begin.begin(), partition_.tier_begin.end());
-    workers.for_blocks(count, kBlock, [&](size_t begin, size_t end) {
+    workers.for_blocks(count, kSubtreesAtOnce, [&](size_t begin, size_t end) {
       for (size_t s = begin; s < end; ++s) describe(static_cast<uint32_t>(s));
     });
     out_.leaves_have_extent = leaves_have_extent_;
     for (const SubtreeRange& range : missing_) describe_missing(range);
     number_records();
-    workers.for_blocks(count, kBlock, [&](size_t begin, size_t end) {
+    workers.for_blocks(count, kSubtreesAtOnce, [&](size_t begin, size_t end) {
       for (size_t s = begin; s < end; ++s) fill_records(static_cast<uint32_t>(s));
     });
     for (size_t tier = 0; tier + 1 < out_.tier_begin.size(); ++tier) link(tier);
@@ -149,7 +149,7 @@ class Builder {
   void set_chunks(Workers& workers) {
     const size_t count = partition_.chunk_count();
     out_.chunks.resize(count + 1);
-    workers.for_blocks(count, kBlock, [&](size_t begin, size_t end) {
+    workers.for_blocks(count, kSubtreesAtOnce, [&](size_t begin, size_t end) {
       for (size_t chunk = begin; chunk < end; ++chunk) out_.chunks[chunk] = hull_of(chunk);
     });
     out_.chunks[count] = {{0, 0, 0}, 0, {0, 0, 0}, partition_.chunk_begin[count]};

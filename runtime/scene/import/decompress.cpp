@@ -8,7 +8,7 @@
 namespace voyager {
 namespace {
 
-constexpr size_t kBlockBytes = 64 * 1024;
+constexpr size_t kCompressedBytes = 64 * 1024;
 constexpr int kMaxWindowLog = 27;
 
 }  // namespace
@@ -23,7 +23,7 @@ void Decompressor::refuse_stream(const std::string& found, const std::string& ex
 size_t Decompressor::read(std::span<std::byte> into) {
   size_t made = 0;
   while (made < into.size() && !ended_) {
-    const size_t wanted = static_cast<size_t>(std::min<uint64_t>(kBlockBytes, bytes_left()));
+    const size_t wanted = static_cast<size_t>(std::min<uint64_t>(kCompressedBytes, bytes_left()));
     const std::span<const std::byte> in = input_.peek(wanted);
     const Step done = step(in, into.subspan(made));
     if (!ended_ && done.taken == 0 && done.made == 0) {

@@ -17,7 +17,7 @@ using ply::Element;
 using ply::Property;
 using ply::Type;
 
-constexpr size_t kBlockBytes = 256 * 1024;  // stays in cache while it is taken apart by columns
+constexpr size_t kRowBytes = 256 * 1024;  // stays in cache while it is taken apart by columns
 
 // One property of the rows and where its words go.
 struct Column {
@@ -115,7 +115,7 @@ class PlyReader final : public BlockReader {
   }
 
   // The rows that stay in cache while they are taken apart by columns.
-  size_t rows_at_once() const { return std::max<size_t>(1, kBlockBytes / vertex().stride); }
+  size_t rows_at_once() const { return std::max<size_t>(1, kRowBytes / vertex().stride); }
 
   void reserve(GaussianCloud& cloud, uint64_t gaussians) const {
     for (const Column& column : columns_)

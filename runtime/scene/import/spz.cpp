@@ -12,8 +12,7 @@ namespace {
 
 using spz::Attribute;
 
-constexpr size_t kBlockGaussians = 4096;
-constexpr uint32_t kNewestPlanar = 3, kNewest = 4;
+constexpr size_t kGaussiansAtOnce = 4096;
 
 class SpzImport {
  public:
@@ -24,12 +23,12 @@ class SpzImport {
     const std::span<const std::byte> first = input_.peek(1);
     if (!first.empty() && first[0] == std::byte{0x1f}) {
       GzipReader plain(input_);
-      begin(plain, kNewestPlanar);
+      begin(plain, spz::kNewestPlanar);
       read_planar(plain);
       plain.finish();
     } else {
-      begin(input_, kNewest);
-      if (header_.version == kNewest)
+      begin(input_, spz::kNewest);
+      if (header_.version == spz::kNewest)
         read_streams();
       else
         read_planar(input_);
@@ -65,9 +64,9 @@ class SpzImport {
 
   void read(ByteReader& plain, Attribute attribute) {
     const size_t width = header_.bytes_of(attribute);
-    std::vector<std::byte> block(kBlockGaussians * width);
+    std::vector<std::byte> block(kGaussiansAtOnce * width);
     for (size_t first = 0; first < header_.count;) {
-      const size_t n = std::min<size_t>(kBlockGaussians, header_.count - first);
+      const size_t n = std::min<size_t>(kGaussiansAtOnce, header_.count - first);
       const auto codes = std::span(block).first(n * width);
       const size_t got = plain.read(codes);
       if (got != codes.size())

@@ -12,8 +12,6 @@ namespace {
 
 using spz::Attribute;
 
-constexpr uint32_t kNewestPlanar = 3, kNewest = 4;
-
 // Plain bytes of one attribute, from the first Gaussian on.
 class AttributeStream {
  public:
@@ -22,12 +20,12 @@ class AttributeStream {
     const std::span<const std::byte> first = input_.peek(1);
     if (!first.empty() && first[0] == std::byte{0x1f}) {
       plain_ = std::make_unique<GzipReader>(input_);
-      header_ = spz::read_header(*plain_, kNewestPlanar);
+      header_ = spz::read_header(*plain_, spz::kNewestPlanar);
       skip_to(attribute);
       return;
     }
-    header_ = spz::read_header(input_, kNewest);
-    if (header_.version != kNewest) {
+    header_ = spz::read_header(input_, spz::kNewest);
+    if (header_.version != spz::kNewest) {
       skip_to(attribute);
       return;
     }
@@ -48,7 +46,7 @@ class AttributeStream {
 
   // After the last byte of the attribute: that nothing follows which should not.
   void finish(bool last) {
-    if (plain_ && header_.version == kNewest) return plain_->finish();
+    if (plain_ && header_.version == spz::kNewest) return plain_->finish();
     if (!last) return;
     std::vector<std::byte> unused(header_.has_extensions ? 4096 : 0);
     while (!unused.empty() && plain().read(unused) == unused.size()) {

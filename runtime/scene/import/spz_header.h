@@ -7,6 +7,9 @@
 
 namespace voyager::spz {
 
+// Versions: the newest that is one gzip stream, and the newest.
+inline constexpr uint32_t kNewestPlanar = 3, kNewest = 4;
+
 struct Header {
   uint32_t version = 0, count = 0;
   int sh_degree = 0, fractional_bits = 0;
