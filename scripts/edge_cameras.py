@@ -10,6 +10,7 @@ import math
 import struct
 import sys
 
+LARGEST_FX = 1e6  # a frustum of 16 pixels is then still wider than what is refused
 UP = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]  # forward is −y
 
 
@@ -35,12 +36,12 @@ def size(centre, box, product=rounded):
     return rounded(box[3] / rounded(math.sqrt(squared))) if squared > 0 else math.inf
 
 
-def edge_size(centre, boxes, start):
-    """The size of a node that fused multiply-adds would make smaller, and so not refine."""
+def edge_size(centre, boxes, start, least):
+    """The size, at least so much, of a node that fused multiply-adds would make smaller, and so not refine."""
     for k in range(len(boxes)):
         box = boxes[(start + k * 104729) % len(boxes)]
         exact = size(centre, box)
-        if exact < 1 and size(centre, box, product=lambda square: square) < exact:
+        if least < exact < 1 and size(centre, box, product=lambda square: square) < exact:
             return exact
     sys.exit(f"no node's size at {centre} changes with fused multiply-adds")
 
@@ -52,7 +53,8 @@ def main(hier, cameras_file, tau, out):
     cameras = []
     for i, camera in enumerate(recorded[::max(1, len(recorded) // 60)]):
         centre = [rounded(x) for x in camera["position"]]
-        for fx in (camera["fx"] * 32 / camera["width"], (2 * tau + 1) / edge_size(centre, boxes, i * 7919)):
+        edge = edge_size(centre, boxes, i * 7919, (2 * tau + 1) / LARGEST_FX)
+        for fx in (camera["fx"] * 32 / camera["width"], (2 * tau + 1) / edge):
             cameras.append({"id": len(cameras), "img_name": f"edge_{len(cameras):04}", "width": 16, "height": 16,
                             "position": camera["position"], "rotation": UP, "fx": fx, "fy": fx})
     with open(out, "w", encoding="utf-8") as file:

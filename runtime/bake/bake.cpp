@@ -151,7 +151,7 @@ class Baker {
   void build_cells() {
     const std::vector<uint32_t> cells = cells_without(cell_tree_name);
     // A child count a node, an index and an exposure a leaf; the topmost nodes of each cell.
-    const uint64_t bytes = split_.spool.gaussians * uint64_t{7} +
+    const uint64_t bytes = split_.spool.gaussians * uint64_t{8} +
                            cells.size() * (1 + kChildren) * uint64_t{sizeof(NodeRow)};
     in_space(bytes, "layouts of cells", [&] {
       for_cells(cells, lanes(), workers_, progress_, "merging",

@@ -11,6 +11,12 @@
 
 namespace voyager {
 
+// How a Gaussian shows among others (exposure.h).
+struct Exposure {
+  float seen;      // in (0, 1]
+  float contrast;  // code values, at least 0
+};
+
 struct BakedScene {
   GaussianCloud leaves;  // the input's words, the input's order
   GaussianCloud merged;  // opacity linear, positions scene-local (its origin is `origin`)
@@ -22,8 +28,7 @@ struct BakedScene {
   // Merged Gaussians are stored turned already: 0.
   std::pmr::vector<uint8_t> axis_code;
   TreeKind kind = TreeKind::clustered;
-  // Per node, of a clustered tree: how much of it is seen, in (0, 1] (exposure.h). For building.
-  std::vector<float> exposure;
+  std::vector<Exposure> exposure;  // per node of a clustered tree; for building
 };
 
 // A Gaussian's mean in a scene's local metres: the one rounding to binary32 is here.

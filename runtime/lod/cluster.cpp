@@ -17,7 +17,7 @@ constexpr size_t kFewNodes = 16;
 struct Cluster {
   Blob blob;
   double weight;  // opacity times surface (METHOD §2); the sum of its children's
-  double exposure;
+  Exposure exposure;
   double pixel;  // from which on it stands in for its children
   uint32_t child[2];
 };
@@ -35,7 +35,7 @@ struct Pair {
 class Clustering {
  public:
   Clustering(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-             std::span<const uint32_t> leaves, std::span<const uint8_t> exposure)
+             std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure)
       : leaves_(leaves.size()), coefficients_(cloud.coefficients()) {
     const size_t floats = size_t{3} * static_cast<size_t>(coefficients_);
     clusters_.reserve(2 * leaves_);
@@ -85,11 +85,13 @@ class Clustering {
                                      share * other * (d[i] * d[j]);
     set_colours(share, other, squared_colour_distance(colour(first), colour(second), coefficients_),
                 group);
-    // What is seen of either is wrong where the other's colour shows.
-    const StandIn found = stand_in(group, std::max(a.exposure, b.exposure));
+    const Exposure shown[2] = {a.exposure, b.exposure};
+    const double shares[2] = {share, other};
+    set_exposure(shown, shares, group);
+    const StandIn found = stand_in(group);
     Cluster cluster{group.parent,
                     a.weight + b.weight,
-                    share * a.exposure + other * b.exposure,
+                    mean_exposure(shown, shares),
                     std::max({found.pixel, a.pixel, b.pixel}),
                     {first, second}};
     cluster.blob.opacity = found.opacity;
@@ -228,7 +230,19 @@ class Flattening {
       child[count++] = gone.child[1];
     }
     ClusterTree::Node node{{}, count};
-    for (uint32_t i = 0; i < count; ++i) node.child[i] = add(child[i]);
+    for (uint32_t i = 0; i < count; ++i)
+      node.child[i] = add_child(child[i], clusters_[cluster].pixel);
+    return push(node);
+  }
+
+  // A leaf's extent is free; another's says when it is refined, and only a double can blend late.
+  uint32_t add_child(uint32_t cluster, double parent_pixel) {
+    const uint32_t node = add(cluster);
+    if (cluster < leaves_ || clusters_[cluster].pixel >= kLateExtent * parent_pixel) return node;
+    return push({{node}, 1});
+  }
+
+  uint32_t push(const ClusterTree::Node& node) {
     tree_.nodes.push_back(node);
     return static_cast<uint32_t>(tree_.nodes.size() - 1);
   }
@@ -241,7 +255,7 @@ class Flattening {
 }  // namespace
 
 ClusterTree cluster(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-                    std::span<const uint32_t> leaves, std::span<const uint8_t> exposure) {
+                    std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure) {
   const std::vector<Cluster> clusters = Clustering(cloud, origin, leaves, exposure).run();
   return Flattening(clusters, leaves.size()).run();
 }

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "runtime/lod/baked_scene.h"
+#include "runtime/lod/exposure.h"
 
 namespace voyager {
 
@@ -17,10 +17,11 @@ struct ClusterTree {
   std::vector<Node> nodes;
 };
 
-// leaves: indices of at least one Gaussian of `cloud`; exposure: of each Gaussian of the cloud,
-// 255 for all that there is. Two to four children a node. Depends on nothing but its arguments;
+// leaves: indices of at least one Gaussian of `cloud`; exposure: of each Gaussian of the cloud.
+// Two to four children a node, or one: of a Gaussian that is to be drawn unblended for as long as
+// it stands in (docs/lod-tree.md), so that two nodes hold it. Depends on nothing but its arguments;
 // thread-safe. O(n²) time in distances, O(n) in errors.
 ClusterTree cluster(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-                    std::span<const uint32_t> leaves, std::span<const uint8_t> exposure);
+                    std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure);
 
 }  // namespace voyager

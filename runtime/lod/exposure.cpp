@@ -6,16 +6,19 @@
 
 #include "runtime/lod/stand_in.h"
 #include "runtime/math/projection.h"
+#include "runtime/math/sh.h"
 
 namespace voyager {
 namespace {
 
 constexpr int kDirections = 12;
-constexpr int kMostSide = 256;     // pixels
+constexpr int kMostSide = 384;     // pixels
 constexpr double kSideOfRoot = 4;  // pixels for the root of the Gaussians' number
 constexpr double kOutside = 0.02;  // of the means, that may lie beyond the picture on a side
 constexpr float kThreshold = 255;  // 1 / α*
 constexpr float kLargest = 0.99f;  // α, METHOD §6
+// T from which on what is behind is divided by it.
+constexpr float kLeastBehind = 1e-4f;
 
 struct Direction {
   Vec3d forward, right, down;
@@ -46,25 +49,43 @@ class Exposures {
   Exposures(const GaussianCloud& cloud, const std::array<double, 3>& origin,
             std::span<const uint32_t> leaves)
       : seen_(leaves.size()),
+        contrast_(leaves.size()),
         x_(leaves.size()),
         y_(leaves.size()),
         z_(leaves.size()),
         side_(std::min(kMostSide,
                        static_cast<int>(std::ceil(
                            kSideOfRoot * std::sqrt(static_cast<double>(leaves.size())))))) {
+    const size_t floats = size_t{3} * static_cast<size_t>(cloud.coefficients());
     for (const uint32_t leaf : leaves) {
       GaussianWords words = cloud.words(leaf);
       words.mean = local_mean(cloud, leaf, origin);
       blobs_.push_back(blob_of(activate(words, true)));
+      for (int k = 0; k < 3; ++k) {
+        const float c = static_cast<float>(kSh0) * cloud.sh[leaf * floats + k] + 0.5f;
+        colour_[k].push_back(std::clamp(c, 0.0f, 1.0f));
+      }
     }
+    for (int k = 0; k < 3; ++k)
+      beyond_[k] = static_cast<float>(std::accumulate(colour_[k].begin(), colour_[k].end(), 0.0) /
+                                      static_cast<double>(leaves.size()));
   }
 
-  const std::vector<double>& run() {
+  void run() {
     for (int i = 0; i < kDirections; ++i) look(direction(i));
-    return seen_;
+  }
+
+  ExposureCode code(size_t i) const {
+    const double contrast = seen_[i] > 0 ? contrast_[i] / (3 * seen_[i]) : 0;
+    return {static_cast<uint8_t>(std::max(steps(seen_[i] / kDirections), kLeastSeen)),
+            steps(contrast)};
   }
 
  private:
+  static uint8_t steps(double square) {
+    return static_cast<uint8_t>(std::clamp(std::floor(255 * std::sqrt(square) + 0.5), 0.0, 255.0));
+  }
+
   void look(const Direction& along) {
     for (size_t i = 0; i < blobs_.size(); ++i) {
       x_[i] = dot(along.right, blobs_[i].mean);
@@ -81,8 +102,10 @@ class Exposures {
     std::iota(order_.begin(), order_.end(), 0u);
     std::sort(order_.begin(), order_.end(),
               [&](uint32_t a, uint32_t b) { return z_[a] < z_[b] || (z_[a] == z_[b] && a < b); });
-    transmittance_.assign(static_cast<size_t>(side_) * static_cast<size_t>(side_), 1.0f);
-    for (const uint32_t i : order_) draw(i, along);
+    begin_picture();
+    for (const uint32_t i : order_) paint(i, along);
+    end_picture();
+    for (const uint32_t i : order_) measure(i, along);
   }
 
   // Where all but kOutside of the values at each end are.
@@ -96,11 +119,71 @@ class Exposures {
     return {least, *high};
   }
 
-  void draw(uint32_t i, const Direction& along) {
+  void begin_picture() {
+    const size_t pixels = static_cast<size_t>(side_) * static_cast<size_t>(side_);
+    transmittance_.assign(pixels, 1.0f);
+    for (std::vector<float>& plane : behind_) plane.assign(pixels, 0.0f);
+  }
+
+  // Of what was painted, all is still behind what comes next.
+  void end_picture() {
+    for (int k = 0; k < 3; ++k)
+      for (size_t i = 0; i < transmittance_.size(); ++i)
+        behind_[k][i] += transmittance_[i] * beyond_[k];
+    transmittance_.assign(transmittance_.size(), 1.0f);
+  }
+
+  void paint(uint32_t i, const Direction& along) {
+    cover(i, along, [&](size_t first, int count) {
+      float* through = &transmittance_[first];
+      for (int k = 0; k < 3; ++k) {
+        const float colour = colour_[k][i];
+        float* plane = &behind_[k][first];
+        for (int x = 0; x < count; ++x) plane[x] += alpha_[x] * through[x] * colour;
+      }
+      for (int x = 0; x < count; ++x) through[x] *= 1 - alpha_[x];
+    });
+  }
+
+  void measure(uint32_t i, const Direction& along) {
+    float covered = 0, seen = 0, contrast = 0;
+    const bool inside = cover(i, along, [&](size_t first, int count) {
+      float* through = &transmittance_[first];
+      for (int x = 0; x < count; ++x) {
+        weight_[x] = alpha_[x] * through[x];
+        covered += alpha_[x];
+        seen += weight_[x] * through[x];
+        difference_[x] = 0;
+        after_[x] = through[x] * (1 - alpha_[x]);
+      }
+      for (int k = 0; k < 3; ++k) {
+        const float colour = colour_[k][i];
+        float* plane = &behind_[k][first];
+        for (int x = 0; x < count; ++x) {
+          plane[x] -= weight_[x] * colour;
+          const float d = colour - plane[x] / std::max(after_[x], kLeastBehind);
+          difference_[x] += d * d;
+        }
+      }
+      for (int x = 0; x < count; ++x) {
+        contrast += weight_[x] * through[x] * std::min(difference_[x], 3.0f);
+        through[x] = after_[x];
+      }
+    });
+    if (!inside) seen_[i] += 1;  // beyond the picture: nothing is known to hide it
+    if (!(covered > 0)) return;
+    seen_[i] += seen / covered;
+    contrast_[i] += contrast / covered;
+  }
+
+  // Fills alpha_ for each row of pixels that a Gaussian covers, and calls row(first pixel, count).
+  // False where it covers none of the picture.
+  template <class Row>
+  bool cover(uint32_t i, const Direction& along, const Row& row) {
     const Blob& blob = blobs_[i];
     const auto opacity = static_cast<float>(blob.opacity);
     const float reach = 2 * std::log(kThreshold * opacity);
-    if (!(reach > 0)) return;
+    if (!(reach > 0)) return true;
     const auto across = [&](const Vec3d& a, const Vec3d& b) {
       const double* c = blob.covariance;
       const Vec3d cb{(c[0] * b.x + c[1] * b.y) + c[2] * b.z, (c[1] * b.x + c[3] * b.y) + c[4] * b.z,
@@ -114,29 +197,22 @@ class Exposures {
     const double u = (x_[i] - left_) / pixel_, v = (y_[i] - top_) / pixel_;
     const int begin_x = first(u, std::sqrt(reach * xx)), end_x = last(u, std::sqrt(reach * xx));
     const int begin_y = first(v, std::sqrt(reach * yy)), end_y = last(v, std::sqrt(reach * yy));
-    if (begin_x == end_x || begin_y == end_y) {
-      seen_[i] += 1.0 / kDirections;  // beyond the picture: nothing is known to hide it
-      return;
-    }
+    if (begin_x == end_x || begin_y == end_y) return false;
     const auto a = static_cast<float>(yy / det), b = static_cast<float>(-2 * xy / det),
                c = static_cast<float>(xx / det);
-    float covered = 0, through = 0;
+    const auto from = static_cast<float>(begin_x + 0.5 - u);
     for (int y = begin_y; y < end_y; ++y) {
       const auto dy = static_cast<float>(y + 0.5 - v);
-      float* row = &transmittance_[static_cast<size_t>(y) * static_cast<size_t>(side_)];
-      const auto from = static_cast<float>(0.5 - u);
-      for (int x = begin_x; x < end_x; ++x) {
+      const int count = end_x - begin_x;
+      for (int x = 0; x < count; ++x) {
         const float dx = static_cast<float>(x) + from;
         const float d = (a * dx * dx + b * dx * dy) + c * dy * dy;
         alpha_[x] = d < reach ? std::min(kLargest, opacity * falloff(d)) : 0.0f;
       }
-      for (int x = begin_x; x < end_x; ++x) {
-        covered += alpha_[x];
-        through += alpha_[x] * row[x] * row[x];
-      }
-      for (int x = begin_x; x < end_x; ++x) row[x] *= 1 - alpha_[x];
+      row(static_cast<size_t>(y) * static_cast<size_t>(side_) + static_cast<size_t>(begin_x),
+          count);
     }
-    if (covered > 0) seen_[i] += through / covered / kDirections;
+    return true;
   }
 
   int first(double centre, double reach) const {
@@ -148,10 +224,14 @@ class Exposures {
   }
 
   std::vector<Blob> blobs_;
-  std::vector<double> seen_, x_, y_, z_, sorted_;
+  std::vector<float> colour_[3];         // by Gaussian
+  float beyond_[3];                      // behind all of them: their mean
+  std::vector<double> seen_, contrast_;  // sums over directions of T², and of that times a square
+  std::vector<double> x_, y_, z_, sorted_;
   std::vector<uint32_t> order_;
   std::vector<float> transmittance_;
-  float alpha_[kMostSide];
+  std::vector<float> behind_[3];  // the picture without what is before
+  float alpha_[kMostSide], weight_[kMostSide], after_[kMostSide], difference_[kMostSide];
   int side_;
   double pixel_ = 0, left_ = 0, top_ = 0;
 };
@@ -159,13 +239,10 @@ class Exposures {
 }  // namespace
 
 void find_exposure(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-                   std::span<const uint32_t> leaves, std::span<uint8_t> exposure) {
+                   std::span<const uint32_t> leaves, std::span<ExposureCode> exposure) {
   Exposures exposures(cloud, origin, leaves);
-  const std::vector<double>& seen = exposures.run();
-  for (size_t i = 0; i < leaves.size(); ++i) {
-    const double steps = std::floor(255 * std::sqrt(seen[i]) + 0.5);
-    exposure[leaves[i]] = static_cast<uint8_t>(std::clamp(steps, double{kLeastExposure}, 255.0));
-  }
+  exposures.run();
+  for (size_t i = 0; i < leaves.size(); ++i) exposure[leaves[i]] = exposures.code(i);
 }
 
 }  // namespace voyager

@@ -12,7 +12,7 @@ namespace {
 
 // The blocks of a clustered tree, in kd order.
 struct Clusters {
-  std::vector<uint8_t> exposure;  // by Gaussian
+  std::vector<ExposureCode> exposure;  // by Gaussian
   std::vector<ClusterTree> trees;
 };
 

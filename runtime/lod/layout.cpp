@@ -1,7 +1,5 @@
 #include "runtime/lod/layout.h"
 
-#include "runtime/lod/exposure.h"
-
 namespace voyager {
 namespace {
 
@@ -28,7 +26,7 @@ std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked)
   baked.gaussian.resize(nodes);
   baked.axis_code.resize(nodes);
   const bool exposed = !layout.exposure.empty();
-  if (baked.kind == TreeKind::clustered) baked.exposure.assign(nodes, 1.0f);
+  if (baked.kind == TreeKind::clustered) baked.exposure.assign(nodes, {1, 0});
   std::vector<uint32_t> levels;
   uint32_t next = 1, level_end = 0, leaf = 0, merged = 0;
   for (uint32_t n = 0; n < nodes; ++n) {
@@ -39,7 +37,7 @@ std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked)
     const uint32_t children = layout.child_count[n];
     tree.records[n].child_count = children;
     if (children == 0) {
-      if (exposed) baked.exposure[n] = static_cast<float>(exposure_of(layout.exposure[leaf]));
+      if (exposed) baked.exposure[n] = exposure_of(layout.exposure[leaf]);
       baked.gaussian[n] = layout.leaf[leaf++];
       continue;
     }

@@ -5,14 +5,15 @@
 #include <vector>
 
 #include "runtime/lod/baked_scene.h"
+#include "runtime/lod/exposure.h"
 
 namespace voyager {
 
 // The topology of a tree over a cloud, and which Gaussian each leaf is.
 struct TreeLayout {
-  std::vector<uint8_t> child_count;  // of each node, breadth-first; 0: a leaf
-  std::vector<uint32_t> leaf;        // of each leaf, in the order of nodes: its Gaussian
-  std::vector<uint8_t> exposure;     // of each leaf (exposure.h); empty: all is seen
+  std::vector<uint8_t> child_count;    // of each node, breadth-first; 0: a leaf
+  std::vector<uint32_t> leaf;          // of each leaf, in the order of nodes: its Gaussian
+  std::vector<ExposureCode> exposure;  // of each leaf; empty: all is seen
 };
 
 // Fills the topology of baked.tree, `gaussian` and the room for axis codes and merged

@@ -11,9 +11,9 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kTolerance = 0.01;  // code values × pixels, times 2τ + 1
 constexpr double kExtentOfPixel = 2 * kReferenceTau + 1;
-// How much what is behind a group differs from it: a lack of coverage shows that.
-constexpr double kContrast = 0.2;  // code values
-constexpr double kCoverage = 3 * kContrast * kContrast;
+// Code values, beside the contrast that was found: a group covers what none of its children does,
+// before what none was seen against.
+constexpr double kUnknownContrast = 0.15;
 constexpr int kRefinements = 4;
 constexpr double kLargestPixel = 1e29;  // metres; an extent stays finite in binary32
 
@@ -61,6 +61,10 @@ struct Error {
 Error error_at(const Group& group, double pixel) {
   const double blur = kLowPass * pixel * pixel;
   const size_t count = group.children.size();
+  const double most = *std::max_element(group.seen, group.seen + count);
+  // What coverage differs by shows what is behind, wherever any of them is seen.
+  const double lack =
+      3 * most * most * (group.contrast * group.contrast + kUnknownContrast * kUnknownContrast);
   double error = 0, covered = 0, own = 0;
   for (int axis = 0; axis < kAxes; ++axis) {
     Footprint child[kChildren];
@@ -71,12 +75,13 @@ Error error_at(const Group& group, double pixel) {
       covered += group.children[i].opacity * overlap(child[i], parent);
       for (size_t j = i; j < count; ++j)
         error += (i == j ? 1 : 2) * group.children[i].opacity * group.children[j].opacity *
-                 overlap(child[i], child[j]) * (group.colours[i][j] + kCoverage);
+                 overlap(child[i], child[j]) *
+                 (group.seen[i] * group.seen[j] * group.colours[i][j] + lack);
     }
     own += overlap(parent, parent);
   }
   if (!(own > 0)) return {0, 0};
-  return {std::max(error - kCoverage * covered * covered / own, 0.0) / kAxes, covered / own};
+  return {std::max(error - lack * covered * covered / own, 0.0) / kAxes, covered / own};
 }
 
 }  // namespace
@@ -105,6 +110,12 @@ void set_colours(std::span<const float* const> children, const float* parent, in
     }
 }
 
+void set_exposure(std::span<const Exposure> children, std::span<const double> weights,
+                  Group& group) {
+  for (size_t i = 0; i < children.size(); ++i) group.seen[i] = double{children[i].seen};
+  group.contrast = double{mean_exposure(children, weights).contrast};
+}
+
 double squared_colour_distance(const float* a, const float* b, int coefficients) {
   double sum = 0;
   for (int k = 0; k < 3 * coefficients; ++k) {
@@ -114,11 +125,11 @@ double squared_colour_distance(const float* a, const float* b, int coefficients)
   return sum / (4 * kPi);
 }
 
-StandIn stand_in(const Group& group, double exposure) {
+StandIn stand_in(const Group& group) {
   const double* c = group.parent.covariance;
   const double reach = std::sqrt(c[0] + c[3] + c[5]);
   const double spared = std::max<double>(1, static_cast<double>(group.children.size()) - 1);
-  const double scale = exposure / (std::sqrt(spared) * kTolerance * kExtentOfPixel);
+  const double scale = 1 / (std::sqrt(spared) * kTolerance * kExtentOfPixel);
   const auto tolerated = [&](double pixel) {
     const double error = error_at(group, std::max(pixel, 1e-4 * reach)).error;
     return std::min(std::sqrt(error) * scale, kLargestPixel);

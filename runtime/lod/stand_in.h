@@ -3,6 +3,7 @@
 // blurred by a pixel as the renderer does it (METHOD §5), along the three axes of the scene.
 #include <span>
 
+#include "runtime/lod/exposure.h"
 #include "runtime/lod/merge.h"
 #include "runtime/lod/shape.h"
 
@@ -22,6 +23,8 @@ struct Group {
   std::span<const Blob> children;  // at most kChildren
   Blob parent;
   double colours[kChildren][kChildren];
+  double seen[kChildren];  // Exposure, of each child
+  double contrast;         // Exposure, of all
 };
 
 // Of two children with these shares of their parent's colour: from the square of the distance
@@ -30,6 +33,9 @@ void set_colours(double first_share, double second_share, double squared_distanc
 // Of any: from coefficients * 3 floats each.
 void set_colours(std::span<const float* const> children, const float* parent, int coefficients,
                  Group& group);
+// `seen` and `contrast` from those of the children, with these weights.
+void set_exposure(std::span<const Exposure> children, std::span<const double> weights,
+                  Group& group);
 // ∫ (a − b)² over directions, a mean of it: SH basis functions are orthonormal.
 double squared_colour_distance(const float* a, const float* b, int coefficients);
 
@@ -39,13 +45,16 @@ struct StandIn {
 };
 
 // Good enough: an error of 0.01·(2·kReferenceTau + 1) code values × pixels, root of the squares,
-// for each Gaussian that is spared; exposure in (0, 1] scales it. Finite and ≥ 0 for finite input.
-// Deterministic; thread-safe.
-StandIn stand_in(const Group& group, double exposure);
+// for each Gaussian that is spared. Finite and ≥ 0 for finite input. Deterministic; thread-safe.
+StandIn stand_in(const Group& group);
 
 // The extent of a node with that stand-in: at kReferenceTau its size is τ* where a pixel is
 // StandIn::pixel wide (METHOD §3).
 inline constexpr double kReferenceTau = 12;
 double extent_of(double pixel);
+
+// Of its parent's, the extent that a node has at least in which nothing is to blend: METHOD §4
+// then gives it the last part of an octave only.
+inline constexpr float kLateExtent = 0.98f;
 
 }  // namespace voyager

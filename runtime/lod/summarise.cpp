@@ -35,10 +35,6 @@ float longest_side(const NodeRecord& r) {
   return std::max({side.x, side.y, side.z});
 }
 
-// A leaf blends with its parent over the last part of the octave that METHOD §4 gives them: as
-// itself it is exact, and every step towards its parent shows.
-constexpr float kLeafExtent = 0.95f;
-
 Group group_of(std::span<const MergeInput> children, std::span<Blob> blobs,
                const MergeInput& parent, int coefficients) {
   const float* colours[kChildren];
@@ -57,26 +53,42 @@ Group group_of(std::span<const MergeInput> children, std::span<Blob> blobs,
 void measure(uint32_t node, std::span<const MergeInput> children, BakedScene& baked) {
   NodeRecord& r = baked.tree.records[node];
   const uint32_t first = baked.tree.first_child[node];
-  float most = 0, extent = 0;
-  double exposure = 0, weights = 0;
+  float extent = 0;
+  double weights[kChildren];
   for (uint32_t i = 0; i < r.child_count; ++i) {
-    const double weight = merge_weight(children[i].gaussian);
-    exposure += weight * baked.exposure[first + i];
-    weights += weight;
-    most = std::max(most, baked.exposure[first + i]);
-    if (!baked.tree.is_leaf(first + i))
-      extent = std::max(extent, baked.tree.records[first + i].extent);
+    weights[i] = merge_weight(children[i].gaussian);
+    extent = std::max(extent, baked.tree.records[first + i].extent);
   }
-  baked.exposure[node] = weights > 0 ? static_cast<float>(exposure / weights) : most;
+  const std::span<const Exposure> exposure(&baked.exposure[first], r.child_count);
+  const std::span<const double> shares(weights, r.child_count);
   Blob blobs[kChildren];
   const MergeInput parent = node_gaussian(node, baked);
-  const Group group = group_of(children, blobs, parent, baked.merged.coefficients());
-  const StandIn found = stand_in(group, baked.exposure[node]);
+  Group group = group_of(children, blobs, parent, baked.merged.coefficients());
+  set_exposure(exposure, shares, group);
+  baked.exposure[node] = mean_exposure(exposure, shares);
+  const StandIn found = stand_in(group);
   r.extent = std::max(extent, static_cast<float>(extent_of(found.pixel)));
   baked.merged.opacity[baked.gaussian[node]] = static_cast<float>(found.opacity);
-  for (uint32_t i = 0; i < r.child_count; ++i)
-    if (baked.tree.is_leaf(first + i))
-      baked.tree.records[first + i].extent = kLeafExtent * r.extent;
+  for (uint32_t i = 0; i < r.child_count; ++i) {
+    NodeRecord& child = baked.tree.records[first + i];
+    // A leaf is exact as itself; a double is as good as its child.
+    if (child.child_count <= 1) child.extent = std::max(child.extent, kLateExtent * r.extent);
+  }
+}
+
+// As its child, which is interior.
+void repeat(uint32_t node, uint32_t child, BakedScene& baked) {
+  const NodeRecord& of = baked.tree.records[child];
+  NodeRecord& r = baked.tree.records[node];
+  r.box_min = of.box_min;
+  r.box_max = of.box_max;
+  r.extent = of.extent;
+  baked.exposure[node] = baked.exposure[child];
+  GaussianCloud& cloud = baked.merged;
+  const size_t from = baked.gaussian[child], to = baked.gaussian[node];
+  store(cloud.words(from), to, cloud);
+  const size_t floats = size_t{3} * static_cast<size_t>(cloud.coefficients());
+  std::copy_n(&cloud.sh[from * floats], floats, &cloud.sh[to * floats]);
 }
 
 }  // namespace
@@ -106,10 +118,11 @@ void summarise(uint32_t node, BakedScene& baked) {
     r.extent = 0.0f;
     return;
   }
+  const uint32_t first = baked.tree.first_child[node];
+  if (r.child_count == 1) return repeat(node, first, baked);
   hull_of_children(node, baked.tree);
   MergeInput children[kChildren];
-  for (uint32_t i = 0; i < r.child_count; ++i)
-    children[i] = node_gaussian(baked.tree.first_child[node] + i, baked);
+  for (uint32_t i = 0; i < r.child_count; ++i) children[i] = node_gaussian(first + i, baked);
   const size_t index = baked.gaussian[node];
   const int coefficients = baked.merged.coefficients();
   float* sh = baked.merged.sh.data() + index * size_t{3} * static_cast<size_t>(coefficients);

@@ -15,8 +15,9 @@ Box leaf_box(const Gaussian& gaussian);
 MergeInput node_gaussian(uint32_t node, const BakedScene& baked);
 
 // Fills a node's box and extent, and an interior node's Gaussian, from its
-// children, which are done. Of a clustered tree also its exposure, and the extents of its
-// leaves, which follow from its own. Nodes of one level may be done at once.
+// children, which are done. Of a clustered tree also its exposure, and the extents of its leaves
+// and of its children with one child, which follow from its own. Nodes of one level may be done
+// at once.
 void summarise(uint32_t node, BakedScene& baked);
 
 }  // namespace voyager

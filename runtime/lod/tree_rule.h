@@ -20,7 +20,7 @@ struct TreeRule {
   uint32_t block = 1024;
   // Gaussians that are looked at together to find out which are hidden by others. A multiple of
   // block, at most 65,536.
-  uint32_t exposure_block = 16384;
+  uint32_t exposure_block = 32768;
 };
 
 }  // namespace voyager

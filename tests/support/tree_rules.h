@@ -12,8 +12,9 @@ namespace voyager::test {
 inline constexpr TreeRule kSmallBlocks{
     .kind = TreeKind::clustered, .block = 16, .exposure_block = 256};
 inline constexpr TreeRule kHierarchicalGs{.kind = TreeKind::hierarchicalgs};
-// The default's, but under AddressSanitizer, where clustering a real scene takes minutes.
-#ifdef __SANITIZE_ADDRESS__
+// The default's, but under AddressSanitizer and emulation: clustering a real scene takes minutes
+// there.
+#if defined(__SANITIZE_ADDRESS__) || defined(__aarch64__)
 inline constexpr TreeRule kLargeScene = kHierarchicalGs;
 #else
 inline constexpr TreeRule kLargeScene{};

@@ -10,12 +10,12 @@
 namespace voyager {
 namespace {
 
-void add(GaussianCloud& cloud, const Vec3f& mean, float scale, float opacity_word) {
+void add(GaussianCloud& cloud, const Vec3f& mean, float scale, float opacity_word, float grey = 0) {
   cloud.position.insert(cloud.position.end(), {mean.x, mean.y, mean.z});
   cloud.log_scale.insert(cloud.log_scale.end(), 3, std::log(scale));
   cloud.rotation.insert(cloud.rotation.end(), {1, 0, 0, 0});
   cloud.opacity.push_back(opacity_word);
-  cloud.sh.insert(cloud.sh.end(), 3, 0.0f);
+  cloud.sh.insert(cloud.sh.end(), 3, grey);
 }
 
 constexpr float kOpaque = 8;
@@ -39,13 +39,14 @@ std::vector<uint32_t> all_of(const GaussianCloud& cloud) {
   return leaves;
 }
 
-std::vector<uint8_t> exposures(const GaussianCloud& cloud, const std::vector<uint32_t>& leaves) {
-  std::vector<uint8_t> exposure(cloud.size());
+std::vector<ExposureCode> exposures(const GaussianCloud& cloud,
+                                    const std::vector<uint32_t>& leaves) {
+  std::vector<ExposureCode> exposure(cloud.size());
   find_exposure(cloud, {0, 0, 0}, leaves, exposure);
   return exposure;
 }
 
-std::vector<uint8_t> exposures(const GaussianCloud& cloud) {
+std::vector<ExposureCode> exposures(const GaussianCloud& cloud) {
   return exposures(cloud, all_of(cloud));
 }
 
@@ -54,16 +55,17 @@ TEST(Exposure, WhatIsInsideAClosedShellHasTheLeast) {
   const size_t inside = cloud.size();
   add(cloud, {0, 0, 0}, 0.5f, kOpaque);
   add(cloud, {3, -2, 4}, 0.1f, 0);
-  const std::vector<uint8_t> found = exposures(cloud);
-  EXPECT_EQ(found[inside], kLeastExposure);
-  EXPECT_EQ(found[inside + 1], kLeastExposure);
+  const std::vector<ExposureCode> found = exposures(cloud);
+  EXPECT_EQ(found[inside].seen, kLeastSeen);
+  EXPECT_EQ(found[inside + 1].seen, kLeastSeen);
 }
 
 // At most half of all directions see a piece of a convex body from before it.
 TEST(Exposure, TheShellItselfIsSeenFromItsOwnSide) {
-  for (const uint8_t found : exposures(shell())) {
-    ASSERT_GT(found, 3 * kLeastExposure);
-    ASSERT_LT(exposure_of(found) * exposure_of(found), 0.6);
+  for (const ExposureCode found : exposures(shell())) {
+    ASSERT_GT(found.seen, 3 * kLeastSeen);
+    const float seen = exposure_of(found).seen;
+    ASSERT_LT(seen * seen, 0.6f);
   }
 }
 
@@ -72,7 +74,7 @@ TEST(Exposure, WhatIsOutsideIsSeenFromNearlyEverywhere) {
   for (const float distance : {25.0f, 100.0f, 1e17f}) {
     GaussianCloud cloud = shell();
     add(cloud, {distance, 0, 0}, 0.5f, kOpaque);
-    EXPECT_GE(exposures(cloud).back(), 230) << distance;
+    EXPECT_GE(exposures(cloud).back().seen, 230) << distance;
   }
 }
 
@@ -80,22 +82,24 @@ TEST(Exposure, WithoutTheShellTheSameIsSeenFromEverywhere) {
   GaussianCloud cloud;
   cloud.sh_degree = 0;
   add(cloud, {0, 0, 0}, 0.5f, kOpaque);
-  EXPECT_EQ(exposures(cloud)[0], 255);
+  EXPECT_EQ(exposures(cloud)[0].seen, 255);
 }
 
 TEST(Exposure, WhatIsTooFaintToBeDrawnHasTheLeast) {
   GaussianCloud cloud;
   cloud.sh_degree = 0;
   add(cloud, {0, 0, 0}, 0.5f, -20);
-  EXPECT_EQ(exposures(cloud)[0], kLeastExposure);
+  EXPECT_EQ(exposures(cloud)[0].seen, kLeastSeen);
 }
 
 TEST(Exposure, DoesNotDependOnTheOrderOfTheInput) {
   const GaussianCloud cloud = test::random_cloud(800, 5, 0);
   std::vector<uint32_t> leaves = all_of(cloud);
-  const std::vector<uint8_t> expected = exposures(cloud, leaves);
-  EXPECT_GT(*std::max_element(expected.begin(), expected.end()),
-            *std::min_element(expected.begin(), expected.end()) + 50);
+  const std::vector<ExposureCode> expected = exposures(cloud, leaves);
+  const auto [least, most] =
+      std::minmax_element(expected.begin(), expected.end(),
+                          [](ExposureCode a, ExposureCode b) { return a.seen < b.seen; });
+  EXPECT_GT(most->seen, least->seen + 50);
   std::mt19937 random(6);
   std::shuffle(leaves.begin(), leaves.end(), random);
   EXPECT_EQ(exposures(cloud, leaves), expected);
@@ -105,9 +109,41 @@ TEST(Exposure, LooksAtTheGaussiansThatItIsGivenAlone) {
   GaussianCloud cloud = shell();
   const auto inside = static_cast<uint32_t>(cloud.size());
   add(cloud, {0, 0, 0}, 0.5f, kOpaque);
-  const std::vector<uint8_t> found = exposures(cloud, {inside});
-  EXPECT_EQ(found[inside], 255);
-  EXPECT_EQ(std::count(found.begin(), found.end(), 0), static_cast<std::ptrdiff_t>(inside));
+  const std::vector<ExposureCode> found = exposures(cloud, {inside});
+  EXPECT_EQ(found[inside].seen, 255);
+  EXPECT_EQ(std::count(found.begin(), found.end(), ExposureCode{0, 0}),
+            static_cast<std::ptrdiff_t>(inside));
+}
+
+// A spot on a wall, which is seen from both sides: once before the wall, once the wall before it.
+TEST(Exposure, ContrastIsToWhatShowsWithoutAGaussian) {
+  const auto contrast = [](float wall, float spot) {
+    GaussianCloud cloud;
+    cloud.sh_degree = 0;
+    for (int i = 0; i < 900; ++i)
+      add(cloud, {static_cast<float>(i % 30), static_cast<float>(i / 30), 0}, 0.8f, kOpaque, wall);
+    add(cloud, {15, 15, 3}, 0.5f, kOpaque, spot);
+    return exposure_of(exposures(cloud).back()).contrast;
+  };
+  constexpr float kBlack = -1.7725f, kWhite = 1.7725f;  // 0.5 / 0.2821
+  EXPECT_LT(contrast(kWhite, kWhite), 0.02f);
+  EXPECT_LT(contrast(kBlack, kBlack), 0.02f);
+  EXPECT_GT(contrast(kBlack, kWhite), 0.8f);
+  EXPECT_GT(contrast(kWhite, kBlack), 0.8f);
+  const float half = contrast(kBlack, 0);
+  EXPECT_GT(half, 0.4f);
+  EXPECT_LT(half, 0.55f);
+}
+
+TEST(Exposure, TheMeanIsWeightedByWhatIsSeen) {
+  const Exposure of[2] = {{1, 0.1f}, {0.1f, 1}};
+  const double equal[2] = {1, 1}, none[2] = {0, 0}, first[2] = {5, 0};
+  for (const double* weights : {equal, none}) {
+    const Exposure mean = mean_exposure(of, {weights, 2});
+    EXPECT_FLOAT_EQ(mean.seen, 0.55f);
+    EXPECT_FLOAT_EQ(mean.contrast, std::sqrt((0.01f + 0.01f) / 1.01f));
+  }
+  EXPECT_FLOAT_EQ(mean_exposure(of, first).contrast, 0.1f);
 }
 
 }  // namespace

@@ -44,8 +44,9 @@ Blob matched(std::span<const Blob> children) {
 struct Greys {
   std::vector<Blob> children;
   std::vector<float> greys;
+  double contrast = 0.4;
 
-  Group group() const {
+  Group group(double seen = 1) const {
     std::vector<std::array<float, 3>> colours;
     std::array<float, 3> mean{};
     for (const float grey : greys) {
@@ -58,12 +59,14 @@ struct Greys {
     group.children = children;
     group.parent = matched(children);
     set_colours({rows, colours.size()}, mean.data(), 1, group);
+    std::fill_n(group.seen, colours.size(), seen);
+    group.contrast = contrast;
     return group;
   }
 };
 
-double pixel_of(const Greys& greys, double exposure = 1) {
-  return stand_in(greys.group(), exposure).pixel;
+double pixel_of(const Greys& greys) {
+  return stand_in(greys.group()).pixel;
 }
 
 const Greys kPair{
@@ -124,7 +127,7 @@ TEST(StandIn, IdenticalChildrenInOnePlaceAreReplacedWithoutError) {
   for (const size_t count : {2, 3, 4}) {
     const Greys same{std::vector<Blob>(count, blob({3, -2, 1}, {0.3, 0.1, 0.02}, 0.2)),
                      std::vector<float>(count, 0.25f)};
-    const StandIn found = stand_in(same.group(), 1);
+    const StandIn found = stand_in(same.group());
     EXPECT_LT(found.pixel, 1e-6);
     EXPECT_NEAR(found.opacity, 0.2 * static_cast<double>(count), 1e-9);
   }
@@ -132,19 +135,19 @@ TEST(StandIn, IdenticalChildrenInOnePlaceAreReplacedWithoutError) {
 
 // Of the pictures with the parent and without, in pixels.
 double error_in_pixels(const Greys& greys, const StandIn& found) {
-  const double contrast = 3 * 0.2 * 0.2;  // of what lies behind
+  const double contrast = 3 * (greys.contrast * greys.contrast + 0.15 * 0.15);
   const double error = contrast * coverage_error(greys.group(), found.pixel, found.opacity) +
                        colour_error(greys, found.pixel);
   return std::sqrt(error / 3) / found.pixel;
 }
 
 TEST(StandIn, ThePixelIsThatWhosePicturesDifferByOneToleranceForEachThatIsSpared) {
-  const double tolerance = error_in_pixels(kPair, stand_in(kPair.group(), 1));
+  const double tolerance = error_in_pixels(kPair, stand_in(kPair.group()));
   for (const Greys* greys : {&kPair, &kFour})
-    for (const double exposure : {1.0, 0.3, 0.1}) {
-      const double error = error_in_pixels(*greys, stand_in(greys->group(), exposure));
+    for (const double seen : {1.0, 0.3, 0.1}) {
+      const double error = error_in_pixels(*greys, stand_in(greys->group(seen)));
       const double spared = static_cast<double>(greys->children.size() - 1);
-      EXPECT_NEAR(error * exposure / std::sqrt(spared) / tolerance, 1,
+      EXPECT_NEAR(error * seen / std::sqrt(spared) / tolerance, 1,
                   0.1);  // found by a few steps
     }
 }
@@ -152,7 +155,7 @@ TEST(StandIn, ThePixelIsThatWhosePicturesDifferByOneToleranceForEachThatIsSpared
 TEST(StandIn, OpacityIsThatOfTheLeastErrorOfCoverage) {
   for (const Greys* greys : {&kPair, &kFour}) {
     const Group group = greys->group();
-    const StandIn found = stand_in(group, 1);
+    const StandIn found = stand_in(group);
     const double least = coverage_error(group, found.pixel, found.opacity);
     EXPECT_GT(least, 0);
     for (const double factor : {0.9, 0.99, 1.01, 1.1})
@@ -163,9 +166,9 @@ TEST(StandIn, OpacityIsThatOfTheLeastErrorOfCoverage) {
 // Seen more, a group is wrong up to a larger pixel: there it leaves less of the error.
 TEST(StandIn, ErrorFallsAsThePixelGrows) {
   for (const Greys* greys : {&kPair, &kFour}) {
-    StandIn before = stand_in(greys->group(), 0.05);
-    for (const double exposure : {0.1, 0.2, 0.4, 0.8}) {
-      const StandIn found = stand_in(greys->group(), exposure);
+    StandIn before = stand_in(greys->group(0.05));
+    for (const double seen : {0.1, 0.2, 0.4, 0.8}) {
+      const StandIn found = stand_in(greys->group(seen));
       EXPECT_GT(found.pixel, before.pixel);
       EXPECT_LT(error_in_pixels(*greys, found), error_in_pixels(*greys, before));
       before = found;
@@ -184,13 +187,41 @@ TEST(StandIn, ColoursThatDifferRaiseTheError) {
   }
 }
 
+// Before what looks the same it does not show how much is covered; before another colour it does.
+TEST(StandIn, ContrastToWhatIsBehindRaisesTheErrorOfCoverage) {
+  Greys pair = kPair;
+  pair.greys = {0.2f, 0.2f};
+  double before = 0;
+  for (const double contrast : {0.0, 0.1, 0.3, 1.0}) {
+    pair.contrast = contrast;
+    const double pixel = pixel_of(pair);
+    EXPECT_GT(pixel, before) << contrast;
+    before = pixel;
+  }
+}
+
+// A colour that is wrong costs as much as is seen of those that have it.
+TEST(StandIn, AHiddenChildsColourCostsNothing) {
+  Greys pair = kPair;
+  pair.greys = {0.2f, 0.2f};
+  Group group = pair.group();
+  const double alike = stand_in(group).pixel;
+  pair.greys = {0.2f, 3.0f};
+  const float shown[3] = {0.2f, 0.2f, 0.2f}, hidden[3] = {3, 3, 3};
+  const float* rows[2] = {shown, hidden};
+  set_colours(rows, shown, 1, group);
+  EXPECT_GT(stand_in(group).pixel, 1.1 * alike);
+  group.seen[1] = 0;
+  EXPECT_NEAR(stand_in(group).pixel, alike, 1e-9);
+}
+
 TEST(StandIn, ScalesWithTheScene) {
   Greys larger = kFour;
   for (Blob& b : larger.children) {
     b.mean = 1000.0 * b.mean;
     for (double& c : b.covariance) c *= 1e6;
   }
-  const StandIn large = stand_in(larger.group(), 1), small = stand_in(kFour.group(), 1);
+  const StandIn large = stand_in(larger.group()), small = stand_in(kFour.group());
   EXPECT_NEAR(large.pixel / small.pixel, 1000, 1e-6);
   EXPECT_NEAR(large.opacity, small.opacity, 1e-9);
 }
@@ -219,7 +250,7 @@ TEST(StandIn, IsFiniteForEverythingThatATreeMayHold) {
                             blob({apart, 0, 0}, {1e-9, scale, scale}, 0.5)},
                            {grey, -grey}};
           Group group = pair.group();
-          const StandIn found = stand_in(group, 1);
+          const StandIn found = stand_in(group);
           const float extent = static_cast<float>(extent_of(found.pixel));
           ASSERT_TRUE(std::isfinite(extent) && extent >= 0) << extent;
           const float stored = static_cast<float>(found.opacity);
@@ -235,7 +266,7 @@ TEST(StandIn, TheLargestColoursAreTheLargestError) {
   const double before = pixel_of(pair);
   pair.greys = {most, -most};
   EXPECT_GT(pixel_of(pair), before);
-  EXPECT_GT(stand_in(pair.group(), 1).opacity, 0);
+  EXPECT_GT(stand_in(pair.group()).opacity, 0);
 }
 
 }  // namespace

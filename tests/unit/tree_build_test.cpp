@@ -1,9 +1,11 @@
 // Shape, origin and refusals of build_tree().
+#include <cstring>
 #include <memory_resource>
 
 #include "runtime/base/error.h"
 #include "runtime/lod/build.h"
 #include "runtime/lod/shape.h"
+#include "runtime/lod/stand_in.h"
 #include "runtime/lod/validate.h"
 #include "runtime/scene/sanitise.h"
 #include "tests/support/test_support.h"
@@ -34,18 +36,23 @@ TEST(TreeBuild, OneGaussianIsALeafRoot) {
   }
 }
 
-TEST(TreeBuild, NodesHaveTwoToFourChildren) {
+// One: a double, of a clustered tree.
+TEST(TreeBuild, NodesHaveUpToFourChildren) {
   Workers workers(2);
   for (const test::NamedRule& named : test::all_rules())
     for (const size_t count : {2, 3, 17, 1025, 3000}) {
       const BakedScene baked = build_tree(test::random_cloud(count, 2, 0), workers, {}, named.rule);
-      const uint32_t most = named.rule.kind == TreeKind::hierarchicalgs ? 2 : kChildren;
+      const bool clustered = named.rule.kind == TreeKind::clustered;
       for (const NodeRecord& r : baked.tree.records) {
         if (r.child_count == 0) continue;
-        ASSERT_GE(r.child_count, 2u) << named.name;
-        ASSERT_LE(r.child_count, most) << named.name;
+        ASSERT_GE(r.child_count, clustered ? 1u : 2u) << named.name;
+        ASSERT_LE(r.child_count, clustered ? kChildren : 2u) << named.name;
       }
     }
+}
+
+bool is_double(const LodTree& tree, uint32_t node) {
+  return tree.records[node].child_count == 1;
 }
 
 // Of a clustered tree: a leaf is drawn as itself until shortly before its parent takes over.
@@ -56,7 +63,39 @@ TEST(TreeBuild, LeavesOfAClusteredTreeHaveTheGreaterPartOfTheirParentsExtent) {
     if (!baked.tree.is_leaf(n)) continue;
     const float parent = baked.tree.records[baked.tree.parent[n]].extent;
     ASSERT_GT(parent, 0.0f);
-    ASSERT_NEAR(baked.tree.records[n].extent / parent, 0.95, 1e-6) << n;
+    ASSERT_NEAR(baked.tree.records[n].extent / parent, double{kLateExtent}, 1e-6) << n;
+  }
+}
+
+// And so is a merged Gaussian: a node that has one child holds the same, to the bit, and is drawn
+// until shortly before its parent takes over; from it to its child nothing changes.
+TEST(TreeBuild, ADoubleIsAsItsChildAndBlendsLate) {
+  Workers workers(2);
+  for (const TreeRule& rule : {TreeRule{}, test::kSmallBlocks}) {
+    const BakedScene baked = build_tree(test::random_cloud(3000, 3), workers, {}, rule);
+    const LodTree& tree = baked.tree;
+    const GaussianCloud& merged = baked.merged;
+    const size_t floats = size_t{3} * static_cast<size_t>(merged.coefficients());
+    size_t doubles = 0;
+    for (uint32_t n = 0; n < tree.size(); ++n) {
+      if (!is_double(tree, n)) continue;
+      ++doubles;
+      const uint32_t child = tree.first_child[n], parent = tree.parent[n];
+      ASSERT_NE(parent, kNoNode) << "the root blends with nothing";
+      ASSERT_FALSE(tree.is_leaf(child) || is_double(tree, child) || is_double(tree, parent)) << n;
+      const size_t a = baked.gaussian[n], b = baked.gaussian[child];
+      const GaussianWords of = merged.words(a), as = merged.words(b);
+      ASSERT_EQ(std::memcmp(&of, &as, sizeof of), 0) << n;
+      ASSERT_TRUE(std::equal(&merged.sh[a * floats], &merged.sh[a * floats] + floats,
+                             &merged.sh[b * floats]))
+          << n;
+      const NodeRecord &r = tree.records[n], &c = tree.records[child];
+      ASSERT_TRUE(r.box_min == c.box_min && r.box_max == c.box_max) << n;
+      ASSERT_GE(r.extent, c.extent) << n;
+      ASSERT_GE(r.extent, kLateExtent * tree.records[parent].extent) << n;
+      ASSERT_LE(r.extent, tree.records[parent].extent) << n;
+    }
+    EXPECT_GT(doubles, 300u);
   }
 }
 
