@@ -150,8 +150,9 @@ class Baker {
 
   void build_cells() {
     const std::vector<uint32_t> cells = cells_without(cell_tree_name);
-    // A child count a node, an index and an exposure a leaf; the topmost nodes of each cell.
-    const uint64_t bytes = split_.spool.gaussians * uint64_t{8} +
+    // A child count a node, of which a leaf has up to three, an index and an exposure a leaf; the
+    // topmost nodes of each cell.
+    const uint64_t bytes = split_.spool.gaussians * uint64_t{9} +
                            cells.size() * (1 + kChildren) * uint64_t{sizeof(NodeRow)};
     in_space(bytes, "layouts of cells", [&] {
       for_cells(cells, lanes(), workers_, progress_, "merging",
@@ -169,15 +170,20 @@ class Baker {
 
   void encode_cells(const BakePlan& plan, const BakedScene& top) {
     const std::vector<uint32_t> cells = cells_without(cell_chunks_name);
-    // The rows of each cell go when its chunks are there: those in work are what is more.
-    const uint64_t largest = largest_of(split_.cell_sizes);
+    // The rows of each cell go when its chunks are there: those in work are what is more, and, of
+    // lossless ones, what is merged.
+    const uint64_t words = word_bytes(split_.spool.sh_degree);
     const size_t at_once = lanes();
-    in_space(std::min(at_once, cells.size()) * largest * 2 * word_bytes(split_.spool.sh_degree),
-             "chunks of cells", [&] {
-               for_cells(cells, at_once, workers_, progress_, "encoding", [&](uint32_t cell) {
-                 encode_cell(split_, plan, top, bake_.quality, cell, folder_, workers_);
-               });
-             });
+    uint64_t bytes =
+        std::min(at_once, cells.size()) * largest_of(split_.cell_sizes) * uint64_t{2} * words;
+    if (bake_.quality == Quality::lossless)
+      for (const uint32_t cell : cells)
+        bytes += split_.cell_sizes[cell] * (words * 7 / 6 + 2 * sizeof(NodeRecord));
+    in_space(bytes, "chunks of cells", [&] {
+      for_cells(cells, at_once, workers_, progress_, "encoding", [&](uint32_t cell) {
+        encode_cell(split_, plan, top, bake_.quality, cell, folder_, workers_);
+      });
+    });
   }
 
   void join(const BakePlan& plan, const BakedScene& top) {
@@ -261,9 +267,9 @@ class Baker {
 }  // namespace
 
 uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree) {
-  // Words of leaves and of 2/3 of a merged Gaussian each, 49 bytes a node, layout and
+  // Words of leaves and of 7/6 of a merged Gaussian each, 53 bytes a node, layout and
   // sources; the rest is what is encoded and what allocators keep.
-  return gaussians * (word_bytes(sh_degree) * 5 / 3 + 140);
+  return gaussians * (word_bytes(sh_degree) * 13 / 6 + 150);
 }
 
 BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Workers& workers,

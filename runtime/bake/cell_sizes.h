@@ -14,7 +14,7 @@ namespace voyager {
 // then full, so that there are kChildren^level cells on a level; and no leaf is on the levels that
 // cell_levels() minds (cell_shape.h), which are above the blocks.
 constexpr uint32_t least_cell(const TreeRule& rule) {
-  return std::max(4 * rule.exposure_block, 64 * rule.block);
+  return std::max(2 * rule.exposure_block, 64 * rule.block);
 }
 
 // The deepest level that cells may be on; 0 where the scene is too small for any.

@@ -1,7 +1,7 @@
 #pragma once
 // Node records in compact storage: exact, but as differences from what most
-// nodes have, so that their bytes are mostly zeros. A leaf's box is a cube; an
-// extent is the longest side of its box, 0 for a leaf.
+// nodes have, so that their bytes are mostly zeros. A leaf's box is a cube; of
+// hierarchicalgs trees an extent is the longest side of its box, 0 for a leaf.
 #include <algorithm>
 #include <bit>
 #include <cstdint>

@@ -16,8 +16,9 @@ BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& pro
 
 // What build_tree() refuses of a cloud, for builders that never hold the whole: more
 // Gaussians than kMaxGaussians, and a mean beyond the coordinates of METHOD §3.
-// As many merged Gaussians, of a tree of two children a node, leave node ids below kNoNode.
-inline constexpr uint64_t kMaxGaussians = 2'000'000'000;
+// Two nodes for each merged Gaussian, of a tree of two children a node, leave node ids below
+// kNoNode.
+inline constexpr uint64_t kMaxGaussians = 1'400'000'000;
 void check_count(uint64_t gaussians);
 void check_mean(size_t gaussian, const Vec3f& mean);
 

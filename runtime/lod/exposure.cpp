@@ -19,6 +19,7 @@ constexpr float kThreshold = 255;  // 1 / α*
 constexpr float kLargest = 0.99f;  // α, METHOD §6
 // T from which on what is behind is divided by it.
 constexpr float kLeastBehind = 1e-4f;
+constexpr double kUnknown = 0.2;  // contrast
 
 struct Direction {
   Vec3d forward, right, down;
@@ -49,6 +50,7 @@ class Exposures {
   Exposures(const GaussianCloud& cloud, const std::array<double, 3>& origin,
             std::span<const uint32_t> leaves)
       : seen_(leaves.size()),
+        met_(leaves.size()),
         contrast_(leaves.size()),
         x_(leaves.size()),
         y_(leaves.size()),
@@ -76,7 +78,7 @@ class Exposures {
   }
 
   ExposureCode code(size_t i) const {
-    const double contrast = seen_[i] > 0 ? contrast_[i] / (3 * seen_[i]) : 0;
+    const double contrast = met_[i] > 0 ? contrast_[i] / (3 * met_[i]) : kUnknown * kUnknown;
     return {static_cast<uint8_t>(std::max(steps(seen_[i] / kDirections), kLeastSeen)),
             steps(contrast)};
   }
@@ -173,6 +175,7 @@ class Exposures {
     if (!inside) seen_[i] += 1;  // beyond the picture: nothing is known to hide it
     if (!(covered > 0)) return;
     seen_[i] += seen / covered;
+    met_[i] += seen / covered;
     contrast_[i] += contrast / covered;
   }
 
@@ -224,9 +227,11 @@ class Exposures {
   }
 
   std::vector<Blob> blobs_;
-  std::vector<float> colour_[3];         // by Gaussian
-  float beyond_[3];                      // behind all of them: their mean
-  std::vector<double> seen_, contrast_;  // sums over directions of T², and of that times a square
+  std::vector<float> colour_[3];  // by Gaussian
+  float beyond_[3];               // behind all of them: their mean
+  // Sums over directions: of T², of it where the picture has the Gaussian, and there times a
+  // square.
+  std::vector<double> seen_, met_, contrast_;
   std::vector<double> x_, y_, z_, sorted_;
   std::vector<uint32_t> order_;
   std::vector<float> transmittance_;

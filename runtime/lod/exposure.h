@@ -13,7 +13,8 @@ namespace voyager {
 // In steps of 1/255. seen: the root of the mean over directions of T², weighted by what the
 // Gaussian covers, where T is the transmittance of the block's Gaussians before it; at least
 // kLeastSeen, since a viewer may stand where no direction from outside leads. contrast: of its
-// colour, without bands, to what would be seen without it, root mean square.
+// colour, without bands, to what would be seen without it, root mean square; 0.2 where nothing is
+// known of that.
 struct ExposureCode {
   uint8_t seen, contrast;
 

@@ -8,7 +8,8 @@ enum class TreeKind : uint32_t {
   // HierarchicalGS's: two children by the median of the means, moments matched, extent the longest
   // side of the box.
   hierarchicalgs,
-  // Up to four children that look alike, extent by the error of standing in.
+  // Up to four children that look alike, extent by the error of standing in; merged Gaussians have
+  // doubles, which blend late (docs/lod-tree.md).
   clustered,
 };
 

@@ -115,6 +115,9 @@ void check_moments(uint32_t n, const BakedScene& baked, std::vector<MergeInput>&
     const double least = 1e-38;  // where the opacity's word becomes subnormal, digits go
     check_near(n, "opacity times surface", found.weight, expected.weight,
                kWeightTolerance * expected.weight + least * std::max(trace, 1.0), findings);
+  } else if (children.size() == 1) {
+    check_near(n, "opacity of a double", double{parent.gaussian.opacity},
+               double{children[0].gaussian.opacity}, 0, findings);
   } else if (const float opacity = parent.gaussian.opacity;
              !(opacity >= 0 && opacity <= std::numeric_limits<float>::max())) {
     findings.add(name_of(n, "opacity"), text(opacity), "a finite one of at least 0");

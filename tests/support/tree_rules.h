@@ -14,7 +14,7 @@ inline constexpr TreeRule kSmallBlocks{
 inline constexpr TreeRule kHierarchicalGs{.kind = TreeKind::hierarchicalgs};
 // The default's, but under AddressSanitizer and emulation: clustering a real scene takes minutes
 // there.
-#if defined(__SANITIZE_ADDRESS__) || defined(__aarch64__)
+#if defined(__SANITIZE_ADDRESS__) || defined(VOYAGER_EMULATED)
 inline constexpr TreeRule kLargeScene = kHierarchicalGs;
 #else
 inline constexpr TreeRule kLargeScene{};

@@ -135,6 +135,13 @@ TEST(Exposure, ContrastIsToWhatShowsWithoutAGaussian) {
   EXPECT_LT(half, 0.55f);
 }
 
+// Among the few that the pictures leave out nothing is known of what is behind.
+TEST(Exposure, BeyondThePictureContrastIsTakenToBeModerate) {
+  GaussianCloud cloud = shell();
+  add(cloud, {1e17f, 0, 0}, 0.5f, kOpaque);
+  EXPECT_NEAR(exposure_of(exposures(cloud).back()).contrast, 0.2f, 0.01f);
+}
+
 TEST(Exposure, TheMeanIsWeightedByWhatIsSeen) {
   const Exposure of[2] = {{1, 0.1f}, {0.1f, 1}};
   const double equal[2] = {1, 1}, none[2] = {0, 0}, first[2] = {5, 0};

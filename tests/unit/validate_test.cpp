@@ -106,6 +106,11 @@ TEST(Validate, Moments) {
   expect_caught("node 0, mean", [](BakedScene& b) { b.merged.position[2] = NAN; });
   for (const float opacity : {INFINITY, NAN, -0.1f})
     expect_caught("node 0, opacity", [&](BakedScene& b) { b.merged.opacity[0] = opacity; });
+  expect_caught("opacity of a double", [](BakedScene& b) {
+    uint32_t n = 0;
+    while (b.tree.records[n].child_count != 1) ++n;
+    b.merged.opacity[b.gaussian[n]] *= 1.001f;
+  });
 }
 
 TEST(Validate, AxisCodes) {
