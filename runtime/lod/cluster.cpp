@@ -87,11 +87,11 @@ class Clustering {
                 group);
     const Exposure shown[2] = {a.exposure, b.exposure};
     const double shares[2] = {share, other};
-    set_exposure(shown, shares, group);
+    const Exposure exposure = set_exposure(shown, shares, group);
     const StandIn found = stand_in(group);
     Cluster cluster{group.parent,
                     a.weight + b.weight,
-                    mean_exposure(shown, shares),
+                    exposure,
                     std::max({found.pixel, a.pixel, b.pixel}),
                     {first, second}};
     cluster.blob.opacity = found.opacity;

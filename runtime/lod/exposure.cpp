@@ -19,7 +19,7 @@ constexpr float kThreshold = 255;  // 1 / α*
 constexpr float kLargest = 0.99f;  // α, METHOD §6
 // T from which on what is behind is divided by it.
 constexpr float kLeastBehind = 1e-4f;
-constexpr double kUnknown = 0.2;  // contrast
+constexpr double kContrastBeyond = 0.2;  // of what is beyond all pictures
 
 struct Direction {
   Vec3d forward, right, down;
@@ -78,7 +78,8 @@ class Exposures {
   }
 
   ExposureCode code(size_t i) const {
-    const double contrast = met_[i] > 0 ? contrast_[i] / (3 * met_[i]) : kUnknown * kUnknown;
+    const double contrast =
+        met_[i] > 0 ? contrast_[i] / (3 * met_[i]) : kContrastBeyond * kContrastBeyond;
     return {static_cast<uint8_t>(std::max(steps(seen_[i] / kDirections), kLeastSeen)),
             steps(contrast)};
   }

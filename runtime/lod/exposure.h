@@ -1,8 +1,8 @@
 #pragma once
 // What neighbours leave to be seen of a Gaussian, and what would show in its place: where much
 // is hidden, or what is behind looks the same, coarse is good enough.
-#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 

@@ -110,10 +110,12 @@ void set_colours(std::span<const float* const> children, const float* parent, in
     }
 }
 
-void set_exposure(std::span<const Exposure> children, std::span<const double> weights,
-                  Group& group) {
+Exposure set_exposure(std::span<const Exposure> children, std::span<const double> weights,
+                      Group& group) {
   for (size_t i = 0; i < children.size(); ++i) group.seen[i] = double{children[i].seen};
-  group.contrast = double{mean_exposure(children, weights).contrast};
+  const Exposure mean = mean_exposure(children, weights);
+  group.contrast = double{mean.contrast};
+  return mean;
 }
 
 double squared_colour_distance(const float* a, const float* b, int coefficients) {

@@ -33,9 +33,9 @@ void set_colours(double first_share, double second_share, double squared_distanc
 // Of any: from coefficients * 3 floats each.
 void set_colours(std::span<const float* const> children, const float* parent, int coefficients,
                  Group& group);
-// `seen` and `contrast` from those of the children, with these weights.
-void set_exposure(std::span<const Exposure> children, std::span<const double> weights,
-                  Group& group);
+// From that of each child; returns their mean with these weights.
+Exposure set_exposure(std::span<const Exposure> children, std::span<const double> weights,
+                      Group& group);
 // ∫ (a − b)² over directions, a mean of it: SH basis functions are orthonormal.
 double squared_colour_distance(const float* a, const float* b, int coefficients);
 

@@ -60,12 +60,10 @@ void measure(uint32_t node, std::span<const MergeInput> children, BakedScene& ba
     extent = std::max(extent, baked.tree.records[first + i].extent);
   }
   const std::span<const Exposure> exposure(&baked.exposure[first], r.child_count);
-  const std::span<const double> shares(weights, r.child_count);
   Blob blobs[kChildren];
   const MergeInput parent = node_gaussian(node, baked);
   Group group = group_of(children, blobs, parent, baked.merged.coefficients());
-  set_exposure(exposure, shares, group);
-  baked.exposure[node] = mean_exposure(exposure, shares);
+  baked.exposure[node] = set_exposure(exposure, {weights, r.child_count}, group);
   const StandIn found = stand_in(group);
   r.extent = std::max(extent, static_cast<float>(extent_of(found.pixel)));
   baked.merged.opacity[baked.gaussian[node]] = static_cast<float>(found.opacity);
