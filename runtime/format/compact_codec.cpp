@@ -5,22 +5,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/format/byte_planes.h"
 #include "runtime/format/check_chunk.h"
+#include "runtime/format/compact_records.h"
 #include "runtime/format/compressor.h"
+#include "runtime/format/gaussian_planes.h"
 #include "runtime/format/quantise.h"
-#include "runtime/format/record_planes.h"
 
 namespace voyager {
 namespace {
 
 constexpr size_t kBandStart[4] = {1, 4, 9, 16};  // first coefficient of bands 1, 2, 3, and the end
 
-// Bytes before compression.
+// Bytes of a Gaussian before compression, and of a chunk.
+size_t gaussian_bytes(size_t coefficients) {
+  return 3 * 3 + 3 * 2 + 3 * 2 + 2 + 3 * 2 + (coefficients - 1) * 3 + sizeof(uint32_t) +
+         sizeof(uint8_t);
+}
 size_t plane_bytes(size_t records, size_t subtrees, size_t nodes, size_t coefficients) {
-  const size_t node = 3 * 3 + 3 * 2 + 3 * 2 + 2 + 3 * 2 + (coefficients - 1) * 3 +
-                      sizeof(uint32_t) + sizeof(uint8_t);
-  return records * sizeof(NodeRecord) + 2 * subtrees + nodes * node;
+  return records * sizeof(NodeRecord) + 2 * subtrees + nodes * gaussian_bytes(coefficients);
 }
 
 // Of a box along an axis: what means are stored against. A leaf's is its mean, to the
@@ -85,28 +87,13 @@ uint32_t opacity_word(const GaussianWords& words, bool leaf) {
   return leaf ? quantise_leaf_opacity(words.opacity) : float_to_half(words.opacity);
 }
 
-// The planes of a chunk in the order of the file; end_group(position) after those that
-// share entropy tables: few groups, since a chunk is small, of planes that are alike.
-template <class EndGroup>
+// The planes of the Gaussians in the order of the file.
 class PlaneEncoder {
  public:
   PlaneEncoder(const Chunk& chunk, const ChunkHeader& header, const EndGroup& end_group)
       : chunk_(chunk), header_(header), end_group_(end_group) {}
 
-  // Returns where the planes of the nodes start.
-  std::byte* put_records(std::byte* at) const {
-    BytePlanes table(at, chunk_.subtrees.size());
-    table.put(1, [&](size_t i) { return uint32_t{chunk_.subtrees[i].child_count}; });
-    table.put(1, [&](size_t i) { return uint32_t{chunk_.subtrees[i].grandchild_count}; });
-    BytePlanes planes(table.position(), chunk_.records.size());
-    for (size_t word = 0; word < 8; ++word) {
-      planes.put(4, [&](size_t i) { return to_words(chunk_.records[i]).word[word]; });
-      if (word == 3) end_group_(planes.position());
-    }
-    return planes.position();
-  }
-
-  void put_geometry(BytePlanes& planes) const {
+  void put_geometry(GaussianPlanes& planes) const {
     const auto& words = chunk_.words;
     for (int axis = 0; axis < 3; ++axis)
       planes.put(3, [&](size_t i) {
@@ -123,7 +110,7 @@ class PlaneEncoder {
     planes.put(2, [&](size_t i) { return opacity_word(words[i], chunk_.is_leaf(i)); });
   }
 
-  void put_sh(BytePlanes& planes, size_t coefficients) const {
+  void put_sh(GaussianPlanes& planes, size_t coefficients) const {
     const float* sh = chunk_.sh.data();
     const size_t stride = 3 * coefficients;
     for (size_t c = 0; c < 3; ++c)
@@ -140,10 +127,10 @@ class PlaneEncoder {
     }
   }
 
-  void put_sources(BytePlanes& planes) const {
+  void put_sources(GaussianPlanes& planes) const {
     planes.put(4, [&](size_t i) { return chunk_.source_index[i]; });
     planes.put(1, [&](size_t i) { return uint32_t{chunk_.axis_code[i]}; });
-    end_group_(planes.position());
+    end_group_(planes.end());
   }
 
  private:
@@ -152,25 +139,7 @@ class PlaneEncoder {
   const EndGroup& end_group_;
 };
 
-// The subtree table and the records; returns where the planes of the nodes start.
-std::byte* take_records(std::byte* at, const ChunkLocation& location, const ChunkContext& context,
-                        Chunk& chunk) {
-  const ChunkEntry& entry = location.entry;
-  BytePlanes table(at, entry.subtree_count);
-  std::vector<uint8_t> child_counts(entry.subtree_count), grandchild_counts(entry.subtree_count);
-  for (auto* counts : {&child_counts, &grandchild_counts})
-    table.take(1, [&](size_t i, uint32_t v) { (*counts)[i] = static_cast<uint8_t>(v); });
-  BytePlanes planes(table.position(), entry.record_count);
-  std::vector<RecordWords> records(entry.record_count);
-  for (size_t word = 0; word < 8; ++word)
-    planes.take(4, [&](size_t i, uint32_t v) { records[i].word[word] = v; });
-  chunk.records.resize(records.size());
-  std::transform(records.begin(), records.end(), chunk.records.begin(), from_words);
-  link_subtrees(child_counts, grandchild_counts, location, context, chunk);
-  return planes.position();
-}
-
-void take_geometry(BytePlanes& planes, const ChunkHeader& header, Chunk& chunk) {
+void take_geometry(GaussianPlanes& planes, const ChunkHeader& header, Chunk& chunk) {
   for (int axis = 0; axis < 3; ++axis)
     planes.take(3, [&](size_t i, uint32_t q) {
       chunk.words[i].mean[axis] =
@@ -191,7 +160,7 @@ void take_geometry(BytePlanes& planes, const ChunkHeader& header, Chunk& chunk) 
   });
 }
 
-void take_sh(BytePlanes& planes, const ChunkHeader& header, size_t coefficients, Chunk& chunk) {
+void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficients, Chunk& chunk) {
   const size_t stride = 3 * coefficients;
   float* sh = chunk.sh.data();
   for (size_t c = 0; c < 3; ++c)
@@ -217,12 +186,16 @@ void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader
       plane_bytes(chunk.records.size(), chunk.subtrees.size(), nodes, coefficients));
   Compressor frame(out.bytes);
   const std::byte *group = raw.data(), *const end = raw.data() + raw.size();
-  const auto end_group = [&](const std::byte* position) {
+  const EndGroup end_group = [&](const std::byte* position) {
     frame.add(group, position, position == end);
     group = position;
   };
+  const ChunkCounts counts = counts_of(chunk);
+  const Families families = families_of(counts);
+  const GaussianOrder order = gaussian_order(families, counts, chunk.record);
+  std::byte* const at = put_records(raw.data(), chunk, counts, families, context.tree, end_group);
+  GaussianPlanes planes(at, order, gaussian_bytes(coefficients));
   const PlaneEncoder encoder(chunk, header, end_group);
-  BytePlanes planes(encoder.put_records(raw.data()), nodes);
   encoder.put_geometry(planes);
   encoder.put_sh(planes, coefficients);
   encoder.put_sources(planes);
@@ -240,7 +213,13 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
   if (ZSTD_isError(got)) location.damaged(ZSTD_getErrorName(got), "a zstd frame");
   if (got != raw.size())
     location.damaged(std::to_string(got) + " bytes in the frame", std::to_string(raw.size()));
-  BytePlanes planes(take_records(raw.data(), location, context, chunk), nodes);
+  std::byte* at = raw.data();
+  const ChunkCounts counts = take_counts(at, entry);
+  const Families families = families_of(counts);
+  take_records(at, counts, families, context.tree, chunk);
+  link_subtrees(counts.children, counts.grandchildren, location, context, chunk);
+  const GaussianOrder order = gaussian_order(families, counts, chunk.record);
+  GaussianPlanes planes(at, order, gaussian_bytes(coefficients));
   chunk.words.resize(nodes);
   take_geometry(planes, header, chunk);
   chunk.sh.resize(nodes * coefficients * 3);

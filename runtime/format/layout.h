@@ -21,7 +21,7 @@ inline constexpr uint64_t chunk_align(Quality quality) {
 
 // Line ends in both habits, so that a transfer in text mode is seen at once.
 inline constexpr unsigned char kSceneMagic[8] = {0x89, 'V', 'O', 'Y', '\r', '\n', 0x1a, '\n'};
-inline constexpr uint32_t kSceneVersion = 3;
+inline constexpr uint32_t kSceneVersion = 4;
 inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0
 inline constexpr uint32_t kFlagClustered = 4;    // the rule of the tree (tree_rule.h)

@@ -89,6 +89,7 @@ Chunk SceneFile::decode(uint32_t index, std::span<const std::byte> stored) const
       {info_.source_origin[0], info_.source_origin[1], info_.source_origin[2]},
       info_.leaf_count,
       tiers(),
+      info_.tree,
       info_.largest_sh,
       info_.leaves_have_extent};
   return decode_chunk(stored, {name(), index, entry, place_after(index)}, context);

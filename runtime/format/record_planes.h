@@ -1,53 +1,87 @@
 #pragma once
 // Node records in compact storage: exact, but as differences from what most
-// nodes have, so that their bytes are mostly zeros. A leaf's box is a cube; of
-// hierarchicalgs trees an extent is the longest side of its box, 0 for a leaf.
+// nodes have, so that their bytes are mostly zeros.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
 
 #include "runtime/format/fold.h"
+#include "runtime/lod/stand_in.h"
 #include "runtime/lod/tree.h"
 
 namespace voyager {
-
-// The words of one record, in the order of the file's planes.
-struct RecordWords {
-  uint32_t word[8];
-};
 
 inline uint32_t float_bits(float value) {
   return std::bit_cast<uint32_t>(value);
 }
 
-// What y or z of the box's far corner would be, were it as wide as in x.
+// The words of one box, in the order of the file's planes.
+struct BoxWords {
+  uint32_t word[6];
+};
+
+// What y or z of a box's far corner would be, were it a cube, as a leaf's is.
 inline float cube_side(const NodeRecord& r, int axis) {
   return r.box_min[axis] + (r.box_max.x - r.box_min.x);
 }
 
-inline float usual_extent(const NodeRecord& r) {
-  if (r.child_count == 0) return 0.0f;
-  return std::max(
-      {r.box_max.x - r.box_min.x, r.box_max.y - r.box_min.y, r.box_max.z - r.box_min.z});
-}
-
-inline RecordWords to_words(const NodeRecord& r) {
+// Of a box that no other tells.
+inline BoxWords box_words(const NodeRecord& r) {
   return {{float_bits(r.box_min.x), float_bits(r.box_min.y), float_bits(r.box_min.z),
            float_bits(r.box_max.x), fold(float_bits(r.box_max.y) - float_bits(cube_side(r, 1))),
-           fold(float_bits(r.box_max.z) - float_bits(cube_side(r, 2))), r.child_count,
-           fold(float_bits(r.extent) - float_bits(usual_extent(r)))}};
+           fold(float_bits(r.box_max.z) - float_bits(cube_side(r, 2)))}};
 }
-
-inline NodeRecord from_words(const RecordWords& w) {
-  NodeRecord r{};
+inline void set_box(const BoxWords& w, NodeRecord& r) {
   r.box_min = {std::bit_cast<float>(w.word[0]), std::bit_cast<float>(w.word[1]),
                std::bit_cast<float>(w.word[2])};
   r.box_max.x = std::bit_cast<float>(w.word[3]);
   r.box_max.y = std::bit_cast<float>(unfold(w.word[4]) + float_bits(cube_side(r, 1)));
   r.box_max.z = std::bit_cast<float>(unfold(w.word[5]) + float_bits(cube_side(r, 2)));
-  r.child_count = w.word[6];
-  r.extent = std::bit_cast<float>(unfold(w.word[7]) + float_bits(usual_extent(r)));
-  return r;
+}
+
+// Of one that the boxes of all of the node's children tell: it is their hull. count is not 0.
+inline NodeRecord hull_of_boxes(const NodeRecord* children, uint32_t count) {
+  NodeRecord hull = children[0];
+  for (uint32_t i = 1; i < count; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      hull.box_min[axis] = std::min(hull.box_min[axis], children[i].box_min[axis]);
+      hull.box_max[axis] = std::max(hull.box_max[axis], children[i].box_max[axis]);
+    }
+  return hull;
+}
+inline BoxWords box_words(const NodeRecord& r, const NodeRecord& hull) {
+  BoxWords words{};
+  for (int axis = 0; axis < 3; ++axis) {
+    words.word[axis] = fold(float_bits(r.box_min[axis]) - float_bits(hull.box_min[axis]));
+    words.word[3 + axis] = fold(float_bits(r.box_max[axis]) - float_bits(hull.box_max[axis]));
+  }
+  return words;
+}
+inline void set_box(const BoxWords& w, const NodeRecord& hull, NodeRecord& r) {
+  for (int axis = 0; axis < 3; ++axis) {
+    r.box_min[axis] = std::bit_cast<float>(unfold(w.word[axis]) + float_bits(hull.box_min[axis]));
+    r.box_max[axis] =
+        std::bit_cast<float>(unfold(w.word[3 + axis]) + float_bits(hull.box_max[axis]));
+  }
+}
+
+// By the rule of the tree: in a clustered one a leaf or a double is refined late, and no other
+// node tells where another is (no parent: nullptr); else an extent is the longest side of its
+// box, a leaf's 0.
+inline float usual_extent(TreeKind kind, const NodeRecord& r, const NodeRecord* parent) {
+  if (kind == TreeKind::clustered)
+    return r.child_count <= 1 && parent ? kLateExtent * parent->extent : 0.0f;
+  if (r.child_count == 0) return 0.0f;
+  return std::max(
+      {r.box_max.x - r.box_min.x, r.box_max.y - r.box_min.y, r.box_max.z - r.box_min.z});
+}
+inline uint32_t extent_word(TreeKind kind, const NodeRecord& r, const NodeRecord* parent) {
+  return fold(float_bits(r.extent) - float_bits(usual_extent(kind, r, parent)));
+}
+// The rest of the record is set.
+inline float extent_of_word(uint32_t word, TreeKind kind, const NodeRecord& r,
+                            const NodeRecord* parent) {
+  return std::bit_cast<float>(unfold(word) + float_bits(usual_extent(kind, r, parent)));
 }
 
 }  // namespace voyager

@@ -75,6 +75,7 @@ void write_scene_file(const BakedScene& baked, const Partition& partition, const
                              to_vec(baked.leaves.origin),
                              static_cast<uint32_t>(baked.leaves.size()),
                              tiers_of(partition),
+                             baked.kind,
                              0,
                              false};
   std::vector<ChunkEntry> entries = make_entries(baked.tree, partition);

@@ -75,17 +75,49 @@ TEST(Quantise, ShWithinHalfAStepOfItsBand) {
 
 TEST(Quantise, RecordsSurviveToTheBit) {
   std::mt19937 random(5);
-  for (int i = 0; i < 100000; ++i) {
+  const auto record = [&](bool small) {
     NodeRecord r{};
     for (int axis = 0; axis < 3; ++axis) {
       r.box_min[axis] = uniform(random, -1e4f, 1e4f);
-      r.box_max[axis] = r.box_min[axis] + uniform(random, 0, i % 2 == 0 ? 1e-3f : 1e6f);
+      r.box_max[axis] = r.box_min[axis] + uniform(random, 0, small ? 1e-3f : 1e6f);
     }
     r.child_count = random() % 3;
     r.extent = uniform(random, 0, 1e3f);
-    const NodeRecord back = from_words(to_words(r));
-    ASSERT_EQ(std::memcmp(&back, &r, sizeof r), 0);
+    return r;
+  };
+  for (int i = 0; i < 100000; ++i) {
+    const NodeRecord r = record(i % 2 == 0), other = record(i % 4 < 2);
+    NodeRecord plain = r, told = r;
+    plain.box_min = plain.box_max = told.box_min = told.box_max = {7, 7, 7};
+    set_box(box_words(r), plain);
+    set_box(box_words(r, other), other, told);
+    ASSERT_EQ(std::memcmp(&plain, &r, sizeof r), 0);
+    ASSERT_EQ(std::memcmp(&told, &r, sizeof r), 0);
+    for (const TreeKind kind : {TreeKind::clustered, TreeKind::hierarchicalgs})
+      for (const NodeRecord* parent : {&other, static_cast<const NodeRecord*>(nullptr)}) {
+        NodeRecord back = r;
+        back.extent = 7;
+        back.extent = extent_of_word(extent_word(kind, r, parent), kind, back, parent);
+        ASSERT_EQ(back.extent, r.extent);
+      }
   }
+}
+
+// What a tree tells of its nodes costs nothing.
+TEST(Quantise, WhatIsUsualIsZero) {
+  NodeRecord parent{}, child{}, other{};
+  child = {{1, 2, 3}, 0.98f * 5, {2, 3, 4}, 0};
+  other = {{-1, 2, 3}, 0, {2, 2.5f, 9}, 3};
+  const NodeRecord children[] = {child, other};
+  parent = hull_of_boxes(children, 2);
+  EXPECT_EQ(parent.box_min.x, -1);
+  EXPECT_EQ(parent.box_max.z, 9);
+  for (const uint32_t word : box_words(parent, hull_of_boxes(children, 2)).word)
+    EXPECT_EQ(word, 0u);
+  parent.extent = 5;
+  EXPECT_EQ(extent_word(TreeKind::clustered, child, &parent), 0u);
+  child.child_count = 1;
+  EXPECT_EQ(extent_word(TreeKind::clustered, child, &parent), 0u);
 }
 
 }  // namespace
