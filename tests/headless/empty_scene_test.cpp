@@ -4,13 +4,13 @@
 
 namespace {
 
-// A .voy of format 3, compact, no nodes.
+// A .voy of format 4, compact, no nodes.
 std::string empty_voy() {
   std::string bytes(320, '\0');
   const auto put = [&](size_t offset, std::string_view value) {
     bytes.replace(offset, value.size(), value);
   };
-  put(0x00, "\x89VOY\r\n\x1a\n\x03");
+  put(0x00, "\x89VOY\r\n\x1a\n\x04");
   put(0x10, "\x40\x01");
   put(0x18, "\x02");
   put(0x1c, "\x01");
@@ -22,7 +22,8 @@ std::string empty_voy() {
   put(0xe8, "\x9d\xc9\x71\x90\x1c\x27\x57\xa0\x02");
   put(0xf8, "\x20\x01");
   put(0x108, "\xc2\x94\xd3\x38\x05\x80\x06\x2d");
-  put(0x118, "\xc1\x43\x1d\x04\x88\x47\x16\x93");
+  put(0x118, "\x6b\x9f\xbd\xac\xfd");
+  put(0x11e, "\x01\x85");
   return bytes;
 }
 
