@@ -5,18 +5,34 @@
 namespace voyager {
 
 ChunkGraph::ChunkGraph(std::span<const ChunkEntry> chunks, const Tiers& tiers)
-    : chunks_(chunks), tiers_(tiers), parents_(chunks.size()), children_(chunks.size()) {
+    : chunks_(chunks), tiers_(tiers) {
+  children_.reserve(chunks.size());
+  for (uint32_t chunk = 0; chunk < size(); ++chunk) children_.push_back(find_children(chunk));
+  parents_begin_ = {0};
+  parents_begin_.reserve(chunks.size() + 1);
   for (uint32_t chunk = 0; chunk < size(); ++chunk) {
-    const uint32_t last = last_root(chunk);
-    const uint32_t first = std::max(first_root(chunk), 1u);
-    const uint32_t begin = last == 0 ? chunk : owner_of_parent(first);
-    const uint32_t end = last == 0 ? chunk : std::min(chunk, owner_of_parent(last) + 1);
-    parents_[chunk] = {std::min(begin, end), end};
-    const uint32_t below = chunks_[chunk].place.next[3], after = place_after(chunk).next[3];
-    const ChunkRange range = with_roots(below, after - below);
-    const uint32_t least = std::max(range.first, chunk + 1);
-    children_[chunk] = {least, std::max(least, range.last)};
+    const ChunkRange among = among_parents(chunk);
+    for (uint32_t p = among.first; p < among.last; ++p)
+      if (!children_[p].empty()) parents_.push_back(p);
+    parents_begin_.push_back(static_cast<uint32_t>(parents_.size()));
   }
+}
+
+ChunkRange ChunkGraph::find_children(uint32_t chunk) const {
+  const uint32_t below = chunks_[chunk].place.next[3], after = place_after(chunk).next[3];
+  if (below == after) return {0, 0};
+  const ChunkRange range = with_roots(below, after - below);
+  const uint32_t least = std::max(range.first, chunk + 1);
+  return {least, std::max(least, range.last)};
+}
+
+// From the first parent to the last.
+ChunkRange ChunkGraph::among_parents(uint32_t chunk) const {
+  const uint32_t last = last_root(chunk);
+  if (last == 0) return {chunk, chunk};
+  const uint32_t begin = owner_of_parent(std::max(first_root(chunk), 1u));
+  const uint32_t end = std::min(chunk, owner_of_parent(last) + 1);
+  return {std::min(begin, end), end};
 }
 
 SubtreePlace ChunkGraph::place_after(uint32_t chunk) const {

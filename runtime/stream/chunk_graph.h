@@ -1,7 +1,7 @@
 #pragma once
 // Which chunks lead to which: a chunk's nodes hang from those of its parents. Found from
-// the directory alone, since nodes are numbered breadth-first, so that parents and children
-// are consecutive chunks.
+// the directory alone, since nodes are numbered breadth-first, so that children are consecutive
+// chunks, and parents but for those that lead nowhere.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,10 +23,13 @@ class ChunkGraph {
   ChunkGraph(std::span<const ChunkEntry> chunks, const Tiers& tiers);
 
   uint32_t size() const { return static_cast<uint32_t>(chunks_.size()); }
-  // Each before the chunk; none where it holds the tree's root and all that it leads to
-  // hangs from itself. One between two that lead to the chunk is a parent even where nothing
-  // hangs from it: they are a range.
-  ChunkRange parents(uint32_t chunk) const { return parents_[chunk]; }
+  // Ascending, each before the chunk; none where it holds the tree's root and all that it leads
+  // to hangs from itself. Between them may be chunks that lead nowhere: on a level with few nodes
+  // a chunk hangs from places far apart, and what is between is none of its business.
+  std::span<const uint32_t> parents(uint32_t chunk) const {
+    return std::span(parents_).subspan(parents_begin_[chunk],
+                                       parents_begin_[chunk + 1] - parents_begin_[chunk]);
+  }
   // Each behind the chunk: those that it is a parent of, and no other.
   ChunkRange children(uint32_t chunk) const { return children_[chunk]; }
   // The chunks whose subtrees have these nodes as their roots: [first, first + count) on a level
@@ -36,6 +39,8 @@ class ChunkGraph {
   uint32_t owner_of_parent(uint32_t root) const;
 
  private:
+  ChunkRange find_children(uint32_t chunk) const;
+  ChunkRange among_parents(uint32_t chunk) const;
   uint32_t first_root(uint32_t chunk) const;
   uint32_t last_root(uint32_t chunk) const;
   SubtreePlace place_after(uint32_t chunk) const;
@@ -43,7 +48,8 @@ class ChunkGraph {
 
   std::span<const ChunkEntry> chunks_;
   Tiers tiers_;
-  std::vector<ChunkRange> parents_, children_;
+  std::vector<uint32_t> parents_, parents_begin_;  // of all chunks, and where each one's begin
+  std::vector<ChunkRange> children_;
 };
 
 }  // namespace voyager

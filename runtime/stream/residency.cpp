@@ -30,6 +30,7 @@ Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks
       state_(chunks.size()),
       slot_(chunks.size(), kNoSlot),
       urgency_(chunks.size()),
+      own_urgency_(chunks.size()),
       needed_plan_(chunks.size()),
       missed_(chunks.size()),
       counted_(chunks.size()),
@@ -76,12 +77,25 @@ bool Residency::add_needed(const Needed& needed) {
     failed_.push_back(needed);
     return false;
   }
-  const ChunkRange parents = graph_->parents(chunk);
-  for (uint32_t p = parents.first; p < parents.last; ++p)
-    if (needed_plan_[p] != plan_ && !add_needed({p, needed.urgency, needed.now})) return false;
+  for (const uint32_t p : graph_->parents(chunk)) {
+    if (needed_plan_[p] == plan_) continue;
+    own_urgency_[p] = 0;
+    if (!add_needed({p, needed.urgency, needed.now})) return false;
+  }
   needed_plan_[chunk] = plan_;
   extra_.push_back(needed);
   return true;
+}
+
+// Nothing that hangs from a chunk is larger than the largest of its own nodes, or seen where these
+// are not. Where few nodes go so deep a chunk is of places far apart, and its hull of all between.
+uint32_t Residency::most_above(uint32_t chunk) const {
+  const std::span<const uint32_t> parents = graph_->parents(chunk);
+  if (parents.empty()) return UINT32_MAX;
+  uint32_t most = 0;
+  for (const uint32_t p : parents)
+    if (needed_plan_[p] == plan_) most = std::max(most, own_urgency_[p]);
+  return most;
 }
 
 // From the top: a chunk can only be needed where one that leads to it is. Both ascend.
@@ -89,11 +103,23 @@ void Residency::find_needed(std::span<const Viewer> viewers) {
   needed_.clear(), failed_.clear(), extra_.clear();
   uint32_t next = 0;
   size_t from = 0;
+  const auto needed_before = [&](uint32_t chunk) {
+    return !extra_.empty() && extra_.back().chunk == chunk - 1;
+  };
   const auto look = [&](uint32_t chunk) {
     next = chunk + 1;
     if (needed_plan_[chunk] == plan_) return;
-    const Needed found = look_at(chunk, viewers);
-    if (found.urgency != 0) add_needed(found);
+    Needed found = look_at(chunk, viewers);
+    // A node is refined with all of its children or not at all, and the hull of a chunk that goes
+    // on with a node of the one before is that of this node, not of what it hangs from.
+    if (chunks_[chunk].place.listed_children != 0 && needed_before(chunk)) {
+      found.urgency = std::max(found.urgency, extra_.back().urgency);
+      found.now = found.now || extra_.back().now;
+    }
+    found.urgency = std::min(found.urgency, most_above(chunk));
+    if (found.urgency == 0) return;
+    own_urgency_[chunk] = found.urgency;
+    add_needed(found);
   };
   while (next < graph_->size() && graph_->parents(next).empty()) look(next);
   for (; from < extra_.size(); ++from) {
@@ -132,8 +158,7 @@ void Residency::share_with_parents() {
   for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
   for (size_t i = needed_.size(); i-- > 0;) {
     needed_[i].urgency = urgency_[needed_[i].chunk];
-    const ChunkRange parents = graph_->parents(needed_[i].chunk);
-    for (uint32_t p = parents.first; p < parents.last; ++p)
+    for (const uint32_t p : graph_->parents(needed_[i].chunk))
       urgency_[p] = std::max(urgency_[p], needed_[i].urgency);
   }
 }
@@ -186,9 +211,7 @@ void Residency::list_victims() {
     if (state_[chunk] != State::resident || is_wanted(chunk)) continue;
     const float age = static_cast<float>(plan_ - needed_plan_[chunk]);
     score[chunk] = std::min(score[chunk], age / error_of(urgency_[chunk]));
-    const ChunkRange parents = graph_->parents(chunk);
-    for (uint32_t p = parents.first; p < parents.last; ++p)
-      score[p] = std::min(score[p], score[chunk]);
+    for (const uint32_t p : graph_->parents(chunk)) score[p] = std::min(score[p], score[chunk]);
     scored.emplace_back(score[chunk], chunk);
   }
   std::sort(scored.begin(), scored.end());
@@ -276,8 +299,7 @@ void Residency::retry(uint32_t chunk) {
 }
 
 bool Residency::parents_there(uint32_t chunk) const {
-  const ChunkRange parents = graph_->parents(chunk);
-  for (uint32_t p = parents.first; p < parents.last; ++p)
+  for (const uint32_t p : graph_->parents(chunk))
     if (state_[p] != State::resident) return false;
   return true;
 }
@@ -319,8 +341,8 @@ Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accep
     ++counters_.arrived;
     counters_.late += missed_[chunk];
     missed_[chunk] = 0;
-    const ChunkRange parents = graph_->parents(chunk), children = graph_->children(chunk);
-    for (uint32_t p = parents.first; p < parents.last; ++p) ++children_there_[p];
+    const ChunkRange children = graph_->children(chunk);
+    for (const uint32_t p : graph_->parents(chunk)) ++children_there_[p];
     for (uint32_t c = children.first; c < children.last; ++c)
       if (state_[c] == State::filled) next.push_back(c);
     out.resident.push_back(chunk);
@@ -344,8 +366,7 @@ std::vector<Residency::Evicted> Residency::evict() {
     victims_.pop_back();
     if (state_[chunk] != State::resident || is_wanted(chunk) || children_there_[chunk] != 0)
       continue;
-    const ChunkRange parents = graph_->parents(chunk);
-    for (uint32_t p = parents.first; p < parents.last; ++p) --children_there_[p];
+    for (const uint32_t p : graph_->parents(chunk)) --children_there_[p];
     evicted.push_back({chunk, slot_[chunk]});
     slot_[chunk] = kNoSlot;
     state_[chunk] = State::absent;

@@ -105,6 +105,7 @@ class Residency {
 
   static Class class_of(uint32_t urgency) { return static_cast<Class>(urgency >> 30); }
   Needed look_at(uint32_t chunk, std::span<const Viewer> viewers) const;
+  uint32_t most_above(uint32_t chunk) const;
   void find_needed(std::span<const Viewer> viewers);
   bool add_needed(const Needed& needed);
   void share_in_families();
@@ -128,6 +129,7 @@ class Residency {
   std::vector<State> state_;
   std::vector<uint32_t> slot_;
   std::vector<uint32_t> urgency_;      // when it was last needed
+  std::vector<uint32_t> own_urgency_;  // in the last plan that needed it; 0: for what hangs from it
   std::vector<uint32_t> needed_plan_;  // the last plan that needed it
   std::vector<uint8_t> missed_;        // a viewer has seen that it was not there
   std::vector<uint8_t> counted_;       // 1: in need_, if the last plan needed it; 2: as seen, too
