@@ -1,5 +1,6 @@
 #pragma once
 // Who looks at a scene, as residency sees it: which chunks that takes, and how much.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -29,10 +30,11 @@ struct Wedge {
   }
 };
 
-// The margin. Wedges are wider than what an eye sees by so many τ* (tangents) on each side: a cut
-// node is below 2 τ* in size, and none is drawn further than that from its mean. And what hangs
-// from a node of extent E is taken to reach E beyond the node's box: a leaf is drawn to 3.33 σ
-// where its box has 3, a merged Gaussian over a uniform patch (σ = 0.29 E) to 0.46 E beyond.
+// The margin. Wedges are wider than what an eye sees by so many τ* (tangents) on each side: what is
+// drawn is blurred by 1.8 pixels (METHOD §5), and τ* is one pixel or more. And what hangs from
+// nodes in a box of longest side L is taken to reach L beyond it: a leaf is drawn to 3.33 σ where
+// its box has 3, a merged Gaussian over a uniform patch (σ = 0.29 L) to 0.46 L beyond. The extent
+// says nothing of that: it is an error (docs/lod-tree.md), between 0.006 and thousands of L.
 inline constexpr float kWedgeMargin = 10.0f;
 inline constexpr float kHullReach = 1.0f;
 
@@ -46,8 +48,10 @@ struct Viewer {
 
   bool sees(const EntryHull& hull) const {
     if (!std::isfinite(hull.extent)) return true;
+    const Vec3f side = hull.box_max - hull.box_min;
+    const float reach = kHullReach * std::max({side.x, side.y, side.z});
     for (const Wedge& eye : eyes)
-      if (eye.meets(hull.box_min, hull.box_max, kHullReach * hull.extent)) return true;
+      if (eye.meets(hull.box_min, hull.box_max, reach)) return true;
     return false;
   }
 };
