@@ -4,6 +4,7 @@
 #include <random>
 #include <thread>
 
+#include "runtime/math/screen_size.h"
 #include "tests/support/simulated_disk.h"
 #include "tests/support/stream_rig.h"
 #include "tests/support/tree_rules.h"
@@ -118,11 +119,22 @@ TEST(StreamingDisk, AnEvenFlightFindsMostOfItsWayThere) {
   EXPECT_LT(after.chunks.late - before.chunks.late, arrived / 4);
 }
 
-TEST(StreamingDisk, AJumpTakesBackWhatIsNoLongerWanted) {
-  Flight flight(0.5, 0.02, 1e6, test::kHierarchicalGs);
-  for (int i = 0; i < 40; ++i) flight.draw(ahead({0, -3, -150}, kForward, 40));
+class StreamingDiskOfTree : public ::testing::TestWithParam<test::NamedRule> {};
+INSTANTIATE_TEST_SUITE_P(Rules, StreamingDiskOfTree, ::testing::ValuesIn(test::all_rules()),
+                         test::rule_name<::testing::TestParamInfo<test::NamedRule>>);
+
+// Room for half of what is seen, and a disk that takes longer to read it than the viewer stays.
+TEST_P(StreamingDiskOfTree, AJumpTakesBackWhatIsNoLongerWanted) {
+  Flight flight(1.0, 0.02, 1e6, GetParam().rule);
+  const FrameInput here = ahead({0, -3, -150}, Vec3d{0, 0.02, -1}, 5),
+                   there = ahead({0, -3, 150}, kForward, 5);
+  flight.draw(here);
+  while (flight.counters().need.seen == 0) ASSERT_TRUE(flight.stream().step());
+  const uint64_t seen = flight.counters().need.seen + flight.stream().pinned();
+  flight.rig().give_room(flight.scene(), static_cast<uint32_t>(seen / 2));
+  for (int i = 0; i < 30; ++i) flight.draw(here);
   ASSERT_EQ(flight.counters().chunks.flushed, 0u);
-  for (int i = 0; i < 5; ++i) flight.draw(ahead({0, -3, 150}, Vec3d{0, 0.02, -1}, 40));
+  for (int i = 0; i < 30; ++i) flight.draw(there);
   EXPECT_GT(flight.counters().chunks.flushed, 0u);
 }
 
@@ -252,8 +264,16 @@ TEST(StreamingDisk, ASceneOpensThoughWhatIsAroundItsStartIsDamaged) {
 TEST(StreamingDisk, AFrameThatWaitsSaysWhatIsDamaged) {
   Flight flight(1.0);
   const auto& chunks = flight.stream().file().chunks();
-  // Not the deepest, which may stand in from far away.
-  const ChunkEntry& damaged = chunks[chunks.size() / 2];
+  // Nothing hangs from it, since that would not be there either, and it is of one place.
+  const ChunkGraph graph(chunks, flight.stream().file().tiers());
+  const auto reach = [&](uint32_t c) {
+    const Vec3f side = chunks[c].hull.box_max - chunks[c].hull.box_min;
+    return graph.children(c).empty() ? dot(side, side) : INFINITY;
+  };
+  uint32_t least = 0;
+  for (uint32_t c = 1; c < graph.size(); ++c)
+    if (reach(c) < reach(least)) least = c;
+  const ChunkEntry& damaged = chunks[least];
   flight.disk().alter = [&](uint64_t offset, std::span<std::byte> into) {
     if (offset <= damaged.offset && offset + into.size() > damaged.offset)
       into[damaged.offset - offset] ^= std::byte{0x40};
@@ -422,20 +442,29 @@ TEST(StreamingDisk, WhatHasFailedCountsAsMissing) {
 
 // A node that lies outside of what it hangs from shows when its chunk is linked: a frame that waits
 // fails, however late that is, and the chunk is read twice at most.
-TEST(StreamingDisk, AChunkThatFitsNoParentIsDamaged) {
-  BakedScene baked = test::bake(wide_cloud(4000), test::kHierarchicalGs);
+TEST_P(StreamingDiskOfTree, AChunkThatFitsNoParentIsDamaged) {
+  BakedScene baked = test::bake(wide_cloud(4000), GetParam().rule);
   test::StreamRig sound(baked, 1.0);
   const SceneFile file(test::source_of(sound.bytes));
-  const auto victim = static_cast<uint32_t>(file.chunks().size()) - 5;
+  const Vec3d eye{0, -2, -12};
+  const double tau = 0.01;
+  // The last of those whose parent no tree lets stand in.
+  FrameInput input = frame_input(look(eye, {0, 0, 0}, 31, 25), tau);
+  const Vec3f centre = cut_centre(eye, sound.resident->origin);
+  const auto refined = [&](uint32_t n) {
+    return baked.tree.screen_size(n, centre) >= 2 * target_size(tau, input.eyes[0].camera.fx);
+  };
   uint32_t root = 0;
-  for (const auto& subtree : file.read_chunk(victim).subtrees)
-    if (!subtree.repeats_root && root == 0) root = subtree.root;
+  for (uint32_t chunk = SceneStream::top_chunks(file); chunk < file.chunks().size(); ++chunk) {
+    const Chunk content = file.read_chunk(chunk);
+    for (const Subtree& subtree : content.subtrees)
+      if (!subtree.repeats_root && refined(baked.tree.parent[subtree.root])) root = subtree.root;
+  }
   ASSERT_NE(root, 0u);
   baked.tree.records[root].box_max = {1e4f, 1e4f, 1e4f};
   const test::Bytes bytes = test::scene_bytes(baked, Quality::lossless, 0, kMinChunkBytes);
   const auto scene = sound.open(test::source_of(bytes), 1.0);
   View view(scene, *sound.backend, {}, sound.memory(), sound.workers);
-  FrameInput input = frame_input(look({0, -2, -12}, {0, 0, 0}, 31, 25), 0.01);
   input.wait_resident = true;
   for (int i = 0; i < 3; ++i, sound.time += 20) {
     EXPECT_EQ(test::error_code([&] { render(view, input); }), ErrorCode::damaged_chunk);

@@ -43,6 +43,14 @@ class StreamRig {
     return open_streamed(source, desc, *backend, memory(), workers);
   }
 
+  // Room for so many chunks, or all that are pinned.
+  void give_room(Scene& scene, uint32_t slots) {
+    const SceneFile& file = scene.stream->file();
+    const PoolBytes pool = backend->pool_bytes(scene, SceneStream::slot_shape(file));
+    resize_streamed(scene, pool.fixed + slots * pool.slot, *backend, workers);
+  }
+  void give_room(uint32_t slots) { give_room(*streamed, slots); }
+
   SceneStream& stream() const { return *streamed->stream; }
   // Steps, as long as there is something to do and fewer than `most`.
   size_t work(size_t most = SIZE_MAX) const {
@@ -63,7 +71,8 @@ class StreamRig {
   const Bytes bytes;
   Workers workers;
   const std::unique_ptr<Backend> backend;
-  const std::shared_ptr<const Scene> resident, streamed;
+  const std::shared_ptr<const Scene> resident;
+  const std::shared_ptr<Scene> streamed;
   View whole, part;
 };
 
