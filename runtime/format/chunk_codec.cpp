@@ -114,6 +114,9 @@ Chunk decode_chunk(std::span<const std::byte> bytes, const ChunkLocation& locati
   check_field(location, "checksum", checksum(bytes), location.entry.checksum);
   const ChunkHeader header = checked_header(bytes, location, context);
   const std::span<const std::byte> payload = bytes.subspan(sizeof header, header.payload_bytes);
+  const std::span<const std::byte> padding = bytes.subspan(sizeof header + header.payload_bytes);
+  if (std::any_of(padding.begin(), padding.end(), [](std::byte b) { return b != std::byte{0}; }))
+    location.damaged("padding that is not 0", "zeros");
   const ChunkContext own = context_of(header.sh_degree, context);
   Chunk chunk;
   chunk.first_subtree = header.first_subtree;

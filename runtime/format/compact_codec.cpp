@@ -209,6 +209,8 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
   const size_t nodes = entry.node_count, coefficients = context.coefficients();
   std::vector<std::byte> raw(
       plane_bytes(entry.record_count, entry.subtree_count, nodes, coefficients));
+  if (ZSTD_findFrameCompressedSize(payload.data(), payload.size()) != payload.size())
+    location.damaged("a payload of something else", "one zstd frame");
   const size_t got = ZSTD_decompress(raw.data(), raw.size(), payload.data(), payload.size());
   if (ZSTD_isError(got)) location.damaged(ZSTD_getErrorName(got), "a zstd frame");
   if (got != raw.size())

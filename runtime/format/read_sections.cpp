@@ -26,6 +26,13 @@ std::vector<std::byte> read_section(const ByteSource& source, const Section& sec
   return bytes;
 }
 
+void check_padding(const std::vector<std::byte>& bytes, uint64_t used, uint64_t offset,
+                   const Check& check) {
+  check.that(std::all_of(bytes.begin() + static_cast<std::ptrdiff_t>(used), bytes.end(),
+                         [](std::byte b) { return b == std::byte{0}; }),
+             offset + used, "padding that is not 0", "zeros");
+}
+
 // From 0, ascending, up to `end`.
 void check_begins(const std::vector<uint32_t>& begin, uint64_t at, const char* what, uint32_t end,
                   const Check& check) {
@@ -44,9 +51,7 @@ void read_tiers(const ByteSource& source, const FileHeader& h, const Check& chec
   const uint64_t offset = sizeof(FileHeader);
   const std::vector<std::byte> bytes =
       read_section(source, h.tiers, SectionKind::tiers, offset, align_up(used, 8), check);
-  check.that(std::all_of(bytes.begin() + static_cast<std::ptrdiff_t>(used), bytes.end(),
-                         [](std::byte b) { return b == std::byte{0}; }),
-             offset + used, "padding that is not 0", "zeros");
+  check_padding(bytes, used, offset, check);
   if (h.node_count == 0) return;
   sections.level_begin.resize(levels);
   sections.tier_begin.resize(begins);
@@ -144,6 +149,7 @@ FileSections read_sections(const ByteSource& source, const FileHeader& h, const 
   const uint64_t end = align_up(offset + used, chunk_align(static_cast<Quality>(h.quality)));
   const std::vector<std::byte> bytes =
       read_section(source, h.directory, SectionKind::chunk_directory, offset, end - offset, check);
+  check_padding(bytes, used, offset, check);
   sections.chunks.resize(h.chunk_count);
   if (h.chunk_count != 0) std::memcpy(sections.chunks.data(), bytes.data(), used);
   check_directory(sections, h, check);

@@ -14,6 +14,10 @@ namespace {
 constexpr int kDirections = 12;
 constexpr int kMostSide = 384;     // pixels
 constexpr double kSideOfRoot = 4;  // pixels for the root of the Gaussians' number
+// Where Gaussians cover more of these than so many each, there are fewer: time is in proportion to
+// what is covered, and what is that large needs no fine picture.
+constexpr double kMeanCover = 1024;
+constexpr int kLeastSide = 16;
 constexpr double kOutside = 0.02;  // of the means, that may lie beyond the picture on a side
 constexpr float kThreshold = 255;  // 1 / α*
 constexpr float kLargest = 0.99f;  // α, METHOD §6
@@ -55,9 +59,9 @@ class Exposures {
         x_(leaves.size()),
         y_(leaves.size()),
         z_(leaves.size()),
-        side_(std::min(kMostSide,
-                       static_cast<int>(std::ceil(
-                           kSideOfRoot * std::sqrt(static_cast<double>(leaves.size())))))) {
+        most_side_(std::min(kMostSide,
+                            static_cast<int>(std::ceil(
+                                kSideOfRoot * std::sqrt(static_cast<double>(leaves.size())))))) {
     const size_t floats = size_t{3} * static_cast<size_t>(cloud.coefficients());
     for (const uint32_t leaf : leaves) {
       GaussianWords words = cloud.words(leaf);
@@ -98,7 +102,7 @@ class Exposures {
     const auto [x0, x1] = middle(x_);
     const auto [y0, y1] = middle(y_);
     const double side = std::max({x1 - x0, y1 - y0, 1e-6});
-    pixel_ = side / side_;
+    set_side(side, along);
     left_ = (x0 + x1) / 2 - side / 2;
     top_ = (y0 + y1) / 2 - side / 2;
     order_.resize(blobs_.size());
@@ -109,6 +113,24 @@ class Exposures {
     for (const uint32_t i : order_) paint(i, along);
     end_picture();
     for (const uint32_t i : order_) measure(i, along);
+  }
+
+  // The picture's, in pixels, of a square of that width in metres.
+  void set_side(double width, const Direction& along) {
+    side_ = most_side_;
+    pixel_ = width / side_;
+    double covered = 0;
+    for (const Blob& blob : blobs_) {
+      const Footprint f = footprint(blob, along);
+      if (!(f.reach > 0)) continue;
+      const double most = side_;
+      covered += std::min(2 * std::sqrt(f.reach * f.xx), most) *
+                 std::min(2 * std::sqrt(f.reach * f.yy), most);
+    }
+    const double allowed = kMeanCover * static_cast<double>(blobs_.size());
+    if (!(covered > allowed)) return;
+    side_ = std::max(kLeastSide, static_cast<int>(side_ * std::sqrt(allowed / covered)));
+    pixel_ = width / side_;
   }
 
   // Where all but kOutside of the values at each end are.
@@ -180,23 +202,29 @@ class Exposures {
     contrast_[i] += contrast / covered;
   }
 
-  // Fills alpha_ for each row of pixels that a Gaussian covers, and calls row(first pixel, count).
-  // False where it covers none of the picture.
-  template <class Row>
-  bool cover(uint32_t i, const Direction& along, const Row& row) {
-    const Blob& blob = blobs_[i];
-    const auto opacity = static_cast<float>(blob.opacity);
-    const float reach = 2 * std::log(kThreshold * opacity);
-    if (!(reach > 0)) return true;
+  struct Footprint {
+    float reach;        // of d, where alpha is the threshold; drawn where it is over 0
+    double xx, xy, yy;  // pixels²
+  };
+  Footprint footprint(const Blob& blob, const Direction& along) const {
     const auto across = [&](const Vec3d& a, const Vec3d& b) {
       const double* c = blob.covariance;
       const Vec3d cb{(c[0] * b.x + c[1] * b.y) + c[2] * b.z, (c[1] * b.x + c[3] * b.y) + c[4] * b.z,
                      (c[2] * b.x + c[4] * b.y) + c[5] * b.z};
       return dot(a, cb) / (pixel_ * pixel_);
     };
-    const double xx = across(along.right, along.right) + kLowPass;
-    const double xy = across(along.right, along.down);
-    const double yy = across(along.down, along.down) + kLowPass;
+    return {2 * std::log(kThreshold * static_cast<float>(blob.opacity)),
+            across(along.right, along.right) + kLowPass, across(along.right, along.down),
+            across(along.down, along.down) + kLowPass};
+  }
+
+  // Fills alpha_ for each row of pixels that a Gaussian covers, and calls row(first pixel, count).
+  // False where it covers none of the picture.
+  template <class Row>
+  bool cover(uint32_t i, const Direction& along, const Row& row) {
+    const auto [reach, xx, xy, yy] = footprint(blobs_[i], along);
+    if (!(reach > 0)) return true;
+    const auto opacity = static_cast<float>(blobs_[i].opacity);
     const double det = std::max(xx * yy - xy * xy, 1e-14 * xx * yy);
     const double u = (x_[i] - left_) / pixel_, v = (y_[i] - top_) / pixel_;
     const int begin_x = first(u, std::sqrt(reach * xx)), end_x = last(u, std::sqrt(reach * xx));
@@ -238,7 +266,7 @@ class Exposures {
   std::vector<float> transmittance_;
   std::vector<float> behind_[3];  // the picture without what is before
   float alpha_[kMostSide], weight_[kMostSide], after_[kMostSide], difference_[kMostSide];
-  int side_;
+  int most_side_, side_ = 0;
   double pixel_ = 0, left_ = 0, top_ = 0;
 };
 

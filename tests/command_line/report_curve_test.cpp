@@ -92,7 +92,7 @@ TEST_F(ReportCurve, HasARowForEachTreeViewAndShare) {
   if (browser().empty()) VOYAGER_SKIP_WITHOUT_BROWSER();
   const PageCheck check = check_page(browser(), file("out/curve.html"));
   EXPECT_EQ(check.findings, "");
-  EXPECT_EQ(check.plots, 3u);
+  EXPECT_EQ(check.plots, 6u);
 }
 
 TEST_F(ReportCurve, RefusalsAreOneLineAndLeaveNothing) {

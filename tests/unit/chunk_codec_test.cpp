@@ -1,12 +1,15 @@
 #include "runtime/format/chunk_codec.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
 
+#include "runtime/base/checksum.h"
 #include "runtime/format/quantise.h"
+#include "runtime/format/reader.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/support/scene_files.h"
 
@@ -132,6 +135,39 @@ TEST(ChunkCodec, ImpossibleValuesAreRefusedUnderARightChecksum) {
           << i;
     }
   }
+}
+
+// Bytes of a sound chunk that are changed, under a checksum that is right.
+ErrorCode refusal_of(const EncodedChunk& encoded, const std::vector<std::byte>& bytes,
+                     const ChunkContext& context) {
+  const std::string file = "test.voy";
+  ChunkEntry entry = entry_of(encoded);
+  entry.checksum = checksum(bytes);
+  return test::error_code([&] { decode_chunk(bytes, {file, 0, entry, kEnd}, context); });
+}
+
+TEST(ChunkCodec, WhatNobodyWouldReadIsRefused) {
+  for (const Quality quality : {Quality::lossless, Quality::compact}) {
+    const EncodedChunk encoded = encode_chunk(family(4), context_of(quality));
+    std::vector<std::byte> bytes = encoded.bytes;
+    bytes.back() = std::byte{1};
+    EXPECT_EQ(refusal_of(encoded, bytes, context_of(quality)), ErrorCode::damaged_chunk);
+  }
+  // A second, empty frame behind the first.
+  const ChunkContext context = context_of(Quality::compact);
+  const EncodedChunk encoded = encode_chunk(family(4), context);
+  ChunkHeader header;
+  std::memcpy(&header, encoded.bytes.data(), sizeof header);
+  const std::byte skippable[] = {std::byte{0x50}, std::byte{0x2a}, std::byte{0x4d}, std::byte{0x18},
+                                 std::byte{0},    std::byte{0},    std::byte{0},    std::byte{0}};
+  std::vector<std::byte> bytes(
+      encoded.bytes.begin(),
+      encoded.bytes.begin() + static_cast<std::ptrdiff_t>(sizeof header + header.payload_bytes));
+  bytes.insert(bytes.end(), std::begin(skippable), std::end(skippable));
+  header.payload_bytes += sizeof skippable;
+  std::memcpy(bytes.data(), &header, sizeof header);
+  bytes.resize(align_up(bytes.size(), chunk_align(Quality::compact)));
+  EXPECT_EQ(refusal_of(encoded, bytes, context), ErrorCode::damaged_chunk);
 }
 
 TEST(ChunkCodec, WordsThatAreNotFiniteAreRefused) {
@@ -289,7 +325,7 @@ Sizes check_compact(const GaussianCloud& cloud) {
   return {static_cast<double>(lossless.size()), static_cast<double>(compact.size())};
 }
 
-// A double's words are its child's, whichever of them is stored, and cost next to nothing.
+// So that nothing changes where a cut goes from one to the other.
 TEST(ChunkCodec, ADoubleIsRestoredAsItsChild) {
   const BakedScene baked = test::bake(test::random_cloud(5000, 13, 3));
   const test::Bytes bytes = test::scene_bytes(baked, Quality::compact);
@@ -320,6 +356,32 @@ TEST(ChunkCodec, CompactKeepsItsBoundsAndItsSizeOnARealBlock) {
   const auto source = open_file_source(folder + "/formats/block.ply");
   const Sizes sizes = check_compact(import_gaussians(*read_source(*source)));
   EXPECT_LE(sizes.compact, 0.22 * sizes.lossless);
+}
+
+// Files of before can be read: what these hold was written once, and is what docs/voy-format.md
+// says.
+TEST(ChunkCodec, KeptFilesHoldWhatTheyHeld) {
+  const std::pair<const char*, uint64_t> kept[] = {
+      {"compact_sh3", 15588292055588502376u},
+      {"compact_hierarchicalgs", 13764596890077128708u},
+      {"chain", 14896656721393000543u}};
+  for (const auto& [name, sum] : kept) {
+    const SceneFile file(open_file_source(std::string(VOYAGER_SOURCE_DIR) +
+                                          "/tests/fuzz/corpus/voy/" + name + ".voy"));
+    std::vector<std::byte> held;
+    const auto add = [&](const auto& values) {
+      const auto bytes = std::as_bytes(std::span(values));
+      held.insert(held.end(), bytes.begin(), bytes.end());
+    };
+    for (uint32_t index = 0; index < file.chunks().size(); ++index) {
+      const Chunk chunk = file.read_chunk(index);
+      add(chunk.records), add(chunk.node), add(chunk.sh), add(chunk.axis_code);
+      add(chunk.source_index);
+      for (const GaussianWords& words : chunk.words)
+        add(std::array{words.mean.x, words.mean.y, words.mean.z, words.log_scale.x});
+    }
+    EXPECT_EQ(checksum(held), sum) << name;
+  }
 }
 
 }  // namespace

@@ -92,6 +92,13 @@ TEST(Exposure, WhatIsTooFaintToBeDrawnHasTheLeast) {
   EXPECT_EQ(exposures(cloud)[0].seen, kLeastSeen);
 }
 
+// 8,000 that each cover the whole: in pictures of full size that would take a minute.
+TEST(Exposure, WhereAllCoverAllPicturesAreCoarser) {
+  GaussianCloud fog = test::random_cloud(8000, 7, 0);
+  for (size_t i = 0; i < 3 * fog.size(); ++i) fog.position[i] *= 0.01f, fog.log_scale[i] = 1;
+  for (const ExposureCode found : exposures(fog)) ASSERT_GE(found.seen, kLeastSeen);
+}
+
 TEST(Exposure, DoesNotDependOnTheOrderOfTheInput) {
   const GaussianCloud cloud = test::random_cloud(800, 5, 0);
   std::vector<uint32_t> leaves = all_of(cloud);

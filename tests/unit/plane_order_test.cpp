@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
+#include <iterator>
 
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
@@ -28,25 +28,39 @@ std::vector<uint32_t> nodes_of(const Chunk& chunk) {
   return nodes;
 }
 
+// Of each record, the first of its subtree.
+std::vector<uint32_t> roots_of(const Chunk& chunk) {
+  std::vector<uint32_t> roots;
+  for (const Subtree& subtree : chunk.subtrees)
+    roots.insert(roots.end(), subtree.node_count(), static_cast<uint32_t>(roots.size()));
+  return roots;
+}
+
 TEST(Families, AreThoseOfTheTree) {
-  size_t whole = 0;
+  size_t whole = 0, split = 0;
   for (const test::TreeShape shape : test::kTreeShapes) {
     const BakedScene baked = test::baked_of(test::random_tree(shape, 3000, 6));
     for_each_chunk(baked, [&](const Chunk& chunk) {
       const Families families = families_of(counts_of(chunk));
-      const std::vector<uint32_t> node = nodes_of(chunk);
+      const std::vector<uint32_t> node = nodes_of(chunk), root = roots_of(chunk);
       for (uint32_t i = 0; i < node.size(); ++i) {
         const Families::Run& run = families.children[i];
         for (uint32_t k = 0; k < run.count; ++k)
           ASSERT_EQ(node[run.first + k], baked.tree.first_child[node[i]] + k);
-        ASSERT_TRUE(run.count == 0 || run.count == chunk.records[i].child_count);
+        const uint32_t all = chunk.records[i].child_count;
+        uint32_t listed = 0;
+        for (uint32_t k = 0; k < node.size(); ++k)
+          listed += root[k] == root[i] && baked.tree.parent[node[k]] == node[i];
+        ASSERT_EQ(run.count, listed == all ? all : 0);
         const uint32_t parent = families.parent[i];
+        ASSERT_EQ(parent == kNoNode, i == root[i]);
         ASSERT_TRUE(parent == kNoNode || node[parent] == baked.tree.parent[node[i]]);
-        whole += run.count != 0;
+        whole += run.count != 0, split += listed != 0 && listed != all;
       }
     });
   }
   EXPECT_GT(whole, 0u);
+  EXPECT_GT(split, 0u);
 }
 
 // Of a damaged chunk, which is refused only once it is read.
@@ -69,7 +83,7 @@ TEST(Families, OfAnyCountsStayAmongTheRecords) {
   }
 }
 
-// What is restored in this order finds what tells it.
+// What is restored in this order finds what tells it, and all that can be told is.
 TEST(PlaneOrder, HoldsEachItemOnceAfterWhatTellsIt) {
   size_t boxes_told = 0, extents_told = 0, gaussians_told = 0;
   const auto check = [&](const Chunk& chunk) {
@@ -82,7 +96,13 @@ TEST(PlaneOrder, HoldsEachItemOnceAfterWhatTellsIt) {
       EXPECT_EQ(std::count(place.begin(), place.end(), SIZE_MAX), 0);
       return place;
     };
+    const auto ascends = [](auto begin, auto end) { return std::is_sorted(begin, end); };
     const PlaneOrder boxes = box_order(families);
+    const auto plain_boxes = boxes.item.begin() + static_cast<std::ptrdiff_t>(boxes.plain);
+    ASSERT_TRUE(ascends(boxes.item.begin(), plain_boxes));
+    ASSERT_TRUE(ascends(boxes.item.rbegin(), std::make_reverse_iterator(plain_boxes)));
+    for (auto i = boxes.item.begin(); i != plain_boxes; ++i)
+      ASSERT_EQ(families.children[*i].count, 0u);
     const std::vector<size_t> box = place_of(boxes, chunk.records.size());
     for (size_t at = boxes.plain; at < boxes.item.size(); ++at) {
       const Families::Run& run = families.children[boxes.item[at]];
@@ -91,6 +111,11 @@ TEST(PlaneOrder, HoldsEachItemOnceAfterWhatTellsIt) {
     }
     const PlaneOrder extents = extent_order(families, counts);
     const std::vector<size_t> extent = place_of(extents, chunk.records.size());
+    const auto plain_extents = extents.item.begin() + static_cast<std::ptrdiff_t>(extents.plain);
+    ASSERT_TRUE(ascends(extents.item.begin(), plain_extents));
+    ASSERT_TRUE(ascends(plain_extents, extents.item.end()));
+    for (auto i = extents.item.begin(); i != plain_extents; ++i)
+      ASSERT_TRUE(families.parent[*i] == kNoNode || counts.of_record[*i] > 1);
     for (size_t at = extents.plain; at < extents.item.size(); ++at)
       ASSERT_LT(extent[families.parent[extents.item[at]]], at);
     const GaussianOrder gaussians = gaussian_order(families, counts, chunk.record);

@@ -171,10 +171,10 @@ TEST(ReportCurve, ThePageIsWholeByItself) {
   std::vector<CurveRow> rows = rows_of("<a>", 30);
   const std::vector<Curve> curves = mean_curves(rows);
   const std::vector<PagePlot> plots = curve_plots(rows, curves);
-  ASSERT_EQ(plots.size(), 3u);
+  ASSERT_EQ(plots.size(), 6u);
   EXPECT_EQ(plots[0].plot.series[0].points[0].y, 30);
   EXPECT_EQ(plots[1].plot.series[0].points[0].y, 31);
-  EXPECT_EQ(plots[2].plot.series[0].points[0].x, 9);
+  EXPECT_EQ(plots[3].plot.series[0].points[0].x, 9);
   const CurvePage page{{{"scene", "<script>"}}, "method & more", plots, rows, curves};
   const std::string text = html(page);
   EXPECT_EQ(text.find("<script>"), std::string::npos);

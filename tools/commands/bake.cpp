@@ -197,8 +197,10 @@ BakeSummary bake_from_folder(const Arguments& arguments, const OpenInputs& open,
                 "--verify: found a bake in a work folder, expected one in memory: the file is "
                 "compared with the whole tree");
   if (arguments.tree != TreeKind::clustered)
-    throw Error(ErrorCode::unsupported,
-                "--tree hierarchicalgs: found a bake in a work folder, expected one in memory");
+    throw Error(
+        ErrorCode::unsupported,
+        "--tree hierarchicalgs: found a bake in a work folder, expected one in memory: give more "
+        "--memory and no --work, or take the clustered tree");
   BakeInParts bake;
   bake.request = bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes);
   bake.output = arguments.output;

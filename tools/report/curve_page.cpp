@@ -3,25 +3,49 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "tools/report/curve_text.h"
 
 namespace voyager::tools {
 namespace {
 
-constexpr const char* kDecibels = "PSNR against all leaves, dB";
+struct Axis {
+  const char* label;
+  std::optional<double> (*of)(const CurveRow& row);
+};
+
+const Axis kShare{"cut, % of the leaves",
+                  [](const CurveRow& row) -> std::optional<double> { return 100 * row.cut_share; }};
+const Axis kSplats{"splats that reach a pixel",
+                   [](const CurveRow& row) -> std::optional<double> { return row.splats; }};
+const Axis kTime{"ms a frame, median",
+                 [](const CurveRow& row) -> std::optional<double> { return row.milliseconds; }};
+const Axis kPsnr{"PSNR against all leaves, dB",
+                 [](const CurveRow& row) -> std::optional<double> { return row.error.psnr; }};
+const Axis kSsim{"SSIM against all leaves",
+                 [](const CurveRow& row) -> std::optional<double> { return row.error.ssim; }};
+const Axis kFlip{"FLIP against all leaves",
+                 [](const CurveRow& row) -> std::optional<double> { return row.error.flip; }};
 
 // The points carry their shares where the axis has none.
-PlotSeries series_of(const std::string& tree, const std::vector<CurveRow>& rows, bool over_time) {
+PlotSeries series_of(const std::string& tree, const std::vector<CurveRow>& rows, const Axis& x,
+                     const Axis& y) {
   PlotSeries series{tree, {}, true};
-  for (const CurveRow& row : rows)
-    series.points.push_back({over_time ? row.milliseconds : 100 * row.cut_share, row.error.psnr,
-                             over_time ? share_text(row.share) : "", false});
+  for (const CurveRow& row : rows) {
+    const std::optional<double> at = x.of(row), value = y.of(row);
+    if (at && value)
+      series.points.push_back({*at, *value, &x == &kShare ? "" : share_text(row.share), false});
+  }
   return series;
 }
 
-Plot plot_of(const std::string& title, const char* x_label) {
-  return {title, x_label, kDecibels, {}, false, false, 560, 400, true};
+// Of each tree's means over the views.
+Plot plot_of_means(const std::string& title, const std::vector<Curve>& curves, const Axis& x,
+                   const Axis& y) {
+  Plot plot{title, x.label, y.label, {}, false, false, 560, 400, &y != &kFlip};
+  for (const Curve& curve : curves) plot.series.push_back(series_of(curve.tree, curve.means, x, y));
+  return plot;
 }
 
 std::string row_cells(const CurveRow& row) {
@@ -81,20 +105,23 @@ std::string warning(const std::vector<CurveRow>& rows) {
 
 std::vector<PagePlot> curve_plots(const std::vector<CurveRow>& rows,
                                   const std::vector<Curve>& curves) {
-  constexpr const char* kShare = "cut, % of the leaves";
   const std::string first = rows[0].view;
-  Plot of_first = plot_of("Quality over cut size: view " + first, kShare);
-  Plot of_all = plot_of("Quality over cut size: mean of the views", kShare);
-  Plot over_time = plot_of("Quality over time: mean of the views", "ms a frame, median");
+  Plot of_first = plot_of_means("Quality over cut size: view " + first, {}, kShare, kPsnr);
   for (const Curve& curve : curves) {
     std::vector<CurveRow> own;
     for (const CurveRow& row : rows)
       if (row.tree == curve.tree && row.view == first) own.push_back(row);
-    of_first.series.push_back(series_of(curve.tree, own, false));
-    of_all.series.push_back(series_of(curve.tree, curve.means, false));
-    over_time.series.push_back(series_of(curve.tree, curve.means, true));
+    of_first.series.push_back(series_of(curve.tree, own, kShare, kPsnr));
   }
-  return {{"curve_first.png", of_first}, {"curve_mean.png", of_all}, {"curve_time.png", over_time}};
+  const auto mean = [&](const char* title, const Axis& x, const Axis& y) {
+    return plot_of_means(std::string(title) + ": mean of the views", curves, x, y);
+  };
+  return {{"curve_first.png", of_first},
+          {"curve_mean.png", mean("Quality over cut size", kShare, kPsnr)},
+          {"curve_splats.png", mean("Quality over splats", kSplats, kPsnr)},
+          {"curve_time.png", mean("Quality over time", kTime, kPsnr)},
+          {"curve_ssim.png", mean("SSIM over cut size", kShare, kSsim)},
+          {"curve_flip.png", mean("FLIP over cut size", kShare, kFlip)}};
 }
 
 std::string html(const CurvePage& page) {
