@@ -37,7 +37,7 @@ check_scene() {  # check_scene NAME INPUT CAMERAS
   done
 }
 
-quietly "${native[@]}" synth city --gaussians 20000 -o "$work/city.ply"
+quietly "${native[@]}" synth city --gaussians 10000 -o "$work/city.ply"
 check_scene city "$work/city.ply" "$work/city.cameras.json"
 if [ -e "$scenes/README.md" ]; then
   check_scene block "$scenes/formats/block.ply" "$scenes/district.flight.cameras.json"

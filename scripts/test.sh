@@ -30,10 +30,10 @@ scripts/check_tidy.sh build/asan
 step "asan: test"
 ctest --preset asan -j "$(nproc)"
 
-step "tsan: two minutes of streaming on many threads under ThreadSanitizer"
+step "tsan: a minute of streaming on many threads under ThreadSanitizer"
 cmake --preset tsan -DVOYAGER_WERROR=ON
 cmake --build --preset tsan --target property_streaming_flight_test
-VOYAGER_FLIGHT_SECONDS=120 ctest --preset tsan -R StreamingFlight
+VOYAGER_FLIGHT_SECONDS=60 ctest --preset tsan -R StreamingFlight
 
 if [ "$(uname -m)" = aarch64 ]; then
   step "aarch64: this machine is one, and the steps above were it"

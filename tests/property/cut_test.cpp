@@ -114,7 +114,8 @@ TEST(Cut, MissingNodesAreLeftOutAndNamed) {
   Workers workers(2);
   std::mt19937 random(2);
   ExhaustiveSearch search;
-  const LodTree tree = build_tree(test::random_cloud(20000, 2), workers).tree;
+  const LodTree tree =
+      build_tree(test::random_cloud(20000, 2), workers, {}, test::kLargeScene).tree;
   const uint32_t nodes = static_cast<uint32_t>(tree.size());
   const std::vector<std::vector<MissingNodes>> cases = {
       {{0, 1}},
@@ -154,7 +155,7 @@ TEST(Cut, MissingNodesAreLeftOutAndNamed) {
 
 TEST(Cut, DoesNotDependOnThreads) {
   Workers one(1), five(5);
-  const LodTree tree = build_tree(test::random_cloud(20000, 3), one).tree;
+  const LodTree tree = build_tree(test::random_cloud(20000, 3), one, {}, test::kLargeScene).tree;
   ExhaustiveSearch a, b;
   std::mt19937 random(3);
   const std::vector<MissingNodes> missing = {{700, 3}, {12000, 4000}};
@@ -169,7 +170,7 @@ TEST(Cut, DoesNotDependOnThreads) {
 
 TEST(Cut, SizesAreTheScreenSizes) {
   Workers workers(2);
-  const LodTree tree = build_tree(test::random_cloud(3000, 4), workers).tree;
+  const LodTree tree = build_tree(test::random_cloud(3000, 4), workers, {}, test::kLargeScene).tree;
   ExhaustiveSearch search;
   const Vec3f c{3, -20, 7};
   search.run(tree, {}, {c, 0.1f}, workers);
@@ -218,7 +219,8 @@ class CountingResource final : public std::pmr::memory_resource {
 
 TEST(Cut, AllocatesNothingOnceWarm) {
   Workers workers(2);
-  const LodTree tree = build_tree(test::random_cloud(20000, 6), workers).tree;
+  const LodTree tree =
+      build_tree(test::random_cloud(20000, 6), workers, {}, test::kLargeScene).tree;
   CountingResource memory;
   ExhaustiveSearch search(&memory);
   search.run(tree, {}, {{1e6f, 0, 0}, 1e9f}, workers);
