@@ -14,8 +14,8 @@ namespace {
 constexpr int kDirections = 12;
 constexpr int kMostSide = 384;     // pixels
 constexpr double kSideOfRoot = 4;  // pixels for the root of the Gaussians' number
-// Where Gaussians cover more of these than so many each, there are fewer: time is in proportion to
-// what is covered, and what is that large needs no fine picture.
+// Of the picture, that a Gaussian covers in the mean at most: else it has fewer. Time is in
+// proportion to what is covered, and what is that large needs no fine picture.
 constexpr double kMeanCover = 1024;
 constexpr int kLeastSide = 16;
 constexpr double kOutside = 0.02;  // of the means, that may lie beyond the picture on a side
@@ -115,7 +115,7 @@ class Exposures {
     for (const uint32_t i : order_) measure(i, along);
   }
 
-  // The picture's, in pixels, of a square of that width in metres.
+  // Into how many pixels a square of that width, in metres, is divided.
   void set_side(double width, const Direction& along) {
     side_ = most_side_;
     pixel_ = width / side_;

@@ -96,11 +96,10 @@ TEST(PlaneOrder, HoldsEachItemOnceAfterWhatTellsIt) {
       EXPECT_EQ(std::count(place.begin(), place.end(), SIZE_MAX), 0);
       return place;
     };
-    const auto ascends = [](auto begin, auto end) { return std::is_sorted(begin, end); };
     const PlaneOrder boxes = box_order(families);
     const auto plain_boxes = boxes.item.begin() + static_cast<std::ptrdiff_t>(boxes.plain);
-    ASSERT_TRUE(ascends(boxes.item.begin(), plain_boxes));
-    ASSERT_TRUE(ascends(boxes.item.rbegin(), std::make_reverse_iterator(plain_boxes)));
+    ASSERT_TRUE(std::is_sorted(boxes.item.begin(), plain_boxes));
+    ASSERT_TRUE(std::is_sorted(boxes.item.rbegin(), std::make_reverse_iterator(plain_boxes)));
     for (auto i = boxes.item.begin(); i != plain_boxes; ++i)
       ASSERT_EQ(families.children[*i].count, 0u);
     const std::vector<size_t> box = place_of(boxes, chunk.records.size());
@@ -112,8 +111,8 @@ TEST(PlaneOrder, HoldsEachItemOnceAfterWhatTellsIt) {
     const PlaneOrder extents = extent_order(families, counts);
     const std::vector<size_t> extent = place_of(extents, chunk.records.size());
     const auto plain_extents = extents.item.begin() + static_cast<std::ptrdiff_t>(extents.plain);
-    ASSERT_TRUE(ascends(extents.item.begin(), plain_extents));
-    ASSERT_TRUE(ascends(plain_extents, extents.item.end()));
+    ASSERT_TRUE(std::is_sorted(extents.item.begin(), plain_extents));
+    ASSERT_TRUE(std::is_sorted(plain_extents, extents.item.end()));
     for (auto i = extents.item.begin(); i != plain_extents; ++i)
       ASSERT_TRUE(families.parent[*i] == kNoNode || counts.of_record[*i] > 1);
     for (size_t at = extents.plain; at < extents.item.size(); ++at)

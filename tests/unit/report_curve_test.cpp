@@ -167,6 +167,15 @@ TEST(ReportCurve, EachLineHasTheHeadersFields) {
   EXPECT_EQ(csv.substr(end + 1), "\"a, \"\"b\"\"\",0,0.9,0.9,1.111111111,900,0,0,inf,,0,,9,0\n");
 }
 
+// Images smaller than SSIM's window have none.
+TEST(ReportCurve, WhatARowLacksIsNoPoint) {
+  std::vector<CurveRow> rows = rows_of("a", 30);
+  for (CurveRow& row : rows) row.error.ssim.reset();
+  const std::vector<PagePlot> plots = curve_plots(rows, mean_curves(rows));
+  for (const PagePlot& plot : plots)
+    EXPECT_EQ(plot.plot.series[0].points.empty(), plot.file == "curve_ssim.png") << plot.file;
+}
+
 TEST(ReportCurve, ThePageIsWholeByItself) {
   std::vector<CurveRow> rows = rows_of("<a>", 30);
   const std::vector<Curve> curves = mean_curves(rows);
