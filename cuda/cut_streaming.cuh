@@ -48,12 +48,7 @@ __device__ inline void read_subtrees(const TreeView& tree, const StateView& stat
     const uint32_t subtree = subtree_of(ticket, there ? base + group_in_warp() : base);
     const Known known = load_known(state, subtree);
     const SearchSubtree s = load_subtree(tree, subtree);
-    // Without an entry: the tree's root.
-    bool open = there && s.entry != kNotLinked;
-    if (open && s.entry != kNoRecord) {
-      open = judge(load_record(tree.records + s.entry), sight).refined;
-      if (lane_in_group() == 0) ++tally.tested;
-    }
+    const bool open = there && is_reached(tree, s, sight, tally);
     const Visit v = visit_group(tree, s, sight, open, tally);
     settle(state, s, subtree, known, v, reference, open, tally);
     if (there && !open) close_subtree(state, subtree, s.child_count, known, tally);

@@ -109,8 +109,12 @@ __global__ void __launch_bounds__(kThreads)
     const Known known = load_known(state, subtree);
     const SearchSubtree s = load_subtree(tree, subtree);
     const Visit v = visit_group(tree, s, sight, active, tally);
-    settle(state, s, subtree, known, v, reference, active, tally);
+    // One that nothing reaches any more closes at once, before its parent, which is due too, says
+    // so: what changed would enter the cut only to leave it again, and count as both.
+    const bool open = active && (v.cut == known.cut || is_reached(tree, s, sight, tally));
+    settle(state, s, subtree, known, v, reference, open, tally);
     if (active) signal_changes(tree, state, s, known.refined, v.refined);
+    if (active && !open) close_subtree(state, subtree, s.child_count, known, tally);
   }
   tally.flush(state.work);
 }

@@ -102,6 +102,14 @@ struct Tally {
   }
 };
 
+// Whether the record that leads to a subtree is refined; nothing leads to the tree's root.
+__device__ inline bool is_reached(const TreeView& tree, const SearchSubtree& s, const Sight& sight,
+                                  Tally& tally) {
+  if (s.entry == kNoRecord || s.entry == kNotLinked) return s.entry == kNoRecord;
+  if (lane_in_group() == 0) ++tally.tested;
+  return judge(load_record(tree.records + s.entry), sight).refined;
+}
+
 // A subtree's verdicts; the same in all lanes of its group. Nodes below one that is not
 // refined are tested too: they are not refined, and have more slack than it has.
 __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s,
