@@ -4,6 +4,7 @@
 
 #include "tests/support/random_trees.h"
 #include "tests/support/stream_rig.h"
+#include "tests/support/tree_clouds.h"
 #include "tests/support/tree_rules.h"
 
 namespace voyager {
@@ -134,28 +135,10 @@ class StreamingOfTree : public ::testing::TestWithParam<test::NamedRule> {
 INSTANTIATE_TEST_SUITE_P(Rules, StreamingOfTree, ::testing::ValuesIn(test::all_rules()),
                          test::rule_name<::testing::TestParamInfo<test::NamedRule>>);
 
-// All of one colour.
-void paint(GaussianCloud& cloud) {
-  std::fill(cloud.sh.begin(), cloud.sh.end(), 0.3f);
-}
-
-// Four kilometres long, so that what a frame sees is little of it, whatever a chunk spans. Of one
-// colour, a clustered tree's extents are far below its boxes; of many, far above.
-GaussianCloud street(bool of_one_colour) {
-  GaussianCloud cloud = test::random_cloud(20000, 6, 1);
-  for (size_t i = 0; i < cloud.size(); ++i) {
-    cloud.position[3 * i] *= 200;
-    cloud.position[3 * i + 1] *= 2;
-    cloud.position[3 * i + 2] *= 2;
-  }
-  if (of_one_colour) paint(cloud);
-  return cloud;
-}
-
 // Where there is room for what is seen, what is around may be coarse: no pixel shows it.
 TEST_P(StreamingOfTree, RoomForWhatIsSeenIsRoomForTheResidentImage) {
   for (const bool of_one_colour : {false, true}) {
-    StreamRig rig(bake(street(of_one_colour)), 1.0);
+    StreamRig rig(bake(test::long_street(of_one_colour)), 1.0);
     const auto chunks = static_cast<uint32_t>(rig.stream().file().chunks().size());
     size_t coarse = 0;
     for (int i = 0; i < 12; ++i) {
@@ -190,7 +173,7 @@ TEST_P(StreamingOfTree, WhatIsLargeFromTheStartIsThereInTheFirstFrame) {
   const Vec3d origin{1000, 0, -2000};
   GaussianCloud cloud = test::random_cloud(100000, 8, 1);
   for (float& x : cloud.position) x *= 20;
-  paint(cloud);
+  test::paint(cloud);
   cloud.origin = {origin.x, origin.y, origin.z};
   const StreamRig rig(bake(cloud), 1.0);
   const uint64_t first_bytes = rig.bytes.size() / 4;

@@ -1,5 +1,6 @@
 #pragma once
 // Clouds that a tree must survive: random ones of every size, and the degenerate.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -20,6 +21,24 @@ struct NamedCloud {
 inline GaussianCloud specks(size_t count, uint32_t seed, int sh_degree) {
   GaussianCloud cloud = random_cloud(count, seed, sh_degree);
   for (float& s : cloud.log_scale) s -= 4;
+  return cloud;
+}
+
+// All of one colour.
+inline void paint(GaussianCloud& cloud) {
+  std::fill(cloud.sh.begin(), cloud.sh.end(), 0.3f);
+}
+
+// Four kilometres long, so that what a frame sees is little of it, whatever a chunk spans. Of one
+// colour, a clustered tree's extents are far below its boxes; of many, far above.
+inline GaussianCloud long_street(bool of_one_colour) {
+  GaussianCloud cloud = random_cloud(20000, 6, 1);
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    cloud.position[3 * i] *= 200;
+    cloud.position[3 * i + 1] *= 2;
+    cloud.position[3 * i + 2] *= 2;
+  }
+  if (of_one_colour) paint(cloud);
   return cloud;
 }
 
