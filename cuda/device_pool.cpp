@@ -52,6 +52,7 @@ DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
       shape_(shape),
       sh_degree_(scene.sh_degree),
       half_sh_(fits_half(scene)),
+      doubles_(scene.doubles),
       chunks_(scene.search.chunks),
       piece_layout_(scene, shape, 1),
       layout_(piece_layout_),
@@ -100,6 +101,7 @@ GaussianView DevicePool::gaussians() const {
           array<uint4>(kCoefficients),
           sh_degree_,
           half_sh_,
+          doubles_,
           slots_ * shape_.nodes};
 }
 

@@ -38,6 +38,7 @@ DeviceScene::DeviceScene(const Scene& scene, Workers& workers) {
            half ? static_cast<const void*>(half_coefficients_.data()) : coefficients_.data(),
            scene.sh_degree,
            half,
+           scene.doubles,
            static_cast<uint32_t>(hulls_.size())};
 }
 

@@ -15,7 +15,7 @@ __device__ DrawItem item_at(const GaussianView& gaussians, const CutList& list, 
   if (item.t == 1.0f) return item;
   item.parent = __ldg(gaussians.parents + gaussian);
   item.inverse_k = 1.0f / static_cast<float>(__ldg(gaussians.child_counts + item.parent));
-  return item;
+  return drawn_item(item, gaussians.doubles);
 }
 
 }  // namespace voyager::cuda

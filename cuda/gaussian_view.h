@@ -24,6 +24,7 @@ struct GaussianView {
   const void* coefficients;
   int sh_degree;
   bool half_sh;
+  bool doubles;  // nodes of one child are doubles (docs/lod-tree.md)
   uint32_t count;
 };
 

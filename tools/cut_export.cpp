@@ -12,7 +12,8 @@
 namespace voyager::tools {
 namespace {
 
-void append(GaussianCloud& cloud, const GaussianArrays& arrays, const DrawItem& item) {
+void append(GaussianCloud& cloud, const GaussianArrays& arrays, const DrawItem& cut_item) {
+  const DrawItem item = drawn_item(cut_item, arrays.doubles);
   const Vec3f mean = interpolated_mean(arrays, item);
   const Shape<float> shape = interpolated_shape<float>(arrays, item);
   for (int i = 0; i < 3; ++i) cloud.position.push_back(mean[i]);

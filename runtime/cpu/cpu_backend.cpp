@@ -110,14 +110,14 @@ void CpuPipeline::project_instance(const HostInstance& instance) {
     size_t out[kEyes];
     for (size_t& at : out) at = first;
     for (size_t i = begin; i < end; ++i) {
-      const Vec3f mean = interpolated_mean(arrays, items[i]);
+      const DrawItem item = drawn_item(items[i], arrays.doubles);
+      const Vec3f mean = interpolated_mean(arrays, item);
       const auto sees = [&](const ProjectParams& eye) { return before_near_plane(eye, mean); };
       DrawnGaussian drawn;
-      if (std::none_of(params, params + kEyes, sees) || !read_gaussian(arrays, items[i], drawn))
+      if (std::none_of(params, params + kEyes, sees) || !read_gaussian(arrays, item, drawn))
         continue;
       for (size_t eye = 0; eye < kEyes; ++eye)
-        out[eye] +=
-            voyager::project(params[eye], arrays, items[i], drawn, eyes_[eye].splats[out[eye]]);
+        out[eye] += voyager::project(params[eye], arrays, item, drawn, eyes_[eye].splats[out[eye]]);
     }
     for (size_t eye = 0; eye < kEyes; ++eye)
       eyes_[eye].visible[first / kProjectBlock] = static_cast<uint32_t>(out[eye] - first);

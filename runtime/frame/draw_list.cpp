@@ -8,7 +8,8 @@
 namespace voyager {
 
 GaussianArrays gaussian_arrays(const Scene& scene) {
-  return {scene.gaussians.data(), scene.sh.data(), scene.axis_code.data(), scene.sh_degree};
+  return {scene.gaussians.data(), scene.sh.data(), scene.axis_code.data(), scene.sh_degree,
+          scene.doubles};
 }
 
 DrawList::DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,

@@ -26,6 +26,7 @@ void set_info(const SceneFileInfo& info, Scene& scene) {
   scene.profile.merged = info.node_count > info.leaf_count;
   scene.profile.interpolated = info.node_count > 1;
   scene.antialiased = info.antialiased;
+  scene.doubles = info.tree == TreeKind::clustered;
   scene.tree_depth = info.depth;
   scene.chunk_count = info.chunk_count;
   scene.leaf_count = info.leaf_count;

@@ -72,6 +72,7 @@ struct Scene {
   Storage storage = Storage::flat;
   int sh_degree = 0;  // of what is kept: SceneProfile has the input's
   bool antialiased = false;
+  bool doubles = false;  // nodes of one child are doubles (docs/lod-tree.md)
   uint32_t tree_depth = 0, chunk_count = 0;
   uint64_t leaf_count = 0, node_count = 0;         // of the whole tree
   Vec3d origin{0, 0, 0};                           // world position of the scene-local zero

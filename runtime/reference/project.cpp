@@ -15,8 +15,9 @@ Vec3f to_float(const Vec3d& v) {
 
 }  // namespace
 
-std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& item) {
+std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& cut_item) {
   const GaussianArrays arrays = gaussian_arrays(scene);
+  const DrawItem item = drawn_item(cut_item, arrays.doubles);
   const Vec3f mean = interpolated_mean(arrays, item);
   const Vec3f key = camera_relative(mean, scene.origin, camera.eye);
   const float z = view_depth(key, to_float(camera.world_to_view.row[2]));

@@ -20,6 +20,6 @@ struct Splat {
 };
 
 // camera: in the scene's coordinates.
-std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& item);
+std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& cut_item);
 
 }  // namespace voyager::reference

@@ -38,6 +38,7 @@ struct GaussianArrays {
   const float* coefficients;  // [k][rgb] a Gaussian
   const uint8_t* axis_codes;  // of a tree; a flat scene has none
   int degree;
+  bool doubles;  // nodes of one child are doubles (docs/lod-tree.md)
 
   int sh_degree() const { return degree; }
   const Vec3f& mean(uint32_t i) const { return gaussians[i].mean; }
@@ -50,6 +51,13 @@ struct GaussianArrays {
     return [own](int k, int channel) { return own[3 * k + channel]; };
   }
 };
+
+// What is drawn of a cut node. A double holds its only child's Gaussian: between the two there is
+// nothing to interpolate, whatever t is.
+VOYAGER_HD DrawItem drawn_item(const DrawItem& item, bool doubles) {
+  if (doubles && item.inverse_k == 1.0f) return {item.gaussian, kNoNode, 1.0f, 1.0f};
+  return item;
+}
 
 template <class Arrays>
 VOYAGER_HD Vec3f interpolated_mean(const Arrays& arrays, const DrawItem& item) {

@@ -98,7 +98,8 @@ std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const Fr
   const GaussianArrays arrays = gaussian_arrays(*scene);
   std::vector<Splat> splats;
   Splat splat;
-  for (const DrawItem& item : draws.items()) {
+  for (const DrawItem& cut_item : draws.items()) {
+    const DrawItem item = drawn_item(cut_item, arrays.doubles);
     DrawnGaussian drawn;
     if (read_gaussian(arrays, item, drawn) && project(params, arrays, item, drawn, splat))
       splats.push_back(splat);

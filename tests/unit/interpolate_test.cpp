@@ -59,7 +59,7 @@ struct Pair {  // Gaussian 0 is the parent, 1 its child
   Gaussian gaussians[2];
   float sh[6] = {1, 2, 3, -1, 0, 5};
   uint8_t codes[2] = {0, 0};
-  GaussianArrays arrays() const { return {gaussians, sh, codes, 0}; }
+  GaussianArrays arrays() const { return {gaussians, sh, codes, 0, false}; }
 };
 
 Pair random_pair(std::mt19937& random) {
@@ -87,6 +87,18 @@ TEST(Interpolate, AtOneTheStoredValuesAreUntouched) {
   EXPECT_EQ(shape.rotation.w, pair.gaussians[1].rotation.w);
   EXPECT_EQ(shape.log_opacity, pair.gaussians[1].log_opacity);
   EXPECT_EQ(interpolated_mean(pair.arrays(), item).x, pair.gaussians[1].mean.x);
+}
+
+TEST(Interpolate, NothingLiesBetweenADoubleAndItsChild) {
+  const DrawItem only_child{1, 0, 0.37f, 1.0f};
+  const DrawItem drawn = drawn_item(only_child, true);
+  EXPECT_EQ(drawn.gaussian, 1u);
+  EXPECT_EQ(drawn.parent, kNoNode);
+  EXPECT_EQ(drawn.t, 1.0f);
+  for (const auto& [item, doubles] : {std::pair{only_child, false}, {{1, 0, 0.37f, 0.5f}, true}}) {
+    EXPECT_EQ(drawn_item(item, doubles).parent, 0u);
+    EXPECT_EQ(drawn_item(item, doubles).t, 0.37f);
+  }
 }
 
 TEST(Interpolate, AxisCodesLeaveTheChildsCovarianceAlone) {
