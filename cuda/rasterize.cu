@@ -105,21 +105,35 @@ __device__ float farthest_of(const Lane& lane) {
   return z;
 }
 
-// Of the splats that the warp blends.
-template <class M>
-__device__ Siblings most_siblings(bool touches, const RasterSplat& splat) {
-  const Siblings own =
-      touches ? siblings_of<M::kExponential>(splat.middle.w, splat.colour.w) : Siblings::none;
-  if (__any_sync(kAll, own == Siblings::many)) return Siblings::many;
-  return __any_sync(kAll, own == Siblings::few) ? Siblings::few : Siblings::none;
+constexpr int kUnrolled = 4;  // splats that a loop takes at once, so that they overlap
+
+// kMost: of the splats in [first, last).
+template <Siblings kMost, class Lane>
+__device__ void blend_chosen(const WarpSplats& chosen, int first, int last, const Lut& lut,
+                             Lane& lane, Counts& counts) {
+#pragma unroll(kMost == Siblings::many ? 1 : kUnrolled)
+  for (int i = first; i < last; ++i)
+    lane.template blend<kMost>(chosen.shape[i], chosen.middle[i], chosen.colour[i], lut, counts);
 }
 
-template <Siblings kMost, class Lane>
-__device__ void blend_chosen(const WarpSplats& chosen, int count, const Lut& lut, Lane& lane,
-                             Counts& counts) {
-#pragma unroll(kMost == Siblings::many ? 1 : 4)
-  for (int i = 0; i < count; ++i)
-    lane.template blend<kMost>(chosen.shape[i], chosen.middle[i], chosen.colour[i], lut, counts);
+// siblings: a bit for each splat that is to be corrected. Where few are, only those of their group
+// of kUnrolled pay for it.
+template <class Lane>
+__device__ void blend_mixed(const WarpSplats& chosen, int count, unsigned siblings, const Lut& lut,
+                            Lane& lane, Counts& counts) {
+  if (__popc(siblings) * kUnrolled >= count)
+    return blend_chosen<Siblings::few>(chosen, 0, count, lut, lane, counts);
+  for (int first = 0; first < count;) {
+    const unsigned left = siblings >> first;
+    // Whole groups up to the next that has one, or that group.
+    const int before = left == 0 ? count - first : (__ffs(left) - 1) / kUnrolled * kUnrolled;
+    const int last = min(count, first + max(before, kUnrolled));
+    if (before != 0)
+      blend_chosen<Siblings::none>(chosen, first, last, lut, lane, counts);
+    else
+      blend_chosen<Siblings::few>(chosen, first, last, lut, lane, counts);
+    first = last;
+  }
 }
 
 template <class M, class Lane>
@@ -137,23 +151,25 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
     const bool touches = within && (!M::kFilter || rasterize_touches<M::kExponential>(splat, part));
     const unsigned lanes = __ballot_sync(kAll, touches);
     __syncwarp();
+    const int at = __popc(lanes & ((1u << self) - 1));
     if (touches) {
-      const int at = __popc(lanes & ((1u << self) - 1));
       chosen.shape[at] = splat.shape;
       chosen.middle[at] = splat.middle;
       chosen.colour[at] = Lane::prepare(splat.colour);
     }
     __syncwarp();
     const int count = __popc(lanes);
-    Siblings most = Siblings::none;
-    if constexpr (M::kSiblings) most = most_siblings<M>(touches, splat);
-    if (most == Siblings::none) {
-      blend_chosen<Siblings::none>(chosen, count, lut, lane, counts);
-    } else if constexpr (M::kSiblings) {
-      if (most == Siblings::few)
-        blend_chosen<Siblings::few>(chosen, count, lut, lane, counts);
-      else
-        blend_chosen<Siblings::many>(chosen, count, lut, lane, counts);
+    if constexpr (M::kSiblings) {
+      const Siblings own =
+          touches ? siblings_of<M::kExponential>(splat.middle.w, splat.colour.w) : Siblings::none;
+      if (__any_sync(kAll, own == Siblings::many)) {
+        blend_chosen<Siblings::many>(chosen, 0, count, lut, lane, counts);
+      } else {
+        const unsigned few = __reduce_or_sync(kAll, own == Siblings::few ? 1u << at : 0);
+        blend_mixed(chosen, count, few, lut, lane, counts);
+      }
+    } else {
+      blend_chosen<Siblings::none>(chosen, 0, count, lut, lane, counts);
     }
     if constexpr (M::kLimits) {
       // Splats come front to back: behind one that is too far all are.
