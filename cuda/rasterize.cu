@@ -121,7 +121,7 @@ __device__ void blend_chosen(const WarpSplats& chosen, int first, int last, cons
 template <class Lane>
 __device__ void blend_mixed(const WarpSplats& chosen, int count, unsigned siblings, const Lut& lut,
                             Lane& lane, Counts& counts) {
-  if (__popc(siblings) * kUnrolled >= count)
+  if (2 * __popc(siblings) >= count)
     return blend_chosen<Siblings::few>(chosen, 0, count, lut, lane, counts);
   for (int first = 0; first < count;) {
     const unsigned left = siblings >> first;

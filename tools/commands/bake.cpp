@@ -5,9 +5,7 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +19,7 @@
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
 #include "runtime/lod/validate.h"
+#include "runtime/refine/refine.h"
 #include "runtime/scene/append.h"
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/importer.h"
@@ -45,10 +44,11 @@ struct Arguments {
   Quality quality = Quality::compact;
   uint32_t chunk_bytes = kDefaultChunkBytes;
   TreeKind tree = TreeKind::clustered;
+  uint32_t refine = 0;  // views
   bool verify = false;
   uint64_t memory = half_of_memory() / 1'000'000;  // MB
   std::string work;
-  std::optional<BakeStep> step;
+  BakeStep step = BakeStep::all;
   std::string part;  // K/N
 };
 
@@ -164,12 +164,15 @@ void print_summary(const Arguments& arguments, const BakeSummary& result, const 
 BakeSummary bake_in_memory(const Arguments& arguments, const Readers& readers,
                            const Progress& progress) {
   Workers workers;
-  const BakedScene baked = build_tree(read_all(arguments.inputs, readers, progress), workers,
-                                      progress, {.kind = arguments.tree});
+  BakedScene baked = build_tree(read_all(arguments.inputs, readers, progress), workers, progress,
+                                {.kind = arguments.tree});
+  const std::string kept = arguments.output + ".refine";
+  if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
   if (arguments.verify) require_sound(arguments.output, validate(baked));
   const Partition partition = partition_tree(baked.tree, arguments.chunk_bytes);
   if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
   write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
+  if (arguments.refine != 0) std::filesystem::remove(kept);
   if (arguments.verify) verify_file(arguments.output, baked.tree, partition);
   return {baked.leaves.size(),     baked.tree.size(),   partition.subtrees.size(),
           partition.chunk_count(), baked.leaves.report, 0};
@@ -201,6 +204,10 @@ BakeSummary bake_from_folder(const Arguments& arguments, const OpenInputs& open,
         ErrorCode::unsupported,
         "--tree hierarchicalgs: found a bake in a work folder, expected one in memory: give more "
         "--memory and no --work, or take the clustered tree");
+  if (arguments.refine != 0)
+    throw Error(ErrorCode::unsupported,
+                "--refine: found a bake in a work folder, expected one in memory: give more "
+                "--memory and no --work, or leave it out");
   BakeInParts bake;
   bake.request = bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes);
   bake.output = arguments.output;
@@ -208,7 +215,7 @@ BakeSummary bake_from_folder(const Arguments& arguments, const OpenInputs& open,
   bake.quality = arguments.quality;
   bake.chunk_bytes = arguments.chunk_bytes;
   bake.memory = arguments.memory * 1'000'000;
-  bake.step = arguments.step.value_or(BakeStep::all);
+  bake.step = arguments.step;
   if (!arguments.part.empty())
     std::sscanf(arguments.part.c_str(), "%" SCNu32 "/%" SCNu32, &bake.part, &bake.parts);
   Workers workers;
@@ -216,17 +223,21 @@ BakeSummary bake_from_folder(const Arguments& arguments, const OpenInputs& open,
 }
 
 bool writes_output(const Arguments& arguments) {
-  return !arguments.step || *arguments.step == BakeStep::merge;
+  return arguments.step == BakeStep::all || arguments.step == BakeStep::merge;
 }
 
 void bake(const Arguments& arguments) {
   require_extension("-o", arguments.output, {".voy"});
   require_distinct({arguments.output}, arguments.inputs);
+  if (arguments.refine != 0 && arguments.tree != TreeKind::clustered)
+    throw Error(ErrorCode::invalid_argument,
+                "--refine: found --tree hierarchicalgs, expected the clustered tree: the other's "
+                "extents are sides of boxes");
   if (!arguments.part.empty() && arguments.step != BakeStep::cells &&
       arguments.step != BakeStep::encode)
     throw Error(ErrorCode::invalid_argument,
                 "--part: found it without --step cells or encode, expected one of them");
-  if (arguments.step && arguments.work.empty())
+  if (arguments.step != BakeStep::all && arguments.work.empty())
     throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
   const Progress progress = progress_bar();
   const Stopwatch watch;
@@ -268,13 +279,13 @@ void add_work_options(CLI::App& command, Arguments& arguments) {
                      "The folder for a bake in cells: a bake that was killed goes on from "
                      "there when it is run again. Without it OUT.work, where one is needed. "
                      "It is removed when the scene is there");
-  command
-      .add_option("--step", arguments.step, "One step alone, for batch systems (docs/baking.md)")
-      ->transform(
-          CLI::CheckedTransformer(std::map<std::string, BakeStep>{{"split", BakeStep::split},
-                                                                  {"cells", BakeStep::cells},
-                                                                  {"encode", BakeStep::encode},
-                                                                  {"merge", BakeStep::merge}}));
+  add_choice<BakeStep>(command, "--step", arguments.step,
+                       {{"all", BakeStep::all},
+                        {"split", BakeStep::split},
+                        {"cells", BakeStep::cells},
+                        {"encode", BakeStep::encode},
+                        {"merge", BakeStep::merge}},
+                       "One step alone, for batch systems (docs/baking.md)");
   command
       .add_option("--part", arguments.part,
                   "With --step cells or encode: part K, from 0, of N of the cells")
@@ -302,6 +313,14 @@ void add_bake(CLI::App& app) {
       {{"clustered", TreeKind::clustered}, {"hierarchicalgs", TreeKind::hierarchicalgs}},
       "clustered puts together what looks alike; hierarchicalgs builds as HierarchicalGS does, "
       "for comparison (in memory only)");
+  command
+      ->add_option("--refine", arguments->refine,
+                   "Also look at the scene from so many places, and set extents by what refining "
+                   "each node is seen to gain (docs/lod-tree.md): about a second each, 400 for a "
+                   "million Gaussians. A bake that was ended goes on from OUT.refine when it is "
+                   "run again. In memory only")
+      ->type_name("VIEWS")
+      ->check(CLI::Range(1u, 1u << 20));
   command
       ->add_option("--chunk-bytes", arguments->chunk_bytes,
                    "Bytes of search records a chunk, at most; the default is a warp's part of "

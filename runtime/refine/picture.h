@@ -1,0 +1,83 @@
+#pragma once
+// A picture of some nodes of a baked scene, each drawn as itself (METHOD §5–7), and its splats, for
+// those that ask more of it.
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "runtime/refine/node_arrays.h"
+#include "runtime/refine/viewpoint.h"
+#include "runtime/stages/project.h"
+
+namespace voyager {
+
+struct NodeSplat {
+  Splat splat;
+  uint32_t node;
+};
+
+// Square, of pixels; the last of a row or column reach beyond the picture.
+inline constexpr int kPictureTile = 16;
+inline constexpr int kTilePixels = kPictureTile * kPictureTile;
+inline constexpr int kTileColumns = (kPictureWidth + kPictureTile - 1) / kPictureTile;
+inline constexpr int kTileRows = (kPictureHeight + kPictureTile - 1) / kPictureTile;
+inline constexpr int kTiles = kTileColumns * kTileRows;
+
+using TileColours = Vec3f[kTilePixels];
+
+// Tiles, both ends included.
+struct TileRange {
+  int left, right, top, bottom;
+
+  void cover(const TileRange& other) {
+    left = std::min(left, other.left), right = std::max(right, other.right);
+    top = std::min(top, other.top), bottom = std::max(bottom, other.bottom);
+  }
+};
+// Those that a splat's box touches; the nearest where it touches none.
+TileRange tiles_of(const Splat& splat);
+
+// For each tile indices into `ranges` of those that hold it, ascending.
+using TileLists = std::vector<std::vector<uint32_t>>;
+TileLists tile_lists(std::span<const TileRange> ranges);
+
+ProjectParams picture_params(const Viewpoint& view);
+
+// Nothing where it does not reach the picture.
+std::optional<Splat> splat_of(const ProjectParams& params, const NodeArrays& arrays, uint32_t node);
+
+// α at a pixel's centre, 0 outside the support.
+inline float alpha_at(const Splat& s, float x, float y) {
+  const float dx = x - s.x, dy = y - s.y;
+  const float p = dx * s.conic.p_x, q = (dy - s.conic.skew * dx) * s.conic.q_y;
+  const float rho = -(p * p + q * q);
+  if (!(rho >= s.rho_min)) return 0;
+  return std::fmin(kAlphaMax, exp_negative(std::fmin(s.log_opacity + rho, 0.0f)));
+}
+
+class Picture {
+ public:
+  Picture(const ProjectParams& params, const NodeArrays& arrays, std::span<const uint32_t> nodes,
+          Workers& workers);
+
+  const std::vector<NodeSplat>& splats() const { return splats_; }  // front to back
+  const TileColours& colours(int tile) const { return colours_[static_cast<size_t>(tile)].of; }
+
+ private:
+  struct Colours {
+    TileColours of;
+  };
+  void blend(int tile, std::span<const uint32_t> list);
+
+  std::vector<NodeSplat> splats_;
+  std::vector<Colours> colours_;
+};
+
+// A tile's first pixel's centre.
+inline Vec3f tile_corner(int tile) {
+  return {static_cast<float>(tile % kTileColumns * kPictureTile) + 0.5f,
+          static_cast<float>(tile / kTileColumns * kPictureTile) + 0.5f, 0};
+}
+
+}  // namespace voyager

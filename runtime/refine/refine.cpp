@@ -1,0 +1,165 @@
+#include "runtime/refine/refine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "runtime/base/clock.h"
+#include "runtime/lod/stand_in.h"
+#include "runtime/refine/gain.h"
+#include "runtime/refine/measured.h"
+
+namespace voyager {
+namespace {
+
+// Cuts of which each picture is taken, as τ in its pixels: about 1, 5 and 17 in one of 1920.
+constexpr double kTaus[] = {2, 8, 30};
+// How far what was measured is followed: as a power, as if so many pictures had shown what the
+// extent says, and at most by a factor.
+constexpr double kFollow = 0.5, kBelief = 8, kMostChange = 16;
+constexpr double kKeepMilliseconds = 20000;
+constexpr size_t kBlock = 1 << 14;
+
+bool is_double(const LodTree& tree, uint32_t node) {
+  return tree.records[node].child_count == 1;
+}
+
+bool is_measured(const LodTree& tree, uint32_t node) {
+  const NodeRecord& r = tree.records[node];
+  return r.child_count > 1 && r.extent > 0 && std::isfinite(r.extent);
+}
+
+// METHOD §3, in the order of ids.
+std::vector<uint32_t> cut_of(const LodTree& tree, const Vec3f& eye, float target,
+                             Workers& workers) {
+  std::vector<std::vector<uint32_t>> found((tree.size() + kBlock - 1) / kBlock);
+  workers.for_blocks(tree.size(), kBlock, [&](size_t begin, size_t end) {
+    for (auto n = static_cast<uint32_t>(begin); n < end; ++n) {
+      const bool small = tree.screen_size(n, eye) < target;
+      if (!small && !tree.is_leaf(n)) continue;
+      const uint32_t parent = tree.parent[n];
+      if (!small || parent == kNoNode || tree.screen_size(parent, eye) >= target)
+        found[begin / kBlock].push_back(n);
+    }
+  });
+  std::vector<uint32_t> cut;
+  for (const auto& block : found) cut.insert(cut.end(), block.begin(), block.end());
+  return cut;
+}
+
+double squared_distance(const NodeRecord& r, const Vec3f& eye) {
+  double sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double d = std::max({double{r.box_min[axis]} - double{eye[axis]},
+                               double{eye[axis]} - double{r.box_max[axis]}, 0.0});
+    sum += d * d;
+  }
+  return sum;
+}
+
+class Measuring {
+ public:
+  Measuring(const BakedScene& baked, Workers& workers)
+      : tree_(baked.tree), arrays_(baked, workers), viewpoints_(baked), workers_(workers) {
+    for (uint32_t n = 0; n < tree_.size(); ++n)
+      if (tree_.is_leaf(n)) leaves_.push_back(n);
+  }
+
+  // The next view.
+  void look(Measured& measured) {
+    const Viewpoint view = viewpoints_(measured.views++);
+    const ProjectParams params = picture_params(view);
+    const Vec3f eye{static_cast<float>(view.eye.x), static_cast<float>(view.eye.y),
+                    static_cast<float>(view.eye.z)};
+    const Picture leaves(params, arrays_, leaves_, workers_);
+    for (const double tau : kTaus) {
+      const auto target = static_cast<float>((2 * tau + 1) / kPictureFocal);
+      const Picture cut(params, arrays_, cut_of(tree_, eye, target, workers_), workers_);
+      for (const NodeGain& found : gains(params, arrays_, tree_, cut, leaves, workers_)) {
+        const NodeRecord& r = tree_.records[found.node];
+        const double metres = squared_distance(r, eye) / (kPictureFocal * kPictureFocal);
+        measured.gain[found.node] += found.squares * metres / (r.child_count - 1);
+        ++measured.pictures[found.node];
+      }
+    }
+  }
+
+ private:
+  const LodTree& tree_;
+  const NodeArrays arrays_;
+  const Viewpoints viewpoints_;
+  Workers& workers_;
+  std::vector<uint32_t> leaves_;
+};
+
+// What turns a squared gain into a squared extent, so that half of the extents grow.
+double scale_of(const Measured& measured, const LodTree& tree) {
+  std::vector<double> ratios;
+  for (uint32_t n = 0; n < tree.size(); ++n) {
+    if (!is_measured(tree, n) || !(measured.gain[n] > 0)) continue;
+    const double extent = tree.records[n].extent;
+    ratios.push_back(measured.pictures[n] * extent * extent / measured.gain[n]);
+  }
+  if (ratios.empty()) return 0;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle;
+}
+
+void set_measured(const Measured& measured, LodTree& tree) {
+  const double scale = scale_of(measured, tree);
+  for (uint32_t n = 0; n < tree.size(); ++n) {
+    if (!is_measured(tree, n) || measured.pictures[n] == 0) continue;
+    NodeRecord& r = tree.records[n];
+    const double extent = r.extent, pictures = measured.pictures[n];
+    const double found = std::max(measured.gain[n], 0.0) * scale + kBelief * extent * extent;
+    const double square = found / (pictures + kBelief) / (extent * extent);
+    const double change = std::pow(square, kFollow / 2);
+    const auto changed =
+        static_cast<float>(extent * std::clamp(change, 1 / kMostChange, kMostChange));
+    if (std::isfinite(changed)) r.extent = changed;
+  }
+}
+
+// Extents never grow downwards, and what is as good as its parent's children blends late.
+void set_others(LodTree& tree) {
+  for (auto n = static_cast<uint32_t>(tree.size()); n-- > 0;) {
+    NodeRecord& r = tree.records[n];
+    if (tree.is_leaf(n)) continue;
+    const uint32_t first = tree.first_child[n];
+    if (is_double(tree, n)) r.extent = tree.records[first].extent;
+    for (uint32_t i = 0; i < r.child_count; ++i)
+      if (!tree.is_leaf(first + i)) r.extent = std::max(r.extent, tree.records[first + i].extent);
+    for (uint32_t i = 0; i < r.child_count; ++i) {
+      NodeRecord& child = tree.records[first + i];
+      if (tree.is_leaf(first + i)) child.extent = kLateExtent * r.extent;
+      if (is_double(tree, first + i)) child.extent = std::max(child.extent, kLateExtent * r.extent);
+    }
+  }
+}
+
+}  // namespace
+
+void refine_extents(BakedScene& baked, uint32_t views, const std::string& kept, Workers& workers,
+                    const Progress& progress) {
+  LodTree& tree = baked.tree;
+  if (tree.size() < 2) return;
+  Measured measured = read_kept(tree, kept);
+  if (measured.views > views) measured = Measured(tree.size());
+  if (measured.views < views) {
+    Measuring measuring(baked, workers);
+    Stopwatch since_kept;
+    while (measured.views < views) {
+      report(progress, "measuring", measured.views, views);
+      measuring.look(measured);
+      if (since_kept.milliseconds() < kKeepMilliseconds && measured.views < views) continue;
+      keep(measured, tree, kept);
+      since_kept = {};
+    }
+    report(progress, "measuring", views, views);
+  }
+  set_measured(measured, tree);
+  set_others(tree);
+}
+
+}  // namespace voyager
