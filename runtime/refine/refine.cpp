@@ -16,7 +16,7 @@ namespace {
 constexpr double kTaus[] = {2, 8, 30};
 // How far what was measured is followed: as a power, as if so many pictures had shown what the
 // extent says, and at most by a factor.
-constexpr double kFollow = 0.5, kBelief = 8, kMostChange = 16;
+constexpr double kFollow = 0.5, kBelief = 24, kMostChange = 16;
 constexpr double kKeepMilliseconds = 20000;
 constexpr size_t kBlock = 1 << 14;
 

@@ -8,7 +8,7 @@
 namespace voyager {
 namespace {
 
-constexpr double kNearest = 0.04, kFarthest = 0.6;  // of the scene's radius
+constexpr double kNearest = 0.03, kFarthest = 0.45;  // of the scene's radius
 constexpr double kLowestRise = -1;  // sine of the elevation: a scene does not say what is up
 constexpr size_t kSample = 1 << 16;
 

@@ -1,6 +1,7 @@
 // What a user says and is told of subtrees and chunks: bake --chunk-bytes, --verify, info.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "runtime/format/reader.h"
@@ -73,6 +74,44 @@ TEST(CommandLineTree, TheKindOfTheTreeIsChosenAndKeptInTheFile) {
     EXPECT_EQ(refused.exit_code, 1) << value;
     EXPECT_NE(refused.output.find("--tree"), std::string::npos) << refused.output;
   }
+}
+
+TEST(CommandLineTree, RefiningChangesExtentsAloneAndLeavesNothingBehind) {
+  const TempFolder folder;
+  const std::string city = folder.file("city.ply"), plain = folder.file("plain.voy"),
+                    refined = folder.file("refined.voy");
+  ASSERT_EQ(run("voyager synth city --gaussians 3000 --sh-degree 0 -o " + city).exit_code, 0);
+  ASSERT_EQ(run("voyager bake " + city + " -o " + plain).exit_code, 0);
+  const Outcome baked = run("voyager bake " + city + " --refine 3 --verify -o " + refined);
+  ASSERT_EQ(baked.exit_code, 0) << baked.output;
+  EXPECT_FALSE(std::filesystem::exists(refined + ".refine"));
+  const SceneFile before(open_file_source(plain)), after(open_file_source(refined));
+  EXPECT_EQ(after.info().node_count, before.info().node_count);
+  ASSERT_EQ(after.chunks().size(), before.chunks().size());
+  size_t changed = 0;
+  for (uint32_t c = 0; c < after.chunks().size(); ++c) {
+    const Chunk a = before.read_chunk(c), b = after.read_chunk(c);
+    ASSERT_EQ(a.node, b.node);
+    for (size_t i = 0; i < a.records.size(); ++i) {
+      ASSERT_TRUE(a.records[i].box_min == b.records[i].box_min);
+      changed += a.records[i].extent != b.records[i].extent;
+    }
+  }
+  EXPECT_GT(changed, 1000u);
+
+  const std::string bake = "voyager bake " + city + " -o " + folder.file("no.voy") + " --refine ";
+  for (const std::string value : {"0", "-1", "many", "1048577"}) {
+    const Outcome refused = run(bake + value);
+    EXPECT_EQ(refused.exit_code, 1) << value;
+    EXPECT_NE(refused.output.find("--refine"), std::string::npos) << refused.output;
+  }
+  const Outcome other = run(bake + "3 --tree hierarchicalgs");
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_NE(other.output.find("--refine: found --tree hierarchicalgs"), std::string::npos);
+  const Outcome in_parts = run(bake + "3 --work " + folder.file("work"));
+  EXPECT_EQ(in_parts.exit_code, 2) << in_parts.output;
+  EXPECT_NE(in_parts.output.find("--refine: found a bake in a work folder"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("no.voy")));
 }
 
 TEST(CommandLinePartition, FilesOfOlderVersionsAreRefusedAndSayToBakeAgain) {
