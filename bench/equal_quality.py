@@ -34,7 +34,8 @@ def at_quality(rows, decibels):
 
 def timed(arguments, tree, multiprocessors, choice):
     """The bench's row of one configuration."""
-    name = f"{stem(tree)}_{''.join(choice).strip('-')}_sms{multiprocessors}.json"
+    name = "_".join([stem(tree), stem(arguments.cameras), arguments.size or "own", arguments.backend, arguments.exp,
+                     "".join(choice).strip("-"), f"sms{multiprocessors}.json"])
     report = os.path.join(arguments.folder, name)
     if not os.path.exists(report):
         command = [arguments.voyager, "bench", tree, "--cameras", arguments.cameras, "--stages", "all", "--exp", arguments.exp,
@@ -43,7 +44,7 @@ def timed(arguments, tree, multiprocessors, choice):
         command += ["--sms", str(multiprocessors)] if multiprocessors else []
         done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False)
         if done.returncode != 0:
-            sys.exit(f"{' '.join(command)}: exit status {done.returncode}: {done.stderr.strip().splitlines()[-1:]}")
+            sys.exit(f"{' '.join(command)}: exit status {done.returncode}: {done.stderr.strip()}")
     return read(report)["rows"][0]
 
 

@@ -1,6 +1,7 @@
 #pragma once
 // What is lost where one Gaussian is drawn for several. The error is that of their pictures,
 // blurred by a pixel as the renderer does it (METHOD §5), along the three axes of the scene.
+#include <algorithm>
 #include <span>
 
 #include "runtime/lod/exposure.h"
@@ -56,5 +57,8 @@ double extent_of(double pixel);
 // Of its parent's, the extent that a node has at least in which nothing is to blend: METHOD §4
 // then gives it the last part of an octave only.
 inline constexpr float kLateExtent = 0.98f;
+inline float late_extent(float own, float parent) {
+  return std::max(own, kLateExtent * parent);
+}
 
 }  // namespace voyager

@@ -70,7 +70,7 @@ void measure(uint32_t node, std::span<const MergeInput> children, BakedScene& ba
   for (uint32_t i = 0; i < r.child_count; ++i) {
     NodeRecord& child = baked.tree.records[first + i];
     // A leaf is exact as itself; a double is as good as its child.
-    if (child.child_count <= 1) child.extent = std::max(child.extent, kLateExtent * r.extent);
+    if (child.child_count <= 1) child.extent = late_extent(child.extent, r.extent);
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr size_t kBlock = 256;
 // Tiles add up what they find as integers, so that their order does not show.
-constexpr double kUnit = 0x1p-24, kMost = 0x1p36;
+constexpr double kUnit = 0x1p-24, kMost = 0x1p29;
 constexpr float kLeastBehind = 1e-3f;  // transmittance from which on what is behind can be told
 
 // The splats of a node's children, front to back.
@@ -89,6 +89,10 @@ class Tile {
       if (pixel.transmittance < kTransmittanceEnd) continue;
       Layer own, children;
       own.add(splat, x(i), y(i));
+      if (pixel.transmittance * own.transmittance < kTransmittanceEnd) {
+        pixel.transmittance = 0;  // as a picture ends
+        continue;
+      }
       for (uint32_t k = 0; k < family.count; ++k) children.add(family.children[k], x(i), y(i));
       if (family.merged) sum += gain_of(pixel, own, children);
       pixel.so_far = pixel.so_far + pixel.transmittance * own.colour;

@@ -1,5 +1,7 @@
 #include "runtime/refine/measured.h"
 
+#include <algorithm>
+#include <cstring>
 #include <filesystem>
 
 #include "runtime/bake/sealed_file.h"
@@ -15,6 +17,19 @@ uint64_t mark_of(const LodTree& tree) {
   return checksum(std::as_bytes(std::span(tree.records)));
 }
 
+[[noreturn]] void refuse(const std::string& path, const std::string& found,
+                         const std::string& expected) {
+  throw Error(ErrorCode::refused_input, path + ": found " + found + ", expected " + expected +
+                                            ": remove it, and what is measured starts anew");
+}
+
+// Of a file: what says whose it is, and all before its checksum.
+constexpr size_t kHead = 2 * sizeof(uint64_t);
+size_t bytes_of(size_t nodes) {
+  return kHead + sizeof(uint32_t) + 2 * sizeof(uint64_t) +
+         nodes * (sizeof(double) + sizeof(uint32_t));
+}
+
 }  // namespace
 
 void keep(const Measured& measured, const LodTree& tree, const std::string& path) {
@@ -27,20 +42,27 @@ void keep(const Measured& measured, const LodTree& tree, const std::string& path
 Measured read_kept(const LodTree& tree, const std::string& path) {
   Measured measured(tree.size());
   if (!std::filesystem::exists(path)) return measured;
-  const std::vector<std::byte> bytes = read_sealed(path);
-  Unpacker from(path, bytes);
-  const auto kind = from.take<uint64_t>(), mark = from.take<uint64_t>();
-  if (kind != kKind || mark != mark_of(tree))
-    throw Error(ErrorCode::refused_input,
-                path +
-                    ": found what was measured of another scene, expected this one: remove it, "
-                    "and what is measured starts anew");
+  const auto source = open_file_source(path);
+  const size_t expected = bytes_of(tree.size());
+  std::vector<std::byte> bytes(
+      static_cast<size_t>(std::min<uint64_t>(source->size(), expected + sizeof(uint64_t))));
+  source->read(0, bytes);
+  uint64_t head[2] = {0, 0};
+  if (bytes.size() >= kHead) std::memcpy(head, bytes.data(), kHead);
+  if (bytes.size() >= kHead && (head[0] != kKind || head[1] != mark_of(tree)))
+    refuse(path, "what was measured of another scene", "this one");
+  if (source->size() != expected + sizeof(uint64_t))
+    refuse(path, std::to_string(source->size()) + " bytes",
+           std::to_string(expected + sizeof(uint64_t)));
+  uint64_t sum = 0;
+  std::memcpy(&sum, bytes.data() + expected, sizeof sum);
+  bytes.resize(expected);
+  if (checksum(bytes) != sum)
+    refuse(path, "checksum " + std::to_string(checksum(bytes)), std::to_string(sum));
+  Unpacker from(path, std::span<const std::byte>(bytes).subspan(kHead));
   measured.views = from.take<uint32_t>();
   from.take_all(measured.gain);
   from.take_all(measured.pictures);
-  if (measured.gain.size() != tree.size() || measured.pictures.size() != tree.size())
-    refuse_folder(path, std::to_string(measured.gain.size()) + " nodes",
-                  std::to_string(tree.size()));
   return measured;
 }
 

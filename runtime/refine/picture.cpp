@@ -88,8 +88,9 @@ void Picture::blend(int tile, std::span<const uint32_t> list) {
       if (t < kTransmittanceEnd) continue;
       const float alpha = alpha_at(s, corner.x + static_cast<float>(pixel % kPictureTile),
                                    corner.y + static_cast<float>(pixel / kPictureTile));
-      colours[pixel] = colours[pixel] + (t * alpha) * s.colour;
-      t -= alpha * t;
+      const float after = t - alpha * t;
+      if (after >= kTransmittanceEnd) colours[pixel] = colours[pixel] + (t * alpha) * s.colour;
+      t = after;
     }
   }
 }

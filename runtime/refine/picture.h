@@ -1,6 +1,6 @@
 #pragma once
-// A picture of some nodes of a baked scene, each drawn as itself (METHOD §5–7), and its splats, for
-// those that ask more of it.
+// A picture of some nodes of a baked scene, each drawn as itself (METHOD §5–7, but for rounding),
+// and its splats, for those that ask more of it.
 #include <algorithm>
 #include <optional>
 #include <span>

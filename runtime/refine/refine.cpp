@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/base/clock.h"
+#include "runtime/base/error.h"
 #include "runtime/lod/stand_in.h"
 #include "runtime/refine/gain.h"
 #include "runtime/refine/measured.h"
@@ -12,7 +13,8 @@
 namespace voyager {
 namespace {
 
-// Cuts of which each picture is taken, as τ in its pixels: about 1, 5 and 17 in one of 1920.
+// Of the cuts that are drawn, in pixels of a picture: 9, 33 and 121 in one of 1920 at a focal
+// length of 1400. Finer ones keep nearly every leaf, and leave little to choose.
 constexpr double kTaus[] = {2, 8, 30};
 // How far what was measured is followed: as a power, as if so many pictures had shown what the
 // extent says, and at most by a factor.
@@ -47,16 +49,6 @@ std::vector<uint32_t> cut_of(const LodTree& tree, const Vec3f& eye, float target
   return cut;
 }
 
-double squared_distance(const NodeRecord& r, const Vec3f& eye) {
-  double sum = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double d = std::max({double{r.box_min[axis]} - double{eye[axis]},
-                               double{eye[axis]} - double{r.box_max[axis]}, 0.0});
-    sum += d * d;
-  }
-  return sum;
-}
-
 class Measuring {
  public:
   Measuring(const BakedScene& baked, Workers& workers)
@@ -69,15 +61,15 @@ class Measuring {
   void look(Measured& measured) {
     const Viewpoint view = viewpoints_(measured.views++);
     const ProjectParams params = picture_params(view);
-    const Vec3f eye{static_cast<float>(view.eye.x), static_cast<float>(view.eye.y),
-                    static_cast<float>(view.eye.z)};
+    const Vec3f eye = cut_centre(view.eye, {0, 0, 0});
     const Picture leaves(params, arrays_, leaves_, workers_);
     for (const double tau : kTaus) {
-      const auto target = static_cast<float>((2 * tau + 1) / kPictureFocal);
+      const float target = target_size(tau, kPictureFocal);
       const Picture cut(params, arrays_, cut_of(tree_, eye, target, workers_), workers_);
       for (const NodeGain& found : gains(params, arrays_, tree_, cut, leaves, workers_)) {
         const NodeRecord& r = tree_.records[found.node];
-        const double metres = squared_distance(r, eye) / (kPictureFocal * kPictureFocal);
+        const double metres =
+            double{squared_distance(eye, r.box_min, r.box_max)} / (kPictureFocal * kPictureFocal);
         measured.gain[found.node] += found.squares * metres / (r.child_count - 1);
         ++measured.pictures[found.node];
       }
@@ -92,7 +84,8 @@ class Measuring {
   std::vector<uint32_t> leaves_;
 };
 
-// What turns a squared gain into a squared extent, so that half of the extents grow.
+// What turns a squared gain into a squared extent: half of the nodes that gain anything are to
+// grow.
 double scale_of(const Measured& measured, const LodTree& tree) {
   std::vector<double> ratios;
   for (uint32_t n = 0; n < tree.size(); ++n) {
@@ -132,8 +125,8 @@ void set_others(LodTree& tree) {
       if (!tree.is_leaf(first + i)) r.extent = std::max(r.extent, tree.records[first + i].extent);
     for (uint32_t i = 0; i < r.child_count; ++i) {
       NodeRecord& child = tree.records[first + i];
-      if (tree.is_leaf(first + i)) child.extent = kLateExtent * r.extent;
-      if (is_double(tree, first + i)) child.extent = std::max(child.extent, kLateExtent * r.extent);
+      if (child.child_count == 0) child.extent = kLateExtent * r.extent;
+      if (child.child_count == 1) child.extent = late_extent(child.extent, r.extent);
     }
   }
 }
@@ -142,10 +135,16 @@ void set_others(LodTree& tree) {
 
 void refine_extents(BakedScene& baked, uint32_t views, const std::string& kept, Workers& workers,
                     const Progress& progress) {
+  if (baked.kind != TreeKind::clustered)
+    throw Error(ErrorCode::unsupported,
+                kept + ": found a tree of another kind, expected a clustered one");
   LodTree& tree = baked.tree;
   if (tree.size() < 2) return;
   Measured measured = read_kept(tree, kept);
-  if (measured.views > views) measured = Measured(tree.size());
+  if (measured.views > views)
+    throw Error(ErrorCode::refused_input, kept + ": found " + std::to_string(measured.views) +
+                                              " views, expected at most " + std::to_string(views) +
+                                              ": ask for as many, or remove it");
   if (measured.views < views) {
     Measuring measuring(baked, workers);
     Stopwatch since_kept;

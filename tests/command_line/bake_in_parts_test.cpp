@@ -84,7 +84,7 @@ TEST_F(BakeInParts, StepsAreRefusedWithoutAFolderAndBeforeTheirTime) {
   const std::string plain = "voyager bake " + city + " -o " + scene;
   for (const std::string& command :
        {plain + " --step split", bake + " --step cells", bake + " --step merge",
-        bake + " --step encode --part 3/3", bake + " --part x", bake + " --step all",
+        bake + " --step encode --part 3/3", bake + " --part x", bake + " --step every",
         bake + " --memory 1", bake + " --tree hierarchicalgs"}) {
     const Outcome refused = run(command);
     EXPECT_EQ(refused.exit_code, 1) << command << refused.output;

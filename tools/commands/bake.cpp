@@ -63,14 +63,14 @@ Readers open_all(const std::vector<std::string>& paths) {
   return readers;
 }
 
-uint64_t bytes_in_memory(const Readers& readers) {
+uint64_t bytes_in_memory(const Readers& readers, bool refine) {
   uint64_t count = 0;
   int sh_degree = 0;
   for (const auto& reader : readers) {
     count += reader->count();
     sh_degree = std::max(sh_degree, reader->sh_degree());
   }
-  return bytes_to_bake(count, sh_degree);
+  return bytes_to_bake(count, sh_degree) + (refine ? bytes_to_refine(count) : 0);
 }
 
 // So that many appends copy little.
@@ -250,7 +250,7 @@ void bake(const Arguments& arguments) {
     return;
   }
   Readers readers = open_all(arguments.inputs);
-  if (bytes_in_memory(readers) <= arguments.memory * 1'000'000)
+  if (bytes_in_memory(readers, arguments.refine != 0) <= arguments.memory * 1'000'000)
     return print_summary(arguments, bake_in_memory(arguments, readers, progress), watch);
   const OwnFolder folder(arguments.output + ".work");
   print_summary(arguments,
