@@ -9,7 +9,7 @@
 namespace voyager {
 namespace {
 
-constexpr size_t kBlock = 256;
+constexpr size_t kSplatsBlock = 256;
 // Tiles add up what they find as integers, so that their order does not show.
 constexpr double kUnit = 0x1p-24, kMost = 0x1p29;
 constexpr float kLeastBehind = 1e-3f;  // transmittance from which on what is behind can be told
@@ -46,8 +46,8 @@ struct Layer {
   Vec3f colour{0, 0, 0};
   float transmittance = 1;
 
-  void add(const Splat& splat, float x, float y) {
-    const float alpha = alpha_at(splat, x, y);
+  void add(const Splat& splat, const PixelCentre& at) {
+    const float alpha = alpha_at(splat, at);
     colour = colour + (transmittance * alpha) * splat.colour;
     transmittance -= transmittance * alpha;
   }
@@ -73,11 +73,11 @@ double gain_of(const Pixel& pixel, const Layer& own, const Layer& children) {
 
 class Tile {
  public:
-  Tile(int tile, const Picture& cut, const Picture& leaves) : corner_(tile_corner(tile)) {
+  Tile(int tile, const Picture& cut, const Picture& leaves) : tile_(tile) {
     for (int i = 0; i < kTilePixels; ++i) {
       pixels_[i].drawn = cut.colours(tile)[i];
       pixels_[i].error = cut.colours(tile)[i] - leaves.colours(tile)[i];
-      if (x(i) > kPictureWidth || y(i) > kPictureHeight) pixels_[i].transmittance = 0;
+      if (!pixel_centre(tile, i).inside()) pixels_[i].transmittance = 0;
     }
   }
 
@@ -87,13 +87,14 @@ class Tile {
     for (int i = 0; i < kTilePixels; ++i) {
       Pixel& pixel = pixels_[i];
       if (pixel.transmittance < kTransmittanceEnd) continue;
+      const PixelCentre at = pixel_centre(tile_, i);
       Layer own, children;
-      own.add(splat, x(i), y(i));
+      own.add(splat, at);
       if (pixel.transmittance * own.transmittance < kTransmittanceEnd) {
         pixel.transmittance = 0;  // as a picture ends
         continue;
       }
-      for (uint32_t k = 0; k < family.count; ++k) children.add(family.children[k], x(i), y(i));
+      for (uint32_t k = 0; k < family.count; ++k) children.add(family.children[k], at);
       if (family.merged) sum += gain_of(pixel, own, children);
       pixel.so_far = pixel.so_far + pixel.transmittance * own.colour;
       pixel.transmittance *= own.transmittance;
@@ -102,10 +103,7 @@ class Tile {
   }
 
  private:
-  float x(int i) const { return corner_.x + static_cast<float>(i % kPictureTile); }
-  float y(int i) const { return corner_.y + static_cast<float>(i / kPictureTile); }
-
-  Vec3f corner_;
+  int tile_;
   Pixel pixels_[kTilePixels];
 };
 
@@ -116,7 +114,7 @@ std::vector<NodeGain> gains(const ProjectParams& params, const NodeArrays& array
                             Workers& workers) {
   const auto& splats = cut.splats();
   std::vector<Family> families(splats.size());
-  workers.for_blocks(splats.size(), kBlock, [&](size_t begin, size_t end) {
+  workers.for_blocks(splats.size(), kSplatsBlock, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       families[i] = family_of(params, arrays, tree, splats[i].node);
   });

@@ -6,7 +6,7 @@
 namespace voyager {
 namespace {
 
-constexpr size_t kBlock = 4096;
+constexpr size_t kNodesBlock = 4096;
 constexpr float kNear = 0.2f;
 
 int tile_at(float along, int tiles) {
@@ -51,18 +51,18 @@ TileLists tile_lists(std::span<const TileRange> ranges) {
   for (uint32_t i = 0; i < ranges.size(); ++i)
     for (int row = ranges[i].top; row <= ranges[i].bottom; ++row)
       for (int column = ranges[i].left; column <= ranges[i].right; ++column)
-        lists[static_cast<size_t>(row * kTileColumns + column)].push_back(i);
+        lists[static_cast<size_t>(row) * kTileColumns + static_cast<size_t>(column)].push_back(i);
   return lists;
 }
 
 Picture::Picture(const ProjectParams& params, const NodeArrays& arrays,
                  std::span<const uint32_t> nodes, Workers& workers)
     : colours_(kTiles) {
-  std::vector<std::vector<NodeSplat>> found((nodes.size() + kBlock - 1) / kBlock);
-  workers.for_blocks(nodes.size(), kBlock, [&](size_t begin, size_t end) {
+  std::vector<std::vector<NodeSplat>> found((nodes.size() + kNodesBlock - 1) / kNodesBlock);
+  workers.for_blocks(nodes.size(), kNodesBlock, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       if (const auto splat = splat_of(params, arrays, nodes[i]))
-        found[begin / kBlock].push_back({*splat, nodes[i]});
+        found[begin / kNodesBlock].push_back({*splat, nodes[i]});
   });
   for (const auto& block : found) splats_.insert(splats_.end(), block.begin(), block.end());
   workers.sort(splats_.begin(), splats_.end(), [](const NodeSplat& a, const NodeSplat& b) {
@@ -76,7 +76,6 @@ Picture::Picture(const ProjectParams& params, const NodeArrays& arrays,
 }
 
 void Picture::blend(int tile, std::span<const uint32_t> list) {
-  const Vec3f corner = tile_corner(tile);
   Vec3f* colours = colours_[static_cast<size_t>(tile)].of;
   float transmittance[kTilePixels];
   std::fill_n(colours, kTilePixels, Vec3f{0, 0, 0});
@@ -86,8 +85,7 @@ void Picture::blend(int tile, std::span<const uint32_t> list) {
     for (int pixel = 0; pixel < kTilePixels; ++pixel) {
       float& t = transmittance[pixel];
       if (t < kTransmittanceEnd) continue;
-      const float alpha = alpha_at(s, corner.x + static_cast<float>(pixel % kPictureTile),
-                                   corner.y + static_cast<float>(pixel / kPictureTile));
+      const float alpha = alpha_at(s, pixel_centre(tile, pixel));
       const float after = t - alpha * t;
       if (after >= kTransmittanceEnd) colours[pixel] = colours[pixel] + (t * alpha) * s.colour;
       t = after;

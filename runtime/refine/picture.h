@@ -47,9 +47,23 @@ ProjectParams picture_params(const Viewpoint& view);
 // Nothing where it does not reach the picture.
 std::optional<Splat> splat_of(const ProjectParams& params, const NodeArrays& arrays, uint32_t node);
 
+struct PixelCentre {
+  float x, y;
+
+  bool inside() const {
+    return x < static_cast<float>(kPictureWidth) && y < static_cast<float>(kPictureHeight);
+  }
+};
+// Of a tile's pixel, row by row.
+inline PixelCentre pixel_centre(int tile, int pixel) {
+  const int column = tile % kTileColumns * kPictureTile + pixel % kPictureTile;
+  const int row = tile / kTileColumns * kPictureTile + pixel / kPictureTile;
+  return {static_cast<float>(column) + 0.5f, static_cast<float>(row) + 0.5f};
+}
+
 // α at a pixel's centre, 0 outside the support.
-inline float alpha_at(const Splat& s, float x, float y) {
-  const float dx = x - s.x, dy = y - s.y;
+inline float alpha_at(const Splat& s, const PixelCentre& at) {
+  const float dx = at.x - s.x, dy = at.y - s.y;
   const float p = dx * s.conic.p_x, q = (dy - s.conic.skew * dx) * s.conic.q_y;
   const float rho = -(p * p + q * q);
   if (!(rho >= s.rho_min)) return 0;
@@ -73,11 +87,5 @@ class Picture {
   std::vector<NodeSplat> splats_;
   std::vector<Colours> colours_;
 };
-
-// A tile's first pixel's centre.
-inline Vec3f tile_corner(int tile) {
-  return {static_cast<float>(tile % kTileColumns * kPictureTile) + 0.5f,
-          static_cast<float>(tile / kTileColumns * kPictureTile) + 0.5f, 0};
-}
 
 }  // namespace voyager

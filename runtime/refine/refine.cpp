@@ -20,7 +20,7 @@ constexpr double kTaus[] = {2, 8, 30};
 // extent says, and at most by a factor.
 constexpr double kFollow = 0.5, kBelief = 24, kMostChange = 16;
 constexpr double kKeepMilliseconds = 20000;
-constexpr size_t kBlock = 1 << 14;
+constexpr size_t kCutBlock = 1 << 14;
 
 bool is_double(const LodTree& tree, uint32_t node) {
   return tree.records[node].child_count == 1;
@@ -34,14 +34,14 @@ bool is_measured(const LodTree& tree, uint32_t node) {
 // METHOD §3, in the order of ids.
 std::vector<uint32_t> cut_of(const LodTree& tree, const Vec3f& eye, float target,
                              Workers& workers) {
-  std::vector<std::vector<uint32_t>> found((tree.size() + kBlock - 1) / kBlock);
-  workers.for_blocks(tree.size(), kBlock, [&](size_t begin, size_t end) {
+  std::vector<std::vector<uint32_t>> found((tree.size() + kCutBlock - 1) / kCutBlock);
+  workers.for_blocks(tree.size(), kCutBlock, [&](size_t begin, size_t end) {
     for (auto n = static_cast<uint32_t>(begin); n < end; ++n) {
       const bool small = tree.screen_size(n, eye) < target;
       if (!small && !tree.is_leaf(n)) continue;
       const uint32_t parent = tree.parent[n];
       if (!small || parent == kNoNode || tree.screen_size(parent, eye) >= target)
-        found[begin / kBlock].push_back(n);
+        found[begin / kCutBlock].push_back(n);
     }
   });
   std::vector<uint32_t> cut;

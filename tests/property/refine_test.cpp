@@ -20,10 +20,7 @@ double squared_error(const Picture& found, const Picture& expected) {
   double sum = 0;
   for (int tile = 0; tile < kTiles; ++tile)
     for (int i = 0; i < kTilePixels; ++i) {
-      const Vec3f corner = tile_corner(tile);
-      if (corner.x + static_cast<float>(i % kPictureTile) > kPictureWidth ||
-          corner.y + static_cast<float>(i / kPictureTile) > kPictureHeight)
-        continue;
+      if (!pixel_centre(tile, i).inside()) continue;
       const Vec3f d = found.colours(tile)[i] - expected.colours(tile)[i];
       sum += double{dot(d, d)};
     }
