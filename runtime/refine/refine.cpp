@@ -9,6 +9,7 @@
 #include "runtime/lod/stand_in.h"
 #include "runtime/refine/gain.h"
 #include "runtime/refine/measured.h"
+#include "runtime/select/cut.h"
 
 namespace voyager {
 namespace {
@@ -20,7 +21,6 @@ constexpr double kTaus[] = {2, 8, 30};
 // extent says, and at most by a factor.
 constexpr double kFollow = 0.5, kBelief = 24, kMostChange = 16;
 constexpr double kKeepMilliseconds = 20000;
-constexpr size_t kCutBlock = 1 << 14;
 
 bool is_double(const LodTree& tree, uint32_t node) {
   return tree.records[node].child_count == 1;
@@ -29,24 +29,6 @@ bool is_double(const LodTree& tree, uint32_t node) {
 bool is_measured(const LodTree& tree, uint32_t node) {
   const NodeRecord& r = tree.records[node];
   return r.child_count > 1 && r.extent > 0 && std::isfinite(r.extent);
-}
-
-// METHOD §3, in the order of ids.
-std::vector<uint32_t> cut_of(const LodTree& tree, const Vec3f& eye, float target,
-                             Workers& workers) {
-  std::vector<std::vector<uint32_t>> found((tree.size() + kCutBlock - 1) / kCutBlock);
-  workers.for_blocks(tree.size(), kCutBlock, [&](size_t begin, size_t end) {
-    for (auto n = static_cast<uint32_t>(begin); n < end; ++n) {
-      const bool small = tree.screen_size(n, eye) < target;
-      if (!small && !tree.is_leaf(n)) continue;
-      const uint32_t parent = tree.parent[n];
-      if (!small || parent == kNoNode || tree.screen_size(parent, eye) >= target)
-        found[begin / kCutBlock].push_back(n);
-    }
-  });
-  std::vector<uint32_t> cut;
-  for (const auto& block : found) cut.insert(cut.end(), block.begin(), block.end());
-  return cut;
 }
 
 class Measuring {
@@ -64,8 +46,8 @@ class Measuring {
     const Vec3f eye = cut_centre(view.eye, {0, 0, 0});
     const Picture leaves(params, arrays_, leaves_, workers_);
     for (const double tau : kTaus) {
-      const float target = target_size(tau, kPictureFocal);
-      const Picture cut(params, arrays_, cut_of(tree_, eye, target, workers_), workers_);
+      search_.run(tree_, {}, {eye, target_size(tau, kPictureFocal)}, workers_);
+      const Picture cut(params, arrays_, search_.cut(), workers_);
       for (const NodeGain& found : gains(params, arrays_, tree_, cut, leaves, workers_)) {
         const NodeRecord& r = tree_.records[found.node];
         const double metres =
@@ -82,6 +64,7 @@ class Measuring {
   const Viewpoints viewpoints_;
   Workers& workers_;
   std::vector<uint32_t> leaves_;
+  ExhaustiveSearch search_;
 };
 
 // What turns a squared gain into a squared extent: half of the nodes that gain anything are to
@@ -114,7 +97,8 @@ void set_measured(const Measured& measured, LodTree& tree) {
   }
 }
 
-// Extents never grow downwards, and what is as good as its parent's children blends late.
+// Of a tree whose merged nodes are set: extents never grow downwards, leaves and doubles blend
+// late.
 void set_others(LodTree& tree) {
   for (auto n = static_cast<uint32_t>(tree.size()); n-- > 0;) {
     NodeRecord& r = tree.records[n];

@@ -1,6 +1,7 @@
 #pragma once
 // Extents from what refining is seen to gain (docs/lod-tree.md): the scene is looked at from many
 // places, its cuts beside all leaves.
+#include <cstdint>
 #include <string>
 
 #include "runtime/base/progress.h"

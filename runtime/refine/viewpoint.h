@@ -1,6 +1,5 @@
 #pragma once
 // Where a scene is looked at from, to find out what shows.
-#include <array>
 #include <cstdint>
 
 #include "runtime/lod/baked_scene.h"

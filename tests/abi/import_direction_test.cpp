@@ -23,7 +23,7 @@ const std::map<std::string, Folders>& allowed() {
       {"bake", {"math", "base", "scene", "lod", "format"}},
       {"select", {"math", "base", "scene", "lod"}},
       {"stages", {"math", "base", "scene", "lod"}},
-      {"refine", {"math", "base", "scene", "lod", "bake", "stages"}},
+      {"refine", {"math", "base", "scene", "lod", "bake", "select", "stages"}},
       {"stream", {"math", "base", "scene", "lod", "format", "select"}},
       {"frame", {"math", "base", "scene", "lod", "format", "select", "stages", "stream"}},
       {"cpu", below_backends},

@@ -9,6 +9,7 @@
 #include "runtime/lod/stand_in.h"
 #include "runtime/lod/validate.h"
 #include "runtime/refine/gain.h"
+#include "runtime/select/cut.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
@@ -34,17 +35,6 @@ std::vector<uint32_t> leaves_of(const LodTree& tree) {
   return leaves;
 }
 
-std::vector<uint32_t> cut_at(const LodTree& tree, const Vec3d& eye, float target) {
-  const Vec3f from{static_cast<float>(eye.x), static_cast<float>(eye.y), static_cast<float>(eye.z)};
-  std::vector<uint32_t> cut;
-  for (uint32_t n = 0; n < tree.size(); ++n) {
-    const uint32_t parent = tree.parent[n];
-    const bool reached = parent == kNoNode || tree.screen_size(parent, from) >= target;
-    if (reached && (tree.is_leaf(n) || tree.screen_size(n, from) < target)) cut.push_back(n);
-  }
-  return cut;
-}
-
 // Against pictures in which the children are drawn.
 TEST(Refine, AGainIsWhatThePictureGains) {
   Workers workers;
@@ -58,7 +48,9 @@ TEST(Refine, AGainIsWhatThePictureGains) {
     const Viewpoint view = Viewpoints(baked)(k);
     const ProjectParams params = picture_params(view);
     const Picture leaves(params, arrays, leaves_of(tree), workers);
-    const std::vector<uint32_t> nodes = cut_at(tree, view.eye, 0.3f);
+    ExhaustiveSearch search;
+    search.run(tree, {}, {cut_centre(view.eye, {0, 0, 0}), 0.3f}, workers);
+    const auto& nodes = search.cut();
     const Picture cut(params, arrays, nodes, workers);
     const double error = squared_error(cut, leaves);
     for (const NodeGain& gain : gains(params, arrays, tree, cut, leaves, workers)) {
@@ -196,8 +188,8 @@ TEST(Refine, ViewpointsDoNotDependOnOneAnother) {
   const BakedScene baked = test::bake(test::random_cloud(2000, 9, 0));
   const Viewpoints all(baked), again(baked);
   for (const uint32_t k : {0u, 3u, 1000u}) {
-    const Viewpoint view = all(k);
-    EXPECT_EQ(std::memcmp(&view, &static_cast<const Viewpoint&>(again(k)), sizeof view), 0);
+    const Viewpoint view = all(k), alone = again(k);
+    EXPECT_EQ(std::memcmp(&view, &alone, sizeof view), 0);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         EXPECT_NEAR(dot(view.world_to_view.row[i], view.world_to_view.row[j]), i == j, 1e-12);
