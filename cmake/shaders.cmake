@@ -1,7 +1,9 @@
 # voyager_shaders(TARGET FILE...): compiles each GLSL file to SPIR-V in a header that TARGET
 # can include by the file's name: composite.vert is "composite.vert.h", an array of uint32_t
 # called composite_vert. The stage is told from the extension.
-find_program(VOYAGER_GLSLANG glslangValidator REQUIRED)
+
+# All of them; what reads the sources without building them needs these headers.
+add_custom_target(shader_headers)
 
 function(voyager_shaders target)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${target}_shaders)
@@ -16,6 +18,9 @@ function(voyager_shaders target)
               --vn ${variable} -o ${header} ${source}
       DEPENDS ${source} DEPFILE ${header}.d VERBATIM COMMENT "SPIR-V of ${name}")
     target_sources(${target} PRIVATE ${header})
+    list(APPEND headers ${header})
   endforeach()
+  add_custom_target(${target}_shader_headers DEPENDS ${headers})
+  add_dependencies(shader_headers ${target}_shader_headers)
   target_include_directories(${target} PRIVATE ${folder})
 endfunction()

@@ -133,7 +133,8 @@ void BaselinePipeline::launch_projections(const FrameInput& frame, BaselineFrame
 void BaselinePipeline::draw(const FrameInput& frame, FrameStats& stats) {
   const FrameEye& eye = frame.eyes[0];
   if (eye.limits.values != nullptr)
-    throw Error(ErrorCode::unsupported, "depth limits: found some, 3dgs splatting has none");
+    throw Error(ErrorCode::unsupported,
+                "depth limits: found some with 3dgs splatting, expected none");
   device_->use();
   const TileGrid grid = tile_grid(eye.camera.width, eye.camera.height);
   fit(tiles_, static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));
@@ -184,11 +185,11 @@ std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device>
                                                    std::vector<DeviceInstance> instances,
                                                    const PipelineDesc& desc) {
   if (desc.eyes != 1)
-    throw Error(ErrorCode::unsupported, "eyes: found " + std::to_string(desc.eyes) +
-                                            ", 3dgs splatting draws one in a view");
+    throw Error(ErrorCode::unsupported,
+                "eyes: found " + std::to_string(desc.eyes) + ", expected 1 with 3dgs splatting");
   if (desc.exponential != Exponential::exact)
     throw Error(ErrorCode::unsupported,
-                "exponential: found one other than exact, 3dgs splatting has expf only");
+                "exponential: found another than exact with 3dgs splatting, expected exact");
   return std::make_unique<BaselinePipeline>(std::move(device), std::move(instances));
 }
 

@@ -13,6 +13,10 @@ ErrorCode code_of(cudaError_t status) {
     case cudaErrorInsufficientDriver:
     case cudaErrorDevicesUnavailable:
     case cudaErrorNoKernelImageForDevice:
+    case cudaErrorInitializationError:
+    case cudaErrorSystemNotReady:
+    case cudaErrorSystemDriverMismatch:
+    case cudaErrorCompatNotSupportedOnDevice:
       return ErrorCode::no_device;
     case cudaErrorIllegalAddress:
     case cudaErrorLaunchFailure:
@@ -32,7 +36,31 @@ ErrorCode code_of(cudaError_t status) {
   }
 }
 
+const char* advice(cudaError_t status) {
+  switch (status) {
+    case cudaErrorMemoryAllocation:
+      return "; end other programs that use the GPU (nvidia-smi lists them), or draw on the CPU";
+    case cudaErrorDevicesUnavailable:
+      return "; another process has the GPU for itself: end it, or ask the administrator to allow "
+             "several (nvidia-smi shows the compute mode)";
+    case cudaErrorNoDevice:
+      return "; nvidia-smi shows which GPUs the driver sees, and CUDA_VISIBLE_DEVICES may hide "
+             "them";
+    case cudaErrorSystemDriverMismatch:
+      return "; the driver was updated while it was in use: restart the machine";
+    default:
+      return "; nvidia-smi shows whether the driver works";
+  }
+}
+
 }  // namespace
+
+void check_start(cudaError_t status, const char* what) {
+  if (status == cudaSuccess) return;
+  cudaGetLastError();
+  throw Error(code_of(status),
+              std::string("CUDA: ") + what + ": " + cudaGetErrorString(status) + advice(status));
+}
 
 void check(cudaError_t status, const char* what) {
   if (status == cudaSuccess) return;

@@ -8,5 +8,7 @@ namespace voyager::cuda {
 // usable device, device_lost where its context can do nothing any more, else internal; the message
 // has `what` and CUDA's own words.
 void check(cudaError_t status, const char* what);
+// The same for what starts a device up. The message also says what the user can do.
+void check_start(cudaError_t status, const char* what);
 
 }  // namespace voyager::cuda

@@ -6,25 +6,17 @@
 #include <cstring>
 
 #include "cuda/check.h"
+#include "cuda/machine.h"
 #include "runtime/base/error.h"
 
 namespace voyager::cuda {
 
-namespace {
-
-constexpr int kLeastCapability = 8;  // the oldest that cmake/cuda.cmake compiles for
-
-}  // namespace
-
 Device::Device(int ordinal, unsigned multiprocessors) : ordinal_(ordinal) {
   cudaDeviceProp properties;
-  check(cudaGetDeviceProperties(&properties, ordinal), "looking for a device with a driver for it");
-  if (properties.major < kLeastCapability)
-    throw Error(ErrorCode::no_device,
-                std::string("CUDA: ") + properties.name + ": found compute capability " +
-                    std::to_string(properties.major) + "." + std::to_string(properties.minor) +
-                    ", expected " + std::to_string(kLeastCapability) + ".0 or newer");
-  check(cudaSetDevice(ordinal), "device");
+  check_start(cudaGetDeviceProperties(&properties, ordinal), "device properties");
+  if (const std::string missing = missing_from(properties); !missing.empty())
+    throw Error(ErrorCode::no_device, "CUDA: " + missing);
+  check_start(cudaSetDevice(ordinal), properties.name);
   name_ = properties.name;
   std::memcpy(uuid_.data(), properties.uuid.bytes, uuid_.size());
   multiprocessors_ = static_cast<unsigned>(properties.multiProcessorCount);

@@ -197,8 +197,9 @@ void DevicePool::wait_for_frames() {
 DevicePool& pool_of(const Scene& scene, const Device& device) {
   auto* pool = dynamic_cast<DevicePool*>(scene.pool.get());
   if (pool != nullptr && &pool->device() == &device) return *pool;
-  throw Error(ErrorCode::unsupported,
-              "scene: found one that is streamed to another device, expected the view's");
+  throw Error(
+      ErrorCode::unsupported,
+      "scene: found a scene that is streamed to another device, expected the view's device");
 }
 
 PoolReader::PoolReader(DevicePool& pool) : pool_(pool) {

@@ -83,7 +83,7 @@ std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device
                                                     bool weights) {
   if (scene.streamed())
     throw Error(ErrorCode::unsupported,
-                "search: found exhaustive, a streamed scene has streaming and temporal");
+                "search: found exhaustive for a streamed scene, expected streaming or temporal");
   device->use();
   return std::make_unique<ExhaustiveSearch>(std::move(device), tree, weights);
 }

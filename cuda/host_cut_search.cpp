@@ -7,7 +7,7 @@ namespace {
 
 class HostCutSearch final : public CutSearch {
  public:
-  HostCutSearch(std::shared_ptr<const Scene> scene, Search kind, Workers& workers)
+  HostCutSearch(const std::shared_ptr<const Scene>& scene, Search kind, Workers& workers)
       : workers_(workers),
         search_(scene, {kind, true}, std::pmr::get_default_resource(), workers),
         nodes_(scene->tree.size()),
@@ -61,12 +61,14 @@ class HostCutSearch final : public CutSearch {
 
 }  // namespace
 
-std::unique_ptr<CutSearch> create_host_cut_search(std::shared_ptr<const Scene> scene, Search kind,
-                                                  Workers& workers) {
+std::unique_ptr<CutSearch> create_host_cut_search(const std::shared_ptr<const Scene>& scene,
+                                                  Search kind, Workers& workers) {
   if (scene->streamed())
-    throw Error(ErrorCode::unsupported,
-                "search: found one on the host, a streamed scene's tree is on the device");
-  return std::make_unique<HostCutSearch>(std::move(scene), kind, workers);
+    throw Error(
+        ErrorCode::unsupported,
+        "search: found a search on the host for a streamed scene, expected one on the device, "
+        "where its tree is");
+  return std::make_unique<HostCutSearch>(scene, kind, workers);
 }
 
 }  // namespace voyager::cuda

@@ -65,8 +65,8 @@ std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device
 
 // Runs on the host, for scenes with damaged chunks; find() throws Error(damaged_chunk)
 // where the cut needs one. Throws Error(unsupported) for a streamed scene.
-std::unique_ptr<CutSearch> create_host_cut_search(std::shared_ptr<const Scene> scene, Search kind,
-                                                  Workers& workers);
+std::unique_ptr<CutSearch> create_host_cut_search(const std::shared_ptr<const Scene>& scene,
+                                                  Search kind, Workers& workers);
 
 // A search by itself, on a stream of its own, with its times; made for what desc says.
 std::unique_ptr<SceneSearch> create_timed_search(std::shared_ptr<const Device> device,

@@ -18,7 +18,7 @@ class SharedByScene {
     std::erase_if(values_, [](const auto& entry) { return entry.second.expired(); });
     std::weak_ptr<const T>& held = values_[scene];
     if (auto value = held.lock()) return value;
-    const std::shared_ptr<const T> value = make(*scene);
+    std::shared_ptr<const T> value = make(*scene);
     held = value;
     return value;
   }

@@ -222,8 +222,8 @@ void Connection::fail(CURLcode code, const Transfer& transfer) const {
   std::string found = error_[0] != '\0' ? error_ : curl_easy_strerror(code);
   if (transfer.got != 0) found += " after " + std::to_string(transfer.got) + " bytes";
   throw Error(code_of(code), name_ + ": bytes " + std::to_string(transfer.range.first) + "-" +
-                                 std::to_string(transfer.range.last) + ": found " + found +
-                                 ", expected these bytes");
+                                 std::to_string(transfer.range.last) + ": found the failure \"" +
+                                 found + "\", expected these bytes");
 }
 
 }  // namespace voyager::http

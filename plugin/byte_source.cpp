@@ -26,7 +26,7 @@ void HostSource::read(uint64_t offset, std::span<std::byte> into) const {
   throw Error(later ? ErrorCode::io_transient : ErrorCode::io,
               name_ + ": offset " + std::to_string(offset) + ": reading " +
                   std::to_string(into.size()) + " bytes: found result " + std::to_string(found) +
-                  " of the host's read, expected 0");
+                  " from the host's read callback, expected VOY_SUCCESS (0)");
 }
 
 }  // namespace voyager

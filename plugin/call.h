@@ -29,8 +29,8 @@ class Call {
     in_use_.push_back(object.get());
     if (device_of(*object).abandoned)
       throw ApiError(VOY_ERROR_DEVICE_LOST,
-                     "device: found one on which a frame never ended, expected it to be destroyed "
-                     "with all that is on it");
+                     "device: found a device with a frame that never finished, expected it to be "
+                     "destroyed");
     enter(*object);
     return std::static_pointer_cast<T>(std::move(object));
   }

@@ -11,8 +11,9 @@ template <class T>
 std::unique_lock<std::mutex> claim_object(T& object, const char* name) {
   std::unique_lock lock(object.busy, std::try_to_lock);
   if (!lock)
-    throw ApiError(VOY_ERROR_BUSY,
-                   std::string(name) + ": found one that is busy in another thread");
+    throw ApiError(
+        VOY_ERROR_BUSY,
+        std::string(name) + ": found it in use by another thread, expected it to be free");
   return lock;
 }
 
@@ -20,15 +21,15 @@ std::unique_lock<std::mutex> claim_object(T& object, const char* name) {
 inline std::unique_lock<std::mutex> claim(ViewObject& view) {
   auto lock = claim_object(view, "view");
   if (!view.view)
-    throw ApiError(VOY_ERROR_SCENE_DESTROYED,
-                   "view: found one of which a scene was destroyed, expected it to be "
-                   "destroyed too");
+    throw ApiError(
+        VOY_ERROR_SCENE_DESTROYED,
+        "view: found that a scene was destroyed, expected the view to be destroyed, too");
   return lock;
 }
 
 inline void check_has_frame(const ViewObject& view) {
   if (!view.view->has_frame())
-    refuse("view: found one that has rendered no frame, expected one that has");
+    refuse("view: found a view without a rendered frame, expected voyRenderFrame before this call");
 }
 
 }  // namespace voyager

@@ -44,14 +44,14 @@ DepthLimits depth_limits(const VoyEyeDepthLimit* limit, const Image& image,
   }
   if (limit->depth == nullptr && ring != nullptr)
     refuse(
-        "VoyEyeDepthLimit.depth: found NULL for a target that was made without depthLimit, "
-        "expected "
+        "VoyEyeDepthLimit.depth: found NULL for a target without depthLimit, expected "
         "VoyVulkanTargetDesc.depthLimit");
   check_pointer(limit->depth, "VoyEyeDepthLimit.depth");
   if (ring != nullptr && ring->device().sharing() == vulkan::Sharing::device)
-    throw ApiError(VOY_ERROR_UNSUPPORTED,
-                   "VoyEyeDepthLimit.depth: found host memory for an image that is drawn where it "
-                   "is, expected NULL and voyRecordVulkanDepthLimit");
+    throw ApiError(
+        VOY_ERROR_UNSUPPORTED,
+        "VoyEyeDepthLimit.depth: found host memory with DEVICE sharing, expected NULL and "
+        "voyRecordVulkanDepthLimit");
   const size_t pitch =
       checked_pitch({"VoyEyeDepthLimit.depth", limit->depth, limit->depthRowPitch, 4u}, image.width,
                     image.height);

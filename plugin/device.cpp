@@ -53,11 +53,11 @@ uint32_t splattings_of(VoyBackend backend) {
 }
 
 void log_creation(const DeviceObject& device, const std::string& cuda_left_out) {
-  const auto write = [&](const std::string& what) {
-    device.log.write(VOY_LOG_INFO, ("voyCreateDevice: " + what).c_str());
+  const auto write = [&](VoyLogLevel level, const std::string& what) {
+    device.log.write(level, ("voyCreateDevice: " + what).c_str());
   };
-  if (!cuda_left_out.empty()) write("CUDA is left out: " + cuda_left_out);
-  write(device.backend->device_name());
+  if (!cuda_left_out.empty()) write(VOY_LOG_WARNING, "AUTO chose the CPU: " + cuda_left_out);
+  write(VOY_LOG_INFO, device.backend->device_name());
 }
 
 // The UUID that the backend must have; NULL for any.
@@ -66,7 +66,8 @@ const uint8_t* checked_uuid(const VoyDeviceDesc& desc, const vulkan::PhysicalDev
   if (physical == nullptr || sharing == vulkan::Sharing::host) return desc.deviceUuid;
   const uint8_t* uuid = physical->uuid().data();
   if (desc.deviceUuid != nullptr && !std::equal(uuid, uuid + 16, desc.deviceUuid))
-    refuse("desc.deviceUuid: found another than the Vulkan device's, expected NULL or the same");
+    refuse(
+        "desc.deviceUuid: found another UUID than the Vulkan device's, expected NULL or the same");
   const bool on_cpu = desc.backend == VOY_BACKEND_CPU || desc.backend == VOY_BACKEND_REFERENCE;
   return on_cpu ? nullptr : uuid;
 }
@@ -107,7 +108,7 @@ voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend kind,
   if (desc.allocator != nullptr) memory = &host_memory.emplace(*desc.allocator);
 }
 
-VoyResult voyQueryBackend(VoyBackend backend) {
+VoyResult VOY_CALL voyQueryBackend(VoyBackend backend) {
   return guarded("voyQueryBackend", [&](Call&) {
     check_backend(backend);
     if (backend != VOY_BACKEND_AUTO) choose_backend(backend, nullptr);
@@ -115,7 +116,7 @@ VoyResult voyQueryBackend(VoyBackend backend) {
   });
 }
 
-VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device) {
+VoyResult VOY_CALL voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device) {
   return guarded("voyCreateDevice", [&](Call&) {
     const VoyVulkanDeviceDesc* host = nullptr;
     check_structure(desc, VOY_STRUCTURE_TYPE_DEVICE_DESC, "VoyDeviceDesc",
@@ -131,14 +132,14 @@ VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device) {
   });
 }
 
-VoyResult voyDestroyDevice(VoyDevice device) {
+VoyResult VOY_CALL voyDestroyDevice(VoyDevice device) {
   return guarded("voyDestroyDevice", [&](Call& call) {
     call.remove<DeviceObject>(device);
     return VOY_SUCCESS;
   });
 }
 
-VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
+VoyResult VOY_CALL voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
   return guarded("voyGetCapabilities", [&](Call& call) {
     const auto object = call.use<DeviceObject>(device);
     VoyVulkanCapabilities* vulkan = nullptr;
@@ -146,8 +147,8 @@ VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities) {
                     Extension{VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES, vulkan});
     if (vulkan != nullptr && object->vulkan == nullptr)
       throw ApiError(VOY_ERROR_UNSUPPORTED,
-                     "capabilities.next: found a VoyVulkanCapabilities for a device that was made "
-                     "without a VoyVulkanDeviceDesc");
+                     "capabilities.next: found a VoyVulkanCapabilities for a device without a "
+                     "VoyVulkanDeviceDesc, expected none");
     VoyCapabilities found = VOY_CAPABILITIES_INIT;
     found.next = capabilities->next;
     found.backend = object->backend_kind;

@@ -67,7 +67,7 @@ void fill(VoyFrameStats& out, const FrameStats& in) {
 
 }  // namespace
 
-VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
+VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame) {
   return guarded("voyRenderFrame", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
     const VoyVulkanFrame* vulkan = nullptr;
@@ -104,7 +104,7 @@ VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame) {
   });
 }
 
-VoyResult voyGetFrameStats(VoyView view, VoyFrameStats* stats) {
+VoyResult VOY_CALL voyGetFrameStats(VoyView view, VoyFrameStats* stats) {
   return guarded("voyGetFrameStats", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
     check_structure(stats, VOY_STRUCTURE_TYPE_FRAME_STATS, "VoyFrameStats");

@@ -32,20 +32,22 @@ EyeTarget checked_target(Call& call, const VoyFrameEye& eye, const ViewObject& v
 
 void check_other(const EyeTarget& target, const EyeTarget& before, const std::string& name) {
   if ((target.object->ring == nullptr) != (before.object->ring == nullptr))
-    refuse(name + ".target: found one of another kind than the first eye's, expected the same");
+    refuse(name +
+           ".target: found a target of another kind than the first eye's, expected the same kind");
   if (target.object == before.object && target.layer == before.layer)
-    refuse(name + ": found the first eye's target and layer, expected an image of its own");
+    refuse(name + ": found the target and layer of the first eye, expected another image");
 }
 
 void check_vulkan(const EyeTarget& target, const VoyVulkanFrame* frame) {
   if (target.object->ring == nullptr) {
     if (frame != nullptr)
-      throw ApiError(VOY_ERROR_INVALID_STRUCTURE,
-                     "frame.next: found a VoyVulkanFrame for a target of HOST_MEMORY");
+      throw ApiError(
+          VOY_ERROR_INVALID_STRUCTURE,
+          "frame.next: found a VoyVulkanFrame with a target of kind HOST_MEMORY, expected none");
     return;
   }
   if (frame == nullptr)
-    refuse("frame.next: found no VoyVulkanFrame, expected one for a target of VULKAN");
+    refuse("frame.next: found no VoyVulkanFrame, expected one for a target of kind VULKAN");
   check_count(frame->imageIndex, 0, target.object->ring->desc().images - 1,
               "VoyVulkanFrame.imageIndex");
   check_count(frame->reserved, 0, 0, "VoyVulkanFrame.reserved");

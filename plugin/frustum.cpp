@@ -17,7 +17,7 @@ void check_tangent(double tangent, const std::string& field) {
 
 void check_span(double low, double high, const std::string& field, const char* other) {
   if (!(high - low >= kMinSpan))
-    refuse_number(field, low, std::string("1e-6 less than ") + other + " at least");
+    refuse_number(field, low, std::string("at least 1e-6 less than ") + other);
 }
 
 }  // namespace

@@ -32,11 +32,11 @@ void check_positive(double value, const char* name) {
 
 }  // namespace
 
-uint32_t voyGetVersion(void) {
+uint32_t VOY_CALL voyGetVersion(void) {
   return VOY_MAKE_VERSION(VOYAGER_VERSION_MAJOR, VOYAGER_VERSION_MINOR, VOYAGER_VERSION_PATCH);
 }
 
-const char* voyResultString(VoyResult result) {
+const char* VOY_CALL voyResultString(VoyResult result) {
   switch (number(result)) {
 #define VOYAGER_NAME(enumerant) \
   case enumerant:               \
@@ -66,11 +66,11 @@ const char* voyResultString(VoyResult result) {
   }
 }
 
-const char* voyGetLastErrorMessage(void) {
+const char* VOY_CALL voyGetLastErrorMessage(void) {
   return last_message();
 }
 
-const char* voyStageName(VoyStage stage) {
+const char* VOY_CALL voyStageName(VoyStage stage) {
   switch (number(stage)) {
     case VOY_STAGE_SEARCH:
       return "search";
@@ -89,7 +89,8 @@ const char* voyStageName(VoyStage stage) {
   }
 }
 
-VoyResult voyFovFromAngles(double left, double right, double up, double down, VoyFrustum* frustum) {
+VoyResult VOY_CALL voyFovFromAngles(double left, double right, double up, double down,
+                                    VoyFrustum* frustum) {
   return guarded("voyFovFromAngles", [&](Call&) {
     check_pointer(frustum, "frustum");
     const VoyFrustum tangents = {angle_tangent(left, "left"), angle_tangent(right, "right"),
@@ -100,8 +101,8 @@ VoyResult voyFovFromAngles(double left, double right, double up, double down, Vo
   });
 }
 
-VoyResult voyFovFromIntrinsics(double fx, double fy, double cx, double cy, double width,
-                               double height, VoyFrustum* frustum) {
+VoyResult VOY_CALL voyFovFromIntrinsics(double fx, double fy, double cx, double cy, double width,
+                                        double height, VoyFrustum* frustum) {
   return guarded("voyFovFromIntrinsics", [&](Call&) {
     check_pointer(frustum, "frustum");
     check_positive(fx, "fx");

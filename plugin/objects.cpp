@@ -9,9 +9,10 @@ DeviceObject::~DeviceObject() {
 
 void DeviceObject::abandon() noexcept {
   if (abandoned.exchange(true)) return;
-  log.write(VOY_LOG_ERROR,
-            "a frame into a Vulkan target did not end, expected its `released` to be signalled: "
-            "what it may still use is left behind, and the device takes no more frames");
+  log.write(
+      VOY_LOG_ERROR,
+      "a frame into a Vulkan target did not finish, because `released` was not signalled. The "
+      "memory that it may still use is not freed, and the device draws no more frames");
 }
 
 namespace {

@@ -21,8 +21,8 @@ VoyOmission omission_of(const Omission& omission, double bytes_a_second) {
 
 }  // namespace
 
-VoyResult voyGetViewOmissions(VoyView view, uint32_t capacity, VoyOmission* omissions,
-                              uint32_t* count) {
+VoyResult VOY_CALL voyGetViewOmissions(VoyView view, uint32_t capacity, VoyOmission* omissions,
+                                       uint32_t* count) {
   return guarded("voyGetViewOmissions", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
     check_pointer(count, "count");

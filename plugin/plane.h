@@ -18,15 +18,18 @@ struct Plane {
 inline size_t checked_pitch(const Plane& plane, uint32_t width, uint32_t height) {
   const std::string name = plane.name;
   const uintptr_t address = reinterpret_cast<uintptr_t>(plane.memory);
-  if (address % 4 != 0) refuse(name + ": found an address that is not aligned to 4 bytes");
+  if (address % 4 != 0)
+    refuse(name + ": found an address that is not aligned to 4 bytes, expected alignment");
   const uint64_t packed = width * plane.pixel_bytes;
   const uint64_t pitch = plane.pitch == 0 ? packed : plane.pitch;
   if (pitch < packed || pitch % 4 != 0)
-    refuse(name + "RowPitch: found " + std::to_string(pitch) + ", expected a multiple of 4 of " +
-           std::to_string(packed) + " at least, or 0");
+    refuse(name + "RowPitch: found " + std::to_string(pitch) +
+           ", expected 0 or a multiple of 4 "
+           "that is " +
+           std::to_string(packed) + " or more");
   if (pitch > (UINTPTR_MAX - address) / height)
-    refuse(name + "RowPitch: found " + std::to_string(pitch) + ", which times the height of " +
-           std::to_string(height) + " goes beyond the address space");
+    refuse(name + "RowPitch: found " + std::to_string(pitch) + " for " + std::to_string(height) +
+           " rows, expected rows that end within the address space");
   return pitch;
 }
 

@@ -65,12 +65,11 @@ uint32_t damaged_chunks(const Scene& scene) {
 }
 
 void log_opening(const Log& log, const Scene& scene) {
-  log.write(VOY_LOG_INFO,
-            ("voyOpenScene: " + scene.name + ": " +
-             std::to_string(std::max<uint64_t>(scene.gaussians.size(), scene.node_count)) +
-             " Gaussians, " + std::to_string(scene.node_count) + " of them nodes of a tree" +
-             (scene.streamed() ? ", streamed" : ""))
-                .c_str());
+  const std::string tree =
+      scene.flat() ? "a flat scene" : std::to_string(scene.node_count) + " nodes in its tree";
+  log.write(VOY_LOG_INFO, ("voyOpenScene: " + scene.name + ": " + std::to_string(scene.leaf_count) +
+                           " Gaussians, " + tree + (scene.streamed() ? ", streamed" : ""))
+                              .c_str());
   for (const SceneNote& note : scene.notes)
     if (note.kind != SceneNote::Kind::omitted)
       log.write(VOY_LOG_WARNING,
@@ -116,7 +115,7 @@ VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
 
 }  // namespace
 
-VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* scene) {
+VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* scene) {
   return guarded("voyOpenScene", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
     const VoySceneStreaming* streaming = nullptr;
@@ -135,7 +134,7 @@ VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* sce
   });
 }
 
-VoyResult voyDestroyScene(VoyScene scene) {
+VoyResult VOY_CALL voyDestroyScene(VoyScene scene) {
   return guarded("voyDestroyScene", [&](Call& call) {
     for (const auto& object : call.remove<SceneObject>(scene)) {
       // No call holds the scene now, so no view of it can appear any more.
@@ -151,7 +150,7 @@ VoyResult voyDestroyScene(VoyScene scene) {
   });
 }
 
-VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info) {
+VoyResult VOY_CALL voyGetSceneInfo(VoyScene scene, VoySceneInfo* info) {
   return guarded("voyGetSceneInfo", [&](Call& call) {
     const auto object = call.use<SceneObject>(scene);
     VoySceneProfile* profile = nullptr;
@@ -165,8 +164,8 @@ VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info) {
   });
 }
 
-VoyResult voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNote* notes,
-                           uint32_t* count) {
+VoyResult VOY_CALL voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNote* notes,
+                                    uint32_t* count) {
   return guarded("voyGetSceneNotes", [&](Call& call) {
     const auto object = call.use<SceneObject>(scene);
     check_pointer(count, "count");

@@ -71,12 +71,12 @@ namespace {
 void check_streamed(const SceneObject& object) {
   if (!object.scene->streamed())
     throw ApiError(VOY_ERROR_UNSUPPORTED,
-                   "scene: found one that is loaded whole, expected one that is streamed");
+                   "scene: found a scene that is loaded whole, expected a streamed scene");
 }
 
 }  // namespace
 
-VoyResult voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes) {
+VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes) {
   return guarded("voySetSceneMemoryBudget", [&](Call& call) {
     const auto object = call.use<SceneObject>(scene);
     check_streamed(*object);
@@ -90,7 +90,7 @@ VoyResult voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes) {
   });
 }
 
-VoyResult voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats) {
+VoyResult VOY_CALL voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats) {
   return guarded("voyGetStreamingStats", [&](Call& call) {
     const auto object = call.use<SceneObject>(scene);
     check_structure(stats, VOY_STRUCTURE_TYPE_STREAMING_STATS, "VoyStreamingStats");

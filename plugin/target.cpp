@@ -50,7 +50,7 @@ Image checked_image(const VoyTargetDesc& desc) {
 
 }  // namespace
 
-VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget* target) {
+VoyResult VOY_CALL voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget* target) {
   return guarded("voyCreateTarget", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
     const VoyVulkanTargetDesc* images = nullptr;
@@ -74,7 +74,7 @@ VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget
   });
 }
 
-VoyResult voyDestroyTarget(VoyTarget target) {
+VoyResult VOY_CALL voyDestroyTarget(VoyTarget target) {
   return guarded("voyDestroyTarget", [&](Call& call) {
     call.remove<TargetObject>(target);
     return VOY_SUCCESS;

@@ -28,8 +28,8 @@ void check_time_budget(const VoyTimeBudget& budget) {
 void set_time_budget(ViewObject& view, const VoyTimeBudget& budget) {
   if (!draws_any_cut(view))
     throw ApiError(VOY_ERROR_UNSUPPORTED,
-                   "VoyTimeBudget: found a view that draws every leaf of each instance, expected "
-                   "one that draws a cut, which tau makes smaller");
+                   "VoyTimeBudget: found a view that draws every leaf, where tau has no effect; "
+                   "expected a view that draws a cut");
   view.view->set_time_budget({budget.milliseconds, budget.leastTau, budget.greatestTau}, view.tau);
 }
 

@@ -18,11 +18,20 @@ void pin_tbb() {
     dlopen(where.dli_fname, RTLD_LAZY | RTLD_NOLOAD | RTLD_NODELETE);
 }
 
+// oneTBB 2021.5 (Ubuntu 22.04) has it as a preview (CMakeLists.txt), under another name.
+tbb::task_scheduler_handle scheduler_handle() {
+#if TBB_INTERFACE_VERSION < 12060
+  return tbb::task_scheduler_handle::get();
+#else
+  return tbb::task_scheduler_handle(tbb::attach{});
+#endif
+}
+
 // Joins oneTBB's workers where nobody else in the process uses them, so that none
 // is still returning through our code when it is unmapped.
 class TbbThreads {
  public:
-  TbbThreads() : handle_(tbb::attach{}) { pin_tbb(); }
+  TbbThreads() : handle_(scheduler_handle()) { pin_tbb(); }
   ~TbbThreads() { tbb::finalize(handle_, std::nothrow); }
   TbbThreads(const TbbThreads&) = delete;
   TbbThreads& operator=(const TbbThreads&) = delete;

@@ -105,7 +105,7 @@ std::vector<std::shared_ptr<SceneObject>> checked_scenes(Call& call, const VoyVi
 
 }  // namespace
 
-VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view) {
+VoyResult VOY_CALL voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view) {
   return guarded("voyCreateView", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
     const VoyTimeBudget* budget = nullptr;
@@ -130,14 +130,14 @@ VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view
   });
 }
 
-VoyResult voyDestroyView(VoyView view) {
+VoyResult VOY_CALL voyDestroyView(VoyView view) {
   return guarded("voyDestroyView", [&](Call& call) {
     call.remove<ViewObject>(view);
     return VOY_SUCCESS;
   });
 }
 
-VoyResult voySetViewTau(VoyView view, double tau) {
+VoyResult VOY_CALL voySetViewTau(VoyView view, double tau) {
   return guarded("voySetViewTau", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
     check_tau(tau);
@@ -148,7 +148,7 @@ VoyResult voySetViewTau(VoyView view, double tau) {
   });
 }
 
-VoyResult voySetViewTimeBudget(VoyView view, const VoyTimeBudget* budget) {
+VoyResult VOY_CALL voySetViewTimeBudget(VoyView view, const VoyTimeBudget* budget) {
   return guarded("voySetViewTimeBudget", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
     check_structure(budget, VOY_STRUCTURE_TYPE_TIME_BUDGET, "VoyTimeBudget");
@@ -159,8 +159,8 @@ VoyResult voySetViewTimeBudget(VoyView view, const VoyTimeBudget* budget) {
   });
 }
 
-VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint32_t* nodes,
-                        uint32_t* count) {
+VoyResult VOY_CALL voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity,
+                                 uint32_t* nodes, uint32_t* count) {
   return guarded("voyGetViewCut", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
     check_count(instance, 0, object->instances - 1, "instance");
@@ -169,8 +169,8 @@ VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint
     const auto frame = claim(*object);
     if (!object->view->draws_cut(instance))
       throw ApiError(VOY_ERROR_UNSUPPORTED,
-                     "instance: found one of which the view draws every "
-                     "leaf, expected one of which it draws a cut");
+                     "instance: found an instance of which the view draws every leaf, expected "
+                     "one of which it draws a cut");
     check_has_frame(*object);
     const auto& cut = object->view->cut(instance);
     const size_t written = std::min<size_t>(capacity, cut.size());

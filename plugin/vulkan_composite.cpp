@@ -11,7 +11,7 @@ namespace {
 
 vulkan::CompositeDesc checked(const VoyVulkanCompositeDesc& desc) {
   if (desc.colorFormat == VK_FORMAT_UNDEFINED)
-    refuse("desc.colorFormat: found UNDEFINED, expected the attachment's");
+    refuse("desc.colorFormat: found UNDEFINED, expected the format of the attachment");
   return {desc.renderPass, desc.subpass, desc.colorFormat, desc.depthFormat};
 }
 
@@ -54,29 +54,30 @@ vulkan::CompositeDraw checked(const VoyVulkanCompositeDraw& draw, const vulkan::
 
 }  // namespace
 
-VoyResult voyCreateVulkanComposite(VoyDevice device, const VoyVulkanCompositeDesc* desc,
-                                   VoyComposite* composite) {
+VoyResult VOY_CALL voyCreateVulkanComposite(VoyDevice device, const VoyVulkanCompositeDesc* desc,
+                                            VoyComposite* composite) {
   return guarded("voyCreateVulkanComposite", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
     check_structure(desc, VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC, "VoyVulkanCompositeDesc");
     check_pointer(composite, "composite");
     if (owner->vulkan == nullptr)
       throw ApiError(VOY_ERROR_UNSUPPORTED,
-                     "device: found one that was made without a VoyVulkanDeviceDesc");
+                     "device: found a device without a VoyVulkanDeviceDesc, expected one with it");
     const auto object = std::make_shared<CompositeObject>(owner, checked(*desc));
     *composite = static_cast<VoyComposite>(HandleTable::instance().insert(object));
     return VOY_SUCCESS;
   });
 }
 
-VoyResult voyDestroyVulkanComposite(VoyComposite composite) {
+VoyResult VOY_CALL voyDestroyVulkanComposite(VoyComposite composite) {
   return guarded("voyDestroyVulkanComposite", [&](Call& call) {
     call.remove<CompositeObject>(composite);
     return VOY_SUCCESS;
   });
 }
 
-VoyResult voyRecordVulkanComposite(VoyComposite composite, const VoyVulkanCompositeDraw* draw) {
+VoyResult VOY_CALL voyRecordVulkanComposite(VoyComposite composite,
+                                            const VoyVulkanCompositeDraw* draw) {
   return guarded("voyRecordVulkanComposite", [&](Call& call) {
     const auto object = call.use<CompositeObject>(composite);
     check_structure(draw, VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW, "VoyVulkanCompositeDraw");

@@ -115,8 +115,8 @@ void voyager::fill(VoyVulkanCapabilities& out, const vulkan::Device& device) {
   device.why().copy(out.why, sizeof out.why - 1);
 }
 
-VoyResult voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physicalDevice,
-                                   VoyVulkanRequirements* requirements) {
+VoyResult VOY_CALL voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physicalDevice,
+                                            VoyVulkanRequirements* requirements) {
   return guarded("voyGetVulkanRequirements", [&](Call&) {
     check_structure(requirements, VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS, "VoyVulkanRequirements");
     VoyVulkanRequirements found = VOY_VULKAN_REQUIREMENTS_INIT;

@@ -29,7 +29,8 @@ vulkan::Use use_of(const VoyVulkanUse& use) {
   check_commands(use.commandBuffer);
   if (use.layout != VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)
     check_layout(use.layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "use.layout");
-  if (use.stages == 0) refuse("use.stages: found 0, expected those of the host's commands");
+  if (use.stages == 0)
+    refuse("use.stages: found 0, expected the stages of the host's commands that use the image");
   return {use.commandBuffer, use.queueFamily, use.layout, use.stages};
 }
 
@@ -55,27 +56,28 @@ void check_offset(const VkOffset2D& offset, const vulkan::RingDesc& target, cons
   };
   if (!fits(offset.x, target.width) || !fits(offset.y, target.height))
     refuse(std::string(field) + ": found " + std::to_string(offset.x) + ", " +
-           std::to_string(offset.y) + ", expected the target's " + std::to_string(target.width) +
-           " x " + std::to_string(target.height) + " pixels to lie within an image from there");
+           std::to_string(offset.y) + ", expected an offset of 0 or more, from which " +
+           std::to_string(target.width) + " x " + std::to_string(target.height) +
+           " pixels lie within the image");
 }
 
 }  // namespace
 
-VoyResult voyRecordVulkanRelease(VoyTarget target, const VoyVulkanUse* use) {
+VoyResult VOY_CALL voyRecordVulkanRelease(VoyTarget target, const VoyVulkanUse* use) {
   return record_use("voyRecordVulkanRelease", target, use,
                     [&](vulkan::Ring& ring, const vulkan::Use& wanted) {
                       ring.record_release(use->imageIndex, wanted);
                     });
 }
 
-VoyResult voyRecordVulkanAcquire(VoyTarget target, const VoyVulkanUse* use) {
+VoyResult VOY_CALL voyRecordVulkanAcquire(VoyTarget target, const VoyVulkanUse* use) {
   return record_use("voyRecordVulkanAcquire", target, use,
                     [&](vulkan::Ring& ring, const vulkan::Use& wanted) {
                       ring.record_acquire(use->imageIndex, wanted);
                     });
 }
 
-VoyResult voyRecordVulkanCopy(VoyTarget target, const VoyVulkanCopy* copy) {
+VoyResult VOY_CALL voyRecordVulkanCopy(VoyTarget target, const VoyVulkanCopy* copy) {
   return guarded("voyRecordVulkanCopy", [&](Call& call) {
     const auto object = call.use<TargetObject>(target);
     check_structure(copy, VOY_STRUCTURE_TYPE_VULKAN_COPY, "VoyVulkanCopy");
@@ -93,7 +95,7 @@ VoyResult voyRecordVulkanCopy(VoyTarget target, const VoyVulkanCopy* copy) {
   });
 }
 
-VoyResult voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDepthLimit* limit) {
+VoyResult VOY_CALL voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDepthLimit* limit) {
   return guarded("voyRecordVulkanDepthLimit", [&](Call& call) {
     const auto object = call.use<TargetObject>(target);
     check_structure(limit, VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT, "VoyVulkanDepthLimit");
@@ -104,7 +106,7 @@ VoyResult voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDepthLimit*
     check_layout(limit->layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "limit.layout");
     check_offset(limit->offset, ring.desc(), "limit.offset");
     if (!ring.desc().depth_limit)
-      refuse("target: found one without depthLimit, expected one that was made with it");
+      refuse("target: found a target without depthLimit, expected VoyVulkanTargetDesc.depthLimit");
     ring.record_depth_limit(limit->imageIndex, limit->layer,
                             {limit->commandBuffer, limit->queueFamily, limit->depth, limit->format,
                              limit->layout, limit->depthLayer, limit->offset});

@@ -16,7 +16,9 @@ namespace {
 void check_no_memory(const VoyTargetDesc& desc) {
   if (desc.color != nullptr || desc.depth != nullptr || desc.colorRowPitch != 0 ||
       desc.depthRowPitch != 0)
-    refuse("desc: found memory or a pitch of the host's, expected none with kind VULKAN");
+    refuse(
+        "desc: found host memory or a pitch with kind VULKAN, expected color and depth NULL and "
+        "pitches 0");
 }
 
 // Whether the host passed an image where the target has one, and only there.
@@ -27,7 +29,7 @@ void check_image(bool wanted, bool passed, const std::string& field) {
 }
 
 vulkan::ImportedMemory memory_of(const VoyVulkanMemory& memory) {
-  return {memory.fd, memory.size, memory.offset, memory.dedicated != VK_FALSE};
+  return {memory.handle.fd, memory.size, memory.offset, memory.dedicated != VK_FALSE};
 }
 
 // What is passed is the library's to close: so it must be a descriptor, wanted or not.
@@ -38,13 +40,23 @@ void check_descriptor(int fd, bool wanted, const std::string& field) {
          (wanted ? "" : " or -1"));
 }
 
+// Which member of a handle is set. There is one answer so far.
+void check_handle_type(uint32_t found, uint32_t expected, const char* name,
+                       const std::string& field) {
+  if (found == expected) return;
+  refuse(field + ".handleType: found " + std::to_string(found) + ", expected " + name + " (" +
+         std::to_string(expected) + ")");
+}
+
 void check_memory(const VoyVulkanMemory& memory, bool shared, const std::string& field) {
-  check_descriptor(memory.fd, shared, field + ".fd");
-  if (memory.fd == -1) return;
+  check_handle_type(memory.handleType, VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT,
+                    "VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT", field);
+  check_descriptor(memory.handle.fd, shared, field + ".handle.fd");
+  if (memory.handle.fd == -1) return;
   if (memory.size == 0 || memory.offset >= memory.size)
     refuse(field + ": found offset " + std::to_string(memory.offset) + " in " +
            std::to_string(memory.size) + " bytes, expected an image within the memory" +
-           (shared ? "" : ", or fd -1"));
+           (shared ? "" : ", or handle.fd -1"));
 }
 
 void read_images(const VoyVulkanTargetDesc& from, bool shared, vulkan::RingDesc& into) {
@@ -61,7 +73,7 @@ void read_images(const VoyVulkanTargetDesc& from, bool shared, vulkan::RingDesc&
     if (into.depth) check_memory(image.depthMemory, shared, field + ".depthMemory");
     for (const VkImage each : {image.color, image.depth})
       if (each != VK_NULL_HANDLE && !seen.insert(each).second)
-        refuse(field + ": found an image that was passed before, expected one of its own");
+        refuse(field + ": found an image that was passed before, expected each image once");
     into.imported.push_back({image.color, image.depth, memory_of(image.colorMemory),
                              memory_of(image.depthMemory), image.colorUsage, image.depthUsage});
   }
@@ -84,12 +96,15 @@ void read_semaphores(const VoyVulkanTargetDesc& from, const vulkan::Device& devi
     check_structure(&pair, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES, field.c_str());
     check_image(true, pair.released != VK_NULL_HANDLE && pair.rendered != VK_NULL_HANDLE, field);
     const bool shared = device.sharing() == vulkan::Sharing::device;
-    check_descriptor(pair.releasedFd, shared, field + ".releasedFd");
-    check_descriptor(pair.renderedFd, shared, field + ".renderedFd");
-    if (pair.released == pair.rendered ||
-        (pair.releasedFd == pair.renderedFd && pair.releasedFd != -1))
-      refuse(field + ": found the same for released and rendered, expected two semaphores");
-    into.semaphores.push_back({pair.released, pair.rendered, pair.releasedFd, pair.renderedFd});
+    check_handle_type(pair.handleType, VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT,
+                      "VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT", field);
+    check_count(pair.reserved, 0, 0, (field + ".reserved").c_str());
+    const int released = pair.releasedHandle.fd, rendered = pair.renderedHandle.fd;
+    check_descriptor(released, shared, field + ".releasedHandle.fd");
+    check_descriptor(rendered, shared, field + ".renderedHandle.fd");
+    if (pair.released == pair.rendered || (released == rendered && released != -1))
+      refuse(field + ": found one semaphore or handle for released and rendered, expected two");
+    into.semaphores.push_back({pair.released, pair.rendered, released, rendered});
   }
 }
 
@@ -136,8 +151,8 @@ std::shared_ptr<TargetObject> voyager::create_vulkan_target(
     refuse("desc.next: found no VoyVulkanTargetDesc, expected one with kind VULKAN");
   if (owner->vulkan == nullptr)
     throw ApiError(VOY_ERROR_UNSUPPORTED,
-                   "desc.kind: found VULKAN for a device that was made without a "
-                   "VoyVulkanDeviceDesc, expected HOST_MEMORY");
+                   "desc.kind: found VULKAN for a device without a VoyVulkanDeviceDesc, expected "
+                   "HOST_MEMORY");
   const vulkan::RingDesc wanted = ring_desc(desc, *images, *owner->vulkan);
   passed = descriptors_of(wanted);
   Image image;
@@ -158,8 +173,8 @@ void voyager::close_all(const std::vector<int>& descriptors) noexcept {
     if (fd >= 0) ::close(fd);
 }
 
-VoyResult voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVulkanImage* images,
-                             uint32_t* count) {
+VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacity, VoyVulkanImage* images,
+                                      uint32_t* count) {
   return guarded("voyGetVulkanImages", [&](Call& call) {
     const auto object = call.use<TargetObject>(target);
     check_pointer(count, "count");

@@ -18,7 +18,7 @@ void close_all(const std::vector<int>& descriptors) noexcept;
 ColorFormat format_of(VoyColorFormat format);
 
 inline vulkan::Ring& vulkan_ring(const TargetObject& target) {
-  if (target.ring == nullptr) refuse("target: found one of HOST_MEMORY, expected one of VULKAN");
+  if (target.ring == nullptr) refuse("target: found kind HOST_MEMORY, expected kind VULKAN");
   return *target.ring;
 }
 

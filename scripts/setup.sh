@@ -1,25 +1,40 @@
 #!/usr/bin/env bash
-# Installs what the build, the tests and the samples need and this machine
-# lacks, from the distribution's packages. Safe to run again; root or sudo.
+# Installs what this machine lacks, from the distribution's packages: setup.sh [PART...]
+#   main    what builds and runs the library and the command line; the default, and with every part
+#   tests   beside it: the samples, `voyager report`, a software Vulkan, a browser, a web server
+#   checks  beside both: git, clang with its sanitizers, clang-format, clang-tidy
+#   bench   beside main: the benchmarks and the plots of bench/
+# scripts/setup_aarch64.sh is for the check of 64-bit Arm. No service is installed. Safe to run
+# again; root or sudo.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-packages=(
-  g++ cmake ninja-build binutils git                     # the build
-  libtbb-dev zlib1g-dev libzstd-dev libxxhash-dev        # runtime
-  libeigen3-dev
-  libcurl4-openssl-dev                                   # http:// and https://
-  libpng-dev libfmt-dev nlohmann-json3-dev libcli11-dev  # tools and samples
-  libcairo2-dev pkg-config fonts-dejavu-core             # voyager report: plots
-  libvulkan-dev glslang-tools                            # Vulkan: headers, loader, shaders
-  libtinygltf-dev libglm-dev libglfw3-dev libimgui-dev   # the Vulkan sample
-  libopenxr-dev libopenxr-loader1                        # OpenXR: headers, loader
-  openxr-layer-corevalidation                            # tests with OpenXR: its rules watched by another eye
-  mesa-vulkan-drivers vulkan-validationlayers xvfb       # tests with Vulkan: a CPU that has it, validation, a window's display
-  nginx-light openssl                                    # tests with HTTP: a real server, certificates
-  chromium-headless-shell                                # tests of pages that are written: a browser without a window
-  libgtest-dev libbenchmark-dev                          # tests and benchmarks
-  clang-format clang-tidy                                # checks
-  python3 python3-matplotlib                             # bench/: scripts, plots
-)
-exec scripts/install_packages.sh "${packages[@]}"
+declare -A packages
+packages[main]="
+  g++ cmake ninja-build
+  libtbb-dev zlib1g-dev libzstd-dev libxxhash-dev libeigen3-dev
+  libcurl4-openssl-dev
+  libpng-dev libfmt-dev nlohmann-json3-dev libcli11-dev
+  libvulkan-dev glslang-tools"
+packages[samples]="libtinygltf-dev libglm-dev libglfw3-dev libimgui-dev libopenxr-dev libopenxr-loader1"
+packages[report]="libcairo2-dev pkg-config fonts-dejavu-core"
+# GoogleTest and what inspects programs and .debs; software Vulkan and its validation, OpenXR's
+# rules, a window's display; certificates; a browser.
+packages[tests]="${packages[samples]} ${packages[report]}
+  libgtest-dev binutils python3 dpkg-dev file
+  mesa-vulkan-drivers vulkan-validationlayers openxr-layer-corevalidation xvfb
+  openssl ca-certificates chromium-headless-shell"
+packages[checks]="${packages[tests]} git clang libclang-rt-dev clang-format clang-tidy"
+packages[bench]="libbenchmark-dev python3 python3-matplotlib"
+
+wanted=${packages[main]}
+for part in "$@"; do
+  case $part in
+    main | tests | checks | bench) wanted+=" ${packages[$part]}" ;;
+    *) echo "setup.sh: $part: no such part, expected main, tests, checks or bench" >&2; exit 2 ;;
+  esac
+done
+read -r -d '' -a wanted <<<"$wanted" || true
+scripts/install_packages.sh "${wanted[@]}"
+
+case " $* " in *" tests "* | *" checks "*) scripts/unpack_nginx.sh ;; esac

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/console.h"
 #include "tools/statistics.h"
 
 namespace voyager::tools {
@@ -68,9 +69,10 @@ Json time_budget_json(const FrameRun& run, const std::vector<BudgetError>& error
 }
 
 void print_time_budget(const Json& json) {
-  fmt::print("budget {} ms: {:.1f} % of the frames on time, tau {:.2f} (median), p99 {:.3f} ms\n",
-             json["milliseconds"].get<double>(), 100 * json["on_time"].get<double>(),
-             json["tau"]["median"].get<double>(), json["ms"]["p99"].get<double>());
+  say(fmt::format(
+      "budget {} ms: {:.1f} % of the frames on time, tau {:.2f} (median), p99 {:.3f} ms\n",
+      json["milliseconds"].get<double>(), 100 * json["on_time"].get<double>(),
+      json["tau"]["median"].get<double>(), json["ms"]["p99"].get<double>()));
 }
 
 }  // namespace voyager::tools

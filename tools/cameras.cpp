@@ -7,6 +7,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/math/screen_size.h"
+#include "tools/byte_size.h"
 #include "tools/exit_code.h"
 
 namespace voyager::tools {
@@ -15,6 +16,17 @@ namespace {
 using Value = nlohmann::json;  // an ordered one copies by recursion: 150,000 levels are too many
 
 constexpr uint64_t kLargestFile = uint64_t{1} << 30;
+
+// right and forward are unit vectors at right angles.
+void set_orientation(VoyPose& pose, const Eigen::Vector3d& right, const Eigen::Vector3d& forward) {
+  Eigen::Matrix3d axes;  // OpenXR: x right, y up, z backward
+  axes << right, right.cross(forward), -forward;
+  const Eigen::Quaterniond q(axes);
+  pose.orientation[0] = q.x();
+  pose.orientation[1] = q.y();
+  pose.orientation[2] = q.z();
+  pose.orientation[3] = q.w();
+}
 
 class CameraReader {
  public:
@@ -34,7 +46,7 @@ class CameraReader {
     if (!(position.cwiseAbs().maxCoeff() < double{kMaxCoordinate}))
       refuse("position", field("position"), "metres below 1e18 in magnitude");
     for (int i = 0; i < 3; ++i) camera.pose.position[i] = position[i];
-    set_orientation(camera.pose);
+    read_orientation(camera.pose);
     check_frustum(camera);
     return camera;
   }
@@ -100,7 +112,7 @@ class CameraReader {
   // Camera to world, as rows; its columns are the camera's right, down and
   // forward. Written in decimal, they are not quite orthonormal: forward is kept
   // as it is, because it orders the splats (METHOD §6).
-  void set_orientation(VoyPose& pose) const {
+  void read_orientation(VoyPose& pose) const {
     const Value& rows = field("rotation");
     if (!rows.is_array() || rows.size() != 3)
       refuse("rotation", rows, "three rows of three numbers");
@@ -111,13 +123,7 @@ class CameraReader {
       refuse("rotation", rows, "a rotation (orthonormal within 0.001, determinant +1)");
     const Eigen::Vector3d forward = m.col(2).normalized();
     const Eigen::Vector3d right = (m.col(0) - m.col(0).dot(forward) * forward).normalized();
-    Eigen::Matrix3d axes;  // OpenXR: x right, y up, z backward
-    axes << right, right.cross(forward), -forward;
-    const Eigen::Quaterniond q(axes);
-    pose.orientation[0] = q.x();
-    pose.orientation[1] = q.y();
-    pose.orientation[2] = q.z();
-    pose.orientation[3] = q.w();
+    set_orientation(pose, right, forward);
   }
 
   const std::string& file_;
@@ -147,12 +153,20 @@ Camera Camera::resized(uint32_t new_width, uint32_t new_height) const {
   return c;
 }
 
+Camera looking(const Vec3d& from, const Vec3d& right, const Vec3d& forward, uint32_t width,
+               uint32_t height, double focal) {
+  Camera camera{{}, focal, focal, width / 2.0, height / 2.0, width, height};
+  for (int i = 0; i < 3; ++i) camera.pose.position[i] = from[i];
+  set_orientation(camera.pose, {right.x, right.y, right.z}, {forward.x, forward.y, forward.z});
+  return camera;
+}
+
 std::vector<Camera> read_cameras(const std::string& path) {
   const auto source = open_file_source(path);
   if (source->size() > kLargestFile)
     throw Error(ErrorCode::refused_input,
-                fmt::format("{}: found {} bytes, expected a cameras.json of at most {}", path,
-                            source->size(), kLargestFile));
+                fmt::format("{}: found {}, expected a cameras.json of at most {}", path,
+                            size_text(source->size()), size_text(kLargestFile)));
   std::string text(source->size(), '\0');
   source->read(0, std::as_writable_bytes(std::span(text)));
   Value json;
@@ -173,6 +187,20 @@ std::vector<Camera> read_cameras(const std::string& path) {
   std::vector<Camera> cameras;
   for (size_t i = 0; i < json.size(); ++i) cameras.push_back(CameraReader(path, i, json[i]).read());
   return cameras;
+}
+
+std::vector<Camera> camera_at(int64_t index, size_t eyes, const std::vector<Camera>& cameras,
+                              const std::string& path) {
+  if (cameras.size() < eyes)
+    throw Error(ErrorCode::invalid_argument,
+                fmt::format("--stereo: found {} camera in {}, expected two", cameras.size(), path));
+  const auto last = static_cast<int64_t>(cameras.size() - eyes);
+  if (index < 0 || index > last)
+    throw Error(ErrorCode::invalid_argument,
+                fmt::format("--camera: found {}, expected 0 to {}{} ({} has {} cameras)", index,
+                            last, eyes == 2 ? " with --stereo" : "", path, cameras.size()));
+  const auto first = cameras.begin() + static_cast<std::ptrdiff_t>(index);
+  return {first, first + static_cast<std::ptrdiff_t>(eyes)};
 }
 
 void require_pairs(bool stereo, size_t count, const std::string& path) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/math/vec.h"
 #include "voyager/voyager.h"
 
 namespace voyager::tools {
@@ -21,8 +22,17 @@ struct Camera {
   Camera resized(uint32_t new_width, uint32_t new_height) const;
 };
 
+// right and forward are unit vectors at right angles; focal is in pixels.
+Camera looking(const Vec3d& from, const Vec3d& right, const Vec3d& forward, uint32_t width,
+               uint32_t height, double focal);
+
 // Throws Error(refused_input) naming file, camera, field, found, expected.
 std::vector<Camera> read_cameras(const std::string& path);
+
+// The camera of the file `path` with this index, and the one after it where eyes is 2. Throws
+// Error(invalid_argument) with the range.
+std::vector<Camera> camera_at(int64_t index, size_t eyes, const std::vector<Camera>& cameras,
+                              const std::string& path);
 
 // Stereo takes cameras two by two. Throws Error(refused_input) where one is left over.
 void require_pairs(bool stereo, size_t count, const std::string& path);

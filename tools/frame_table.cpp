@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "tools/console.h"
+
 namespace voyager::tools {
 namespace {
 
@@ -31,13 +33,14 @@ class Table {
   }
 
   void print(const char* title) const {
-    fmt::print("{:<{}}", title, name_width_);
-    for (const Column& column : columns_) fmt::print("{:>{}}", column.title, width(column));
-    fmt::print("\n");
+    say(fmt::format("{:<{}}", title, name_width_));
+    for (const Column& column : columns_) say(fmt::format("{:>{}}", column.title, width(column)));
+    say("\n");
     for (size_t i = 0; i < rows_.size(); ++i) {
-      fmt::print("{:<{}}", rows_[i]["name"].get<std::string>(), name_width_);
-      for (const Column& column : columns_) fmt::print("{:>{}}", column.cells[i], width(column));
-      fmt::print("\n");
+      say(fmt::format("{:<{}}", rows_[i]["name"].get<std::string>(), name_width_));
+      for (const Column& column : columns_)
+        say(fmt::format("{:>{}}", column.cells[i], width(column)));
+      say("\n");
     }
   }
 
@@ -119,9 +122,9 @@ void print_floors(const Json& rows) {
 void print_frames(const Json& rows) {
   if (rows.empty()) return;
   print_times(rows);
-  fmt::print("\n");
+  say("\n");
   print_counters(rows);
-  fmt::print("\n");
+  say("\n");
   print_floors(rows);
 }
 

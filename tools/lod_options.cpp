@@ -25,15 +25,16 @@ void LodChoice::refuse_without_tree(const std::string& scene) const {
 
 void add_lod_options(CLI::App& command, LodChoice& choice) {
   add_choice<std::optional<bool>>(command, "--lod", choice.on, {{"on", true}, {"off", false}},
-                                  "off draws every leaf");
+                                  "off draws every leaf: the finest there is");
   add_choice<std::optional<Lod>>(command, "--select", choice.select,
                                  {{"cut", Lod::cut},
                                   {"flat", Lod::all_leaves},
                                   {"blocks", Lod::blocks},
                                   {"levels", Lod::levels}},
-                                 "How detail is chosen: by each node's size; every leaf, as 3DGS; "
-                                 "by a block's distance, as CityGaussian; by a level's, as "
-                                 "Octree-GS. All but cut are baselines");
+                                 "How the level of detail is chosen. cut: by each node's size on "
+                                 "the screen. flat: every leaf, as 3DGS. blocks: by the distance "
+                                 "of a block, as CityGaussian. levels: by the distance of a level, "
+                                 "as Octree-GS. All but cut are for comparison");
 }
 
 const char* select_name(Lod lod) {

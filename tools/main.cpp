@@ -5,13 +5,17 @@
 #include <new>
 
 #include "tools/commands/commands.h"
+#include "tools/console.h"
 #include "tools/exit_code.h"
+#include "tools/help_format.h"
+#include "tools/options.h"
+#include "tools/usage_error.h"
 #include "voyager/voyager.hpp"
 
 namespace {
 
 int fail(int code, const std::string& message) noexcept {
-  std::fputs(("voyager: " + message + "\n").c_str(), stderr);
+  voyager::tools::print_error(message);
   return code;
 }
 
@@ -21,27 +25,21 @@ int finish() {
   return fail(voyager::tools::kMachine, "standard output: cannot be written to");
 }
 
-// The first argument that no command took; an option's name rather than its value.
-std::string unexpected(const CLI::App& app) {
-  const std::vector<std::string> rest = app.remaining(true);
-  for (const std::string& argument : rest)
-    if (argument.starts_with('-')) return argument;
-  return rest.empty() ? "an argument" : rest.front();
+int show_commands(const CLI::App& app) {
+  std::fputs(app.help().c_str(), stderr);
+  return voyager::tools::kBadUsage;
 }
 
 int parse_and_run(CLI::App& app, int argc, char** argv) {
   using namespace voyager::tools;
   try {
     app.parse(argc, argv);
-    if (app.get_subcommands().empty())
-      return fail(kBadUsage, "found no command, expected one (see --help)");
+    if (app.get_subcommands().empty()) return show_commands(app);
     return finish();
   } catch (const CLI::Success& request) {
     return app.exit(request);  // --help and --version
-  } catch (const CLI::ExtrasError&) {
-    return fail(kBadUsage, unexpected(app) + ": not part of this version (see --help)");
   } catch (const CLI::ParseError& error) {
-    return fail(kBadUsage, std::string(error.what()) + " (see --help)");
+    return fail(kBadUsage, usage_error(app, error));
   } catch (const voy::Error& error) {
     return fail(exit_code(error.result()), error.what());
   } catch (const voyager::Error& error) {
@@ -59,11 +57,18 @@ int main(int argc, char** argv) try {
   // A closed pipe and a file too large are then errors that name themselves.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
-  CLI::App app{"Voyager: city-scale 3D Gaussian scenes, baked and rendered"};
+  CLI::App app{"Voyager draws 3D Gaussian scenes as large as a city"};
   app.name("voyager");
-  app.set_version_flag("--version", VOYAGER_VERSION);
+  app.formatter(voyager::tools::help_format());
+  app.set_help_flag("-h,--help", "Show this text");
+  app.set_version_flag("--version", VOYAGER_VERSION, "Show the version");
   app.require_subcommand(0, 1);
-  app.footer("voyager COMMAND --help has an example of each.");
+  app.footer(
+      "Example: make a city, bake its level-of-detail tree, render a picture of it\n"
+      "  voyager synth city --gaussians 200000 -o city.ply\n"
+      "  voyager bake city.ply -o city.voy\n"
+      "  voyager render city.voy -o city.png\n\n"
+      "voyager COMMAND --help explains the options of a command.");
   voyager::tools::add_synth(app);
   voyager::tools::add_bake(app);
   voyager::tools::add_export(app);
@@ -73,6 +78,9 @@ int main(int argc, char** argv) try {
 #ifdef VOYAGER_HAS_REPORT
   voyager::tools::add_report(app);
 #endif
+  voyager::tools::add_devices(app);
+  voyager::tools::add_verbosity_options(app);
+  for (CLI::App* command : app.get_subcommands({})) voyager::tools::add_verbosity_options(*command);
   return parse_and_run(app, argc, argv);
 } catch (...) {
   return voyager::tools::kMachine;  // no memory even for the message

@@ -1,63 +1,147 @@
 #include "tools/options.h"
 
+#include <charconv>
 #include <cmath>
+#include <optional>
 
+#include "runtime/base/error.h"
 #include "tools/cameras.h"
+#include "tools/console.h"
 
 namespace voyager::tools {
 namespace {
 
+// All of the text.
+template <class Number>
+std::optional<Number> parse(const std::string& text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
 bool parse_size(const std::string& text, ImageSize& size) {
   const size_t cross = text.find('x');
-  uint32_t width = 0, height = 0;
-  if (cross == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, cross), width) ||
-      !CLI::detail::lexical_cast(text.substr(cross + 1), height))
-    return false;
-  if (width < 1 || width > kLargestSide || height < 1 || height > kLargestSide) return false;
-  size = {width, height};
+  if (cross == std::string::npos) return false;
+  const auto width = parse<uint32_t>(text.substr(0, cross)),
+             height = parse<uint32_t>(text.substr(cross + 1));
+  if (!width || !height) return false;
+  if (*width < 1 || *width > kLargestSide || *height < 1 || *height > kLargestSide) return false;
+  size = {*width, *height};
   return true;
+}
+
+std::string words(WholeRange range) {
+  if (range.most == std::numeric_limits<uint64_t>::max())
+    return "a whole number, " + std::to_string(range.least) + " or more";
+  return "a whole number from " + std::to_string(range.least) + " to " + std::to_string(range.most);
+}
+
+[[noreturn]] void refuse(const std::string& option, const std::string& found,
+                         const std::string& expected) {
+  throw CLI::ValidationError(
+      option, "found " + (found.empty() ? "nothing" : found) + ", expected " + expected);
 }
 
 }  // namespace
 
-void add_size_option(CLI::App& command, ImageSize& size) {
-  command
+void bad_usage(const std::string& message) {
+  throw Error(ErrorCode::invalid_argument, message);
+}
+
+CLI::Option* add_size_option(CLI::App& command, ImageSize& size) {
+  return command
       .add_option_function<std::string>(
           "--size",
           [&size](const std::string& text) {
             if (!parse_size(text, size))
-              throw CLI::ValidationError(
-                  "--size", "found " + text + ", expected WxH in pixels, each from 1 to 16384");
+              refuse("--size", text, "WxH in pixels, each from 1 to 16384, as 1280x720");
           },
-          "Image size in place of each camera's own; fx, fy, cx, cy follow")
+          "Size of the image in pixels, in place of the camera's own")
       ->type_name("WxH");
 }
 
 CLI::Option* add_tau_option(CLI::App& command, double& tau) {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return {};
-    return "found " + text + ", expected a number of pixels, 0 or more";
-  };
-  return command.add_option("--tau", tau, "Granularity in pixels")
+  return add_number_option(
+             command, "--tau", tau, [](double value) { return value >= 0; },
+             "a number of pixels, 0 or more",
+             "Level of detail: how large a node may look before its children are drawn instead. "
+             "Smaller is finer and slower")
       ->type_name("PX")
-      ->check(CLI::Validator(check, ""))
-      ->capture_default_str();
+      ->default_str("3");
 }
 
 void add_tau_or_budget_options(CLI::App& command, double& tau, double& milliseconds) {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return {};
-    return "found " + text + ", expected a number of milliseconds above 0";
-  };
   CLI::Option* fixed = add_tau_option(command, tau);
-  command
-      .add_option("--time-budget", milliseconds,
-                  "Milliseconds a frame, which tau follows from frame to frame, from 1 to 60")
+  add_number_option(
+      command, "--time-budget", milliseconds, [](double value) { return value > 0; },
+      "a number of milliseconds above 0",
+      "Let tau follow the time that frames take, between 1 and 60 pixels, so that a frame takes at "
+      "most so many milliseconds")
       ->type_name("MS")
-      ->check(CLI::Validator(check, ""))
       ->excludes(fixed);
+}
+
+void add_verbosity_options(CLI::App& command) {
+  CLI::Option* quiet = command.add_flag_callback(
+      "--quiet", [] { set_verbosity(Verbosity::quiet); },
+      "Print nothing but errors, and what was asked for");
+  command
+      .add_flag_callback(
+          "--verbose", [] { set_verbosity(Verbosity::verbose); },
+          "Print more of what happens: the library's log, times")
+      ->excludes(quiet);
+}
+
+void name_group(CLI::App& command, const std::string& group) {
+  for (CLI::Option* option : command.get_options())
+    if (option->get_group() == "Options" && option->nonpositional() &&
+        option != command.get_help_ptr())
+      option->group(group);
+}
+
+CLI::Option* add_whole_option(CLI::App& command, const std::string& option, WholeRange range,
+                              const std::function<void(uint64_t)>& set,
+                              const std::string& description) {
+  return command
+      .add_option_function<std::string>(
+          option,
+          [option, range, set](const std::string& text) {
+            const auto value = parse<uint64_t>(text);
+            if (!value || *value < range.least || *value > range.most)
+              refuse(option, text, words(range));
+            set(*value);
+          },
+          description)
+      ->type_name("N");
+}
+
+CLI::Option* add_camera_option(CLI::App& command, int64_t& index) {
+  return command
+      .add_option_function<std::string>(
+          "--camera",
+          [&index](const std::string& text) {
+            const auto value = parse<int64_t>(text);
+            if (!value) refuse("--camera", text, words({}));
+            index = *value;
+          },
+          "Which camera of the file, counted from 0")
+      ->type_name("I")
+      ->default_str("0");
+}
+
+CLI::Option* add_number_option(CLI::App& command, const std::string& option, double& value,
+                               const std::function<bool(double)>& fits, const std::string& expected,
+                               const std::string& description) {
+  return command.add_option_function<std::string>(
+      option,
+      [option, &value, fits, expected](const std::string& text) {
+        const auto found = parse<double>(text);
+        if (!found || !std::isfinite(*found) || !fits(*found)) refuse(option, text, expected);
+        value = *found;
+      },
+      description);
 }
 
 }  // namespace voyager::tools

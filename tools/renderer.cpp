@@ -4,19 +4,37 @@
 
 #include <algorithm>
 
+#include "tools/backend_name.h"
+#include "tools/console.h"
+
 namespace voyager::tools {
 namespace {
 
+// Without the name of the function that logs.
+std::string for_people(const std::string& message) {
+  const size_t colon = message.find(": ");
+  return message.starts_with("voy") && colon != std::string::npos ? message.substr(colon + 2)
+                                                                  : message;
+}
+
 // An error ends the command, and is printed there.
-void print_warning(void*, VoyLogLevel level, const char* message) {
-  if (level == VOY_LOG_WARNING) fmt::print(stderr, "voyager: {}\n", message);
+void write_log(void* user, VoyLogLevel level, const char* message) {
+  RendererLog& log = *static_cast<RendererLog*>(user);
+  if (level == VOY_LOG_INFO) return detail(message);
+  if (level != VOY_LOG_WARNING) return;
+  if (log.waits)
+    log.warnings.push_back(for_people(message));
+  else
+    warn(for_people(message));
 }
 
 // The budget holds where the scene is drawn: in the host's memory, or in CUDA's own.
-voy::Device create_device(const RenderChoices& choices) {
+voy::Device create_device(const RenderChoices& choices, RendererLog& log) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
   desc.backend = choices.backend;
-  if (choices.streamed) desc.log = print_warning;
+  desc.log = write_log;
+  desc.logUser = &log;
+  desc.logLevel = verbosity() == Verbosity::verbose ? VOY_LOG_INFO : VOY_LOG_WARNING;
   desc.deviceMemoryBudget = static_cast<uint64_t>(choices.budget * 1e6);
   const bool on_host =
       choices.backend == VOY_BACKEND_CPU || choices.backend == VOY_BACKEND_REFERENCE ||
@@ -62,7 +80,7 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
 Renderer::Renderer(const std::string& scene, const RenderChoices& choices, uint32_t max_width,
                    uint32_t max_height)
     : choices_(choices),
-      device_(create_device(choices)),
+      device_(create_device(choices, *log_)),
       scene_(open_scene(device_, scene, choices)),
       view_(create_view(device_, scene_.get(), choices, max_width, max_height)),
       images_(choices.eyes) {}
@@ -85,6 +103,16 @@ voy::Target Renderer::create_target(const Camera& camera, RenderedImage& image) 
     desc.depth = image.depth.data();
   }
   return device_.create_target(desc);
+}
+
+void Renderer::describe() const {
+  log_->waits = false;
+  for (const std::string& warning : log_->warnings) warn(warning);
+  log_->warnings.clear();
+  const VoyCapabilities found = device_.capabilities();
+  const bool cuda = found.backend == VOY_BACKEND_CUDA;
+  note(fmt::format("drawing with the {} backend: {}{}", backend_name(found.backend),
+                   found.deviceName, cuda ? "" : fmt::format(", {} threads", found.workerThreads)));
 }
 
 void Renderer::render(std::span<const Camera> cameras) {

@@ -1,5 +1,6 @@
 #pragma once
 // One view of one scene through the public ABI, with the images it renders to.
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,6 +38,13 @@ struct RenderedImage {
   std::vector<float> depth;
 };
 
+// The library's log, as it goes to standard error. Until describe(), warnings wait, so that an
+// error before that is the only line.
+struct RendererLog {
+  bool waits = true;
+  std::vector<std::string> warnings;
+};
+
 class Renderer {
  public:
   // No camera may be larger than max_width x max_height.
@@ -54,11 +62,14 @@ class Renderer {
   VoyFrameStats stats() const { return view_.stats(); }
   std::vector<VoyOmission> omissions() const { return view_.omissions(); }
   std::string device_name() const { return device_.capabilities().deviceName; }
+  // Says what draws, and passes the warnings on.
+  void describe() const;
 
  private:
   voy::Target create_target(const Camera& camera, RenderedImage& image) const;
 
   RenderChoices choices_;
+  std::unique_ptr<RendererLog> log_ = std::make_unique<RendererLog>();
   voy::Device device_;
   voy::Scene scene_;
   voy::View view_;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "runtime/frame/frame_search.h"
+#include "tools/console.h"
 #include "tools/frame_path.h"
 #include "tools/statistics.h"
 
@@ -52,11 +53,11 @@ bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 void print_row(const nlohmann::ordered_json& row) {
-  fmt::print("{:<11}{:<7}{:>10.4f}{:>10.4f}{:>14.4f}{:>12.3f} %{:>12.0f}\n",
-             row["search"].get<std::string>(), row["slack"].get<bool>() ? "slack" : "",
-             row["ms"]["median"].get<double>(), row["ms"]["p99"].get<double>(),
-             row["ms_with_weights"]["median"].get<double>(),
-             100 * row["nodes_tested_share"].get<double>(), row["entered"].get<double>());
+  say(fmt::format("{:<11}{:<7}{:>10.4f}{:>10.4f}{:>14.4f}{:>12.3f} %{:>12.0f}\n",
+                  row["search"].get<std::string>(), row["slack"].get<bool>() ? "slack" : "",
+                  row["ms"]["median"].get<double>(), row["ms"]["p99"].get<double>(),
+                  row["ms_with_weights"]["median"].get<double>(),
+                  100 * row["nodes_tested_share"].get<double>(), row["entered"].get<double>()));
 }
 
 }  // namespace
@@ -70,8 +71,8 @@ std::vector<CutQuery> cut_path(const std::vector<Camera>& cameras, double tau,
 }
 
 void print_searches(const nlohmann::ordered_json& rows) {
-  fmt::print("{:<18}{:>10}{:>10}{:>14}{:>14}{:>12}\n", "milliseconds", "median", "p99",
-             "with weights", "nodes tested", "entered");
+  say(fmt::format("{:<18}{:>10}{:>10}{:>14}{:>14}{:>12}\n", "milliseconds", "median", "p99",
+                  "with weights", "nodes tested", "entered"));
   for (const auto& row : rows) print_row(row);
 }
 

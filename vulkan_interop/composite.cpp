@@ -36,8 +36,8 @@ Composite::Composite(std::shared_ptr<const Device> device, const CompositeDesc& 
   const DeviceFunctions& vk = device_->functions();
   if (desc.render_pass == VK_NULL_HANDLE && !device_->has_dynamic_rendering())
     throw Error(ErrorCode::unsupported,
-                "desc.renderPass: found VK_NULL_HANDLE, expected a render pass: neither "
-                "VK_KHR_dynamic_rendering nor Vulkan 1.3 is there");
+                "desc.renderPass: found VK_NULL_HANDLE, expected a render pass: the device has "
+                "neither VK_KHR_dynamic_rendering nor Vulkan 1.3");
   check_attachments(device_->physical(), desc);
   const Owned<VkDescriptorSetLayout> set = make_ring_layout(*device_);
   const VkDescriptorSetLayout sets[] = {set.get()};
@@ -76,10 +76,9 @@ void Composite::record(const Ring& ring, uint32_t index, uint32_t layer,
         "draw.target: found an image that cannot be sampled, expected colour with "
         "VK_IMAGE_USAGE_SAMPLED_BIT");
   if (depth && image.depth_view == VK_NULL_HANDLE)
-    refuse("draw.depthUse: found one with depth for a target without, expected NONE");
+    refuse("draw.depthUse: found TEST or WRITE for a target without depth, expected NONE");
   if (depth && !has_depth_)
-    refuse(
-        "draw.depthUse: found one with depth for a composite without depthFormat, expected NONE");
+    refuse("draw.depthUse: found TEST or WRITE for a composite without depthFormat, expected NONE");
   const DeviceFunctions& vk = device_->functions();
   const VkDescriptorSet set = ring.descriptors(index);
   vk.CmdBindDescriptorSets(to.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set,

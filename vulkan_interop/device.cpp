@@ -14,8 +14,8 @@ std::string not_enabled(const char* extension) {
 }
 
 [[noreturn]] void refuse(const char* field, const std::string& why) {
-  throw Error(ErrorCode::unsupported,
-              std::string("VoyVulkanDeviceDesc.") + field + ": cannot be taken: " + why);
+  throw Error(ErrorCode::unsupported, std::string("VoyVulkanDeviceDesc.") + field +
+                                          ": found a mode that is not possible here: " + why);
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ Device::Device(const DeviceDesc& desc, const ExternalSupport& backend)
   if (desc.version < kLeastVersion)
     throw Error(
         ErrorCode::unsupported,
-        "VoyVulkanDeviceDesc.apiVersion: found one below Vulkan 1.1, expected 1.1 or newer");
+        "VoyVulkanDeviceDesc.apiVersion: found a version below Vulkan 1.1, expected 1.1 or newer");
   choose_sharing(desc.sharing, backend);
   choose_sync(desc.sync, backend);
   imports_host_memory_ = sharing_ == Sharing::host &&
@@ -65,7 +65,7 @@ std::string Device::why_no_timelines(const ExternalSupport& backend) const {
 }
 
 std::string Device::why_no_binaries(const ExternalSupport& backend) const {
-  if (sharing_ == Sharing::host) return "with HOST sharing nobody could signal them";
+  if (sharing_ == Sharing::host) return "binary semaphores do not work with HOST sharing";
   if (!enabled(VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME) || vk_.GetSemaphoreFdKHR == nullptr)
     return not_enabled(VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME);
   if (!physical_.exports_semaphores(false)) return "the device exports no semaphores";

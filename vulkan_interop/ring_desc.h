@@ -1,6 +1,5 @@
 #pragma once
 // What a ring of images is made from: the host's wishes, and what it passes of its own.
-#include <chrono>
 #include <vector>
 
 #include "runtime/frame/image.h"
@@ -30,8 +29,6 @@ struct RingDesc {
   bool depth = false, depth_limit = false;
   std::vector<ImportedImage> imported;         // none, or one an image
   std::vector<ImportedSemaphores> semaphores;  // none, or one (timelines) or one an image
-  // With a host that left frames without their release, once the ring goes.
-  std::chrono::milliseconds patience_at_end{2000};
 };
 
 }  // namespace voyager::vulkan

@@ -126,12 +126,13 @@ bool Ring::release_in_the_hosts_stead() const noexcept {
 bool Ring::finish() noexcept {
   if (!external_) return true;
   const auto start = std::chrono::steady_clock::now();
+  const auto patience = external_->patience_at_end();
   bool released = device_->sync() != Sync::timeline;
   while (!external_->idle()) {
     std::this_thread::sleep_for(std::chrono::microseconds(200));
     const auto waited = std::chrono::steady_clock::now() - start;
-    if (!released && waited >= desc_.patience_at_end) released = release_in_the_hosts_stead();
-    if (waited >= 5 * desc_.patience_at_end) return false;
+    if (!released && waited >= patience) released = release_in_the_hosts_stead();
+    if (waited >= 5 * patience) return false;
   }
   return true;
 }

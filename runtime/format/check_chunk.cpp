@@ -27,9 +27,9 @@ void check_records(const Chunk& chunk, const ChunkLocation& location, const Chun
     const char* wrong = !sound_box(r)      ? "a box that is not finite and ordered"
                         : !(r.extent >= 0) ? "an extent that is negative or not a number"
                         : r.child_count == 0 && r.extent != 0 && !context.leaves_have_extent
-                            ? "an extent of a leaf, of which the header knows none"
+                            ? "a leaf with an extent, though the header says that no leaf has one"
                             : nullptr;
-    if (wrong) location.damaged("record " + std::to_string(i) + " with " + wrong, "a sound record");
+    if (wrong) location.damaged("record " + std::to_string(i) + " with " + wrong, "a valid record");
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Compact storage, one value at a time. Each pair states the largest error of
-// a round trip; docs/voy-format.md repeats them and tests/unit/quantise_test.cpp
+// a round trip; docs/voy-format.md repeats them and tests/unit/format/quantise_test.cpp
 // holds the code to them.
 #include <algorithm>
 #include <array>

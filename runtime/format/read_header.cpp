@@ -26,7 +26,7 @@ void check_counts(const FileHeader& h, const Check& check) {
   for (const uint32_t count :
        {h.leaf_count, h.depth, h.subtree_count, h.chunk_count, h.first_tier_levels})
     check.that((count == 0) == (h.node_count == 0), offsetof(FileHeader, node_count),
-               "counts of which only some are 0", "all or none");
+               "some counts that are 0 and some that are not", "all or none");
   check.that(h.chunk_bytes >= kMinChunkBytes && h.chunk_bytes <= kMaxChunkBytes,
              offsetof(FileHeader, chunk_bytes), "chunk bytes out of range", "1024 to 1048576");
   check.at_most(offsetof(FileHeader, first_tier_levels), "levels of the first tier",
@@ -68,7 +68,7 @@ FileHeader read_header(const ByteSource& source, const Check& check) {
                  "a header of " + std::to_string(sizeof h));
   std::byte bytes[sizeof h];
   source.read(0, bytes);
-  check.that(has_scene_magic(bytes), 0, "another signature", "that of a .voy file");
+  check.that(has_scene_magic(bytes), 0, "another signature", "the signature of a .voy file");
   std::memcpy(&h, bytes, sizeof h);
   if (h.version != kSceneVersion)
     check.refuse(offsetof(FileHeader, version), "version " + std::to_string(h.version),

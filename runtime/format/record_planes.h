@@ -8,12 +8,9 @@
 #include "runtime/format/fold.h"
 #include "runtime/lod/stand_in.h"
 #include "runtime/lod/tree.h"
+#include "runtime/math/float_bits.h"
 
 namespace voyager {
-
-inline uint32_t float_bits(float value) {
-  return std::bit_cast<uint32_t>(value);
-}
 
 // The words of one box, in the order of the file's planes.
 struct BoxWords {

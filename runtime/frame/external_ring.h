@@ -1,6 +1,7 @@
 #pragma once
 // Images of another API that a backend writes where they are: memory and semaphores by file
 // descriptor (opaque ones, of Linux).
+#include <chrono>
 #include <cstdint>
 #include <vector>
 
@@ -51,6 +52,9 @@ class ExternalRing {
   virtual bool idle() const = 0;
   // Until it is. Throws Error(device_lost).
   virtual void wait() const = 0;
+  // With a host that left frames without their release, once the ring goes. After five times as
+  // long its frames are given up.
+  virtual std::chrono::milliseconds patience_at_end() const { return std::chrono::seconds(2); }
 };
 
 // Where a frame goes, and what it waits for and signals, where the ring has semaphores.

@@ -14,7 +14,7 @@ HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& des
   check_detail(*scene_, desc.lod);
   if (scene_->streamed() && desc.kind == Search::exhaustive)
     throw Error(ErrorCode::unsupported,
-                "search: found exhaustive, a streamed scene has streaming and temporal");
+                "search: found exhaustive for a streamed scene, expected streaming or temporal");
   if (desc.lod != Lod::cut)
     detail_.emplace(make_detail_tree(scene_->tree, scene_->partition, desc.lod, workers, memory));
   if (desc.kind != Search::exhaustive) {

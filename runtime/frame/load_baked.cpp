@@ -188,7 +188,7 @@ std::vector<ChunkFindings> read_chunks(const SceneFile& file, Workers& workers, 
       }
     }
   });
-  if (!leaves_once) refuse(scene, "two leaves with one source index", "each once");
+  if (!leaves_once) refuse(scene, "two leaves with one source index", "each index once");
   report_damage(file, findings, scene);
   for (const ChunkFindings& f : findings)
     scene.profile.chunks_of_degree[static_cast<size_t>(f.sh_degree)] += f.damage.empty();
@@ -295,13 +295,13 @@ void check_claims(const SceneFileInfo& info, const Scene& scene, Workers& worker
   const auto has_extent = [](const NodeRecord& r) { return r.child_count == 0 && r.extent != 0; };
   if (info.leaves_have_extent &&
       std::none_of(scene.tree.records.begin(), scene.tree.records.end(), has_extent))
-    refuse(scene, "no leaf with an extent", "one, as the header says");
+    refuse(scene, "no leaf with an extent", "at least one, as the header says");
 }
 
 // What only the whole file can show.
 void check_totals(const Scene& scene) {
   if (std::count(scene.leaves.begin(), scene.leaves.end(), kNoNode) != 0)
-    refuse(scene, "an input Gaussian without a leaf", "one leaf each");
+    refuse(scene, "an input Gaussian without a leaf", "one leaf for each");
   const auto leaves =
       static_cast<uint64_t>(std::count_if(scene.tree.records.begin(), scene.tree.records.end(),
                                           [](const NodeRecord& r) { return r.child_count == 0; }));
@@ -311,7 +311,7 @@ void check_totals(const Scene& scene) {
   for (int axis = 0; axis < 3; ++axis)
     if (root.box_min[axis] != scene.bounds_min[axis] ||
         root.box_max[axis] != scene.bounds_max[axis])
-      refuse(scene, "bounds that are not the root's box", "the same");
+      refuse(scene, "bounds that differ from the root's box", "equal ones");
 }
 
 void add_search(Scene& scene, Workers& workers) {

@@ -20,8 +20,10 @@ std::vector<Omission> omissions_of(const Scene& scene, bool searched, uint64_t s
   if (!scene.flat() && !searched)
     all.push_back({"search", "every leaf is drawn", subtrees * kSearchBytes, 0});
   if (!scene.flat() && !scene.streamed())
-    all.push_back({"residency", "the scene is all in memory: no table of what is there, no reader",
-                   (subtrees + scene.node_count) * kResidencyBytes, 0});
+    all.push_back(
+        {"residency",
+         "the whole scene is in memory: it needs no table of resident chunks and no reader",
+         (subtrees + scene.node_count) * kResidencyBytes, 0});
   return all;
 }
 

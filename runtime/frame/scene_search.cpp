@@ -12,8 +12,8 @@ void check_detail(const Scene& scene, Lod lod) {
                                             (lod == Lod::all_leaves ? "all leaves"
                                              : lod == Lod::blocks   ? "blocks"
                                                                     : "levels") +
-                                            ", a streamed scene is drawn as a cut: most of its "
-                                            "tree is not there");
+                                            " for a streamed scene, expected a cut: most of its "
+                                            "tree is not resident");
   if (lod != Lod::all_leaves && !scene.damaged_chunks.empty())
     throw Error(ErrorCode::damaged_chunk, scene.damaged_chunks[0].message);
 }

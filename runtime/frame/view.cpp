@@ -196,9 +196,9 @@ const std::pmr::vector<uint32_t>& View::cut(size_t instance) {
   InstanceCut& of = cuts_[instance];
   if (of.read) return of.last;
   if (!follows_)
-    throw Error(ErrorCode::unsupported,
-                "cut: found one on a device after a frame that failed, expected a frame that was "
-                "drawn since");
+    throw Error(
+        ErrorCode::unsupported,
+        "cut: found a device whose last frame failed, expected a frame that succeeded since");
   while (finish_one(true)) continue;
   pipeline_->read_cut(instance, of.last);
   of.read = true;

@@ -6,8 +6,8 @@
 // the result is the same in each. A new exponential is one more function here.
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
+#include "runtime/math/float_bits.h"
 #include "runtime/math/host_device.h"
 
 namespace voyager {
@@ -22,17 +22,6 @@ inline constexpr float kLogAlphaThreshold = -5.541263545158426f;  // ln(1/255)
 template <class T>
 VOYAGER_HD T rho_min(T log_opacity) {
   return T(kLogAlphaThreshold) - log_opacity;
-}
-
-VOYAGER_HD uint32_t float_bits(float x) {
-  uint32_t bits;
-  std::memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
-VOYAGER_HD float bits_float(uint32_t bits) {
-  float x;
-  std::memcpy(&x, &bits, sizeof x);
-  return x;
 }
 
 inline constexpr float kLog2e = 1.44269504088896341f;

@@ -35,7 +35,7 @@ void require_alike(const std::array<double, 3>& origin, bool antialiased,
   if (antialiased != more_antialiased)
     throw Error(ErrorCode::refused_input, more_name + ": antialiased: found " +
                                               (more_antialiased ? "yes" : "no") +
-                                              ", expected what the first input has");
+                                              ", expected the same as in the first input");
 }
 
 void add(ImportReport& sum, const ImportReport& more) {

@@ -176,8 +176,9 @@ void SceneStream::resize(uint32_t slots, uint32_t pinned, Workers& workers) {
 void SceneStream::reset(uint32_t slots, uint32_t pinned, Workers& workers) {
   Residency residency(graph_, file_->chunks(), slots, std::min(pinned, desc_.pinned));
   Linker linker(graph_, shape_);
-  unsound_ = std::make_exception_ptr(
-      Error(ErrorCode::internal, file_->name() + ": found its memory half filled anew"));
+  unsound_ = std::make_exception_ptr(Error(
+      ErrorCode::internal,
+      file_->name() + ": found memory that was only partly filled again, expected all of it"));
   pool_.resize(slots);
   ++generation_;
   counted_ = total(counted_, residency_.counters());
@@ -221,7 +222,7 @@ void SceneStream::rebuild() {
   }
   try {
     failures_.tell(file_->name() +
-                   ": memory was refused; what had been read is dropped, and comes again");
+                   ": found no memory for chunks that were read; they are dropped and read again");
   } catch (const std::bad_alloc&) {  // all is well, but untold
   }
 }

@@ -132,7 +132,7 @@ void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file) {
 }
 
 void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file) {
-  refuse(chunk, node, file, "another record where it is repeated", "its own");
+  refuse(chunk, node, file, "two different records of it", "equal ones");
 }
 
 StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers,

@@ -15,14 +15,14 @@
 enum { kWidth = 960, kHeight = 540 };
 
 /* The entry points that this host uses, found by name at run time. */
-static VoyResult (*create_device)(const VoyDeviceDesc*, VoyDevice*);
-static VoyResult (*destroy_device)(VoyDevice);
-static VoyResult (*open_scene)(VoyDevice, const VoySceneDesc*, VoyScene*);
-static VoyResult (*get_scene_info)(VoyScene, VoySceneInfo*);
-static VoyResult (*create_view)(VoyDevice, const VoyViewDesc*, VoyView*);
-static VoyResult (*create_target)(VoyDevice, const VoyTargetDesc*, VoyTarget*);
-static VoyResult (*render_frame)(VoyView, const VoyFrame*);
-static const char* (*last_error)(void);
+static VoyResult(VOY_CALL* create_device)(const VoyDeviceDesc*, VoyDevice*);
+static VoyResult(VOY_CALL* destroy_device)(VoyDevice);
+static VoyResult(VOY_CALL* open_scene)(VoyDevice, const VoySceneDesc*, VoyScene*);
+static VoyResult(VOY_CALL* get_scene_info)(VoyScene, VoySceneInfo*);
+static VoyResult(VOY_CALL* create_view)(VoyDevice, const VoyViewDesc*, VoyView*);
+static VoyResult(VOY_CALL* create_target)(VoyDevice, const VoyTargetDesc*, VoyTarget*);
+static VoyResult(VOY_CALL* render_frame)(VoyView, const VoyFrame*);
+static const char*(VOY_CALL* last_error)(void);
 
 static int find(void* library, const char* name, void* function) {
   void* symbol = dlsym(library, name);

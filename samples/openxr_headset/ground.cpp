@@ -44,8 +44,8 @@ class Map {
   }
   glm::dvec3 place(const Cell& cell) const {
     const double z = depth(cell), metres = 2 * z / kRise / kSide;
-    return {centre_.x + metres * (cell[0] + 0.5 - kSide / 2), top_ - z,
-            centre_.z + metres * (cell[1] + 0.5 - kSide / 2)};
+    return {centre_.x + metres * (cell[0] + 0.5 - 0.5 * kSide), top_ - z,
+            centre_.z + metres * (cell[1] + 0.5 - 0.5 * kSide)};
   }
 
  private:

@@ -150,12 +150,12 @@ bool Runtime::poll(XrEventDataBuffer& event) const {
 }
 
 std::vector<XrViewConfigurationView> Runtime::views() const {
-  const auto views = xr_list("xrEnumerateViewConfigurationViews",
-                             xr_struct<XrViewConfigurationView>(XR_TYPE_VIEW_CONFIGURATION_VIEW),
-                             [&](uint32_t capacity, uint32_t* size, XrViewConfigurationView* into) {
-                               return xrEnumerateViewConfigurationViews(
-                                   instance_.get(), system_, kStereo, capacity, size, into);
-                             });
+  auto views = xr_list("xrEnumerateViewConfigurationViews",
+                       xr_struct<XrViewConfigurationView>(XR_TYPE_VIEW_CONFIGURATION_VIEW),
+                       [&](uint32_t capacity, uint32_t* size, XrViewConfigurationView* into) {
+                         return xrEnumerateViewConfigurationViews(instance_.get(), system_, kStereo,
+                                                                  capacity, size, into);
+                       });
   if (views.size() != kEyes)
     throw Failure(kMachine,
                   name_ + ": found " + std::to_string(views.size()) + " stereo views, expected 2");

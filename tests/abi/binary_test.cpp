@@ -2,14 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 
 #include "elf.h"
 
+namespace binary_test {
 namespace {
-
-namespace fs = std::filesystem;
 
 TEST(Binary, ExportsExactlyTheBaseline) {
   std::ifstream file(VOYAGER_SOURCE_DIR "/tests/abi/exports.txt");
@@ -42,15 +40,9 @@ TEST(Binary, LibraryNeedsNoDriverAndNoLoader) {
 
 // A host that linked the library, or a part of it, would not show that dlopen is enough.
 TEST(Binary, HostsThatLoadTheLibraryNeedNoneOfOurs) {
-  int hosts = 0;
-  for (const auto& entry : fs::directory_iterator(VOYAGER_BIN_DIR)) {
-    const std::string name = entry.path().filename().string();
-    const bool headless = name.rfind("headless_", 0) == 0 && name.find('[') == std::string::npos;
-    if (!headless && name != "c_minimal") continue;
-    expect_needs_none(entry.path().string(), {"libvoyager", "libtbb", "libcuda", "libcudart"});
-    ++hosts;
-  }
-  EXPECT_GE(hosts, 3);
+  for (const std::string host : {"c_minimal", "headless_tests"})
+    expect_needs_none(VOYAGER_BIN_DIR "/" + host, {"libvoyager", "libtbb", "libcuda", "libcudart"});
 }
 
 }  // namespace
+}  // namespace binary_test

@@ -8,6 +8,7 @@
 
 #include "layout_c99.h"
 
+namespace layout_test {
 namespace {
 
 std::string measured() {
@@ -35,3 +36,4 @@ TEST(Layout, EqualsTheBaseline) {
 }
 
 }  // namespace
+}  // namespace layout_test

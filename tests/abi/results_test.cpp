@@ -5,6 +5,7 @@
 #include <fstream>
 #include <string>
 
+namespace results_test {
 namespace {
 
 struct Pinned {
@@ -115,3 +116,4 @@ TEST(Results, VersionIsTheVersionFiles) {
 }
 
 }  // namespace
+}  // namespace results_test

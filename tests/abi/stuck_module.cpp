@@ -56,6 +56,7 @@ class StuckRing final : public ExternalRing {
   explicit StuckRing(ExternalRingDesc desc) : desc_(std::move(desc)) {}
   bool idle() const override { return state().idle; }
   void wait() const override {}
+  std::chrono::milliseconds patience_at_end() const override { return kStuckPatience; }
 
  private:
   ExternalRingDesc desc_;
@@ -95,9 +96,16 @@ Backend* create(const BackendModuleOptions&, ErrorCode*, char*, size_t) {
   return new StuckBackend;
 }
 
+bool list(std::vector<BackendDevice>& devices, ErrorCode*, char*, size_t) {
+  BackendDevice& device = devices.emplace_back();
+  device.name = "stuck";
+  device.uuid = StuckBackend().device_uuid();
+  return true;
+}
+
 }  // namespace
 }  // namespace voyager
 
 extern "C" __attribute__((visibility("default")))
 const voyager::BackendModule voyager_backend_module = {voyager::backend_module_stamp(),
-                                                       voyager::create};
+                                                       voyager::create, voyager::list};

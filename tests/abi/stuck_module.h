@@ -1,6 +1,9 @@
 #pragma once
 // What stuck_module.cpp shows of itself.
 #include <atomic>
+#include <chrono>
+
+inline constexpr std::chrono::milliseconds kStuckPatience{100};  // a fifth of what frames are given
 
 struct StuckModule {
   std::atomic<bool> idle{true};  // no: frames under way never end

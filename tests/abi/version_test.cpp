@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <voyager/voyager.h>
 
+namespace version_test {
 namespace {
 
 using voyager::serves;
@@ -27,3 +28,4 @@ TEST(Version, FromOneOnLowerMinorsAreServedToo) {
 }
 
 }  // namespace
+}  // namespace version_test

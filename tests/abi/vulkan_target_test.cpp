@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 
+namespace vulkan_target_test {
 namespace {
 
 using namespace voyager::test;
@@ -15,15 +16,15 @@ struct VulkanTarget : testing::Test {
     for (VoyVulkanImportedImage& image : images) {
       image = VOY_VULKAN_IMPORTED_IMAGE_INIT;
       image.color = mock.host_image(1);
-      image.colorMemory = {descriptor(), VK_TRUE, 4096, 0};
+      image.colorMemory = {{descriptor()}, VOY_VULKAN_MEMORY_HANDLE_TYPE, VK_TRUE, 4096, 0};
       image.depth = mock.host_image(1);
-      image.depthMemory = {descriptor(), VK_TRUE, 4096, 0};
+      image.depthMemory = {{descriptor()}, VOY_VULKAN_MEMORY_HANDLE_TYPE, VK_TRUE, 4096, 0};
       image.colorUsage = image.depthUsage = VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     }
     semaphores.released = mock.host_semaphore(true);
     semaphores.rendered = mock.host_semaphore(true);
-    semaphores.releasedFd = descriptor();
-    semaphores.renderedFd = descriptor();
+    semaphores.releasedHandle.fd = descriptor();
+    semaphores.renderedHandle.fd = descriptor();
     ring.imageCount = kImages;
     ring.depth = VK_TRUE;
     ring.images = images;
@@ -100,10 +101,10 @@ TEST_F(VulkanTarget, TheDescriptorsAreTheLibrarysOnceTheCallSucceedsAndClosedOnc
 // Images in one memory: the host may have exported it once.
 TEST_F(VulkanTarget, ADescriptorThatIsPassedForSeveralImagesIsClosedOnce) {
   for (VoyVulkanImportedImage& image : images) {
-    image.colorMemory.fd = images[0].colorMemory.fd;
-    image.depthMemory.fd = images[0].colorMemory.fd;
+    image.colorMemory.handle.fd = images[0].colorMemory.handle.fd;
+    image.depthMemory.handle.fd = images[0].colorMemory.handle.fd;
   }
-  semaphores.releasedFd = semaphores.renderedFd = -1;
+  semaphores.releasedHandle.fd = semaphores.renderedHandle.fd = -1;
   const int bad = bad_closes, before = closes;
   ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
   EXPECT_EQ(closes - before, 1);
@@ -135,9 +136,9 @@ TEST_F(VulkanTarget, WhateverCallFailsTheDescriptorsStayTheHosts) {
     // The library has closed them: the next round has others.
     passed.clear();
     for (VoyVulkanImportedImage& image : images)
-      image.colorMemory.fd = descriptor(), image.depthMemory.fd = descriptor();
-    semaphores.releasedFd = descriptor();
-    semaphores.renderedFd = descriptor();
+      image.colorMemory.handle.fd = descriptor(), image.depthMemory.handle.fd = descriptor();
+    semaphores.releasedHandle.fd = descriptor();
+    semaphores.renderedHandle.fd = descriptor();
   }
   EXPECT_EQ(bad_closes, bad);
 }
@@ -170,22 +171,35 @@ TEST_F(VulkanTarget, WhatIsNoDescriptorIsRefusedThoughItHasNoUse) {
   const int closed = new_descriptor();
   ::close(closed);
   for (const int found : {closed, -2}) {
-    expect_refused(images[1].colorMemory.fd, found, "images[1].colorMemory");
-    expect_refused(images[0].depthMemory.fd, found, "images[0].depthMemory");
-    expect_refused(semaphores.releasedFd, found, "semaphores[0].releasedFd");
-    expect_refused(semaphores.renderedFd, found, "semaphores[0].renderedFd");
+    expect_refused(images[1].colorMemory.handle.fd, found, "images[1].colorMemory");
+    expect_refused(images[0].depthMemory.handle.fd, found, "images[0].depthMemory");
+    expect_refused(semaphores.releasedHandle.fd, found, "semaphores[0].releasedHandle.fd");
+    expect_refused(semaphores.renderedHandle.fd, found, "semaphores[0].renderedHandle.fd");
   }
   ASSERT_TRUE(is_open(0));
   const VoyVulkanMemory kept = std::exchange(images[0].colorMemory, VoyVulkanMemory{});
   EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
   images[0].colorMemory = kept;
-  const int fds[] = {semaphores.releasedFd, semaphores.renderedFd};
-  semaphores.releasedFd = semaphores.renderedFd = 0;
+  const int fds[] = {semaphores.releasedHandle.fd, semaphores.renderedHandle.fd};
+  semaphores.releasedHandle.fd = semaphores.renderedHandle.fd = 0;
   EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
-  semaphores.releasedFd = fds[0], semaphores.renderedFd = fds[1];
+  semaphores.releasedHandle.fd = fds[0], semaphores.renderedHandle.fd = fds[1];
   EXPECT_TRUE(is_open(0));
   EXPECT_EQ(still_open(), passed.size());
   EXPECT_EQ(create(), VOY_SUCCESS) << voy.message();
+}
+
+// A handle whose type the library does not know would be read as the wrong union member.
+TEST_F(VulkanTarget, HandlesOfAnotherTypeAreRefusedByName) {
+  images[0].depthMemory.handleType = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_WIN32_BIT;
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(voy.message().find("images[0].depthMemory.handleType"), std::string::npos)
+      << voy.message();
+  images[0].depthMemory.handleType = VOY_VULKAN_MEMORY_HANDLE_TYPE;
+  semaphores.handleType = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_SYNC_FD_BIT;
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(voy.message().find("semaphores[0].handleType"), std::string::npos) << voy.message();
+  EXPECT_EQ(still_open(), passed.size());
 }
 
 TEST_F(VulkanTarget, AnImageThatIsPassedTwiceIsRefused) {
@@ -312,3 +326,4 @@ TEST_F(VulkanTarget, TheModeIsTold) {
 }
 
 }  // namespace
+}  // namespace vulkan_target_test

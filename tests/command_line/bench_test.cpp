@@ -8,6 +8,7 @@
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
+namespace bench_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -244,4 +245,5 @@ TEST_F(CommandLineBench, Refusals) {
 }
 
 }  // namespace
+}  // namespace bench_test
 }  // namespace voyager::test

@@ -9,6 +9,7 @@
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
+namespace partition_test {
 namespace {
 
 nlohmann::json info_of(const std::string& path) {
@@ -132,4 +133,5 @@ TEST(CommandLinePartition, FilesOfOlderVersionsAreRefusedAndSayToBakeAgain) {
 }
 
 }  // namespace
+}  // namespace partition_test
 }  // namespace voyager::test

@@ -3,16 +3,18 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "tests/command_line/page_check.h"
 #include "tests/command_line/program.h"
 #include "tests/support/camera_files.h"
-#include "tests/support/needs_browser.h"
+#include "tests/support/needs.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
+namespace report_curve_test {
 namespace {
 
 class ReportCurve : public ::testing::Test {
@@ -43,6 +45,13 @@ class ReportCurve : public ::testing::Test {
   static inline std::string failure_;
 };
 
+// Measured on this city, in dB; both qualities, all views and the flight are within 1.2 of it.
+double expected_psnr(double share) {
+  const std::map<double, double> measured = {{0.9, 53.5},  {0.8, 41.3}, {0.65, 37.1}, {0.5, 34.0},
+                                             {0.35, 32.0}, {0.2, 29.9}, {0.1, 26.5}};
+  return measured.at(share);
+}
+
 TEST_F(ReportCurve, HasARowForEachTreeViewAndShare) {
   const std::string trees = " --trees " + file("compact.voy") + " " + file("copy/c.voy");
   const Outcome outcome = run(curve("c.voy", "--curve" + trees + " -o " + file("out")));
@@ -57,7 +66,7 @@ TEST_F(ReportCurve, HasARowForEachTreeViewAndShare) {
     EXPECT_NEAR(cut, 10000 * row["cut_share"].get<double>(), 0.01) << row.dump();
     EXPECT_EQ(row["popping"].is_null(), view != "flight") << row.dump();
     EXPECT_GT(row["ms_median"].get<double>(), 0);
-    EXPECT_GT(psnr, 5);
+    EXPECT_NEAR(psnr, expected_psnr(share), 1.5) << row.dump();
     if (view == "flight") continue;
     EXPECT_NEAR(cut, 10000 * share, 100 * share) << row.dump();
   }
@@ -69,10 +78,10 @@ TEST_F(ReportCurve, HasARowForEachTreeViewAndShare) {
   const std::string csv = file_bytes(file("out/curve.csv"));
   EXPECT_EQ(static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n')), rows.size() + 1);
 
-  // Fewer nodes are no better a picture.
+  // Fewer nodes are a worse picture: by 1.9 dB where shares are nearest one another in quality.
   for (size_t i = 1; i < rows.size(); ++i)
     if (rows[i]["tree"] == rows[i - 1]["tree"] && rows[i]["view"] == rows[i - 1]["view"]) {
-      EXPECT_LT(rows[i]["psnr_db"].get<double>(), rows[i - 1]["psnr_db"].get<double>() + 0.5)
+      EXPECT_LT(rows[i]["psnr_db"].get<double>(), rows[i - 1]["psnr_db"].get<double>() - 1)
           << rows[i].dump();
     }
   // The third tree is the first.
@@ -89,7 +98,8 @@ TEST_F(ReportCurve, HasARowForEachTreeViewAndShare) {
   EXPECT_EQ(json["provenance"]["trees"].size(), 3u);
   EXPECT_EQ(json["provenance"]["trees"][1]["bytes"].get<uint64_t>(),
             std::filesystem::file_size(file("compact.voy")));
-  if (browser().empty()) VOYAGER_SKIP_WITHOUT_BROWSER();
+  if (browser().empty())
+    VOYAGER_SKIP_WITHOUT(BROWSER, "no chromium-headless-shell or chromium: pages are not opened");
   const PageCheck check = check_page(browser(), file("out/curve.html"));
   EXPECT_EQ(check.findings, "");
   EXPECT_EQ(check.plots, 6u);
@@ -116,4 +126,5 @@ TEST_F(ReportCurve, RefusalsAreOneLineAndLeaveNothing) {
 }
 
 }  // namespace
+}  // namespace report_curve_test
 }  // namespace voyager::test

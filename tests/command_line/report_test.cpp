@@ -8,10 +8,11 @@
 #include "tests/command_line/page_check.h"
 #include "tests/command_line/program.h"
 #include "tests/support/camera_files.h"
-#include "tests/support/needs_browser.h"
+#include "tests/support/needs.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
+namespace report_test {
 namespace {
 
 class Report : public ::testing::Test {
@@ -61,7 +62,8 @@ TEST_F(Report, LeavesATableAPageAndPlots) {
   EXPECT_EQ(json["provenance"]["arguments"].back(), "--target 10000");
   EXPECT_FALSE(std::filesystem::exists(file("out/.report")));
   // The page, as a user sees it: here, for each test of this suite would make a report of its own.
-  if (browser().empty()) VOYAGER_SKIP_WITHOUT_BROWSER();
+  if (browser().empty())
+    VOYAGER_SKIP_WITHOUT(BROWSER, "no chromium-headless-shell or chromium: pages are not opened");
   const PageCheck check = check_page(browser(), file("out/report.html"));
   EXPECT_EQ(check.findings, "");
   EXPECT_EQ(check.images, 2 * json["front"].size());
@@ -152,7 +154,8 @@ TEST_F(Report, RefusalsAreOneLineAndLeaveNothing) {
 
 // What the check above relies on: a page that is broken is not passed.
 TEST(ReportPage, WhatIsBrokenOnAPageIsFound) {
-  if (browser().empty()) VOYAGER_SKIP_WITHOUT_BROWSER();
+  if (browser().empty())
+    VOYAGER_SKIP_WITHOUT(BROWSER, "no chromium-headless-shell or chromium: pages are not opened");
   const TempFolder folder;
   const auto findings = [&](const std::string& body) {
     write_bytes(folder.file("page.html"), "<!DOCTYPE html><html><body>" + body + "</body></html>");
@@ -172,4 +175,5 @@ TEST(ReportPage, WhatIsBrokenOnAPageIsFound) {
 }
 
 }  // namespace
+}  // namespace report_test
 }  // namespace voyager::test

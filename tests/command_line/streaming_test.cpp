@@ -8,6 +8,7 @@
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
+namespace streaming_test {
 namespace {
 
 class Streaming : public ::testing::Test {
@@ -99,4 +100,5 @@ TEST_F(Streaming, WhatItHasNoMeaningForIsRefused) {
 }
 
 }  // namespace
+}  // namespace streaming_test
 }  // namespace voyager::test

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <string>
 
 #include "cuda/check.h"
 #include "cuda/cuda_backend.h"
 #include "cuda/device.h"
+#include "tests/support/needs.h"
 
 namespace voyager::test {
 
@@ -17,7 +19,7 @@ class DeviceTest : public ::testing::Test {
     int devices = 0;
     const cudaError_t status = cudaGetDeviceCount(&devices);
     if (status != cudaSuccess || devices == 0)
-      GTEST_SKIP() << "no CUDA device: " << cudaGetErrorString(status);
+      VOYAGER_SKIP_WITHOUT(CUDA, std::string("no CUDA device: ") + cudaGetErrorString(status));
   }
 
   static std::shared_ptr<const cuda::Device> device(unsigned multiprocessors = 0) {

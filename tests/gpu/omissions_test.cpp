@@ -10,6 +10,7 @@
 #include "tests/support/depth_limits.h"
 
 namespace voyager::test {
+namespace omissions_test {
 namespace {
 
 using cuda::buffer_bytes;
@@ -153,4 +154,5 @@ TEST_F(SplatOmissions, KernelsWithoutSiblingsOrCountingAreListed) {
 }
 
 }  // namespace
+}  // namespace omissions_test
 }  // namespace voyager::test

@@ -11,6 +11,7 @@
 #include "tests/support/render_scene.h"
 
 namespace voyager::test {
+namespace search_test {
 namespace {
 
 constexpr Search kSearches[] = {Search::exhaustive, Search::streaming, Search::temporal,
@@ -268,7 +269,7 @@ TEST_F(SearchTest, APartOfTheMultiprocessorsGivesTheSame) {
       search = create(scene, kind, 16);
     } catch (const Error& error) {
       if (error.code() != ErrorCode::unsupported) throw;
-      GTEST_SKIP() << error.what();  // a driver without green contexts
+      VOYAGER_SKIP_WITHOUT(CUDA, error.what());  // a driver without green contexts
     }
     for (const CutQuery& query : walk(random, 30, 0.02f))
       ASSERT_TRUE(same(run(*search, query), oracle.at(query)));
@@ -282,4 +283,5 @@ TEST_F(SearchTest, AnEmptyTreeHasAnEmptyCut) {
 }
 
 }  // namespace
+}  // namespace search_test
 }  // namespace voyager::test

@@ -6,6 +6,7 @@
 #include "tests/gpu/splat_test.h"
 
 namespace voyager::test {
+namespace splat_baseline_test {
 namespace {
 
 class SplatBaseline : public SplatTest {
@@ -17,7 +18,7 @@ class SplatBaseline : public SplatTest {
       view(flat_scene(GaussianCloud()), {.splatting = Splatting::baseline_3dgs});
     } catch (const Error& error) {
       if (error.code() != ErrorCode::unsupported) throw;
-      GTEST_SKIP() << error.what();
+      VOYAGER_SKIP_WITHOUT(CUDA, error.what());
     }
   }
 };
@@ -61,4 +62,5 @@ TEST_F(SplatBaseline, GrowsLikeOurs) {
 }
 
 }  // namespace
+}  // namespace splat_baseline_test
 }  // namespace voyager::test

@@ -6,6 +6,7 @@
 #include "tests/support/scene_files.h"
 
 namespace voyager::test {
+namespace splat_damage_test {
 namespace {
 
 std::vector<FrameInput> frames() {
@@ -65,4 +66,5 @@ TEST_F(SplatDamage, AFrameIsDrawnOrRefusedAsTheCpuDoes) {
 }
 
 }  // namespace
+}  // namespace splat_damage_test
 }  // namespace voyager::test

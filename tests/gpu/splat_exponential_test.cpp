@@ -3,6 +3,7 @@
 #include "tests/gpu/splat_test.h"
 
 namespace voyager::test {
+namespace splat_exponential_test {
 namespace {
 
 constexpr uint32_t kLutSizes[] = {8, 16, 32, 64, 128, 1000, 4096};
@@ -74,4 +75,5 @@ TEST_F(SplatExponential, TheLutsErrorFallsAsItGrows) {
 }
 
 }  // namespace
+}  // namespace splat_exponential_test
 }  // namespace voyager::test

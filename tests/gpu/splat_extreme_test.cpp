@@ -6,6 +6,7 @@
 #include "tests/support/extreme_scenes.h"
 
 namespace voyager::test {
+namespace splat_extreme_test {
 namespace {
 
 class SplatExtreme : public SplatTest {
@@ -126,4 +127,5 @@ TEST_F(SplatExtreme, WhatBinary16CannotHoldIsKeptInBinary32) {
 }
 
 }  // namespace
+}  // namespace splat_extreme_test
 }  // namespace voyager::test

@@ -2,6 +2,7 @@
 #include "tests/gpu/splat_test.h"
 
 namespace voyager::test {
+namespace splat_filter_test {
 namespace {
 
 constexpr uint32_t kLutSizes[] = {1, 8, 16, 32, 100, 128, 4096};
@@ -78,4 +79,5 @@ TEST_F(SplatFilter, CountingPixelsChangesNoBit) {
 }
 
 }  // namespace
+}  // namespace splat_filter_test
 }  // namespace voyager::test

@@ -6,6 +6,7 @@
 #include "tests/support/scene_files.h"
 
 namespace voyager::test {
+namespace splat_instances_test {
 namespace {
 
 constexpr Splatting kSplattings[] = {Splatting::ours, Splatting::baseline_3dgs};
@@ -169,4 +170,5 @@ TEST_F(SplatInstances, ADamagedChunkFailsTheFramesThatNeedIt) {
 }
 
 }  // namespace
+}  // namespace splat_instances_test
 }  // namespace voyager::test

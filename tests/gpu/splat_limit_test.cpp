@@ -5,6 +5,7 @@
 #include "tests/support/depth_limits.h"
 
 namespace voyager::test {
+namespace splat_limit_test {
 namespace {
 
 class SplatLimit : public SplatTest {
@@ -159,4 +160,5 @@ TEST_F(SplatLimit, MeasurementsOfFramesWithoutLimitsRefuseThem) {
 }
 
 }  // namespace
+}  // namespace splat_limit_test
 }  // namespace voyager::test

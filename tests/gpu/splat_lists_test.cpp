@@ -6,6 +6,7 @@
 #include "tests/gpu/splat_test.h"
 
 namespace voyager::test {
+namespace splat_lists_test {
 namespace {
 
 enum class Depths { ascending, descending, shuffled, grouped, tied };
@@ -197,4 +198,5 @@ TEST_F(SplatLists, SlotsAndPairsGrowEachForItself) {
 }
 
 }  // namespace
+}  // namespace splat_lists_test
 }  // namespace voyager::test

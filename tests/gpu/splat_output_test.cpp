@@ -8,6 +8,7 @@
 #include "tests/gpu/splat_test.h"
 
 namespace voyager::test {
+namespace splat_output_test {
 namespace {
 
 using SplatOutput = SplatTest;
@@ -107,4 +108,5 @@ TEST_F(SplatOutput, AnImageWithoutMemoryIsDrawnAndHandedToNobody) {
 }
 
 }  // namespace
+}  // namespace splat_output_test
 }  // namespace voyager::test

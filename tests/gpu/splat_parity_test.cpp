@@ -6,6 +6,7 @@
 #include "tools/synth/city.h"
 
 namespace voyager::test {
+namespace splat_parity_test {
 namespace {
 
 class SplatParity : public SplatTest {
@@ -102,4 +103,5 @@ TEST_F(SplatParity, OneTreeForWhichEverySearchDrawsTheSame) {
 }
 
 }  // namespace
+}  // namespace splat_parity_test
 }  // namespace voyager::test

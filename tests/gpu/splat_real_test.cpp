@@ -7,10 +7,11 @@
 #include "tests/support/real_scenes.h"
 
 namespace voyager::test {
+namespace splat_real_test {
 namespace {
 
 #define VOYAGER_NEEDS_FILE(path) \
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here"
+  if (!std::filesystem::exists(path)) VOYAGER_SKIP_WITHOUT(SCENES, (path) + " is not here")
 
 class SplatReal : public SplatTest {
  protected:
@@ -94,4 +95,5 @@ TEST_F(SplatObject, PlaybotWithShDegreeTwo) {
 }
 
 }  // namespace
+}  // namespace splat_real_test
 }  // namespace voyager::test

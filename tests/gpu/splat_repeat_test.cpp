@@ -6,6 +6,7 @@
 #include "tests/gpu/splat_test.h"
 
 namespace voyager::test {
+namespace splat_repeat_test {
 namespace {
 
 using SplatRepeat = SplatTest;
@@ -64,7 +65,7 @@ TEST_F(SplatRepeat, APartOfTheMultiprocessorsGivesTheSameBits) {
     part = create_backend(16);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::unsupported) throw;
-    GTEST_SKIP() << error.what();  // a driver without green contexts
+    VOYAGER_SKIP_WITHOUT(CUDA, error.what());  // a driver without green contexts
   }
   const GaussianCloud cloud = random_cloud(60000, 9, 3);
   const std::shared_ptr<const Scene> flat = flat_scene(cloud);
@@ -120,4 +121,5 @@ TEST_F(SplatRepeat, ViewsGoInAnyOrderAndLeaveNothing) {
 }
 
 }  // namespace
+}  // namespace splat_repeat_test
 }  // namespace voyager::test

@@ -12,6 +12,7 @@
 #include "tests/support/tree_rules.h"
 
 namespace voyager::test {
+namespace splat_sibling_test {
 namespace {
 
 std::shared_ptr<const Scene> scene_of(const BakedScene& baked) {
@@ -145,4 +146,5 @@ TEST_F(SplatSibling, TreesOfEveryShape) {
 }
 
 }  // namespace
+}  // namespace splat_sibling_test
 }  // namespace voyager::test

@@ -6,6 +6,7 @@
 #include "tests/support/stereo.h"
 
 namespace voyager::test {
+namespace splat_stereo_test {
 namespace {
 
 class SplatStereo : public SplatTest {
@@ -146,4 +147,5 @@ TEST_F(SplatStereo, TheBaselineDrawsOneEye) {
 }
 
 }  // namespace
+}  // namespace splat_stereo_test
 }  // namespace voyager::test

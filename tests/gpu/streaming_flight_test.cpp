@@ -4,6 +4,7 @@
 #include "tests/support/streaming_flight.h"
 
 namespace voyager::test {
+namespace streaming_flight_test {
 namespace {
 
 using StreamingFlight = SplatTest;
@@ -20,4 +21,5 @@ TEST_F(StreamingFlight, ManyThreadsDrawCutsOnly) {
 }
 
 }  // namespace
+}  // namespace streaming_flight_test
 }  // namespace voyager::test

@@ -12,6 +12,7 @@
 #include "tests/support/tree_rules.h"
 
 namespace voyager::test {
+namespace streaming_test {
 namespace {
 
 constexpr size_t kGranularity = size_t{4} << 20;  // of cudaMalloc and what it keeps
@@ -431,4 +432,5 @@ TEST_F(Streaming, ASceneInTheHostsMemoryIsRefused) {
 }
 
 }  // namespace
+}  // namespace streaming_test
 }  // namespace voyager::test

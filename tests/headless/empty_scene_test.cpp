@@ -2,6 +2,7 @@
 // is empty.
 #include "host.h"
 
+namespace empty_scene_test {
 namespace {
 
 // A .voy of format 4, compact, no nodes.
@@ -57,3 +58,4 @@ TEST(EmptyScene, ThatIsFlatHasNone) {
 }
 
 }  // namespace
+}  // namespace empty_scene_test

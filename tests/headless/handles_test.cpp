@@ -1,6 +1,7 @@
 // NULL, wrong structures and wrong handles: an error with a message, no crash.
 #include "hostile.h"
 
+namespace handles_test {
 namespace {
 
 TEST_F(Hostile, NullEverywhere) {
@@ -155,3 +156,4 @@ TEST_F(Hostile, ObjectsOfAnotherDevice) {
 }
 
 }  // namespace
+}  // namespace handles_test

@@ -4,16 +4,17 @@
 
 #include "hostile.h"
 
+namespace hostile_test {
 namespace {
 
 TEST_F(Hostile, DeviceChoices) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  for (const uint32_t version : {0xffffffffu, VOY_MAKE_VERSION(0, 2, 0), VOY_MAKE_VERSION(0, 4, 0),
+  for (const uint32_t version : {0xffffffffu, VOY_MAKE_VERSION(0, 3, 0), VOY_MAKE_VERSION(0, 5, 0),
                                  VOY_MAKE_VERSION(1, 0, 0), VOY_MAKE_VERSION(1, 2, 0)}) {
     desc.apiVersion = version;
-    expect_refused(create_device(desc), VOY_ERROR_INCOMPATIBLE_VERSION, "0.3.0");
+    expect_refused(create_device(desc), VOY_ERROR_INCOMPATIBLE_VERSION, "0.4.0");
   }
-  desc.apiVersion = VOY_MAKE_VERSION(0, 3, 7);
+  desc.apiVersion = VOY_MAKE_VERSION(0, 4, 7);
   EXPECT_EQ(create_device(desc), VOY_SUCCESS);
   for (const int backend : {-1, 4, INT32_MAX, INT32_MIN}) {
     desc.backend = bad_enum<VoyBackend>(backend);
@@ -197,7 +198,7 @@ TEST_F(Hostile, TargetLargerThanTheView) {
 TEST_F(Hostile, QueriesBeforeAnyFrameAndWithoutACut) {
   VoyFrameStats stats = {};
   stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
-  expect_invalid(voy.GetFrameStats(host.view, &stats), "no frame");
+  expect_invalid(voy.GetFrameStats(host.view, &stats), "without a rendered frame");
   uint32_t count = 77;
   expect_refused(voy.GetViewCut(host.view, 0, 0, nullptr, &count), VOY_ERROR_UNSUPPORTED, "cut");
   expect_invalid(voy.GetViewCut(host.view, 1, 0, nullptr, &count), "instance");
@@ -274,3 +275,4 @@ TEST_F(Hostile, EmptyAndNonsenseScenes) {
 }
 
 }  // namespace
+}  // namespace hostile_test

@@ -3,7 +3,9 @@
 #include <array>
 
 #include "hostile.h"
+#include "tests/support/needs.h"
 
+namespace instances_test {
 namespace {
 
 constexpr VoyBackend kDrawing[] = {VOY_BACKEND_CPU, VOY_BACKEND_REFERENCE, VOY_BACKEND_CUDA};
@@ -119,7 +121,7 @@ struct Stage : Host {
 class Instances : public ::testing::TestWithParam<VoyBackend> {
  protected:
   void SetUp() override {
-    if (voy.QueryBackend(GetParam()) != VOY_SUCCESS) GTEST_SKIP() << voy.message();
+    if (voy.QueryBackend(GetParam()) != VOY_SUCCESS) VOYAGER_SKIP_WITHOUT(CUDA, voy.message());
     stage = std::make_unique<Stage>(voy, GetParam());
   }
 
@@ -324,3 +326,4 @@ std::string name_of(const ::testing::TestParamInfo<VoyBackend>& backend) {
 INSTANTIATE_TEST_SUITE_P(On, Instances, ::testing::ValuesIn(kDrawing), name_of);
 
 }  // namespace
+}  // namespace instances_test

@@ -16,7 +16,7 @@
   X(DestroyTarget) X(CreateView) X(DestroyView) X(SetViewTau) X(SetViewTimeBudget) \
   X(FovFromAngles) X(FovFromIntrinsics) X(RenderFrame) X(GetViewCut) \
   X(GetFrameStats) X(StageName) X(SetSceneMemoryBudget) X(GetStreamingStats) \
-  X(GetViewOmissions)
+  X(GetViewOmissions) X(EnumerateDevices)
 // clang-format on
 
 class Library {

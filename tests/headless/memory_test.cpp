@@ -1,9 +1,13 @@
 // Callbacks that fail, at every place where they can, and what the host gets back.
+#include <sys/resource.h>
+
 #include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 
 #include "host.h"
 
+namespace memory_test {
 namespace {
 
 // Counts what is out, and refuses the allocation with the number `failing`.
@@ -207,12 +211,39 @@ TEST_F(Source, EveryTruncationIsRefused) {
   }
 }
 
-TEST_F(Source, SizesThatLie) {
+// While it lives, no more than so many bytes of address space can be taken: memory by whatever
+// allocator. Sanitizers need terabytes of it, and refuse absurd sizes by themselves.
+class AddressSpace {
+ public:
+  explicit AddressSpace(uint64_t more) {
+    long pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    ::getrlimit(RLIMIT_AS, &before_);
+    rlimit now = before_;
+    if (kHeld) now.rlim_cur = static_cast<uint64_t>(pages) * 4096 + more;
+    EXPECT_EQ(::setrlimit(RLIMIT_AS, &now), 0);
+  }
+  ~AddressSpace() { ::setrlimit(RLIMIT_AS, &before_); }
+  AddressSpace(const AddressSpace&) = delete;
+  AddressSpace& operator=(const AddressSpace&) = delete;
+
+ private:
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  static constexpr bool kHeld = false;
+#else
+  static constexpr bool kHeld = true;
+#endif
+  rlimit before_;
+};
+
+// What follows the last Gaussian may be ignored or refused, but not believed: memory of a size that
+// lies cannot be had here, and asking for it would be VOY_ERROR_OUT_OF_HOST_MEMORY.
+TEST_F(Source, SizesThatLieTakeNoMemory) {
+  const AddressSpace limited(UINT64_C(256) << 20);
   for (const uint64_t size : {UINT64_MAX, uint64_t{1} << 63, uint64_t{1} << 40}) {
     VoyByteSource source = bytes.source();
     source.size = size;
     const VoyResult result = open(source);
-    // What follows the last Gaussian may be ignored or refused, but not believed.
     EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_IO ||
                 result == VOY_ERROR_REFUSED_INPUT)
         << result << ": " << voy.message();
@@ -222,7 +253,9 @@ TEST_F(Source, SizesThatLie) {
   bytes.bytes.replace(at, 9, "vertex 4000000000");
   VoyByteSource source = bytes.source();
   source.size = UINT64_MAX;
-  EXPECT_LT(open(source), 0);
+  const VoyResult result = open(source);
+  EXPECT_TRUE(result == VOY_ERROR_IO || result == VOY_ERROR_REFUSED_INPUT)
+      << result << ": " << voy.message();
 }
 
 TEST_F(Source, ReadsThatThrowOrAnswerNonsense) {
@@ -238,3 +271,4 @@ TEST_F(Source, ReadsThatThrowOrAnswerNonsense) {
 }
 
 }  // namespace
+}  // namespace memory_test

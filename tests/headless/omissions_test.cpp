@@ -4,6 +4,7 @@
 
 #include "hostile.h"
 
+namespace omissions_test {
 namespace {
 
 using ListedOmissions = Hostile;
@@ -62,3 +63,4 @@ TEST_F(ListedOmissions, AreRefusedByNameWhereTheCallIsWrong) {
 }
 
 }  // namespace
+}  // namespace omissions_test

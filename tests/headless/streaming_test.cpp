@@ -8,6 +8,7 @@
 
 #include "host.h"
 
+namespace streaming_test {
 namespace {
 
 // A baked scene's bytes, made by the command line once for all tests.
@@ -36,6 +37,10 @@ struct StreamedHost : Host {
     baked.bytes = baked_bytes();
     EXPECT_EQ(open(megabytes), VOY_SUCCESS) << voy.message();
     view_streamed();
+  }
+  ~StreamedHost() {  // before the bytes that the scene reads
+    EXPECT_EQ(voy.DestroyDevice(device), VOY_SUCCESS) << voy.message();
+    device = nullptr;
   }
   VoyResult open(double megabytes) {
     const VoyByteSource source = baked.source();
@@ -226,3 +231,4 @@ TEST(Streaming, Refusals) {
 }
 
 }  // namespace
+}  // namespace streaming_test

@@ -9,6 +9,7 @@
 
 #include "host.h"
 
+namespace threads_test {
 namespace {
 
 TEST(Threads, AViewIsBusyOrAnswers) {
@@ -231,3 +232,4 @@ TEST(FloatingPointMode, ImagesAreTheSameAndTheModeIsKept) {
 }
 
 }  // namespace
+}  // namespace threads_test

@@ -4,6 +4,7 @@
 
 #include "hostile.h"
 
+namespace time_budget_test {
 namespace {
 
 VoyTimeBudget budget_of(double milliseconds) {
@@ -166,3 +167,4 @@ TEST_F(TimeBudget, IsRefusedWhereTauChangesNothing) {
 }
 
 }  // namespace
+}  // namespace time_budget_test

@@ -5,6 +5,7 @@
 
 #include "host.h"
 
+namespace walk_test {
 namespace {
 
 // The sum of all coverage; fails for a value that is no number.
@@ -101,3 +102,4 @@ TEST(Walk, FrustumAndOrientationFollowOpenXr) {
 }
 
 }  // namespace
+}  // namespace walk_test

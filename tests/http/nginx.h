@@ -17,14 +17,15 @@
 #include <string>
 #include <thread>
 
-#include "tests/support/needs_nginx.h"
+#include "tests/support/needs.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
 
-// The program's path, "" where it is not installed.
+// The program's path, "" where it is not here. scripts/unpack_nginx.sh fills build/nginx.
 inline std::string program_path(const std::string& name) {
-  for (const char* folder : {"/usr/sbin/", "/usr/bin/", "/usr/local/sbin/", "/usr/local/bin/"})
+  for (const char* folder : {"/usr/sbin/", "/usr/bin/", "/usr/local/sbin/", "/usr/local/bin/",
+                             VOYAGER_SOURCE_DIR "/build/nginx/usr/sbin/"})
     if (::access((folder + name).c_str(), X_OK) == 0) return folder + name;
   return "";
 }
@@ -157,6 +158,6 @@ inline size_t different_first_words(const std::vector<std::string>& lines) {
 
 #define VOYAGER_NEEDS_NGINX()                       \
   if (voyager::test::program_path("nginx").empty()) \
-  VOYAGER_SKIP_WITHOUT_NGINX("nginx is not here: scripts/setup.sh installs it")
+  VOYAGER_SKIP_WITHOUT(NGINX, "nginx is not here: scripts/setup.sh tests brings it")
 
 }  // namespace voyager::test

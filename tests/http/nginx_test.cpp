@@ -7,7 +7,7 @@
 
 #include "tests/http/http_test.h"
 
-namespace voyager {
+namespace voyager::nginx_test {
 namespace {
 
 using namespace test;
@@ -179,4 +179,4 @@ TEST_F(OnNginx, CompressionIsNotAskedFor) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::nginx_test

@@ -4,7 +4,7 @@
 #include "tests/http/http_test.h"
 #include "tests/http/nginx.h"
 
-namespace voyager {
+namespace voyager::program_test {
 namespace {
 
 using namespace test;
@@ -100,9 +100,9 @@ TEST(Module, WhereItIsMissingIsNamed) {
                    " info http://127.0.0.1:1/x.voy >" + said + " 2>&1")
                       .c_str());
   EXPECT_EQ(WEXITSTATUS(status), 1) << file_bytes(said);
-  EXPECT_NE(file_bytes(said).find("libvoyager_http.so: cannot be loaded"), std::string::npos)
+  EXPECT_NE(file_bytes(said).find("libvoyager_http.so: not found in "), std::string::npos)
       << file_bytes(said);
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::program_test

@@ -3,7 +3,7 @@
 
 #include "tests/http/http_test.h"
 
-namespace voyager {
+namespace voyager::scripted_test {
 namespace {
 
 using namespace test;
@@ -277,7 +277,7 @@ TEST(Scripted, RedirectsOutOfHttpAreRefused) {
     ScriptedServer server([&](const ScriptedRequest&) {
       return ScriptedReply{http_reply(302, "Location: " + std::string(place) + "\r\n", "")};
     });
-    expect_error(ErrorCode::refused_input, "found Protocol",
+    expect_error(ErrorCode::refused_input, "Protocol",
                  [&] { http::Source(server.url(), quick()); });
   }
 }
@@ -378,4 +378,4 @@ TEST(Scripted, AProxyIsUsedButForWhatNoProxyNames) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::scripted_test

@@ -7,7 +7,7 @@
 #include "tests/support/is_cut.h"
 #include "tests/support/render_scene.h"
 
-namespace voyager {
+namespace voyager::streaming_test {
 namespace {
 
 using namespace test;
@@ -104,4 +104,4 @@ TEST_F(HttpStreaming, AServerThatRefusesIsNotWaitedForLong) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::streaming_test

@@ -5,7 +5,7 @@
 #include "tests/http/nginx.h"
 #include "tests/support/scripted_server.h"
 
-namespace voyager {
+namespace voyager::tls_test {
 namespace {
 
 using namespace test;
@@ -15,7 +15,7 @@ class OnTls : public testing::Test {
   void SetUp() override {
     VOYAGER_NEEDS_NGINX();
     if (program_path("openssl").empty())
-      VOYAGER_SKIP_WITHOUT_NGINX("openssl is not here: scripts/setup.sh installs it");
+      VOYAGER_SKIP_WITHOUT(NGINX, "openssl is not here: scripts/setup.sh tests brings it");
     make_certificates();
     nginx_.serve("scene.voy", file_);
   }
@@ -107,7 +107,7 @@ TEST_F(OnTls, ASecureUrlIsNotRedirectedToAnInsecureOne) {
                          "ssl"),
             "");
   ::setenv("CURL_CA_BUNDLE", nginx_.folder("ca.pem").c_str(), 1);
-  expect_error(ErrorCode::refused_input, "found Protocol", [&] { http::Source(url(), quick()); });
+  expect_error(ErrorCode::refused_input, "Protocol", [&] { http::Source(url(), quick()); });
   EXPECT_EQ(insecure.requests(), 0);
 }
 
@@ -133,4 +133,4 @@ TEST(Tls, TheProxyOfHttpsIsAsked) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::tls_test

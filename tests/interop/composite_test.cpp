@@ -3,6 +3,7 @@
 
 #include "frames.h"
 
+namespace composite_test {
 namespace {
 
 constexpr VkFormat kColor = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFLOAT;
@@ -226,3 +227,4 @@ TEST_F(Composites, EqualTheOneMadeFromTheSameImages) {
 }
 
 }  // namespace
+}  // namespace composite_test

@@ -2,6 +2,7 @@
 #include "cuda_driver.h"
 #include "frames.h"
 
+namespace context_test {
 namespace {
 
 // With a context of the host's own, and then with none.
@@ -82,7 +83,7 @@ void draw_in_host_memory(HostsContext& context) {
 TEST(CudaContext, IsTheHostsAfterEachCall) {
   std::string why;
   const auto driver = CudaDriver::load(why);
-  if (!driver) GTEST_SKIP() << why;
+  if (!driver) VOYAGER_SKIP_WITHOUT(CUDA, why);
   HostsContext context(*driver);
   for (const bool own : {true, false}) {
     context.make_current(own);
@@ -94,7 +95,7 @@ TEST(CudaContext, IsTheHostsAfterEachCall) {
 TEST_F(Interop, TheHostsCudaContextIsCurrentAfterEachCall) {
   std::string why;
   const auto driver = CudaDriver::load(why);
-  if (!driver) GTEST_SKIP() << why;
+  if (!driver) VOYAGER_SKIP_WITHOUT(CUDA, why);
   HostsContext context(*driver);
   for (const bool own : {true, false}) {
     context.make_current(own);
@@ -119,3 +120,4 @@ TEST_F(Interop, TheHostsCudaContextIsCurrentAfterEachCall) {
 }
 
 }  // namespace
+}  // namespace context_test

@@ -2,6 +2,7 @@
 // mode of sharing and waiting.
 #include "frames.h"
 
+namespace handoff_test {
 namespace {
 
 struct Format {
@@ -244,3 +245,4 @@ TEST_F(Interop, ACopyKeepsCodeValues) {
 }
 
 }  // namespace
+}  // namespace handoff_test

@@ -6,6 +6,7 @@
 
 #include "frames.h"
 
+namespace import_test {
 namespace {
 
 constexpr uint32_t kImages = 2;
@@ -21,7 +22,11 @@ ImageDesc plane(VkFormat format, uint32_t width, uint32_t height, bool exported)
 
 VoyVulkanMemory dedicated_memory(const HostImage& image) {
   const bool exported = image.desc.exported;
-  return {exported ? image.export_fd() : -1, exported ? VK_TRUE : VK_FALSE, image.bytes, 0};
+  return {{exported ? image.export_fd() : -1},
+          VOY_VULKAN_MEMORY_HANDLE_TYPE,
+          exported ? VK_TRUE : VK_FALSE,
+          image.bytes,
+          0};
 }
 
 // Each in memory of its own.
@@ -108,7 +113,7 @@ class ImagesInOneMemory {
     bytes_ = memory.offset + needs.size;
   }
   void bind(VkImage image, VoyVulkanMemory& memory, int fd) const {
-    memory.fd = fd;
+    memory.handle.fd = fd;
     memory.size = bytes_;
     VK(vkBindImageMemory(host_.device, image, memory_, memory.offset));
   }
@@ -126,8 +131,8 @@ class OwnSemaphores {
     if (sync == VOY_VULKAN_SYNC_HOST) return;
     passed.assign(timeline_ ? 1 : kImages, VOY_VULKAN_IMPORTED_SEMAPHORES_INIT);
     for (VoyVulkanImportedSemaphores& pair : passed) {
-      make(pair.released, pair.releasedFd);
-      make(pair.rendered, pair.renderedFd);
+      make(pair.released, pair.releasedHandle.fd);
+      make(pair.rendered, pair.renderedHandle.fd);
     }
   }
   ~OwnSemaphores() {
@@ -207,11 +212,11 @@ class Imports : public Interop {
       EXPECT_EQ(::fcntl(fd, F_GETFD), -1) << "it is the library's now";
     };
     for (const VoyVulkanImportedImage& image : own) {
-      closed(image.colorMemory.fd);
-      if (image.depth != VK_NULL_HANDLE) closed(image.depthMemory.fd);
+      closed(image.colorMemory.handle.fd);
+      if (image.depth != VK_NULL_HANDLE) closed(image.depthMemory.handle.fd);
     }
     for (const VoyVulkanImportedSemaphores& pair : semaphores)
-      closed(pair.releasedFd), closed(pair.renderedFd);
+      closed(pair.releasedHandle.fd), closed(pair.renderedHandle.fd);
   }
 };
 
@@ -237,17 +242,19 @@ TEST_F(Imports, ImagesInOneMemoryAreFilledWhereTheyLie) {
 }
 
 TEST_F(Imports, ADescriptorThatIsRefusedStaysTheHosts) {
-  if (!create(VOY_VULKAN_SHARING_DEVICE)) GTEST_SKIP() << voyGetLastErrorMessage();
+  if (!create(VOY_VULKAN_SHARING_DEVICE)) VOYAGER_SKIP_WITHOUT(CUDA, voyGetLastErrorMessage());
   DedicatedImages own(*host, kWidth, kHeight, true, false);
-  const int second = std::exchange(own.passed[1].colorMemory.fd, ::open("/dev/null", O_RDONLY));
+  const int second =
+      std::exchange(own.passed[1].colorMemory.handle.fd, ::open("/dev/null", O_RDONLY));
   VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
   images.images = own.passed.data();
   const VoyTargetDesc desc = target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images);
   VoyTarget target = nullptr;
   EXPECT_NE(voyCreateTarget(device, &desc, &target), VOY_SUCCESS);
   for (const VoyVulkanImportedImage& image : own.passed)
-    EXPECT_EQ(::close(image.colorMemory.fd), 0) << voyGetLastErrorMessage();
+    EXPECT_EQ(::close(image.colorMemory.handle.fd), 0) << voyGetLastErrorMessage();
   EXPECT_EQ(::close(second), 0);
 }
 
 }  // namespace
+}  // namespace import_test

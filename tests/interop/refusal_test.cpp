@@ -1,6 +1,7 @@
 // What a host must not ask, and what it is told.
 #include "frames.h"
 
+namespace refusal_test {
 namespace {
 
 void expect_refused(VoyResult found, VoyResult expected, const char* part) {
@@ -178,3 +179,4 @@ TEST_F(Interop, RecordingIsRefusedByWhatIsWrong) {
 }
 
 }  // namespace
+}  // namespace refusal_test

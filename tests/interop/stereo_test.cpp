@@ -1,6 +1,7 @@
 // Both eyes of a frame into a ring: as layers of one image, or into a ring each.
 #include "frames.h"
 
+namespace stereo_test {
 namespace {
 
 class InteropStereo : public Interop {
@@ -137,3 +138,4 @@ TEST_F(InteropStereo, EyesThatShareAnImageOrMixKindsAreRefused) {
 }
 
 }  // namespace
+}  // namespace stereo_test

@@ -1,11 +1,12 @@
 // That the silence of the other tests says something: the layer is there, and sees hazards.
 #include "frames.h"
 
+namespace validation_test {
 namespace {
 
 // Two submissions write one buffer, and nothing orders them.
 TEST_F(Interop, ValidationSeesAHazardBetweenSubmissions) {
-  if (!host->validates()) VOYAGER_SKIP_WITHOUT_VULKAN("no VK_LAYER_KHRONOS_validation");
+  if (!host->validates()) VOYAGER_SKIP_WITHOUT(VULKAN, "no VK_LAYER_KHRONOS_validation");
   const MappedBuffer buffer(*host, 4096);
   const VkFence fences[] = {host->make_fence(), host->make_fence()};
   for (uint32_t i = 0; i < 2; ++i) {
@@ -24,3 +25,4 @@ TEST_F(Interop, ValidationSeesAHazardBetweenSubmissions) {
 }
 
 }  // namespace
+}  // namespace validation_test

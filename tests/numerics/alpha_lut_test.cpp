@@ -7,7 +7,7 @@
 #include "runtime/math/alpha.h"
 #include "tests/numerics/measured.h"
 
-namespace voyager {
+namespace voyager::alpha_lut_test {
 namespace {
 
 struct LutErrors {
@@ -61,4 +61,4 @@ TEST(AlphaLutSize, ErrorsAreThoseOfHalfAnInterval) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::alpha_lut_test

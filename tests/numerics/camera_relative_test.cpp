@@ -7,7 +7,7 @@
 #include "tests/numerics/measured.h"
 #include "tests/support/render_scene.h"
 
-namespace voyager {
+namespace voyager::camera_relative_test {
 namespace {
 
 using test::kEpsilon;
@@ -155,4 +155,4 @@ TEST(CameraRelative, PixelsAreKnownToTheFocalLengthsDigits) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::camera_relative_test

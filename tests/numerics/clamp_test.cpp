@@ -7,7 +7,7 @@
 #include "tests/numerics/measured.h"
 #include "tests/numerics/perspective.h"
 
-namespace voyager {
+namespace voyager::clamp_test {
 namespace {
 
 using test::Cloudlet;
@@ -136,4 +136,4 @@ TEST(Clamp, KeepsTheFanSmallerThanTheJacobianAloneWould) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::clamp_test

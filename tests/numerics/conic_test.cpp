@@ -4,7 +4,7 @@
 #include "tests/numerics/measured.h"
 #include "tests/numerics/textbook.h"
 
-namespace voyager {
+namespace voyager::conic_test {
 namespace {
 
 using test::Build;
@@ -126,4 +126,4 @@ TEST(Conic, TheTextbookLosesWhatOursKeeps) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::conic_test

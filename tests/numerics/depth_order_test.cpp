@@ -7,7 +7,7 @@
 #include "runtime/math/sort_key.h"
 #include "tests/numerics/measured.h"
 
-namespace voyager {
+namespace voyager::depth_order_test {
 namespace {
 
 using test::kEpsilon;
@@ -84,4 +84,4 @@ TEST(DepthOrder, NeighbouringDepthsHaveKeysInTheirOrder) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::depth_order_test

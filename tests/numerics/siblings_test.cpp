@@ -7,7 +7,7 @@
 #include "runtime/math/alpha.h"
 #include "tests/numerics/measured.h"
 
-namespace voyager {
+namespace voyager::siblings_test {
 namespace {
 
 // t·α + (1 - t)·(1 - (1 - α)^(1/k)) in binary32.
@@ -64,4 +64,4 @@ TEST(Siblings, AlphaDoesNotJumpAtEitherEnd) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::siblings_test

@@ -7,7 +7,7 @@
 #include "tests/numerics/measured.h"
 #include "tests/support/render_scene.h"
 
-namespace voyager {
+namespace voyager::threshold_test {
 namespace {
 
 using test::kEpsilon;
@@ -107,4 +107,4 @@ TEST(Threshold, AsManyTestsFlipAsTheErrorOfRhoTells) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::threshold_test

@@ -7,7 +7,7 @@
 #include "tests/numerics/measured.h"
 #include "tests/support/test_support.h"
 
-namespace voyager {
+namespace voyager::transmittance_test {
 namespace {
 
 using test::kEpsilon;
@@ -127,4 +127,4 @@ TEST(Transmittance, OfSiblingsBeyondNumberLosesHalfAnEpsilonEach) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::transmittance_test

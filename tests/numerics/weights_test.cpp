@@ -8,7 +8,7 @@
 #include "tests/numerics/footprints.h"
 #include "tests/numerics/measured.h"
 
-namespace voyager {
+namespace voyager::weights_test {
 namespace {
 
 using test::kEpsilon;
@@ -92,4 +92,4 @@ TEST(WeightEnds, AlignedRotationsAreFarFromTheTurnOfSign) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::weights_test

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/command_line/program.h"
-#include "tests/support/needs_vulkan.h"
+#include "tests/support/needs.h"
 #include "tests/support/pictures.h"
 #include "tests/support/test_support.h"
 
@@ -29,17 +29,21 @@ class Headset : public ::testing::Test {
       const Outcome result = run(step);
       if (result.exit_code != 0) set_up_failure_ += step + "\n" + result.output;
     }
+    use_test_runtime();
+    probe_ = run(headset("--frames 1"));
   }
   static void TearDownTestSuite() { delete folder_; }
 
   void SetUp() override {
     ASSERT_EQ(set_up_failure_, "");
+    use_test_runtime();
+    if (probe_.exit_code == 4 && probe_.output.find("found no Vulkan") != std::string::npos)
+      VOYAGER_SKIP_WITHOUT(VULKAN, probe_.output);
+    ASSERT_EQ(probe_.exit_code, 0) << probe_.output;
+  }
+  static void use_test_runtime() {
     setenv("XR_RUNTIME_JSON", VOYAGER_BIN_DIR "/../lib/voyager_test_runtime.json", 1);
     write_script({});
-    const Outcome result = run(headset("--frames 1"));
-    if (result.exit_code == 4 && result.output.find("found no Vulkan") != std::string::npos)
-      VOYAGER_SKIP_WITHOUT_VULKAN(result.output);
-    ASSERT_EQ(result.exit_code, 0) << result.output;
   }
 
   static std::string file(const std::string& name) { return folder_->file(name); }
@@ -106,9 +110,9 @@ class Headset : public ::testing::Test {
   static TempFolder* folder_;
 
  private:
-  static std::string set_up_failure_;
+  static inline std::string set_up_failure_;
+  static inline Outcome probe_;
 };
 inline TempFolder* Headset::folder_ = nullptr;
-inline std::string Headset::set_up_failure_;
 
 }  // namespace voyager::test

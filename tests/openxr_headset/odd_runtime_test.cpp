@@ -7,6 +7,7 @@
 #include "tests/openxr_headset/headset_run.h"
 
 namespace voyager::test {
+namespace odd_runtime_test {
 namespace {
 
 class OddRuntime : public Headset {
@@ -77,7 +78,7 @@ TEST_F(OddRuntime, ItsHighestVulkanIsNoLimit) {
 TEST_F(OddRuntime, ImagesInNoLayoutAreDrawnTo) {
   const Outcome probe = run(headset("--frames 1 --validation"));
   if (probe.output.find("--validation: found no ") != std::string::npos)
-    VOYAGER_SKIP_WITHOUT_VULKAN(probe.output);
+    VOYAGER_SKIP_WITHOUT(VULKAN, probe.output);
   for (const std::string& options : {std::string(), " --readback " + file("lax")})
     EXPECT_EQ(
         count(expect_well_behaved({{"image_layouts", false}}, "--frames 8 --validation" + options),
@@ -179,4 +180,5 @@ TEST_F(OddRuntime, AHeadOfUnknownPositionTurns) {
 }
 
 }  // namespace
+}  // namespace odd_runtime_test
 }  // namespace voyager::test

@@ -6,6 +6,7 @@
 #include "tests/openxr_headset/headset_run.h"
 
 namespace voyager::test {
+namespace picture_test {
 namespace {
 
 std::string readback(const std::string& folder) {
@@ -186,4 +187,5 @@ TEST_F(Headset, ThumbsticksWalkInMetres) {
 }
 
 }  // namespace
+}  // namespace picture_test
 }  // namespace voyager::test

@@ -2,6 +2,7 @@
 #include "tests/openxr_headset/headset_run.h"
 
 namespace voyager::test {
+namespace session_test {
 namespace {
 
 // Under the validation layers of Vulkan (synchronisation included) and of OpenXR.
@@ -12,7 +13,7 @@ void expect_silence(const std::string& output) {
 TEST_F(Headset, TwoHundredFramesLeaveValidationNothingToSay) {
   const Outcome probe = run(headset("--frames 1 --validation"));
   if (probe.output.find("--validation: found no ") != std::string::npos)
-    VOYAGER_SKIP_WITHOUT_VULKAN(probe.output);
+    VOYAGER_SKIP_WITHOUT(VULKAN, probe.output);
   const Json script = {{"recommended", {48, 40}},
                        {"hidden_frames", {{0, 3}, {60, 4}}},
                        {"tracking_lost_frames", {{80, 5}}},
@@ -42,7 +43,7 @@ TEST_F(Headset, AMinimalRuntimeLeavesValidationNothingToSay) {
                        {"formats", {"D32_SFLOAT", "B8G8R8A8_UNORM", "B8G8R8A8_SRGB"}}};
   const Outcome probe = run(headset("--frames 1 --validation"));
   if (probe.output.find("--validation: found no ") != std::string::npos)
-    VOYAGER_SKIP_WITHOUT_VULKAN(probe.output);
+    VOYAGER_SKIP_WITHOUT(VULKAN, probe.output);
   expect_silence(expect_well_behaved(script, "--frames 20 --validation --readback " + file("v")));
   expect_silence(expect_well_behaved(script, "--frames 20 --validation"));
   expect_silence(
@@ -183,4 +184,5 @@ TEST_F(Headset, WhatARuntimeLacksIsNamed) {
 }
 
 }  // namespace
+}  // namespace session_test
 }  // namespace voyager::test

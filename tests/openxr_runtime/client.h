@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/openxr_runtime/vulkan_client.h"
-#include "tests/support/needs_vulkan.h"
+#include "tests/support/needs.h"
 #include "tests/support/test_support.h"
 
 namespace test_runtime::test {
@@ -287,6 +287,6 @@ class Client {
 // Skips, with the reason, where there is no Vulkan.
 #define VOYAGER_NEEDS_VULKAN(client) \
   if (!(client).has_vulkan())        \
-  VOYAGER_SKIP_WITHOUT_VULKAN("found no Vulkan device: lavapipe would do")
+  VOYAGER_SKIP_WITHOUT(VULKAN, "found no Vulkan device: lavapipe would do")
 
 }  // namespace test_runtime::test

@@ -7,6 +7,7 @@
 #include "tests/openxr_runtime/client.h"
 
 namespace test_runtime::test {
+namespace images_test {
 namespace {
 
 struct Picture {
@@ -231,4 +232,5 @@ TEST(Images, AWaitMayTimeOutAndIsRepeated) {
 }
 
 }  // namespace
+}  // namespace images_test
 }  // namespace test_runtime::test

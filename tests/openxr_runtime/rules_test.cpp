@@ -4,6 +4,7 @@
 #include "tests/openxr_runtime/client.h"
 
 namespace test_runtime::test {
+namespace rules_test {
 namespace {
 
 struct Rule {
@@ -295,7 +296,7 @@ TEST(Rule, WhatIsLegalAndSeldomMeantIsRemarked) {
 // The layout is the application's to restore: Vulkan's own layer tells.
 TEST(Rule, AnImageReleasedInAnotherLayoutIsTold) {
   if (!has_validation_layer())
-    VOYAGER_SKIP_WITHOUT_VULKAN("the Vulkan validation layer is not here");
+    VOYAGER_SKIP_WITHOUT(VULKAN, "the Vulkan validation layer is not here");
   const Stage stage(Json::object());
   Client client;
   VOYAGER_NEEDS_VULKAN(client);
@@ -313,4 +314,5 @@ TEST(Rule, AnImageReleasedInAnotherLayoutIsTold) {
 }
 
 }  // namespace
+}  // namespace rules_test
 }  // namespace test_runtime::test

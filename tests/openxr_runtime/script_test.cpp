@@ -4,6 +4,7 @@
 #include "tests/openxr_runtime/client.h"
 
 namespace test_runtime::test {
+namespace script_test {
 namespace {
 
 std::vector<std::string> offered_extensions() {
@@ -129,4 +130,5 @@ TEST(Loader, NegotiationIsTheOnlyExportAndEveryCoreFunctionIsThere) {
 }
 
 }  // namespace
+}  // namespace script_test
 }  // namespace test_runtime::test

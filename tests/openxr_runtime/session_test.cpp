@@ -6,6 +6,7 @@
 #include "tests/openxr_runtime/client.h"
 
 namespace test_runtime::test {
+namespace session_test {
 namespace {
 
 const char* kCoreValidation = "XR_APILAYER_LUNARG_core_validation";
@@ -236,4 +237,5 @@ TEST(Session, RealTimeWaitsForThePeriod) {
 }
 
 }  // namespace
+}  // namespace session_test
 }  // namespace test_runtime::test

@@ -5,6 +5,7 @@
 #include "tests/openxr_runtime/client.h"
 
 namespace test_runtime::test {
+namespace views_test {
 namespace {
 
 XrPosef located(const Client& client, XrReferenceSpaceType type, XrTime time) {
@@ -230,4 +231,5 @@ TEST_F(Hands, ActionsAreAttachedOnce) {
 }
 
 }  // namespace
+}  // namespace views_test
 }  // namespace test_runtime::test

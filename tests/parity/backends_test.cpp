@@ -12,7 +12,7 @@
 #include "runtime/math/alpha_lut.h"
 #include "tests/support/render_scene.h"
 
-namespace voyager {
+namespace voyager::backends_test {
 namespace {
 
 using test::compare;
@@ -179,4 +179,4 @@ TEST(Backends, InstructionSetsAgreeToTheBit) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::backends_test

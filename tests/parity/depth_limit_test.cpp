@@ -1,7 +1,7 @@
 // The CPU against the float64 reference, with a limit a pixel.
 #include "tests/support/depth_limits.h"
 
-namespace voyager {
+namespace voyager::depth_limit_test {
 namespace {
 
 using test::Frame;
@@ -67,4 +67,4 @@ TEST(DepthLimitParity, EncodingsAgree) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::depth_limit_test

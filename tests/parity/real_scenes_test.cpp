@@ -4,7 +4,7 @@
 #include "tests/support/real_scenes.h"
 #include "tests/support/render_scene.h"
 
-namespace voyager {
+namespace voyager::real_scenes_test {
 namespace {
 
 using test::compare;
@@ -96,4 +96,4 @@ TEST(RealScenes, CompactStorageIsNearTheLossless) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::real_scenes_test

@@ -14,7 +14,7 @@
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
 
-namespace voyager {
+namespace voyager::bake_killed_test {
 namespace {
 
 constexpr int kRefused = 50;  // and the code of the error
@@ -149,4 +149,4 @@ TEST_F(BakeKilled, GoesOnAfterMemoryWasRefused) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::bake_killed_test

@@ -8,7 +8,7 @@
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
-namespace voyager {
+namespace voyager::bake_plan_test {
 namespace {
 
 struct Cells {
@@ -128,4 +128,4 @@ TEST(BakePlan, RefusesCellsWhoseSubtreesItCouldNotKnow) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::bake_plan_test

@@ -6,7 +6,7 @@
 
 #include "tests/support/tree_clouds.h"
 
-namespace voyager {
+namespace voyager::cut_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -114,8 +114,7 @@ TEST(Cut, MissingNodesAreLeftOutAndNamed) {
   Workers workers(2);
   std::mt19937 random(2);
   ExhaustiveSearch search;
-  const LodTree tree =
-      build_tree(test::random_cloud(20000, 2), workers, {}, test::kLargeScene).tree;
+  const LodTree tree = build_tree(test::specks(20000, 2, 0), workers, {}, test::kSmallBlocks).tree;
   const uint32_t nodes = static_cast<uint32_t>(tree.size());
   const std::vector<std::vector<MissingNodes>> cases = {
       {{0, 1}},
@@ -155,7 +154,7 @@ TEST(Cut, MissingNodesAreLeftOutAndNamed) {
 
 TEST(Cut, DoesNotDependOnThreads) {
   Workers one(1), five(5);
-  const LodTree tree = build_tree(test::random_cloud(20000, 3), one, {}, test::kLargeScene).tree;
+  const LodTree tree = build_tree(test::specks(20000, 3, 0), one, {}, test::kSmallBlocks).tree;
   ExhaustiveSearch a, b;
   std::mt19937 random(3);
   const std::vector<MissingNodes> missing = {{700, 3}, {12000, 4000}};
@@ -170,7 +169,8 @@ TEST(Cut, DoesNotDependOnThreads) {
 
 TEST(Cut, SizesAreTheScreenSizes) {
   Workers workers(2);
-  const LodTree tree = build_tree(test::random_cloud(3000, 4), workers, {}, test::kLargeScene).tree;
+  const LodTree tree =
+      build_tree(test::random_cloud(3000, 4), workers, {}, test::kSmallBlocks).tree;
   ExhaustiveSearch search;
   const Vec3f c{3, -20, 7};
   search.run(tree, {}, {c, 0.1f}, workers);
@@ -219,8 +219,7 @@ class CountingResource final : public std::pmr::memory_resource {
 
 TEST(Cut, AllocatesNothingOnceWarm) {
   Workers workers(2);
-  const LodTree tree =
-      build_tree(test::random_cloud(20000, 6), workers, {}, test::kLargeScene).tree;
+  const LodTree tree = build_tree(test::specks(20000, 6, 0), workers, {}, test::kSmallBlocks).tree;
   CountingResource memory;
   ExhaustiveSearch search(&memory);
   search.run(tree, {}, {{1e6f, 0, 0}, 1e9f}, workers);
@@ -232,4 +231,4 @@ TEST(Cut, AllocatesNothingOnceWarm) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::cut_test

@@ -4,7 +4,7 @@
 #include "runtime/math/sort_key.h"
 #include "tests/support/depth_limits.h"
 
-namespace voyager {
+namespace voyager::depth_limit_test {
 namespace {
 
 using test::expect_same_bits;
@@ -212,4 +212,4 @@ TEST(DepthLimit, WhatLiesBeforeOverWhatLiesBehindIsTheWhole) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::depth_limit_test

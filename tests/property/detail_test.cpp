@@ -13,7 +13,7 @@
 #include "tests/support/search_rig.h"
 #include "tests/support/stream_rig.h"
 
-namespace voyager {
+namespace voyager::detail_test {
 namespace {
 
 using test::SearchRig;
@@ -193,4 +193,4 @@ TEST(Detail, AStreamedSceneHasNoBaselines) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::detail_test

@@ -6,7 +6,7 @@
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 
-namespace voyager {
+namespace voyager::doubles_test {
 namespace {
 
 std::shared_ptr<const Scene> scene_of(BakedScene baked, TreeKind kind, Workers& workers) {
@@ -47,4 +47,4 @@ TEST(Doubles, ThePictureIsThatOfATreeWhoseNodesAllBlendWithTheirParents) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::doubles_test

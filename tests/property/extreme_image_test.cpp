@@ -6,7 +6,7 @@
 #include "runtime/math/alpha.h"
 #include "tests/support/extreme_scenes.h"
 
-namespace voyager {
+namespace voyager::extreme_image_test {
 namespace {
 
 using test::compare;
@@ -183,4 +183,4 @@ TEST(ExtremeImage, CamerasAtTheEndOfTheWorld) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::extreme_image_test

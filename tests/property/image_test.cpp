@@ -5,7 +5,7 @@
 #include "runtime/frame/draw_list.h"
 #include "tests/support/render_scene.h"
 
-namespace voyager {
+namespace voyager::image_test {
 namespace {
 
 using test::expect_same_bits;
@@ -213,4 +213,4 @@ TEST(Image, BackgroundFillsWhatIsLeft) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::image_test

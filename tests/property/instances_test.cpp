@@ -5,7 +5,7 @@
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_rules.h"
 
-namespace voyager {
+namespace voyager::instances_test {
 namespace {
 
 using test::compare;
@@ -303,4 +303,4 @@ TEST_F(Instances, AFarOriginTurnsWithItsScene) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::instances_test

@@ -11,6 +11,7 @@
 #include "tests/support/stereo.h"
 
 namespace voyager::test {
+namespace omissions_test {
 namespace {
 
 size_t threads() {
@@ -162,4 +163,5 @@ TEST_F(Omissions, TheProfileSaysWhatTheGaussiansAre) {
 }
 
 }  // namespace
+}  // namespace omissions_test
 }  // namespace voyager::test

@@ -14,7 +14,7 @@
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
 
-namespace voyager {
+namespace voyager::refine_test {
 namespace {
 
 double squared_error(const Picture& found, const Picture& expected) {
@@ -198,4 +198,4 @@ TEST(Refine, ViewpointsDoNotDependOnOneAnother) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::refine_test

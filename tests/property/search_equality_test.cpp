@@ -5,7 +5,7 @@
 #include "tests/support/search_rig.h"
 #include "tests/support/test_support.h"
 
-namespace voyager {
+namespace voyager::search_equality_test {
 namespace {
 
 using test::kInfinity;
@@ -140,4 +140,4 @@ TEST(SearchEquality, ResultsDoNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::search_equality_test

@@ -3,12 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/lod/build.h"
-#include "runtime/scene/import/importer.h"
+#include "tests/support/real_scenes.h"
 #include "tests/support/search_rig.h"
 #include "tests/support/test_support.h"
 #include "tests/support/tree_rules.h"
 
-namespace voyager {
+namespace voyager::search_scene_test {
 namespace {
 
 using test::SearchRig;
@@ -38,9 +38,9 @@ std::vector<Place> midpoints(const std::vector<Place>& eyes) {
   return places;
 }
 
-// In CI: some frames in a row, some far apart.
+// Some frames in a row, some far apart.
 std::vector<Place> sample(const std::vector<Place>& places) {
-  if (std::getenv("VOYAGER_WHOLE_PATHS") != nullptr) return places;
+  if (test::whole_paths()) return places;
   std::vector<Place> some(places.begin(), places.begin() + std::min<size_t>(4, places.size()));
   for (size_t i = 0; i < places.size(); i += places.size() / 3 + 1) some.push_back(places[i]);
   return some;
@@ -48,14 +48,13 @@ std::vector<Place> sample(const std::vector<Place>& places) {
 
 TEST(SearchScene, TheDistrictAlongBothPaths) {
   VOYAGER_NEEDS_SCENES(folder);
-  const auto source = open_file_source(folder + "/district.spz");
+  const auto flight = read_places(folder + "/district.flight.cameras.json"),
+             head = midpoints(read_places(folder + "/district.headset.cameras.json"));
   Workers workers;
-  BakedScene baked =
-      build_tree(import_gaussians(*read_source(*source)), workers, {}, test::kLargeScene);
+  BakedScene baked = build_tree(test::district(folder), workers, {}, test::city_rule());
   const Vec3d origin{baked.origin[0], baked.origin[1], baked.origin[2]};
   SearchRig rig(std::move(baked.tree));
-  for (const auto& places : {read_places(folder + "/district.flight.cameras.json"),
-                             midpoints(read_places(folder + "/district.headset.cameras.json"))}) {
+  for (const auto& places : {flight, head}) {
     ASSERT_GT(places.size(), 10u);
     for (const double tau : {0.0, 3.0, 6.0, 15.0}) {
       uint64_t frames = 0, tested = 0;
@@ -70,4 +69,4 @@ TEST(SearchScene, TheDistrictAlongBothPaths) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::search_scene_test

@@ -1,7 +1,7 @@
 // What the searches keep: from frame to frame, beside each other, and after damage.
 #include "tests/support/search_rig.h"
 
-namespace voyager {
+namespace voyager::search_state_test {
 namespace {
 
 using test::SearchRig;
@@ -244,4 +244,4 @@ TEST(SearchState, AllocatesNothingOnceWarmAndRecoversWhereItMay) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::search_state_test

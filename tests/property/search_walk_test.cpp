@@ -1,7 +1,7 @@
 // The searches that keep their cut, along walks that are made to catch them out.
 #include "tests/support/search_rig.h"
 
-namespace voyager {
+namespace voyager::search_walk_test {
 namespace {
 
 using test::SearchRig;
@@ -163,4 +163,4 @@ TEST(SearchWalk, ThroughTheFacesOfBoxes) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::search_walk_test

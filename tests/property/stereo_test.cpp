@@ -3,7 +3,7 @@
 #include "runtime/frame/frame_search.h"
 #include "tests/support/depth_limits.h"
 
-namespace voyager {
+namespace voyager::stereo_test {
 namespace {
 
 using test::EyeFrames;
@@ -134,4 +134,4 @@ TEST(Stereo, AWalkIsAsItsFramesByViewsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::stereo_test

@@ -1,6 +1,7 @@
 // Streaming from a disk that takes its time, and one that fails: flights, jumps, too little
 // room, budgets that change, faults of every kind. Deterministic.
 #include <atomic>
+#include <map>
 #include <random>
 #include <thread>
 
@@ -9,7 +10,7 @@
 #include "tests/support/stream_rig.h"
 #include "tests/support/tree_rules.h"
 
-namespace voyager {
+namespace voyager::streaming_disk_test {
 namespace {
 
 using test::expect_same_bits;
@@ -26,6 +27,15 @@ GaussianCloud wide_cloud(size_t count = 20000) {
   GaussianCloud cloud = test::random_cloud(count, 6, 1);
   for (float& x : cloud.position) x *= 40;
   return cloud;
+}
+
+// Baked once a rule for all tests.
+const test::Bytes& wide_bytes(const TreeRule& rule) {
+  static std::map<std::pair<TreeKind, uint32_t>, test::Bytes> made;
+  test::Bytes& bytes = made[{rule.kind, rule.block}];
+  if (bytes.empty())
+    bytes = test::scene_bytes(test::bake(wide_cloud(), rule), Quality::lossless, 0, kMinChunkBytes);
+  return bytes;
 }
 
 FrameInput ahead(const Vec3d& eye, const Vec3d& way, double tau = 3) {
@@ -51,7 +61,7 @@ class Flight {
  public:
   explicit Flight(double share, double latency = 0.002, double bandwidth = 20e6,
                   const TreeRule& rule = {})
-      : rig_(test::bake(wide_cloud(), rule), share),
+      : rig_(wide_bytes(rule), share),
         disk_(std::make_shared<SimulatedDisk>(rig_.bytes, latency, bandwidth)),
         scene_(rig_.open(disk_, share)),
         view_(scene_, *rig_.backend, {}, rig_.memory(), rig_.workers,
@@ -506,4 +516,4 @@ TEST(StreamingDisk, OutOfMemoryIsAFailureLikeAnother) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::streaming_disk_test

@@ -1,6 +1,6 @@
 #include "tests/support/streaming_flight.h"
 
-namespace voyager {
+namespace voyager::streaming_flight_test {
 namespace {
 
 TEST(StreamingFlight, ManyThreadsDrawCutsOnly) {
@@ -8,4 +8,4 @@ TEST(StreamingFlight, ManyThreadsDrawCutsOnly) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::streaming_flight_test

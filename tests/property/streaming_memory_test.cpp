@@ -35,7 +35,7 @@ void* allocate(size_t size) {
   std::free(memory);
 }
 
-namespace voyager {
+namespace voyager::streaming_memory_test {
 namespace {
 
 TEST(StreamingMemory, RefusedAtAnyMomentIsOvercome) {
@@ -74,4 +74,4 @@ TEST(StreamingMemory, RefusedAtAnyMomentIsOvercome) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::streaming_memory_test

@@ -6,7 +6,7 @@
 #include "tests/support/tree_rules.h"
 #include "tools/synth/city.h"
 
-namespace voyager {
+namespace voyager::streaming_scenes_test {
 namespace {
 
 using test::Frame;
@@ -49,7 +49,7 @@ void expect_resident_frames(StreamRig& rig, const std::vector<FrameInput>& path)
 }
 
 TEST(StreamingScenes, TheCityFromAStreet) {
-  const BakedScene baked = test::bake(made_up_city(60000), test::kLargeScene);
+  const BakedScene baked = test::bake(made_up_city(20000), test::city_rule());
   for (const double tau : {0.0, 3.0, 15.0})
     for (const Search search : {Search::temporal, Search::streaming}) {
       PipelineDesc desc;
@@ -61,8 +61,8 @@ TEST(StreamingScenes, TheCityFromAStreet) {
 
 TEST(StreamingScenes, TheDistrictFromAbove) {
   VOYAGER_NEEDS_SCENES(folder);
-  StreamRig rig(test::bake(test::import_file(folder + "/district.spz"), test::kLargeScene), 1.0, {},
-                kDefaultChunkBytes, Quality::compact);
+  StreamRig rig(test::bake(test::district(folder), test::city_rule()), 1.0, {}, kDefaultChunkBytes,
+                Quality::compact);
   const test::Middle middle = test::middle_of(*rig.resident);
   std::vector<FrameInput> path;
   for (const double turn : {0.0, 0.1, 2.0, 4.0}) {
@@ -88,8 +88,8 @@ double share_within_a_tenth(StreamRig& rig, const FrameInput& input, uint64_t fi
 }
 
 TEST(StreamingScenes, TheFirstFrameIsNearlyAsDense) {
-  StreamRig rig(test::bake(made_up_city(200000), test::kLargeScene), 1.0, {}, kDefaultChunkBytes,
-                Quality::compact);
+  StreamRig rig(test::bake(made_up_city(test::whole_paths() ? 200000 : 40000)), 1.0, {},
+                kDefaultChunkBytes, Quality::compact);
   for (const FrameInput& input : street(3)) {
     EXPECT_GE(share_within_a_tenth(rig, input, rig.bytes.size() / 3), 0.95);
     EXPECT_GE(share_within_a_tenth(rig, input, rig.bytes.size() * 2 / 3), 0.97);
@@ -97,4 +97,4 @@ TEST(StreamingScenes, TheFirstFrameIsNearlyAsDense) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::streaming_scenes_test

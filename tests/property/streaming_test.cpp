@@ -1,5 +1,6 @@
 // A scene of which only a part is there is drawn as its resident part allows, and once all
 // that is needed has come, as if it were there whole.
+#include <map>
 #include <random>
 
 #include "tests/support/random_trees.h"
@@ -7,7 +8,7 @@
 #include "tests/support/tree_clouds.h"
 #include "tests/support/tree_rules.h"
 
-namespace voyager {
+namespace voyager::streaming_test {
 namespace {
 
 using test::expect_same_bits;
@@ -32,8 +33,14 @@ std::vector<FrameInput> walk(size_t frames, uint32_t seed, double tau) {
   return inputs;
 }
 
-BakedScene random_scene(size_t count, uint32_t seed) {
-  return test::bake(test::random_cloud(count, seed, 1));
+// Baked once for all tests.
+const test::Bytes& random_scene(size_t count, uint32_t seed) {
+  static std::map<std::pair<size_t, uint32_t>, test::Bytes> made;
+  test::Bytes& bytes = made[{count, seed}];
+  if (bytes.empty())
+    bytes = test::scene_bytes(test::bake(test::random_cloud(count, seed, 1)), Quality::lossless, 0,
+                              kMinChunkBytes);
+  return bytes;
 }
 
 PipelineDesc searching(Search search) {
@@ -88,7 +95,7 @@ TEST(Streaming, EveryFrameDrawsACut) {
   for (const double share : {0.02, 0.1, 0.3, 1.0})
     for (const size_t steps : {0u, 1u, 3u, 20u}) {
       SCOPED_TRACE(std::to_string(share) + ", steps " + std::to_string(steps));
-      StreamRig rig(random_scene(4000, 4), share);
+      StreamRig rig(random_scene(4000, 3), share);
       for (const FrameInput& input : walk(60, 2, 4)) {
         const Frame frame = render(rig.part, input);
         ASSERT_TRUE(is_cut(rig.resident->tree, frame.cut));
@@ -99,7 +106,7 @@ TEST(Streaming, EveryFrameDrawsACut) {
 }
 
 TEST(Streaming, AStandingViewerConvergesToTheResidentFrameAndThenNothingMoves) {
-  StreamRig rig(random_scene(4000, 5), 1.0);
+  StreamRig rig(random_scene(4000, 3), 1.0);
   const std::vector<FrameInput> inputs = walk(30, 3, 5);
   for (size_t i = 0; i < inputs.size(); ++i) {
     render(rig.part, inputs[i]);
@@ -238,4 +245,4 @@ TEST(Streaming, TheTemporalCutIsTheStreamingOne) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::streaming_test

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace voyager {
+namespace voyager::time_budget_test {
 namespace {
 
 constexpr double kBudget = 10, kAim = 9;  // milliseconds
@@ -333,4 +333,4 @@ TEST(TimeBudget, TakesTheRangesEndsAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::time_budget_test

@@ -4,7 +4,7 @@
 #include "tests/support/tree_rules.h"
 #include "tools/synth/city.h"
 
-namespace voyager {
+namespace voyager::tree_quality_test {
 namespace {
 
 GaussianCloud city(uint64_t gaussians) {
@@ -61,4 +61,4 @@ TEST(TreeQuality, AtAnEqualCutTheClusteredTreeIsThreeDecibelsAboveHierarchicalGs
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::tree_quality_test

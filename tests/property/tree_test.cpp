@@ -1,11 +1,12 @@
 // What every tree must satisfy, over random and degenerate clouds.
 #include <cstring>
+#include <map>
 
 #include "runtime/lod/summarise.h"
 #include "runtime/lod/validate.h"
 #include "tests/support/tree_clouds.h"
 
-namespace voyager {
+namespace voyager::tree_test {
 namespace {
 
 template <class T>
@@ -32,29 +33,40 @@ class Tree : public ::testing::TestWithParam<test::NamedRule> {
   BakedScene build(GaussianCloud cloud, Workers& workers) const {
     return build_tree(std::move(cloud), workers, {}, GetParam().rule);
   }
+
+  // Of every cloud, built once a rule for all tests.
+  struct NamedTree {
+    std::string name;
+    size_t gaussians;
+    BakedScene baked;
+  };
+  const std::vector<NamedTree>& trees() const {
+    static std::map<std::string, std::vector<NamedTree>> made;
+    std::vector<NamedTree>& trees = made[GetParam().name];
+    Workers workers(2);
+    if (trees.empty())
+      for (test::NamedCloud& named : test::all_clouds()) {
+        const size_t gaussians = named.cloud.size();
+        trees.push_back({named.name, gaussians, build(std::move(named.cloud), workers)});
+      }
+    return trees;
+  }
 };
 INSTANTIATE_TEST_SUITE_P(Rules, Tree, ::testing::ValuesIn(test::all_rules()),
                          test::rule_name<::testing::TestParamInfo<test::NamedRule>>);
 
 TEST_P(Tree, IsSoundForEveryCloud) {
-  Workers workers(2);
-  for (test::NamedCloud& named : test::all_clouds()) {
-    const BakedScene baked = build(std::move(named.cloud), workers);
-    for (const std::string& message : validate(baked))
-      ADD_FAILURE() << named.name << ": " << message;
-  }
+  for (const NamedTree& tree : trees())
+    for (const std::string& message : validate(tree.baked))
+      ADD_FAILURE() << tree.name << ": " << message;
 }
 
 TEST_P(Tree, EveryGaussianIsExactlyOneLeaf) {
-  Workers workers(2);
-  for (test::NamedCloud& named : test::all_clouds()) {
-    const size_t count = named.cloud.size();
-    const BakedScene baked = build(std::move(named.cloud), workers);
+  for (const auto& [name, count, baked] : trees()) {
     std::vector<int> seen(count);
     for (uint32_t n = 0; n < baked.tree.size(); ++n)
       if (baked.tree.is_leaf(n)) ++seen.at(baked.gaussian[n]);
-    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(count))
-        << named.name;
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), static_cast<std::ptrdiff_t>(count)) << name;
   }
 }
 
@@ -83,11 +95,9 @@ TEST_P(Tree, DoesNotDependOnTheCallersFloatingPointMode) {
 }
 
 TEST_P(Tree, SizeNeverGrowsFromParentToChild) {
-  Workers workers(2);
   std::mt19937 random(3);
-  for (test::NamedCloud& named : test::all_clouds()) {
-    const BakedScene baked = build(std::move(named.cloud), workers);
-    const LodTree& tree = baked.tree;
+  for (const NamedTree& named : trees()) {
+    const LodTree& tree = named.baked.tree;
     std::vector<Vec3f> centres = {{0, 0, 0}, {1e17f, -1e17f, 3e16f}, {-9.9e17f, 9.9e17f, 9.9e17f}};
     for (int i = 0; i < 10; ++i) {
       const NodeRecord& r = tree.records[random() % tree.size()];
@@ -106,13 +116,11 @@ TEST_P(Tree, SizeNeverGrowsFromParentToChild) {
 }
 
 TEST_P(Tree, ExtentsAndOpacitiesAreFiniteAndNotNegative) {
-  Workers workers(2);
-  for (test::NamedCloud& named : test::all_clouds()) {
-    const BakedScene baked = build(std::move(named.cloud), workers);
-    for (const NodeRecord& r : baked.tree.records)
-      ASSERT_TRUE(r.extent >= 0 && std::isfinite(r.extent)) << named.name << ": " << r.extent;
-    for (const float opacity : baked.merged.opacity)
-      ASSERT_TRUE(opacity >= 0 && std::isfinite(opacity)) << named.name << ": " << opacity;
+  for (const NamedTree& tree : trees()) {
+    for (const NodeRecord& r : tree.baked.tree.records)
+      ASSERT_TRUE(r.extent >= 0 && std::isfinite(r.extent)) << tree.name << ": " << r.extent;
+    for (const float opacity : tree.baked.merged.opacity)
+      ASSERT_TRUE(opacity >= 0 && std::isfinite(opacity)) << tree.name << ": " << opacity;
   }
 }
 
@@ -131,4 +139,4 @@ TEST_P(Tree, MeansStayInsideTheBoxes) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::tree_test

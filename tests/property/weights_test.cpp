@@ -7,7 +7,7 @@
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 
-namespace voyager {
+namespace voyager::weights_test {
 namespace {
 
 using test::frame_input;
@@ -247,4 +247,4 @@ TEST(Weights, ASceneSearchGivesTheCutAndItsWeights) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::weights_test

@@ -3,17 +3,52 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/file.h"
 #include "runtime/frame/scene.h"
 #include "runtime/scene/import/importer.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager::test {
 
 inline GaussianCloud import_file(const std::string& path) {
   const auto source = open_file_source(path);
   return import_gaussians(*read_source(*source));
+}
+
+// The Gaussians nearest to a place of the world, in their order: as dense as the whole.
+inline GaussianCloud nearest(const GaussianCloud& cloud, const Vec3d& place, size_t most) {
+  std::vector<std::pair<double, size_t>> by_distance;
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const Vec3d to{cloud.position[3 * i] + cloud.origin[0] - place.x,
+                   cloud.position[3 * i + 1] + cloud.origin[1] - place.y,
+                   cloud.position[3 * i + 2] + cloud.origin[2] - place.z};
+    by_distance.emplace_back(dot(to, to), i);
+  }
+  most = std::min(most, cloud.size());
+  std::sort(by_distance.begin(), by_distance.end());
+  std::vector<size_t> kept;
+  for (size_t i = 0; i < most; ++i) kept.push_back(by_distance[i].second);
+  std::sort(kept.begin(), kept.end());
+  GaussianCloud near;
+  near.sh_degree = cloud.sh_degree, near.origin = cloud.origin;
+  near.antialiased = cloud.antialiased, near.left_out_bands = cloud.left_out_bands;
+  const auto take = [&](const auto& from, auto& into, size_t each) {
+    for (const size_t i : kept)
+      into.insert(into.end(), from.begin() + each * i, from.begin() + each * (i + 1));
+  };
+  take(cloud.position, near.position, 3), take(cloud.log_scale, near.log_scale, 3);
+  take(cloud.rotation, near.rotation, 4), take(cloud.opacity, near.opacity, 1);
+  take(cloud.sh, near.sh, 3 * static_cast<size_t>(cloud.coefficients()));
+  return near;
+}
+
+// The district, or the part of it around the cameras of its paths: all of it takes minutes.
+inline GaussianCloud district(const std::string& folder) {
+  GaussianCloud cloud = import_file(folder + "/district.spz");
+  return whole_paths() ? cloud : nearest(cloud, {156, -25, 150}, 50000);
 }
 
 // The middle 80 % of a scene's means, along each axis.

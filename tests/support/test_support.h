@@ -10,6 +10,7 @@
 #include <string>
 
 #include "runtime/scene/gaussian_cloud.h"
+#include "tests/support/needs.h"
 
 namespace voyager::test {
 
@@ -43,7 +44,7 @@ inline std::string scenes_folder() {
 #define VOYAGER_NEEDS_SCENES(folder)                         \
   const std::string folder = voyager::test::scenes_folder(); \
   if (folder.empty())                                        \
-  GTEST_SKIP() << "the real scenes are not here: set VOYAGER_SCENES to their folder"
+  VOYAGER_SKIP_WITHOUT(SCENES, "the real scenes are not here: set VOYAGER_SCENES to their folder")
 
 // Gaussians of every shape around the origin; deterministic for a seed.
 inline GaussianCloud random_cloud(size_t count, uint32_t seed, int sh_degree = 1,

@@ -1,5 +1,6 @@
 #pragma once
 // The rules that a tree may be built by.
+#include <cstdlib>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -12,13 +13,18 @@ namespace voyager::test {
 inline constexpr TreeRule kSmallBlocks{
     .kind = TreeKind::clustered, .block = 16, .exposure_block = 256};
 inline constexpr TreeRule kHierarchicalGs{.kind = TreeKind::hierarchicalgs};
-// The default's, but under AddressSanitizer and emulation: clustering a real scene takes minutes
-// there.
-#if defined(__SANITIZE_ADDRESS__) || defined(VOYAGER_EMULATED)
-inline constexpr TreeRule kLargeScene = kHierarchicalGs;
-#else
-inline constexpr TreeRule kLargeScene{};
-#endif
+
+// Whole paths through trees of the default's blocks take minutes: scripts/check.sh searches asks
+// for them.
+inline bool whole_paths() {
+  return std::getenv("VOYAGER_WHOLE_PATHS") != nullptr;
+}
+
+// For cities, real and made up: clustering some ten thousand Gaussians takes a second in small
+// blocks and a minute in the default's. The tree is of the same kind on every machine.
+inline TreeRule city_rule() {
+  return whole_paths() ? TreeRule() : kSmallBlocks;
+}
 
 struct NamedRule {
   std::string name;

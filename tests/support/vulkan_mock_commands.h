@@ -1,6 +1,6 @@
 #pragma once
 // Entry points of VulkanMock that record.
-#include "tests/support/vulkan_mock.h"
+#include "tests/support/vulkan_mock_device.h"
 
 namespace voyager::test::mock {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tests/support/vulkan_mock.h"
+#include "tests/support/vulkan_mock_device.h"
 
 namespace voyager::test::mock {
 

@@ -90,8 +90,9 @@ class Backend final {
   ExternalRingDesc got;                  // without its descriptors
   std::vector<FileIdentity> identities;  // of those
   std::function<bool()> idle = [] { return true; };
-  int waits = 0;  // for frames under way
-  int rings = 0;  // that live
+  std::chrono::milliseconds patience{2000};  // with a host that left frames, at the end
+  int waits = 0;                             // for frames under way
+  int rings = 0;                             // that live
 
  private:
   struct Held final : ExternalRing {
@@ -103,6 +104,7 @@ class Backend final {
     }
     bool idle() const override { return backend.idle(); }
     void wait() const override { ++backend.waits; }
+    std::chrono::milliseconds patience_at_end() const override { return backend.patience; }
     Backend& backend;
     std::vector<FileDescriptor> descriptors;
   };

@@ -7,6 +7,7 @@
 #include "voyager/voyager.hpp"
 
 namespace voyager::test {
+namespace composite_test {
 namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
@@ -173,7 +174,6 @@ class Composites : public VulkanHost {
   }
 
   void expect_test_composite(const std::string& depth, const std::string& what) const {
-    draw("mesh", "--composite none" + depth);
     draw("tested", "--composite test" + depth);
     const Picture mesh_depth = read_pfm(numbered("mesh", 0, "pfm"));
     const auto over = [&](size_t i) { return splats_.depth.values[i] <= mesh_depth.values[i]; };
@@ -186,7 +186,6 @@ class Composites : public VulkanHost {
   }
 
   void expect_limit_composite(const std::string& depth, const std::string& what) const {
-    draw("mesh", "--composite none" + depth);
     draw("limited", "--composite limit" + depth);
     const Picture mesh_depth = read_pfm(numbered("mesh", 0, "pfm"));
     const Splats before = render_limited(mesh_depth);
@@ -199,19 +198,14 @@ class Composites : public VulkanHost {
     expect_near_depth(read_pfm(numbered("limited", 0, "pfm")), nearer, 0.005, what);
   }
 
-  // Over all places of the sheet and both depth conventions.
-  void for_each_place(const auto& expect) const {
-    const struct {
-      const char* name;
-      float left, right;
-    } places[] = {{"before", 0.5f * nearest_, 0.5f * nearest_},
-                  {"among", 0.7f * middle_, 1.3f * middle_},
-                  {"behind", 3 * farthest_, 3 * farthest_}};
-    for (const auto& place : places) {
-      write_sheet(place.left, place.right);
-      for (const std::string depth : {" --depth standard", " --depth reversed"})
-        expect(depth, place.name + depth);
-    }
+  // The mesh alone is drawn once for both composites. Which depths are nearer shows among the
+  // splats, so both depth conventions are tried there.
+  void expect_composites(const std::string& place, const std::string& depth, float left,
+                         float right) const {
+    write_sheet(left, right);
+    draw("mesh", "--composite none" + depth);
+    expect_test_composite(depth, place + depth + ", test");
+    expect_limit_composite(depth, place + depth + ", limit");
   }
 
   tools::Camera camera_ = {};
@@ -220,17 +214,14 @@ class Composites : public VulkanHost {
   float nearest_ = 0, middle_ = 0, farthest_ = 0;
 };
 
-TEST_F(Composites, TheFinishedImageIsTestedAgainstTheMeshsDepth) {
-  for_each_place([&](const std::string& depth, const std::string& what) {
-    expect_test_composite(depth, what);
-  });
-}
-
-TEST_F(Composites, TheMeshsDepthLimitsTheSplats) {
-  for_each_place([&](const std::string& depth, const std::string& what) {
-    expect_limit_composite(depth, what);
-  });
+// The finished image is tested against the mesh's depth, or the mesh's depth limits the splats.
+TEST_F(Composites, ASheetBeforeAmongAndBehindTheSplats) {
+  expect_composites("before", " --depth reversed", 0.5f * nearest_, 0.5f * nearest_);
+  expect_composites("among", " --depth standard", 0.7f * middle_, 1.3f * middle_);
+  expect_composites("among", " --depth reversed", 0.7f * middle_, 1.3f * middle_);
+  expect_composites("behind", " --depth standard", 3 * farthest_, 3 * farthest_);
 }
 
 }  // namespace
+}  // namespace composite_test
 }  // namespace voyager::test

@@ -2,6 +2,7 @@
 #include "tests/vulkan_host/host_run.h"
 
 namespace voyager::test {
+namespace frames_test {
 namespace {
 
 // With cameras of one size two frames are in flight; else each frame is of a new target.
@@ -30,7 +31,7 @@ TEST_P(Frames, WithoutMeshesEachIsWhatVoyagerRenders) {
 TEST_P(Frames, ValidationHasNothingToSay) {
   const Outcome probe = run(host("--frames 1 --validation -o " + file("validated")));
   if (probe.output.find("found no VK_LAYER_KHRONOS_validation") != std::string::npos)
-    VOYAGER_SKIP_WITHOUT_VULKAN(probe.output);
+    VOYAGER_SKIP_WITHOUT(VULKAN, probe.output);
   const std::string longest =
       GetParam() == std::string("steady.json") ? "--frames 50" : "--frames 200";
   for (const std::string modes :
@@ -143,4 +144,5 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
 }
 
 }  // namespace
+}  // namespace frames_test
 }  // namespace voyager::test

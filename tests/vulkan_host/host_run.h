@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "tests/command_line/program.h"
-#include "tests/support/needs_vulkan.h"
+#include "tests/support/needs.h"
 #include "tests/support/pictures.h"
 #include "tests/support/test_support.h"
 
@@ -23,16 +23,17 @@ class VulkanHost : public ::testing::Test {
     set_up_failure_ =
         failure_of({"voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("city.ply"),
                     "voyager bake " + file("city.ply") + " -o " + file("city.voy")});
-    if (set_up_failure_.empty()) write_cameras();
+    if (!set_up_failure_.empty()) return;
+    write_cameras();
+    probe_ = run(host("--frames 1 -o " + file("probe")));
   }
   static void TearDownTestSuite() { delete folder_; }
 
   void SetUp() override {
     ASSERT_EQ(set_up_failure_, "");
-    const Outcome result = run(host("--frames 1 -o " + file("probe")));
-    if (result.exit_code == 4 && result.output.find("found no Vulkan") != std::string::npos)
-      VOYAGER_SKIP_WITHOUT_VULKAN(result.output);
-    ASSERT_EQ(result.exit_code, 0) << result.output;
+    if (probe_.exit_code == 4 && probe_.output.find("found no Vulkan") != std::string::npos)
+      VOYAGER_SKIP_WITHOUT(VULKAN, probe_.output);
+    ASSERT_EQ(probe_.exit_code, 0) << probe_.output;
   }
 
   static std::string file(const std::string& name) { return folder_->file(name); }
@@ -55,7 +56,8 @@ class VulkanHost : public ::testing::Test {
   static TempFolder* folder_;
 
  private:
-  static std::string set_up_failure_;
+  static inline std::string set_up_failure_;
+  static inline Outcome probe_;
 
   // Out of the walk and the flight. cameras.json: no two after one another of one size, odd ones
   // among them, so that each frame is of a new target. steady.json: all of one size, so that
@@ -82,6 +84,5 @@ class VulkanHost : public ::testing::Test {
   }
 };
 inline TempFolder* VulkanHost::folder_ = nullptr;
-inline std::string VulkanHost::set_up_failure_;
 
 }  // namespace voyager::test

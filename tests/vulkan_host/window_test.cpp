@@ -5,6 +5,7 @@
 #include "tests/vulkan_host/host_run.h"
 
 namespace voyager::test {
+namespace window_test {
 namespace {
 
 // Xvfb on a display that it finds free itself; gone with this object.
@@ -44,13 +45,13 @@ class XServer {
 
 TEST_F(VulkanHost, AWindowRunsToItsEndInSilence) {
   const XServer server;
-  if (server.display().empty()) VOYAGER_SKIP_WITHOUT_VULKAN("no Xvfb");
+  if (server.display().empty()) VOYAGER_SKIP_WITHOUT(VULKAN, "no Xvfb");
   ASSERT_EQ(::setenv("DISPLAY", (":" + server.display()).c_str(), 1), 0);
   const Outcome result =
       run("vulkan_host " + file("city.voy") + " --camera-file " + file("cameras.json") +
           " --frames 5 --validation --stats " + file("window.json"));
   if (result.output.find("found no VK_LAYER_KHRONOS_validation") != std::string::npos)
-    VOYAGER_SKIP_WITHOUT_VULKAN(result.output);
+    VOYAGER_SKIP_WITHOUT(VULKAN, result.output);
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(result.output.find("validation: "), std::string::npos) << result.output;
   const nlohmann::json stats = nlohmann::json::parse(file_bytes(file("window.json")));
@@ -58,4 +59,5 @@ TEST_F(VulkanHost, AWindowRunsToItsEndInSilence) {
 }
 
 }  // namespace
+}  // namespace window_test
 }  // namespace voyager::test

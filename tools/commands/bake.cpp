@@ -25,7 +25,9 @@
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/sh_bands.h"
+#include "tools/byte_size.h"
 #include "tools/commands/commands.h"
+#include "tools/console.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
@@ -38,7 +40,7 @@ uint64_t half_of_memory() {
          static_cast<uint64_t>(::sysconf(_SC_PAGESIZE)) / 2;
 }
 
-struct Arguments {
+struct BakeArguments {
   std::vector<std::string> inputs;
   std::string output;
   Quality quality = Quality::compact;
@@ -149,31 +151,40 @@ void verify_file(const std::string& path, const LodTree& tree, const Partition& 
   }
 }
 
-void print_summary(const Arguments& arguments, const BakeSummary& result, const Stopwatch& watch) {
-  fmt::print("{}: {} Gaussians, {} nodes, {} subtrees, {} chunks, {} bytes, {:.1f} s{}\n",
-             arguments.output, result.gaussians, result.nodes, result.subtrees, result.chunks,
-             open_file_source(arguments.output)->size(), watch.milliseconds() / 1000,
-             arguments.verify    ? ", verified"
-             : result.cells != 0 ? fmt::format(", in {} cells", result.cells)
-                                 : "");
+void print_summary(const BakeArguments& arguments, const BakeSummary& result,
+                   const Stopwatch& watch) {
+  say(fmt::format("{}: {} Gaussians, {} nodes, {} subtrees, {} chunks, {}, {:.1f} s{}\n",
+                  arguments.output, result.gaussians, result.nodes, result.subtrees, result.chunks,
+                  size_text(open_file_source(arguments.output)->size()),
+                  watch.milliseconds() / 1000,
+                  arguments.verify    ? ", verified"
+                  : result.cells != 0 ? fmt::format(", in {} cells", result.cells)
+                                      : ""));
   if (result.import.dropped() + result.import.repaired() > 0)
-    fmt::print("{} Gaussians dropped, {} repaired (voyager info {} tells which)\n",
-               result.import.dropped(), result.import.repaired(), arguments.output);
+    say(fmt::format("{} Gaussians dropped, {} repaired (voyager info {} tells which)\n",
+                    result.import.dropped(), result.import.repaired(), arguments.output));
 }
 
-BakeSummary bake_in_memory(const Arguments& arguments, const Readers& readers,
+BakeSummary bake_in_memory(const BakeArguments& arguments, const Readers& readers,
                            const Progress& progress) {
   Workers workers;
   BakedScene baked = build_tree(read_all(arguments.inputs, readers, progress), workers, progress,
                                 {.kind = arguments.tree});
   const std::string kept = arguments.output + ".refine";
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
-  if (arguments.verify) require_sound(arguments.output, validate(baked));
+  if (arguments.verify) {
+    progress("verifying", 0, 0);
+    require_sound(arguments.output, validate(baked));
+  }
   const Partition partition = partition_tree(baked.tree, arguments.chunk_bytes);
   if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
   write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
   if (arguments.refine != 0) std::filesystem::remove(kept);
-  if (arguments.verify) verify_file(arguments.output, baked.tree, partition);
+  if (arguments.verify) {
+    progress("verifying", 0, 0);
+    verify_file(arguments.output, baked.tree, partition);
+    progress("verifying", 1, 1);
+  }
   return {baked.leaves.size(),     baked.tree.size(),   partition.subtrees.size(),
           partition.chunk_count(), baked.leaves.report, 0};
 }
@@ -193,7 +204,7 @@ class OwnFolder {
   std::string path_;
 };
 
-BakeSummary bake_from_folder(const Arguments& arguments, const OpenInputs& open,
+BakeSummary bake_from_folder(const BakeArguments& arguments, const OpenInputs& open,
                              const Progress& progress) {
   if (arguments.verify)
     throw Error(ErrorCode::unsupported,
@@ -222,11 +233,11 @@ BakeSummary bake_from_folder(const Arguments& arguments, const OpenInputs& open,
   return bake_in_parts(bake, open, workers, progress);
 }
 
-bool writes_output(const Arguments& arguments) {
+bool writes_output(const BakeArguments& arguments) {
   return arguments.step == BakeStep::all || arguments.step == BakeStep::merge;
 }
 
-void bake(const Arguments& arguments) {
+void bake(const BakeArguments& arguments) {
   require_extension("-o", arguments.output, {".voy"});
   require_distinct({arguments.output}, arguments.inputs);
   if (arguments.refine != 0 && arguments.tree != TreeKind::clustered)
@@ -245,8 +256,8 @@ void bake(const Arguments& arguments) {
     const BakeSummary result = bake_from_folder(
         arguments, [&] { return open_all(arguments.inputs); }, progress);
     if (writes_output(arguments)) return print_summary(arguments, result, watch);
-    fmt::print("{}: {} Gaussians in {} cells, {:.1f} s\n", arguments.work, result.gaussians,
-               result.cells, watch.milliseconds() / 1000);
+    say(fmt::format("{}: {} Gaussians in {} cells, {:.1f} s\n", arguments.work, result.gaussians,
+                    result.cells, watch.milliseconds() / 1000));
     return;
   }
   Readers readers = open_all(arguments.inputs);
@@ -268,67 +279,71 @@ std::string check_part(const std::string& text) {
   return "found " + text + ", expected K/N with K from 0 to N - 1";
 }
 
-void add_work_options(CLI::App& command, Arguments& arguments) {
+void add_work_options(CLI::App& command, BakeArguments& arguments) {
+  add_whole_option(command, "--memory", {16, uint64_t{1} << 40}, arguments.memory,
+                   "About how many MB (10^6 bytes) of memory the bake may take. A scene that needs "
+                   "more is baked in parts, from a work folder on disk. The default is half of "
+                   "what this machine has")
+      ->type_name("MB")
+      ->default_str(std::to_string(arguments.memory));
   command
-      .add_option("--memory", arguments.memory,
-                  "MB (10^6 bytes) that the bake may take, about; the default is half of the "
-                  "machine's. A scene for which that does not do is baked in cells, from a "
-                  "work folder")
-      ->check(CLI::Range(uint64_t{16}, uint64_t{1} << 40));
-  command.add_option("--work", arguments.work,
-                     "The folder for a bake in cells: a bake that was killed goes on from "
-                     "there when it is run again. Without it OUT.work, where one is needed. "
-                     "It is removed when the scene is there");
+      .add_option("--work", arguments.work,
+                  "Bake in parts, from this folder. A bake that was stopped goes on from there "
+                  "when it is run again. The folder is removed at the end")
+      ->type_name("DIR");
   add_choice<BakeStep>(command, "--step", arguments.step,
                        {{"all", BakeStep::all},
                         {"split", BakeStep::split},
                         {"cells", BakeStep::cells},
                         {"encode", BakeStep::encode},
                         {"merge", BakeStep::merge}},
-                       "One step alone, for batch systems (docs/baking.md)");
+                       "With --work: run one step of the bake and stop, for batch systems that "
+                       "bake on several machines (docs/baking.md)");
   command
       .add_option("--part", arguments.part,
-                  "With --step cells or encode: part K, from 0, of N of the cells")
-      ->check(CLI::Validator(check_part, "K/N"));
+                  "With --step cells or encode: do the K-th of N parts of that step, K from 0")
+      ->type_name("K/N")
+      ->check(check_part);
+  name_group(command, "Scenes larger than memory");
 }
 
 }  // namespace
 
 void add_bake(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BakeArguments>();
   CLI::App* command =
-      app.add_subcommand("bake", "Build the level-of-detail tree of a scene and write a .voy");
+      app.add_subcommand("bake", "Build the level-of-detail tree of a scene, and write a .voy");
   command
-      ->add_option(
-          "input", arguments->inputs,
-          "One or several .ply or .spz, baked into one tree; - is a .ply on standard input")
+      ->add_option("input", arguments->inputs,
+                   "Scenes to bake into one tree, .ply or .spz, or their URLs. - is a .ply "
+                   "on standard input")
       ->required();
-  command->add_option("-o", arguments->output, "The scene.voy to write")->required();
+  command->add_option("-o", arguments->output, "File to write, a .voy")
+      ->type_name("FILE")
+      ->required();
   add_choice<Quality>(
       *command, "--quality", arguments->quality,
       {{"compact", Quality::compact}, {"lossless", Quality::lossless}},
-      "compact quantises (errors in docs/voy-format.md); lossless keeps the input's own words");
+      "compact is smaller, and rounds (docs/voy-format.md says how far). lossless keeps the exact "
+      "values of the input");
+  command->add_flag("--verify", arguments->verify,
+                    "Check the whole tree, and read the file back. In memory only");
+  name_group(*command, kCommonOptions);
   add_choice<TreeKind>(
       *command, "--tree", arguments->tree,
       {{"clustered", TreeKind::clustered}, {"hierarchicalgs", TreeKind::hierarchicalgs}},
-      "clustered puts together what looks alike; hierarchicalgs builds as HierarchicalGS does, "
-      "for comparison (in memory only)");
-  command
-      ->add_option("--refine", arguments->refine,
-                   "Also look at the scene from so many places, and set extents by what refining "
-                   "each node is seen to gain (docs/lod-tree.md): about a second each, 400 for a "
-                   "million Gaussians. A bake that was ended goes on from OUT.refine when it is "
-                   "run again. In memory only")
-      ->type_name("VIEWS")
-      ->check(CLI::Range(1u, 1u << 20));
-  command
-      ->add_option("--chunk-bytes", arguments->chunk_bytes,
-                   "Bytes of search records a chunk, at most; the default is a warp's part of "
-                   "sm_87's shared memory at full residency")
-      ->check(CLI::Range(kMinChunkBytes, kMaxChunkBytes))
-      ->capture_default_str();
-  command->add_flag("--verify", arguments->verify,
-                    "Check every invariant of the tree and its partition, and read the file back");
+      "How the tree is built. clustered joins what looks alike. hierarchicalgs builds as "
+      "HierarchicalGS does, for comparison, in memory only");
+  add_whole_option(*command, "--refine", {1, uint64_t{1} << 20}, arguments->refine,
+                   "Also draw the scene from so many places, and measure where detail is seen "
+                   "(docs/lod-tree.md). Better pictures for about a second a place: 400 places for "
+                   "a million Gaussians. A bake that was stopped goes on from FILE.refine when it "
+                   "is run again. In memory only")
+      ->type_name("VIEWS");
+  add_whole_option(*command, "--chunk-bytes", {kMinChunkBytes, kMaxChunkBytes},
+                   arguments->chunk_bytes, "Bytes of search records in a chunk, at most")
+      ->default_str(std::to_string(arguments->chunk_bytes));
+  name_group(*command, "The tree");
   add_work_options(*command, *arguments);
   command->footer("Example: voyager bake city.ply -o city.voy --quality lossless --verify");
   command->callback([arguments] { bake(*arguments); });

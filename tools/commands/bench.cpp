@@ -5,17 +5,15 @@
 #include "runtime/base/open_source.h"
 #include "tools/commands/bench_arguments.h"
 #include "tools/commands/commands.h"
+#include "tools/console.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
+#include "tools/progress_bar.h"
 
 namespace voyager::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-[[noreturn]] void bad_usage(const std::string& message) {
-  throw Error(ErrorCode::invalid_argument, message);
-}
 
 // It is whole frames of one configuration that a budget is for.
 void refuse_misplaced_budget(const BenchArguments& arguments) {
@@ -55,6 +53,12 @@ std::vector<Camera> read_walk(const BenchArguments& arguments) {
   return cameras;
 }
 
+std::shared_ptr<const Scene> load(const std::string& path, Workers& workers) {
+  const Progress progress = progress_bar();
+  progress("opening", 0, 0);
+  return load_scene(open_source(path), std::pmr::get_default_resource(), workers);
+}
+
 void bench(BenchArguments& arguments) {
   const bool whole = arguments.stereo || arguments.time_budget > 0;
   arguments.stages =
@@ -64,8 +68,7 @@ void bench(BenchArguments& arguments) {
   require_distinct({arguments.json}, {arguments.scene, arguments.cameras});
   AtomicFile file(arguments.json);  // refused before the work, not after it
   Workers workers;
-  const auto scene =
-      load_scene(open_source(arguments.scene), std::pmr::get_default_resource(), workers);
+  const auto scene = load(arguments.scene, workers);
   const bool search = arguments.stages == BenchStages::search;
   if (search && scene->tree.size() == 0)
     throw Error(ErrorCode::refused_input,
@@ -86,6 +89,7 @@ void bench(BenchArguments& arguments) {
   const bool costs = arguments.stereo && arguments.time_budget == 0;  // against one eye's
   const auto run = search ? bench_searches : costs ? bench_stereo : bench_frames;
   report.update(run(arguments, subject));
+  say("measured on " + backend->device_name() + "\n");
   const std::string text = report.dump(2) + "\n";
   file.write(std::as_bytes(std::span(text)));
   file.commit();
@@ -98,63 +102,73 @@ void add_choices(CLI::App& command, BenchArguments& arguments) {
                                            {"exhaustive", SearchChoice::exhaustive},
                                            {"streaming", SearchChoice::streaming},
                                            {"temporal", SearchChoice::temporal}},
-                                          "Which; all compares them in one run. Frames of one "
-                                          "configuration take temporal");
+                                          "How the nodes to draw are found; all compares them in "
+                                          "one run. Whole frames take temporal");
   add_choice<std::optional<bool>>(command, "--slack", arguments.slack,
                                   {{"on", true}, {"off", false}},
-                                  "off: --search temporal visits every subtree of the last cut");
+                                  "off: the temporal search visits all of the last cut");
   add_choice<std::optional<bool>>(command, "--filter", arguments.filter,
-                                  {{"on", true}, {"off", false}}, "The α-filter");
+                                  {{"on", true}, {"off", false}},
+                                  "The α-filter. off gives the same image, slower");
   add_choice<std::optional<Splatting>>(
       command, "--splat", arguments.splatting,
       {{"ours", Splatting::ours}, {"3dgs", Splatting::baseline_3dgs}},
-      "3dgs: as 3DGS does it, the baseline");
+      "How Gaussians become pixels; 3dgs is the baseline, on CUDA only");
   add_choice<std::optional<Exponential>>(
       command, "--exp", arguments.exponential,
       {{"ex2", Exponential::ex2},
        {"exact", Exponential::exact},
        {"lut", Exponential::lut},
        {"half2", Exponential::half2}},
-      "The exponential; --stages splat without one compares them, and their images with exact's. "
-      "3dgs takes exact");
-  command.add_option("--lut-size", arguments.lut_size, "Intervals of --exp lut (32)")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("M");
+      "How the exponential is computed. --stages splat without it compares all, and their images "
+      "with those of exact. --splat 3dgs takes exact");
+  add_whole_option(command, "--lut-size", {1, 4096}, arguments.lut_size,
+                   "Intervals of the table of --exp lut")
+      ->default_str("32");
+  name_group(command, "What is measured");
 }
 
 void add_conditions(CLI::App& command, BenchArguments& arguments) {
   add_backend_options(command, arguments.backend);
   add_tau_or_budget_options(command, arguments.tau, arguments.time_budget);
   add_size_option(command, arguments.size);
-  command
-      .add_option("--repeat", arguments.repeat,
-                  "Time the path so often (default: until 100 frames are timed)")
-      ->type_name("N")
-      ->check(CLI::Range(1, 100000));
-  command.add_flag("--stereo", arguments.stereo,
-                   "Cameras two by two, left then right: what both eyes cost against one");
-  command.add_flag("--verify", arguments.verify,
-                   "Also compare every frame's cut and weights with the exhaustive search's");
+  add_whole_option(command, "--repeat", {1, 100000}, arguments.repeat,
+                   "How often the path is timed. Without it, until 100 frames are timed");
+  name_group(command, kCommonOptions);
 }
 
 }  // namespace
 
 void add_bench(CLI::App& app) {
   auto arguments = std::make_shared<BenchArguments>();
-  CLI::App* command = app.add_subcommand("bench", "Time the stages of a frame along a camera path");
-  command->add_option("scene", arguments->scene, "A .voy; for whole frames also .ply or .spz")
+  CLI::App* command = app.add_subcommand("bench", "Time the stages of frames along a camera path");
+  command
+      ->add_option("scene", arguments->scene,
+                   "Scene to draw, a .voy or its URL; for whole frames also a .ply or .spz")
       ->required();
-  command->add_option("--cameras", arguments->cameras, "INRIA cameras.json, as one walk")
+  command
+      ->add_option("--cameras", arguments->cameras,
+                   "Cameras of the path, as a cameras.json of 3DGS (INRIA)")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("--json", arguments->json, "File for the figures, a .json")
+      ->type_name("FILE")
       ->required();
   add_choice<std::optional<BenchStages>>(
       *command, "--stages", arguments->stages_asked,
       {{"search", BenchStages::search}, {"splat", BenchStages::splat}, {"all", BenchStages::all}},
-      "What to time: the search alone (the default without --stereo and --time-budget), or whole "
-      "frames. Without further choices splat compares "
-      "the exponentials, and all goes from 3DGS to ours in steps");
-  add_choices(*command, *arguments);
+      "What is timed. search: finding the nodes to draw, alone. splat and all: whole frames. "
+      "Without further choices splat compares the exponentials, and all goes from 3DGS to ours in "
+      "steps. With --stereo or --time-budget the default is all");
   add_conditions(*command, *arguments);
-  command->add_option("--json", arguments->json, "Where the figures go")->required();
+  add_choices(*command, *arguments);
+  command->add_flag("--stereo", arguments->stereo,
+                    "Take the cameras two by two, left eye then right eye: what both cost against "
+                    "one");
+  command->add_flag("--verify", arguments->verify,
+                    "Also compare the nodes and weights of every frame with those of the "
+                    "exhaustive search");
+  name_group(*command, "What is measured");
   command->footer(
       "Example: voyager bench city.voy --cameras city.cameras.json --stages all --tau 3 --json "
       "all.json");

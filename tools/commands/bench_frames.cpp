@@ -4,6 +4,7 @@
 #include "runtime/frame/view.h"
 #include "tools/budget_report.h"
 #include "tools/commands/bench_arguments.h"
+#include "tools/console.h"
 #include "tools/frame_path.h"
 #include "tools/frame_report.h"
 #include "tools/frame_table.h"
@@ -104,6 +105,7 @@ class Rows {
       progress_("timing", index * frames + drawn, plan_.rows.size() * frames);
     });
     Json json = report_row(row, run, context_);
+    if (plan_.images || path_.time_budget) progress_("comparing", 0, 0);
     if (plan_.images) compare_images(row, json);
     if (path_.time_budget) json["time_budget"] = time_budget_json(run, lost_by(row, run));
     rows.push_back(json);
@@ -153,7 +155,8 @@ Json bench_frames(const BenchArguments& arguments, const BenchSubject& subject) 
   print_frames(rows.rows);
   if (path.time_budget) print_time_budget(rows.rows[0]["time_budget"]);
   for (const Json& row : rows.left_out)
-    fmt::print("left out: {}: {}\n", row["name"].get<std::string>(), row["why"].get<std::string>());
+    say(fmt::format("left out: {}: {}\n", row["name"].get<std::string>(),
+                    row["why"].get<std::string>()));
   const DeviceRates rates = subject.backend.rates();
   return {{"stages", arguments.stages == BenchStages::all ? "all" : "splat"},
           {"size", size_of(path)},

@@ -2,6 +2,7 @@
 
 #include "runtime/base/error.h"
 #include "tools/commands/bench_arguments.h"
+#include "tools/console.h"
 #include "tools/progress_bar.h"
 #include "tools/search_bench.h"
 
@@ -39,6 +40,7 @@ Json time_searches(const BenchArguments& arguments, const BenchSubject& subject)
         subject.backend, subject.scene, searches[i].kind, path, subject.workers, [&](size_t frame) {
           progress("searching", i * 2 * path.size() + frame + 1, searches.size() * 2 * path.size());
         }));
+    if (arguments.verify) progress("verifying", 0, 0);
     if (arguments.verify && searches[i].kind != Search::exhaustive &&
         !same_cuts(subject.backend, subject.scene, Search::exhaustive, searches[i].kind, path,
                    subject.workers))
@@ -48,6 +50,7 @@ Json time_searches(const BenchArguments& arguments, const BenchSubject& subject)
                               searches[i].name));
     rows.push_back(row);
   }
+  progress("verifying", 1, 1);
   return rows;
 }
 

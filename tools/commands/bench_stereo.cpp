@@ -3,6 +3,7 @@
 #include "runtime/base/error.h"
 #include "runtime/frame/view.h"
 #include "tools/commands/bench_arguments.h"
+#include "tools/console.h"
 #include "tools/frame_path.h"
 #include "tools/frame_report.h"
 #include "tools/frame_table.h"
@@ -31,14 +32,14 @@ Json stereo_costs(const Json& rows) {
 }
 
 void print_costs(const Json& costs) {
-  fmt::print("\n{:<14}{:>10}{:>10}{:>10}{:>10}{:>14}\n", "median ms", "left", "right", "both",
-             "saved", "of one eye");
+  say(fmt::format("\n{:<14}{:>10}{:>10}{:>10}{:>10}{:>14}\n", "median ms", "left", "right", "both",
+                  "saved", "of one eye"));
   for (const auto& [part, cost] : costs.items())
-    fmt::print(
+    say(fmt::format(
         "{:<14}{:>10.4f}{:>10.4f}{:>10.4f}{:>10.4f}{:>14}\n", part, cost["left"].get<double>(),
         cost["right"].get<double>(), cost["both"].get<double>(), cost["saved"].get<double>(),
         cost["of_one_eye"].is_null() ? "-"
-                                     : fmt::format("{:.2f}", cost["of_one_eye"].get<double>()));
+                                     : fmt::format("{:.2f}", cost["of_one_eye"].get<double>())));
 }
 
 std::vector<Camera> every_other(const std::vector<Camera>& cameras, size_t first) {

@@ -6,7 +6,10 @@
 #include "runtime/base/open_source.h"
 #include "runtime/base/url.h"
 #include "runtime/format/reader.h"
+#include "tools/byte_size.h"
 #include "tools/commands/commands.h"
+#include "tools/options.h"
+#include "tools/progress_bar.h"
 #include "voyager/voyager.hpp"
 
 namespace voyager::tools {
@@ -65,12 +68,12 @@ void print_text(const std::string& path, const VoySceneInfo& info, const VoyScen
              info.boundsMax[2]);
   if (info.storage == VOY_SCENE_STORAGE_COMPACT)
     fmt::print("  mean error    {:.3g} m at most\n", info.positionError);
-  fmt::print("  resident      {} bytes\n", info.residentBytes);
+  fmt::print("  in memory     {}\n", size_text(info.residentBytes));
   fmt::print("  import        {} Gaussians dropped, {} repaired\n", info.droppedCount,
              info.repairedCount);
   for (const VoySceneNote& note : notes)
     fmt::print("  {:<13} {}: {} ({})\n", kNoteKinds[note.kind], note.what, note.why,
-               note.kind == VOY_SCENE_NOTE_OMITTED ? fmt::format("{} bytes", note.bytes)
+               note.kind == VOY_SCENE_NOTE_OMITTED ? size_text(note.bytes)
                                                    : fmt::format("{}", note.count));
 }
 
@@ -124,16 +127,23 @@ void add_info(CLI::App& app) {
   auto path = std::make_shared<std::string>();
   auto json = std::make_shared<bool>(false);
   CLI::App* command =
-      app.add_subcommand("info", "What a scene holds, what was mended, and what is left out");
-  command->add_option("file", *path, "A .voy, .ply or .spz")->required();
-  command->add_flag("--json", *json, "For programs");
+      app.add_subcommand("info", "Show what a scene holds, what was mended and what is left out");
+  command->add_option("file", *path, "Scene to read, a .voy, .ply or .spz, or its URL")->required();
+  command->add_flag("--json", *json, "Print JSON, for programs; sizes are in bytes");
+  name_group(*command, kCommonOptions);
   command->footer("Example: voyager info city.voy");
   command->callback([path, json] {
-    const voy::Device device = voy::Device::create();
+    const Progress progress = progress_bar();
+    progress("opening", 0, 0);
+    VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+    desc.backend = VOY_BACKEND_CPU;  // nothing is drawn
+    const voy::Device device = voy::Device::create(desc);
     const voy::Scene scene = device.open_scene(*path);
     const VoySceneInfo info = scene.info();
-    (*json ? print_json : print_text)(shown_path(*path), info, scene.profile(),
-                                      tree_facts(*path, info), scene.notes());
+    const TreeFacts facts = tree_facts(*path, info);
+    progress("opening", 1, 1);
+    (*json ? print_json : print_text)(shown_path(*path), info, scene.profile(), facts,
+                                      scene.notes());
   });
 }
 

@@ -20,8 +20,8 @@ struct BackendChoice {
 // "--backend auto|cpu|cuda" and "--sms N".
 void add_backend_options(CLI::App& command, BackendChoice& choice);
 
-// automatic: CUDA where there is a device. Throws Error(invalid_argument) for multiprocessors of a
-// CPU, else as load_backend() does.
+// automatic: CUDA where there is a device; a warning says why there is none. Throws
+// Error(invalid_argument) for multiprocessors of a CPU, else as load_backend() does.
 std::unique_ptr<Backend> create_backend(const BackendChoice& choice);
 
 }  // namespace voyager::tools

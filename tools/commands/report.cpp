@@ -10,7 +10,7 @@
 namespace voyager::tools {
 namespace {
 
-struct Arguments {
+struct ReportArguments {
   ReportRequest request;
   bool quick = false, full = false, curve = false;
   std::vector<std::string> trees;  // beside the scene's
@@ -18,7 +18,7 @@ struct Arguments {
 };
 
 // What the measurements depend on.
-std::vector<std::string> words(const Arguments& arguments) {
+std::vector<std::string> words(const ReportArguments& arguments) {
   std::vector<std::string> found = {arguments.quick  ? "--quick"
                                     : arguments.full ? "--full"
                                                      : "standard"};
@@ -31,7 +31,7 @@ std::vector<std::string> words(const Arguments& arguments) {
   return found;
 }
 
-void run(Arguments& arguments) {
+void run(ReportArguments& arguments) {
   ReportRequest& request = arguments.request;
   if (arguments.quick) request.extent = ReportExtent::quick;
   if (arguments.full) request.extent = ReportExtent::full;
@@ -47,45 +47,50 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_report(CLI::App& app) {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0;
-    if (CLI::detail::lexical_cast(text, value) && value >= 0.01 && value <= 10000) return {};
-    return "found " + text + ", expected a number of milliseconds from 0.01 to 10000";
-  };
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = app.add_subcommand(
-      "report", "Measure error against run time, for this scene on this machine");
-  command->add_option("scene", arguments->request.scene, "A .voy, .ply or .spz")->required();
-  command->add_option("--cameras", arguments->request.cameras, "INRIA cameras.json, as one walk")
+      "report", "Measure image error against run time on this machine, and recommend options");
+  command
+      ->add_option("scene", arguments->request.scene,
+                   "Scene to measure, a .voy, .ply or .spz, or its URL")
+      ->required();
+  command
+      ->add_option("--cameras", arguments->request.cameras,
+                   "Cameras of the path, as a cameras.json of 3DGS (INRIA)")
+      ->type_name("FILE")
       ->required();
   command
       ->add_option("-o", arguments->request.output,
-                   "The folder for report.html, report.csv, report.json and the plots. A report "
-                   "that was ended goes on from there when it is run again")
+                   "Folder for report.html, report.csv, report.json and the plots. A report "
+                   "that was stopped goes on from there when it is run again")
+      ->type_name("DIR")
       ->required();
-  CLI::Option* quick = command->add_flag("--quick", arguments->quick, "Some configurations");
-  command->add_flag("--full", arguments->full, "Many, each timed for longer")->excludes(quick);
-  CLI::Option* target =
-      command
-          ->add_option("--target", arguments->request.target,
-                       "Milliseconds that a frame may take, for the recommendation (11.1: 90 Hz)")
-          ->check(CLI::Validator(check, ""))
-          ->type_name("MS");
+  CLI::Option* quick = command->add_flag("--quick", arguments->quick, "Measure few configurations");
+  command->add_flag("--full", arguments->full, "Measure many configurations, each for longer")
+      ->excludes(quick);
+  CLI::Option* target = add_number_option(
+                            *command, "--target", arguments->request.target,
+                            [](double value) { return value >= 0.01 && value <= 10000; },
+                            "a number of milliseconds from 0.01 to 10000",
+                            "Milliseconds that a frame may take, for the recommendation")
+                            ->type_name("MS")
+                            ->default_str("11.1, which is 90 frames a second");
+  add_backend_options(*command, arguments->backend);
+  add_size_option(*command, arguments->request.size);
+  name_group(*command, kCommonOptions);
   CLI::Option* curve =
       command
           ->add_flag("--curve", arguments->curve,
-                     "Only this: what cuts of 90 % to 10 % of a tree's leaves look like against "
-                     "all leaves, and cost; --quick and --full choose how many views. Leaves "
-                     "curve.html, curve.csv, curve.json and plots")
+                     "Measure only what cuts of 90 % to 10 % of the leaves look like against all "
+                     "leaves, and what they cost. Writes curve.html, curve.csv, curve.json and "
+                     "plots")
           ->excludes(target);
   command
       ->add_option("--trees", arguments->trees,
-                   "With --curve: other trees of the same scene; the last is what the others are "
-                   "compared with on standard output")
-      ->type_name("FILE")
+                   "Other trees of the same scene, for --curve; each is compared with the last")
+      ->type_name("FILE ...")
       ->needs(curve);
-  add_backend_options(*command, arguments->backend);
-  add_size_option(*command, arguments->request.size);
+  name_group(*command, "The curve of a tree");
   command->footer("Example: voyager report city.voy --cameras city.cameras.json -o report");
   command->callback([arguments] { run(*arguments); });
 }

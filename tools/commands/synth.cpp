@@ -4,7 +4,10 @@
 #include <memory>
 
 #include "runtime/scene/export/writer.h"
+#include "tools/byte_size.h"
 #include "tools/commands/commands.h"
+#include "tools/console.h"
+#include "tools/options.h"
 #include "tools/progress_bar.h"
 #include "tools/synth/city.h"
 
@@ -13,7 +16,7 @@ namespace {
 
 using namespace synth;
 
-struct Arguments {
+struct SynthArguments {
   CityDesc city;
   std::string what, output;
 };
@@ -24,7 +27,7 @@ void generate(const CityDesc& city, GaussianWriter& writer) {
   writer.finish();
 }
 
-void write_city(const Arguments& arguments) {
+void write_city(const SynthArguments& arguments) {
   const CityDesc& city = arguments.city;
   if (arguments.output == "-") {
     const auto sink = sink_to_stdout();
@@ -46,8 +49,9 @@ void write_city(const Arguments& arguments) {
   AtomicFile cameras_file(cameras_path);
   cameras_file.write(std::as_bytes(std::span(cameras)));
   cameras_file.commit();
-  fmt::print("{}: {} Gaussians, SH {}\n{}: a walk and a flight\n", arguments.output, city.gaussians,
-             city.sh_degree, cameras_path);
+  say(fmt::format("{}: {} Gaussians of SH degree {}, {}\n{}: cameras of a walk and a flight\n",
+                  arguments.output, city.gaussians, city.sh_degree,
+                  size_text(std::filesystem::file_size(arguments.output)), cameras_path));
 }
 
 std::string check_output(const std::string& path) {
@@ -60,30 +64,33 @@ std::string check_output(const std::string& path) {
 }  // namespace
 
 void add_synth(CLI::App& app) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SynthArguments>();
   CLI::App* command =
-      app.add_subcommand("synth", "Make a synthetic city, with a walk and a flight through it");
-  command->add_option("what", arguments->what, "What to make: city")
+      app.add_subcommand("synth", "Make a synthetic city, with cameras of a walk and a flight");
+  command->add_option("what", arguments->what, "What to make, city")
       ->required()
-      ->check(CLI::IsMember({"city"}));
-  command->add_option("--gaussians", arguments->city.gaussians, "How many Gaussians, 1e4 to 1e8")
-      ->required()
-      ->check(CLI::Range(uint64_t{10000}, uint64_t{100000000}))
-      ->type_name("N");
-  command->add_option("--seed", arguments->city.seed, "Another seed is another city")
-      ->capture_default_str();
-  command->add_option("--sh-degree", arguments->city.sh_degree, "Degree of the spherical harmonics")
-      ->check(CLI::Range(0, 3))
-      ->type_name("D")
-      ->capture_default_str();
+      ->check([](const std::string& what) {
+        return what == "city" ? "" : "found " + what + ", expected city";
+      });
+  add_whole_option(*command, "--gaussians", {10000, 100000000}, arguments->city.gaussians,
+                   "How many Gaussians, from 10000 to 100000000")
+      ->required();
   command
-      ->add_option("-o", arguments->output,
-                   "city.ply, city.spz, or - for a .ply on standard output")
+      ->add_option(
+          "-o", arguments->output,
+          "File to write, a .ply or a .spz, or - for a .ply on standard output. The cameras "
+          "go to NAME.cameras.json beside it")
       ->required()
-      ->check(CLI::Validator(check_output, "FILE"));
-  command->footer(
-      "The same arguments give the same bytes. Cameras go to NAME.cameras.json beside the output.\n"
-      "Example: voyager synth city --gaussians 200000 -o city.ply");
+      ->type_name("FILE")
+      ->check(check_output);
+  add_whole_option(*command, "--seed", {}, arguments->city.seed,
+                   "Another seed makes another city; the same arguments make the same bytes")
+      ->default_str(std::to_string(arguments->city.seed));
+  add_whole_option(*command, "--sh-degree", {0, 3}, arguments->city.sh_degree,
+                   "Degree of the spherical harmonics, 0 to 3")
+      ->default_str(std::to_string(arguments->city.sh_degree));
+  name_group(*command, kCommonOptions);
+  command->footer("Example: voyager synth city --gaussians 200000 -o city.ply");
   command->callback([arguments] { write_city(*arguments); });
 }
 

@@ -10,6 +10,7 @@
 #include "runtime/base/open_source.h"
 #include "runtime/format/reader.h"
 #include "runtime/scene/import/importer.h"
+#include "tools/console.h"
 #include "tools/output_folder.h"
 #include "tools/progress_bar.h"
 #include "tools/report/curve_measure.h"
@@ -87,10 +88,12 @@ class CurveReport {
 
   // One tree at a time is in memory.
   void run() {
+    note("measuring on " + backend_.device_name());
     std::optional<CurveMeasurement> measurement;
     const size_t steps = std::size(kCurveShares) * plan_.compared.size() * names_.size();
     size_t done = 0;
     for (size_t i = 0; i < names_.size(); ++i) {
+      if (done == 0) progress_("opening", 0, 0);
       const std::shared_ptr<const Scene> scene =
           load_scene(open_source(request_.trees[i]), std::pmr::get_default_resource(), workers_);
       if (!measurement) measurement.emplace(backend_, scene, plan_, workers_);
@@ -120,7 +123,7 @@ class CurveReport {
                html(CurvePage{provenance_, method, plots, rows_, curves}));
     for (const PagePlot& plot : plots) write_plot_png(output_.place(plot.file), plot.plot);
     output_.commit();
-    fmt::print("{}{}/curve.html\n", curve_table(curves), request_.output);
+    say(fmt::format("{}{}/curve.html\n", curve_table(curves), request_.output));
   }
 
   const CurveRequest& request_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "tools/console.h"
 #include "tools/output_folder.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
@@ -39,6 +40,7 @@ class Report {
         measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
 
   void run() {
+    note("measuring on " + backend_.device_name());
     std::vector<ReportCase> cases = report_cases(request_.extent, subject());
     const size_t budgets = scenes_.own()->flat() || request_.extent == ReportExtent::quick ? 0 : 2;
     total_ = cases.size() + budgets;
@@ -129,7 +131,7 @@ class Report {
     write_text("report.html", html(page));
     for (const PagePlot& plot : page.plots) write_plot_png(output_.place(plot.file), plot.plot);
     output_.commit();
-    fmt::print("{}\n{}/report.html\n", advice, request_.output);
+    say(fmt::format("{}\n{}/report.html\n", advice, request_.output));
   }
 
   const ReportRequest& request_;

@@ -21,7 +21,9 @@ std::vector<Storage> storages_of(Storage own) {
 ReportScenes::ReportScenes(const std::string& path, const std::filesystem::path& folder,
                            Workers& workers, Progress progress)
     : path_(path), folder_(folder), workers_(workers), progress_(std::move(progress)) {
+  report(progress_, "opening", 0, 0);
   own_ = load_scene(open_source(path), std::pmr::get_default_resource(), workers);
+  report(progress_, "opening", 1, 1);
   storages_ = storages_of(own_->storage);
 }
 
@@ -58,7 +60,9 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
     export_ply(file, input.string(), progress_);
   }
   const auto source = open_source(input.string());
-  GaussianCloud cloud = import_gaussians(*read_source(*source));
+  ImportOptions options;
+  options.progress = progress_;
+  GaussianCloud cloud = import_gaussians(*read_source(*source), options);
   const BakedScene baked = build_tree(std::move(cloud), workers_, progress_, rule);
   write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), output.string(),
                    storage == Storage::compact ? Quality::compact : Quality::lossless, workers_,

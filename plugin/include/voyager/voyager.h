@@ -1,74 +1,97 @@
-/* Voyager: city-scale 3D Gaussian scenes in an engine's frame loop.
+/* Voyager draws city-scale 3D Gaussian scenes in an engine's frame loop. This is its C ABI, in C99.
  *
- * The C ABI, C99. docs/abi.md explains the life of a frame; docs/conventions.md
- * has axes, units and colour space. In short: metres, seconds, radians nowhere
- * (a frustum is four tangents), poses as in OpenXR (x right, y up, -z forward),
- * colours are display-referred code values, premultiplied.
+ * docs/abi.md shows the calls in the order in which a host makes them. docs/conventions.md defines
+ * axes, units and colours. In short: lengths are metres and a field of view is four tangents.
+ * Poses follow OpenXR: x right, y up, -z forward. Colours are premultiplied display-referred
+ * code values: they are what a display shows, not linear light.
  *
- * Every struct starts with `type` and `next`, but for VoyPose and VoyFrustum, which
- * are plain values inside others, as XrPosef and XrFovf are, and never change.
- * `type` must be the struct's own enumerant and `next` NULL or a struct that the
- * call knows: anything else is VOY_ERROR_INVALID_STRUCTURE, so that a request is
- * never ignored silently. The VOY_..._INIT macros fill `type` and the defaults.
+ * STRUCTS. Every struct starts with `type` and `next`. Start from its VOY_..._INIT macro, which
+ * sets `type` and the defaults. `next` is NULL or points to an extension that the comment at
+ * `next` names. A wrong `type` or an unknown `next` is VOY_ERROR_INVALID_STRUCTURE, so that a
+ * request is never ignored silently. VoyPose and VoyFrustum are plain values without `type`;
+ * they will never change. Fields named `reserved` must be 0.
  *
- * Every call returns a VoyResult: 0 is success, positive a qualified success,
- * negative an error whose text voyGetLastErrorMessage has. On error, outputs
- * are untouched unless the function says otherwise. No call aborts or throws.
+ * RESULTS. Every call that can fail returns a VoyResult. 0 is success. A positive value is a
+ * success with a remark. A negative value is an error, and voyGetLastErrorMessage explains it.
+ * After an error the outputs are unchanged unless the function says otherwise. No call aborts the
+ * process or throws an exception. The error lists at the functions leave out INVALID_ARGUMENT,
+ * INVALID_STRUCTURE and INVALID_HANDLE where these need no explanation.
  *
- * Handles are checked: NULL, stale and wrong-kind handles give
- * VOY_ERROR_INVALID_HANDLE. Destroying a parent destroys its children, whose
- * handles are then stale (as in OpenXR).
+ * HANDLES. A handle is a number, not an address. A NULL handle, a handle of a destroyed object and
+ * a handle of another kind are VOY_ERROR_INVALID_HANDLE. Destroying a parent destroys its children
+ * and makes their handles invalid, as in OpenXR. A device is the parent of its scenes, views and
+ * targets.
  *
- * Thread-safety: any call may come from any thread. Calls on different objects
- * run concurrently. A view renders one frame at a time: a call on a view that
- * is busy in another thread returns VOY_ERROR_BUSY and changes nothing.
- * Destruction waits for calls in flight on that object; a callback may therefore
- * not destroy an object of its own device. */
+ * OWNERSHIP. The library copies what a descriptor points to before the call returns, unless the
+ * comment at the field says how long the host must keep it. Strings that functions return have
+ * static storage unless the function says otherwise.
+ *
+ * THREAD-SAFETY. Any function may be called from any thread. Calls on different objects run
+ * concurrently. A view or a target works for one call at a time: a second call from another thread
+ * returns VOY_ERROR_BUSY and changes nothing. Destroying an object waits for the calls in progress
+ * that use it. A callback must therefore not destroy an object of its own device.
+ *
+ * Where a comment writes METHOD and a section number, it means docs/method.md, which derives the
+ * formula. */
 #ifndef VOYAGER_VOYAGER_H_
 #define VOYAGER_VOYAGER_H_
 
 #include <stddef.h>
 #include <stdint.h>
 
+/* VOY_API exports a function from the library and imports it into a host. VOY_CALL is the calling
+ * convention of every function and callback. Define your callbacks with VOY_CALL.
+ * VOYAGER_BUILDS_LIBRARY is defined only while the library itself is built.
+ * This version runs on Linux. The Windows definitions fix the ABI for a later version. */
+#if defined(_WIN32)
+#if defined(VOYAGER_BUILDS_LIBRARY)
+#define VOY_API __declspec(dllexport)
+#else
+#define VOY_API __declspec(dllimport)
+#endif
+#define VOY_CALL __stdcall
+#else
 #if defined(__GNUC__)
 #define VOY_API __attribute__((visibility("default")))
 #else
 #define VOY_API
+#endif
+#define VOY_CALL
 #endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* The API version this header describes: major << 22 | minor << 12 | patch.
- * While the major version is 0, a library serves the hosts that were built against
- * the same minor version, and no others. From 1 on, it serves those of the same
- * major version and a minor version up to its own. The patch version never matters. */
+/* A version is packed as major << 22 | minor << 12 | patch. VOY_API_VERSION is the version of this
+ * header. While the major version is 0, a library accepts hosts that were built against the same
+ * minor version only. From major version 1 on, it accepts hosts of the same major version and of
+ * its own minor version or an older one. The patch version never matters. */
 #define VOY_MAKE_VERSION(major, minor, patch) \
   ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
-#define VOY_API_VERSION VOY_MAKE_VERSION(0, 3, 0)
+#define VOY_API_VERSION VOY_MAKE_VERSION(0, 4, 0)
 
+/* The numbers never change. docs/abi.md says what a host can do about each error. */
 typedef enum VoyResult {
   VOY_SUCCESS = 0,
-  VOY_INCOMPLETE =
-      1, /* the array was too short: it was filled, and count says how many there are */
-  VOY_ERROR_INVALID_ARGUMENT = -1,
-  VOY_ERROR_INVALID_HANDLE = -2,
-  VOY_ERROR_INVALID_STRUCTURE = -3, /* wrong type, or a next that the call does not know */
-  VOY_ERROR_INCOMPATIBLE_VERSION = -4,
-  VOY_ERROR_UNSUPPORTED = -5, /* a mode that this build or backend lacks; the message names it */
+  VOY_INCOMPLETE = 1, /* the array was filled but was too short; *count is the full count */
+  VOY_ERROR_INVALID_ARGUMENT = -1,     /* the message names the value and the range */
+  VOY_ERROR_INVALID_HANDLE = -2,       /* NULL, of a destroyed object, or of another kind */
+  VOY_ERROR_INVALID_STRUCTURE = -3,    /* a wrong `type` or an unknown `next` */
+  VOY_ERROR_INCOMPATIBLE_VERSION = -4, /* host and library are of different versions */
+  VOY_ERROR_UNSUPPORTED = -5, /* this build or backend lacks the mode that the message names */
   VOY_ERROR_OUT_OF_HOST_MEMORY = -6,
-  VOY_ERROR_OVER_BUDGET = -7,
+  VOY_ERROR_OVER_BUDGET = -7, /* a memory budget, or the memory of a GPU, is too small */
   VOY_ERROR_FILE_NOT_FOUND = -8,
-  VOY_ERROR_IO = -9,
-  VOY_ERROR_REFUSED_INPUT = -10, /* a malformed file: the message has place, found, expected */
-  VOY_ERROR_DAMAGED_CHUNK = -11, /* a chunk that this frame needs is damaged; nothing was drawn */
-  VOY_ERROR_NO_DEVICE = -12,
-  VOY_ERROR_BUSY = -13,
-  VOY_ERROR_SCENE_DESTROYED = -14, /* a scene that the view draws is gone; destroy the view */
-  VOY_ERROR_INTERNAL = -15,        /* a bug of ours: please report the message */
-  VOY_ERROR_DEVICE_LOST = -16,     /* a GPU stopped working: destroy the device and what is on it */
-  VOY_ERROR_TIMEOUT = -17,         /* what the host promised to signal did not come */
+  VOY_ERROR_IO = -9,               /* reading failed */
+  VOY_ERROR_REFUSED_INPUT = -10,   /* a malformed file; the message says where and why */
+  VOY_ERROR_DAMAGED_CHUNK = -11,   /* this frame needs a damaged chunk; nothing was drawn */
+  VOY_ERROR_NO_DEVICE = -12,       /* the backend finds no device that it can use */
+  VOY_ERROR_BUSY = -13,            /* another thread uses the view or target */
+  VOY_ERROR_SCENE_DESTROYED = -14, /* a scene of the view was destroyed; destroy the view */
+  VOY_ERROR_INTERNAL = -15,        /* a bug in the library; please report the message */
+  VOY_ERROR_DEVICE_LOST = -16,     /* a GPU stopped working; destroy the VoyDevice */
+  VOY_ERROR_TIMEOUT = -17,         /* the host did not signal what the frame waits for */
   VOY_RESULT_MAX_ENUM = 0x7fffffff
 } VoyResult;
 
@@ -108,6 +131,7 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_STREAMING_STATS = 32,
   VOY_STRUCTURE_TYPE_SCENE_PROFILE = 33,
   VOY_STRUCTURE_TYPE_OMISSION = 34,
+  VOY_STRUCTURE_TYPE_DEVICE_INFO = 35,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -118,23 +142,24 @@ typedef struct VoyTarget_T* VoyTarget;
 
 /* ------------------------------------------------------------------ library */
 
-/* The library's version, as VOY_MAKE_VERSION packs it. */
-VOY_API uint32_t voyGetVersion(void);
+/* Returns the version of the library, packed by VOY_MAKE_VERSION. */
+VOY_API uint32_t VOY_CALL voyGetVersion(void);
 
-/* The enumerant's name, "VOY_ERROR_..."; never NULL. Static storage. */
-VOY_API const char* voyResultString(VoyResult result);
+/* Returns the name of a result, such as "VOY_ERROR_BUSY". Never NULL. */
+VOY_API const char* VOY_CALL voyResultString(VoyResult result);
 
-/* What was wrong with this thread's last call that failed, and what would be
- * right. Never NULL; "" before any failure. Valid until this thread's next call. */
-VOY_API const char* voyGetLastErrorMessage(void);
+/* Returns the message of the last call that failed on this thread: what was found and what was
+ * expected. UTF-8, never NULL, "" before the first failure. It stays valid until this thread's
+ * next call into the library. */
+VOY_API const char* VOY_CALL voyGetLastErrorMessage(void);
 
 /* ------------------------------------------------------------------- device */
 
 typedef enum VoyBackend {
-  VOY_BACKEND_AUTO = 0, /* CUDA where it is to be had, else CPU; the log says why (INFO) */
+  VOY_BACKEND_AUTO = 0, /* CUDA where it can be had, else the CPU; the log says why (WARNING) */
   VOY_BACKEND_CPU = 1,
-  VOY_BACKEND_CUDA = 2,      /* libvoyager_cuda.so beside the library, a driver and a device */
-  VOY_BACKEND_REFERENCE = 3, /* float64, slow: the judge of the others */
+  VOY_BACKEND_CUDA = 2,      /* needs libvoyager_cuda.so beside the library, a driver, a GPU */
+  VOY_BACKEND_REFERENCE = 3, /* float64 and slow: the other backends are tested against it */
   VOY_BACKEND_MAX_ENUM = 0x7fffffff
 } VoyBackend;
 
@@ -145,45 +170,47 @@ typedef enum VoyLogLevel {
   VOY_LOG_LEVEL_MAX_ENUM = 0x7fffffff
 } VoyLogLevel;
 
-/* Called on the thread of the call that logs, never from a thread of ours.
- * The message is valid during the call. Must not call back into this device. */
-typedef void (*VoyLogFunction)(void* user, VoyLogLevel level, const char* message);
+/* Receives log messages. It is called on the host's thread, during a call into the library, and
+ * never on a thread of the library. Several host threads may call it at once. `message` is UTF-8
+ * and valid during the call. The callback must not call functions on this device's objects. */
+typedef void(VOY_CALL* VoyLogFunction)(void* user, VoyLogLevel level, const char* message);
 
-/* Scene data, cut state and frame buffers are allocated here; small fixed-size
- * bookkeeping is not. Called from any thread, several at once, worker threads
- * included. allocate returns `size` bytes aligned to `alignment` (a power of
- * two), or NULL, which the call in progress reports as OUT_OF_HOST_MEMORY.
- * release gets the size and alignment of the allocation. Both must stay callable
- * until the device is destroyed, or, where the host forgets that, until the library
- * is unloaded, which destroys what is left. */
+/* Host functions that allocate the large data: scenes, cut state and frame buffers. Small
+ * bookkeeping of fixed size does not come from here.
+ * Both functions may be called from any thread, worker threads included, and from several at once.
+ * They must stay callable until the device is destroyed. If the host never destroys the device,
+ * they must stay callable until the library is unloaded, which destroys what is left. */
 typedef struct VoyAllocator {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_ALLOCATOR */
   const void* next;
   void* user;
-  void* (*allocate)(void* user, size_t size, size_t alignment);
-  void (*release)(void* user, void* memory, size_t size, size_t alignment);
+  /* Returns `size` bytes aligned to `alignment`, a power of two. On NULL the call in progress
+   * returns VOY_ERROR_OUT_OF_HOST_MEMORY. */
+  void*(VOY_CALL* allocate)(void* user, size_t size, size_t alignment);
+  /* Frees `memory`, which was allocated with the same size and alignment. */
+  void(VOY_CALL* release)(void* user, void* memory, size_t size, size_t alignment);
 } VoyAllocator;
 
 typedef struct VoyDeviceDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_DEVICE_DESC */
-  const void* next;
-  uint32_t apiVersion; /* VOY_API_VERSION of the header that the host was built with */
+  const void* next;      /* NULL or a VoyVulkanDeviceDesc (voyager_vulkan.h) */
+  uint32_t apiVersion;   /* VOY_API_VERSION, as the host was built */
   VoyBackend backend;
-  /* 16 bytes as VkPhysicalDeviceIDProperties has them, or NULL for any; zeros are a CPU.
-   * AUTO is CUDA on the device that has it, and the CPU where there is none (another
-   * maker's device, say). The other backends are refused where it is not theirs. */
+  /* NULL for any device, or 16 bytes as in VkPhysicalDeviceIDProperties.deviceUUID. Sixteen zeros
+   * are the CPU. AUTO takes the CUDA device with this UUID, or the CPU if there is none, as with a
+   * GPU of another vendor. The other backends return VOY_ERROR_NO_DEVICE if the UUID is not
+   * theirs. */
   const uint8_t* deviceUuid;
-  /* Bytes that scene data may occupy in host memory, over all scenes of this device; 0 is
-   * no limit. */
+  /* Bytes of host memory that scene data may take, over all scenes of this device. 0: no limit. */
   uint64_t memoryBudget;
-  /* The same for streamed scenes in CUDA's own memory. The copies that CUDA makes of scenes that
-   * are loaded whole are not counted. Without meaning for the other backends. */
+  /* Bytes of CUDA device memory that streamed scenes may take. 0: no limit. Scenes that are loaded
+   * whole are copied to the device without counting here. Other backends ignore it. */
   uint64_t deviceMemoryBudget;
-  uint32_t workerThreads; /* 1 to 1024, no more than there are processors; 0 is one a processor */
-  VoyLogLevel logLevel;   /* the most verbose level wanted */
+  uint32_t workerThreads; /* 1 to 1024, capped at the number of processors; 0: one each */
+  VoyLogLevel logLevel;   /* the most verbose level to log */
   VoyLogFunction log;     /* or NULL */
   void* logUser;
-  const VoyAllocator* allocator; /* or NULL for malloc; the struct is copied */
+  const VoyAllocator* allocator; /* NULL: the C++ heap. The struct is copied */
 } VoyDeviceDesc;
 #define VOY_DEVICE_DESC_INIT                                                                \
   {                                                                                         \
@@ -191,35 +218,65 @@ typedef struct VoyDeviceDesc {
         VOY_LOG_WARNING, NULL, NULL, NULL                                                   \
   }
 
-/* VOY_SUCCESS if voyCreateDevice can make this backend here, on any device; else
- * VOY_ERROR_NO_DEVICE and the message says why. AUTO can always be made. Asking for CUDA
- * loads its module, and what its run-time sets up stays until the process ends. */
-VOY_API VoyResult voyQueryBackend(VoyBackend backend);
+/* Tells whether voyCreateDevice can create this backend here, on any device. AUTO always can.
+ * Asking for CUDA loads the CUDA module and run-time, which stay loaded until the process ends.
+ * Errors: NO_DEVICE (the message says why). */
+VOY_API VoyResult VOY_CALL voyQueryBackend(VoyBackend backend);
 
-/* Errors: INCOMPATIBLE_VERSION, NO_DEVICE (no such backend or UUID: never for AUTO),
- * INVALID_ARGUMENT, OVER_BUDGET (CUDA: the device's memory is full). */
-VOY_API VoyResult voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device);
+/* A device that voyCreateDevice can be asked for, or a backend that finds no device here. It is the
+ * element of an array, so its size never changes. */
+typedef struct VoyDeviceInfo {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_DEVICE_INFO */
+  void* next;
+  VoyBackend backend;            /* CUDA, CPU or REFERENCE */
+  uint32_t usable;               /* 1: yes. 0: no, and `missing` says why */
+  uint8_t uuid[16];              /* for VoyDeviceDesc.deviceUuid; zero for a CPU */
+  uint64_t memoryBytes;          /* the device's own, or the host's; 0 if not known */
+  uint32_t workerThreads;        /* CPU and REFERENCE: one a processor; else 0 */
+  uint32_t computeCapability[2]; /* CUDA: major, minor; else 0 */
+  uint32_t cudaVersion;          /* the newest that the driver supports, 1000 * major + 10 * minor;
+                                    0 without a driver */
+  char driver[64];               /* the driver's release; "" if not known. UTF-8, terminated */
+  char name[256];                /* "" where a backend finds no device */
+  char needs[192];               /* what the backend needs of a machine */
+  char missing[512];             /* why it is not usable, and what to do; "" if it is */
+} VoyDeviceInfo;
 
-/* Destroys its scenes, views and targets with it. NULL is a no-op that succeeds,
- * here and in every destroy call. */
-VOY_API VoyResult voyDestroyDevice(VoyDevice device);
+/* Lists the devices of this machine, in the order in which AUTO prefers them: CUDA devices, the
+ * CPU, the reference. A backend that finds no device has one entry, with usable 0. The call loads
+ * the CUDA module as voyQueryBackend does. It starts no work on a device, so voyCreateDevice may
+ * still fail, for example because the GPU's memory is full. With capacity 0 the call sets only
+ * *count. Otherwise it writes up to capacity entries, with their type and next, and sets *count to
+ * the number of entries there are. Returns VOY_INCOMPLETE if there are more entries than capacity.
+ * Any thread may call it. Errors: INVALID_ARGUMENT (NULL). */
+VOY_API VoyResult VOY_CALL voyEnumerateDevices(uint32_t capacity, VoyDeviceInfo* devices,
+                                               uint32_t* count);
 
-/* Bit masks: 1 << enumerant. */
+/* Creates a device. The host destroys it with voyDestroyDevice.
+ * Errors: INCOMPATIBLE_VERSION (rebuild the host, see VOY_API_VERSION), NO_DEVICE (no such backend
+ * or UUID; never for AUTO), INVALID_ARGUMENT, OVER_BUDGET (CUDA: the GPU's memory is full). */
+VOY_API VoyResult VOY_CALL voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device);
+
+/* Destroys the device with its scenes, views and targets. Destroying NULL succeeds and does
+ * nothing, here and in every voyDestroy... function. */
+VOY_API VoyResult VOY_CALL voyDestroyDevice(VoyDevice device);
+
+/* What a device can do. In the bit masks, bit 1 << e stands for the value e of the enum. */
 typedef struct VoyCapabilities {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_CAPABILITIES */
-  void* next;
-  VoyBackend backend; /* CPU, CUDA or REFERENCE: the one that AUTO chose */
+  void* next;            /* NULL or a VoyVulkanCapabilities (voyager_vulkan.h) */
+  VoyBackend backend;    /* CPU, CUDA or REFERENCE: with AUTO, the choice made */
   uint32_t workerThreads;
   char deviceName[256];         /* UTF-8, terminated */
   uint8_t deviceUuid[16];       /* zero for a CPU */
-  uint32_t maxInstances;        /* of a view; 64 in this version */
-  uint32_t maxEyes;             /* of a view; 2 in this version */
-  uint32_t maxWidth, maxHeight; /* pixels */
-  uint32_t searches;            /* of VoySearch */
-  uint32_t exponentials;        /* of VoyExponential */
-  uint32_t splattings;          /* of VoySplatting */
-  uint32_t targetKinds;         /* of VoyTargetKind */
-  uint32_t colorFormats;        /* of VoyColorFormat */
+  uint32_t maxInstances;        /* in a view; 64 in this version */
+  uint32_t maxEyes;             /* in a view; 2 in this version */
+  uint32_t maxWidth, maxHeight; /* of a target, pixels */
+  uint32_t searches;            /* bit mask of VoySearch */
+  uint32_t exponentials;        /* bit mask of VoyExponential */
+  uint32_t splattings;          /* bit mask of VoySplatting */
+  uint32_t targetKinds;         /* bit mask of VoyTargetKind */
+  uint32_t colorFormats;        /* bit mask of VoyColorFormat */
 } VoyCapabilities;
 #define VOY_CAPABILITIES_INIT                                                                     \
   {                                                                                               \
@@ -227,78 +284,83 @@ typedef struct VoyCapabilities {
         0                                                                                         \
   }
 
-VOY_API VoyResult voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities);
+/* Writes what the device can do. The caller sets `type` and `next`. */
+VOY_API VoyResult VOY_CALL voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities);
 
 /* -------------------------------------------------------------------- scene */
 
-/* Bytes that the host supplies: a pak file, an asset bundle, memory.
- * read fills `size` bytes from `offset` (in range) and returns VOY_SUCCESS, or
- * an error, which the call in progress reports as VOY_ERROR_IO. The same read may
- * be tried again later, but not after VOY_ERROR_FILE_NOT_FOUND and
- * VOY_ERROR_REFUSED_INPUT, which say that it is no use. It may be called
- * from any thread, several at once, from voyOpenScene until voyDestroyScene (or
- * voyDestroyDevice) returns: read, user and the bytes must stay valid that long.
- * Where voyOpenScene fails, until it returns. */
+/* A scene file whose bytes the host supplies: from a pak file, an asset bundle or memory. */
 typedef struct VoyByteSource {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_BYTE_SOURCE */
   const void* next;
-  const char* name; /* what messages call it; copied; may be NULL */
-  uint64_t size;    /* bytes */
+  const char* name; /* how messages call the file; UTF-8, copied; may be NULL */
+  uint64_t size;    /* of the file, bytes */
   void* user;
-  VoyResult (*read)(void* user, uint64_t offset, uint64_t size, void* into);
+  /* Copies `size` bytes from `offset` to `into`; the range always lies within the file. Returns
+   * VOY_SUCCESS or an error. After an error the same read may be tried again, except after
+   * VOY_ERROR_FILE_NOT_FOUND and VOY_ERROR_REFUSED_INPUT. The call in progress reports any error
+   * as VOY_ERROR_IO.
+   * It may be called from any thread, and from several at once. `read`, `user` and the bytes must
+   * stay valid until voyDestroyScene or voyDestroyDevice returns. If voyOpenScene fails, they must
+   * stay valid until it returns. */
+  VoyResult(VOY_CALL* read)(void* user, uint64_t offset, uint64_t size, void* into);
 } VoyByteSource;
 #define VOY_BYTE_SOURCE_INIT \
   { VOY_STRUCTURE_TYPE_BYTE_SOURCE, NULL, NULL, 0, NULL, NULL }
 
-/* In VoySceneDesc.next: of a .voy only what frames need is in memory, chunk by chunk, and comes
- * while frames are drawn; other formats are loaded whole all the same. What has not come yet is
- * drawn by its nearest ancestors, so that a frame waits for nothing and has no hole
- * (VoyFrameStreaming changes that). A streamed scene is searched by STREAMING or a TEMPORAL
- * search, and drawn as a cut. docs/streaming.md has the rest.
- * Threads of ours read the bytes, also while no call is in progress, from voyOpenScene until
- * voyDestroyScene (or voyDestroyDevice) returns. */
+/* In VoySceneDesc.next: streams a .voy file. Only the chunks that frames need are kept in memory,
+ * and they are read while frames are drawn. Files of other formats are still loaded whole.
+ * A frame never waits for data: where a node's children are not resident yet, the node is drawn in
+ * their place, so that the image has no hole. VoyFrameStreaming makes a frame wait.
+ * A streamed scene needs VOY_LOD_CUT and VOY_SEARCH_AUTO, STREAMING or one of the TEMPORAL ones.
+ * Reader threads of the library read the bytes, also between calls, until voyDestroyScene or
+ * voyDestroyDevice returns. docs/streaming.md explains the rest. */
 typedef struct VoySceneStreaming {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_STREAMING */
   const void* next;
-  /* Bytes that the scene may take where it is drawn: VoyDeviceDesc.memoryBudget's, on CUDA
-   * deviceMemoryBudget's. 0, or more than is left of that: what is left. */
+  /* Bytes that the scene may take in the memory that it is drawn from. They are part of
+   * VoyDeviceDesc.memoryBudget, or of deviceMemoryBudget on CUDA. 0, or more than is left there:
+   * all that is left there. */
   uint64_t memoryBudget;
-  /* Where the first frames will look from: x, y, z in the scene's coordinates, or NULL. What
-   * voyOpenScene reads is then what is large from there, beside the top of the tree, up to 64 MB
-   * of the file. Each below 1e18 in magnitude; copied. */
+  /* NULL, or where the first frames look from: x, y, z in the scene's coordinates, metres, each
+   * below 1e18 in magnitude. voyOpenScene then reads what looks large from there as well as the
+   * top of the tree, up to 64 MB of the file. Copied. */
   const double* start;
-  uint32_t readerThreads; /* that read and decode; 0 to 64, 0 is 4 */
+  uint32_t readerThreads; /* threads that read and decode; 1 to 64, or 0 for 4 */
   uint32_t reserved;      /* 0 */
 } VoySceneStreaming;
 #define VOY_SCENE_STREAMING_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, NULL, 0, 0 }
 
-/* Exactly one of path and source. The format is told from the bytes: .voy (with
- * its tree), or a flat scene (.ply, .spz), which draws every Gaussian. */
+/* Set exactly one of path and source. The library recognises the format by the bytes. A .voy file
+ * has a level-of-detail tree. A .ply or .spz file is a flat scene: every Gaussian is drawn. */
 typedef struct VoySceneDesc {
   VoyStructureType type;       /* VOY_STRUCTURE_TYPE_SCENE_DESC */
   const void* next;            /* NULL or a VoySceneStreaming */
-  const char* path;            /* UTF-8; copied: a file, or an http:// or https:// URL */
-  const VoyByteSource* source; /* the struct is copied; its user must live as long as the scene */
+  const char* path;            /* a file, or an http:// or https:// URL; UTF-8, copied */
+  const VoyByteSource* source; /* the struct is copied; see there for how long `user` lives */
 } VoySceneDesc;
 #define VOY_SCENE_DESC_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_DESC, NULL, NULL, NULL }
 
-/* Errors: FILE_NOT_FOUND, IO, REFUSED_INPUT, OVER_BUDGET, OUT_OF_HOST_MEMORY;
- * UNSUPPORTED for a URL where libvoyager_http.so is missing (docs/streaming.md).
- * A damaged chunk of a .voy does not fail the opening: frames that need it do. But the top of
- * a streamed scene's tree is read here, and DAMAGED_CHUNK where it cannot be. OVER_BUDGET: of a
- * streamed scene, the budget has no room for that top; the message says what it takes. */
-VOY_API VoyResult voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyScene* scene);
+/* Opens a scene: loads it whole, or prepares streaming and reads the top of the tree. It blocks
+ * until that is done. A damaged chunk does not fail the call; frames that need the chunk fail.
+ * Errors: FILE_NOT_FOUND, IO, REFUSED_INPUT (a malformed file), OUT_OF_HOST_MEMORY, OVER_BUDGET
+ * (the message says how much is needed; of a streamed scene, the top of the tree must fit),
+ * DAMAGED_CHUNK (the top of a streamed scene's tree), UNSUPPORTED (a URL, but libvoyager_http.so is
+ * missing). */
+VOY_API VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* desc,
+                                        VoyScene* scene);
 
-/* Changes VoySceneStreaming.memoryBudget. All but the top of the tree is dropped, and comes again
- * as frames need it. Waits for frames that draw the scene. UNSUPPORTED where it is not streamed;
- * OVER_BUDGET as in voyOpenScene, and nothing has changed then. */
-VOY_API VoyResult voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes);
+/* Changes VoySceneStreaming.memoryBudget, in bytes. Everything but the top of the tree is dropped
+ * and read again as frames need it. The call waits for frames that draw the scene.
+ * Errors: UNSUPPORTED (a scene that is not streamed), OVER_BUDGET (as voyOpenScene; nothing has
+ * changed). */
+VOY_API VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes);
 
-/* Waits for frames that draw it, and frees its memory. Every call on a view with an
- * instance of it then returns VOY_ERROR_SCENE_DESTROYED, but for voyDestroyView. */
-VOY_API VoyResult voyDestroyScene(VoyScene scene);
+/* Waits for frames that draw the scene and frees its memory. From then on every call on a view
+ * with an instance of it returns VOY_ERROR_SCENE_DESTROYED, except voyDestroyView. */
+VOY_API VoyResult VOY_CALL voyDestroyScene(VoyScene scene);
 
 typedef enum VoySceneStorage {
   VOY_SCENE_STORAGE_FLAT = 0, /* no tree */
@@ -310,22 +372,22 @@ typedef enum VoySceneStorage {
 typedef struct VoySceneInfo {
   VoyStructureType type;  /* VOY_STRUCTURE_TYPE_SCENE_INFO */
   void* next;             /* NULL or a VoySceneProfile */
-  uint64_t gaussianCount; /* the scene's own: the leaves of a tree */
+  uint64_t gaussianCount; /* of the input; in a tree, its leaves */
   uint64_t nodeCount;     /* 0 for a flat scene */
   uint32_t treeDepth;     /* levels; 0 for a flat scene */
   uint32_t chunkCount;
   uint32_t damagedChunkCount;
-  uint32_t shDegree; /* 0-3, of what is kept: bands that are zero everywhere are not */
+  uint32_t shDegree; /* 0 to 3, as kept: top bands that are all zero are left out */
   VoySceneStorage storage;
-  uint32_t antialiased; /* 1: the input says it was trained with the antialiased low-pass */
-  double origin[3];     /* world position of the scene-local zero, metres */
-  double boundsMin[3];  /* world metres: means ± 3·max(s) */
+  uint32_t antialiased; /* 1: trained with the antialiased low-pass, says the input */
+  double origin[3];     /* world position of the zero of scene-local coordinates, metres */
+  double boundsMin[3];  /* world metres: means ± 3·(largest scale) */
   double boundsMax[3];
   uint64_t residentBytes; /* of scene data, as VoyDeviceDesc.memoryBudget counts it */
-  uint64_t droppedCount;  /* Gaussians left out at import because they were impossible */
-  uint64_t repairedCount; /* Gaussians mended at import, one for each attribute (scale,
-                             rotation, opacity, SH) that was */
-  double positionError;   /* compact storage: largest error of a mean, metres; else 0 */
+  uint64_t droppedCount;  /* Gaussians left out at import: values no Gaussian can have */
+  uint64_t repairedCount; /* repairs at import, counted for each Gaussian and attribute
+                             (scale, rotation, opacity, SH) */
+  double positionError;   /* compact storage: largest error of a mean, metres. Else 0 */
 } VoySceneInfo;
 #define VOY_SCENE_INFO_INIT                                                                      \
   {                                                                                              \
@@ -333,30 +395,32 @@ typedef struct VoySceneInfo {
         {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0                                                         \
   }
 
-/* In VoySceneInfo.next: what decides what is stored, loaded and launched for a scene
- * (docs/omissions.md). type and next must be set; the rest is written. */
+/* In VoySceneInfo.next: the properties of a scene that decide which work and memory can be left out
+ * (docs/omissions.md). The caller sets `type` and `next`; the call writes the rest. */
 typedef struct VoySceneProfile {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_PROFILE */
   void* next;
-  uint32_t inputShDegree; /* what the input had: at least VoySceneInfo.shDegree */
-  uint32_t merged;        /* 1: a tree with nodes that stand for several Gaussians */
-  uint32_t interpolated;  /* 1: cuts of it draw nodes between their parents and themselves */
-  uint32_t streamed;      /* 1: opened with VoySceneStreaming; 0: all of it is in memory */
-  /* 1: all Gaussians were looked at. 0, of a streamed scene: what follows is 0, not known. */
+  uint32_t inputShDegree; /* of the input: VoySceneInfo.shDegree or more */
+  uint32_t merged;        /* 1: a tree has nodes that represent several Gaussians */
+  uint32_t interpolated;  /* 1: a cut draws nodes blended with their parents */
+  uint32_t streamed;      /* 1: opened with VoySceneStreaming. 0: all in memory */
+  /* 1: all Gaussians were examined. 0: the scene is streamed, and the fields below are 0. */
   uint32_t complete;
-  uint32_t reserved;                         /* 0 */
-  uint64_t chunksByShDegree[4];              /* chunks by the SH degree that they use */
-  uint64_t opacitiesAboveOne;                /* Gaussians; only merged ones have such */
-  float leastAnisotropy, greatestAnisotropy; /* longest axis over shortest; 0 without Gaussians */
+  uint32_t reserved;            /* 0 */
+  uint64_t chunksByShDegree[4]; /* chunks that use SH degree 0, 1, 2, 3 */
+  uint64_t opacitiesAboveOne;   /* Gaussians; only merged ones can exceed 1 */
+  /* Of the Gaussians: the longest axis over the shortest. 0 if there are none. */
+  float leastAnisotropy, greatestAnisotropy;
 } VoySceneProfile;
 #define VOY_SCENE_PROFILE_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_PROFILE, NULL, 0, 0, 0, 0, 0, 0, {0, 0, 0, 0}, 0, 0, 0 }
 
-VOY_API VoyResult voyGetSceneInfo(VoyScene scene, VoySceneInfo* info);
+/* Writes the facts of a scene. The caller sets `type` and `next`. */
+VOY_API VoyResult VOY_CALL voyGetSceneInfo(VoyScene scene, VoySceneInfo* info);
 
 typedef enum VoySceneNoteKind {
-  VOY_SCENE_NOTE_OMITTED = 0,  /* what this scene does not need and so does not pay for */
-  VOY_SCENE_NOTE_REPAIRED = 1, /* Gaussians of which one attribute was mended at import */
+  VOY_SCENE_NOTE_OMITTED = 0,  /* the scene does not need this, so it costs nothing */
+  VOY_SCENE_NOTE_REPAIRED = 1, /* Gaussians of which one attribute was repaired at import */
   VOY_SCENE_NOTE_DROPPED = 2,  /* Gaussians left out at import */
   VOY_SCENE_NOTE_DAMAGED = 3,  /* chunks that cannot be read */
   VOY_SCENE_NOTE_KIND_MAX_ENUM = 0x7fffffff
@@ -368,80 +432,81 @@ typedef struct VoySceneNote {
   VoySceneNoteKind kind;
   uint32_t reserved;
   uint64_t count; /* Gaussians (REPAIRED, DROPPED) or chunks (DAMAGED); 0 for OMITTED */
-  uint64_t bytes; /* saved, for OMITTED; else 0 */
+  uint64_t bytes; /* that OMITTED saves; else 0 */
   char what[64];  /* UTF-8, terminated */
   char why[192];
 } VoySceneNote;
 
-/* What was left out, mended, dropped or damaged: a note for each kind and cause, so a
- * Gaussian of which two attributes were mended counts in two of them.
- * capacity 0: only *count is set. Otherwise up to capacity notes are written
- * (their type and next are set by the call), *count is how many there are, and the
- * result is VOY_INCOMPLETE if that is more. */
-VOY_API VoyResult voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNote* notes,
-                                   uint32_t* count);
+/* Lists what was omitted, repaired, dropped or damaged: one note for each kind and cause. A
+ * Gaussian with two repaired attributes counts in two notes.
+ * With capacity 0 the call only sets *count. Otherwise it writes up to `capacity` notes, their
+ * `type` and `next` included, and sets *count to the number of notes. It returns VOY_INCOMPLETE if
+ * that is more than `capacity`. */
+VOY_API VoyResult VOY_CALL voyGetSceneNotes(VoyScene scene, uint32_t capacity, VoySceneNote* notes,
+                                            uint32_t* count);
 
-/* Since the scene was opened, but for what is of the latest frames. */
+/* Counters of a streamed scene. They count from the opening of the scene. The fields of chunks
+ * that are needed, missing or seen describe the latest frames. docs/streaming.md has the terms. */
 typedef struct VoyStreamingStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_STREAMING_STATS */
   void* next;
-  uint64_t budgetBytes;           /* that the scene takes of its budget: slots and tables */
-  uint64_t slots, residentChunks; /* room, and what is there */
-  uint64_t neededChunks;          /* by the latest frames, whatever the budget */
-  uint64_t missingChunks;         /* of these, not there */
-  uint64_t missingBytes;          /* and what they take in the file */
-  uint64_t seenChunks;            /* of those needed: within an eye's frustum and the margin */
-  uint64_t seenMissingChunks;     /* of these, not there: 0 in a frame that shows nothing coarse */
-  uint64_t requested, arrived;    /* chunks */
-  uint64_t late;    /* of those that arrived: a frame had looked where they were not yet */
-  uint64_t evicted; /* to make room */
-  uint64_t flushed; /* that nobody wanted any more before they had arrived */
+  uint64_t budgetBytes;           /* the scene's part of its budget: slots and tables */
+  uint64_t slots, residentChunks; /* chunks that fit, and that are resident */
+  uint64_t neededChunks;          /* that the latest frames need, whatever the budget */
+  uint64_t missingChunks;         /* needed but not resident */
+  uint64_t missingBytes;          /* size of missingChunks in the file */
+  uint64_t seenChunks;            /* needed and inside an eye's frustum plus the margin */
+  uint64_t seenMissingChunks;  /* seen but not resident; 0: nothing is shown coarser than asked */
+  uint64_t requested, arrived; /* chunks */
+  uint64_t late;               /* arrived after a frame had needed them */
+  uint64_t evicted;            /* chunks removed to make room */
+  uint64_t flushed;            /* requests dropped because nothing needed them any more */
   uint64_t reads, bytesRead;
-  uint64_t failures; /* reads that failed, and chunks that were damaged; each is tried again where
-                        that may help. The log names each cause once (WARNING) */
+  uint64_t failures; /* failed reads and damaged chunks. Reads that may succeed later are tried
+                        again. The log names each cause once (WARNING) */
 } VoyStreamingStats;
 #define VOY_STREAMING_STATS_INIT \
   { VOY_STRUCTURE_TYPE_STREAMING_STATS, NULL, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 }
 
-/* UNSUPPORTED where the scene is not streamed. */
-VOY_API VoyResult voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats);
+/* Writes the counters of a streamed scene. The caller sets `type`.
+ * Errors: UNSUPPORTED (a scene that is not streamed). */
+VOY_API VoyResult VOY_CALL voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats);
 
 /* ------------------------------------------------------------------- target */
 
 typedef enum VoyTargetKind {
   VOY_TARGET_KIND_HOST_MEMORY = 0,
-  VOY_TARGET_KIND_VULKAN = 1, /* images of a Vulkan host: voyager_vulkan.h */
+  VOY_TARGET_KIND_VULKAN = 1, /* images of a Vulkan host; see voyager_vulkan.h */
   VOY_TARGET_KIND_MAX_ENUM = 0x7fffffff
 } VoyTargetKind;
 
-/* All hold display-referred code values, as they were blended: what an _SRGB format holds
- * once it has encoded. Copied to such an image they are right; written through a view
- * that encodes, they would be encoded twice. */
+/* All formats hold display-referred code values, which is what an _SRGB image stores. Copying them
+ * to an _SRGB image is correct. Writing them through an _SRGB view would encode them twice. */
 typedef enum VoyColorFormat {
   VOY_COLOR_FORMAT_NONE = 0,        /* depth only */
-  VOY_COLOR_FORMAT_RGBA8_UNORM = 1, /* code values, rounded to nearest, clamped to [0, 1] */
-  VOY_COLOR_FORMAT_RGBA32F = 2,     /* before clamping */
-  VOY_COLOR_FORMAT_RGBA16F = 3,     /* the same in binary16, rounded to nearest even; what lies
-                                       beyond +-65504 becomes that, so all values are finite */
+  VOY_COLOR_FORMAT_RGBA8_UNORM = 1, /* clamped to [0, 1], rounded to nearest */
+  VOY_COLOR_FORMAT_RGBA32F = 2,     /* not clamped */
+  VOY_COLOR_FORMAT_RGBA16F = 3,     /* binary16, rounded to nearest even, clamped to +-65504 and so
+                                       always finite */
   VOY_COLOR_FORMAT_MAX_ENUM = 0x7fffffff
 } VoyColorFormat;
 
-/* An image that frames are written to. rgb is premultiplied colour + T·background,
- * a is 1 - T (T: transmittance). Rows run top to bottom.
- * Depth is binary32 view-space z in metres of the first splat after which
- * T <= 0.5, +inf where there is none.
- * The memory is the host's: it must stay valid until the target is destroyed, is
- * written only during voyRenderFrame, and only within width x height. */
+/* An image that frames are drawn into. Rows run from top to bottom. With T the transmittance of a
+ * pixel, rgb is the premultiplied colour plus T times the background, and a is 1 - T.
+ * Depth is a binary32 number: the view-space z, in metres, of the first splat after which
+ * T <= 0.5, or +inf if there is none.
+ * The memory belongs to the host and must stay valid until the target is destroyed. It is written
+ * only during voyRenderFrame, and only inside width x height. */
 typedef struct VoyTargetDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_TARGET_DESC */
-  const void* next;
+  const void* next;      /* NULL, or a VoyVulkanTargetDesc with kind VULKAN */
   VoyTargetKind kind;
   VoyColorFormat colorFormat;
   uint32_t width, height; /* pixels, 1 to VoyCapabilities.maxWidth/maxHeight */
-  void* color;            /* NULL exactly where colorFormat is NONE; aligned to 4 bytes */
-  uint64_t colorRowPitch; /* bytes, a multiple of 4; 0 is tightly packed */
-  float* depth;           /* or NULL */
-  uint64_t depthRowPitch; /* bytes, a multiple of 4; 0 is tightly packed */
+  void* color;            /* aligned to 4 bytes; NULL if and only if colorFormat is NONE */
+  uint64_t colorRowPitch; /* bytes, a multiple of 4; 0: rows follow without a gap */
+  float* depth;           /* NULL: no depth; one of color and depth must be set */
+  uint64_t depthRowPitch; /* bytes, a multiple of 4; 0: rows follow without a gap */
 } VoyTargetDesc;
 #define VOY_TARGET_DESC_INIT                                           \
   {                                                                    \
@@ -449,94 +514,103 @@ typedef struct VoyTargetDesc {
         VOY_COLOR_FORMAT_RGBA8_UNORM, 0, 0, NULL, 0, NULL, 0           \
   }
 
-VOY_API VoyResult voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc, VoyTarget* target);
-VOY_API VoyResult voyDestroyTarget(VoyTarget target);
+/* Creates a target. The host destroys it with voyDestroyTarget.
+ * Errors: INVALID_ARGUMENT; for Vulkan also those at VoyVulkanTargetDesc. */
+VOY_API VoyResult VOY_CALL voyCreateTarget(VoyDevice device, const VoyTargetDesc* desc,
+                                           VoyTarget* target);
+
+/* Waits for frames that draw into the target and destroys it. The host's memory is not freed. */
+VOY_API VoyResult VOY_CALL voyDestroyTarget(VoyTarget target);
 
 /* --------------------------------------------------------------------- view */
 
+/* Which nodes of a tree are drawn. docs/lod-selection.md compares the choices. */
 typedef enum VoyLod {
-  VOY_LOD_CUT =
-      0, /* the level-of-detail cut at tau; a flat scene has none and draws every Gaussian */
-  VOY_LOD_ALL_LEAVES = 1, /* every leaf, no search, no interpolation */
-  /* Baselines of measurements, without interpolation, of scenes that are loaded whole. */
-  VOY_LOD_BLOCKS = 2, /* all of a block of the scene at one depth of the tree, by the block's
-                         distance, as CityGaussian does it */
-  VOY_LOD_LEVELS = 3, /* by each node's level, log2 of its extent rounded up, and that which its
-                         distance asks for, as Octree-GS does it */
+  VOY_LOD_CUT = 0,        /* the level-of-detail cut at tau. A flat scene has no cut and draws every
+                             Gaussian */
+  VOY_LOD_ALL_LEAVES = 1, /* every leaf, without search and interpolation */
+  /* The next two are baselines for measurements: no interpolation, not for streamed scenes. */
+  VOY_LOD_BLOCKS = 2, /* as CityGaussian: one depth of the tree for each block of the scene, chosen
+                         by the distance of the block */
+  VOY_LOD_LEVELS = 3, /* as Octree-GS: a node's level is log2 of its extent, rounded up, and is
+                         compared with the level that its distance asks for */
   VOY_LOD_MAX_ENUM = 0x7fffffff
 } VoyLod;
 
-/* How the cut is found. All searches give the same cut, to the bit; what differs is
- * what they read. */
+/* How the cut is found. All searches find the same cut, to the bit. They differ in what they
+ * read. */
 typedef enum VoySearch {
   VOY_SEARCH_AUTO = 0,           /* TEMPORAL */
-  VOY_SEARCH_EXHAUSTIVE = 1,     /* every node: the baseline */
-  VOY_SEARCH_STREAMING = 2,      /* chunk by chunk from the top, skipping what the cut is above */
-  VOY_SEARCH_TEMPORAL = 3,       /* from the view's last cut, only what may have changed since;
-                                    streaming for a view's first frame and where that is cheaper */
-  VOY_SEARCH_TEMPORAL_VISIT = 4, /* the same, but visits all of the last cut: for measurements */
+  VOY_SEARCH_EXHAUSTIVE = 1,     /* tests every node: the baseline */
+  VOY_SEARCH_STREAMING = 2,      /* reads chunks from the top and skips those below the cut */
+  VOY_SEARCH_TEMPORAL = 3,       /* starts from the view's last cut and tests what may have changed.
+                                    Falls back to STREAMING for a view's first frame, and where that
+                                    is cheaper */
+  VOY_SEARCH_TEMPORAL_VISIT = 4, /* TEMPORAL, but visits all of the last cut: for measurements */
   VOY_SEARCH_MAX_ENUM = 0x7fffffff
 } VoySearch;
 
+/* How the exponential in a splat's alpha is computed (docs/numerics.md has the errors). */
 typedef enum VoyExponential {
-  VOY_EXPONENTIAL_AUTO = 0,  /* EX2 on CUDA, where VoySplatting is OURS; else EXACT */
+  VOY_EXPONENTIAL_AUTO = 0,  /* EX2 on CUDA with VOY_SPLATTING_OURS, else EXACT */
   VOY_EXPONENTIAL_EXACT = 1, /* within 2 ulp */
-  VOY_EXPONENTIAL_EX2 = 2,   /* base 2, log2(e) folded into the conic */
-  VOY_EXPONENTIAL_LUT = 3,   /* table of lutSize + 1 entries, nearest */
-  VOY_EXPONENTIAL_HALF2 = 4, /* CUDA only: ex2 and blending in binary16; about 60 dB from exact */
+  VOY_EXPONENTIAL_EX2 = 2,   /* base 2, with log2(e) folded into the conic */
+  VOY_EXPONENTIAL_LUT = 3,   /* the nearest entry of a table of lutSize + 1 entries */
+  VOY_EXPONENTIAL_HALF2 = 4, /* CUDA only: EX2 and blending in binary16, about 60 dB PSNR */
   VOY_EXPONENTIAL_MAX_ENUM = 0x7fffffff
 } VoyExponential;
 
+/* Whether (tile, splat) pairs that cannot reach the alpha threshold are dropped before sorting. */
 typedef enum VoyAlphaFilter {
   VOY_ALPHA_FILTER_ON = 0,
-  VOY_ALPHA_FILTER_OFF = 1, /* the same image to the bit, slower: for measurements */
+  VOY_ALPHA_FILTER_OFF = 1, /* the same image, to the bit, but slower: for measurements */
   VOY_ALPHA_FILTER_MAX_ENUM = 0x7fffffff
 } VoyAlphaFilter;
 
-/* How Gaussians become pixels. */
+/* How splats become pixels (docs/splatting.md). */
 typedef enum VoySplatting {
-  VOY_SPLATTING_OURS = 0, /* tiles that the ellipse at the α threshold touches, sorted by depth */
-  VOY_SPLATTING_3DGS = 1, /* the baseline of measurements, CUDA only: boxes of 3 sigma, (tile,
-                             depth) keys, expf, one pixel a thread */
+  VOY_SPLATTING_OURS = 0, /* bins a splat into the tiles that its α-threshold ellipse touches */
+  VOY_SPLATTING_3DGS = 1, /* CUDA only, the baseline for measurements: 3-sigma boxes, (tile,
+                             depth) keys, expf, one thread for each pixel */
   VOY_SPLATTING_MAX_ENUM = 0x7fffffff
 } VoySplatting;
 
-/* In VoyViewDesc.next, or given to voySetViewTimeBudget: the view chooses tau, frame by frame,
- * so that millisecondsTotal of VoyFrameStats stays within the budget; it aims at nine tenths of
- * it. That is the device's time on CUDA, the call's own on the CPU, without what the host draws.
- * tau starts at VoyViewDesc.tau, brought into the range, and depends on nothing but the times
- * of the view's frames that have ended: the same times give the same tau. While they stay about
- * the aim tau rests. docs/time-budget.md says how it moves. */
+/* In VoyViewDesc.next, or passed to voySetViewTimeBudget: the view chooses tau for each frame so
+ * that VoyFrameStats.millisecondsTotal stays within the budget. It aims at nine tenths of it. On
+ * CUDA this is GPU time, on the CPU the time of voyRenderFrame. What the host draws does not count.
+ * tau starts at VoyViewDesc.tau, clamped to the range below. It then depends only on the times of
+ * the view's finished frames: equal times give equal taus. docs/time-budget.md has the rule. */
 typedef struct VoyTimeBudget {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_TIME_BUDGET */
   const void* next;
-  double milliseconds; /* a frame, all eyes together; finite, > 0 */
-  double leastTau;     /* pixels, finite, >= 0: time to spare is not spent on more than that */
-  double greatestTau;  /* pixels, finite, >= leastTau: where more is needed, frames are late */
+  double milliseconds; /* for a frame, all eyes together; finite, > 0 */
+  double leastTau;     /* pixels, finite, >= 0: the finest tau, even if time is left */
+  double greatestTau;  /* pixels, finite, >= leastTau: the coarsest, even if frames are late */
 } VoyTimeBudget;
 #define VOY_TIME_BUDGET_INIT \
   { VOY_STRUCTURE_TYPE_TIME_BUDGET, NULL, 0.0, 1.0, 60.0 }
 
-/* The eyes of a view see one cut: that of the point amid them, as fine as the finest of them
- * wants it. Of a scene's data each is read once for both; covariance, colour, order and
- * blending are each eye's own, so that an eye's image is what it would be alone with that cut:
- * to the bit on the CPU and on CUDA. VOY_SPLATTING_3DGS draws one eye.
+/* A view draws instances of scenes for one or two eyes, and keeps the cut of each instance between
+ * frames. One scene may have several instances. The splats of all instances are sorted together,
+ * so that overlapping instances hide one another correctly.
  *
- * A view draws instances of scenes, sorted together, so that where they overlap the nearer
- * hides the farther; and keeps the cut of each between frames. A scene may be several. */
+ * Two eyes share one cut for each instance. It is the cut for the point midway between the eyes, as
+ * fine as the more demanding eye needs. Covariance, colour, order and blending are computed for
+ * each eye. So the image of an eye equals, to the bit, what this eye alone gives with that cut.
+ * VOY_SPLATTING_3DGS draws one eye. */
 typedef struct VoyViewDesc {
   VoyStructureType type;  /* VOY_STRUCTURE_TYPE_VIEW_DESC */
   const void* next;       /* NULL or a VoyTimeBudget */
-  uint32_t instanceCount; /* 1 to VoyCapabilities.maxInstances; more are UNSUPPORTED */
-  const VoyScene* scenes; /* one an instance, of the same device; copied */
-  uint32_t eyeCount;      /* 1 to VoyCapabilities.maxEyes, of each frame; more are UNSUPPORTED */
-  uint32_t maxWidth, maxHeight; /* pixels: no target of a frame may be larger */
+  uint32_t instanceCount; /* 1 to VoyCapabilities.maxInstances; more is UNSUPPORTED */
+  const VoyScene* scenes; /* one for each instance, of the same device; copied */
+  uint32_t eyeCount;      /* of every frame; 1 to VoyCapabilities.maxEyes; more is UNSUPPORTED */
+  uint32_t maxWidth, maxHeight; /* pixels; the largest target that frames will have */
   VoyLod lod;
-  double tau; /* granularity in pixels, finite, >= 0; where a time budget starts */
+  double tau; /* granularity in pixels, finite, >= 0: smaller is finer. METHOD §3 */
   VoySearch search;
   VoyAlphaFilter alphaFilter;
   VoyExponential exponential;
-  uint32_t lutSize; /* intervals, 1 to 4096; 0 is 32 */
+  uint32_t lutSize; /* intervals of VOY_EXPONENTIAL_LUT, 1 to 4096; 0: 32 */
   VoySplatting splatting;
 } VoyViewDesc;
 #define VOY_VIEW_DESC_INIT                                                                   \
@@ -545,66 +619,74 @@ typedef struct VoyViewDesc {
         VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, VOY_SPLATTING_OURS                     \
   }
 
-/* Errors: INVALID_ARGUMENT, UNSUPPORTED (a choice that VoyCapabilities does not have; a time
- * budget where the view draws a cut of no instance, so that tau changes nothing),
- * OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no room for the scene). */
-VOY_API VoyResult voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
-VOY_API VoyResult voyDestroyView(VoyView view);
+/* Creates a view. The host destroys it with voyDestroyView.
+ * Errors: INVALID_ARGUMENT, UNSUPPORTED (a choice that VoyCapabilities does not list; a time budget
+ * for a view that draws no cut, where tau has no effect), OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA:
+ * the scene does not fit into the GPU's memory). */
+VOY_API VoyResult VOY_CALL voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
 
-/* From the next frame on. tau in pixels, finite, >= 0. Ends a time budget. */
-VOY_API VoyResult voySetViewTau(VoyView view, double tau);
+/* Waits for the view's frame in progress and destroys the view. */
+VOY_API VoyResult VOY_CALL voyDestroyView(VoyView view);
 
-/* From the next frame on: sets a time budget, or changes it, and tau goes on from where it is.
- * May be called every frame. Errors: INVALID_ARGUMENT, UNSUPPORTED as in voyCreateView. */
-VOY_API VoyResult voySetViewTimeBudget(VoyView view, const VoyTimeBudget* budget);
+/* Sets tau, in pixels, finite, >= 0, from the next frame on. It ends a time budget. */
+VOY_API VoyResult VOY_CALL voySetViewTau(VoyView view, double tau);
+
+/* Sets or changes the time budget from the next frame on. tau continues from its current value. It
+ * may be called every frame.
+ * Errors: INVALID_ARGUMENT, UNSUPPORTED (as voyCreateView). */
+VOY_API VoyResult VOY_CALL voySetViewTimeBudget(VoyView view, const VoyTimeBudget* budget);
 
 /* -------------------------------------------------------------------- frame */
 
-/* As XrPosef, in double: position in metres, orientation (x, y, z, w) takes the
- * object's axes (x right, y up, -z forward) to the parent's. The orientation is
- * normalised by the call; zero or non-finite is refused. */
+/* XrPosef in double. `position` is in metres. `orientation` is a quaternion (x, y, z, w) that
+ * rotates the object's axes (x right, y up, -z forward) into the parent's. It need not have unit
+ * length, because the call normalises it. A zero or non-finite quaternion is INVALID_ARGUMENT. */
 typedef struct VoyPose {
   double position[3];
   double orientation[4];
 } VoyPose;
 
-/* Tangents of the half-angles: right and up positive to the right of and above
- * the view axis, left and down normally negative. left < right, down < up, by
- * 1e-6 at least; each between -1e4 and 1e4. */
+/* Tangents of the half-angles of a field of view, each between -1e4 and 1e4. right and up are
+ * positive to the right of the view axis and above it, so left and down are normally negative.
+ * right - left and up - down are at least 1e-6. */
 typedef struct VoyFrustum {
   double left, right, up, down;
 } VoyFrustum;
 
-/* From angles in radians as XrFovf has them, each inside ±π/2. INVALID_ARGUMENT where
- * the tangents are not those of a VoyFrustum. */
-VOY_API VoyResult voyFovFromAngles(double left, double right, double up, double down,
-                                   VoyFrustum* frustum);
+/* Fills a frustum from angles in radians, as XrFovf has them, each inside ±π/2: the tangents of the
+ * angles. Errors: INVALID_ARGUMENT (tangents that VoyFrustum does not allow). */
+VOY_API VoyResult VOY_CALL voyFovFromAngles(double left, double right, double up, double down,
+                                            VoyFrustum* frustum);
 
-/* From pinhole intrinsics in pixels: pixel centres at +0.5, cx and cy measured
- * from the top left corner. INVALID_ARGUMENT where the tangents are not those of a
- * VoyFrustum. */
-VOY_API VoyResult voyFovFromIntrinsics(double fx, double fy, double cx, double cy, double width,
-                                       double height, VoyFrustum* frustum);
+/* Fills a frustum from pinhole intrinsics, all in pixels. cx and cy are measured from the top left
+ * corner of the image; pixel centres lie at +0.5. left = -cx / fx, right = (width - cx) / fx,
+ * up = cy / fy, down = -(height - cy) / fy (docs/conventions.md).
+ * Errors: INVALID_ARGUMENT (tangents that VoyFrustum does not allow). */
+VOY_API VoyResult VOY_CALL voyFovFromIntrinsics(double fx, double fy, double cx, double cy,
+                                                double width, double height, VoyFrustum* frustum);
 
-/* Element of an array, so this size is for good: what is added later goes through next. */
+/* What one eye sees. It is an element of an array, so its size never changes. Later additions come
+ * through `next`. */
 typedef struct VoyFrameEye {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_EYE */
   const void* next;      /* NULL or a VoyEyeDepthLimit */
   VoyPose pose;          /* in the world */
   VoyFrustum frustum;
-  VoyTarget target;  /* of the view's device; its size is the image's. No two eyes have one image:
-                        they have targets of one kind, or layers of one target */
-  uint32_t layer;    /* of the target's array (voyager_vulkan.h); 0 in host memory */
+  VoyTarget target;  /* of the view's device. Its size is the size of the image. Two eyes need two
+                        targets of the same kind, or two layers of one target */
+  uint32_t layer;    /* layer of the target (voyager_vulkan.h); 0 for host memory */
   uint32_t reserved; /* 0 */
 } VoyFrameEye;
-/* At the origin, looking along -z; frustum and target are the host's to set. */
+/* At the origin, looking along -z. The host must set frustum and target. */
 #define VOY_FRAME_EYE_INIT \
   { VOY_STRUCTURE_TYPE_FRAME_EYE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, {0, 0, 0, 0}, NULL, 0, 0 }
 
-/* What a value of a host's depth buffer says. METRES: view-space z, +inf where there is
- * nothing. The others are a projection's depth, d = a + b / z, from 0 to 1: 0 at nearZ and 1
- * at farZ (STANDARD), or 1 at nearZ and 0 at farZ (REVERSED). d is clamped to that range. d of
- * farZ, which buffers are cleared to, is nothing; so is NaN in all of them. */
+/* What a value of the host's depth buffer means.
+ * METRES: view-space z in metres; +inf means no geometry.
+ * STANDARD: projected depth d = a + b / z, 0 at nearZ and 1 at farZ.
+ * REVERSED: projected depth d = a + b / z, 1 at nearZ and 0 at farZ.
+ * d is clamped to [0, 1]. The d of farZ, which buffers are cleared to, means no geometry. NaN means
+ * no geometry in every encoding. */
 typedef enum VoyDepthEncoding {
   VOY_DEPTH_ENCODING_METRES = 0,
   VOY_DEPTH_ENCODING_STANDARD = 1,
@@ -612,51 +694,55 @@ typedef enum VoyDepthEncoding {
   VOY_DEPTH_ENCODING_MAX_ENUM = 0x7fffffff
 } VoyDepthEncoding;
 
-/* In VoyFrameEye.next: how far the host's opaque geometry is at each pixel of the eye's
- * target. Splats whose centre lies at a greater view-space z than that are not blended in
- * the pixel, nor do they count for its depth: the image is what lies before the geometry,
- * to be composited over the host's picture. The memory is read during voyRenderFrame only.
- * VOY_SPLATTING_3DGS is VOY_ERROR_UNSUPPORTED with it. */
+/* In VoyFrameEye.next: the depth of the host's opaque geometry at each pixel of the eye's target.
+ * A splat whose centre has a greater view-space z than that is hidden: it is not blended in the
+ * pixel and does not count for its depth. The image then holds what lies in front of the geometry,
+ * and the host composites it over its own picture.
+ * The memory belongs to the host and is read only during voyRenderFrame.
+ * VOY_SPLATTING_3DGS does not support it (VOY_ERROR_UNSUPPORTED). */
 typedef struct VoyEyeDepthLimit {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT */
   const void* next;
-  const float* depth;     /* rows from the top, as the target's; aligned to 4 bytes. NULL: what
-                             voyRecordVulkanDepthLimit took in, for a target made for that */
-  uint64_t depthRowPitch; /* bytes, a multiple of 4; 0 is tightly packed */
+  const float* depth;     /* rows from top to bottom, of the target's size; aligned to 4 bytes.
+                             NULL: what voyRecordVulkanDepthLimit copied into the target */
+  uint64_t depthRowPitch; /* bytes, a multiple of 4; 0: rows follow without a gap */
   VoyDepthEncoding encoding;
   uint32_t reserved;  /* 0 */
-  double nearZ, farZ; /* metres, of the host's projection: 1e-18 <= nearZ <= 1e18, nearZ < farZ,
-                         which may be infinite; ignored for METRES */
+  double nearZ, farZ; /* metres, of the host's projection; ignored for METRES.
+                         1e-18 <= nearZ <= 1e18; nearZ < farZ; farZ may be infinite */
 } VoyEyeDepthLimit;
 #define VOY_EYE_DEPTH_LIMIT_INIT \
   { VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, NULL, NULL, 0, VOY_DEPTH_ENCODING_METRES, 0, 0.0, 0.0 }
 
-/* Where an instance stands: a point x of the scene (in its axes, its origin included, as
- * VoySceneInfo.boundsMin has them) is at position + scale·R·x in the world, R being the
- * orientation's rotation of the scene's own axes, whatever these are: VoyPose's (x right, y up)
- * are a habit of eyes. Colours turn with the scene. Element of an array, as VoyFrameEye is.
- * A frame is INVALID_ARGUMENT where the eye comes to lie 1e18 m or more from the origin of an
- * instance's scene, in the scene's own metres. */
+/* Where an instance stands in the world. A point x of the scene is drawn at
+ * position + scale·R·x, where R is the rotation of `orientation` (METHOD §6). x is in the scene's
+ * own axes, whatever they are, and includes the scene's origin, as VoySceneInfo.boundsMin does.
+ * View-dependent colours turn with the scene.
+ * The eye must be less than 1e18 m away from the origin of each instance's scene, measured in the
+ * scene's own metres. Otherwise the frame is INVALID_ARGUMENT.
+ * It is an element of an array, so its size never changes. */
 typedef struct VoyInstancePose {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_INSTANCE_POSE */
   const void* next;
   VoyPose pose;
-  double scale; /* uniform, 1e-9 to 1e9 */
+  double scale; /* the same for all axes, 1e-9 to 1e9 */
 } VoyInstancePose;
 /* The identity. */
 #define VOY_INSTANCE_POSE_INIT \
   { VOY_STRUCTURE_TYPE_INSTANCE_POSE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, 1 }
 
-/* In VoyFrame.next: for loading screens, cuts and pictures that must be whole. */
+/* In VoyFrame.next: for frames that must be complete, such as screenshots, loading screens and cuts
+ * to another place. */
 typedef struct VoyFrameStreaming {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STREAMING */
   const void* next;
-  /* 1: the call waits until all is there that the frame sees of its streamed scenes, with a margin
-   * (docs/streaming.md); the image is then that of the scenes loaded whole, to the bit.
-   * OVER_BUDGET where that is more than a budget has room for; the message says what it takes. */
+  /* 1: the call waits until everything that the frame sees of its streamed scenes is resident, with
+   * a margin (docs/streaming.md). The image then equals, to the bit, that of scenes loaded whole.
+   * If a budget is too small, the frame is OVER_BUDGET and the message says how much is needed.
+   * 0: the call does not wait. */
   uint32_t waitResident;
-  /* 1: what cannot be had, because it is damaged or cannot be read, is drawn by its ancestors.
-   * 0: such a frame fails, if it waits, with what was wrong (DAMAGED_CHUNK, IO). */
+  /* Only for frames that wait. 1: data that is damaged or cannot be read is replaced by its nearest
+   * ancestors. 0: such a frame fails with DAMAGED_CHUNK or with the error of the read. */
   uint32_t standIn;
 } VoyFrameStreaming;
 #define VOY_FRAME_STREAMING_INIT \
@@ -665,52 +751,58 @@ typedef struct VoyFrameStreaming {
 typedef struct VoyFrame {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME */
   const void* next;      /* NULL or a chain of VoyFrameStreaming and VoyVulkanFrame */
-  uint32_t eyeCount;     /* the view's */
+  uint32_t eyeCount;     /* VoyViewDesc.eyeCount */
   const VoyFrameEye* eyes;
-  const VoyInstancePose* instances; /* one an instance, or NULL: all at the identity */
-  double nearZ; /* metres in the world, > 0: splats with z <= nearZ are not drawn; 0.2 by default */
-  float background[3]; /* code values behind everything, finite */
+  const VoyInstancePose* instances; /* one for each instance; NULL: all at the identity */
+  double nearZ; /* world metres, finite, > 0: splats with view-space z <= nearZ are not drawn */
+  float background[3]; /* code values behind the scene, finite */
   uint32_t reserved;   /* 0 */
 } VoyFrame;
 #define VOY_FRAME_INIT \
   { VOY_STRUCTURE_TYPE_FRAME, NULL, 0, NULL, NULL, 0.2, {0, 0, 0}, 0 }
 
-/* Renders into the targets and returns when they are written; into Vulkan's images, as
- * VoyVulkanFrame says. On error no target is changed. Errors: INVALID_ARGUMENT (values out of
- * range), UNSUPPORTED (a depth limit where the view's splatting has none), SCENE_DESTROYED,
- * DAMAGED_CHUNK, IO, FILE_NOT_FOUND, REFUSED_INPUT (a frame that waits for what cannot be read of a
- * streamed scene: VoyFrameStreaming), OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA: its own memory has no
- * room for the frame), BUSY, TIMEOUT (a Vulkan target: what the frame waits for was not signalled
- * within 10 s), DEVICE_LOST (CUDA's or Vulkan's device no longer works). */
-VOY_API VoyResult voyRenderFrame(VoyView view, const VoyFrame* frame);
+/* Draws a frame. Targets in host memory are complete when the call returns. VoyVulkanFrame says
+ * when Vulkan images are. After an error no target has changed.
+ * Errors:
+ * - INVALID_ARGUMENT: a value out of range.
+ * - UNSUPPORTED: a depth limit with VOY_SPLATTING_3DGS.
+ * - SCENE_DESTROYED: a scene of the view is gone.
+ * - DAMAGED_CHUNK: the frame needs a chunk that is damaged.
+ * - IO, FILE_NOT_FOUND, REFUSED_INPUT: the frame waits (VoyFrameStreaming) and a read failed.
+ * - OUT_OF_HOST_MEMORY, OVER_BUDGET: the frame does not fit into host memory, into a budget, or
+ *   into the GPU's memory.
+ * - BUSY: another thread uses the view or a target.
+ * - TIMEOUT: the host did not signal within 10 s what a Vulkan target waits for.
+ * - DEVICE_LOST: the CUDA or Vulkan device no longer works. */
+VOY_API VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame);
 
-/* The last frame's cut of one instance (its index in VoyViewDesc.scenes): node ids in
- * ascending order.
- * capacity 0: only *count is set. Otherwise up to capacity ids are written, *count
- * is the size of the cut, and the result is VOY_INCOMPLETE if that is more.
- * VOY_ERROR_UNSUPPORTED where the view draws no cut of it (flat scene, ALL_LEAVES), and
- * where CUDA drew it and a later frame failed, until the next that does not;
- * VOY_ERROR_INVALID_ARGUMENT before any frame, or for an instance that there is not. */
-VOY_API VoyResult voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity, uint32_t* nodes,
-                                uint32_t* count);
+/* Returns the last frame's cut of one instance: node ids in ascending order. `instance` is the
+ * index in VoyViewDesc.scenes. On CUDA the call copies the cut from the GPU and waits for it.
+ * With capacity 0 the call only sets *count. Otherwise it writes up to `capacity` ids and sets
+ * *count to the size of the cut. It returns VOY_INCOMPLETE if that is more than `capacity`.
+ * Errors: INVALID_ARGUMENT (before the first frame; no such instance), UNSUPPORTED (the view draws
+ * no cut of this instance; on CUDA also after a frame failed, until the next one succeeds). */
+VOY_API VoyResult VOY_CALL voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity,
+                                         uint32_t* nodes, uint32_t* count);
 
-/* What a view does without. Element of an array, so this size is for good. */
+/* Work or memory that a view leaves out. It is an element of an array, so its size never changes.
+ */
 typedef struct VoyOmission {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_OMISSION */
   void* next;
-  uint64_t bytes; /* of memory that is not taken; 0 where that is not known */
-  /* What the last frame was spared: the bytes that it would have moved, at the rate that the
-   * device's memory has at best, and so the least. 0 where bytes or rate are not known. */
+  uint64_t bytes; /* of memory that is not used; 0 if not known */
+  /* A lower bound of the time that the last frame saved: the bytes that it did not move, divided by
+   * the peak bandwidth of the device's memory. 0 if either is not known. */
   double milliseconds;
   char what[64]; /* UTF-8, terminated */
   char why[192];
 } VoyOmission;
 
-/* What the view's scenes do without (their VOY_SCENE_NOTE_OMITTED, each scene's once), and what
- * the view does without beside that, as far as its frames so far tell (docs/omissions.md).
- * capacity, count and result are as voyGetSceneNotes has them. */
-VOY_API VoyResult voyGetViewOmissions(VoyView view, uint32_t capacity, VoyOmission* omissions,
-                                      uint32_t* count);
+/* Lists what the view leaves out: the VOY_SCENE_NOTE_OMITTED of its scenes, each scene once, and
+ * what the view itself leaves out, judged by its frames so far (docs/omissions.md). `capacity`,
+ * `count` and the result work as in voyGetSceneNotes. */
+VOY_API VoyResult VOY_CALL voyGetViewOmissions(VoyView view, uint32_t capacity,
+                                               VoyOmission* omissions, uint32_t* count);
 
 typedef enum VoyStage {
   VOY_STAGE_SEARCH = 0,
@@ -723,57 +815,59 @@ typedef enum VoyStage {
 } VoyStage;
 
 typedef enum VoyBudgetState {
-  VOY_BUDGET_STATE_NONE = 0,        /* the view had no time budget */
+  VOY_BUDGET_STATE_NONE = 0,        /* the view has no time budget */
   VOY_BUDGET_STATE_HELD = 1,        /* millisecondsTotal <= timeBudget */
-  VOY_BUDGET_STATE_LATE = 2,        /* more than that: tau rises if it stays so */
-  VOY_BUDGET_STATE_UNREACHABLE = 3, /* more than that at greatestTau */
+  VOY_BUDGET_STATE_LATE = 2,        /* longer than timeBudget: tau rises if this lasts */
+  VOY_BUDGET_STATE_UNREACHABLE = 3, /* longer than timeBudget, although tau is greatestTau */
   VOY_BUDGET_STATE_MAX_ENUM = 0x7fffffff
 } VoyBudgetState;
 
-/* Room for stages in VoyFrameStats, for good; how many there are is its stageCount. */
+/* The room for stages in VoyFrameStats. stageCount says how many the library has. */
 #define VOY_MAX_STAGES 16
 
-/* Counters are sums over the view's instances; splats and pairs over its eyes, too. */
+/* Counters are sums over the view's instances. Those of splats and pairs are sums over the eyes as
+ * well. */
 typedef struct VoyFrameStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STATS */
   void* next;
-  uint64_t frameIndex; /* of the view, from 0 */
-  VoySearch search;   /* the one that ran, STREAMING where TEMPORAL fell back, of the first instance
-                         that has a cut; AUTO where none has */
-  float tauStar;      /* instance 0's: the target size as used (METHOD §3) */
-  float cutCentre[3]; /* instance 0's: scene-local, as used */
-  uint32_t stageCount; /* of this library: the entries of milliseconds that are in use */
-  uint64_t nodesTotal;
-  uint64_t nodesTested; /* evaluations of the predicate */
+  uint64_t frameIndex;  /* frames of the view, counted from 0 */
+  VoySearch search;     /* the search that ran for the first instance with a cut: STREAMING where
+                           TEMPORAL fell back to it. AUTO if no instance has a cut */
+  float tauStar;        /* of instance 0: the target size of a node, METHOD §3 */
+  float cutCentre[3];   /* of instance 0: scene-local coordinates, metres */
+  uint32_t stageCount;  /* entries of `milliseconds` that are in use */
+  uint64_t nodesTotal;  /* of all instances */
+  uint64_t nodesTested; /* evaluations of the cut predicate */
   uint64_t subtreesVisited;
-  uint64_t chunksRead;    /* by the search: that hold a subtree it visited; EXHAUSTIVE: 0 */
-  uint64_t bytesRead;     /* by the search, of its records, tables and kept state */
-  uint64_t cutSize;       /* nodes, or Gaussians where there is no cut */
-  uint64_t entered, left; /* nodes, against the view's last frame */
-  uint64_t splats;        /* that reach the image */
-  uint64_t pairsBefore;   /* (tile, splat) pairs of the bounding boxes */
-  uint64_t pairsAfter;    /* of the ellipses at the α threshold */
-  uint64_t pairsDropped;  /* pairs, strips and Gaussians for which a device had no memory;
-                             0 in a whole image */
-  uint64_t bytesStreamed; /* of streamed scenes, read since the view's last frame */
-  uint64_t bytesNeeded;   /* what the file has of chunks that are needed and not there */
-  uint64_t missing;       /* cut nodes of size >= tau* that stand in for children not there */
-  double milliseconds[VOY_MAX_STAGES]; /* by VoyStage; 0 from stageCount on */
+  uint64_t chunksRead;    /* chunks with a subtree that the search visited; EXHAUSTIVE: 0 */
+  uint64_t bytesRead;     /* by the search: records, tables and kept state */
+  uint64_t cutSize;       /* nodes; Gaussians where there is no cut */
+  uint64_t entered, left; /* nodes new in the cut, and gone, since the last frame */
+  uint64_t splats;        /* that contribute to the image */
+  uint64_t pairsBefore;   /* (tile, splat) pairs by bounding boxes */
+  uint64_t pairsAfter;    /* (tile, splat) pairs by ellipses at the α threshold */
+  uint64_t pairsDropped;  /* pairs, strips and Gaussians that were not drawn because buffers
+                             were too small; 0 in a complete image */
+  uint64_t bytesStreamed; /* read for streamed scenes since the view's last frame */
+  uint64_t bytesNeeded;   /* size in the file of needed chunks that are not resident */
+  uint64_t missing;       /* cut nodes of size >= tau* whose children are not resident */
+  double milliseconds[VOY_MAX_STAGES]; /* indexed by VoyStage; 0 from stageCount on */
   double millisecondsTotal;
-  double tau;        /* as used: voySetViewTau with it gives the same image, to the bit */
-  double timeBudget; /* milliseconds, as the frame was drawn; 0 where there was none */
+  double tau;        /* pixels, as used: voySetViewTau with it gives the same image, to the bit */
+  double timeBudget; /* milliseconds, when the frame was drawn; 0: no budget */
   VoyBudgetState budgetState;
   uint32_t reserved; /* 0 */
 } VoyFrameStats;
 
-/* Of the view's last successful frame; VOY_ERROR_INVALID_ARGUMENT before any. Where frames are
- * left under way (Vulkan's images), of the last that has ended: frameIndex says which. It
- * waits for none but the first.
- * type must be set; the rest is written. */
-VOY_API VoyResult voyGetFrameStats(VoyView view, VoyFrameStats* stats);
+/* Writes the statistics of the view's last successful frame. Frames into Vulkan images may still be
+ * in flight; then it is the last frame that has finished, and frameIndex says which. The call waits
+ * only for the view's first frame. The caller sets `type`; the call writes the rest.
+ * Errors: INVALID_ARGUMENT (before the first frame). */
+VOY_API VoyResult VOY_CALL voyGetFrameStats(VoyView view, VoyFrameStats* stats);
 
-/* "search", "project", ...; NULL for no stage, and so from stageCount on. Static storage. */
-VOY_API const char* voyStageName(VoyStage stage);
+/* Returns the name of a stage, such as "search". NULL for any other number, so for stageCount too.
+ */
+VOY_API const char* VOY_CALL voyStageName(VoyStage stage);
 
 #ifdef __cplusplus
 }

@@ -1,8 +1,8 @@
-// voy::Device, Scene, Target and View: owners of the C ABI's handles, in C++17.
-// Header-only: every call goes to voyager.h, and no C++ type crosses the
-// library's boundary. Each object destroys its handle; like the handles, an
-// object may outlive its parent and is then of no use. An object is as
-// thread-safe as its handle, but for being moved from or destroyed.
+// voy::Device, Scene, Target and View own the handles of the C ABI, in C++17. This header is all
+// there is: every call goes to voyager.h, and no C++ type crosses the boundary of the library.
+// Each object destroys its handle. An object may outlive its parent; it is then of no use, like its
+// handle. Objects are as thread-safe as their handles, except for moving and destroying them.
+// The header needs C++ exceptions. Without them, use voyager.h.
 #ifndef VOYAGER_VOYAGER_HPP_
 #define VOYAGER_VOYAGER_HPP_
 
@@ -15,7 +15,7 @@
 
 namespace voy {
 
-// Thrown where a call returns an error: what() is the library's message.
+// Thrown when a call returns an error. what() is the result's name and the library's message.
 class Error : public std::runtime_error {
  public:
   Error(VoyResult result, const char* message)
@@ -27,14 +27,23 @@ class Error : public std::runtime_error {
   VoyResult result_;
 };
 
-// Passes a success on; throws Error for an error.
+// Returns a success, VOY_INCOMPLETE included, and throws Error for an error.
 inline VoyResult check(VoyResult result) {
   if (result < 0) throw Error(result, voyGetLastErrorMessage());
   return result;
 }
 
-// One handle, move-only.
-template <class T, VoyResult (*destroy)(T)>
+// Lists the devices of this machine. See voyEnumerateDevices.
+inline std::vector<VoyDeviceInfo> devices() {
+  uint32_t count = 0;
+  check(voyEnumerateDevices(0, nullptr, &count));
+  std::vector<VoyDeviceInfo> devices(count);
+  check(voyEnumerateDevices(count, devices.data(), &count));
+  return devices;
+}
+
+// Owns one handle. It can be moved, not copied.
+template <class T, VoyResult(VOY_CALL* destroy)(T)>
 class Handle {
  public:
   Handle() = default;
@@ -89,7 +98,7 @@ class View : public Handle<VoyView, voyDestroyView> {
   void set_tau(double pixels) { check(voySetViewTau(get(), pixels)); }
   void set_time_budget(const VoyTimeBudget& budget) { check(voySetViewTimeBudget(get(), &budget)); }
   void render(const VoyFrame& frame) { check(voyRenderFrame(get(), &frame)); }
-  // Node ids of the instance's cut in the last frame, ascending.
+  // The node ids of the instance's cut in the last frame, in ascending order.
   std::vector<uint32_t> cut(uint32_t instance = 0) const {
     uint32_t count = 0;
     check(voyGetViewCut(get(), instance, 0, nullptr, &count));

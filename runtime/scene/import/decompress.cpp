@@ -28,7 +28,7 @@ size_t Decompressor::read(std::span<std::byte> into) {
     const Step done = step(in, into.subspan(made));
     if (!ended_ && done.taken == 0 && done.made == 0) {
       input_.skip(in.size());
-      refuse_stream("its end", "more compressed bytes");
+      refuse_stream("the end of the stream", "more compressed bytes");
     }
     input_.skip(done.taken);
     consumed(done.taken);

@@ -88,7 +88,7 @@ std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader) {
   const Format* format = format_of(first);
   if (!format || !format->open_stream)
     refuse(input->name(), input->offset(), "format", in_hex(first),
-           "the first bytes of INRIA .ply (\"ply\"), which alone is read from a stream");
+           "the first bytes of INRIA .ply (\"ply\"): no other format can be read from a stream");
   return format->open_stream(std::move(input));
 }
 

@@ -1,0 +1,36 @@
+find_package(Threads REQUIRED)
+find_package(TBB QUIET)
+find_package(ZLIB QUIET)
+find_package(Eigen3 QUIET NO_MODULE)
+# Ubuntu 22.04 has these without a CMake package.
+find_path(ZSTD_INCLUDE_DIR zstd.h)
+find_library(ZSTD_LIBRARY zstd)
+find_path(XXHASH_INCLUDE_DIR xxhash.h)
+find_path(VULKAN_HEADERS_INCLUDE_DIR vulkan/vulkan_core.h)
+find_program(VOYAGER_GLSLANG glslangValidator)
+
+voyager_needs("the library" libtbb-dev TBB_FOUND)
+voyager_needs("the library" zlib1g-dev ZLIB_FOUND)
+voyager_needs("the library" libeigen3-dev Eigen3_FOUND)
+voyager_needs("the library" libzstd-dev ZSTD_INCLUDE_DIR ZSTD_LIBRARY)
+voyager_needs("the library" libxxhash-dev XXHASH_INCLUDE_DIR)
+voyager_needs("the library" libvulkan-dev VULKAN_HEADERS_INCLUDE_DIR)
+voyager_needs("the library" glslang-tools VOYAGER_GLSLANG)
+
+if(VULKAN_HEADERS_INCLUDE_DIR)
+  add_library(Vulkan::Headers INTERFACE IMPORTED)
+  set_target_properties(Vulkan::Headers PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES "${VULKAN_HEADERS_INCLUDE_DIR}")
+endif()
+
+if(VOYAGER_HTTP STREQUAL "OFF")
+  voyager_leave_out(VOYAGER_HTTP "HTTP module" "VOYAGER_HTTP is OFF")
+else()
+  find_package(CURL 7.81 QUIET)
+  if(CURL_FOUND)
+    set(VOYAGER_HTTP ON)
+  else()
+    voyager_leave_out(VOYAGER_HTTP "HTTP module"
+      "no libcurl 7.81 or newer, which libcurl4-openssl-dev brings: http:// and https:// are refused")
+  endif()
+endif()

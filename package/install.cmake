@@ -1,0 +1,51 @@
+# What `cmake --install` puts where: the components runtime, development, tools, http and cuda.
+# Nothing of it holds an absolute path, so that the folder may be moved.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+set(cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/voyager)
+
+# The library finds its modules beside itself, and what it needs of others there, too.
+install(TARGETS voyager EXPORT voyager
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
+  INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+set_target_properties(voyager PROPERTIES INSTALL_RPATH "$ORIGIN")
+foreach(module http cuda)
+  if(TARGET voyager_${module})
+    install(TARGETS voyager_${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${module})
+    set_target_properties(voyager_${module} PROPERTIES INSTALL_RPATH "$ORIGIN")
+  endif()
+endforeach()
+# As the SONAME, so that packages of two versions share no file.
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE COMPONENT runtime
+  DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/libvoyager${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+if(VOYAGER_BUILD_TOOLS)
+  file(RELATIVE_PATH library_folder ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
+  set_target_properties(voyager_tool PROPERTIES INSTALL_RPATH "$ORIGIN/${library_folder}")
+  install(TARGETS voyager_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+endif()
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/plugin/include/voyager
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+
+# The exported target needs no other package, so that it is the package's configuration, whole.
+install(EXPORT voyager NAMESPACE voyager:: FILE voyagerConfig.cmake
+  DESTINATION ${cmake_folder} COMPONENT development)
+# What voyager.h says of VOY_API_VERSION.
+set(compatibility SameMajorVersion)
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+  set(compatibility SameMinorVersion)
+endif()
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/voyagerConfigVersion.cmake
+  VERSION ${PROJECT_VERSION} COMPATIBILITY ${compatibility})
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/voyagerConfigVersion.cmake
+  DESTINATION ${cmake_folder} COMPONENT development)
+
+get_filename_component(prefix ${CMAKE_INSTALL_PREFIX} ABSOLUTE)
+file(RELATIVE_PATH VOYAGER_PREFIX_FROM_PC ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${prefix})
+string(REGEX REPLACE "/$" "" VOYAGER_PREFIX_FROM_PC ${VOYAGER_PREFIX_FROM_PC})
+file(RELATIVE_PATH VOYAGER_LIBDIR ${prefix} ${CMAKE_INSTALL_FULL_LIBDIR})
+file(RELATIVE_PATH VOYAGER_INCLUDEDIR ${prefix} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+configure_file(voyager.pc.in ${CMAKE_CURRENT_BINARY_DIR}/voyager.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/voyager.pc
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)

@@ -1,0 +1,82 @@
+#include "runtime/format/export_ply.h"
+
+#include <cstring>
+
+#include "runtime/scene/import/importer.h"
+#include "tests/support/scene_files.h"
+
+namespace voyager::export_ply_test {
+namespace {
+
+GaussianCloud import_file(const std::string& path) {
+  const auto source = open_file_source(path);
+  return import_gaussians(*read_source(*source));
+}
+
+bool same_bits(const std::pmr::vector<float>& a, const std::pmr::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+void expect_same_words(const GaussianCloud& a, const GaussianCloud& b) {
+  EXPECT_EQ(a.sh_degree, b.sh_degree);
+  EXPECT_EQ(a.origin, b.origin);
+  EXPECT_TRUE(same_bits(a.position, b.position));
+  EXPECT_TRUE(same_bits(a.log_scale, b.log_scale));
+  EXPECT_TRUE(same_bits(a.rotation, b.rotation));
+  EXPECT_TRUE(same_bits(a.opacity, b.opacity));
+  EXPECT_TRUE(same_bits(a.sh, b.sh));
+}
+
+// Baked lossless, written, read, exported and imported again.
+GaussianCloud there_and_back(const GaussianCloud& cloud) {
+  const test::TempFolder folder;
+  const test::Bytes bytes = test::scene_bytes(test::bake(cloud), Quality::lossless);
+  export_ply(SceneFile(test::source_of(bytes)), folder.file("out.ply"));
+  return import_file(folder.file("out.ply"));
+}
+
+TEST(ExportPly, LosslessGivesBackTheInput) {
+  for (const int degree : {0, 1, 2, 3}) {
+    GaussianCloud cloud = test::random_cloud(2500, 20, degree);
+    cloud.position[5] = -0.0f;
+    expect_same_words(there_and_back(cloud), cloud);
+  }
+}
+
+TEST(ExportPly, LosslessGivesBackTheInputBeyondTheReachOfAZeroOrigin) {
+  GaussianCloud cloud = test::random_cloud(1200, 21, 1);
+  for (size_t i = 0; i < cloud.size(); ++i) cloud.position[3 * i] += 1.0e6f;
+  ASSERT_NE(test::bake(cloud).origin[0], 0);
+  expect_same_words(there_and_back(cloud), cloud);
+}
+
+TEST(ExportPly, LeavesOfAMovedInputKeepTheirWordsAndOrigin) {
+  GaussianCloud cloud = test::random_cloud(1200, 22, 0);
+  cloud.origin = {4.1e6, 2.5, -6.0e5};
+  const test::Bytes bytes = test::scene_bytes(test::bake(cloud), Quality::lossless);
+  expect_same_words(read_leaves(SceneFile(test::source_of(bytes))), cloud);
+}
+
+TEST(ExportPly, ARealBlockComesBackToTheBit) {
+  VOYAGER_NEEDS_SCENES(folder);
+  const GaussianCloud cloud = import_file(folder + "/formats/block.ply");
+  expect_same_words(there_and_back(cloud), cloud);
+}
+
+TEST(ExportPly, AnEmptySceneGivesAnEmptyFile) {
+  EXPECT_EQ(there_and_back(test::random_cloud(0, 1)).size(), 0u);
+}
+
+TEST(ExportPly, ADamagedChunkLeavesNoFileBehind) {
+  const test::TempFolder folder;
+  const test::Bytes bytes =
+      test::scene_bytes(test::bake(test::random_cloud(100, 23)), Quality::compact);
+  const SceneFile file(
+      std::make_shared<test::FlippedSource>(bytes, bytes.size() - 1, std::byte{4}));
+  EXPECT_EQ(test::error_code([&] { export_ply(file, folder.file("out.ply")); }),
+            ErrorCode::damaged_chunk);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("out.ply")));
+}
+
+}  // namespace
+}  // namespace voyager::export_ply_test

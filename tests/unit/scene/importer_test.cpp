@@ -1,0 +1,122 @@
+#include "runtime/scene/import/importer.h"
+
+#include "tests/support/sample_files.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::importer_test {
+namespace {
+
+using test::Bytes;
+
+TEST(Importer, TellsFormatsByTheirFirstBytes) {
+  EXPECT_TRUE(is_importable(test::bytes_of("ply\nformat")));
+  EXPECT_TRUE(is_importable(test::bytes_of("ply\r")));
+  EXPECT_TRUE(is_importable(test::bytes_of("NGSP")));
+  EXPECT_TRUE(is_importable(test::bytes_of("\x1f\x8b")));
+  EXPECT_FALSE(is_importable(test::bytes_of("plyx")));
+  EXPECT_FALSE(is_importable(test::bytes_of("NGS")));
+  EXPECT_FALSE(is_importable({}));
+}
+
+TEST(Importer, RefusesWhatItDoesNotKnowAndListsWhatItDoes) {
+  test::expect_refused({}, "an empty input", "empty");
+  test::expect_refused(test::bytes_of("glTF...."), "67 6c 54 46", "glb");
+  test::expect_refused(test::bytes_of("p"), ".spz", "one byte");
+}
+
+// What the first bytes are told by must not be lost on a stream that cannot go back.
+TEST(Importer, ReadsAPipeAsItReadsAFile) {
+  const GaussianCloud cloud = test::random_cloud(3000, 7, 3);
+  for (const Bytes& bytes : {test::ply_of(cloud), test::spz_v4(cloud), test::planar_spz(2, 40, 1),
+                             test::gzip(test::planar_spz(3, 5000, 2))}) {
+    const GaussianCloud file = test::import_bytes(bytes), pipe = test::import_piped(bytes);
+    EXPECT_GT(file.size(), 0u);
+    EXPECT_EQ(file.position, pipe.position);
+    EXPECT_EQ(file.log_scale, pipe.log_scale);
+    EXPECT_EQ(file.rotation, pipe.rotation);
+    EXPECT_EQ(file.opacity, pipe.opacity);
+    EXPECT_EQ(file.sh, pipe.sh);
+  }
+}
+
+TEST(Importer, SanitisesAndReports) {
+  GaussianCloud cloud = test::random_cloud(3, 7, 0);
+  cloud.position[0] = std::nanf("");
+  cloud.opacity[2] = std::numeric_limits<float>::infinity();
+  const GaussianCloud read = test::import_bytes(test::ply_of(cloud));
+  EXPECT_EQ(read.size(), 2u);
+  EXPECT_EQ(read.report.read, 3u);
+  EXPECT_EQ(read.report.dropped_position, 1u);
+  EXPECT_EQ(read.report.repaired_opacity, 1u);
+}
+
+TEST(Importer, ReportsProgressUpToTheTotal) {
+  const GaussianCloud cloud = test::random_cloud(9000, 7, 1);
+  for (const Bytes& bytes : {test::ply_of(cloud), test::spz_v4(cloud)}) {
+    uint64_t last = 0, end = 1;
+    ImportOptions options;
+    options.progress = [&](const char* stage, uint64_t done, uint64_t total) {
+      EXPECT_STREQ(stage, "reading");
+      EXPECT_GT(done, last);
+      last = done;
+      end = total;
+    };
+    test::import_bytes(bytes, options);
+    EXPECT_EQ(last, end);
+  }
+}
+
+// Counts what it hands out, so that a test can see how much was held at once.
+class CountingResource final : public std::pmr::memory_resource {
+ public:
+  size_t most = 0;
+
+ private:
+  void* do_allocate(size_t bytes, size_t alignment) override {
+    held_ += bytes;
+    most = std::max(most, held_);
+    return std::pmr::new_delete_resource()->allocate(bytes, alignment);
+  }
+  void do_deallocate(void* at, size_t bytes, size_t alignment) override {
+    held_ -= bytes;
+    std::pmr::new_delete_resource()->deallocate(at, bytes, alignment);
+  }
+  bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
+  size_t held_ = 0;
+};
+
+TEST(Importer, HoldsLittleMoreThanTheCloud) {
+  const GaussianCloud cloud = test::random_cloud(40000, 9, 3);
+  const size_t whole = cloud.size() * 236;
+  for (const Bytes& bytes : {test::ply_of(cloud), test::spz_v4(cloud)}) {
+    CountingResource known, piped;
+    ImportOptions options;
+    options.memory = &known;
+    EXPECT_EQ(test::import_bytes(bytes, options).size(), cloud.size());
+    options.memory = &piped;
+    EXPECT_EQ(test::import_piped(bytes, options).size(), cloud.size());
+    EXPECT_LE(known.most, whole * 5 / 4);
+    EXPECT_LE(piped.most, whole * 5 / 4);
+  }
+}
+
+TEST(Importer, AllocatesNothingOnTheWordOfAHeader) {
+  std::string ply = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n";
+  for (const char* name : {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0",
+                           "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"})
+    ply += std::string("property float ") + name + "\n";
+  Bytes spz = test::planar_spz(3, 10, 3);
+  const uint32_t many = 0xffffffffu;
+  std::memcpy(spz.data() + 8, &many, 4);
+  for (const Bytes& bytes : {test::bytes_of(ply + "end_header\nabc"), spz, test::gzip(spz)}) {
+    CountingResource memory;
+    ImportOptions options;
+    options.memory = &memory;
+    EXPECT_NE(test::refusal_of([&] { test::import_bytes(bytes, options); }), "");
+    EXPECT_NE(test::refusal_of([&] { test::import_piped(bytes, options); }), "");
+    EXPECT_LE(memory.most, 4096u);
+  }
+}
+
+}  // namespace
+}  // namespace voyager::importer_test

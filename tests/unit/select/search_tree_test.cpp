@@ -1,0 +1,158 @@
+// The tree as the partitioned searches read it, against the tree itself.
+#include "runtime/select/search_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <map>
+
+#include "tests/support/random_trees.h"
+
+namespace voyager::search_tree_test {
+namespace {
+
+struct Cut {
+  LodTree tree;
+  Partition partition;
+  SearchTree search;
+};
+
+Cut make(LodTree tree, uint32_t chunk_bytes) {
+  Workers workers(2);
+  Partition partition = partition_tree(tree, chunk_bytes);
+  SearchTree search = make_search_tree(tree, partition, {}, workers);
+  return {std::move(tree), std::move(partition), std::move(search)};
+}
+
+std::vector<Cut> all_cuts() {
+  std::vector<Cut> cuts;
+  for (const test::TreeShape shape : test::kTreeShapes)
+    for (const uint32_t nodes : {1u, 2u, 40u, 2000u})
+      cuts.push_back(make(test::random_tree(shape, nodes, nodes), kMinChunkBytes));
+  return cuts;
+}
+
+TEST(SearchTree, OwnsEachNodeOnceAndHasARecordForEachInteriorSlot) {
+  for (const Cut& cut : all_cuts()) {
+    std::vector<uint32_t> owners(cut.tree.size());
+    uint32_t records = 0;
+    for (const SearchSubtree& s : cut.search.subtrees) {
+      ASSERT_EQ(s.first_record, records);
+      ASSERT_FALSE(s.missing());
+      for (uint32_t slot = 0; slot < kSubtreeNodes; ++slot) {
+        if ((s.owned >> slot & 1) != 0) ++owners[s.node(slot)];
+        if ((s.interior >> slot & 1) == 0) continue;
+        const SearchRecord& r = cut.search.records[records++];
+        const NodeRecord& n = cut.tree.records[s.node(slot)];
+        ASSERT_GT(n.child_count, 0u);
+        ASSERT_EQ(r.extent, n.extent);
+        ASSERT_EQ(r.box_min.x, n.box_min.x);
+        ASSERT_EQ(r.box_max.z, n.box_max.z);
+        for (uint32_t left = r.children; left != 0; left &= left - 1)
+          ASSERT_EQ(cut.tree.parent[s.node(static_cast<uint32_t>(std::countr_zero(left)))],
+                    s.node(slot));
+      }
+    }
+    ASSERT_EQ(records, cut.search.records.size());
+    for (const uint32_t count : owners) ASSERT_EQ(count, 1u);
+  }
+}
+
+// By its slots or by what it opens, a node leads to each of its children once.
+TEST(SearchTree, LeadsToEveryChild) {
+  for (const Cut& cut : all_cuts()) {
+    std::vector<uint32_t> reached(cut.tree.size());
+    for (const SearchSubtree& s : cut.search.subtrees) {
+      uint32_t record = s.first_record;
+      for (uint32_t left = s.interior; left != 0; left &= left - 1, ++record) {
+        const uint32_t node = s.node(static_cast<uint32_t>(std::countr_zero(left)));
+        for (uint32_t slots = cut.search.records[record].children & s.owned; slots != 0;
+             slots &= slots - 1)
+          ++reached[s.node(static_cast<uint32_t>(std::countr_zero(slots)))];
+        for (uint32_t i = cut.search.opens[record].first; i < cut.search.opens[record].last; ++i) {
+          ASSERT_EQ(cut.search.subtrees[i].entry, record);
+          ASSERT_EQ(cut.tree.parent[cut.search.subtrees[i].root], node);
+          reached[cut.search.subtrees[i].root] += cut.search.subtrees[i].owned & 1;
+        }
+      }
+    }
+    for (uint32_t n = 1; n < cut.tree.size(); ++n) ASSERT_EQ(reached[n], 1u) << n;
+    ASSERT_EQ(reached[0], 0u);
+  }
+}
+
+TEST(SearchTree, LevelsShareOutTheSlots) {
+  for (uint32_t children = 0; children < kSubtreeNodes; ++children) {
+    SearchSubtree s{};
+    s.child_count = children;
+    EXPECT_EQ(s.level_slots(0), 1u);
+    EXPECT_EQ(s.level_slots(0) | s.level_slots(1) | s.level_slots(2), 0x7fffffffu);
+    EXPECT_EQ(static_cast<uint32_t>(std::popcount(s.level_slots(1))), children);
+    EXPECT_EQ(s.level_slots(1) & s.level_slots(2), 0u);
+  }
+}
+
+TEST(SearchTree, HullsAreNeverSmallerThanWhatLeadsIntoTheChunk) {
+  std::mt19937 random(1);
+  for (const Cut& cut : all_cuts())
+    for (size_t chunk = 0; chunk < cut.search.chunk_count(); ++chunk) {
+      const SearchChunk& c = cut.search.chunks[chunk];
+      for (uint32_t s = c.first_subtree; s < cut.search.chunks[chunk + 1].first_subtree; ++s) {
+        const uint32_t entry = cut.search.subtrees[s].entry;
+        for (int place = 0; place < 3; ++place) {
+          const Vec3f at{200 * test::unit(random) - 100, 200 * test::unit(random) - 100, 0};
+          const float hull = screen_size(at, c.hull_min, c.hull_max, c.extent);
+          if (entry == kNoRecord) {
+            ASSERT_EQ(hull, INFINITY);
+            continue;
+          }
+          const SearchRecord& r = cut.search.records[entry];
+          ASSERT_GE(hull, screen_size(at, r.box_min, r.box_max, r.extent));
+        }
+      }
+    }
+}
+
+TEST(SearchTree, KnowsWhetherLeavesHaveExtents) {
+  LodTree tree = test::random_tree(test::TreeShape::four_way, 500, 1);
+  EXPECT_FALSE(make(tree, kMinChunkBytes).search.leaves_have_extent);
+  tree.records.back().extent = 1e-30f;
+  EXPECT_TRUE(make(tree, kMinChunkBytes).search.leaves_have_extent);
+}
+
+TEST(SearchTree, OfAnEmptyTreeIsEmpty) {
+  const Cut cut = make(LodTree(), kMinChunkBytes);
+  EXPECT_EQ(cut.search.chunk_count(), 0u);
+  EXPECT_TRUE(cut.search.subtrees.empty());
+}
+
+// Damage renames no other subtree, and what hangs below it is led to by nothing.
+TEST(SearchTree, MissingSubtreesKeepTheirPlaces) {
+  Workers workers(2);
+  const Cut whole = make(test::random_tree(test::TreeShape::four_way, 2000, 1), kMinChunkBytes);
+  const auto& chunk_begin = whole.partition.chunk_begin;
+  for (size_t chunk = 0; chunk + 1 < chunk_begin.size(); chunk += 5) {
+    const uint32_t first = chunk_begin[chunk], last = chunk_begin[chunk + 1];
+    Partition partition = whole.partition;
+    for (uint32_t s = first; s < last; ++s)
+      partition.subtrees[s] = {kNoNode, 0, 0, 0, 0, false, false};
+    const SubtreeRange missing{first, last, whole.partition.subtrees[first].root};
+    const SearchTree search = make_search_tree(whole.tree, partition, {&missing, 1}, workers);
+    for (uint32_t s = 0; s < search.subtrees.size(); ++s) {
+      const SearchSubtree &a = search.subtrees[s], &b = whole.search.subtrees[s];
+      ASSERT_EQ(a.missing(), s >= first && s < last);
+      ASSERT_EQ(a.root, b.root);
+      const uint32_t above = b.entry == kNoRecord ? kNoNode : whole.tree.parent[b.root];
+      const auto in_chunk = [&](uint32_t node) {
+        for (uint32_t m = first; m < last; ++m)
+          for (uint32_t slot = 0; slot < whole.partition.subtrees[m].node_count(); ++slot)
+            if (whole.partition.subtrees[m].node(slot) == node) return true;
+        return false;
+      };
+      ASSERT_EQ(a.entry == kNoRecord, b.entry == kNoRecord || in_chunk(above)) << s;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace voyager::search_tree_test

@@ -1,0 +1,94 @@
+#include "runtime/stream/chunk_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "runtime/stream/residency.h"
+#include "tests/support/random_trees.h"
+#include "tests/support/scene_files.h"
+
+namespace voyager::chunk_graph_test {
+namespace {
+
+// Of the smallest chunks that there are, so that many have nothing below them.
+test::Bytes bytes_of(test::TreeShape shape, uint32_t nodes) {
+  return test::scene_bytes(test::baked_of(test::random_tree(shape, nodes, 5)), Quality::lossless, 0,
+                           kMinChunkBytes);
+}
+
+template <class Check>
+void for_each_tree(const Check& check) {
+  for (const test::TreeShape shape : test::kTreeShapes)
+    for (const uint32_t nodes : {1u, 500u, 20000u}) {
+      SCOPED_TRACE(test::name_of(shape) + " " + std::to_string(nodes));
+      const test::Bytes bytes = bytes_of(shape, nodes);
+      check(SceneFile(test::source_of(bytes)));
+    }
+}
+
+using Leads = std::set<std::pair<uint32_t, uint32_t>>;  // from, to
+
+Leads by_nodes(const SceneFile& file, const ChunkGraph& graph) {
+  Leads leads;
+  for (uint32_t chunk = 0; chunk < graph.size(); ++chunk) {
+    const Chunk content = file.read_chunk(chunk);
+    for (const Subtree& subtree : content.subtrees)
+      if (subtree.root != 0 && graph.owner_of_parent(subtree.root) != chunk)
+        leads.emplace(graph.owner_of_parent(subtree.root), chunk);
+  }
+  return leads;
+}
+
+// Who waits for its parents is looked at again by each of them, and none is of those that lead
+// nowhere.
+TEST(ChunkGraph, ParentsAndChildrenAreOneRelationWithAllThatNodesHangFrom) {
+  for_each_tree([](const SceneFile& file) {
+    const ChunkGraph graph(file.chunks(), file.tiers());
+    Leads down, up;
+    for (uint32_t chunk = 0; chunk < graph.size(); ++chunk) {
+      const ChunkRange children = graph.children(chunk);
+      for (uint32_t c = children.first; c < children.last; ++c) down.emplace(chunk, c);
+      for (const uint32_t p : graph.parents(chunk)) up.emplace(p, chunk);
+    }
+    EXPECT_EQ(up, down);
+    const Leads nodes = by_nodes(file, graph);
+    EXPECT_TRUE(std::includes(up.begin(), up.end(), nodes.begin(), nodes.end()));
+    // But for a chunk where a tier ends, which may lead to where the next one does.
+    std::set<uint32_t> leading, idle;
+    for (const auto& [from, to] : nodes) leading.insert(from);
+    for (const auto& [from, to] : up)
+      if (leading.count(from) == 0) idle.insert(from);
+    EXPECT_LE(idle.size(), file.tiers().tier_begin.size());
+  });
+}
+
+TEST(ChunkGraph, ChunksThatArriveInAnyOrderAllBecomeResident) {
+  std::mt19937 random(3);
+  for_each_tree([&](const SceneFile& file) {
+    const ChunkGraph graph(file.chunks(), file.tiers());
+    uint32_t top = 1;
+    while (top < graph.size() && graph.parents(top).empty()) ++top;
+    Residency residency(graph, file.chunks(), graph.size(), top);
+    const Viewer everything{{{0, 0, 0}, 1e-30f}, {}, false};
+    residency.plan({&everything, 1});
+    std::vector<uint32_t> come;
+    for (;;) {
+      const ChunkRange range = residency.take_requests(1, UINT64_MAX);
+      if (range.empty()) break;
+      come.push_back(range.first);
+    }
+    std::shuffle(come.begin(), come.end(), random);
+    for (const uint32_t chunk : come) {
+      ASSERT_TRUE(residency.read(chunk));
+      ASSERT_NE(residency.take_slot(chunk), Residency::kNoSlot);
+      residency.filled(chunk);
+      residency.arrive([](uint32_t) { return true; });
+    }
+    EXPECT_EQ(residency.resident(), come.size());
+    EXPECT_EQ(residency.need().missing, 0u);
+  });
+}
+
+}  // namespace
+}  // namespace voyager::chunk_graph_test
