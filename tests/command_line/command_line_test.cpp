@@ -506,7 +506,8 @@ TEST_F(CommandLine, WithoutADeviceCudaExitsWithFour) {
 }
 
 TEST_F(CommandLine, HelpHasAnExampleOfEachCommand) {
-  for (const std::string command : {"synth", "bake", "export", "info", "render", "bench", "devices"}) {
+  for (const std::string command :
+       {"synth", "bake", "export", "info", "render", "bench", "devices"}) {
     const Outcome help = run("voyager " + command + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_NE(help.output.find("Example: voyager " + command), std::string::npos) << help.output;
