@@ -94,6 +94,11 @@ void add_verbosity_options(CLI::App& command) {
       ->excludes(quiet);
 }
 
+void refuse_values_of_flags(CLI::App& command) {
+  for (CLI::Option* option : command.get_options())
+    if (option->get_items_expected_max() == 0) option->disable_flag_override();
+}
+
 void name_group(CLI::App& command, const std::string& group) {
   for (CLI::Option* option : command.get_options())
     if (option->get_group() == "Options" && option->nonpositional() &&

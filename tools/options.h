@@ -23,6 +23,8 @@ CLI::Option* add_tau_option(CLI::App& command, double& tau);
 void add_tau_or_budget_options(CLI::App& command, double& tau, double& milliseconds);
 // "--quiet" and "--verbose"
 void add_verbosity_options(CLI::App& command);
+// --flag=3 is a mistake in every flag of the command.
+void refuse_values_of_flags(CLI::App& command);
 
 // Gives those options of the command that have no group yet this heading in its help.
 void name_group(CLI::App& command, const std::string& group);

@@ -113,7 +113,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("-o", o.output, "Where the PNGs go")->type_name("FOLDER");
   add_mesh_options(app, o);
   add_choices(app, o);
-  app.add_option("--tau", o.tau, "Granularity in pixels")
+  app.add_option("--tau", o.tau, "Level of detail, pixels: smaller is finer")
       ->check(CLI::Validator(not_negative, "PX"));
   app.add_option("--budget", o.budget_megabytes, "10^6 bytes that scene data may occupy")
       ->check(CLI::Validator(megabytes, "MB"));
@@ -124,8 +124,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
                "Beside each PNG this host's depth at the frame's end: 0000.pfm, metres");
   app.add_option("--stats", o.stats_file, "A JSON file of what each frame took")->type_name("FILE");
   app.add_flag("--validation", o.validation,
-               "Run under the validation layer, synchronisation included; exit with 1 where it "
-               "had anything to say");
+               "Run under the validation layer, synchronisation included; exit with 1 if it "
+               "reports anything");
   app.footer(
       "vulkan_host city.voy --offscreen --frames 12 --camera-file city.cameras.json -o walk");
   try {

@@ -18,7 +18,7 @@ namespace {
 // Without a file: one that sees the scene.
 std::vector<Camera> read_or_choose(const RenderArguments& arguments, const Progress& progress) {
   if (!arguments.cameras.empty()) return read_cameras(arguments.cameras);
-  progress("looking", 0, 0);
+  progress("choosing a camera", 0, 0);
   return {default_camera(arguments.scene)};
 }
 

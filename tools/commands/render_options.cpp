@@ -96,10 +96,11 @@ void add_streaming(CLI::App& command, RenderArguments& arguments) {
   add_choice<std::optional<bool>>(
       command, "--wait-resident", arguments.wait_resident, {{"off", false}, {"on", true}},
       "on: a frame waits until all that it needs is read. off: it draws what is in memory, coarser "
-      "where something is missing. Either streams the scene");
-  command.add_flag("--keep-going", arguments.choices.keep_going,
-                   "Draw damaged parts of a .voy by their coarser ancestors in place of stopping "
-                   "there. Streams the scene, and waits unless told not to");
+      "where something is missing. Both values stream the scene");
+  command.add_flag(
+      "--keep-going", arguments.choices.keep_going,
+      "Draw damaged parts of a .voy by their coarser ancestors in place of stopping "
+      "there. The scene is streamed, and frames wait for it unless --wait-resident is off");
   name_group(command, "Streaming");
 }
 
