@@ -221,6 +221,9 @@ void Connection::fail(CURLcode code, const Transfer& transfer) const {
     throw Error(ErrorCode::io, name_ + ": reading was cancelled");
   std::string found = error_[0] != '\0' ? error_ : curl_easy_strerror(code);
   if (transfer.got != 0) found += " after " + std::to_string(transfer.got) + " bytes";
+  if (code == CURLE_OPERATION_TIMEDOUT)
+    found +=
+        " (" + std::string(kTimeoutVariable) + " sets how many seconds may pass without a byte)";
   throw Error(code_of(code), name_ + ": bytes " + std::to_string(transfer.range.first) + "-" +
                                  std::to_string(transfer.range.last) + ": found the failure \"" +
                                  found + "\", expected these bytes");

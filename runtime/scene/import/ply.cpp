@@ -18,6 +18,7 @@ using ply::Property;
 using ply::Type;
 
 constexpr size_t kRowBytes = 256 * 1024;  // stays in cache while it is taken apart by columns
+constexpr size_t kMostBytes = 16 << 20;   // of a block: a row may be as wide as a header says
 
 // One property of the rows and where its words go.
 struct Column {
@@ -84,16 +85,16 @@ class PlyReader final : public BlockReader {
   uint64_t count() const override { return vertex().count; }
   int sh_degree() const override { return sh_degree_; }
   bool antialiased() const override { return false; }
-  bool length_is_known() const { return input_.remaining().has_value(); }
 
   RawBlock next(size_t most) override {
     RawBlock block;
-    block.count = static_cast<size_t>(std::min<uint64_t>(most, count() - taken_));
+    const size_t stride = vertex().stride;
+    const uint64_t rows = std::min<uint64_t>(most, std::max<size_t>(1, kMostBytes / stride));
+    block.count = static_cast<size_t>(std::min(rows, count() - taken_));
     if (block.count == 0) {
       skip_the_rest();
       return block;
     }
-    const size_t stride = vertex().stride;
     block.bytes.resize(block.count * stride);
     const size_t got = input_.read(block.bytes);
     if (got != block.bytes.size())
@@ -172,8 +173,7 @@ class PlyReader final : public BlockReader {
     }
   }
 
-  // Where the length of the stream is known, the header is held to it before
-  // anything is allocated.
+  // Where the length of the stream is known, the header is held to it before anything is read.
   void check_length() {
     uint64_t expected = 0;
     bool open_ended = false;
@@ -258,7 +258,6 @@ GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options) {
   PlyReader rows(reader);
   GaussianCloud cloud(options.memory);
   cloud.sh_degree = rows.sh_degree();
-  if (rows.length_is_known()) rows.reserve(cloud, rows.count());
   for (uint64_t done = 0;;) {
     const RawBlock block = rows.next(rows.rows_at_once());
     if (block.count == 0) return cloud;
