@@ -12,6 +12,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
 #include "runtime/base/file_descriptor.h"
+#include "runtime/base/file_kind.h"
 
 namespace voyager {
 namespace {
@@ -44,15 +45,21 @@ class FileSource final : public ByteSource {
   mutable BounceBuffers buffers_;
 };
 
-FileSource::FileSource(const std::string& path)
-    : name_(path), fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (fd_.get() < 0)
-    throw Error(errno == ENOENT ? ErrorCode::file_not_found : ErrorCode::io,
-                path + ": open: " + std::strerror(errno));
+// A named pipe would wait for a writer to be opened, and a device may do anything: so it is looked
+// at before. If it becomes one in between, nothing waits all the same.
+FileSource::FileSource(const std::string& path) : name_(path) {
   struct stat info = {};
-  if (::fstat(fd_.get(), &info) != 0 || !S_ISREG(info.st_mode))
-    throw Error(ErrorCode::refused_input,
-                path + ": found something that is not a regular file, expected a file");
+  const auto require_file = [&](int failed) {
+    if (failed != 0)
+      throw Error(errno == ENOENT ? ErrorCode::file_not_found : ErrorCode::io,
+                  path + ": open: " + std::strerror(errno));
+    if (!S_ISREG(info.st_mode))
+      throw Error(ErrorCode::refused_input,
+                  path + ": found " + file_kind(info.st_mode) + ", expected a file");
+  };
+  require_file(::stat(path.c_str(), &info));
+  fd_ = FileDescriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  require_file(fd_.get() < 0 ? -1 : ::fstat(fd_.get(), &info));
   size_ = static_cast<uint64_t>(info.st_size);
 }
 
