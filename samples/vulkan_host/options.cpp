@@ -23,12 +23,13 @@ std::string not_negative(const std::string& text) {
   return "found " + text + ", expected a number, 0 or more";
 }
 
-// What 64 bits of bytes can hold.
+// From a byte to what 64 bits of them can count; 0 is no limit.
 std::string megabytes(const std::string& text) {
-  constexpr double kMost = 1e12;
+  constexpr double kLeast = 1e-6, kMost = 1e12;
   double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && value >= 0 && value <= kMost) return {};
-  return "found " + text + ", expected a number from 0 to 10^12";
+  if (CLI::detail::lexical_cast(text, value) && (value == 0 || (value >= kLeast && value <= kMost)))
+    return {};
+  return "found " + text + ", expected 0, or a number from 10^-6 to 10^12";
 }
 
 MeshPlace parse_place(const std::string& text) {
