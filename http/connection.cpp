@@ -219,13 +219,16 @@ void Connection::fail(CURLcode code, const Transfer& transfer) const {
   if (code == CURLE_OUT_OF_MEMORY) throw std::bad_alloc();
   if (code == CURLE_ABORTED_BY_CALLBACK)
     throw Error(ErrorCode::io, name_ + ": reading was cancelled");
+  std::string found = error_[0] != '\0' ? error_ : curl_easy_strerror(code);
+  if (transfer.got != 0) found += " after " + std::to_string(transfer.got) + " bytes";
+  if (code == CURLE_OPERATION_TIMEDOUT)
+    found +=
+        " (" + std::string(kTimeoutVariable) + " sets how many seconds may pass without a byte)";
   long redirects = 0;
   curl_easy_getinfo(easy_.get(), CURLINFO_REDIRECT_COUNT, &redirects);
   // A URL that a server names is the server's mistake.
-  const bool server_named_it = code == CURLE_URL_MALFORMAT && redirects != 0;
-  std::string found = error_[0] != '\0' ? error_ : curl_easy_strerror(code);
-  if (transfer.got != 0) found += " after " + std::to_string(transfer.got) + " bytes";
-  throw Error(server_named_it ? ErrorCode::refused_input : code_of(code),
+  const bool is_servers = code == CURLE_URL_MALFORMAT && redirects != 0;
+  throw Error(is_servers ? ErrorCode::refused_input : code_of(code),
               name_ + ": bytes " + std::to_string(transfer.range.first) + "-" +
                   std::to_string(transfer.range.last) + ": found the failure \"" + found +
                   "\", expected these bytes");

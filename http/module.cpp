@@ -12,7 +12,7 @@ namespace {
 ByteSource* open(const char* url, ErrorCode* code, char* message, size_t size) {
   std::string what;
   try {
-    return new Source(url, Options{});
+    return new Source(url, options_of_environment());
   } catch (const Error& error) {
     *code = error.code();
     what = error.what();

@@ -5,7 +5,8 @@
 
 namespace voyager::http {
 
-// Bounds on what a server may cost. The module opens URLs with the defaults; tests have others.
+// Bounds on what a server may cost. The module opens URLs with the defaults, or as
+// VOYAGER_HTTP_TIMEOUT says; tests have others.
 struct Options {
   size_t connections = 8;  // to one URL at once; further reads wait for one of them
   // Without a byte for so long, a connection is dropped: while it is made, and after.
@@ -17,5 +18,10 @@ struct Options {
   std::chrono::milliseconds first_wait{100};  // before the second try, then doubled
   int redirects = 5;
 };
+
+// The variable that users set, in seconds: stall_time, and a third of deadline.
+inline constexpr const char* kTimeoutVariable = "VOYAGER_HTTP_TIMEOUT";
+// Throws Error(invalid_argument) where it is no whole number from 1 to 3600.
+Options options_of_environment();
 
 }  // namespace voyager::http

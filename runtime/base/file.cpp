@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -38,6 +39,11 @@ class SourceReader final : public ByteReader {
     source_.read(offset_, into.first(count));
     offset_ += count;
     return count;
+  }
+  uint64_t skip(uint64_t count) override {
+    const uint64_t skipped = std::min(count, source_.size() - offset_);
+    offset_ += skipped;
+    return skipped;
   }
   std::optional<uint64_t> remaining() const override { return source_.size() - offset_; }
   uint64_t offset() const override { return offset_; }
@@ -87,6 +93,18 @@ MemorySource::MemorySource(std::string name, std::span<const std::byte> bytes)
 void MemorySource::read(uint64_t offset, std::span<std::byte> into) const {
   check_range(*this, offset, into.size());
   if (!into.empty()) std::memcpy(into.data(), bytes_.data() + offset, into.size());
+}
+
+uint64_t ByteReader::skip(uint64_t count) {
+  std::array<std::byte, 16384> unused;
+  uint64_t skipped = 0;
+  while (skipped < count) {
+    const size_t wanted = static_cast<size_t>(std::min<uint64_t>(unused.size(), count - skipped));
+    const size_t got = read(std::span(unused).first(wanted));
+    skipped += got;
+    if (got < wanted) break;
+  }
+  return skipped;
 }
 
 std::unique_ptr<ByteReader> read_source(const ByteSource& source) {

@@ -63,6 +63,8 @@ class ByteReader {
   virtual const std::string& name() const = 0;
   // Reads up to into.size() bytes; fewer only at the end. Throws Error(io).
   virtual size_t read(std::span<std::byte> into) = 0;
+  // Steps over up to `count` bytes; returns how many there were. Throws Error(io).
+  virtual uint64_t skip(uint64_t count);
   // Bytes that are left, where that is known (not for a pipe).
   virtual std::optional<uint64_t> remaining() const = 0;
   // Bytes delivered so far: the offset that messages name.

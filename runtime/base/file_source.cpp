@@ -44,15 +44,37 @@ class FileSource final : public ByteSource {
   mutable BounceBuffers buffers_;
 };
 
-FileSource::FileSource(const std::string& path)
-    : name_(path), fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-  if (fd_.get() < 0)
-    throw Error(errno == ENOENT ? ErrorCode::file_not_found : ErrorCode::io,
-                path + ": open: " + std::strerror(errno));
+[[noreturn]] void fail_to_open(const std::string& path) {
+  throw Error(errno == ENOENT ? ErrorCode::file_not_found : ErrorCode::io,
+              path + ": open: " + std::strerror(errno));
+}
+
+void require_regular(const std::string& path, mode_t mode) {
+  if (S_ISREG(mode)) return;
+  const char* kind = S_ISDIR(mode)    ? "a directory"
+                     : S_ISFIFO(mode) ? "a FIFO"
+                     : S_ISSOCK(mode) ? "a socket"
+                     : S_ISCHR(mode)  ? "a terminal or another character device"
+                     : S_ISBLK(mode)  ? "a block device"
+                                      : "something else";
+  throw Error(ErrorCode::refused_input, path + ": found " + kind + ", expected a regular file");
+}
+
+// What is no regular file is not even opened: that may wait for a writer, rewind a tape, or take a
+// terminal. It may have come after the look at it, so that the opening waits for nothing either.
+int open_regular(const std::string& path) {
   struct stat info = {};
-  if (::fstat(fd_.get(), &info) != 0 || !S_ISREG(info.st_mode))
-    throw Error(ErrorCode::refused_input,
-                path + ": found something that is not a regular file, expected a file");
+  if (::stat(path.c_str(), &info) != 0) fail_to_open(path);
+  require_regular(path, info.st_mode);
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (fd < 0) fail_to_open(path);
+  return fd;
+}
+
+FileSource::FileSource(const std::string& path) : name_(path), fd_(open_regular(path)) {
+  struct stat info = {};
+  if (::fstat(fd_.get(), &info) != 0) fail_to_open(path);
+  require_regular(path, info.st_mode);
   size_ = static_cast<uint64_t>(info.st_size);
 }
 

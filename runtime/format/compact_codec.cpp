@@ -177,6 +177,10 @@ void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficie
 
 }  // namespace
 
+uint64_t compact_plane_bytes(const ChunkEntry& entry, size_t coefficients) {
+  return plane_bytes(entry.record_count, entry.subtree_count, entry.node_count, coefficients);
+}
+
 void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader& header,
                     EncodedChunk& out) {
   const size_t coefficients = context.coefficients(), nodes = chunk.words.size();
@@ -207,10 +211,9 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
                     const ChunkLocation& location, const ChunkContext& context, Chunk& chunk) {
   const ChunkEntry& entry = location.entry;
   const size_t nodes = entry.node_count, coefficients = context.coefficients();
-  std::vector<std::byte> raw(
-      plane_bytes(entry.record_count, entry.subtree_count, nodes, coefficients));
   if (ZSTD_findFrameCompressedSize(payload.data(), payload.size()) != payload.size())
     location.damaged("a payload of something else", "one zstd frame");
+  std::vector<std::byte> raw(compact_plane_bytes(entry, coefficients));
   const size_t got = ZSTD_decompress(raw.data(), raw.size(), payload.data(), payload.size());
   if (ZSTD_isError(got)) location.damaged(ZSTD_getErrorName(got), "a zstd frame");
   if (got != raw.size())

@@ -4,6 +4,8 @@
 
 namespace voyager {
 
+// Of a chunk with the counts of `entry`: its planes, before they are compressed.
+uint64_t compact_plane_bytes(const ChunkEntry& entry, size_t coefficients);
 // Fills the frame and scale fields of `header`, whose counts are set; appends the
 // payload to out.bytes, and sets what out says of the restored values.
 void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader& header,

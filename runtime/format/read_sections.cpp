@@ -1,67 +1,36 @@
 #include "runtime/format/read_sections.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
-
-#include "runtime/base/checksum.h"
+#include "runtime/format/compact_codec.h"
 #include "runtime/format/lossless_codec.h"
+#include "runtime/format/section_reader.h"
 #include "runtime/scene/gaussian_cloud.h"
 
 namespace voyager {
 namespace {
 
-std::vector<std::byte> read_section(const ByteSource& source, const Section& section,
-                                    SectionKind kind, uint64_t offset, uint64_t length,
-                                    const Check& check) {
-  const uint64_t at = offsetof(FileHeader, section_count);
-  check.equal(at, "section kind", section.kind, static_cast<uint32_t>(kind));
-  check.equal(at, "reserved field", section.reserved, 0);
-  check.equal(at, "section offset", section.offset, offset);
-  check.equal(at, "section length", section.length, length);
-  check.at_most(at, "section end", offset + length, source.size());
-  std::vector<std::byte> bytes(length);
-  source.read(offset, bytes);
-  check.equal(offset, "section checksum", checksum(bytes), section.checksum);
-  return bytes;
-}
-
-void check_padding(const std::vector<std::byte>& bytes, uint64_t used, uint64_t offset,
-                   const Check& check) {
-  check.that(std::all_of(bytes.begin() + static_cast<std::ptrdiff_t>(used), bytes.end(),
-                         [](std::byte b) { return b == std::byte{0}; }),
-             offset + used, "padding that is not 0", "zeros");
-}
-
-// From 0, ascending, up to `end`.
-void check_begins(const std::vector<uint32_t>& begin, uint64_t at, const char* what, uint32_t end,
-                  const Check& check) {
-  const bool ascending =
-      std::adjacent_find(begin.begin(), begin.end(), std::greater_equal<>()) == begin.end();
-  check.that(ascending && begin.front() == 0, at, what, "ascending from 0");
-  check.equal(at, what, begin.back(), end);
-}
-
+// Where each level starts and then where each tier does: both from 0, ascending, up to a count.
 void read_tiers(const ByteSource& source, const FileHeader& h, const Check& check,
                 FileSections& sections) {
-  const uint32_t tiers = Tiers::count_of(h.depth, h.first_tier_levels);
-  const size_t levels = h.node_count == 0 ? 0 : size_t{h.depth} + 1,
-               begins = h.node_count == 0 ? 0 : size_t{tiers} + 1;
-  const size_t used = (levels + begins) * sizeof(uint32_t);
-  const uint64_t offset = sizeof(FileHeader);
-  const std::vector<std::byte> bytes =
-      read_section(source, h.tiers, SectionKind::tiers, offset, align_up(used, 8), check);
-  check_padding(bytes, used, offset, check);
-  if (h.node_count == 0) return;
-  sections.level_begin.resize(levels);
-  sections.tier_begin.resize(begins);
-  std::memcpy(sections.level_begin.data(), bytes.data(), levels * sizeof(uint32_t));
-  std::memcpy(sections.tier_begin.data(), bytes.data() + levels * sizeof(uint32_t),
-              begins * sizeof(uint32_t));
-  check_begins(sections.level_begin, offset, "first nodes of levels", h.node_count, check);
-  check.equal(offset, "nodes in the first level", sections.level_begin[1], 1);
-  check_begins(sections.tier_begin, offset + levels * sizeof(uint32_t), "first subtrees of tiers",
-               h.subtree_count, check);
+  const uint64_t levels = h.node_count == 0 ? 0 : uint64_t{h.depth} + 1;
+  const uint64_t tiers =
+      h.node_count == 0 ? 0 : uint64_t{Tiers::count_of(h.depth, h.first_tier_levels)} + 1;
+  const uint64_t offset = sizeof(FileHeader), count = levels + tiers;
+  std::vector<uint32_t> begins;
+  SectionReader(source, h.tiers, SectionKind::tiers, offset, align_up(count * sizeof(uint32_t), 8),
+                check)
+      .read(count, begins, [&](const std::vector<uint32_t>& all, uint64_t i) {
+        const bool level = i < levels, first = i == 0 || i == levels;
+        const char* what = level ? "first nodes of levels" : "first subtrees of tiers";
+        const uint64_t at = offset + (level ? 0 : levels * sizeof(uint32_t));
+        check.that(first ? all[i] == 0 : all[i] > all[i - 1], at, what, "ascending from 0");
+        if (i == 1) check.equal(at, "nodes in the first level", all[1], 1);
+        if (i == levels - 1) check.equal(at, what, all[i], h.node_count);
+        if (i == count - 1) check.equal(at, what, all[i], h.subtree_count);
+      });
+  const auto end_of_levels = begins.begin() + static_cast<std::ptrdiff_t>(levels);
+  sections.tier_begin.assign(end_of_levels, begins.end());
+  begins.erase(end_of_levels, begins.end());
+  sections.level_begin = std::move(begins);
 }
 
 // Comparisons are written so that a NaN fails.
@@ -86,6 +55,15 @@ void check_lossless_length(const ChunkEntry& e, uint64_t at, const FileHeader& h
   check.equal(at, "chunk length", e.bytes, length);
 }
 
+// However little there is to compress, and whatever ends a block of the frame.
+void check_compact_length(const ChunkEntry& e, uint64_t at, const FileHeader& h,
+                          const Check& check) {
+  const uint64_t planes =
+      compact_plane_bytes(e, static_cast<size_t>(sh_coefficients(static_cast<int>(h.sh_degree))));
+  check.at_most(at, "chunk length", e.bytes,
+                align_up(sizeof(ChunkHeader) + 2 * planes, chunk_align(Quality::compact)));
+}
+
 void check_entry(const ChunkEntry& e, uint64_t at, const FileHeader& h, const Check& check) {
   const auto quality = static_cast<Quality>(h.quality);
   const uint64_t alignment = chunk_align(quality);
@@ -96,7 +74,10 @@ void check_entry(const ChunkEntry& e, uint64_t at, const FileHeader& h, const Ch
   check.at_most(at, "subtrees of a chunk", e.subtree_count, e.record_count);
   check.at_most(at, "nodes of a chunk", e.node_count, e.record_count);
   check.that(sound(e.hull), at, "an entry hull out of range", "finite, ordered, below 1e18");
-  if (quality == Quality::lossless) check_lossless_length(e, at, h, check);
+  if (quality == Quality::lossless)
+    check_lossless_length(e, at, h, check);
+  else
+    check_compact_length(e, at, h, check);
 }
 
 uint64_t count_nodes(const Tiers& tiers, const SubtreePlace& from, const SubtreePlace& to) {
@@ -105,37 +86,67 @@ uint64_t count_nodes(const Tiers& tiers, const SubtreePlace& from, const Subtree
   return nodes;
 }
 
-// No byte of the file is outside a checksum, and no subtree or node outside a chunk.
-void check_directory(const FileSections& sections, const FileHeader& h, const Check& check) {
-  const Tiers tiers{h.first_tier_levels, sections.level_begin, sections.tier_begin};
-  SubtreeCursor cursor(tiers), next(tiers);
-  uint64_t offset = h.directory.offset + h.directory.length, subtree = 0;
-  const std::vector<ChunkEntry>& chunks = sections.chunks;
-  for (size_t i = 0; i < chunks.size(); ++i) {
+// Entry by entry: no byte of the file is outside a checksum, and no subtree or node outside a
+// chunk.
+class DirectoryCheck {
+ public:
+  DirectoryCheck(const Tiers& tiers, const FileHeader& h, const Check& check)
+      : tiers_(tiers),
+        header_(h),
+        check_(check),
+        cursor_(tiers),
+        next_(tiers),
+        offset_(h.directory.offset + h.directory.length) {}
+
+  void accept(const std::vector<ChunkEntry>& chunks, uint64_t i) {
     const ChunkEntry& e = chunks[i];
-    const uint64_t at = h.directory.offset + i * sizeof(ChunkEntry);
-    check.equal(at, "chunk offset", e.offset, offset);
-    check.at_most(at, "chunk length", e.bytes, h.file_length - offset);
-    check.equal(at, "first subtree", e.first_subtree, subtree);
-    check_entry(e, at, h, check);
-    check.that(i > 0 ? next.move_to(e.first_subtree, e.place) : e.place == next.place(), at,
-               "a first subtree at nodes where none can start", "the nodes that follow");
-    check.that(e.subtree_count != 0 && !next.at_end(), at, "a chunk without subtrees",
-               "at least 1");
+    const uint64_t at = header_.directory.offset + i * sizeof(ChunkEntry);
+    check_.equal(at, "chunk offset", e.offset, offset_);
+    check_.at_most(at, "chunk length", e.bytes, header_.file_length - offset_);
+    check_.equal(at, "first subtree", e.first_subtree, subtree_);
+    check_entry(e, at, header_, check_);
+    check_.that(i > 0 ? next_.move_to(e.first_subtree, e.place) : e.place == next_.place(), at,
+                "a first subtree at nodes where none can start", "the nodes that follow");
+    check_.that(e.subtree_count != 0 && !next_.at_end(), at, "a chunk without subtrees",
+                "at least 1");
     if (i > 0)
-      check.equal(at, "nodes of the chunk before", count_nodes(tiers, cursor.place(), e.place),
-                  chunks[i - 1].node_count);
-    cursor = next;
-    offset += e.bytes;
-    subtree += e.subtree_count;
+      check_.equal(at, "nodes of the chunk before", count_nodes(tiers_, cursor_.place(), e.place),
+                   chunks[i - 1].node_count);
+    cursor_ = next_;
+    offset_ += e.bytes;
+    subtree_ += e.subtree_count;
   }
-  check.equal(offsetof(FileHeader, file_length), "end of the chunks", offset, h.file_length);
-  check.equal(offsetof(FileHeader, subtree_count), "subtrees in all chunks", subtree,
-              h.subtree_count);
-  if (chunks.empty()) return;
-  next.move_to(h.subtree_count, SubtreePlace::end_of(tiers));
-  check.equal(offsetof(FileHeader, node_count), "nodes of the last chunk",
-              count_nodes(tiers, cursor.place(), next.place()), chunks.back().node_count);
+
+  void finish(const std::vector<ChunkEntry>& chunks) {
+    const FileHeader& h = header_;
+    check_.equal(offsetof(FileHeader, file_length), "end of the chunks", offset_, h.file_length);
+    check_.equal(offsetof(FileHeader, subtree_count), "subtrees in all chunks", subtree_,
+                 h.subtree_count);
+    if (chunks.empty()) return;
+    next_.move_to(h.subtree_count, SubtreePlace::end_of(tiers_));
+    check_.equal(offsetof(FileHeader, node_count), "nodes of the last chunk",
+                 count_nodes(tiers_, cursor_.place(), next_.place()), chunks.back().node_count);
+  }
+
+ private:
+  const Tiers tiers_;
+  const FileHeader& header_;
+  const Check& check_;
+  SubtreeCursor cursor_, next_;  // at the last entry's first subtree
+  uint64_t offset_, subtree_ = 0;
+};
+
+void read_directory(const ByteSource& source, const FileHeader& h, const Check& check,
+                    FileSections& sections) {
+  const uint64_t used = h.chunk_count * uint64_t{sizeof(ChunkEntry)};
+  const uint64_t offset = h.tiers.offset + h.tiers.length;
+  const uint64_t end = align_up(offset + used, chunk_align(static_cast<Quality>(h.quality)));
+  DirectoryCheck directory({h.first_tier_levels, sections.level_begin, sections.tier_begin}, h,
+                           check);
+  SectionReader(source, h.directory, SectionKind::chunk_directory, offset, end - offset, check)
+      .read(h.chunk_count, sections.chunks,
+            [&](const std::vector<ChunkEntry>& all, uint64_t i) { directory.accept(all, i); });
+  directory.finish(sections.chunks);
 }
 
 }  // namespace
@@ -144,15 +155,7 @@ FileSections read_sections(const ByteSource& source, const FileHeader& h, const 
   FileSections sections;
   check.equal(offsetof(FileHeader, section_count), "section count", h.section_count, 2);
   read_tiers(source, h, check, sections);
-  const uint64_t used = h.chunk_count * uint64_t{sizeof(ChunkEntry)};
-  const uint64_t offset = h.tiers.offset + h.tiers.length;
-  const uint64_t end = align_up(offset + used, chunk_align(static_cast<Quality>(h.quality)));
-  const std::vector<std::byte> bytes =
-      read_section(source, h.directory, SectionKind::chunk_directory, offset, end - offset, check);
-  check_padding(bytes, used, offset, check);
-  sections.chunks.resize(h.chunk_count);
-  if (h.chunk_count != 0) std::memcpy(sections.chunks.data(), bytes.data(), used);
-  check_directory(sections, h, check);
+  read_directory(source, h, check, sections);
   return sections;
 }
 

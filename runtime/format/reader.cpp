@@ -1,5 +1,6 @@
 #include "runtime/format/reader.h"
 
+#include "runtime/format/check_claims.h"
 #include "runtime/format/chunk_codec.h"
 #include "runtime/format/read_header.h"
 #include "runtime/format/read_sections.h"
@@ -53,6 +54,7 @@ SceneFile::SceneFile(std::shared_ptr<const ByteSource> source) : source_(std::mo
   level_begin_ = std::move(sections.level_begin);
   tier_begin_ = std::move(sections.tier_begin);
   chunks_ = std::move(sections.chunks);
+  check_claims(*this, header.checksum);
 }
 
 SceneFile::~SceneFile() = default;

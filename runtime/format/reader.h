@@ -35,7 +35,8 @@ struct SceneFileInfo {
 };
 
 // A .voy file. The header, the tiers and the chunk directory are checked at
-// open (magic, version, lengths, XXH3, ranges); a chunk when it is read.
+// open (magic, version, lengths, XXH3, ranges), and some chunks of a large one
+// (check_claims.h); a chunk when it is read.
 class SceneFile {
  public:
   // Throws Error(refused_input) with file, offset, found, expected.

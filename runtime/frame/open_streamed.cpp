@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "runtime/format/check_claims.h"
 #include "runtime/frame/load.h"
 #include "runtime/math/screen_size.h"
 
@@ -36,9 +37,16 @@ void set_search(const SceneFile& file, SearchTree& search) {
   search.tier_begin.assign(tiers.tier_begin.begin(), tiers.tier_begin.end());
 }
 
-uint32_t slots_for(const SceneFile& file, const PoolBytes& bytes, uint64_t budget) {
+// All slots have room for the largest chunk. A file whose other chunks are far smaller would ask
+// for memory of which next to nothing is ever used: no bake makes one that takes more than this.
+uint64_t most_bytes(const SceneFile& file) {
+  constexpr uint64_t kAnyScene = 16 << 20;
+  return kAnyScene + 2 * claimed_bytes(file);
+}
+
+uint32_t slots_for(const SceneFile& file, const PoolBytes& bytes, uint64_t wanted) {
   const auto chunks = static_cast<uint32_t>(file.chunks().size());
-  if (budget == 0) return chunks;
+  const uint64_t most = most_bytes(file), budget = wanted == 0 ? most : std::min(wanted, most);
   const uint64_t room = budget < bytes.fixed ? 0 : (budget - bytes.fixed) / bytes.slot;
   const uint32_t least = SceneStream::top_chunks(file);
   if (room >= least) return static_cast<uint32_t>(std::min<uint64_t>(room, chunks));

@@ -111,6 +111,8 @@ void Linker::add_below(const LinkTable& table, uint32_t subtree, std::vector<Fam
 void Linker::check(const StagedChunk& chunk, const std::string& file) const {
   const LinkTable& own = chunk.links;
   const auto& subtrees = own.subtrees;
+  if (subtrees[0].ids.root == 0 && own.chunk > 0 && !holds(own.chunk - 1))
+    refuse_gap(own.chunk, file);
   for (size_t i = 0; i < subtrees.size(); ++i) {
     const uint32_t root = subtrees[i].ids.root;
     if (root == 0) continue;
@@ -142,7 +144,7 @@ void Linker::arrive(LinkTable&& table, LinkPatch& patch) {
 }
 
 // A subtree of the tree's root. Runs of it are in chunks that are never evicted and come in
-// order, so that the first of them has the node itself.
+// order, none without the one before (check()), so that the first of them has the node itself.
 void Linker::link_root(LinkTable& table, uint32_t subtree, LinkPatch& patch) {
   Addresses addresses(shape_);
   SearchSubtree linked{};

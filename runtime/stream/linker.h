@@ -44,8 +44,9 @@ class Linker {
 
   bool holds(uint32_t chunk) const { return tables_[chunk] != nullptr; }
   uint32_t slot(uint32_t chunk) const { return tables_[chunk]->slot; }
-  // Of a chunk whose parents are all held: what it alone could not show. Throws
-  // Error(damaged_chunk) as stage_chunk() does.
+  // Of a chunk whose parents are all held: what it alone could not show, also that it goes on with
+  // the tree's root where the chunk before was refused. Throws Error(damaged_chunk) as
+  // stage_chunk() does.
   void check(const StagedChunk& chunk, const std::string& file) const;
   // A chunk whose parents are all held, in table.slot.
   void arrive(LinkTable&& table, LinkPatch& patch);

@@ -70,20 +70,28 @@ Residency::Needed Residency::look_at(uint32_t chunk, std::span<const Viewer> vie
   return found;
 }
 
-// False where it is not to be had, because it or what it hangs from has failed.
+// And all that it hangs from: chains may be as long as a file says. False where it is not to be
+// had, because it or what it hangs from has failed.
 bool Residency::add_needed(const Needed& needed) {
-  const uint32_t chunk = needed.chunk;
-  if (state_[chunk] == State::failed) {
-    failed_.push_back(needed);
-    return false;
+  climb_.assign(1, {needed, 0});
+  while (!climb_.empty()) {
+    auto& [of, done] = climb_.back();
+    if (state_[of.chunk] == State::failed) {
+      failed_.push_back(of);
+      return false;
+    }
+    const std::span<const uint32_t> parents = graph_->parents(of.chunk);
+    while (done < parents.size() && needed_plan_[parents[done]] == plan_) ++done;
+    if (done < parents.size()) {
+      const uint32_t parent = parents[done++];
+      own_urgency_[parent] = 0;
+      climb_.push_back({{parent, of.urgency, of.now}, 0});
+      continue;
+    }
+    needed_plan_[of.chunk] = plan_;
+    extra_.push_back(of);
+    climb_.pop_back();
   }
-  for (const uint32_t p : graph_->parents(chunk)) {
-    if (needed_plan_[p] == plan_) continue;
-    own_urgency_[p] = 0;
-    if (!add_needed({p, needed.urgency, needed.now})) return false;
-  }
-  needed_plan_[chunk] = plan_;
-  extra_.push_back(needed);
   return true;
 }
 

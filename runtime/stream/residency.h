@@ -102,6 +102,10 @@ class Residency {
     uint32_t chunk, urgency;
     bool now;
   };
+  struct Climb {
+    Needed of;
+    size_t done;  // of its parents
+  };
 
   static Class class_of(uint32_t urgency) { return static_cast<Class>(urgency >> 30); }
   Needed look_at(uint32_t chunk, std::span<const Viewer> viewers) const;
@@ -140,6 +144,7 @@ class Residency {
   std::vector<Needed> needed_;                // of the last plan, ascending
   std::vector<Needed> failed_;                // and what it would have needed
   std::vector<Needed> extra_;                 // scratch
+  std::vector<Climb> climb_;                  // scratch
   std::vector<uint32_t> requests_, victims_;  // the first to go last
   std::vector<uint32_t> filled_;              // since the last arrivals
   std::vector<uint32_t> waiting_;  // all that are filled before their parents are there, and others

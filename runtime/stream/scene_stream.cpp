@@ -127,7 +127,8 @@ void SceneStream::read_top(Workers& workers) {
 }
 
 // The first chunks, at once: before any frame, and from memory where what was there is lost,
-// since a scene without its top would have to wait for it.
+// since a scene without its top would have to wait for it. One that is damaged has failed, but
+// for what is pinned.
 void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, Workers& workers) {
   const auto& chunks = file_->chunks();
   std::vector<Coming*> coming(count);
@@ -135,19 +136,30 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
     residency_.place(chunk);
     coming[chunk] = &coming_[chunk];
   }
+  std::vector<std::optional<Error>> damage(count);
   workers.for_blocks(count, 16, [&](size_t begin, size_t end) {
     for (auto chunk = static_cast<uint32_t>(begin); chunk < end; ++chunk) {
       const auto bytes =
           stored.subspan(chunks[chunk].offset - chunks[0].offset, chunks[chunk].bytes);
       StagedChunk& staged = coming[chunk]->chunk;
-      staged = stage_chunk(file_->decode(chunk, bytes), chunk, tiers_, file_->name());
+      try {
+        staged = stage_chunk(file_->decode(chunk, bytes), chunk, tiers_, file_->name());
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::damaged_chunk || chunk < residency_.pinned()) throw;
+        damage[chunk] = error;
+        continue;
+      }
       staged.links.slot = residency_.slot(chunk);
       pool_.fill(staged.links.slot, staged);
       staged.content = {};
       staged.records = {};
     }
   });
-  for (uint32_t chunk = 0; chunk < count; ++chunk) residency_.filled(chunk);
+  for (uint32_t chunk = 0; chunk < count; ++chunk)
+    if (damage[chunk])
+      fail(chunk, *damage[chunk]);
+    else
+      residency_.filled(chunk);
   commit_all();
   for (uint32_t chunk = 0; chunk < residency_.pinned(); ++chunk)
     if (!residency_.is_resident(chunk)) failures_.rethrow(chunk);

@@ -65,7 +65,7 @@ class SceneStream {
   static uint32_t pinned_chunks(const SceneFile& file, uint32_t slots);
 
   // Reads the first chunks, and starts the threads. Once, before any frame. Throws Error as the
-  // source does and as a chunk is damaged: a scene without its top is nothing.
+  // source does, and where a chunk that is pinned is damaged: a scene without its top is nothing.
   void read_top(Workers& workers);
   // Then: what is large from a point, in the scene's own coordinates, until about so many stored
   // bytes of it are there, or five seconds have passed. What cannot be had is left out.

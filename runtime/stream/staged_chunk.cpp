@@ -135,6 +135,10 @@ void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file) {
   refuse(chunk, node, file, "two different records of it", "equal ones");
 }
 
+void refuse_gap(uint32_t chunk, const std::string& file) {
+  refuse(chunk, 0, file, "more of its children, and not those of the chunk before", "both");
+}
+
 StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers,
                         const std::string& file) {
   return Stager(std::move(chunk), index, tiers, file).stage();

@@ -55,5 +55,6 @@ StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers, const
 // Error(damaged_chunk) naming file, chunk and node.
 [[noreturn]] void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file);
 [[noreturn]] void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file);
+[[noreturn]] void refuse_gap(uint32_t chunk, const std::string& file);
 
 }  // namespace voyager

@@ -1,5 +1,8 @@
 // Values that no sane host passes: an error with a message, no crash, and
 // everything still works afterwards. Sanitizer builds watch for the rest.
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cfloat>
 
 #include "hostile.h"
@@ -270,8 +273,27 @@ TEST_F(Hostile, EmptyAndNonsenseScenes) {
     EXPECT_EQ(open(), VOY_ERROR_FILE_NOT_FOUND) << voy.message();
   }
   desc.path = "/";
-  EXPECT_EQ(open(), VOY_ERROR_REFUSED_INPUT) << voy.message();
+  expect_refused(open(), VOY_ERROR_REFUSED_INPUT, "found a directory, expected a regular file");
+  desc.path = "/dev/zero";
+  expect_refused(open(), VOY_ERROR_REFUSED_INPUT, "character device");
   EXPECT_EQ(scene, nullptr);
+}
+
+// At once, though nobody will ever write to it.
+TEST_F(Hostile, AFifoForAScene) {
+  const std::string path = ::testing::TempDir() + "fifo-" + std::to_string(::getpid()) + ".voy";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+  for (const void* next :
+       {static_cast<const void*>(nullptr), static_cast<const void*>(&streaming)}) {
+    VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+    desc.next = next;
+    desc.path = path.c_str();
+    VoyScene scene = nullptr;
+    expect_refused(voy.OpenScene(host.device, &desc, &scene), VOY_ERROR_REFUSED_INPUT,
+                   "found a FIFO");
+  }
+  ::unlink(path.c_str());
 }
 
 }  // namespace

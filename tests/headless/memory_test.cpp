@@ -12,7 +12,7 @@ namespace {
 
 // Counts what is out, and refuses the allocation with the number `failing`.
 struct CountingAllocator {
-  std::atomic<int64_t> bytes_out{0}, allocations{0};
+  std::atomic<int64_t> bytes_out{0}, most{0}, allocations{0};
   int64_t failing = -1;
   bool throws = false;
 
@@ -25,7 +25,7 @@ struct CountingAllocator {
     void* memory = nullptr;
     if (posix_memalign(&memory, alignment < sizeof(void*) ? sizeof(void*) : alignment, size) != 0)
       return nullptr;
-    self->bytes_out += static_cast<int64_t>(size);
+    self->most = std::max<int64_t>(self->most, self->bytes_out += static_cast<int64_t>(size));
     return memory;
   }
   static void release(void* user, void* memory, size_t size, size_t) {
@@ -96,6 +96,33 @@ void fail_every_allocation(VoyBackend backend, bool throws) {
     ++failures;
   }
   EXPECT_GT(failures, 5) << "the host's allocator is hardly used";
+}
+
+// A source that claims gigabytes, and has two megabytes of them.
+TEST(Memory, ASceneTakesMemoryAsItsBytesCome) {
+  const Library voy;
+  CountingAllocator memory;
+  const VoyAllocator allocator = memory.desc();
+  VoyDeviceDesc desc = device_for(VOY_BACKEND_CPU);
+  desc.allocator = &allocator;
+  VoyDevice device = nullptr;
+  ASSERT_EQ(voy.CreateDevice(&desc, &device), VOY_SUCCESS);
+  constexpr uint64_t kThere = 20000, kClaimed = 20000000;
+  BytesHost bytes;
+  bytes.bytes = ply_bytes(kThere);
+  const size_t header = bytes.bytes.find("end_header\n") + 11;
+  const uint64_t row = (bytes.bytes.size() - header) / kThere;
+  const size_t digits = bytes.bytes.find(std::to_string(kThere));
+  bytes.bytes.replace(digits, std::to_string(kThere).size(), std::to_string(kClaimed));
+  VoyByteSource source = bytes.source();
+  source.size = header + 3 + kClaimed * row;
+  VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
+  scene_desc.source = &source;
+  VoyScene scene = nullptr;
+  EXPECT_EQ(voy.OpenScene(device, &scene_desc, &scene), VOY_ERROR_IO) << voy.message();
+  EXPECT_GT(memory.most, int64_t{1} << 20);
+  EXPECT_LT(memory.most, int64_t{8} << 20);
+  EXPECT_EQ(voy.DestroyDevice(device), VOY_SUCCESS);
 }
 
 TEST(Memory, EveryAllocationMayFailOnTheCpu) {

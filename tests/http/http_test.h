@@ -20,7 +20,7 @@ struct PlainEnvironment {
   PlainEnvironment() {
     for (const char* name :
          {"http_proxy", "https_proxy", "HTTPS_PROXY", "all_proxy", "ALL_PROXY", "no_proxy",
-          "NO_PROXY", "CURL_CA_BUNDLE", "SSL_CERT_FILE", "SSL_CERT_DIR"})
+          "NO_PROXY", "CURL_CA_BUNDLE", "SSL_CERT_FILE", "SSL_CERT_DIR", "VOYAGER_HTTP_TIMEOUT"})
       ::unsetenv(name);
   }
 };

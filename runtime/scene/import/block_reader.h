@@ -26,8 +26,9 @@ class BlockReader {
   virtual int sh_degree() const = 0;
   virtual bool antialiased() const = 0;
 
-  // The next Gaussians, at most `most`, which is at least 1. From one thread at a
-  // time. Throws Error(refused_input) as the importer of the format does, Error(io).
+  // The next Gaussians, at most `most`, which is at least 1, and of few bytes (16 MiB) unless one
+  // alone has more. From one thread at a time. Throws Error(refused_input) as the importer of the
+  // format does, Error(io).
   virtual RawBlock next(size_t most) = 0;
   // The Gaussians of a block, not yet sanitised; the same words that importing the
   // whole gives. Safe from several threads, also beside next().

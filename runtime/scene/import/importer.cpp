@@ -56,6 +56,7 @@ class OwnedPeek final : public ByteReader {
   explicit OwnedPeek(std::unique_ptr<ByteReader> inner) : inner_(std::move(inner)) {}
   const std::string& name() const override { return peek_.name(); }
   size_t read(std::span<std::byte> into) override { return peek_.read(into); }
+  uint64_t skip(uint64_t count) override { return peek_.skip(count); }
   std::optional<uint64_t> remaining() const override { return peek_.remaining(); }
   uint64_t offset() const override { return peek_.offset(); }
   std::span<const std::byte> peek(size_t count) { return peek_.peek(count); }
@@ -72,6 +73,7 @@ class SharedReader final : public ByteReader {
       : source_(std::move(source)), reader_(read_source(*source_)) {}
   const std::string& name() const override { return reader_->name(); }
   size_t read(std::span<std::byte> into) override { return reader_->read(into); }
+  uint64_t skip(uint64_t count) override { return reader_->skip(count); }
   std::optional<uint64_t> remaining() const override { return reader_->remaining(); }
   uint64_t offset() const override { return reader_->offset(); }
 

@@ -20,8 +20,7 @@ struct ImportOptions {
 // Reads a flat scene from the stream, in whichever known format its first
 // bytes say it is, and sanitises it. Throws Error(refused_input) naming file,
 // offset or field, what was found and what was expected; allocates only as
-// bytes arrive (or as the known length of the source allows). SH bands that are zero everywhere
-// are left out.
+// bytes arrive. SH bands that are zero everywhere are left out.
 GaussianCloud import_gaussians(ByteReader& reader, const ImportOptions& options = {});
 
 // True if the first bytes (kFormatBytes of them, or all that there are) are

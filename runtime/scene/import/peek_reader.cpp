@@ -1,7 +1,6 @@
 #include "runtime/scene/import/peek_reader.h"
 
 #include <algorithm>
-#include <array>
 
 namespace voyager {
 
@@ -25,15 +24,9 @@ size_t PeekReader::read(std::span<std::byte> into) {
 }
 
 uint64_t PeekReader::skip(uint64_t count) {
-  std::array<std::byte, 16384> unused;
-  uint64_t skipped = 0;
-  while (skipped < count) {
-    const size_t wanted = static_cast<size_t>(std::min<uint64_t>(unused.size(), count - skipped));
-    const size_t got = read(std::span(unused).first(wanted));
-    skipped += got;
-    if (got < wanted) break;
-  }
-  return skipped;
+  const uint64_t first = std::min<uint64_t>(count, ahead().size());
+  taken_ += static_cast<size_t>(first);
+  return first + (first == count ? 0 : inner_.skip(count - first));
 }
 
 std::optional<uint64_t> PeekReader::remaining() const {

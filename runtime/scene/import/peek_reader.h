@@ -13,11 +13,10 @@ class PeekReader final : public ByteReader {
 
   // The next `count` bytes, fewer at the end; valid until the next call.
   std::span<const std::byte> peek(size_t count);
-  // Steps over up to `count` bytes; returns how many there were.
-  uint64_t skip(uint64_t count);
 
   const std::string& name() const override { return inner_.name(); }
   size_t read(std::span<std::byte> into) override;
+  uint64_t skip(uint64_t count) override;
   std::optional<uint64_t> remaining() const override;
   uint64_t offset() const override { return inner_.offset() - ahead().size(); }
 

@@ -18,6 +18,7 @@ using ply::Property;
 using ply::Type;
 
 constexpr size_t kRowBytes = 256 * 1024;  // stays in cache while it is taken apart by columns
+constexpr size_t kMostBytes = 16 << 20;   // of a block: a row may be as wide as a header says
 
 // One property of the rows and where its words go.
 struct Column {
@@ -75,6 +76,7 @@ class PlyReader final : public BlockReader {
     find_columns();
     check_length();
     for (size_t i = 0; i < header_.vertex; ++i) skip(header_.elements[i]);
+    choose_origin();
   }
   explicit PlyReader(std::unique_ptr<ByteReader> reader) : PlyReader(*reader) {
     owned_ = std::move(reader);
@@ -84,16 +86,16 @@ class PlyReader final : public BlockReader {
   uint64_t count() const override { return vertex().count; }
   int sh_degree() const override { return sh_degree_; }
   bool antialiased() const override { return false; }
-  bool length_is_known() const { return input_.remaining().has_value(); }
 
   RawBlock next(size_t most) override {
     RawBlock block;
-    block.count = static_cast<size_t>(std::min<uint64_t>(most, count() - taken_));
+    const size_t stride = vertex().stride;
+    const uint64_t rows = std::min<uint64_t>(most, std::max<size_t>(1, kMostBytes / stride));
+    block.count = static_cast<size_t>(std::min(rows, count() - taken_));
     if (block.count == 0) {
       skip_the_rest();
       return block;
     }
-    const size_t stride = vertex().stride;
     block.bytes.resize(block.count * stride);
     const size_t got = input_.read(block.bytes);
     if (got != block.bytes.size())
@@ -101,7 +103,6 @@ class PlyReader final : public BlockReader {
              std::to_string(taken_ * stride + got) + " bytes",
              std::to_string(count() * stride) + " bytes (" + std::to_string(count()) + " rows of " +
                  std::to_string(stride) + ")");
-    if (taken_ == 0) choose_origin(block.bytes.data(), std::min(block.count, rows_at_once()));
     taken_ += block.count;
     return block;
   }
@@ -172,8 +173,7 @@ class PlyReader final : public BlockReader {
     }
   }
 
-  // Where the length of the stream is known, the header is held to it before
-  // anything is allocated.
+  // Where the length of the stream is known, the header is held to it before anything is read.
   void check_length() {
     uint64_t expected = 0;
     bool open_ended = false;
@@ -209,14 +209,19 @@ class PlyReader final : public BlockReader {
   }
 
   // Only doubles can say where on a planet the scene lies to better than a
-  // millimetre; words of 32 bits are kept as they are.
-  void choose_origin(const std::byte* block, size_t rows) {
-    for (size_t row = 0; row < rows; ++row) {
+  // millimetre; words of 32 bits are kept as they are. The same rows are looked at whatever the
+  // size of blocks will be.
+  void choose_origin() {
+    const uint64_t rows = std::min<uint64_t>(count(), rows_at_once());
+    const std::span<const std::byte> block =
+        input_.peek(static_cast<size_t>(rows) * vertex().stride);
+    for (size_t row = 0; row < block.size() / vertex().stride; ++row) {
       double world[3] = {0.0, 0.0, 0.0};
       for (size_t axis = 0; axis < 3; ++axis) {
         const Property& p = *columns_[axis].property;
         if (p.type == Type::f64)
-          world[axis] = load<double>(block + row * vertex().stride + p.offset, header_.big_endian);
+          world[axis] =
+              load<double>(block.data() + row * vertex().stride + p.offset, header_.big_endian);
       }
       if (!std::all_of(world, world + 3, [](double v) { return std::fabs(v) < kMaxCoordinate; }))
         continue;
@@ -258,7 +263,6 @@ GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options) {
   PlyReader rows(reader);
   GaussianCloud cloud(options.memory);
   cloud.sh_degree = rows.sh_degree();
-  if (rows.length_is_known()) rows.reserve(cloud, rows.count());
   for (uint64_t done = 0;;) {
     const RawBlock block = rows.next(rows.rows_at_once());
     if (block.count == 0) return cloud;

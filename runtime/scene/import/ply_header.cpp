@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <string_view>
+#include <unordered_set>
 
 #include "runtime/scene/import/refuse.h"
 
@@ -99,8 +100,8 @@ class Parser {
     if (digits.empty() || problem != std::errc() || end != digits.data() + digits.size())
       refuse_line("element", "a name and a count below 2^64");
     element.name = words_[1];
-    for (const Element& other : header_.elements)
-      if (other.name == element.name) refuse_line("element", "each name once");
+    if (!elements_.insert(element.name).second) refuse_line("element", "each name once");
+    properties_.clear();
     header_.elements.push_back(std::move(element));
   }
 
@@ -118,7 +119,7 @@ class Parser {
     });
     if (known == std::end(kTypes)) refuse_line("property", kScalars);
     const std::string name(words_[2]);
-    if (element.find(name)) refuse_line("property", "each name once in an element");
+    if (!properties_.insert(name).second) refuse_line("property", "each name once in an element");
     element.properties.push_back({name, known->type, element.stride});
     element.stride += known->size;
   }
@@ -146,6 +147,8 @@ class Parser {
   std::vector<std::string_view> words_;  // of line_
   Header header_;
   bool has_format_ = false;
+  // Names so far, of the properties those of the last element: there may be ten thousand.
+  std::unordered_set<std::string> elements_, properties_;
 };
 
 }  // namespace

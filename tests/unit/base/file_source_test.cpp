@@ -2,6 +2,7 @@
 // apart. pread is replaced in this program, so that a disk can be made to fail.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -226,6 +227,23 @@ TEST(FileSourceOnTmpfs, IsReadWithoutTheCacheAsWithIt) {
   Bytes into(9'000, '\0');
   source->read(1'001, std::as_writable_bytes(std::span(into)));
   EXPECT_EQ(into, bytes.substr(1'001));
+  ::unlink(path.c_str());
+}
+
+// Neither is it opened: that could wait for whoever writes to a FIFO.
+TEST(FileSourceKinds, WhatIsNoRegularFileIsRefusedByName) {
+  const std::string path = "file_source_test." + std::to_string(::getpid()) + ".fifo";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  for (const auto& [of, name] :
+       {std::pair(path, "a FIFO"), std::pair(std::string("."), "a directory"),
+        std::pair(std::string("/dev/null"), "character device")})
+    try {
+      open_file_source(of);
+      ADD_FAILURE() << of;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::refused_input);
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
   ::unlink(path.c_str());
 }
 

@@ -1,0 +1,26 @@
+#include "http/options.h"
+
+#include <charconv>
+#include <cstdlib>
+#include <string>
+
+#include "runtime/base/error.h"
+
+namespace voyager::http {
+
+Options options_of_environment() {
+  Options options;
+  const char* found = std::getenv(kTimeoutVariable);
+  if (found == nullptr || *found == '\0') return options;
+  const std::string text = found;
+  int seconds = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+  if (problem != std::errc() || end != text.data() + text.size() || seconds < 1 || seconds > 3600)
+    throw Error(ErrorCode::invalid_argument, std::string(kTimeoutVariable) + ": found \"" + text +
+                                                 "\", expected whole seconds from 1 to 3600");
+  options.stall_time = std::chrono::seconds(seconds);
+  options.deadline = 3 * options.stall_time;
+  return options;
+}
+
+}  // namespace voyager::http

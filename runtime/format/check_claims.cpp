@@ -1,0 +1,78 @@
+#include "runtime/format/check_claims.h"
+
+#include <algorithm>
+#include <random>
+
+#include "runtime/base/error.h"
+#include "runtime/math/sh.h"
+
+namespace voyager {
+namespace {
+
+// What is believed of any file: a bake of a few ten thousand Gaussians.
+constexpr uint64_t kBelieved = 16 << 20;  // bytes
+// A quarter must be there, as in runtime/scene/import/growth.h. Of a file of which a sixteenth is
+// there, one in fifty passes.
+constexpr size_t kSamples = 16, kSound = kSamples / 4;
+
+// Bytes of a node whose Gaussian is there, beside its SH, of its record, and of a subtree: as
+// stored, as a search reads it, and what views keep of it.
+constexpr uint64_t kNodeBytes = 112, kRecordBytes = 40, kSubtreeBytes = 64;
+
+uint64_t claim_of(const ChunkEntry& chunk, int sh_degree) {
+  const uint64_t sh = 3 * sizeof(float) * static_cast<uint64_t>(sh_coefficients(sh_degree));
+  return chunk.bytes + chunk.node_count * (kNodeBytes + sh) + chunk.record_count * kRecordBytes +
+         chunk.subtree_count * kSubtreeBytes;
+}
+
+std::string damage_of(const SceneFile& file, uint32_t chunk) {
+  try {
+    file.read_chunk(chunk);
+    return {};
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::damaged_chunk) throw;
+    return error.what();
+  }
+}
+
+// The chunks at places in the sum of all claims, ascending.
+std::vector<uint32_t> chunks_at(std::vector<uint64_t> places, const SceneFile& file) {
+  std::sort(places.begin(), places.end());
+  std::vector<uint32_t> chunks;
+  uint64_t end = 0;
+  for (uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk) {
+    end += claim_of(file.chunks()[chunk], file.info().sh_degree);
+    while (chunks.size() < places.size() && places[chunks.size()] < end) chunks.push_back(chunk);
+  }
+  return chunks;
+}
+
+}  // namespace
+
+uint64_t claimed_bytes(const SceneFile& file) {
+  uint64_t bytes = 0;
+  for (const ChunkEntry& chunk : file.chunks()) bytes += claim_of(chunk, file.info().sh_degree);
+  return bytes;
+}
+
+void check_claims(const SceneFile& file, uint64_t seed) {
+  const uint64_t claimed = claimed_bytes(file);
+  if (claimed <= kBelieved) return;
+  std::mt19937_64 random(seed);
+  std::vector<uint64_t> places(kSamples);
+  std::generate(places.begin(), places.end(), [&] { return random() % claimed; });
+  size_t sound = 0;
+  std::string first_damage;
+  for (const uint32_t chunk : chunks_at(std::move(places), file)) {
+    const std::string damage = damage_of(file, chunk);
+    if (damage.empty() && ++sound == kSound) return;
+    if (first_damage.empty()) first_damage = damage;
+  }
+  throw Error(ErrorCode::refused_input, first_damage + "; of " + std::to_string(kSamples) +
+                                            " chunks that were tried " + std::to_string(sound) +
+                                            " are sound, expected at least " +
+                                            std::to_string(kSound) + " of a file that claims " +
+                                            std::to_string(file.info().node_count) + " nodes");
+}
+
+}  // namespace voyager

@@ -1,0 +1,100 @@
+// Files that claim far more than they hold cost no more than what they hold, whatever reads them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/hostile_files.h"
+#include "tests/support/measured_run.h"
+
+namespace voyager::test {
+namespace hostile_files_test {
+namespace {
+
+constexpr uint64_t kClaimed = uint64_t{2133} * 1000 * 1000;  // bytes
+
+class HostileFiles : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    failure_ =
+        failure_of({"voyager synth city --gaussians 10000 --sh-degree 0 -o " + file("small.ply"),
+                    "voyager bake " + file("small.ply") + " -o " + file("small.voy")});
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  void SetUp() override { ASSERT_EQ(failure_, ""); }
+
+  static std::string file(const std::string& name) { return folder_->file(name); }
+  // Zeros that take no room on the disk behind what is there.
+  static void write_sparse(const ClaimedFile& claimed) {
+    write_bytes(file("claims.voy"),
+                {reinterpret_cast<const char*>(claimed.head.data()), claimed.head.size()});
+    std::filesystem::resize_file(file("claims.voy"), claimed.length);
+  }
+  // Every command that reads a scene.
+  static std::vector<std::string> commands(const std::string& scene) {
+    const std::string render = "voyager render " + file(scene) + " --backend cpu --cameras " +
+                               file("small.cameras.json") + " --camera 0 --size 64x48 -o " +
+                               file("out.png");
+    return {"voyager info " + file(scene),
+            render,
+            render + " --wait-resident on",
+            render + " --budget 4000",
+            "voyager export " + file(scene) + " -o " + file("out.ply"),
+            "voyager export " + file(scene) + " -o " + file("out.hier")};
+  }
+  static void expect_all_refused() {
+    const std::vector<std::string> little = commands("small.voy"), hostile = commands("claims.voy");
+    for (size_t i = 0; i < hostile.size(); ++i) {
+      SCOPED_TRACE(hostile[i]);
+      expect_cheap_refusal(run_measured(program(hostile[i])), run_measured(program(little[i])));
+    }
+  }
+
+  static inline TempFolder* folder_ = nullptr;
+  static inline std::string failure_;
+};
+
+TEST_F(HostileFiles, CompactChunksThatHoldNothing) {
+  write_sparse(claimed_chunks(Quality::compact, 100));
+  expect_all_refused();
+}
+
+TEST_F(HostileFiles, LosslessChunksInAHole) {
+  write_sparse(claimed_chunks(Quality::lossless, 600));
+  expect_all_refused();
+}
+
+TEST_F(HostileFiles, SectionsInAHole) {
+  for (const SectionKind which : {SectionKind::tiers, SectionKind::chunk_directory}) {
+    write_sparse(claimed_section(which, kClaimed));
+    expect_all_refused();
+  }
+}
+
+TEST_F(HostileFiles, WideRowsOnStandardInput) {
+  write_bytes(file("wide.ply"), wide_ply(9000));
+  const Spent found =
+      run_measured(program("voyager bake - -o " + file("wide.voy") + " < " + file("wide.ply")));
+  expect_cheap_refusal(found, run_measured(program("voyager bake " + file("small.ply") + " -o " +
+                                                   file("again.voy"))));
+  EXPECT_FALSE(std::filesystem::exists(file("wide.voy")));
+}
+
+// Nobody writes to the FIFO, and the terminal is one that nobody types on.
+TEST_F(HostileFiles, WhatIsNoFileIsRefusedByName) {
+  ASSERT_EQ(run_shell("mkfifo " + file("fifo.voy")).exit_code, 0);
+  for (const auto& [path, name] :
+       {std::pair(file("fifo.voy"), "a FIFO"),
+        std::pair(std::string("/dev/zero"), "character device"),
+        std::pair(std::string("/dev/ptmx"), "a terminal"), std::pair(file("."), "a directory")})
+    for (const std::string& command :
+         {std::string("info "), "bake -o " + file("out.voy "), "export -o " + file("out.ply ")}) {
+      const Outcome found = run_shell("timeout 10 " + program("voyager " + command + path));
+      EXPECT_EQ(found.exit_code, 2) << found.output;
+      EXPECT_NE(found.output.find(name), std::string::npos) << found.output;
+    }
+}
+
+}  // namespace
+}  // namespace hostile_files_test
+}  // namespace voyager::test
