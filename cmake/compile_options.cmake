@@ -28,3 +28,7 @@ if(VOYAGER_SANITIZE)
   # GCC 12 under a sanitizer warns of what its own std::regex leaves unset (GCC PR 105562).
   target_compile_options(voyager_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
+if(VOYAGER_BUILD_FUZZERS)  # every library tells the fuzzer which of its edges an input reaches
+  add_compile_options(-fsanitize=fuzzer-no-link)
+  add_link_options(-fsanitize=fuzzer-no-link)
+endif()
