@@ -100,7 +100,7 @@ TEST_F(Outputs, RoomIsAskedForBeforeTheWork) {
   std::string claim = ply.substr(0, ply.find("end_header\n") + 11);
   claim.replace(claim.find("vertex 10000"), 12, "vertex 4000000000");
   write_bytes(file("claim.ply"), claim);
-  for (const std::string work : {"", " --work " + file("work")})
+  for (const std::string& work : {std::string(), " --work " + file("work")})
     expect_refused("voyager bake - -o " + file("shm.voy") + " --memory 1000000000" + work + " <" +
                        file("claim.ply"),
                    4, "MB free on the device");
