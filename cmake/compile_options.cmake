@@ -1,4 +1,4 @@
-# ccache where it is there, and no other launcher was asked for.
+# ccache if it is installed and no other launcher was asked for.
 find_program(VOYAGER_CCACHE ccache)
 if(VOYAGER_CCACHE)
   foreach(language C CXX CUDA)
@@ -27,4 +27,8 @@ if(VOYAGER_SANITIZE)
   add_link_options(-fsanitize=${VOYAGER_SANITIZE})
   # GCC 12 under a sanitizer warns of what its own std::regex leaves unset (GCC PR 105562).
   target_compile_options(voyager_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+endif()
+if(VOYAGER_BUILD_FUZZERS)  # every library tells the fuzzer which of its edges an input reaches
+  add_compile_options(-fsanitize=fuzzer-no-link)
+  add_link_options(-fsanitize=fuzzer-no-link)
 endif()

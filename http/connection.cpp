@@ -226,9 +226,14 @@ void Connection::fail(CURLcode code, const Transfer& transfer) const {
   if (code == CURLE_OPERATION_TIMEDOUT)
     found +=
         " (" + std::string(kTimeoutVariable) + " sets how many seconds may pass without a byte)";
-  throw Error(code_of(code), name_ + ": bytes " + std::to_string(transfer.range.first) + "-" +
-                                 std::to_string(transfer.range.last) + ": found the failure \"" +
-                                 found + "\", expected these bytes");
+  long redirects = 0;
+  curl_easy_getinfo(easy_.get(), CURLINFO_REDIRECT_COUNT, &redirects);
+  // A URL that a server names is the server's mistake.
+  const bool is_servers = code == CURLE_URL_MALFORMAT && redirects != 0;
+  throw Error(is_servers ? ErrorCode::refused_input : code_of(code),
+              name_ + ": bytes " + std::to_string(transfer.range.first) + "-" +
+                  std::to_string(transfer.range.last) + ": found the failure \"" + found +
+                  "\", expected these bytes");
 }
 
 }  // namespace voyager::http

@@ -42,8 +42,8 @@ class Connection {
 
   // Returns when all bytes of the range that the file has are in `into`. Throws what check_reply
   // throws; Error(io_transient) where the network failed or the deadline passed; Error(io) when
-  // cancelled, where the certificate is refused, or for a malformed URL; Error(refused_input) for
-  // what is no HTTP.
+  // cancelled, or where the certificate is refused; Error(invalid_argument) for a malformed URL;
+  // Error(refused_input) for what is no HTTP, and for a redirection to a malformed URL.
   void get(Transfer& transfer);
   // Makes get() look at `cancelled` now. From any thread.
   void wake() noexcept { curl_multi_wakeup(multi_.get()); }

@@ -9,11 +9,11 @@ parts=(asan tidy tsan package aarch64 parity fuzz searches cuda bench demo)
 declare -A about=(
   [asan]="every test under AddressSanitizer and UndefinedBehaviorSanitizer"
   [tidy]="clang-format and clang-tidy on everything that ships; headers of the library and of the tests' support compile alone"
-  [tsan]="a minute of streaming on many threads under ThreadSanitizer"
+  [tsan]="a minute of streaming on many threads, and hosts with several, under ThreadSanitizer"
   [package]="the library alone, built, installed and used where nothing else is found; the tools alone configured"
   [aarch64]="exact results on 64-bit Arm under qemu-user: tests, bakes and cuts to the byte"
   [parity]="the CPU stages with contraction off, against the float64 reference"
-  [fuzz]="each importer under libFuzzer for a minute, from the kept corpus"
+  [fuzz]="each target of tests/fuzz under libFuzzer for a minute, from the kept corpus"
   [searches]="what scripts/test.sh does in small: trees of a million nodes, whole paths, a bake in real cells"
   [cuda]="device code for every GPU that ships: Orin, Hopper, PTX"
   [bench]="the benchmarks build and run once, and so do the scripts of bench/"
@@ -40,8 +40,8 @@ check_tidy() {
 
 check_tsan() {
   configure tsan
-  cmake --build --preset tsan --target property_tests
-  VOYAGER_FLIGHT_SECONDS=60 scripts/run_tests.sh tsan -R property.StreamingFlight
+  cmake --build --preset tsan --target property_tests headless_tests
+  VOYAGER_FLIGHT_SECONDS=60 scripts/run_tests.sh tsan -R 'property.StreamingFlight|headless.Threads'
 }
 
 check_package() { scripts/check_package.sh; }
@@ -55,7 +55,8 @@ check_aarch64() {
   configure aarch64
   cmake --build --preset aarch64
   scripts/run_tests.sh aarch64
-  [ -x build/release/bin/voyager ] || { configure release; cmake --build --preset release --target voyager_tool; }
+  configure release
+  cmake --build --preset release --target voyager_tool
   scripts/check_aarch64.sh build/release build/aarch64
 }
 
@@ -67,14 +68,9 @@ check_parity() {
 
 check_fuzz() {
   configure fuzz
-  cmake --build --preset fuzz --target fuzz_ply fuzz_spz fuzz_voy
-  local name
-  for name in ply spz voy; do
-    mkdir -p "build/fuzz/corpus/$name"
-    echo "fuzz_$name: a minute; build/fuzz/$name.log"
-    "build/fuzz/bin/fuzz_$name" -max_total_time=60 -rss_limit_mb=4096 -timeout=20 -artifact_prefix="build/fuzz/$name-" \
-      "build/fuzz/corpus/$name" "tests/fuzz/corpus/$name" >"build/fuzz/$name.log" 2>&1 || { tail -50 "build/fuzz/$name.log" >&2; return 1; }
-  done
+  cmake --build --preset fuzz --target fuzzers
+  echo "a minute each, two at a time; build/fuzz/run/NAME.log"
+  scripts/run_fuzzers.sh build/fuzz/bin tests/fuzz 60 build/fuzz/run 2
 }
 
 check_searches() {

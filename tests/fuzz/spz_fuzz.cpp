@@ -3,6 +3,6 @@
 #include "tests/fuzz/import_fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  voyager::fuzz_import(voyager::import_spz, std::as_bytes(std::span(data, size)));
+  voyager::fuzz::import_bytes(voyager::import_spz, std::as_bytes(std::span(data, size)));
   return 0;
 }

@@ -4,9 +4,10 @@
 #include "runtime/base/error.h"
 #include "runtime/format/reader.h"
 #include "runtime/frame/scene.h"
+#include "tests/fuzz/memory_limit.h"
 #include "tests/support/sealed.h"
 
-namespace voyager {
+namespace voyager::fuzz {
 namespace {
 
 using test::Bytes;
@@ -14,6 +15,7 @@ using test::Bytes;
 void read_all(const Bytes& bytes) {
   static Workers workers(1);
   const auto source = std::make_shared<MemorySource>("fuzz.voy", bytes);
+  const MemoryLimit limit(bytes.size());
   try {
     const SceneFile file(source);
     for (uint32_t i = 0; i < file.chunks().size(); ++i) {
@@ -30,14 +32,12 @@ void read_all(const Bytes& bytes) {
 }
 
 }  // namespace
-}  // namespace voyager
+}  // namespace voyager::fuzz
 
-extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size);
-
-int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   const auto* first = reinterpret_cast<const std::byte*>(bytes);
   const voyager::test::Bytes input(first, first + size);
-  voyager::read_all(input);
-  voyager::read_all(voyager::test::sealed(input));
+  voyager::fuzz::read_all(input);
+  voyager::fuzz::read_all(voyager::test::sealed(input));
   return 0;
 }

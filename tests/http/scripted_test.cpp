@@ -271,6 +271,17 @@ TEST(Scripted, RedirectsAreFollowedAndCounted) {
   EXPECT_EQ(server.requests(), 4 + 6);
 }
 
+// The URL that the user gave is sound: nothing that the server says makes it bad usage.
+TEST(Scripted, ARedirectionToAMalformedUrlIsRefused) {
+  for (const char* place : {"http://a b/", "http://[::1/", "http://x:99999999/"}) {
+    ScriptedServer server([&](const ScriptedRequest&) {
+      return ScriptedReply{http_reply(302, "Location: " + std::string(place) + "\r\n", "")};
+    });
+    expect_error(ErrorCode::refused_input, "expected these bytes",
+                 [&] { http::Source(server.url(), quick()); });
+  }
+}
+
 TEST(Scripted, RedirectsOutOfHttpAreRefused) {
   for (const char* place :
        {"file:///etc/hostname", "ftp://127.0.0.1/x", "gopher://127.0.0.1:1/x"}) {

@@ -76,6 +76,7 @@ class PlyReader final : public BlockReader {
     find_columns();
     check_length();
     for (size_t i = 0; i < header_.vertex; ++i) skip(header_.elements[i]);
+    choose_origin();
   }
   explicit PlyReader(std::unique_ptr<ByteReader> reader) : PlyReader(*reader) {
     owned_ = std::move(reader);
@@ -102,7 +103,6 @@ class PlyReader final : public BlockReader {
              std::to_string(taken_ * stride + got) + " bytes",
              std::to_string(count() * stride) + " bytes (" + std::to_string(count()) + " rows of " +
                  std::to_string(stride) + ")");
-    if (taken_ == 0) choose_origin(block.bytes.data(), std::min(block.count, rows_at_once()));
     taken_ += block.count;
     return block;
   }
@@ -209,14 +209,19 @@ class PlyReader final : public BlockReader {
   }
 
   // Only doubles can say where on a planet the scene lies to better than a
-  // millimetre; words of 32 bits are kept as they are.
-  void choose_origin(const std::byte* block, size_t rows) {
-    for (size_t row = 0; row < rows; ++row) {
+  // millimetre; words of 32 bits are kept as they are. The same rows are looked at whatever the
+  // size of blocks will be.
+  void choose_origin() {
+    const uint64_t rows = std::min<uint64_t>(count(), rows_at_once());
+    const std::span<const std::byte> block =
+        input_.peek(static_cast<size_t>(rows) * vertex().stride);
+    for (size_t row = 0; row < block.size() / vertex().stride; ++row) {
       double world[3] = {0.0, 0.0, 0.0};
       for (size_t axis = 0; axis < 3; ++axis) {
         const Property& p = *columns_[axis].property;
         if (p.type == Type::f64)
-          world[axis] = load<double>(block + row * vertex().stride + p.offset, header_.big_endian);
+          world[axis] =
+              load<double>(block.data() + row * vertex().stride + p.offset, header_.big_endian);
       }
       if (!std::all_of(world, world + 3, [](double v) { return std::fabs(v) < kMaxCoordinate; }))
         continue;
