@@ -57,8 +57,7 @@ OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind, const std::st
     fs::create_directories(path_, problem);
     if (problem) throw Error(ErrorCode::io, path_ + ": create: " + problem.message());
     if (!open_mark()) {
-      require_empty();
-      if (mark(text, alone)) return;
+      if (is_empty() && mark(text, alone)) return;
       continue;
     }
     const std::string found = read_key();
@@ -115,13 +114,18 @@ std::string OwnedFolder::read_key() const {
   return text;
 }
 
-void OwnedFolder::require_empty() const {
-  std::error_code problem;
-  for (const auto& entry : fs::directory_iterator(path_, problem))
-    if (const std::string name = entry.path().filename().string();
-        without_partial(name) != kFolderMark)
-      refuse(path_, name, std::string("an empty folder or one of ") + kind_.of, kind_);
-  if (problem) throw Error(ErrorCode::io, path_ + ": read: " + problem.message());
+bool OwnedFolder::is_empty() const {
+  std::error_code problem, ignored;
+  for (const auto& entry : fs::directory_iterator(path_, problem)) {
+    const std::string name = entry.path().filename().string();
+    if (without_partial(name) == kFolderMark) continue;
+    if (fs::exists(mark_path(), ignored) || !fs::exists(fs::symlink_status(entry.path(), ignored)))
+      return false;
+    refuse(path_, name, std::string("an empty folder or one of ") + kind_.of, kind_);
+  }
+  if (problem && problem != std::errc::no_such_file_or_directory)
+    throw Error(ErrorCode::io, path_ + ": read: " + problem.message());
+  return !problem;
 }
 
 void OwnedFolder::add_to_key(std::string_view text) {

@@ -53,7 +53,9 @@ class OwnedFolder {
   enum class Lock { held, refused, stale };
   Lock lock(bool alone);
   std::string read_key() const;
-  void require_empty() const;
+  // False where another process has made the folder its own, or removed it, since it was looked at.
+  // Throws Error(refused_input) where there are files and no mark.
+  bool is_empty() const;
   std::string mark_path() const { return path_ + "/" + kFolderMark; }
 
   std::string path_;

@@ -312,16 +312,25 @@ TEST_F(BakeStopped, AFullDiskAtAnyByteLeavesNothingThatLooksWhole) {
   calls_->reset();
   ASSERT_EQ(run([&] { bake(); }), 0);
   const int64_t bytes = calls_->bytes;
+  bool begun = false;
   for (int round = 0; round < 8; ++round) {
     std::filesystem::remove(scene);
     calls_->reset();
     calls_->room = below(bytes);
-    EXPECT_EQ(run([&] { bake(); }), kRefused + static_cast<int>(ErrorCode::io)) << calls_->room;
+    const int ended = run([&] { bake(); });
+    if (begun && ended == 0) {  // the room was enough for what an earlier round had left to do
+      expect_whole();
+      begun = false;
+      continue;
+    }
+    EXPECT_EQ(ended, kRefused + static_cast<int>(ErrorCode::io)) << calls_->room;
     EXPECT_FALSE(std::filesystem::exists(scene)) << calls_->room;
-    if (round % 2 == 0) continue;  // what was made with less room is gone on from, too
+    begun = true;
+    if (round % 2 == 0) continue;
     calls_->reset();
     ASSERT_EQ(run([&] { bake(); }), 0);
     expect_whole();
+    begun = false;
   }
 }
 
