@@ -32,6 +32,11 @@ bool alone(const BakeInParts& bake) {
   return bake.step != BakeStep::cells && bake.step != BakeStep::encode;
 }
 
+// The other steps have nothing to do in a folder that they made.
+bool begins(const BakeInParts& bake) {
+  return bake.step == BakeStep::all || bake.step == BakeStep::split;
+}
+
 class Baker {
  public:
   Baker(const BakeInParts& bake, const OpenInputs& open, Workers& workers, const Progress& progress)
@@ -39,7 +44,7 @@ class Baker {
         open_(open),
         workers_(workers),
         progress_(progress),
-        folder_(bake.work, bake.request, alone(bake), bake.temporary) {}
+        folder_(bake.work, bake.request, alone(bake), bake.temporary || !begins(bake)) {}
 
   BakeSummary run() {
     if (alone(bake_) && folder_.has(kMerged)) {
@@ -82,8 +87,7 @@ class Baker {
   // False where the scene is too small for cells: then it stays in the spool.
   bool split() {
     const bool spooled = folder_.has(kSpoolDone);
-    if (bake_.step == BakeStep::cells || bake_.step == BakeStep::encode ||
-        bake_.step == BakeStep::merge)
+    if (!begins(bake_))
       if (!spooled || deepest_cell_level(read_spool_info(folder_).gaussians, bake_.rule) != 0)
         throw Error(ErrorCode::invalid_argument,
                     folder_.path() + ": found no finished split, expected --step split before");
