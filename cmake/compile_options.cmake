@@ -1,4 +1,4 @@
-# ccache where it is there, and no other launcher was asked for.
+# ccache if it is installed and no other launcher was asked for.
 find_program(VOYAGER_CCACHE ccache)
 if(VOYAGER_CCACHE)
   foreach(language C CXX CUDA)

@@ -1,6 +1,6 @@
 # voyager_test_program(NAME SOURCES FILE... LINK TARGET... [LABELS LABEL...] [NEEDS TARGET...] [ONE_ENTRY]):
 # one GoogleTest program called NAME_tests, and one CTest entry called NAME.SUITE for each suite in it. A suite's
-# cases run in one process, so they make a scene once, and what they leave behind meets no other suite. ONE_ENTRY
+# cases run in one process: they make a scene once, and state that they leave behind cannot affect another suite. ONE_ENTRY
 # makes a single entry of the program, called NAME. NEEDS names what the tests run or load without linking it.
 # Each entry writes test_results/ENTRY.xml, which scripts/summarise_tests.py reads.
 function(voyager_test_program name)

@@ -208,7 +208,9 @@ int64_t Connection::time_left(const Answer& answer) {
   using std::chrono::milliseconds;
   const Clock::time_point now = Clock::now();
   const auto stall = std::chrono::ceil<milliseconds>(answer.heard + options_.stall_time - now);
-  const auto end = std::chrono::ceil<milliseconds>(answer.transfer.deadline - now);
+  const Transfer& transfer = answer.transfer;
+  const auto end =
+      std::chrono::ceil<milliseconds>(transfer.deadline - now) + options_.time_for(transfer.got);
   if (stall.count() <= 0 || end.count() <= 0)
     std::snprintf(error_, sizeof error_, "%s",
                   end.count() <= 0 ? "the end of the time for a read" : "a server that stalls");

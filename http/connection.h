@@ -22,7 +22,7 @@ struct Transfer {
   ByteRange range;
   std::span<std::byte> into;           // of the range's size, at least
   const FileVersion* known = nullptr;  // as check_reply takes it
-  Clock::time_point deadline{};
+  Clock::time_point deadline{};        // should nothing come; bytes put it off (Options::time_for)
 
   size_t got = 0;                        // bytes in `into`
   std::optional<FileVersion> version{};  // once the server's headers were accepted

@@ -12,17 +12,13 @@ namespace {
 
 constexpr uint64_t kFirstBytes = 65536;  // a .voy's header and, of small ones, its tables
 
-std::chrono::milliseconds time_for(const Options& options, uint64_t bytes) {
-  return options.deadline + std::chrono::milliseconds(1000 * (bytes / options.slowest_rate));
-}
-
 }  // namespace
 
 // The tries of one read.
 class Source::Tries {
  public:
-  Tries(const Options& options, Pool& pool, uint64_t bytes)
-      : options_(options), pool_(pool), end_(Clock::now() + time_for(options, bytes)) {}
+  Tries(const Options& options, Pool& pool)
+      : options_(options), pool_(pool), end_(Clock::now() + options.deadline) {}
 
   // Asks for the range once more, or throws what cannot be helped. `transfer` has range, into
   // and known; true when all of the range has come. False: try again with what is left of it.
@@ -35,6 +31,7 @@ class Source::Tries {
       return true;
     } catch (const Error& error) {
       if (error.code() != ErrorCode::io_transient) throw;
+      end_ += options_.time_for(transfer.got);
       wait(error, transfer.retry_after);
       return false;
     }
@@ -60,7 +57,7 @@ class Source::Tries {
 
   const Options& options_;
   Pool& pool_;
-  const Clock::time_point end_;
+  Clock::time_point end_;  // should nothing more come
   int done_ = 0;
   std::chrono::milliseconds next_ = options_.first_wait;
 };
@@ -73,7 +70,7 @@ Source::Source(const std::string& url, const Options& options)
 void Source::read_first_bytes() {
   first_bytes_.resize(kFirstBytes);
   Transfer transfer{{0, kFirstBytes - 1}, first_bytes_};
-  for (Tries tries(options_, pool_, kFirstBytes); !tries.get(transfer);) {
+  for (Tries tries(options_, pool_); !tries.get(transfer);) {
   }
   version_ = *transfer.version;
   first_bytes_.resize(transfer.got);
@@ -87,7 +84,7 @@ void Source::read(uint64_t offset, std::span<std::byte> into) const {
     offset += count;
     into = into.subspan(count);
   }
-  Tries tries(options_, pool_, into.size());
+  Tries tries(options_, pool_);
   while (!into.empty()) {
     Transfer transfer{{offset, offset + into.size() - 1}, into, &version_};
     const bool done = tries.get(transfer);

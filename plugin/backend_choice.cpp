@@ -27,7 +27,7 @@ BackendChoice load_cuda(const uint8_t* uuid) {
   return {VOY_BACKEND_CUDA, load_backend("cuda", options)};
 }
 
-// The CPU can stand in for any device, so no trouble with one fails the call.
+// AUTO never fails because of a device: the CPU is its fallback.
 BackendChoice choose_fastest(const uint8_t* uuid) {
   if (uuid != nullptr && is_of_a_cpu(uuid)) return {VOY_BACKEND_CPU, create_cpu_backend()};
   try {

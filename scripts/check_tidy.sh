@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# clang-tidy on everything that ships: check_tidy.sh BUILD_FOLDER, of a preset that compiles a
-# library's sources together: so they take their headers once. What two of them both define
-# in an unnamed namespace would be an error there.
+# clang-tidy on everything that ships: check_tidy.sh BUILD_FOLDER. Takes the folder of a preset that
+# compiles the sources of a library together, so that each header is parsed once for a whole library.
 # Not on .cu: Debian's clang-tidy 14 knows CUDA up to 11.5, and its own wrappers of <new> and the headers of
 # CUDA 12 and 13 exclude each other. There nvcc's warnings are errors instead (cuda/CMakeLists.txt), and what
 # kernels share with the CPU, runtime/stages, is checked through the CPU's sources.

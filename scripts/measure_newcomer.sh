@@ -21,8 +21,8 @@ mkdir -p "$1"
 folder=$(cd "$1" && pwd)
 root=$folder/root
 shift
-commands=("${@:-demo}")
-[ $# -eq 0 ] && commands=(demo test)
+[ $# -gt 0 ] || set -- demo test
+commands=("$@")
 for command in "${commands[@]}"; do
   [[ $command =~ ^(demo|test)$ ]] || fail "$command: no such command, expected demo or test" 2
 done
@@ -53,8 +53,9 @@ inside() {
 
 installed() { chroot "$root" dpkg-query -W -f '${Installed-Size}\n' | awk '{ kb += $1 } END { print NR, int(kb / 1024) }'; }
 fetched() { du -cm --apparent-size "$root"/var/cache/apt/archives/*.deb 2>/dev/null | awk 'END { print $1 + 0 }'; }
-enabled() { find "$root"/etc/systemd/system -name '*.service' -path '*.wants/*' 2>/dev/null | sort; }
-# Of this namespace, other than this script and what it runs to look.
+# Units of systemd, and links of init scripts, which start in the runlevels of the folder.
+enabled() { find "$root"/etc/systemd/system "$root"/etc/rc?.d \( -path '*.wants/*.service' -o -name 'S[0-9]*' \) 2>/dev/null | sort; }
+# Processes whose root is the folder's.
 running() { for process in /proc/[0-9]*; do [ "$(readlink "$process/root")" != "$root" ] || cat "$process/comm"; done; }
 
 # time_of LOG COMMAND: runs COMMAND in the root; sets minutes and cpu_minutes.

@@ -7,7 +7,7 @@ shift
 rm -rf "build/$preset/test_results"
 mkdir -p "build/$preset/test_results"
 failed=0
-ctest --preset "$preset" -j "$(nproc)" "$@" || failed=1
+ctest --preset "$preset" -j "$(nproc)" --output-junit "test_results/ctest.junit" "$@" || failed=1
 echo
 scripts/summarise_tests.py "build/$preset" || failed=1
 exit "$failed"

@@ -4,7 +4,7 @@
 #   tests   beside it: the samples, `voyager report`, a software Vulkan, a browser, a web server
 #   checks  beside both: git, clang with its sanitizers, clang-format, clang-tidy
 #   bench   beside main: the benchmarks and the plots of bench/
-# scripts/setup_aarch64.sh is for the check of 64-bit Arm. No service is installed. Safe to run
+# scripts/setup_aarch64.sh is for the check of 64-bit Arm. No service is left running. Safe to run
 # again; root or sudo.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -2,8 +2,8 @@
 """What a run of CTest tried, case by case: summarise_tests.py BUILD_FOLDER
 
 CTest counts programs and calls one that skipped everything "passed". This reads the results that each program
-wrote to BUILD_FOLDER/test_results, prints what was skipped and why, and a line of totals. Exits 1 where a case
-failed, or where an entry ran no case at all.
+wrote to BUILD_FOLDER/test_results, and CTest's own for programs that write none; prints what was skipped and why,
+and a line of totals. Exits 1 if a case failed, or if an entry ran no case at all.
 """
 import collections
 import pathlib
@@ -26,6 +26,20 @@ def cases_of(path):
             yield name, "passed", ""
 
 
+def other_entries(folder):
+    """(entry, "passed" | "failed" | "skipped", reason) for what CTest ran that wrote no results of its own."""
+    path = folder / "ctest.junit"
+    if not path.exists():
+        return
+    for case in xml.etree.ElementTree.parse(path).getroot().iter("testcase"):
+        name = case.get("name")
+        if (folder / f"{name}.xml").exists():
+            continue
+        result = {"run": "passed", "fail": "failed"}.get(case.get("status"), "skipped")
+        said = (case.findtext("system-out") or "").strip().splitlines()
+        yield name, result, said[-1] if said else "no reason given"
+
+
 def main():
     folder = pathlib.Path(sys.argv[1]) / "test_results"
     counts = collections.Counter()
@@ -41,6 +55,12 @@ def main():
                 skipped[reason].append(f"{path.stem.split('.')[0]}.{name}")
             elif result == "failed":
                 bad.append(f"{path.stem.split('.')[0]}.{name}: failed")
+    for name, result, reason in other_entries(folder):
+        counts[result] += 1
+        if result == "skipped":
+            skipped[reason].append(name)
+        elif result == "failed":
+            bad.append(f"{name}: failed")
     if not counts:
         bad.append(f"{folder}: found no results")
     for reason, names in sorted(skipped.items(), key=lambda item: -len(item[1])):

@@ -54,6 +54,12 @@ void detail(const std::string& text) {
   if (verbosity() == Verbosity::verbose) note(text);
 }
 
+std::string without_call(const std::string& message) {
+  const size_t colon = message.find(": ");
+  return message.starts_with("voy") && colon != std::string::npos ? message.substr(colon + 2)
+                                                                  : message;
+}
+
 void say(const std::string& text) {
   if (verbosity() != Verbosity::quiet) print(stdout, text);
 }

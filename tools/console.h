@@ -16,6 +16,8 @@ void note(const std::string& text);
 void warn(const std::string& text);
 // The same, only with --verbose.
 void detail(const std::string& text);
+// A message of the library without the name of the call that failed: "voyOpenScene: TEXT" is TEXT.
+std::string without_call(const std::string& message);
 // Lines for people on standard output; not with --quiet.
 void say(const std::string& text);
 // An error ends the program, and this line is its last.

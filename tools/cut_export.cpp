@@ -34,6 +34,7 @@ void append(GaussianCloud& cloud, const GaussianArrays& arrays, const DrawItem& 
 
 void export_cut(const std::string& scene_path, const Camera& camera, double tau,
                 const std::string& ply_path) {
+  AtomicFile file(ply_path);
   Workers workers;
   const auto scene = load_scene(open_source(scene_path), std::pmr::get_default_resource(), workers);
   voyager::Camera seen;
@@ -49,7 +50,6 @@ void export_cut(const std::string& scene_path, const Camera& camera, double tau,
   const GaussianArrays arrays = gaussian_arrays(*scene);
   for (const DrawItem& item : draws.items()) append(cloud, arrays, item);
 
-  AtomicFile file(ply_path);
   const auto sink = sink_to(file);
   const bool far = scene->origin.x != 0 || scene->origin.y != 0 || scene->origin.z != 0;
   const auto writer = write_ply(*sink, cloud.size(), cloud.sh_degree, far);

@@ -8,6 +8,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
 #include "runtime/format/reader.h"
+#include "runtime/frame/scene.h"
 #include "runtime/scene/import/block_reader.h"
 
 namespace voyager::tools {
@@ -129,10 +130,7 @@ Camera camera_around(std::span<const Vec3d> positions) {
 
 Camera default_camera(const std::string& scene) {
   auto source = open_source(scene);
-  std::array<std::byte, 64> buffer;
-  const auto first = std::span(buffer).first(std::min<uint64_t>(buffer.size(), source->size()));
-  source->read(0, first);
-  return camera_around(SceneFile::is_scene_file(first)
+  return camera_around(scene_format(*source) == SceneFormat::baked
                            ? positions_of_tree(SceneFile(std::move(source)))
                            : positions_of_flat(std::move(source)));
 }

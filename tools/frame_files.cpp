@@ -6,7 +6,9 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
+#include "runtime/base/output_path.h"
 #include "tools/image_file.h"
+#include "tools/output_paths.h"
 
 namespace voyager::tools {
 namespace {
@@ -17,6 +19,10 @@ void write_text(const std::string& path, const std::string& text) {
   AtomicFile file(path);
   file.write(std::as_bytes(std::span(text)));
   file.commit();
+}
+
+std::string frame_name(size_t index, const char* extension) {
+  return fmt::format("{:04}{}", index, extension);
 }
 
 std::string binary32_hex(float value) {
@@ -84,6 +90,7 @@ Json to_json(const VoyFrameStats& s) {
 }  // namespace
 
 FrameFiles::Output FrameFiles::open(const std::string& path, bool folder) {
+  if (!path.empty() && !folder) require_writable(path);
   if (path.empty() || !folder) return {path, nullptr};
   return {"", std::make_unique<OutputFolder>(path)};
 }
@@ -93,18 +100,43 @@ FrameFiles::FrameFiles(OutputPaths paths)
       stats_(std::move(paths.stats)),
       image_(open(paths.image, paths.images_in)),
       depth_(open(paths.depth, paths.images_in)),
-      cut_(open(paths.cut, paths.cuts_in)) {}
+      cut_(open(paths.cut, paths.cuts_in)) {
+  open(stats_, false);
+}
 
 std::string FrameFiles::Output::place(size_t index, const char* extension) const {
-  return folder ? folder->place(fmt::format("{:04}{}", index, extension)) : file;
+  return folder ? folder->place(frame_name(index, extension)) : file;
+}
+
+void FrameFiles::Output::expect(size_t index, const char* extension) const {
+  if (folder) folder->require_place(frame_name(index, extension));
+}
+
+void FrameFiles::Output::require_room(uint64_t bytes) const {
+  if (wanted())
+    voyager::require_room(folder ? (folder->path() / frame_name(0, "")).string() : file, bytes,
+                          "it");
+}
+
+void FrameFiles::expect(size_t first, std::span<const Camera> cameras, size_t eyes) const {
+  uint64_t pixels = 0;
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    image_.expect(first + i, image_extension());
+    depth_.expect(first + i, ".pfm");
+    if (i % eyes == 0) cut_.expect((first + i) / eyes, ".txt");
+    pixels += uint64_t{cameras[i].width} * cameras[i].height;
+  }
+  depth_.require_room(pixels * sizeof(float));
+  if (floats_) image_.require_room(pixels * 3 * sizeof(float));  // how small a .png is nobody knows
 }
 
 void FrameFiles::write_image(size_t index, const Camera& camera, const RenderedImage& image) {
   const uint32_t width = camera.width, height = camera.height;
+  const std::string path = image_.place(index, image_extension());
   if (floats_)
-    write_pfm_rgb(image_.place(index, ".pfm"), width, height, image.rgba32f);
+    write_pfm_rgb(path, width, height, image.rgba32f);
   else
-    write_png(image_.place(index, ".png"), width, height, image.rgba8);
+    write_png(path, width, height, image.rgba8);
   if (depth_.wanted()) write_pfm_grey(depth_.place(index, ".pfm"), width, height, image.depth);
 }
 

@@ -22,8 +22,12 @@ struct OutputPaths {
 
 class FrameFiles {
  public:
+  // Throws Error(io) where an output cannot be written.
   explicit FrameFiles(OutputPaths paths);
 
+  // Before the first frame, with the numbers and cameras of all that write() will be given: throws
+  // Error(io) where one of their files could not be put in its place, or all of them have no room.
+  void expect(size_t first, std::span<const Camera> cameras, size_t eyes) const;
   // Writes a frame's images and depths, numbered by camera from `first` on, and its cut, numbered
   // by frame; and keeps its statistics.
   void write(size_t first, std::span<const Camera> cameras, const Renderer& renderer);
@@ -37,8 +41,11 @@ class FrameFiles {
     std::unique_ptr<OutputFolder> folder;
     bool wanted() const { return !file.empty() || folder; }
     std::string place(size_t index, const char* extension) const;
+    void expect(size_t index, const char* extension) const;
+    void require_room(uint64_t bytes) const;
   };
   static Output open(const std::string& path, bool folder);
+  const char* image_extension() const { return floats_ ? ".pfm" : ".png"; }
   void write_image(size_t index, const Camera& camera, const RenderedImage& image);
   void write_stats(const Renderer& renderer) const;
 

@@ -25,7 +25,7 @@ void LodChoice::refuse_without_tree(const std::string& scene) const {
 
 void add_lod_options(CLI::App& command, LodChoice& choice) {
   add_choice<std::optional<bool>>(command, "--lod", choice.on, {{"on", true}, {"off", false}},
-                                  "off draws every leaf: the finest there is");
+                                  "off draws every leaf, the finest detail");
   add_choice<std::optional<Lod>>(command, "--select", choice.select,
                                  {{"cut", Lod::cut},
                                   {"flat", Lod::all_leaves},

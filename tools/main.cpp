@@ -25,6 +25,14 @@ int finish() {
   return fail(voyager::tools::kMachine, "standard output: cannot be written to");
 }
 
+// The names of the result and of the call are for who programs against the library.
+std::string text_of(const voy::Error& error) {
+  using namespace voyager::tools;
+  const std::string text = error.what();
+  if (verbosity() == Verbosity::verbose) return text;
+  return without_call(text.substr(text.find(": ") + 2));
+}
+
 int show_commands(const CLI::App& app) {
   std::fputs(app.help().c_str(), stderr);
   return voyager::tools::kBadUsage;
@@ -41,7 +49,7 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return fail(kBadUsage, usage_error(app, error));
   } catch (const voy::Error& error) {
-    return fail(exit_code(error.result()), error.what());
+    return fail(exit_code(error.result()), text_of(error));
   } catch (const voyager::Error& error) {
     return fail(exit_code(error.code()), error.what());
   } catch (const std::bad_alloc&) {
@@ -75,12 +83,13 @@ int main(int argc, char** argv) try {
   voyager::tools::add_info(app);
   voyager::tools::add_render(app);
   voyager::tools::add_bench(app);
-#ifdef VOYAGER_HAS_REPORT
   voyager::tools::add_report(app);
-#endif
   voyager::tools::add_devices(app);
   voyager::tools::add_verbosity_options(app);
-  for (CLI::App* command : app.get_subcommands({})) voyager::tools::add_verbosity_options(*command);
+  for (CLI::App* command : app.get_subcommands({})) {
+    voyager::tools::add_verbosity_options(*command);
+    voyager::tools::refuse_values_of_flags(*command);
+  }
   return parse_and_run(app, argc, argv);
 } catch (...) {
   return voyager::tools::kMachine;  // no memory even for the message

@@ -50,6 +50,15 @@ void bad_usage(const std::string& message) {
   throw Error(ErrorCode::invalid_argument, message);
 }
 
+std::optional<uint64_t> parse_whole(const std::string& text) {
+  return parse<uint64_t>(text);
+}
+
+std::optional<double> parse_number(const std::string& text) {
+  const auto value = parse<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
 CLI::Option* add_size_option(CLI::App& command, ImageSize& size) {
   return command
       .add_option_function<std::string>(
@@ -75,8 +84,9 @@ CLI::Option* add_tau_option(CLI::App& command, double& tau) {
 void add_tau_or_budget_options(CLI::App& command, double& tau, double& milliseconds) {
   CLI::Option* fixed = add_tau_option(command, tau);
   add_number_option(
-      command, "--time-budget", milliseconds, [](double value) { return value > 0; },
-      "a number of milliseconds above 0",
+      command, "--time-budget", milliseconds,
+      [](double value) { return value >= 1e-6 && value <= 1e9; },
+      "a number of milliseconds above 0, from 1e-6 to 1e9",
       "Let tau follow the time that frames take, between 1 and 60 pixels, so that a frame takes at "
       "most so many milliseconds")
       ->type_name("MS")
@@ -94,6 +104,11 @@ void add_verbosity_options(CLI::App& command) {
       ->excludes(quiet);
 }
 
+void refuse_values_of_flags(CLI::App& command) {
+  for (CLI::Option* option : command.get_options())
+    if (option->get_items_expected_max() == 0) option->disable_flag_override();
+}
+
 void name_group(CLI::App& command, const std::string& group) {
   for (CLI::Option* option : command.get_options())
     if (option->get_group() == "Options" && option->nonpositional() &&
@@ -108,7 +123,7 @@ CLI::Option* add_whole_option(CLI::App& command, const std::string& option, Whol
       .add_option_function<std::string>(
           option,
           [option, range, set](const std::string& text) {
-            const auto value = parse<uint64_t>(text);
+            const auto value = parse_whole(text);
             if (!value || *value < range.least || *value > range.most)
               refuse(option, text, words(range));
             set(*value);
@@ -137,8 +152,8 @@ CLI::Option* add_number_option(CLI::App& command, const std::string& option, dou
   return command.add_option_function<std::string>(
       option,
       [option, &value, fits, expected](const std::string& text) {
-        const auto found = parse<double>(text);
-        if (!found || !std::isfinite(*found) || !fits(*found)) refuse(option, text, expected);
+        const auto found = parse_number(text);
+        if (!found || !fits(*found)) refuse(option, text, expected);
         value = *found;
       },
       description);

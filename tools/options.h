@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,8 @@ CLI::Option* add_tau_option(CLI::App& command, double& tau);
 void add_tau_or_budget_options(CLI::App& command, double& tau, double& milliseconds);
 // "--quiet" and "--verbose"
 void add_verbosity_options(CLI::App& command);
+// --flag=3 is a mistake in every flag of the command.
+void refuse_values_of_flags(CLI::App& command);
 
 // Gives those options of the command that have no group yet this heading in its help.
 void name_group(CLI::App& command, const std::string& group);
@@ -43,6 +46,12 @@ CLI::Option* add_whole_option(CLI::App& command, const std::string& option, Whol
       command, option, range, [&value](uint64_t found) { value = static_cast<T>(found); },
       description);
 }
+
+// All of the text as a whole number: digits and nothing else.
+std::optional<uint64_t> parse_whole(const std::string& text);
+
+// All of the text as a finite number.
+std::optional<double> parse_number(const std::string& text);
 
 // "--camera I", whose range camera_at() knows (tools/cameras.h).
 CLI::Option* add_camera_option(CLI::App& command, int64_t& index);

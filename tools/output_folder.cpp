@@ -1,14 +1,13 @@
 #include "tools/output_folder.h"
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
 
 #include "runtime/base/error.h"
+#include "runtime/base/output_path.h"
 
 namespace voyager::tools {
 namespace {
@@ -19,25 +18,18 @@ namespace {
 
 constexpr const char* kStaging = ".partial-";
 
-// Held for as long as its process lives, in whatever container; -1 where another holds it.
-int lock(const std::filesystem::path& folder) {
-  const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0 || ::flock(fd, LOCK_EX | LOCK_NB) == 0) return fd;
-  ::close(fd);
-  return -1;
-}
+// Its key lists the files, a line each.
+constexpr FolderKind kPartialOutput = {
+    "an output that is not complete", "remove it", [](std::string_view name, std::string_view key) {
+      return key.find(fmt::format("\n{}\n", name)) != std::string_view::npos;
+    }};
 
-// What nobody has locked is a killed process's.
 void clear_left_over(const std::filesystem::path& path) {
   std::error_code error;
   std::vector<std::filesystem::path> found;
   for (const auto& entry : std::filesystem::directory_iterator(path, error))
     if (entry.path().filename().string().starts_with(kStaging)) found.push_back(entry.path());
-  for (const auto& folder : found)
-    if (const int fd = lock(folder); fd >= 0) {
-      std::filesystem::remove_all(folder, error);
-      ::close(fd);
-    }
+  for (const auto& folder : found) OwnedFolder::remove_abandoned(folder.string(), kPartialOutput);
 }
 
 }  // namespace
@@ -49,28 +41,37 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   std::filesystem::create_directories(path_, error);
   if (error) fail(path_, error);
   std::string name = (path_ / kStaging).string() + "XXXXXX";
-  if (::mkdtemp(name.data()) == nullptr)
-    fail(path_, std::error_code(errno, std::generic_category()));
-  staging_ = name;
-  lock_ = lock(staging_);
+  try {
+    if (::mkdtemp(name.data()) == nullptr)
+      fail(path_, std::error_code(errno, std::generic_category()));
+    staging_ = std::make_unique<OwnedFolder>(name, kPartialOutput, "", true);
+  } catch (...) {
+    ::rmdir(name.c_str());
+    if (created_) ::rmdir(path_.c_str());
+    throw;
+  }
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(staging_, ignored);
-  if (lock_ >= 0) ::close(lock_);
-  if (created_) std::filesystem::remove(path_, ignored);  // only if it is empty
+  staging_->remove();
+  if (created_) ::rmdir(path_.c_str());  // only if it is empty
+}
+
+void OutputFolder::require_place(const std::string& name) const {
+  require_replaceable((path_ / name).string());
 }
 
 std::string OutputFolder::place(const std::string& name) {
+  staging_->add_to_key(name + "\n");
   names_.push_back(name);
-  return (staging_ / name).string();
+  return staging_->path() + "/" + name;
 }
 
 void OutputFolder::commit() {
+  for (const std::string& name : names_) require_place(name);
   for (const std::string& name : names_) {
     std::error_code error;
-    std::filesystem::rename(staging_ / name, path_ / name, error);
+    std::filesystem::rename(staging_->path() + "/" + name, path_ / name, error);
     if (error) fail(path_ / name, error);
   }
   created_ = false;

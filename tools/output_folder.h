@@ -1,14 +1,18 @@
 #pragma once
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "runtime/base/owned_folder.h"
 
 namespace voyager::tools {
 
 // A folder that fills in one step: files are written to a hidden folder inside
-// it and take their places in commit(). Destroyed before that, it removes what
-// it wrote, and the folder itself if it made it. What a process that was killed
-// left there is removed by the next. Throws Error(io).
+// it and take their places in commit(), over files of their names. Destroyed
+// before that, it removes what it wrote, and the folder itself if it made it.
+// What a process that was killed left there is removed by the next; nothing
+// else ever is. Throws Error(io).
 class OutputFolder {
  public:
   explicit OutputFolder(const std::string& path);
@@ -16,15 +20,18 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
+  const std::filesystem::path& path() const { return path_; }
+  // Before the work: throws where no file of that name could be put.
+  void require_place(const std::string& name) const;
   // Where to write the file that will be `name`.
   std::string place(const std::string& name);
   void commit();
 
  private:
-  std::filesystem::path path_, staging_;
+  std::filesystem::path path_;
+  std::unique_ptr<OwnedFolder> staging_;
   std::vector<std::string> names_;
   bool created_ = false;
-  int lock_ = -1;  // of staging_
 };
 
 }  // namespace voyager::tools

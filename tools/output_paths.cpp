@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "runtime/base/error.h"
+#include "runtime/base/file.h"
+#include "runtime/base/output_path.h"
 #include "runtime/base/url.h"
 
 namespace voyager::tools {
@@ -13,15 +15,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Without links, also where nothing is there yet.
+fs::path resolved(const std::string& path) {
+  return fs::weakly_canonical(fs::absolute(written_path(path)));
+}
+
+bool is_file(const std::string& path) {
+  return !path.empty() && path != "-" && !is_url(path);
+}
+
 bool same_file(const std::string& a, const std::string& b) {
-  if (is_url(b)) return false;  // no output is one
   std::error_code ignored;
-  return fs::equivalent(a, b, ignored) ||
-         fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+  return fs::equivalent(a, b, ignored) || resolved(a) == resolved(b);
 }
 
 void require_different(const std::string& output, const std::string& other, const char* what) {
-  if (!output.empty() && !other.empty() && same_file(output, other))
+  if (is_file(output) && is_file(other) && same_file(output, other))
     throw Error(ErrorCode::invalid_argument,
                 fmt::format("{}: found it as an output and as {} ({}), expected different files",
                             output, what, other));
@@ -37,6 +46,22 @@ void require_distinct(const std::vector<std::string>& outputs,
   }
 }
 
+void require_outside(const std::string& folder, const std::vector<std::string>& paths) {
+  const fs::path within = resolved(folder);
+  std::error_code ignored;
+  for (const std::string& path : paths) {
+    if (!is_file(path)) continue;
+    fs::path at = resolved(path);
+    while (at != within && !fs::equivalent(at, within, ignored) && at.has_relative_path())
+      at = at.parent_path();
+    if (at.has_relative_path())
+      throw Error(ErrorCode::invalid_argument,
+                  fmt::format("{}: found it in the work folder {}, which is made for the bake and "
+                              "removed at its end, expected it outside",
+                              path, folder));
+  }
+}
+
 void require_extension(const std::string& option, const std::string& path,
                        const std::vector<std::string>& extensions) {
   const std::string extension = fs::path(path).extension().string();
@@ -45,6 +70,11 @@ void require_extension(const std::string& option, const std::string& path,
   for (const std::string& known : extensions) list += (list.empty() ? "" : " or ") + known;
   throw Error(ErrorCode::invalid_argument,
               fmt::format("{}: found {}, expected a name that ends in {}", option, path, list));
+}
+
+void require_writable(const std::string& path, uint64_t bytes) {
+  const AtomicFile nothing(path);
+  if (bytes != 0) require_room(path, bytes, "it");
 }
 
 }  // namespace voyager::tools

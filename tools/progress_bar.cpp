@@ -85,7 +85,7 @@ class Bar {
   std::mutex mutex_;
   std::condition_variable wake_;
   bool closed_ = false;
-  std::string stage_;  // "": none is under way
+  std::string stage_;  // "": no work is in progress
   uint64_t done_ = 0, total_ = 0;
   Clock::time_point begun_ = Clock::now();
   Clock::time_point next_ = begun_ + (terminal_ ? pace_.first_bar : pace_.first_line);

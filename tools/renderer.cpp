@@ -10,22 +10,15 @@
 namespace voyager::tools {
 namespace {
 
-// Without the name of the function that logs.
-std::string for_people(const std::string& message) {
-  const size_t colon = message.find(": ");
-  return message.starts_with("voy") && colon != std::string::npos ? message.substr(colon + 2)
-                                                                  : message;
-}
-
 // An error ends the command, and is printed there.
 void write_log(void* user, VoyLogLevel level, const char* message) {
   RendererLog& log = *static_cast<RendererLog*>(user);
   if (level == VOY_LOG_INFO) return detail(message);
   if (level != VOY_LOG_WARNING) return;
   if (log.waits)
-    log.warnings.push_back(for_people(message));
+    log.warnings.push_back(without_call(message));
   else
-    warn(for_people(message));
+    warn(without_call(message));
 }
 
 // The budget holds where the scene is drawn: in the host's memory, or in CUDA's own.
@@ -36,9 +29,10 @@ voy::Device create_device(const RenderChoices& choices, RendererLog& log) {
   desc.logUser = &log;
   desc.logLevel = verbosity() == Verbosity::verbose ? VOY_LOG_INFO : VOY_LOG_WARNING;
   desc.deviceMemoryBudget = static_cast<uint64_t>(choices.budget * 1e6);
-  const bool on_host =
-      choices.backend == VOY_BACKEND_CPU || choices.backend == VOY_BACKEND_REFERENCE ||
-      (choices.backend == VOY_BACKEND_AUTO && voyQueryBackend(VOY_BACKEND_CUDA) != VOY_SUCCESS);
+  const bool on_host = choices.backend == VOY_BACKEND_CPU ||
+                       choices.backend == VOY_BACKEND_REFERENCE ||
+                       (choices.budget > 0 && choices.backend == VOY_BACKEND_AUTO &&
+                        voyQueryBackend(VOY_BACKEND_CUDA) != VOY_SUCCESS);
   if (on_host) desc.memoryBudget = desc.deviceMemoryBudget;
   return voy::Device::create(desc);
 }

@@ -37,9 +37,11 @@ std::string suggestion(const std::string& found, const std::vector<std::string>&
   return meant.empty() ? "" : ", did you mean " + meant + "?";
 }
 
-// What no option and no command took: an option's name rather than a value.
+// What no option and no command took: a wrong command, else an option's name rather than a value.
 std::string unexpected(const CLI::App& app) {
   const std::vector<std::string> rest = app.remaining(true);
+  if (app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with('-'))
+    return rest.front();
   const auto option =
       std::find_if(rest.begin(), rest.end(), [](const auto& a) { return a.starts_with('-'); });
   return option != rest.end() ? *option : rest.empty() ? "" : rest.front();
@@ -109,7 +111,8 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     if (what.find("received") != std::string::npos)
       return name + ": found it more than once, expected it once";
-    if (what.find("override") != std::string::npos) return name + ": found a value, expected none";
+    if (what.find("override") != std::string::npos)  // which names flags without their dashes
+      return "--" + name + ": found a value, expected none";
     return name + ": found no value, expected " + expected_by(command, name);
   }
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr)

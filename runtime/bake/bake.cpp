@@ -5,7 +5,9 @@
 
 #include "runtime/bake/for_cells.h"
 #include "runtime/bake/join.h"
+#include "runtime/bake/merged.h"
 #include "runtime/base/error.h"
+#include "runtime/base/output_path.h"
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
 
@@ -25,6 +27,11 @@ std::string megabytes(uint64_t bytes) {
   return std::to_string(bytes / 1000000 + 1) + " MB";
 }
 
+// The other steps share the folder.
+bool alone(const BakeInParts& bake) {
+  return bake.step != BakeStep::cells && bake.step != BakeStep::encode;
+}
+
 class Baker {
  public:
   Baker(const BakeInParts& bake, const OpenInputs& open, Workers& workers, const Progress& progress)
@@ -32,10 +39,14 @@ class Baker {
         open_(open),
         workers_(workers),
         progress_(progress),
-        folder_(bake.work, bake.request,
-                bake.step != BakeStep::cells && bake.step != BakeStep::encode) {}
+        folder_(bake.work, bake.request, alone(bake), bake.temporary) {}
 
   BakeSummary run() {
+    if (alone(bake_) && folder_.has(kMerged)) {
+      const std::optional<BakeSummary> merged = read_merged(folder_, bake_.output);
+      if (merged && bake_.step != BakeStep::split) return finish(*merged);
+      folder_.drop_all();  // of what is left nothing can be trusted
+    }
     if (!folder_.has(kSplitDone) && !split()) return bake_whole();
     split_ = read_split_info(folder_, bake_.rule);
     for (const char* name : {kPositionRows, kOtherRows, kSpoolDone}) folder_.drop(name);
@@ -50,8 +61,8 @@ class Baker {
     encode_cells(plan, top);
     if (bake_.step == BakeStep::encode) return summary(plan);
     join(plan, top);
-    folder_.drop_all();
-    return summary(plan);
+    note_merged(folder_, bake_.output, summary(plan));
+    return finish(summary(plan));
   }
 
  private:
@@ -89,6 +100,7 @@ class Baker {
   }
 
   SpoolInfo read_inputs() {
+    folder_.drop_all();
     auto readers = open_();
     uint64_t count = 0;
     int sh_degree = 0;
@@ -97,6 +109,8 @@ class Baker {
       sh_degree = std::max(sh_degree, reader->sh_degree());
     }
     SpoolInfo spool;
+    if (bake_.step == BakeStep::all)
+      require_room(bake_.output, bytes_of_scene(count, sh_degree, bake_.quality), "it");
     in_space(count * word_bytes(sh_degree), "a copy of the inputs", [&] {
       spool = spool_inputs([&] { return std::move(readers); }, folder_, bake_.memory / 2, workers_,
                            progress_);
@@ -190,6 +204,7 @@ class Baker {
     uint64_t bytes = plan.chunk_count() * sizeof(ChunkEntry);
     for (uint32_t cell = 0; cell < plan.cells(); ++cell)
       bytes += std::filesystem::file_size(folder_.file(cell_chunks_name(cell)));
+    require_room(bake_.output, bytes, "it");
     try {
       join_cells(split_, plan, top, bake_.quality, folder_, bake_.output, workers_, progress_);
     } catch (const Error& error) {
@@ -212,7 +227,12 @@ class Baker {
     result.nodes = baked.tree.size();
     result.subtrees = partition.subtrees.size();
     result.chunks = partition.chunk_count();
-    folder_.drop_all();
+    note_merged(folder_, bake_.output, result);
+    return finish(result);
+  }
+
+  BakeSummary finish(BakeSummary result) {
+    result.left = folder_.remove();
     return result;
   }
 
@@ -270,6 +290,12 @@ uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree) {
   // Words of leaves and of 7/6 of a merged Gaussian each, 53 bytes a node, layout and
   // sources; the rest is what is encoded and what allocators keep.
   return gaussians * (word_bytes(sh_degree) * 13 / 6 + 150);
+}
+
+uint64_t bytes_of_scene(uint64_t gaussians, int sh_degree, Quality quality) {
+  const uint64_t rest = static_cast<uint64_t>(sh_coefficients(sh_degree) - 1) * 3;
+  // A city has 2.3 nodes a Gaussian; 82 and 144 bytes at degrees 0 and 3, lossless 269 and 684.
+  return gaussians * (quality == Quality::compact ? 40 + rest * 7 / 10 : 130 + rest * 9 / 2);
 }
 
 BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Workers& workers,

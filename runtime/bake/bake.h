@@ -19,8 +19,9 @@ enum class BakeStep { all, split, cells, encode, merge };
 struct BakeInParts {
   // What is baked: a work folder is one request's. Lines of text.
   std::string request;
-  std::string output;  // the .voy
-  std::string work;    // the folder: made, and removed when the output is there
+  std::string output;      // the .voy
+  std::string work;        // the folder: made, and removed when the output is there
+  bool temporary = false;  // the folder goes when the bake that made it fails, too
   Quality quality = Quality::compact;
   uint32_t chunk_bytes = kDefaultChunkBytes;
   uint64_t memory = 0;  // bytes that scene data may take at a time, about
@@ -36,14 +37,15 @@ struct BakeSummary {
   uint64_t gaussians = 0;
   uint64_t nodes = 0, subtrees = 0, chunks = 0;  // 0 until all cells are built
   ImportReport import;
-  uint32_t cells = 0;  // 0: baked in one piece
+  uint32_t cells = 0;               // 0: baked in one piece
+  std::vector<std::string> left{};  // in the work folder, by others: for these it is still there
 };
 
 // `open` is called where the folder has not yet all of the inputs. Throws
 // Error(refused_input) as importers and build_tree() do, and for a folder that is
-// another request's or was altered; Error(invalid_argument) for a step before its time;
-// Error(io) where the disk is full, saying how much is needed; Error(over_budget) where
-// memory does not do.
+// another request's, has files of somebody else, or was altered; Error(invalid_argument) for a step
+// before its time; Error(io) where the disk is full, saying how much is needed; Error(over_budget)
+// where memory does not do.
 BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Workers& workers,
                           const Progress& progress);
 
@@ -55,5 +57,9 @@ std::string bake_request(const std::vector<std::string>& inputs, Quality quality
 
 // Bytes that baking in memory takes at most, about.
 uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree);
+
+// Bytes of the scene, at least: half of what a synthetic city's takes. More than that nobody knows
+// before the bake.
+uint64_t bytes_of_scene(uint64_t gaussians, int sh_degree, Quality quality);
 
 }  // namespace voyager

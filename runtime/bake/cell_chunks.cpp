@@ -60,10 +60,6 @@ TierPart write_tier(const Segment& segment, const SegmentNodes& nodes, const Bak
 
 }  // namespace
 
-std::string cell_chunks_name(uint32_t cell) {
-  return "cell-" + std::to_string(cell) + ".chunks";
-}
-
 ChunkContext encoding_context(const SplitInfo& split, Quality quality) {
   ChunkContext context;
   context.quality = quality;

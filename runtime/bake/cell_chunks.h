@@ -6,8 +6,6 @@
 
 namespace voyager {
 
-std::string cell_chunks_name(uint32_t cell);
-
 // Rebuilds the cell, turns its axes below the top's, encodes it. Its rows and leaves
 // are then no longer needed, and removed.
 void encode_cell(const SplitInfo& split, const BakePlan& plan, const BakedScene& top,

@@ -158,10 +158,6 @@ CellRows room_for(const SpoolInfo& spool, uint32_t count) {
 
 }  // namespace
 
-std::string cell_rows_name(uint32_t cell) {
-  return "cell-" + std::to_string(cell) + ".rows";
-}
-
 void distribute(const SpoolInfo& spool, const SplitTree& tree, const std::array<double, 3>& origin,
                 const WorkFolder& folder, uint64_t memory, Workers& workers,
                 const Progress& progress) {

@@ -17,9 +17,6 @@ struct SplitInfo {
   uint32_t cells() const { return static_cast<uint32_t>(cell_sizes.size()); }
 };
 
-inline constexpr const char* kSplitDone = "split";
-std::string cell_rows_name(uint32_t cell);
-
 // Sorts the spooled rows into the files of their cells, in at most `memory` bytes; then
 // the file "split" says that it is done, and the spool is removed. Progress stage
 // "distributing".

@@ -61,14 +61,6 @@ NodeRow row_of(const BakedScene& baked, uint32_t node) {
 
 }  // namespace
 
-std::string cell_tree_name(uint32_t cell) {
-  return "cell-" + std::to_string(cell) + ".tree";
-}
-
-std::string cell_leaves_name(uint32_t cell) {
-  return "cell-" + std::to_string(cell) + ".leaves";
-}
-
 void build_cell(const SplitInfo& split, uint32_t cell, const TreeRule& rule,
                 const WorkFolder& folder, Workers& workers) {
   CellRows rows = read_cell_rows(split, cell, folder);

@@ -20,12 +20,6 @@ struct NodeRow {
   float sh[3 * sh_coefficients(kMaxShDegree)];
 };
 
-// Child counts and topmost nodes of a cell: what all cells need of each other. It is
-// written last: a cell that has it is built.
-std::string cell_tree_name(uint32_t cell);
-// The rest of the layout: which Gaussian each leaf is, and how it shows.
-std::string cell_leaves_name(uint32_t cell);
-
 // Lays out and merges a cell, and writes its files. Throws Error(internal) for a layout
 // that cell_levels() refuses: no clustered tree's.
 void build_cell(const SplitInfo& split, uint32_t cell, const TreeRule& rule,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "runtime/bake/work_files.h"
 #include "runtime/bake/work_folder.h"
 #include "runtime/base/progress.h"
 #include "runtime/base/scratch_file.h"
@@ -16,9 +17,6 @@ namespace voyager {
 
 // Opens the inputs of a bake, in order: their headers are read.
 using OpenInputs = std::function<std::vector<std::unique_ptr<BlockReader>>()>;
-
-inline constexpr const char* kPositionRows = "positions";
-inline constexpr const char* kOtherRows = "words";
 
 // Log scale, rotation, opacity and SH.
 inline size_t other_floats(int sh_degree) {
@@ -48,7 +46,6 @@ struct SpoolInfo {
 SpoolInfo spool_inputs(const OpenInputs& open, const WorkFolder& folder, uint64_t memory,
                        Workers& workers, const Progress& progress);
 
-inline constexpr const char* kSpoolDone = "spool";
 SpoolInfo read_spool_info(const WorkFolder& folder);
 
 // The rows of one piece. Throws Error(refused_input) where they were altered.

@@ -5,30 +5,38 @@
 #include <string>
 #include <vector>
 
-#include "runtime/base/file_descriptor.h"
+#include "runtime/base/owned_folder.h"
 
 namespace voyager {
 
 class WorkFolder {
  public:
   // Made if absent, and then marked with `request`, lines of what is baked and how. A
-  // folder of another request is refused (Error(refused_input), naming the first line
-  // that differs). `alone` keeps others out while the object lives; else others that
-  // are not alone may be in, too (Error(io) where that cannot be had).
-  WorkFolder(std::string path, const std::string& request, bool alone);
+  // folder of another request, or with files of anybody else, is refused
+  // (Error(refused_input)). `alone` keeps others out while the object lives; else others
+  // that are not alone may be in, too (Error(io) where that cannot be had). `temporary`:
+  // goes with the object, where the object has made it.
+  WorkFolder(std::string path, const std::string& request, bool alone, bool temporary);
+  ~WorkFolder();
+  WorkFolder(const WorkFolder&) = delete;
+  WorkFolder& operator=(const WorkFolder&) = delete;
 
-  const std::string& path() const { return path_; }
-  std::string file(const std::string& name) const { return path_ + "/" + name; }
+  const std::string& path() const { return folder_.path(); }
+  std::string file(const std::string& name) const { return path() + "/" + name; }
   bool has(const std::string& name) const;
   void drop(const std::string& name) const;  // no error where it is not there
-  void drop_all();                           // the folder, too
+  // All files of the bake, in an order in which a bake that goes on after a kill trusts none of
+  // them.
+  void drop_all() const;
+  // The folder, too. Returns what is in it that no bake has written: that stays.
+  std::vector<std::string> remove();
 
   // Error(io) where the device has not so many bytes free; `what` needs them.
   void require_space(uint64_t bytes, const std::string& what) const;
 
  private:
-  std::string path_;
-  FileDescriptor lock_;
+  OwnedFolder folder_;
+  bool temporary_;
 };
 
 }  // namespace voyager

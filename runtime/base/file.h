@@ -8,6 +8,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+
+#include "runtime/base/file_descriptor.h"
 
 namespace voyager {
 
@@ -75,14 +78,15 @@ class ByteReader {
 std::unique_ptr<ByteReader> read_source(const ByteSource& source);
 std::unique_ptr<ByteReader> read_stdin();
 
-// Has no name until commit(), which flushes and then takes `path` in one step.
-// Destroyed without commit, or killed, it leaves `path` alone, and nothing behind
-// but on file systems without unnamed files, where a kill leaves path.partial-*.
-// write() may come from one thread at a time, write_at() from several where no two
+// Has no name until commit(), which flushes and then takes `path` in one step; where `path` is a
+// symbolic link, the name that it leads to. Destroyed without commit, or killed, it leaves `path`
+// alone, and nothing behind but on file systems without unnamed files, where a kill leaves
+// path.partial-*. write() may come from one thread at a time, write_at() from several where no two
 // overlap. All throw Error(io).
 class AtomicFile {
  public:
-  explicit AtomicFile(std::string path);  // throws Error(io)
+  // Throws Error(io) also where require_replaceable() does (output_path.h).
+  explicit AtomicFile(std::string path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -94,12 +98,22 @@ class AtomicFile {
   // The same without the flush: whole to every process, also after a kill, but a loss of
   // power may tear it. For files under checksums that can be made again.
   void commit_unflushed();
+  // The same, but only where nothing has the name yet; false where something has.
+  bool commit_new();
+
+  // Of the file, before and after it has its name.
+  FileDescriptor& descriptor() { return fd_; }
 
  private:
-  std::string path_;
+  bool link_to(const std::string& name);  // false: the name is taken
+
+  std::string path_, target_;
   std::string temporary_;  // the name that it has on the way, if any
-  int fd_ = -1;
+  FileDescriptor fd_;
   uint64_t position_ = 0;
 };
+
+// A file's name without the ending that an AtomicFile gives it on the way.
+std::string_view without_partial(std::string_view name);
 
 }  // namespace voyager

@@ -12,6 +12,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
 #include "runtime/base/file_descriptor.h"
+#include "runtime/base/file_kind.h"
 
 namespace voyager {
 namespace {
@@ -50,14 +51,9 @@ class FileSource final : public ByteSource {
 }
 
 void require_regular(const std::string& path, mode_t mode) {
-  if (S_ISREG(mode)) return;
-  const char* kind = S_ISDIR(mode)    ? "a directory"
-                     : S_ISFIFO(mode) ? "a FIFO"
-                     : S_ISSOCK(mode) ? "a socket"
-                     : S_ISCHR(mode)  ? "a terminal or another character device"
-                     : S_ISBLK(mode)  ? "a block device"
-                                      : "something else";
-  throw Error(ErrorCode::refused_input, path + ": found " + kind + ", expected a regular file");
+  if (!S_ISREG(mode))
+    throw Error(ErrorCode::refused_input,
+                path + ": found " + file_kind(mode) + ", expected a regular file");
 }
 
 // What is no regular file is not even opened: that may wait for a writer, rewind a tape, or take a

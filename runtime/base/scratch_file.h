@@ -11,7 +11,7 @@ namespace voyager {
 // once. Throws Error(io) naming the file and, where the device is full, saying so.
 class ScratchFile {
  public:
-  // Made, or emptied.
+  // Made anew.
   static ScratchFile create(const std::string& path);
   static ScratchFile open(const std::string& path);  // what is there
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/base/error.h"
+#include "runtime/base/output_path.h"
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/sh_bands.h"
 
@@ -65,10 +66,12 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
 }
 
 void export_ply(const SceneFile& scene, const std::string& path, const Progress& progress) {
+  AtomicFile file(path);
+  const SceneFileInfo& info = scene.info();
+  require_room(path, ply_bytes(info.leaf_count, info.sh_degree + info.left_out_bands), "it");
   GaussianCloud cloud = read_leaves(scene, progress);
   put_back_zero_bands(cloud);
   const bool moved = cloud.origin != std::array<double, 3>{0, 0, 0};
-  AtomicFile file(path);
   const std::unique_ptr<ByteSink> sink = sink_to(file);
   const std::unique_ptr<GaussianWriter> writer =
       write_ply(*sink, cloud.size(), cloud.sh_degree, moved);

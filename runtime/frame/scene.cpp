@@ -24,22 +24,26 @@ std::string hex(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
-                                  std::pmr::memory_resource* memory, Workers& workers) {
+SceneFormat scene_format(const ByteSource& source) {
   std::array<std::byte, 64> buffer;
   const std::span<std::byte> first =
-      std::span(buffer).first(std::min<uint64_t>(buffer.size(), source->size()));
-  source->read(0, first);
+      std::span(buffer).first(std::min<uint64_t>(buffer.size(), source.size()));
+  source.read(0, first);
+  if (SceneFile::is_scene_file(first)) return SceneFormat::baked;
+  if (is_importable(first)) return SceneFormat::flat;
+  throw Error(ErrorCode::refused_input, source.name() + ": offset 0: found " +
+                                            hex(first.first(std::min<size_t>(8, first.size()))) +
+                                            ", expected a .voy, .ply or .spz file");
+}
+
+std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
+                                  std::pmr::memory_resource* memory, Workers& workers) {
   auto scene = std::make_shared<Scene>(memory);
   scene->name = source->name();
-  if (SceneFile::is_scene_file(first))
+  if (scene_format(*source) == SceneFormat::baked)
     load_baked(SceneFile(source), workers, *scene);
-  else if (is_importable(first))
-    load_flat(*source, workers, *scene);
   else
-    throw Error(ErrorCode::refused_input, source->name() + ": offset 0: found " +
-                                              hex(first.first(std::min<size_t>(8, first.size()))) +
-                                              ", expected a .voy, .ply or .spz file");
+    load_flat(*source, workers, *scene);
   return scene;
 }
 

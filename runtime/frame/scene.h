@@ -98,6 +98,11 @@ struct Scene {
   std::unique_ptr<SceneStream> stream;  // fills the pool, so goes before it
 };
 
+// Told by the first bytes: a baked .voy, or a flat scene. Throws Error(refused_input) for
+// anything else.
+enum class SceneFormat { baked, flat };
+SceneFormat scene_format(const ByteSource& source);
+
 // Opens .voy, .ply or .spz, told by its bytes. Throws Error; std::bad_alloc
 // where `memory` refuses.
 std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,

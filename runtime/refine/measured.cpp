@@ -39,6 +39,18 @@ void keep(const Measured& measured, const LodTree& tree, const std::string& path
   write_sealed(path, packer.bytes());
 }
 
+void check_kept(const std::string& path) {
+  if (!std::filesystem::exists(path)) return;
+  const auto source = open_file_source(path);
+  uint64_t kind = 0;
+  if (source->size() >= sizeof kind) source->read(0, std::as_writable_bytes(std::span(&kind, 1)));
+  if (kind != kKind)
+    throw Error(ErrorCode::refused_input,
+                path +
+                    ": found a file that no bake has written, expected what --refine has measured: "
+                    "give another -o, or move it away");
+}
+
 Measured read_kept(const LodTree& tree, const std::string& path) {
   Measured measured(tree.size());
   if (!std::filesystem::exists(path)) return measured;

@@ -18,6 +18,8 @@ struct Measured {
 
 // A file of its own, whole or absent. `tree` tells scenes apart.
 void keep(const Measured& measured, const LodTree& tree, const std::string& path);
+// Throws Error(refused_input) where something is there that keep() did not write.
+void check_kept(const std::string& path);
 // Where there is none, nothing is measured. Throws Error(refused_input) where it is of another
 // tree or was altered.
 Measured read_kept(const LodTree& tree, const std::string& path);

@@ -123,8 +123,8 @@ void refine_extents(BakedScene& baked, uint32_t views, const std::string& kept, 
     throw Error(ErrorCode::unsupported,
                 kept + ": found a tree of another kind, expected a clustered one");
   LodTree& tree = baked.tree;
-  if (tree.size() < 2) return;
   Measured measured = read_kept(tree, kept);
+  if (tree.size() < 2) return;
   if (measured.views > views)
     throw Error(ErrorCode::refused_input, kept + ": found " + std::to_string(measured.views) +
                                               " views, expected at most " + std::to_string(views) +

@@ -4,12 +4,18 @@
  *   c_minimal SCENE.voy|.ply|.spz OUT.png [path of libvoyager.so]
  *
  * Exit status: 0 done, 1 bad usage, 2 the scene was refused, 4 anything else. */
+#define _XOPEN_SOURCE 700 /* realpath, PATH_MAX */
+
 #include <dlfcn.h>
+#include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <voyager/voyager.h>
 
 enum { kWidth = 960, kHeight = 540 };
@@ -125,15 +131,34 @@ static int render(VoyDevice device, const char* path, unsigned char* pixels) {
   return succeeded(render_frame(view, &frame)) ? 0 : 4;
 }
 
+/* Is there something that no picture may replace: a folder, a pipe, a device? */
+static int is_no_file(const char* path) {
+  struct stat info;
+  if (stat(path, &info) != 0 || S_ISREG(info.st_mode)) return 0;
+  fprintf(stderr, "c_minimal: %s: found something that is no file, expected a free name\n", path);
+  return 1;
+}
+
+/* Whole or not at all: beside its place first, under a name that no file has. Where the place is a
+ * symbolic link, the file that it leads to is written. */
 static int write_png(const char* path, const unsigned char* pixels) {
+  char place[PATH_MAX], beside[PATH_MAX + 32];
+  FILE* file;
+  int written;
   png_image image;
+  if (!realpath(path, place)) snprintf(place, sizeof place, "%s", path);
+  snprintf(beside, sizeof beside, "%s.part-%ld", place, (long)getpid());
   memset(&image, 0, sizeof image);
   image.version = PNG_IMAGE_VERSION;
   image.width = kWidth;
   image.height = kHeight;
   image.format = PNG_FORMAT_RGBA;
-  if (png_image_write_to_file(&image, path, 0, pixels, 0, NULL)) return 0;
-  fprintf(stderr, "c_minimal: %s: %s\n", path, image.message);
+  file = fopen(beside, "wbx"); /* x: fails where there is one */
+  written = file && png_image_write_to_stdio(&image, file, 0, pixels, 0, NULL);
+  if (file && fclose(file) != 0) written = 0;
+  if (written && rename(beside, place) == 0) return 0;
+  fprintf(stderr, "c_minimal: %s: %s\n", path, image.message[0] ? image.message : strerror(errno));
+  if (file) remove(beside);
   return 4;
 }
 
@@ -148,6 +173,7 @@ int main(int argc, char** argv) {
     fprintf(stderr, "usage: c_minimal SCENE.voy|.ply|.spz OUT.png [path of libvoyager.so]\n");
     return 1;
   }
+  if (is_no_file(argv[2])) return 4;
   library = load(argc == 4 ? argv[3] : VOYAGER_LIBRARY);
   if (!library) return 4;
 

@@ -1,10 +1,12 @@
 #include "files.h"
 
 #include <png.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -12,7 +14,29 @@
 
 namespace host {
 
+namespace fs = std::filesystem;
+
+namespace {
+
+// What symbolic links lead to, whether it is there or not.
+fs::path written_path(const std::string& path) {
+  constexpr int kMostLinks = 40;
+  fs::path target = path;
+  for (int links = 0; links < kMostLinks; ++links) {
+    std::error_code no_link;
+    const fs::path next = fs::read_symlink(target, no_link);
+    if (no_link) break;
+    target = target.parent_path() / next;
+  }
+  return target;
+}
+
+}  // namespace
+
 std::string read_file(const std::string& path) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
+    throw Failure(kRefusedInput, path + ": expected a file, not a folder, pipe or device");
   const auto fail = [&] { throw Failure(kRefusedInput, path + ": " + std::strerror(errno)); };
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              std::fclose);
@@ -25,18 +49,32 @@ std::string read_file(const std::string& path) {
   return bytes;
 }
 
+void require_writable(const std::string& path) {
+  std::error_code ignored;
+  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
+    throw Failure(kMachine,
+                  path + ": expected a file or a free name, not a folder, pipe or device");
+  const fs::path target = written_path(path);
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (::access(folder.c_str(), W_OK) != 0 ||
+      (::access(target.c_str(), W_OK) != 0 && errno != ENOENT))
+    throw Failure(kMachine, path + ": " + std::strerror(errno));
+}
+
 void write_file(const std::string& path, std::span<const std::byte> bytes) {
-  const std::string temporary = path + ".part";
+  require_writable(path);
+  const std::string target = written_path(path).string();
+  const std::string temporary = target + ".part-" + std::to_string(::getpid());
+  std::FILE* file = std::fopen(temporary.c_str(), "wbx");  // x: no file of another is emptied
   const auto fail = [&] {
     const std::string reason = std::strerror(errno);
-    std::remove(temporary.c_str());
+    if (file) std::remove(temporary.c_str());
     throw Failure(kMachine, path + ": " + reason);
   };
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
   if (!file) fail();
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   if (std::fclose(file) != 0 || !written) fail();
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) fail();
+  if (std::rename(temporary.c_str(), target.c_str()) != 0) fail();
 }
 
 void write_png(const std::string& path, uint32_t width, uint32_t height,

@@ -6,9 +6,13 @@
 
 namespace host {
 
-// All of it. Throws Failure(kRefusedInput) with the path.
+// All of it. Throws Failure(kRefusedInput) with the path, also for what is no file: nothing waits
+// for the other end of a pipe.
 std::string read_file(const std::string& path);
 
+// Before the work: throws Failure(kMachine) where write_file() would fail.
+void require_writable(const std::string& path);
+// Where `path` is a symbolic link, to what it leads to. Throws Failure(kMachine).
 void write_file(const std::string& path, std::span<const std::byte> bytes);
 // RGB from rows of RGBA.
 void write_png(const std::string& path, uint32_t width, uint32_t height,

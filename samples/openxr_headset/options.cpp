@@ -40,15 +40,15 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--readback", o.readback,
                  "A PNG an eye and frame, 0000_L.png and so on, and their cameras.json")
       ->type_name("FOLDER");
-  auto* const tau = app.add_option("--tau", o.tau, "Granularity in pixels")
+  auto* const tau = app.add_option("--tau", o.tau, "Level of detail, pixels: smaller is finer")
                         ->check(CLI::Validator(not_negative, "PX"));
   app.add_option("--time-budget", o.time_budget,
                  "Voyager's share of a frame, both eyes: the granularity follows")
       ->check(CLI::Validator(above_zero, "MS"))
       ->excludes(tau);
   app.add_flag("--validation", o.validation,
-               "Run under the validation layers of Vulkan and OpenXR; exit with 1 where they had "
-               "anything to say");
+               "Run under the validation layers of Vulkan and OpenXR; exit with 1 if they report "
+               "anything");
   app.footer("openxr_headset city.voy --camera-file city.cameras.json");
   try {
     app.parse(argc, argv);

@@ -1,6 +1,5 @@
 #include "recorder.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <glm/mat3x3.hpp>
@@ -42,28 +41,39 @@ nlohmann::json to_json(const Camera& camera, uint64_t id, const std::string& nam
           {"cy", f.up * fy}};
 }
 
-// Exactly what picture_name makes, or cameras.json.
-bool is_recorded(const std::string& name) {
-  if (name == "cameras.json") return true;
-  const size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
-  const std::string rest = name.substr(digits);
-  return (digits == 4 || (digits > 4 && name[0] != '0')) && (rest == "_L.png" || rest == "_R.png");
+constexpr const char* kCameras = "cameras.json";
+
+// The pictures of a recording, from its cameras.json; any other file of that name is somebody's
+// own.
+std::vector<std::string> pictures_of(const std::string& path) {
+  const nlohmann::json cameras =
+      nlohmann::json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
+  std::vector<std::string> names;
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    names.push_back(picture_name(i / kEyes, i % kEyes));
+    if (!cameras.is_array() || !cameras[i].is_object() ||
+        cameras[i].value("img_name", nlohmann::json()) != names.back())
+      throw Failure(kBadUsage, "--readback: found " + path +
+                                   ", which no recording has written, expected another folder");
+  }
+  return names;
 }
 
 }  // namespace
 
 Recorder::Recorder(std::string folder) : folder_(std::move(folder)) {
   namespace fs = std::filesystem;
+  const std::string cameras = folder_ + "/" + kCameras;
   try {
     fs::create_directories(folder_);
-    std::vector<fs::path> old;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
-      if (entry.is_regular_file() && is_recorded(entry.path().filename().string()))
-        old.push_back(entry.path());
-    for (const fs::path& path : old) fs::remove(path);
+    if (fs::exists(cameras)) {
+      for (const std::string& name : pictures_of(cameras)) fs::remove(folder_ + "/" + name);
+      fs::remove(cameras);
+    }
   } catch (const fs::filesystem_error& error) {
     throw Failure(kMachine, folder_ + ": " + error.code().message());
   }
+  require_writable(cameras);
 }
 
 void Recorder::add(uint64_t frame, const std::array<Camera, kEyes>& eyes) {
@@ -79,7 +89,7 @@ void Recorder::write_picture(uint64_t frame, size_t eye, VkExtent2D extent,
 
 void Recorder::write_cameras() const {
   const std::string text = cameras_.dump(1) + "\n";
-  write_file(folder_ + "/cameras.json", std::as_bytes(std::span(text)));
+  write_file(folder_ + "/" + kCameras, std::as_bytes(std::span(text)));
 }
 
 }  // namespace host

@@ -13,8 +13,9 @@ namespace host {
 
 class Recorder {
  public:
-  // Makes the folder, and removes what an earlier recording left in it: cameras.json and pictures
-  // of such names, nothing else.
+  // Makes the folder, and removes what an earlier recording left in it: its cameras.json and the
+  // pictures which that names. Throws Failure(kBadUsage) for a cameras.json that is not a
+  // recording's.
   explicit Recorder(std::string folder);
 
   // Its pictures may come later. A frame that was lost before it was shown is added again.

@@ -10,6 +10,7 @@
 
 #include "camera_file.h"
 #include "failure.h"
+#include "files.h"
 #include "mode_names.h"
 #include "offscreen.h"
 #include "options.h"
@@ -62,6 +63,8 @@ void run(const Options& options, Validation* validation) {
   if (!options.camera_file.empty()) cameras = read_cameras(options.camera_file);
   std::optional<Mesh> mesh;
   if (options.mesh) mesh = read_mesh(options.mesh_file.empty() ? own_mesh() : options.mesh_file);
+  if (!options.stats_file.empty()) require_writable(options.stats_file);
+  if (options.offscreen) make_folder(options.output);
 
   std::optional<Glfw> glfw;
   std::optional<Presentation> presentation;

@@ -58,18 +58,18 @@ class Recorder {
   std::array<Pending, kFramesInFlight> slots_;
 };
 
+}  // namespace
+
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Failure(kMachine, folder + ": " + error.message());
+  require_writable(folder + "/0000.png");
 }
-
-}  // namespace
 
 void run_offscreen(const Device& device, Renderer& renderer, VoyagerLayer& voyager,
                    const DepthConvention& depth, const std::vector<Camera>& cameras,
                    const Look& look, const OffscreenOptions& options, FrameLog& log) {
-  make_folder(options.folder);
   Recorder recorder(device, depth, options);
   for (uint64_t i = 0; i < options.frames; ++i) {
     const Camera& camera = cameras[i % cameras.size()];

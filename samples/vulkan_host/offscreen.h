@@ -14,6 +14,9 @@ struct OffscreenOptions {
   bool write_depth;
 };
 
+// Throws Failure(kMachine) where no picture could be written there.
+void make_folder(const std::string& folder);
+// Into a folder that is there.
 void run_offscreen(const Device& device, Renderer& renderer, VoyagerLayer& voyager,
                    const DepthConvention& depth, const std::vector<Camera>& cameras,
                    const Look& look, const OffscreenOptions& options, FrameLog& log);

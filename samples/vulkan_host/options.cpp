@@ -23,12 +23,13 @@ std::string not_negative(const std::string& text) {
   return "found " + text + ", expected a number, 0 or more";
 }
 
-// What 64 bits of bytes can hold.
+// From a byte to what 64 bits of them can count; 0 is no limit.
 std::string megabytes(const std::string& text) {
-  constexpr double kMost = 1e12;
+  constexpr double kLeast = 1e-6, kMost = 1e12;
   double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && value >= 0 && value <= kMost) return {};
-  return "found " + text + ", expected a number from 0 to 10^12";
+  if (CLI::detail::lexical_cast(text, value) && (value == 0 || (value >= kLeast && value <= kMost)))
+    return {};
+  return "found " + text + ", expected 0, or a number from 10^-6 to 10^12";
 }
 
 MeshPlace parse_place(const std::string& text) {
@@ -113,7 +114,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("-o", o.output, "Where the PNGs go")->type_name("FOLDER");
   add_mesh_options(app, o);
   add_choices(app, o);
-  app.add_option("--tau", o.tau, "Granularity in pixels")
+  app.add_option("--tau", o.tau, "Level of detail, pixels: smaller is finer")
       ->check(CLI::Validator(not_negative, "PX"));
   app.add_option("--budget", o.budget_megabytes, "10^6 bytes that scene data may occupy")
       ->check(CLI::Validator(megabytes, "MB"));
@@ -124,8 +125,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
                "Beside each PNG this host's depth at the frame's end: 0000.pfm, metres");
   app.add_option("--stats", o.stats_file, "A JSON file of what each frame took")->type_name("FILE");
   app.add_flag("--validation", o.validation,
-               "Run under the validation layer, synchronisation included; exit with 1 where it "
-               "had anything to say");
+               "Run under the validation layer, synchronisation included; exit with 1 if it "
+               "reports anything");
   app.footer(
       "vulkan_host city.voy --offscreen --frames 12 --camera-file city.cameras.json -o walk");
   try {

@@ -20,6 +20,8 @@ class HostileFiles : public ::testing::Test {
     failure_ =
         failure_of({"voyager synth city --gaussians 10000 --sh-degree 0 -o " + file("small.ply"),
                     "voyager bake " + file("small.ply") + " -o " + file("small.voy")});
+    for (const std::string& command : commands("small.voy"))
+      little_.push_back(run_measured(program(command)));
   }
   static void TearDownTestSuite() { delete folder_; }
   void SetUp() override { ASSERT_EQ(failure_, ""); }
@@ -44,15 +46,16 @@ class HostileFiles : public ::testing::Test {
             "voyager export " + file(scene) + " -o " + file("out.hier")};
   }
   static void expect_all_refused() {
-    const std::vector<std::string> little = commands("small.voy"), hostile = commands("claims.voy");
+    const std::vector<std::string> hostile = commands("claims.voy");
     for (size_t i = 0; i < hostile.size(); ++i) {
       SCOPED_TRACE(hostile[i]);
-      expect_cheap_refusal(run_measured(program(hostile[i])), run_measured(program(little[i])));
+      expect_cheap_refusal(run_measured(program(hostile[i])), little_[i]);
     }
   }
 
   static inline TempFolder* folder_ = nullptr;
   static inline std::string failure_;
+  static inline std::vector<Spent> little_;  // of the commands on a small scene
 };
 
 TEST_F(HostileFiles, CompactChunksThatHoldNothing) {
@@ -74,10 +77,9 @@ TEST_F(HostileFiles, SectionsInAHole) {
 
 TEST_F(HostileFiles, WideRowsOnStandardInput) {
   write_bytes(file("wide.ply"), wide_ply(9000));
-  const Spent found =
-      run_measured(program("voyager bake - -o " + file("wide.voy") + " < " + file("wide.ply")));
-  expect_cheap_refusal(found, run_measured(program("voyager bake " + file("small.ply") + " -o " +
-                                                   file("again.voy"))));
+  expect_cheap_refusal(
+      run_measured(program("voyager bake - -o " + file("wide.voy") + " < " + file("wide.ply"))),
+      little_[0]);
   EXPECT_FALSE(std::filesystem::exists(file("wide.voy")));
 }
 

@@ -79,6 +79,9 @@ TEST_F(Messages, AWrongOptionNamesItselfAndWhatIsExpected) {
       {"bench S --json o.json", "--cameras: found none, expected --cameras FILE"},
       {"info S --jsn", "did you mean --json?"},
       {"devices now", "now: found one argument too many"},
+      {"rendr S -o o.png", "rendr: not a command of this version, did you mean render?"},
+      {"repor S C -o o", "repor: not a command of this version, did you mean report?"},
+      {"info S --json=3", "--json: found a value, expected none"},
       {"rendr S", "rendr: not a command of this version, did you mean render?"},
       {"fly S", "fly: not a command of this version, expected one of synth, bake"}};
   for (const Wrong& wrong : table) {

@@ -1,18 +1,82 @@
 // A bake in parts that ends before its time: killed, out of memory, its disk full. Every bake is
-// in a process of its own, which dies; this one has no threads that a fork would lose.
+// in a process of its own, which dies; this one has no threads that a fork would lose. The calls
+// that change a disk are replaced in this program, so that a process can end, or its disk be full,
+// at each of them.
+#include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <functional>
+#include <limits>
+#include <random>
 #include <thread>
 
 #include "runtime/bake/bake.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
+
+namespace {
+
+// What the children of this program do, and are to meet.
+struct Disk {
+  std::atomic<int64_t> calls, bytes;
+  int64_t signal_at;  // before this call, counted from 0
+  int signal;
+  int64_t room;  // bytes
+
+  void reset() {
+    calls = bytes = 0;
+    signal_at = room = std::numeric_limits<int64_t>::max();
+  }
+};
+Disk* disk = nullptr;  // shared by parent and children, while set
+
+void count_call() {
+  if (disk != nullptr && disk->calls++ == disk->signal_at) ::raise(disk->signal);
+}
+
+}  // namespace
+
+extern "C" ssize_t pwrite(int fd, const void* from, size_t count, off_t at) {
+  count_call();
+  if (disk != nullptr) {
+    const int64_t before = disk->bytes.fetch_add(static_cast<int64_t>(count));
+    const int64_t left = std::max<int64_t>(disk->room - before, 0);
+    count = std::min(count, static_cast<size_t>(left));
+    if (left == 0) errno = ENOSPC;
+    if (left == 0) return -1;
+  }
+  return static_cast<ssize_t>(::syscall(SYS_pwrite64, fd, from, count, at));
+}
+
+extern "C" int linkat(int from, const char* path, int to, const char* name, int flags) noexcept {
+  count_call();
+  return static_cast<int>(::syscall(SYS_linkat, from, path, to, name, flags));
+}
+
+extern "C" int rename(const char* from, const char* to) noexcept {
+  count_call();
+  return static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
+
+extern "C" int unlink(const char* path) noexcept {
+  count_call();
+  return static_cast<int>(::syscall(SYS_unlinkat, AT_FDCWD, path, 0));
+}
+
+extern "C" int rmdir(const char* path) noexcept {
+  count_call();
+  return static_cast<int>(::syscall(SYS_unlinkat, AT_FDCWD, path, AT_REMOVEDIR));
+}
 
 namespace voyager::bake_killed_test {
 namespace {
@@ -42,8 +106,9 @@ int wait_for(pid_t child) {
 
 class BakeKilled : public ::testing::Test {
  protected:
+  explicit BakeKilled(size_t gaussians = 20000) : gaussians_(gaussians) {}
   void SetUp() override {
-    const test::Bytes ply = test::ply_bytes(test::specks(20000, 31, 1));
+    const test::Bytes ply = test::ply_bytes(test::specks(gaussians_, 31, 1));
     std::ofstream(input, std::ios::binary)
         .write(reinterpret_cast<const char*>(ply.data()), static_cast<std::streamsize>(ply.size()));
     const int code = wait_for(start([&] {
@@ -58,8 +123,9 @@ class BakeKilled : public ::testing::Test {
     whole = test::file_bytes(folder.file("whole.voy"));
   }
 
-  void bake() const {
+  void bake(BakeStep step = BakeStep::all) const {
     BakeInParts bake;
+    bake.step = step;
     bake.rule = test::kSmallBlocks;
     bake.request = bake_request({input}, bake.quality, kDefaultChunkBytes, bake.rule);
     bake.output = scene;
@@ -80,6 +146,7 @@ class BakeKilled : public ::testing::Test {
     EXPECT_FALSE(std::filesystem::exists(work));
   }
 
+  const size_t gaussians_;
   const test::TempFolder folder;
   const std::string input = folder.file("input.ply"), scene = folder.file("parts.voy"),
                     work = folder.file("work");
@@ -146,6 +213,137 @@ TEST_F(BakeKilled, GoesOnAfterMemoryWasRefused) {
   EXPECT_GT(refused, 0);
   ASSERT_EQ(wait_for(start([&] { bake(); })), 0);
   expect_whole();
+}
+
+constexpr BakeStep kSteps[] = {BakeStep::split, BakeStep::cells, BakeStep::encode, BakeStep::merge};
+
+// Fewer Gaussians, in as few cells as steps take.
+class BakeStopped : public BakeKilled {
+ protected:
+  BakeStopped() : BakeKilled(6000) {
+    void* const shared =
+        ::mmap(nullptr, sizeof(Disk), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    calls_ = new (shared) Disk;
+  }
+  ~BakeStopped() override { ::munmap(calls_, sizeof(Disk)); }
+
+  // In a child, with what calls_ says.
+  int run(const std::function<void()>& action) const {
+    return wait_for(start([&] {
+      disk = calls_;
+      action();
+    }));
+  }
+  int64_t below(int64_t most) {
+    return std::uniform_int_distribution<int64_t>(0, most - 1)(random_);
+  }
+
+  // The same command until it ends, each time but the last ended before one of its calls.
+  void end_at_calls(int signal, int64_t calls, int times, const std::function<void()>& action) {
+    for (int code = -1, time = 0; code != 0; ++time) {
+      calls_->reset();
+      calls_->signal = signal;
+      if (time < times) calls_->signal_at = below(calls);
+      code = run(action);
+      ASSERT_TRUE(code == 0 || (code == 128 + signal && time < times))
+          << code << ", signal " << signal << " at call " << calls_->signal_at;
+      if (std::filesystem::exists(scene)) {
+        ASSERT_TRUE(test::file_bytes(scene) == whole);
+      }
+    }
+  }
+
+  Disk* calls_ = nullptr;
+  std::mt19937_64 random_{22};
+};
+
+TEST_F(BakeStopped, EveryStepGoesOnAfterASignalBeforeAnyCall) {
+  int64_t calls[std::size(kSteps)];
+  for (size_t i = 0; i < std::size(kSteps); ++i) {
+    calls_->reset();
+    ASSERT_EQ(run([&] { bake(kSteps[i]); }), 0);
+    calls[i] = calls_->calls;
+    ASSERT_GT(calls[i], 4);
+  }
+  // Where the mark is gone, and the folder not yet, merge has nothing to go on from.
+  --calls[3];
+  for (const int signal : {SIGKILL, SIGTERM, SIGINT}) {
+    std::filesystem::remove(scene);
+    for (size_t i = 0; i < std::size(kSteps); ++i)
+      ASSERT_NO_FATAL_FAILURE(end_at_calls(signal, calls[i], 3, [&] { bake(kSteps[i]); }))
+          << "step " << i;
+    expect_whole();
+  }
+}
+
+TEST_F(BakeStopped, AWholeBakeGoesOnAfterASignalBeforeAnyCall) {
+  calls_->reset();
+  ASSERT_EQ(run([&] { bake(); }), 0);
+  const int64_t calls = calls_->calls;
+  for (const int signal : {SIGKILL, SIGTERM, SIGINT})
+    for (int round = 0; round < 3; ++round) {
+      std::filesystem::remove(scene);
+      ASSERT_NO_FATAL_FAILURE(end_at_calls(signal, calls, 3, [&] { bake(); }));
+      expect_whole();
+    }
+}
+
+// The last calls remove the folder, when the scene is there: it is not baked again.
+TEST_F(BakeStopped, ABakeThatWasKilledWhenTheSceneWasThereHasNothingToDo) {
+  calls_->reset();
+  ASSERT_EQ(run([&] { bake(); }), 0);
+  const int64_t calls = calls_->calls;
+  for (int64_t before_end = 3; before_end < 6; ++before_end) {
+    std::filesystem::remove(scene);
+    calls_->reset();
+    calls_->signal = SIGKILL;
+    calls_->signal_at = calls - before_end;
+    ASSERT_EQ(run([&] { bake(); }), 128 + SIGKILL);
+    const auto changed = std::filesystem::last_write_time(scene);
+    calls_->reset();
+    ASSERT_EQ(run([&] { bake(); }), 0);
+    EXPECT_LT(calls_->calls, before_end + 8);
+    EXPECT_EQ(std::filesystem::last_write_time(scene), changed);
+    expect_whole();
+  }
+}
+
+TEST_F(BakeStopped, AFullDiskAtAnyByteLeavesNothingThatLooksWhole) {
+  calls_->reset();
+  ASSERT_EQ(run([&] { bake(); }), 0);
+  const int64_t bytes = calls_->bytes;
+  for (int round = 0; round < 8; ++round) {
+    std::filesystem::remove(scene);
+    calls_->reset();
+    calls_->room = below(bytes);
+    EXPECT_EQ(run([&] { bake(); }), kRefused + static_cast<int>(ErrorCode::io)) << calls_->room;
+    EXPECT_FALSE(std::filesystem::exists(scene)) << calls_->room;
+    if (round % 2 == 0) continue;  // what was made with less room is gone on from, too
+    calls_->reset();
+    ASSERT_EQ(run([&] { bake(); }), 0);
+    expect_whole();
+  }
+}
+
+TEST_F(BakeStopped, AFullDiskLeavesNoSceneThatWasBakedInMemory) {
+  const auto write = [&] {
+    Workers workers;
+    const auto source = open_file_source(input);
+    const BakedScene baked =
+        build_tree(import_gaussians(*read_source(*source)), workers, {}, test::kSmallBlocks);
+    write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), scene, Quality::compact,
+                     workers);
+  };
+  const auto files = [&] {
+    return std::distance(std::filesystem::directory_iterator(folder.file("")), {});
+  };
+  const auto before = files();
+  for (int round = 0; round < 4; ++round) {
+    calls_->reset();
+    calls_->room = below(static_cast<int64_t>(whole.size()));
+    EXPECT_EQ(run(write), kRefused + static_cast<int>(ErrorCode::io)) << calls_->room;
+    EXPECT_EQ(files(), before);
+  }
 }
 
 }  // namespace

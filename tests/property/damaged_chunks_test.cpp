@@ -19,6 +19,12 @@ enum class Damage {
 };
 constexpr Damage kDamages[] = {Damage::flipped, Damage::grown};
 
+enum class How {
+  whole,
+  streamed,
+  streamed_at_once
+};  // all that there is room for, when it is opened
+
 struct Wrong {
   uint32_t chunk;
   Damage damage;
@@ -28,7 +34,7 @@ struct Wrong {
 class Damaged {
  public:
   explicit Damaged(test::TreeShape shape)
-      : bytes_(test::scene_bytes(test::baked_of(test::random_tree(shape, 220, 5)),
+      : bytes_(test::scene_bytes(test::baked_of(test::random_tree(shape, 320, 5)),
                                  Quality::lossless, 1, kMinChunkBytes)),
         file_(test::source_of(bytes_)),
         whole_(load_scene(test::source_of(bytes_), memory(), workers_)) {}
@@ -43,13 +49,15 @@ class Damaged {
     bytes = test::sealed(std::move(bytes));
     for (const Wrong& w : wrong)
       if (w.damage == Damage::flipped) bytes[at(w.chunk) + sizeof(ChunkHeader)] ^= std::byte{1};
-    for (const bool streamed : {false, true}) try {
-        expect_cut(draw(test::source_of(bytes), streamed), wrong);
+    for (const How how : {How::whole, How::streamed, How::streamed_at_once}) {
+      try {
+        expect_cut(draw(test::source_of(bytes), how), wrong);
       } catch (const Error& error) {
         EXPECT_TRUE(error.code() == ErrorCode::damaged_chunk ||
                     error.code() == ErrorCode::refused_input)
             << error.what();
       }
+    }
   }
 
  private:
@@ -64,13 +72,13 @@ class Damaged {
     std::memcpy(place, &record, sizeof record);
   }
 
-  Frame draw(const std::shared_ptr<const ByteSource>& source, bool streamed) {
+  Frame draw(const std::shared_ptr<const ByteSource>& source, How how) {
     StreamingDesc desc;
     desc.readers = 0;
-    desc.first_bytes = 0;
+    desc.first_bytes = how == How::streamed ? 0 : source->size();
     desc.clock = [this] { return time_ += 0.01; };
-    View view(streamed ? open_streamed(source, desc, *backend_, memory(), workers_)
-                       : load_scene(source, memory(), workers_),
+    View view(how == How::whole ? load_scene(source, memory(), workers_)
+                                : open_streamed(source, desc, *backend_, memory(), workers_),
               *backend_, {}, memory(), workers_);
     FrameInput input = test::frame_input(test::look({0, -2, -200}, {0, 0, 0}, 24, 16), 0.01);
     input.wait_resident = input.stand_in = true;

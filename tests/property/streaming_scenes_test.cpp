@@ -49,7 +49,8 @@ void expect_resident_frames(StreamRig& rig, const std::vector<FrameInput>& path)
 }
 
 TEST(StreamingScenes, TheCityFromAStreet) {
-  const BakedScene baked = test::bake(made_up_city(20000), test::city_rule());
+  const BakedScene baked =
+      test::bake(made_up_city(test::whole_paths() ? 60000 : 20000), test::city_rule());
   for (const double tau : {0.0, 3.0, 15.0})
     for (const Search search : {Search::temporal, Search::streaming}) {
       PipelineDesc desc;

@@ -2,10 +2,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cinttypes>
 #include <cstdio>
-#include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,11 +14,13 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
+#include "runtime/base/output_path.h"
 #include "runtime/base/url.h"
 #include "runtime/format/reader.h"
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
 #include "runtime/lod/validate.h"
+#include "runtime/refine/measured.h"
 #include "runtime/refine/refine.h"
 #include "runtime/scene/append.h"
 #include "runtime/scene/import/growth.h"
@@ -40,6 +42,11 @@ uint64_t half_of_memory() {
          static_cast<uint64_t>(::sysconf(_SC_PAGESIZE)) / 2;
 }
 
+// K/N
+struct Part {
+  uint32_t part = 0, parts = 1;
+};
+
 struct BakeArguments {
   std::vector<std::string> inputs;
   std::string output;
@@ -51,7 +58,7 @@ struct BakeArguments {
   uint64_t memory = half_of_memory() / 1'000'000;  // MB
   std::string work;
   BakeStep step = BakeStep::all;
-  std::string part;  // K/N
+  std::optional<Part> part;
 };
 
 using Readers = std::vector<std::unique_ptr<BlockReader>>;
@@ -65,14 +72,24 @@ Readers open_all(const std::vector<std::string>& paths) {
   return readers;
 }
 
-uint64_t bytes_in_memory(const Readers& readers, bool refine) {
-  uint64_t count = 0;
+// Of all inputs together.
+struct Announced {
+  uint64_t gaussians = 0;
   int sh_degree = 0;
+};
+
+Announced announced_by(const Readers& readers) {
+  Announced all;
   for (const auto& reader : readers) {
-    count += reader->count();
-    sh_degree = std::max(sh_degree, reader->sh_degree());
+    all.gaussians += reader->count();
+    all.sh_degree = std::max(all.sh_degree, reader->sh_degree());
   }
-  return bytes_to_bake(count, sh_degree) + (refine ? bytes_to_refine(count) : 0);
+  return all;
+}
+
+uint64_t bytes_in_memory(const Announced& inputs, bool refine) {
+  return bytes_to_bake(inputs.gaussians, inputs.sh_degree) +
+         (refine ? bytes_to_refine(inputs.gaussians) : 0);
 }
 
 // So that many appends copy little.
@@ -165,12 +182,17 @@ void print_summary(const BakeArguments& arguments, const BakeSummary& result,
                     result.import.dropped(), result.import.repaired(), arguments.output));
 }
 
+// What was measured for --refine so far.
+std::string refine_file(const BakeArguments& arguments) {
+  return arguments.output + ".refine";
+}
+
 BakeSummary bake_in_memory(const BakeArguments& arguments, const Readers& readers,
                            const Progress& progress) {
   Workers workers;
   BakedScene baked = build_tree(read_all(arguments.inputs, readers, progress), workers, progress,
                                 {.kind = arguments.tree});
-  const std::string kept = arguments.output + ".refine";
+  const std::string kept = refine_file(arguments);
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
   if (arguments.verify) {
     progress("verifying", 0, 0);
@@ -179,7 +201,7 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const Readers& reader
   const Partition partition = partition_tree(baked.tree, arguments.chunk_bytes);
   if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
   write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
-  if (arguments.refine != 0) std::filesystem::remove(kept);
+  if (arguments.refine != 0) ::unlink(written_path(kept).c_str());
   if (arguments.verify) {
     progress("verifying", 0, 0);
     verify_file(arguments.output, baked.tree, partition);
@@ -188,21 +210,6 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const Readers& reader
   return {baked.leaves.size(),     baked.tree.size(),   partition.subtrees.size(),
           partition.chunk_count(), baked.leaves.report, 0};
 }
-
-// A work folder that nobody named goes when the bake fails, too; a kill leaves it.
-class OwnFolder {
- public:
-  explicit OwnFolder(std::string path) : path_(std::move(path)) {}
-  ~OwnFolder() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  OwnFolder(const OwnFolder&) = delete;
-  OwnFolder& operator=(const OwnFolder&) = delete;
-
- private:
-  std::string path_;
-};
 
 BakeSummary bake_from_folder(const BakeArguments& arguments, const OpenInputs& open,
                              const Progress& progress) {
@@ -222,34 +229,51 @@ BakeSummary bake_from_folder(const BakeArguments& arguments, const OpenInputs& o
   BakeInParts bake;
   bake.request = bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes);
   bake.output = arguments.output;
-  bake.work = arguments.work.empty() ? arguments.output + ".work" : arguments.work;
+  // One that nobody named goes when the bake fails, too; a kill leaves it.
+  bake.temporary = arguments.work.empty();
+  bake.work = bake.temporary ? arguments.output + ".work" : arguments.work;
+  require_outside(bake.work, {arguments.output});
+  require_outside(bake.work, arguments.inputs);
   bake.quality = arguments.quality;
   bake.chunk_bytes = arguments.chunk_bytes;
   bake.memory = arguments.memory * 1'000'000;
   bake.step = arguments.step;
-  if (!arguments.part.empty())
-    std::sscanf(arguments.part.c_str(), "%" SCNu32 "/%" SCNu32, &bake.part, &bake.parts);
+  const Part part = arguments.part.value_or(Part{});
+  bake.part = part.part;
+  bake.parts = part.parts;
   Workers workers;
-  return bake_in_parts(bake, open, workers, progress);
+  const BakeSummary result = bake_in_parts(bake, open, workers, progress);
+  for (const std::string& name : result.left)
+    note(fmt::format("{}: not removed, for {} is not the bake's", bake.work, name));
+  return result;
 }
 
 bool writes_output(const BakeArguments& arguments) {
   return arguments.step == BakeStep::all || arguments.step == BakeStep::merge;
 }
 
+// The files that this command writes outside its work folder.
+std::vector<std::string> outputs_of(const BakeArguments& arguments) {
+  std::vector<std::string> outputs;
+  if (writes_output(arguments)) outputs.push_back(arguments.output);
+  if (arguments.refine != 0) outputs.push_back(refine_file(arguments));
+  return outputs;
+}
+
 void bake(const BakeArguments& arguments) {
   require_extension("-o", arguments.output, {".voy"});
-  require_distinct({arguments.output}, arguments.inputs);
+  require_distinct(outputs_of(arguments), arguments.inputs);
   if (arguments.refine != 0 && arguments.tree != TreeKind::clustered)
     throw Error(ErrorCode::invalid_argument,
                 "--refine: found --tree hierarchicalgs, expected the clustered tree: the other's "
                 "extents are sides of boxes");
-  if (!arguments.part.empty() && arguments.step != BakeStep::cells &&
-      arguments.step != BakeStep::encode)
+  if (arguments.part && arguments.step != BakeStep::cells && arguments.step != BakeStep::encode)
     throw Error(ErrorCode::invalid_argument,
                 "--part: found it without --step cells or encode, expected one of them");
   if (arguments.step != BakeStep::all && arguments.work.empty())
     throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
+  for (const std::string& output : outputs_of(arguments)) require_writable(output);
+  if (arguments.refine != 0) check_kept(refine_file(arguments));
   const Progress progress = progress_bar();
   const Stopwatch watch;
   if (!arguments.work.empty()) {
@@ -261,22 +285,24 @@ void bake(const BakeArguments& arguments) {
     return;
   }
   Readers readers = open_all(arguments.inputs);
-  if (bytes_in_memory(readers, arguments.refine != 0) <= arguments.memory * 1'000'000)
+  const Announced inputs = announced_by(readers);
+  require_room(arguments.output,
+               bytes_of_scene(inputs.gaussians, inputs.sh_degree, arguments.quality), "it");
+  if (bytes_in_memory(inputs, arguments.refine != 0) <= arguments.memory * 1'000'000)
     return print_summary(arguments, bake_in_memory(arguments, readers, progress), watch);
-  const OwnFolder folder(arguments.output + ".work");
   print_summary(arguments,
                 bake_from_folder(
                     arguments, [&] { return std::move(readers); }, progress),
                 watch);
 }
 
-std::string check_part(const std::string& text) {
-  uint32_t part = 0, parts = 0;
-  int end = 0;
-  if (std::sscanf(text.c_str(), "%" SCNu32 "/%" SCNu32 "%n", &part, &parts, &end) == 2 &&
-      static_cast<size_t>(end) == text.size() && part < parts)
-    return {};
-  return "found " + text + ", expected K/N with K from 0 to N - 1";
+Part parse_part(const std::string& text) {
+  const size_t slash = std::min(text.find('/'), text.size());
+  const auto part = parse_whole(text.substr(0, slash));
+  const auto parts = parse_whole(text.substr(std::min(slash + 1, text.size())));
+  if (!part || !parts || *part >= *parts || *parts > std::numeric_limits<uint32_t>::max())
+    throw CLI::ValidationError("--part", "found " + text + ", expected K/N with K from 0 to N - 1");
+  return {static_cast<uint32_t>(*part), static_cast<uint32_t>(*parts)};
 }
 
 void add_work_options(CLI::App& command, BakeArguments& arguments) {
@@ -300,10 +326,10 @@ void add_work_options(CLI::App& command, BakeArguments& arguments) {
                        "With --work: run one step of the bake and stop, for batch systems that "
                        "bake on several machines (docs/baking.md)");
   command
-      .add_option("--part", arguments.part,
-                  "With --step cells or encode: do the K-th of N parts of that step, K from 0")
-      ->type_name("K/N")
-      ->check(check_part);
+      .add_option_function<std::string>(
+          "--part", [&arguments](const std::string& text) { arguments.part = parse_part(text); },
+          "With --step cells or encode: do the K-th of N parts of that step, K from 0")
+      ->type_name("K/N");
   name_group(command, "Scenes larger than memory");
 }
 

@@ -7,6 +7,7 @@
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
 #include "tools/options.h"
+#include "tools/progress_bar.h"
 #include "voyager/voyager.hpp"
 
 namespace voyager::tools {
@@ -45,11 +46,10 @@ std::string cuda_text(const VoyDeviceInfo& info) {
   return fmt::format("{}.{}", info.cudaVersion / 1000, info.cudaVersion % 1000 / 10);
 }
 
-// The first that can be used: the list has the order in which AUTO prefers them.
-VoyBackend automatic(const std::vector<VoyDeviceInfo>& devices) {
-  for (const VoyDeviceInfo& info : devices)
-    if (info.usable != 0) return info.backend;
-  return VOY_BACKEND_CPU;
+// What AUTO takes, which is not always the first that can be used.
+VoyBackend automatic() {
+  const VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  return voy::Device::create(desc).capabilities().backend;
 }
 
 void print_row(const char* name, const std::string& value) {
@@ -91,14 +91,14 @@ Json to_json(const VoyDeviceInfo& info) {
 }
 
 void print_devices_json(const std::vector<VoyDeviceInfo>& devices) {
-  Json json = {{"auto", backend_name(automatic(devices))}, {"devices", nlohmann::json::array()}};
+  Json json = {{"auto", backend_name(automatic())}, {"devices", nlohmann::json::array()}};
   for (const VoyDeviceInfo& info : devices) json["devices"].push_back(to_json(info));
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 void print_devices_text(const std::vector<VoyDeviceInfo>& devices) {
   for (const VoyDeviceInfo& info : devices) print_device(info);
-  fmt::print("--backend auto is {} here\n", backend_name(automatic(devices)));
+  fmt::print("--backend auto is {} here\n", backend_name(automatic()));
 }
 
 }  // namespace
@@ -112,7 +112,12 @@ void add_devices(CLI::App& app) {
   command->footer("Example: voyager devices");
   command->callback([json] {
     std::vector<VoyDeviceInfo> devices = voy::devices();
-    for (VoyDeviceInfo& info : devices) try_device(info);
+    const Progress progress = progress_bar();
+    for (size_t i = 0; i < devices.size(); ++i) {
+      progress("trying devices", i, devices.size());
+      try_device(devices[i]);
+    }
+    progress("trying devices", devices.size(), devices.size());
     (*json ? print_devices_json : print_devices_text)(devices);
   });
 }

@@ -18,7 +18,7 @@ namespace {
 // Without a file: one that sees the scene.
 std::vector<Camera> read_or_choose(const RenderArguments& arguments, const Progress& progress) {
   if (!arguments.cameras.empty()) return read_cameras(arguments.cameras);
-  progress("looking", 0, 0);
+  progress("choosing a camera", 0, 0);
   return {default_camera(arguments.scene)};
 }
 
@@ -112,8 +112,13 @@ void render(RenderArguments& arguments) {
     bad_usage(
         "--time-budget: found it with --lod off or --select flat, expected a cut: tau is what it "
         "changes");
+  FrameFiles files(arguments.outputs);
   const Progress progress = progress_bar();
   const std::vector<Camera> cameras = choose_cameras(arguments, progress);
+  const size_t eyes = arguments.choices.eyes;
+  const size_t number =
+      arguments.stereo && !arguments.all ? static_cast<size_t>(arguments.camera) : 0;
+  files.expect(number, cameras, eyes);
   uint32_t width = 0, height = 0;
   for (const Camera& camera : cameras) {
     width = std::max(width, camera.width);
@@ -125,10 +130,6 @@ void render(RenderArguments& arguments) {
   if (!renderer.has_tree()) arguments.lod.refuse_without_tree(arguments.scene);
   if (!arguments.outputs.cut.empty() && !renderer.draws_cut())
     bad_usage("--dump-cut: found a scene drawn without a cut, expected a .voy with --lod on");
-  FrameFiles files(arguments.outputs);
-  const size_t eyes = arguments.choices.eyes;
-  const size_t number =
-      arguments.stereo && !arguments.all ? static_cast<size_t>(arguments.camera) : 0;
   progress("rendering", 0, cameras.size() > eyes ? cameras.size() : 0);
   for (size_t i = 0; i < cameras.size(); i += eyes) {
     const auto frame = std::span(cameras).subspan(i, eyes);

@@ -1,5 +1,6 @@
-#include <array>
-#include <sstream>
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "tools/commands/render_arguments.h"
 #include "tools/options.h"
@@ -9,17 +10,17 @@ namespace {
 
 // "R,G,B"
 void set_background(const std::string& text, float* background) {
-  std::array<float, 3> rgb{};
-  std::istringstream in(text);
-  char comma1 = 0, comma2 = 0;
-  const auto fits = [](float value) { return value >= 0 && value <= 1; };
-  if (!(in >> rgb[0] >> comma1 >> rgb[1] >> comma2 >> rgb[2]) || comma1 != ',' || comma2 != ',' ||
-      in.peek() != std::istringstream::traits_type::eof() ||
-      !std::all_of(rgb.begin(), rgb.end(), fits))
+  const std::vector<std::string> parts = CLI::detail::split(text, ',');
+  const auto fits = [](const std::string& part) {
+    const auto value = parse_number(part);
+    return value && *value >= 0 && *value <= 1;
+  };
+  if (parts.size() != 3 || !std::all_of(parts.begin(), parts.end(), fits))
     throw CLI::ValidationError("--background", "found " + text +
                                                    ", expected R,G,B, three numbers from 0 to 1, "
                                                    "as 0.5,0.5,1");
-  std::copy(rgb.begin(), rgb.end(), background);
+  std::transform(parts.begin(), parts.end(), background,
+                 [](const std::string& part) { return static_cast<float>(*parse_number(part)); });
 }
 
 void add_common(CLI::App& command, RenderArguments& arguments) {
@@ -89,17 +90,19 @@ void add_outputs(CLI::App& command, RenderArguments& arguments) {
 void add_streaming(CLI::App& command, RenderArguments& arguments) {
   add_number_option(
       command, "--budget", arguments.choices.budget,
-      [](double value) { return value > 0 && value <= 1e9; }, "a number of MB above 0, up to 1e9",
+      [](double value) { return value >= 1e-6 && value <= 1e9; },
+      "a number of MB above 0, from 1e-6 (a byte) to 1e9",
       "Keep at most so many MB (10^6 bytes) of a .voy in the memory of the device that draws; the "
       "rest is read as frames need it")
       ->type_name("MB");
   add_choice<std::optional<bool>>(
       command, "--wait-resident", arguments.wait_resident, {{"off", false}, {"on", true}},
       "on: a frame waits until all that it needs is read. off: it draws what is in memory, coarser "
-      "where something is missing. Either streams the scene");
-  command.add_flag("--keep-going", arguments.choices.keep_going,
-                   "Draw damaged parts of a .voy by their coarser ancestors in place of stopping "
-                   "there. Streams the scene, and waits unless told not to");
+      "where something is missing. Both values stream the scene");
+  command.add_flag(
+      "--keep-going", arguments.choices.keep_going,
+      "Draw damaged parts of a .voy by their coarser ancestors in place of stopping "
+      "there. The scene is streamed, and frames wait for it unless --wait-resident is off");
   name_group(command, "Streaming");
 }
 

@@ -3,11 +3,13 @@
 #include <filesystem>
 #include <memory>
 
+#include "runtime/base/output_path.h"
 #include "runtime/scene/export/writer.h"
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
 #include "tools/console.h"
 #include "tools/options.h"
+#include "tools/output_paths.h"
 #include "tools/progress_bar.h"
 #include "tools/synth/city.h"
 
@@ -35,17 +37,21 @@ void write_city(const SynthArguments& arguments) {
     return;
   }
   const std::filesystem::path path(arguments.output);
+  const std::string cameras_path =
+      std::filesystem::path(path).replace_extension(".cameras.json").string();
+  const bool ply = path.extension() == ".ply";
+  require_distinct({arguments.output, cameras_path}, {});
+  require_writable(cameras_path);
   AtomicFile file(arguments.output);
+  if (ply) require_room(arguments.output, ply_bytes(city.gaussians, city.sh_degree), "it");
   const auto sink = sink_to(file);
-  if (path.extension() == ".ply")
+  if (ply)
     generate(city, *write_ply(*sink, city.gaussians, city.sh_degree, false));
   else
     generate(city, *write_spz(*sink, city.gaussians, city.sh_degree, largest_coordinate(city)));
   file.commit();
 
   const std::string cameras = city_cameras_json(city);
-  const std::string cameras_path =
-      std::filesystem::path(path).replace_extension(".cameras.json").string();
   AtomicFile cameras_file(cameras_path);
   cameras_file.write(std::as_bytes(std::span(cameras)));
   cameras_file.commit();

@@ -1,6 +1,7 @@
 #include "files.h"
 
 #include <png.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -12,15 +13,16 @@
 namespace test_runtime {
 
 void write_bytes(const std::string& path, std::span<const std::byte> bytes) {
-  const std::string temporary = path + ".part";
+  const std::string temporary = path + ".part-" + std::to_string(::getpid());
+  std::FILE* file = nullptr;
   const auto fail = [&] {
     const std::string reason = std::strerror(errno);
-    std::remove(temporary.c_str());
+    if (file) std::remove(temporary.c_str());
     throw std::runtime_error(path + ": " + reason);
   };
   std::error_code ignored;  // where there is no folder, opening says so
   std::filesystem::create_directories(std::filesystem::path(path).parent_path(), ignored);
-  std::FILE* file = std::fopen(temporary.c_str(), "wb");
+  file = std::fopen(temporary.c_str(), "wbx");  // x: no file of another is emptied
   if (!file) fail();
   const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
   if (std::fclose(file) != 0 || !written) fail();

@@ -69,6 +69,10 @@ void write_text(const std::string& path, const std::string& text) {
   file.commit();
 }
 
+constexpr const char* kCsv = "curve.csv";
+constexpr const char* kJson = "curve.json";
+constexpr const char* kPage = "curve.html";
+
 class CurveReport {
  public:
   CurveReport(const CurveRequest& request, Backend& backend)
@@ -76,6 +80,7 @@ class CurveReport {
         backend_(backend),
         output_(request.output),
         plan_(curve_plan(request.cameras, request.size, request.extent)) {
+    for (const char* name : {kCsv, kJson, kPage}) output_.require_place(name);
     require_one_scene(request.trees);
     names_ = names_of(request.trees);
     provenance_ = provenance(request.trees[0], request.cameras, backend, request.arguments);
@@ -115,15 +120,14 @@ class CurveReport {
     for (const CurveRow& row : rows_) json["rows"].push_back(to_json(row));
     for (const Curve& curve : curves)
       for (const CurveRow& mean : curve.means) json["means"].push_back(to_json(mean));
-    write_text(output_.place("curve.csv"), curve_csv(rows_));
-    write_text(output_.place("curve.json"),
+    write_text(output_.place(kCsv), curve_csv(rows_));
+    write_text(output_.place(kJson),
                json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     const std::vector<PagePlot> plots = curve_plots(rows_, curves);
-    write_text(output_.place("curve.html"),
-               html(CurvePage{provenance_, method, plots, rows_, curves}));
+    write_text(output_.place(kPage), html(CurvePage{provenance_, method, plots, rows_, curves}));
     for (const PagePlot& plot : plots) write_plot_png(output_.place(plot.file), plot.plot);
     output_.commit();
-    say(fmt::format("{}{}/curve.html\n", curve_table(curves), request_.output));
+    say(fmt::format("{}{}/{}\n", curve_table(curves), request_.output, kPage));
   }
 
   const CurveRequest& request_;

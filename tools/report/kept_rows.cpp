@@ -1,13 +1,11 @@
 #include "tools/report/kept_rows.h"
 
-#include <fmt/core.h>
-
 #include <fstream>
 #include <iterator>
 
 #include "runtime/base/checksum.h"
-#include "runtime/base/error.h"
 #include "runtime/base/file.h"
+#include "tools/report/kept_files.h"
 
 namespace voyager::tools {
 namespace {
@@ -19,6 +17,10 @@ std::string text_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+constexpr FolderKind kReport = {
+    "a report", "give another -o, or remove the folder",
+    [](std::string_view name, std::string_view) { return is_kept_file(name); }};
+
 void write(const std::filesystem::path& path, const std::string& text) {
   AtomicFile file(path.string());
   file.write(std::as_bytes(std::span(text)));
@@ -27,45 +29,37 @@ void write(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-KeptRows::KeptRows(std::filesystem::path folder, const Json& provenance)
-    : folder_(std::move(folder)) {
-  const std::filesystem::path key = folder_ / "provenance.json";
-  const std::string text = provenance.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (text_of(key) == text) return;
-  std::error_code error;
-  std::filesystem::remove_all(folder_, error);
-  if (!error) std::filesystem::create_directories(folder_, error);
-  if (error) throw Error(ErrorCode::io, folder_.string() + ": folder: " + error.message());
-  write(key, text);
-}
+KeptRows::KeptRows(const std::filesystem::path& folder, const Json& provenance)
+    : folder_(folder.string(), kReport,
+              provenance.dump(2, ' ', false, Json::error_handler_t::replace) + "\n", true,
+              OwnedFolder::OtherKey::emptied) {}
 
-std::filesystem::path KeptRows::path_of(const ReportCase& is, const char* extension) const {
+std::filesystem::path KeptRows::path_of(const ReportCase& is, const char* ending) const {
   const std::string name = is.group + ", " + is.name();
-  return folder_ /
-         fmt::format("row-{:016x}{}", checksum(std::as_bytes(std::span(name))), extension);
+  return std::filesystem::path(folder_.path()) /
+         kept_row_name(checksum(std::as_bytes(std::span(name))), ending);
 }
 
 // The row is written last.
 std::optional<KeptRow> KeptRows::find(const ReportCase& is) const {
-  const Json json = Json::parse(text_of(path_of(is, ".json")), nullptr, false);
+  const Json json = Json::parse(text_of(path_of(is, kRowFigures)), nullptr, false);
   if (json.is_discarded() || json["name"] != is.name()) return std::nullopt;
   try {
-    return KeptRow{row_from_json(json, is), text_of(path_of(is, ".png")),
-                   text_of(path_of(is, ".difference.png"))};
+    return KeptRow{row_from_json(json, is), text_of(path_of(is, kRowPicture)),
+                   text_of(path_of(is, kRowDifference))};
   } catch (const Json::exception&) {  // of a build that measured less
     return std::nullopt;
   }
 }
 
 void KeptRows::keep(const KeptRow& row) {
-  write(path_of(row.row.is, ".png"), row.picture);
-  write(path_of(row.row.is, ".difference.png"), row.difference);
-  write(path_of(row.row.is, ".json"), to_json(row.row).dump() + "\n");
+  write(path_of(row.row.is, kRowPicture), row.picture);
+  write(path_of(row.row.is, kRowDifference), row.difference);
+  write(path_of(row.row.is, kRowFigures), to_json(row.row).dump() + "\n");
 }
 
-void KeptRows::remove() {
-  std::error_code ignored;
-  std::filesystem::remove_all(folder_, ignored);
+std::vector<std::string> KeptRows::remove() {
+  return folder_.remove();
 }
 
 }  // namespace voyager::tools

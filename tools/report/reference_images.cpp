@@ -1,10 +1,8 @@
 #include "tools/report/reference_images.h"
 
-#include <fmt/core.h>
-
 #include "runtime/base/file.h"
 #include "runtime/reference/reference_backend.h"
-#include "tools/lod_options.h"
+#include "tools/report/kept_files.h"
 
 namespace voyager::tools {
 
@@ -51,8 +49,7 @@ RgbaImage ReferenceImages::draw(const Key& key) {
 }
 
 std::filesystem::path ReferenceImages::path_of(const Key& key) const {
-  return folder_ /
-         fmt::format("reference-{}-{}-tau{:.17g}.f32", key.frame, select_name(key.lod), key.tau);
+  return folder_ / kept_reference_name(key.frame, key.lod, key.tau);
 }
 
 std::optional<RgbaImage> ReferenceImages::read(const Key& key) const {

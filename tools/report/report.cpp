@@ -24,6 +24,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kCsv = "report.csv";
+constexpr const char* kJson = "report.json";
+constexpr const char* kPage = "report.html";
+
 class Report {
  public:
   Report(const ReportRequest& request, Backend& backend)
@@ -40,6 +44,7 @@ class Report {
         measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
 
   void run() {
+    for (const char* name : {kCsv, kJson, kPage}) output_.require_place(name);
     note("measuring on " + backend_.device_name());
     std::vector<ReportCase> cases = report_cases(request_.extent, subject());
     const size_t budgets = scenes_.own()->flat() || request_.extent == ReportExtent::quick ? 0 : 2;
@@ -49,7 +54,8 @@ class Report {
       for (const ReportCase& is : time_budget_cases(cases[0], rows_[0].frame.median)) add(is);
     progress_("measuring", 1, 1);
     write();
-    kept_.remove();
+    for (const std::string& name : kept_.remove())
+      note(fmt::format("{}: kept, for {} is no report's", folder_.string(), name));
   }
 
  private:
@@ -110,7 +116,7 @@ class Report {
       return std::filesystem::path(path).filename().replace_extension().string();
     };
     write_text(
-        "report.csv",
+        kCsv,
         report_csv({stem(request_.scene), stem(request_.cameras), backend_.device_name()}, rows_));
     Json json = {{"provenance", provenance()}, {"method", method()}, {"rows", Json::array()}};
     for (const ReportRow& row : rows_) json["rows"].push_back(to_json(row));
@@ -118,7 +124,7 @@ class Report {
     json["target_ms"] = request_.target;
     json["recommended"] = advised.in_time ? Json(advised.row) : Json();
     json["recommendation"] = advice;
-    write_text("report.json", json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
+    write_text(kJson, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     ReportPage page{"Error against run time: " + stem(request_.scene),
                     provenance(),
                     method(),
@@ -128,10 +134,10 @@ class Report {
                     front,
                     {}};
     for (const size_t i : front) page.shown.push_back({i, pictures_[i]});
-    write_text("report.html", html(page));
+    write_text(kPage, html(page));
     for (const PagePlot& plot : page.plots) write_plot_png(output_.place(plot.file), plot.plot);
     output_.commit();
-    say(fmt::format("{}\n{}/report.html\n", advice, request_.output));
+    say(fmt::format("{}\n{}/{}\n", advice, request_.output, kPage));
   }
 
   const ReportRequest& request_;

@@ -6,6 +6,7 @@
 #include "runtime/lod/build.h"
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sh_bands.h"
+#include "tools/report/kept_files.h"
 
 namespace voyager::tools {
 namespace {
@@ -45,7 +46,7 @@ std::shared_ptr<const Scene> ReportScenes::get(Storage storage, int sh_degree) {
 std::string ReportScenes::path_of(Storage storage) {
   if (storage == storages_.front()) return path_;
   const std::filesystem::path path =
-      folder_ / (storage == Storage::lossless ? "lossless.voy" : "compact.voy");
+      folder_ / (storage == Storage::lossless ? kLosslessScene : kCompactScene);
   if (!std::filesystem::exists(path)) bake(storage, path);
   return path.string();
 }
@@ -56,7 +57,7 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
   if (own_->storage != Storage::flat) {
     const SceneFile file(open_source(path_));
     rule.kind = file.info().tree;  // another would be compared, too
-    input = folder_ / "leaves.ply";
+    input = folder_ / kSceneLeaves;
     export_ply(file, input.string(), progress_);
   }
   const auto source = open_source(input.string());
@@ -67,7 +68,7 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
   write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), output.string(),
                    storage == Storage::compact ? Quality::compact : Quality::lossless, workers_,
                    progress_);
-  if (own_->storage != Storage::flat) std::filesystem::remove(input);
+  if (own_->storage != Storage::flat) std::filesystem::remove(folder_ / kSceneLeaves);
 }
 
 }  // namespace voyager::tools

@@ -242,13 +242,14 @@ typedef struct VoyDeviceInfo {
   char missing[512];             /* why it is not usable, and what to do; "" if it is */
 } VoyDeviceInfo;
 
-/* Lists the devices of this machine, in the order in which AUTO prefers them: CUDA devices, the
- * CPU, the reference. A backend that finds no device has one entry, with usable 0. The call loads
- * the CUDA module as voyQueryBackend does. It starts no work on a device, so voyCreateDevice may
- * still fail, for example because the GPU's memory is full. With capacity 0 the call sets only
- * *count. Otherwise it writes up to capacity entries, with their type and next, and sets *count to
- * the number of entries there are. Returns VOY_INCOMPLETE if there are more entries than capacity.
- * Any thread may call it. Errors: INVALID_ARGUMENT (NULL). */
+/* Lists the devices of this machine: CUDA devices in the order of the driver, the CPU, the
+ * reference. AUTO takes the first CUDA device if it is usable, else the CPU. A backend that finds
+ * no device has one entry, with usable 0. The call loads the CUDA module as voyQueryBackend does.
+ * It starts no work on a device, so voyCreateDevice may still fail, for example because the GPU's
+ * memory is full. With capacity 0 the call sets only *count. Otherwise it writes up to capacity
+ * entries, with their type and next, and sets *count to the number of entries there are. Returns
+ * VOY_INCOMPLETE if there are more entries than capacity. Any thread may call it. Errors:
+ * INVALID_ARGUMENT (NULL). */
 VOY_API VoyResult VOY_CALL voyEnumerateDevices(uint32_t capacity, VoyDeviceInfo* devices,
                                                uint32_t* count);
 

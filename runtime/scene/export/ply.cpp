@@ -99,6 +99,12 @@ class PlyWriter final : public GaussianWriter {
 
 }  // namespace
 
+uint64_t ply_bytes(uint64_t count, int sh_degree, bool double_positions) {
+  const auto sh = static_cast<uint64_t>(sh_coefficients(sh_degree)) * 3;
+  return count * ((3 + sh + 1 + 3 + 4) * sizeof(float) +
+                  3 * (double_positions ? sizeof(double) : sizeof(float)));
+}
+
 std::unique_ptr<GaussianWriter> write_ply(ByteSink& sink, uint64_t count, int sh_degree,
                                           bool double_positions) {
   return std::make_unique<PlyWriter>(sink, count, sh_degree, double_positions);

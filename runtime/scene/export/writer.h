@@ -38,6 +38,9 @@ std::unique_ptr<ByteSink> sink_to_stdout();
 std::unique_ptr<GaussianWriter> write_ply(ByteSink& sink, uint64_t count, int sh_degree,
                                           bool double_positions = false);
 
+// Bytes of its rows: what it takes at least.
+uint64_t ply_bytes(uint64_t count, int sh_degree, bool double_positions = false);
+
 // .spz v4 (NGSP header, zstd streams). Each stream is spooled to a temporary file, so memory does
 // not grow with `count` (at most 2^32 - 1). Positions are 24-bit fixed point with 12 fractional
 // bits (1/4096 m), fewer where `largest_coordinate` (metres, world) does not fit; a coordinate

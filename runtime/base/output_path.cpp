@@ -1,0 +1,62 @@
+#include "runtime/base/output_path.h"
+
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "runtime/base/error.h"
+#include "runtime/base/file_kind.h"
+#include "runtime/base/system_error.h"
+
+namespace voyager {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+}  // namespace
+
+std::string written_path(const std::string& path) {
+  constexpr int kMostLinks = 40;  // as the system has it
+  fs::path target = path;
+  for (int links = 0; links < kMostLinks; ++links) {
+    std::error_code no_link;
+    const fs::path next = fs::read_symlink(target, no_link);
+    if (no_link) return target.string();
+    target = target.parent_path() / next;  // which is `next` alone where that is absolute
+  }
+  throw Error(ErrorCode::io, path + ": found symbolic links in a circle, expected a file");
+}
+
+void require_replaceable(const std::string& path) {
+  struct stat info = {};
+  if (::stat(path.c_str(), &info) != 0) {
+    if (errno == ENOENT) return;
+    throw_system_error(path, "write");
+  }
+  if (!S_ISREG(info.st_mode))
+    throw Error(ErrorCode::io, path + ": found " + file_kind(info.st_mode) +
+                                   ", expected a file or a free name to write to");
+  if (::access(path.c_str(), W_OK) != 0)
+    throw Error(ErrorCode::io, path + ": found a file that must not be written to (" +
+                                   std::strerror(errno) + "), expected another");
+}
+
+void require_room(const std::string& path, uint64_t bytes, const std::string& what) {
+  struct statvfs info = {};
+  if (::statvfs(folder_of(written_path(path)).c_str(), &info) != 0 || info.f_blocks == 0) return;
+  const uint64_t free = uint64_t{info.f_bavail} * info.f_frsize;
+  if (free < bytes)
+    throw Error(ErrorCode::io, path + ": found " + std::to_string(free / 1000000) +
+                                   " MB free on the device, expected " +
+                                   std::to_string(bytes / 1000000 + 1) + " MB for " + what);
+}
+
+}  // namespace voyager

@@ -1,0 +1,65 @@
+#pragma once
+// A folder of files that the program makes and will remove again, at a place that a user named.
+// What it did not make there stays: a file in the folder says whose it is, before anything else is
+// written; that file is locked while a process works in the folder; and only files of known names
+// are removed, then the folder if it is empty.
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/base/file_descriptor.h"
+
+namespace voyager {
+
+// The file that says whose a folder is: a line with the kind, then the key.
+inline constexpr const char* kFolderMark = "made-by-voyager";
+
+struct FolderKind {
+  const char* of;      // "a bake"
+  const char* advice;  // what to do where the folder is another's: "give another --work, or ..."
+  // Whether the program writes a file of that name there.
+  bool (*is_own)(std::string_view name, std::string_view key);
+};
+
+class OwnedFolder {
+ public:
+  enum class OtherKey { refused, emptied };
+
+  // Made if absent, and marked if it was absent or empty. `alone` keeps other processes out while
+  // the object lives; else others that are not alone may be in, too. What is there under another
+  // key is refused, or removed to start anew. Throws Error(refused_input), with nothing touched,
+  // for a folder with files and no mark, or of another kind or key, naming the first line that
+  // differs; Error(io) where another process is in the folder.
+  OwnedFolder(std::string path, const FolderKind& kind, const std::string& key, bool alone,
+              OtherKey other = OtherKey::refused);
+
+  const std::string& path() const { return path_; }
+  bool made() const { return made_; }  // by this object: it was absent or empty
+
+  // To the key, for is_own() of whoever removes the folder after a kill.
+  void add_to_key(std::string_view text);
+  // Removes own files and the folder. Returns what is left in it, by name. The object then holds
+  // nothing.
+  std::vector<std::string> remove();
+
+  // The same with a folder whose process was killed; one that is not marked as of this kind, or
+  // that a process works in, is left as it is.
+  static void remove_abandoned(const std::string& path, const FolderKind& kind);
+
+ private:
+  OwnedFolder(std::string path, const FolderKind& kind) : path_(std::move(path)), kind_(kind) {}
+  bool mark(const std::string& text, bool alone);  // false: another process was faster
+  bool open_mark();                                // false: there is none
+  enum class Lock { held, refused, stale };
+  Lock lock(bool alone);
+  std::string read_key() const;
+  void require_empty() const;
+  std::string mark_path() const { return path_ + "/" + kFolderMark; }
+
+  std::string path_;
+  const FolderKind& kind_;
+  FileDescriptor mark_;
+  bool made_ = false;
+};
+
+}  // namespace voyager

@@ -1,0 +1,233 @@
+// No command removes or empties what it did not make, whatever it is told to write where.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <thread>
+
+#include "tests/command_line/program.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::keep_data_test {
+namespace {
+
+using namespace voyager::test;
+namespace fs = std::filesystem;
+
+class KeepData : public ::testing::Test {
+ protected:
+  // small is baked in a second; large takes more than 16 MB of memory, and so a work folder.
+  static void SetUpTestSuite() {
+    made_ = new TempFolder;
+    failure_ = failure_of({"voyager synth city --gaussians 10000 --sh-degree 0 -o " + small(),
+                           "voyager synth city --gaussians 80000 --sh-degree 0 -o " + large()});
+  }
+  static void TearDownTestSuite() { delete made_; }
+  void SetUp() override { ASSERT_EQ(failure_, ""); }
+
+  static std::string small() { return made_->file("small.ply"); }
+  static std::string large() { return made_->file("large.ply"); }
+  std::string file(const std::string& name) const { return folder.file(name); }
+
+  // Every file below the folder with its bytes.
+  std::map<std::string, std::string> everything() const {
+    std::map<std::string, std::string> found;
+    for (const auto& entry : fs::recursive_directory_iterator(folder.file("")))
+      found[entry.path().string()] = entry.is_regular_file() ? file_bytes(entry.path()) : "";
+    return found;
+  }
+  // With the exit code and all of `says` on one line, and nothing else in the world.
+  void expect_refused(const std::string& command, int code, const std::vector<std::string>& says) {
+    const auto before = everything();
+    const Outcome refused = run(command);
+    EXPECT_EQ(refused.exit_code, code) << command << "\n" << refused.output;
+    for (const std::string& part : says)
+      EXPECT_NE(refused.output.find(part), std::string::npos) << part << "\n" << refused.output;
+    EXPECT_EQ(std::count(refused.output.begin(), refused.output.end(), '\n'), 1) << refused.output;
+    EXPECT_TRUE(everything() == before) << command;
+  }
+
+  // Until what a bake has read of its input is written.
+  void wait_until_still() const {
+    for (auto before = everything();;) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      auto now = everything();
+      if (now == before) return;
+      before = std::move(now);
+    }
+  }
+
+  TempFolder folder;
+
+ private:
+  static inline TempFolder* made_ = nullptr;
+  static inline std::string failure_;
+};
+
+bool wait_for(const std::string& path) {
+  for (int i = 0; i < 3000 && !fs::exists(path); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return fs::exists(path);
+}
+
+// A bake in the background, which waits in the middle of its standard input, behind what is read
+// before the folder is made, until it is told to go on. Its folder is for this.
+class WaitingBake {
+ public:
+  WaitingBake(const std::string& command, const std::string& ply, const std::string& folder)
+      : go_(folder + "/go"), said_(folder + "/said"), ended_(folder + "/ended") {
+    fs::create_directory(folder);
+    const std::string input = "head -c 300000 " + ply + "; while [ ! -e " + go_ +
+                              " ]; do sleep 0.02; done; tail -c +300001 " + ply;
+    run_shell("( ( " + input + " ) | " + program(command) + " >" + said_ + " 2>&1; touch " +
+              ended_ + " ) </dev/null >/dev/null 2>&1 &");
+  }
+  ~WaitingBake() { end(); }
+  WaitingBake(const WaitingBake&) = delete;
+  WaitingBake& operator=(const WaitingBake&) = delete;
+
+  void end() const {
+    write_bytes(go_, "");
+    EXPECT_TRUE(wait_for(ended_));
+  }
+  std::string said() const { return file_bytes(said_); }
+
+ private:
+  std::string go_, said_, ended_;
+};
+
+TEST_F(KeepData, AFolderThatIsNotABakesIsRefusedAndStays) {
+  fs::create_directory(file("s.voy.work"));
+  write_bytes(file("s.voy.work/thesis.txt"), "x");
+  const std::string bake = "voyager bake " + large() + " -o " + file("s.voy");
+  expect_refused(bake + " --memory 16", 2, {"s.voy.work: found thesis.txt", "one of a bake"});
+  expect_refused(bake + " --work " + file("s.voy.work"), 2, {"s.voy.work: found thesis.txt"});
+  // Names of a bake's files alone do not make it a bake's.
+  fs::rename(file("s.voy.work/thesis.txt"), file("s.voy.work/words"));
+  expect_refused(bake + " --memory 16", 2, {"s.voy.work: found words"});
+}
+
+TEST_F(KeepData, WhatIsPutIntoAWorkFolderStaysAndIsNamed) {
+  const std::string bake =
+      "voyager bake " + small() + " -o " + file("s.voy") + " --work " + file("w");
+  ASSERT_EQ(run(bake + " --step split").exit_code, 0);
+  write_bytes(file("w/thesis.txt"), "x");
+  const Outcome baked = run(bake);
+  ASSERT_EQ(baked.exit_code, 0) << baked.output;
+  EXPECT_NE(baked.output.find("thesis.txt"), std::string::npos) << baked.output;
+  EXPECT_EQ(file_bytes(file("w/thesis.txt")), "x");
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("w")), {}), 1);
+}
+
+TEST_F(KeepData, ASecondBakeToTheSameOutputDoesNotTouchTheFirst) {
+  const std::string bake =
+      "voyager bake - -o " + file("s.voy") + " --quality lossless --work " + file("w");
+  const WaitingBake first(bake, small(), file("made"));
+  ASSERT_TRUE(wait_for(file("w/words"))) << first.said();
+  wait_until_still();
+  expect_refused(bake + " < " + small(), 4, {file("w") + ": found another process at work"});
+  expect_refused("voyager bake " + small() + " -o " + file("s.voy") + " --work " + file("w"), 2,
+                 {file("w")});
+  first.end();
+  ASSERT_EQ(
+      run("voyager bake " + small() + " -o " + file("whole.voy") + " --quality lossless").exit_code,
+      0);
+  EXPECT_TRUE(file_bytes(file("s.voy")) == file_bytes(file("whole.voy")));
+}
+
+// The folder that nobody named is the first one's as well.
+TEST_F(KeepData, ASecondBakeFromAFolderOfItsOwnDoesNotTouchTheFirst) {
+  const std::string bake = "voyager bake - -o " + file("s.voy") + " --memory 16";
+  const WaitingBake first(bake, large(), file("made"));
+  ASSERT_TRUE(wait_for(file("s.voy.work/words"))) << first.said();
+  wait_until_still();
+  expect_refused(bake + " < " + large(), 4, {"s.voy.work: found another process at work"});
+  first.end();
+  EXPECT_TRUE(fs::exists(file("s.voy"))) << first.said();
+  EXPECT_FALSE(fs::exists(file("s.voy.work")));
+}
+
+TEST_F(KeepData, OutputAndInputsAreNeverInTheWorkFolder) {
+  fs::create_directories(file("t/within"));
+  fs::create_directory_symlink(file("t"), file("link"));
+  fs::copy(small(), file("t/within/a.ply"));
+  fs::copy(small(), file("t/words"));
+  fs::create_symlink(file("t/within/a.ply"), file("b.ply"));
+  fs::create_symlink(file("t/within/new.voy"), file("new.voy"));
+  const std::string bake = "voyager bake ", to = " -o " + file("s.voy");
+  const std::string inside = "found it in the work folder";
+  for (const std::string output :
+       {"t/s.voy", "link/s.voy", "t/within/s.voy", "t/../t/s.voy", "new.voy"})
+    expect_refused(bake + small() + " -o " + file(output) + " --work " + file("t"), 1,
+                   {file(output), inside});
+  expect_refused(bake + small() + " -o " + file("t/s.voy") + " --work " + file("link"), 1,
+                 {inside});
+  expect_refused(bake + small() + to + " --work " + file("s.voy"), 1, {inside});
+  for (const std::string input : {"t/within/a.ply", "t/words", "link/words", "b.ply"})
+    expect_refused(bake + file(input) + to + " --work " + file("t"), 1, {file(input), inside});
+  // The folder that nobody names.
+  fs::create_directory(file("u.voy.work"));
+  fs::copy(large(), file("u.voy.work/positions"));
+  expect_refused(bake + file("u.voy.work/positions") + " -o " + file("u.voy") + " --memory 16", 1,
+                 {inside});
+  fs::copy(small(), file("v.voy.refine"));
+  expect_refused(bake + file("v.voy.refine") + " -o " + file("v.voy") + " --refine 1", 1,
+                 {"v.voy.refine", "an input"});
+}
+
+// What --refine keeps is removed at the end: nothing else of that name is, or is written over.
+TEST_F(KeepData, AFileNamedLikeWhatRefineKeepsIsRefusedAndStays) {
+  write_bytes(file("s.voy.refine"), "my own");
+  expect_refused("voyager bake " + small() + " -o " + file("s.voy") + " --refine 1", 2,
+                 {"s.voy.refine: found a file that no bake has written"});
+}
+
+TEST_F(KeepData, AnOutputIsWrittenThroughASymbolicLink) {
+  fs::create_directory(file("far"));
+  write_bytes(file("far/there.voy"), "before");
+  fs::create_symlink("far/there.voy", file("link.voy"));
+  fs::create_symlink("far/new.voy", file("dangling.voy"));
+  for (const std::string name : {"link", "dangling"})
+    ASSERT_EQ(run("voyager bake " + small() + " -o " + file(name + ".voy")).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(file("link.voy")));
+  EXPECT_TRUE(fs::is_symlink(file("dangling.voy")));
+  EXPECT_TRUE(file_bytes(file("far/there.voy")) == file_bytes(file("far/new.voy")));
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("far")), {}), 2);
+  // An output that a link takes to an input is that input.
+  fs::create_symlink("far/there.voy", file("out.ply"));
+  expect_refused("voyager export " + file("link.voy") + " -o " + file("out.ply"), 1, {"an input"});
+}
+
+TEST_F(KeepData, AWalkReplacesItsNumbersAndLeavesTheRest) {
+  fs::create_directories(file("walk/.partial-notes"));
+  write_bytes(file("walk/.partial-notes/thesis.txt"), "x");
+  write_bytes(file("walk/9999.png"), "mine");
+  write_bytes(file("walk/0000.png"), "an earlier walk's");
+  fs::copy(fs::path(small()).replace_extension(".cameras.json"), file("cameras.json"));
+  const std::string render = "voyager render " + small() + " --backend cpu --size 16x9 --cameras " +
+                             file("cameras.json") + " --all -o " + file("walk");
+  ASSERT_EQ(run(render).exit_code, 0);
+  EXPECT_EQ(file_bytes(file("walk/.partial-notes/thesis.txt")), "x");
+  EXPECT_EQ(file_bytes(file("walk/9999.png")), "mine");
+  EXPECT_EQ(file_bytes(file("walk/0000.png")).substr(1, 3), "PNG");
+  fs::remove(file("walk/0007.png"));
+  fs::create_directory(file("walk/0007.png"));
+  expect_refused(render, 4, {"walk/0007.png: found a directory"});
+}
+
+TEST_F(KeepData, AHiddenFolderThatIsNotAReportsIsRefusedAndStays) {
+  fs::create_directories(file("report/.report"));
+  write_bytes(file("report/.report/thesis.txt"), "x");
+  const std::string cameras = fs::path(small()).replace_extension(".cameras.json").string();
+  const Outcome refused = run("voyager report " + small() + " --cameras " + cameras + " -o " +
+                              file("report") + " --quick --size 16x9 --backend cpu");
+  if (refused.output.find("not a command") != std::string::npos) GTEST_SKIP() << "built without it";
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find(".report: found thesis.txt"), std::string::npos) << refused.output;
+  EXPECT_EQ(file_bytes(file("report/.report/thesis.txt")), "x");
+}
+
+}  // namespace
+}  // namespace voyager::keep_data_test
