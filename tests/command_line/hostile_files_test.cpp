@@ -5,6 +5,7 @@
 
 #include "tests/support/hostile_files.h"
 #include "tests/support/measured_run.h"
+#include "tests/support/sample_files.h"
 
 namespace voyager::test {
 namespace hostile_files_test {
@@ -80,6 +81,22 @@ TEST_F(HostileFiles, WideRowsOnStandardInput) {
       run_measured(program("voyager bake - -o " + file("wide.voy") + " < " + file("wide.ply"))),
       little_[0]);
   EXPECT_FALSE(std::filesystem::exists(file("wide.voy")));
+}
+
+// Forty million zeros in forty thousand bytes.
+TEST_F(HostileFiles, CompressedZeros) {
+  Bytes bytes = planar_spz(3, 0, 0);
+  const uint32_t count = 2'000'000;
+  std::memcpy(bytes.data() + 8, &count, sizeof count);
+  bytes.resize(16 + size_t{20} * count);
+  bytes = gzip(bytes);
+  write_bytes(file("zeros.spz"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const std::vector<std::string> little = commands("small.voy"), hostile = commands("zeros.spz");
+  for (size_t i = 0; i < 2; ++i)
+    expect_cheap_refusal(run_measured(program(hostile[i])), run_measured(program(little[i])));
+  const std::string bake = "voyager bake -o " + file("zeros.voy") + " ";
+  expect_cheap_refusal(run_measured(program(bake + file("zeros.spz"))),
+                       run_measured(program(bake + file("small.ply"))));
 }
 
 // Nobody writes to the FIFO, and the terminal is one that nobody types on.

@@ -23,7 +23,8 @@
 namespace voyager::fuzz {
 namespace {
 
-constexpr size_t kMost = 700;  // Gaussians: four of the smallest cells, and some
+// Gaussians: each costs milliseconds. Of cells, four of the smallest, and some.
+constexpr size_t kMost = 64, kMostInCells = 600;
 
 class Input {
  public:
@@ -79,7 +80,8 @@ struct Choices {
     const uint8_t bits = input.byte();
     sh_degree = bits & 3;
     quality = bits & 4 ? Quality::compact : Quality::lossless;
-    if (bits & 8) rule.kind = TreeKind::hierarchicalgs;
+    cells = (bits & 24) == 24;
+    if ((bits & 24) == 8) rule.kind = TreeKind::hierarchicalgs;
     if (bits & 16) rule.block = 2, rule.exposure_block = 16;
     if (bits & 32) chunk_bytes = kMinChunkBytes;
     antialiased = (bits & 64) != 0;
@@ -89,6 +91,7 @@ struct Choices {
 
   int sh_degree;
   Quality quality;
+  bool cells;  // baked in parts, too
   TreeRule rule;
   uint32_t chunk_bytes = kDefaultChunkBytes;
   bool antialiased;
@@ -103,13 +106,14 @@ GaussianCloud make_cloud(Input& input, const Choices& choices) {
   cloud.origin = choices.origin;
   std::vector<float> fields(11 + 3 * static_cast<size_t>(cloud.coefficients()));
   fields[6] = 1;
-  while (!input.empty() && cloud.size() < kMost) {
+  const size_t most = choices.cells ? kMostInCells : kMost;
+  while (!input.empty() && cloud.size() < most) {
     const size_t field = input.byte() % (fields.size() + 4);
     if (field < fields.size()) {
       fields[field] = input.value();
       continue;
     }
-    for (int copies = 1 + input.byte() % 64; copies != 0; --copies) {
+    for (int copies = 1 + input.byte() % 64; copies != 0 && cloud.size() < most; --copies) {
       auto add = [&, at = fields.begin()](std::pmr::vector<float>& to, int count) mutable {
         to.insert(to.end(), at, at + count);
         at += count;
@@ -261,8 +265,7 @@ void bake(std::span<const uint8_t> bytes) {
   const auto scene = load_scene(source, std::pmr::get_default_resource(), workers);
   expect(scene->damaged.empty());
   draw_all(scene, workers);
-  if (choices.rule.block == 2 && choices.rule.kind == TreeKind::clustered && words.size() != 0)
-    bake_in_cells(words, choices, path, workers);
+  if (choices.cells && words.size() != 0) bake_in_cells(words, choices, path, workers);
 }
 
 }  // namespace

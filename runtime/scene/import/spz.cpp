@@ -41,6 +41,7 @@ class SpzImport {
  private:
   void begin(ByteReader& plain, uint32_t newest_version) {
     header_ = spz::read_header(plain, newest_version);
+    spz::check_count(input_, header_);
     cloud_.sh_degree = header_.sh_degree;
     cloud_.antialiased = header_.antialiased;
   }

@@ -21,10 +21,12 @@ class AttributeStream {
     if (!first.empty() && first[0] == std::byte{0x1f}) {
       plain_ = std::make_unique<GzipReader>(input_);
       header_ = spz::read_header(*plain_, spz::kNewestPlanar);
+      spz::check_count(input_, header_);
       skip_to(attribute);
       return;
     }
     header_ = spz::read_header(input_, spz::kNewest);
+    spz::check_count(input_, header_);
     if (header_.version != spz::kNewest) {
       skip_to(attribute);
       return;

@@ -10,6 +10,10 @@ namespace {
 
 constexpr int kMaxFractionalBits = 24;
 
+// Bytes of a cloud that any file may become, and more for each of its bytes: several times what
+// scenes of one colour are compressed by, and a fraction of what zeros are.
+constexpr uint64_t kFreeBytes = 32 << 20, kBytesOfAByte = 256;
+
 template <size_t count>
 std::array<std::byte, count> read_bytes(ByteReader& reader, const char* what) {
   std::array<std::byte, count> bytes;
@@ -64,6 +68,20 @@ Header read_header(ByteReader& plain, uint32_t newest_version) {
   header.last =
       header.version < 4 ? field("reserved byte", 15, 0, 0) : field("streams", 15, 0, 255);
   return header;
+}
+
+void check_count(const PeekReader& input, const Header& header) {
+  const std::optional<uint64_t> left = input.remaining();
+  if (!left) return;
+  const uint64_t length = input.offset() + *left;
+  const auto coefficients = static_cast<uint64_t>(sh_coefficients(header.sh_degree));
+  const uint64_t gaussian = (11 + 3 * coefficients) * sizeof(float);
+  const uint64_t most =
+      (kFreeBytes + std::min(length, uint64_t{1} << 40) * kBytesOfAByte) / gaussian;
+  if (header.count > most)
+    refuse(
+        input.name(), input.offset(), "Gaussians", std::to_string(header.count),
+        "at most " + std::to_string(most) + " in a file of " + std::to_string(length) + " bytes");
 }
 
 std::array<uint64_t, kAttributes> read_stream_table(PeekReader& input, const Header& header) {

@@ -24,6 +24,10 @@ struct Header {
 // Reads the 16 bytes that all versions share, refusing what is out of range.
 Header read_header(ByteReader& plain, uint32_t newest_version);
 
+// Refuses more Gaussians than a file of that length is worth. `input` is the file, compressed as it
+// is; nothing is said of a stream whose length is not known.
+void check_count(const PeekReader& input, const Header& header);
+
 // Compressed size of each stream of a version 4, whose header's first 16 bytes
 // were read; leaves `input` at the first stream.
 std::array<uint64_t, kAttributes> read_stream_table(PeekReader& input, const Header& header);

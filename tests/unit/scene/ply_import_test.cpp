@@ -1,3 +1,4 @@
+#include "runtime/scene/import/block_reader.h"
 #include "tests/support/sample_files.h"
 #include "tests/support/test_support.h"
 
@@ -147,6 +148,23 @@ TEST(PlyImport, DoublePositionsChooseAnOrigin) {
   for (size_t i = 0; i < 3; ++i)
     for (size_t k = 0; k < 3; ++k)
       EXPECT_EQ(cloud.position[3 * i + k], static_cast<float>(world[i][k] - cloud.origin[k]));
+}
+
+// Blocks of one row each, of which the first cannot say where the scene lies.
+TEST(PlyImport, TheOriginDoesNotDependOnTheSizeOfBlocks) {
+  GaussianCloud cloud = test::random_cloud(3, 8, 0);
+  cloud.origin = {6.4e6, 0, -2e6};
+  cloud.position[0] = NAN;
+  const Bytes bytes = test::ply_of(cloud, true);
+  const MemorySource source("sample.bin", bytes);
+  const GaussianCloud whole = import_ply(*read_source(source), {});
+  const auto reader = open_blocks(std::make_shared<MemorySource>("sample.bin", bytes));
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const GaussianCloud one = reader->decode(reader->next(1));
+    EXPECT_EQ(one.origin, whole.origin);
+    EXPECT_EQ(one.position[1], whole.position[3 * i + 1]);
+  }
+  EXPECT_NE(whole.origin[0], 0);
 }
 
 TEST(PlyImport, FloatPositionsAreKeptToTheBitHoweverFar) {

@@ -1,3 +1,4 @@
+#include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/spz_format.h"
 #include "tests/support/sample_files.h"
@@ -182,6 +183,22 @@ TEST(SpzImport, NoFlippedByteCrashes) {
           EXPECT_EQ(error.code(), ErrorCode::refused_input) << error.what();
         }
       }
+}
+
+// Zeros compress to a thousandth: a count is held to the length of the file, whatever would come.
+TEST(SpzImport, RefusesMoreGaussiansThanAFileOfItsLengthIsWorth) {
+  Bytes bytes = test::planar_spz(3, 0, 0);
+  const uint32_t count = 700'000;
+  std::memcpy(bytes.data() + 8, &count, sizeof count);
+  bytes.resize(16 + size_t{20} * count);
+  EXPECT_EQ(test::import_bytes(bytes).size(), count);
+  bytes = test::gzip(bytes);
+  const std::string expected = "Gaussians: found 700000, expected at most";
+  const std::string whole = test::refusal_of([&] { test::import_bytes(bytes); });
+  EXPECT_NE(whole.find(expected), std::string::npos) << whole;
+  const std::string blocks =
+      test::refusal_of([&] { open_blocks(std::make_shared<MemorySource>("sample.bin", bytes)); });
+  EXPECT_NE(blocks.find(expected), std::string::npos) << blocks;
 }
 
 TEST(SpzImport, RefusesEveryHeaderFieldOutOfRange) {
