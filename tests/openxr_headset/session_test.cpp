@@ -156,7 +156,7 @@ TEST_F(Headset, RefusalsAreOneLine) {
       {scene + " --frames 1 --readback /proc/none", 4, "/proc/none"},
       {scene + " --frames 1 --readback " + file("dataset"), 1, "dataset/cameras.json"},
       {scene + " --frames 1 --camera-file " + file("pipe"), 2, "pipe: found a pipe or device"},
-      {"openxr_headset --frames 1 " + file("pipe"), 2, "pipe: found a named pipe"},
+      {"openxr_headset --frames 1 " + file("pipe"), 2, "pipe: found a FIFO"},
   };
   for (const auto& c : cases) {
     const Outcome result = run_shell("timeout 60 " + program(c.command) + " > /dev/null");

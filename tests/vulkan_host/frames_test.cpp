@@ -140,7 +140,7 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       {host("--frames 1 --mesh " + file("pipe") + out), 2, "pipe: found a pipe or device"},
       {"vulkan_host " + file("pipe") + " --offscreen --frames 1 --camera-file " +
            file("cameras.json") + out,
-       2, "pipe: found a named pipe"},
+       2, "pipe: found a FIFO"},
       {host("--frames 1 --stats " + file("pipe") + out), 4, "pipe: "},
       {host("--frames 1 --stats " + file("folder.gltf") + out), 4, "folder.gltf: "},
   };
