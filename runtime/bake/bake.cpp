@@ -66,7 +66,6 @@ class Baker {
     encode_cells(plan, top);
     if (bake_.step == BakeStep::encode) return summary(plan);
     join(plan, top);
-    note_merged(folder_, bake_.output, summary(plan));
     return finish(summary(plan));
   }
 
@@ -231,11 +230,15 @@ class Baker {
     result.nodes = baked.tree.size();
     result.subtrees = partition.subtrees.size();
     result.chunks = partition.chunk_count();
-    note_merged(folder_, bake_.output, result);
     return finish(result);
   }
 
+  // The scene is there. Without the note a bake that is killed now would only make it once more.
   BakeSummary finish(BakeSummary result) {
+    try {
+      note_merged(folder_, bake_.output, result);
+    } catch (const Error&) {
+    }
     result.left = folder_.remove();
     return result;
   }

@@ -48,6 +48,11 @@ int lock_file(int fd, bool alone) {
 
 }  // namespace
 
+bool is_plain_file(const std::string& path) {
+  struct stat info = {};
+  return ::lstat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
+}
+
 OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind, const std::string& key,
                          bool alone, OtherKey other)
     : OwnedFolder(std::move(path), kind) {
@@ -145,8 +150,9 @@ std::vector<std::string> OwnedFolder::remove() {
   for (const std::string& name : names) {
     const std::string_view own = without_partial(name);
     if (name == kFolderMark) continue;
+    const std::string file = path_ + "/" + name;
     const bool known = own == kFolderMark || kind_.is_own(own, key);
-    if (!known || ::unlink((path_ + "/" + name).c_str()) != 0) left.push_back(name);
+    if (!known || !is_plain_file(file) || ::unlink(file.c_str()) != 0) left.push_back(name);
   }
   ::unlink(mark_path().c_str());  // last: what a kill leaves is still marked
   ::rmdir(path_.c_str());

@@ -21,6 +21,9 @@ struct FolderKind {
   bool (*is_own)(std::string_view name, std::string_view key);
 };
 
+// A file itself, and no link to one: nothing else is ever removed.
+bool is_plain_file(const std::string& path);
+
 class OwnedFolder {
  public:
   enum class OtherKey { refused, emptied };
