@@ -4,7 +4,7 @@
 #   SEEDS     the folder of corpus/ and NAME.dict: tests/fuzz
 #   OUT       gets NAME/ (the corpus, which a later run goes on with), NAME.log, NAME.finding-*, and a
 #             line for each in summary.txt
-# A fuzzer that finds something goes on with what is left of its time. Exit 1 if one has.
+# A fuzzer that finds something goes on with what is left of its time. Exit 1 if one has, or ran nothing.
 set -euo pipefail
 [ $# -ge 4 ] || { sed -n '2,7s/^# //p' "$0" >&2; exit 2; }
 tmp=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")")
@@ -54,4 +54,5 @@ while read -r -a line; do
 done <"$programs/fuzzers.txt"
 wait
 cat "$out"/*.summary | tee "$out/summary.txt"
+awk '$2 == 0 { print "run_fuzzers.sh: " $1 ": ran no input; see its log"; none = 1 } END { exit none }' "$out/summary.txt" >&2
 [ -z "$(find "$out" -maxdepth 1 -name '*.finding-*' -print -quit)" ]

@@ -113,9 +113,7 @@ void FrameFiles::Output::expect(size_t index, const char* extension) const {
 }
 
 void FrameFiles::Output::require_room(uint64_t bytes) const {
-  if (wanted())
-    voyager::require_room(folder ? (folder->path() / frame_name(0, "")).string() : file, bytes,
-                          "it");
+  if (wanted()) voyager::require_room(folder ? (folder->path() / "").string() : file, bytes, "it");
 }
 
 void FrameFiles::expect(size_t first, std::span<const Camera> cameras, size_t eyes) const {

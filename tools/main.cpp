@@ -28,7 +28,7 @@ int finish() {
 // The names of the result and of the call are for who programs against the library.
 std::string text_of(const voy::Error& error) {
   using namespace voyager::tools;
-  const std::string text = error.what();
+  std::string text = error.what();
   if (verbosity() == Verbosity::verbose) return text;
   return without_call(text.substr(text.find(": ") + 2));
 }

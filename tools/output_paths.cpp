@@ -17,7 +17,10 @@ namespace fs = std::filesystem;
 
 // Without links, also where nothing is there yet.
 fs::path resolved(const std::string& path) {
-  return fs::weakly_canonical(fs::absolute(written_path(path)));
+  std::error_code problem;
+  const fs::path target = fs::absolute(written_path(path), problem);
+  const fs::path found = fs::weakly_canonical(target, problem);
+  return problem ? target.lexically_normal() : found;  // opening it will say what is wrong
 }
 
 bool is_file(const std::string& path) {

@@ -32,6 +32,11 @@ bool alone(const BakeInParts& bake) {
   return bake.step != BakeStep::cells && bake.step != BakeStep::encode;
 }
 
+// The other steps have nothing to do in a folder that they made.
+bool begins(const BakeInParts& bake) {
+  return bake.step == BakeStep::all || bake.step == BakeStep::split;
+}
+
 class Baker {
  public:
   Baker(const BakeInParts& bake, const OpenInputs& open, Workers& workers, const Progress& progress)
@@ -39,7 +44,7 @@ class Baker {
         open_(open),
         workers_(workers),
         progress_(progress),
-        folder_(bake.work, bake.request, alone(bake), bake.temporary) {}
+        folder_(bake.work, bake.request, alone(bake), bake.temporary || !begins(bake)) {}
 
   BakeSummary run() {
     if (alone(bake_) && folder_.has(kMerged)) {
@@ -61,7 +66,6 @@ class Baker {
     encode_cells(plan, top);
     if (bake_.step == BakeStep::encode) return summary(plan);
     join(plan, top);
-    note_merged(folder_, bake_.output, summary(plan));
     return finish(summary(plan));
   }
 
@@ -82,8 +86,7 @@ class Baker {
   // False where the scene is too small for cells: then it stays in the spool.
   bool split() {
     const bool spooled = folder_.has(kSpoolDone);
-    if (bake_.step == BakeStep::cells || bake_.step == BakeStep::encode ||
-        bake_.step == BakeStep::merge)
+    if (!begins(bake_))
       if (!spooled || deepest_cell_level(read_spool_info(folder_).gaussians, bake_.rule) != 0)
         throw Error(ErrorCode::invalid_argument,
                     folder_.path() + ": found no finished split, expected --step split before");
@@ -227,11 +230,15 @@ class Baker {
     result.nodes = baked.tree.size();
     result.subtrees = partition.subtrees.size();
     result.chunks = partition.chunk_count();
-    note_merged(folder_, bake_.output, result);
     return finish(result);
   }
 
+  // The scene is there. Without the note a bake that is killed now would only make it once more.
   BakeSummary finish(BakeSummary result) {
+    try {
+      note_merged(folder_, bake_.output, result);
+    } catch (const Error&) {
+    }
     result.left = folder_.remove();
     return result;
   }

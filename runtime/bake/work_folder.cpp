@@ -21,7 +21,12 @@ WorkFolder::WorkFolder(std::string path, const std::string& request, bool alone,
     : folder_(std::move(path), kBake, request, alone), temporary_(temporary && folder_.made()) {}
 
 WorkFolder::~WorkFolder() {
-  if (temporary_) remove();
+  if (!temporary_) return;
+  try {
+    remove();
+  } catch (const std::exception&) {
+    // A folder that cannot be read stays.
+  }
 }
 
 bool WorkFolder::has(const std::string& name) const {
@@ -35,11 +40,13 @@ void WorkFolder::drop(const std::string& name) const {
 
 void WorkFolder::drop_all() const {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(path()))
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(path(), ignored))
     names.push_back(entry.path().filename().string());
   for (const char* done : {kSplitDone, kSpoolDone}) drop(done);
   for (const std::string& name : names)
-    if (name != kMerged && is_work_file(without_partial(name))) drop(name);
+    if (name != kMerged && is_work_file(without_partial(name)) && is_plain_file(file(name)))
+      drop(name);
   drop(kMerged);
 }
 

@@ -20,8 +20,7 @@ constexpr const char* kPartial = ".partial-";
 std::string unused_name(const std::string& path) {
   static std::atomic<unsigned> count{0};
   for (;;) {
-    const std::string name =
-        path + kPartial + std::to_string(::getpid()) + "-" + std::to_string(count++);
+    std::string name = path + kPartial + std::to_string(::getpid()) + "-" + std::to_string(count++);
     if (::access(name.c_str(), F_OK) == 0) continue;
     if (errno != ENOENT) throw_system_error(path, "create");  // also where such a name is too long
     return name;

@@ -48,6 +48,11 @@ int lock_file(int fd, bool alone) {
 
 }  // namespace
 
+bool is_plain_file(const std::string& path) {
+  struct stat info = {};
+  return ::lstat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
+}
+
 OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind, const std::string& key,
                          bool alone, OtherKey other)
     : OwnedFolder(std::move(path), kind) {
@@ -57,8 +62,7 @@ OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind, const std::st
     fs::create_directories(path_, problem);
     if (problem) throw Error(ErrorCode::io, path_ + ": create: " + problem.message());
     if (!open_mark()) {
-      require_empty();
-      if (mark(text, alone)) return;
+      if (is_empty() && mark(text, alone)) return;
       continue;
     }
     const std::string found = read_key();
@@ -115,13 +119,18 @@ std::string OwnedFolder::read_key() const {
   return text;
 }
 
-void OwnedFolder::require_empty() const {
-  std::error_code problem;
-  for (const auto& entry : fs::directory_iterator(path_, problem))
-    if (const std::string name = entry.path().filename().string();
-        without_partial(name) != kFolderMark)
-      refuse(path_, name, std::string("an empty folder or one of ") + kind_.of, kind_);
-  if (problem) throw Error(ErrorCode::io, path_ + ": read: " + problem.message());
+bool OwnedFolder::is_empty() const {
+  std::error_code problem, ignored;
+  for (const auto& entry : fs::directory_iterator(path_, problem)) {
+    const std::string name = entry.path().filename().string();
+    if (without_partial(name) == kFolderMark) continue;
+    if (fs::exists(mark_path(), ignored) || !fs::exists(fs::symlink_status(entry.path(), ignored)))
+      return false;
+    refuse(path_, name, std::string("an empty folder or one of ") + kind_.of, kind_);
+  }
+  if (problem && problem != std::errc::no_such_file_or_directory)
+    throw Error(ErrorCode::io, path_ + ": read: " + problem.message());
+  return !problem;
 }
 
 void OwnedFolder::add_to_key(std::string_view text) {
@@ -141,8 +150,9 @@ std::vector<std::string> OwnedFolder::remove() {
   for (const std::string& name : names) {
     const std::string_view own = without_partial(name);
     if (name == kFolderMark) continue;
+    const std::string file = path_ + "/" + name;
     const bool known = own == kFolderMark || kind_.is_own(own, key);
-    if (!known || ::unlink((path_ + "/" + name).c_str()) != 0) left.push_back(name);
+    if (!known || !is_plain_file(file) || ::unlink(file.c_str()) != 0) left.push_back(name);
   }
   ::unlink(mark_path().c_str());  // last: what a kill leaves is still marked
   ::rmdir(path_.c_str());

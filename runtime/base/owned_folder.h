@@ -21,6 +21,9 @@ struct FolderKind {
   bool (*is_own)(std::string_view name, std::string_view key);
 };
 
+// A file itself, and no link to one: nothing else is ever removed.
+bool is_plain_file(const std::string& path);
+
 class OwnedFolder {
  public:
   enum class OtherKey { refused, emptied };
@@ -53,7 +56,9 @@ class OwnedFolder {
   enum class Lock { held, refused, stale };
   Lock lock(bool alone);
   std::string read_key() const;
-  void require_empty() const;
+  // False where another process has made the folder its own, or removed it, since it was looked at.
+  // Throws Error(refused_input) where there are files and no mark.
+  bool is_empty() const;
   std::string mark_path() const { return path_ + "/" + kFolderMark; }
 
   std::string path_;

@@ -131,11 +131,11 @@ static int render(VoyDevice device, const char* path, unsigned char* pixels) {
   return succeeded(render_frame(view, &frame)) ? 0 : 4;
 }
 
-/* Is there something that no picture may replace: a folder, a pipe, a device? */
+/* Is there something that no picture may replace: a directory, a FIFO, a device, a link to nothing? */
 static int is_no_file(const char* path) {
   struct stat info;
-  if (stat(path, &info) != 0 || S_ISREG(info.st_mode)) return 0;
-  fprintf(stderr, "c_minimal: %s: found something that is no file, expected a free name\n", path);
+  if (stat(path, &info) == 0 ? S_ISREG(info.st_mode) : lstat(path, &info) != 0) return 0;
+  fprintf(stderr, "c_minimal: %s: found no regular file, expected one or a free name\n", path);
   return 1;
 }
 

@@ -35,8 +35,8 @@ fs::path written_path(const std::string& path) {
 
 std::string read_file(const std::string& path) {
   std::error_code ignored;
-  if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
-    throw Failure(kRefusedInput, path + ": expected a file, not a folder, pipe or device");
+  if (fs::is_other(path, ignored))
+    throw Failure(kRefusedInput, path + ": found a pipe or device, expected a file");
   const auto fail = [&] { throw Failure(kRefusedInput, path + ": " + std::strerror(errno)); };
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              std::fclose);

@@ -48,13 +48,16 @@ constexpr const char* kCameras = "cameras.json";
 std::vector<std::string> pictures_of(const std::string& path) {
   const nlohmann::json cameras =
       nlohmann::json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
+  const auto refuse = [&] {
+    throw Failure(kBadUsage, "--readback: found " + path +
+                                 ", which no recording has written, expected another folder");
+  };
+  if (!cameras.is_array()) refuse();
   std::vector<std::string> names;
   for (size_t i = 0; i < cameras.size(); ++i) {
     names.push_back(picture_name(i / kEyes, i % kEyes));
-    if (!cameras.is_array() || !cameras[i].is_object() ||
-        cameras[i].value("img_name", nlohmann::json()) != names.back())
-      throw Failure(kBadUsage, "--readback: found " + path +
-                                   ", which no recording has written, expected another folder");
+    if (!cameras[i].is_object() || cameras[i].value("img_name", nlohmann::json()) != names.back())
+      refuse();
   }
   return names;
 }
@@ -67,8 +70,8 @@ Recorder::Recorder(std::string folder) : folder_(std::move(folder)) {
   try {
     fs::create_directories(folder_);
     if (fs::exists(cameras)) {
-      for (const std::string& name : pictures_of(cameras)) fs::remove(folder_ + "/" + name);
-      fs::remove(cameras);
+      earlier_ = pictures_of(cameras);
+      earlier_.emplace_back(kCameras);
     }
   } catch (const fs::filesystem_error& error) {
     throw Failure(kMachine, folder_ + ": " + error.code().message());
@@ -77,6 +80,9 @@ Recorder::Recorder(std::string folder) : folder_(std::move(folder)) {
 }
 
 void Recorder::add(uint64_t frame, const std::array<Camera, kEyes>& eyes) {
+  std::error_code ignored;
+  for (const std::string& name : earlier_) std::filesystem::remove(folder_ + "/" + name, ignored);
+  earlier_.clear();
   while (cameras_.size() > kEyes * frame) cameras_.erase(cameras_.size() - 1);
   for (size_t i = 0; i < kEyes; ++i)
     cameras_.push_back(to_json(eyes[i], cameras_.size(), picture_name(frame, i)));
@@ -88,6 +94,7 @@ void Recorder::write_picture(uint64_t frame, size_t eye, VkExtent2D extent,
 }
 
 void Recorder::write_cameras() const {
+  if (cameras_.empty()) return;
   const std::string text = cameras_.dump(1) + "\n";
   write_file(folder_ + "/" + kCameras, std::as_bytes(std::span(text)));
 }

@@ -13,19 +13,20 @@ namespace host {
 
 class Recorder {
  public:
-  // Makes the folder, and removes what an earlier recording left in it: its cameras.json and the
-  // pictures which that names. Throws Failure(kBadUsage) for a cameras.json that is not a
-  // recording's.
+  // Makes the folder. An earlier recording in it, its cameras.json and the pictures which that
+  // names, is removed when the first frame of this one is there. Throws Failure(kBadUsage) for a
+  // cameras.json that is not a recording's.
   explicit Recorder(std::string folder);
 
   // Its pictures may come later. A frame that was lost before it was shown is added again.
   void add(uint64_t frame, const std::array<Camera, kEyes>& eyes);
   void write_picture(uint64_t frame, size_t eye, VkExtent2D extent,
                      std::span<const uint8_t> rgba) const;
-  void write_cameras() const;
+  void write_cameras() const;  // none where no frame was added
 
  private:
   std::string folder_;
+  std::vector<std::string> earlier_;  // files of an earlier recording
   nlohmann::json cameras_ = nlohmann::json::array();
 };
 

@@ -121,7 +121,7 @@ TEST(Memory, ASceneTakesMemoryAsItsBytesCome) {
   VoyScene scene = nullptr;
   EXPECT_EQ(voy.OpenScene(device, &scene_desc, &scene), VOY_ERROR_IO) << voy.message();
   EXPECT_GT(memory.most, int64_t{1} << 20);
-  EXPECT_LT(memory.most, int64_t{8} << 20);
+  EXPECT_LT(memory.most, int64_t{16} << 20);
   EXPECT_EQ(voy.DestroyDevice(device), VOY_SUCCESS);
 }
 

@@ -1,4 +1,6 @@
 // Sessions from start to exit, as runtimes begin, stop, starve and lose them.
+#include <sys/stat.h>
+
 #include "tests/openxr_headset/headset_run.h"
 
 namespace voyager::test {
@@ -130,6 +132,10 @@ TEST_F(Headset, TheGranularityFollowsATimeBudget) {
 TEST_F(Headset, RefusalsAreOneLine) {
   write_bytes(file("bad.json"), "[{\"width\": 8, \"height\": 8}]");
   write_bytes(file("bad.voy"), "no scene");
+  ASSERT_EQ(::mkfifo(file("pipe").c_str(), 0666), 0);
+  std::filesystem::create_directory(file("dataset"));  // somebody's own
+  std::filesystem::copy(file("city.cameras.json"), file("dataset/cameras.json"));
+  write_bytes(file("dataset/0000_L.png"), "mine");
   const std::string scene = "openxr_headset " + file("city.voy");
   const struct {
     std::string command;
@@ -148,15 +154,20 @@ TEST_F(Headset, RefusalsAreOneLine) {
       {"openxr_headset --frames 1 " + file("absent.voy"), 2, "absent.voy"},
       {"openxr_headset --frames 1 " + file("bad.voy"), 2, "bad.voy"},
       {scene + " --frames 1 --readback /proc/none", 4, "/proc/none"},
+      {scene + " --frames 1 --readback " + file("dataset"), 1, "dataset/cameras.json"},
+      {scene + " --frames 1 --camera-file " + file("pipe"), 2, "pipe: found a pipe or device"},
+      {"openxr_headset --frames 1 " + file("pipe"), 2, "pipe: found a FIFO"},
   };
   for (const auto& c : cases) {
-    const Outcome result = run(c.command + " > /dev/null");
+    const Outcome result = run_shell("timeout 60 " + program(c.command) + " > /dev/null");
     EXPECT_EQ(result.exit_code, c.exit_code) << c.command << "\n" << result.output;
     EXPECT_NE(result.output.find(c.names), std::string::npos) << c.command << "\n" << result.output;
     EXPECT_EQ(std::count(result.output.begin(), result.output.end(), '\n'), 1) << c.command << "\n"
                                                                                << result.output;
   }
   EXPECT_FALSE(std::filesystem::exists(file("refused")));
+  EXPECT_EQ(file_bytes(file("dataset/cameras.json")), file_bytes(file("city.cameras.json")));
+  EXPECT_EQ(file_bytes(file("dataset/0000_L.png")), "mine");
 }
 
 TEST_F(Headset, WhatARuntimeLacksIsNamed) {

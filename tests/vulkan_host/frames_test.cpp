@@ -1,4 +1,6 @@
 // Frames of the splats alone, whatever the modes; silence under validation; refusals.
+#include <sys/stat.h>
+
 #include "tests/vulkan_host/host_run.h"
 
 namespace voyager::test {
@@ -97,6 +99,7 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
   std::filesystem::create_directory(file("folder.gltf"));
   write_bytes(file("folder_inside.gltf"), R"({"asset": {"version": "2.0"},
       "buffers": [{"byteLength": 36, "uri": "folder.gltf"}]})");
+  ASSERT_EQ(::mkfifo(file("pipe").c_str(), 0666), 0);
   const std::string out = " -o " + file("refused");
   const struct {
     std::string command;
@@ -114,6 +117,7 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       {host("--frames 1 --no-mesh --mesh " + file("bad.gltf") + out), 1, "--no-mesh"},
       {host("--frames 1 --budget 1e30" + out), 1, "--budget"},
       {host("--frames 1 --budget nan" + out), 1, "--budget"},
+      {host("--frames 1 --budget 1e-300" + out), 1, "--budget"},
       {"vulkan_host " + file("city.voy") + " --srgb", 1, "--srgb"},
       {host("--frames 1 --sharing host --sync binary" + out), 1, "sync"},
       {host("--frames 1" + out, "absent.json"), 2, "absent.json"},
@@ -132,9 +136,16 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       {host("--frames 1 --budget 0.001" + out), 4, "budget"},
       {host("--frames 1 --device Nonesuch" + out), 4, "Nonesuch"},
       {host("--frames 1 -o /dev/null/frames"), 4, "/dev/null"},
+      {host("--frames 1" + out, "pipe"), 2, "pipe: found a pipe or device"},
+      {host("--frames 1 --mesh " + file("pipe") + out), 2, "pipe: found a pipe or device"},
+      {"vulkan_host " + file("pipe") + " --offscreen --frames 1 --camera-file " +
+           file("cameras.json") + out,
+       2, "pipe: found a FIFO"},
+      {host("--frames 1 --stats " + file("pipe") + out), 4, "pipe: "},
+      {host("--frames 1 --stats " + file("folder.gltf") + out), 4, "folder.gltf: "},
   };
   for (const auto& each : cases) {
-    const Outcome result = run(each.command + " 2>&1 >/dev/null");
+    const Outcome result = run_shell("timeout 60 " + program(each.command) + " 2>&1 >/dev/null");
     EXPECT_EQ(result.exit_code, each.exit_code) << each.command << "\n" << result.output;
     EXPECT_NE(result.output.find(each.names), std::string::npos) << each.command << "\n"
                                                                  << result.output;

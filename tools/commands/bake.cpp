@@ -242,9 +242,9 @@ BakeSummary bake_from_folder(const BakeArguments& arguments, const OpenInputs& o
   bake.part = part.part;
   bake.parts = part.parts;
   Workers workers;
-  const BakeSummary result = bake_in_parts(bake, open, workers, progress);
+  BakeSummary result = bake_in_parts(bake, open, workers, progress);
   for (const std::string& name : result.left)
-    note(fmt::format("{}: not removed, for {} is not the bake's", bake.work, name));
+    note(fmt::format("{}: not removed: {} is not a file of the bake", bake.work, name));
   return result;
 }
 

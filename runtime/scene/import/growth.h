@@ -1,7 +1,7 @@
 #pragma once
-// How much memory a header's count is worth. A quarter of the Gaussians must
-// have arrived before the announced count is believed and reserved at once;
-// before that, arrays grow with what has arrived.
+// How much memory a header's count is worth: four times the Gaussians that have arrived, so that
+// arrays are moved a few times only, and of what has not come no page is touched.
+#include <algorithm>
 #include <cstdint>
 #include <memory_resource>
 #include <vector>
@@ -11,8 +11,7 @@ namespace voyager {
 inline void reserve_for(std::pmr::vector<float>& values, uint64_t gaussians, uint64_t announced,
                         size_t width) {
   if (values.capacity() / width >= gaussians) return;
-  const uint64_t capacity = announced / 4 <= gaussians ? announced : gaussians + gaussians / 4;
-  values.reserve(static_cast<size_t>(capacity) * width);
+  values.reserve(static_cast<size_t>(std::min(announced, 4 * gaussians)) * width);
 }
 
 }  // namespace voyager

@@ -90,7 +90,7 @@ TEST(AtomicFile, WhatCannotBeWrittenIsRefusedBeforeAByteIs) {
   ASSERT_EQ(::mkfifo(folder.file("pipe").c_str(), 0666), 0);
   expect_refused(folder.file("pipe"), "found a FIFO");
   fs::create_symlink("/dev/full", folder.file("full"));
-  expect_refused(folder.file("full"), "found a device");
+  expect_refused(folder.file("full"), "found a terminal or another character device");
   fs::create_symlink("circle", folder.file("circle"));
   expect_refused(folder.file("circle"), "circle");
   expect_refused(folder.file("no/such/folder"), "No such file");
