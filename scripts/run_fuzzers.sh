@@ -19,7 +19,7 @@ export UBSAN_OPTIONS=print_stacktrace=1
 
 # Limits: one allocation, and all, in megabytes, AddressSanitizer's own included; seconds an input.
 # tests/fuzz/memory_limit.h has the exact one.
-limits=(-malloc_limit_mb=128 -rss_limit_mb=1024 -timeout=20)
+limits=(-malloc_limit_mb=128 -rss_limit_mb=1024 -timeout=20 -report_slow_units=20)
 
 run_one() {
   local name=$1 folders=() folder options=() start=$SECONDS left
