@@ -78,7 +78,7 @@ void Source::read_first_bytes() {
 
 void Source::read(uint64_t offset, std::span<std::byte> into) const {
   check_range(*this, offset, into.size());
-  if (offset < first_bytes_.size()) {
+  if (!into.empty() && offset < first_bytes_.size()) {
     const size_t count = std::min<size_t>(first_bytes_.size() - offset, into.size());
     std::memcpy(into.data(), first_bytes_.data() + offset, count);
     offset += count;

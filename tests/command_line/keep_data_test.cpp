@@ -67,7 +67,7 @@ class KeepData : public ::testing::Test {
 };
 
 bool wait_for(const std::string& path) {
-  for (int i = 0; i < 3000 && !fs::exists(path); ++i)
+  for (int i = 0; i < 18000 && !fs::exists(path); ++i)  // a sanitizer is slow
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   return fs::exists(path);
 }
