@@ -162,7 +162,11 @@ std::vector<std::string> OwnedFolder::remove() {
 
 void OwnedFolder::remove_abandoned(const std::string& path, const FolderKind& kind) try {
   OwnedFolder folder(path, kind);
-  if (!folder.open_mark() || !folder.read_key().starts_with(first_line(kind))) return;
+  if (!folder.open_mark()) {
+    ::rmdir(path.c_str());  // killed before it was marked, or after: then it is empty
+    return;
+  }
+  if (!folder.read_key().starts_with(first_line(kind))) return;
   if (lock_file(folder.mark_.get(), true) == 0 && folder.lock(true) == Lock::held) folder.remove();
 } catch (const Error&) {
   // Left as it is.
