@@ -124,8 +124,13 @@ bool OwnedFolder::is_empty() const {
   for (const auto& entry : fs::directory_iterator(path_, problem)) {
     const std::string name = entry.path().filename().string();
     if (without_partial(name) == kFolderMark) continue;
-    if (fs::exists(mark_path(), ignored) || !fs::exists(fs::symlink_status(entry.path(), ignored)))
-      return false;
+    // Between two looks at the folder one process may leave it and another come.
+    for (int look = 0; look < 20; ++look) {
+      if (fs::exists(mark_path(), ignored) ||
+          !fs::exists(fs::symlink_status(entry.path(), ignored)))
+        return false;
+      ::usleep(500);
+    }
     refuse(path_, name, std::string("an empty folder or one of ") + kind_.of, kind_);
   }
   if (problem && problem != std::errc::no_such_file_or_directory)
