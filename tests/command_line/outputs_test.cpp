@@ -86,15 +86,14 @@ TEST_F(Outputs, TheCamerasBesideACityAreFoundToBeUnwritableToo) {
 
 TEST_F(Outputs, RoomIsAskedForBeforeTheWork) {
   struct statvfs info = {};
-  if (::access("/dev/shm", W_OK) != 0 || ::statvfs("/dev/shm", &info) != 0 ||
-      uint64_t{info.f_bavail} * info.f_frsize > 20'000'000'000)
-    GTEST_SKIP() << "no /dev/shm, or one of more than 20 GB";
-  // In it, and behind a link that leads there.
-  fs::create_symlink("/dev/shm/voyager-test-room", file("shm"));
+  const bool there = ::access("/dev/shm", W_OK) == 0 && ::statvfs("/dev/shm", &info) == 0;
+  const uint64_t free = uint64_t{info.f_bavail} * info.f_frsize;
+  if (!there || free > 150'000'000'000) GTEST_SKIP() << "no /dev/shm, or one of more than 150 GB";
   fs::create_symlink("/dev/shm/voyager-test-room.ply", file("shm.ply"));
   fs::create_symlink("/dev/shm/voyager-test-room.voy", file("shm.voy"));
-  expect_refused("voyager synth city --gaussians 100000000 -o " + file("shm.ply"), 4,
-                 "MB free on the device, expected 24800 MB");
+  if (free < 24'000'000'000)
+    expect_refused("voyager synth city --gaussians 100000000 -o " + file("shm.ply"), 4,
+                   "MB free on the device, expected 24801 MB");
   // A header tells how much is to come.
   const std::string ply = file_bytes(file("c.ply"));
   std::string claim = ply.substr(0, ply.find("end_header\n") + 11);

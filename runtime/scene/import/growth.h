@@ -1,17 +1,24 @@
 #pragma once
-// How much memory a header's count is worth: four times the Gaussians that have arrived, so that
-// arrays are moved a few times only, and of what has not come no page is touched.
-#include <algorithm>
+// How much memory a header's count is worth: at most about four times the Gaussians that have
+// arrived, so that of what has not come no page is touched. Arrays are moved a few times only, the
+// last time when a quarter is there, so that old and new together are little more than the whole.
 #include <cstdint>
 #include <memory_resource>
 #include <vector>
 
 namespace voyager {
 
+// The smallest of announced, announced / 4, announced / 16, ... that holds `gaussians`.
+inline uint64_t room_for(uint64_t gaussians, uint64_t announced) {
+  uint64_t room = announced;
+  while (room / 4 >= gaussians && room / 4 > 0) room /= 4;
+  return room;
+}
+
 inline void reserve_for(std::pmr::vector<float>& values, uint64_t gaussians, uint64_t announced,
                         size_t width) {
   if (values.capacity() / width >= gaussians) return;
-  values.reserve(static_cast<size_t>(std::min(announced, 4 * gaussians)) * width);
+  values.reserve(static_cast<size_t>(room_for(gaussians, announced)) * width);
 }
 
 }  // namespace voyager

@@ -89,13 +89,16 @@ class PlyReader final : public BlockReader {
 
   RawBlock next(size_t most) override {
     RawBlock block;
+    next(most, block);
+    return block;
+  }
+
+  // The same in place of another block, whose memory is used again.
+  void next(size_t most, RawBlock& block) {
     const size_t stride = vertex().stride;
     const uint64_t rows = std::min<uint64_t>(most, std::max<size_t>(1, kMostBytes / stride));
     block.count = static_cast<size_t>(std::min(rows, count() - taken_));
-    if (block.count == 0) {
-      skip_the_rest();
-      return block;
-    }
+    if (block.count == 0) return skip_the_rest();
     block.bytes.resize(block.count * stride);
     const size_t got = input_.read(block.bytes);
     if (got != block.bytes.size())
@@ -104,7 +107,6 @@ class PlyReader final : public BlockReader {
              std::to_string(count() * stride) + " bytes (" + std::to_string(count()) + " rows of " +
                  std::to_string(stride) + ")");
     taken_ += block.count;
-    return block;
   }
 
   GaussianCloud decode(const RawBlock& block) const override {
@@ -263,8 +265,9 @@ GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options) {
   PlyReader rows(reader);
   GaussianCloud cloud(options.memory);
   cloud.sh_degree = rows.sh_degree();
+  RawBlock block;
   for (uint64_t done = 0;;) {
-    const RawBlock block = rows.next(rows.rows_at_once());
+    rows.next(rows.rows_at_once(), block);
     if (block.count == 0) return cloud;
     rows.reserve(cloud, done + block.count);
     rows.resize(cloud, done + block.count);
