@@ -131,7 +131,8 @@ static int render(VoyDevice device, const char* path, unsigned char* pixels) {
   return succeeded(render_frame(view, &frame)) ? 0 : 4;
 }
 
-/* Is there something that no picture may replace: a directory, a FIFO, a device, a link to nothing? */
+/* Is there something that no picture may replace: a directory, a FIFO, a device, a link to nothing?
+ */
 static int is_no_file(const char* path) {
   struct stat info;
   if (stat(path, &info) == 0 ? S_ISREG(info.st_mode) : lstat(path, &info) != 0) return 0;
