@@ -11,9 +11,12 @@ namespace voyager {
 // About what all chunks take in memory as a scene, by their counts and as stored.
 uint64_t claimed_bytes(const SceneFile& file);
 
-// Of a file that claims little nothing is read. Of another some chunks are, each as likely as what
-// it claims is large, in an order that `seed` decides: where hardly any is sound, throws
-// Error(refused_input), and else as reading does.
+// Random, and the same while the process lives, so that it judges a file the same each time.
+uint64_t process_seed();
+
+// Reads nothing of a file that claims little. Of a larger file it tries some chunks, drawn with
+// `seed`; a chunk that claims more is drawn more often. Throws Error(refused_input) if hardly any
+// of them is sound, and what reading throws. Nothing else depends on the seed.
 void check_claims(const SceneFile& file, uint64_t seed);
 
 }  // namespace voyager

@@ -54,7 +54,7 @@ SceneFile::SceneFile(std::shared_ptr<const ByteSource> source) : source_(std::mo
   level_begin_ = std::move(sections.level_begin);
   tier_begin_ = std::move(sections.tier_begin);
   chunks_ = std::move(sections.chunks);
-  check_claims(*this, header.checksum);
+  check_claims(*this, process_seed());
 }
 
 SceneFile::~SceneFile() = default;

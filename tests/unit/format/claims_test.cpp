@@ -1,4 +1,5 @@
 // What a file claims is held against what it has before it costs anything.
+#include "runtime/format/check_claims.h"
 #include "tests/support/hostile_files.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
@@ -19,10 +20,12 @@ class Claiming final : public ByteSource {
     check_range(*this, offset, into.size());
     largest = std::max(largest, into.size());
     all += into.size();
+    offsets.push_back(offset);
     for (size_t i = 0; i < into.size(); ++i)
       into[i] = offset + i < file_.head.size() ? file_.head[offset + i] : std::byte{0};
   }
   mutable size_t largest = 0, all = 0;
+  mutable std::vector<uint64_t> offsets;
 
  private:
   std::string name_ = "claims.voy";
@@ -52,7 +55,7 @@ TEST(Claims, ChunksThatHoldNothingAreTriedAndNotBelieved) {
   for (const Quality quality : {Quality::compact, Quality::lossless}) {
     const auto source = std::make_shared<Claiming>(test::claimed_chunks(quality, 100));
     const std::string refusal = refusal_of(source);
-    EXPECT_NE(refusal.find("of 16 chunks that were tried 0 are sound"), std::string::npos)
+    EXPECT_NE(refusal.find("of 32 chunks that were tried 0 are sound"), std::string::npos)
         << refusal;
     EXPECT_LE(source->largest, size_t{4} << 20);
   }
@@ -88,7 +91,30 @@ TEST(Claims, ADamagedFileIsReadAsLongAsMuchOfItIsThere) {
     if (chunk % 2 == 0) half[at] ^= std::byte{1};
   }
   EXPECT_EQ(refusal_of(test::source_of(half)), "");
+  const SceneFile damaged(test::source_of(half));
+  for (uint64_t seed = 0; seed < 20; ++seed) EXPECT_NO_THROW(check_claims(damaged, seed)) << seed;
   EXPECT_NE(refusal_of(test::source_of(none)).find("0 are sound"), std::string::npos);
+}
+
+// Whoever makes a file knows all of its bytes: none of them may say which chunks will be tried.
+TEST(Claims, WhichChunksAreTriedDoesNotFollowFromTheFile) {
+  const Bytes bytes = test::scene_bytes(
+      test::baked_of(test::random_tree(test::TreeShape::eight_way, 150'000, 2)), Quality::lossless);
+  const auto source = std::make_shared<Claiming>(ClaimedFile{bytes, bytes.size()});
+  const SceneFile file(source);
+  std::vector<uint64_t> at_open;
+  for (const uint64_t offset : source->offsets)
+    if (offset >= file.chunks().front().offset) at_open.push_back(offset);
+  const auto tried = [&](uint64_t seed) {
+    source->offsets.clear();
+    check_claims(file, seed);
+    return source->offsets;
+  };
+  EXPECT_EQ(tried(process_seed()), at_open);
+  FileHeader header;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  EXPECT_NE(tried(header.checksum), at_open);
+  EXPECT_NE(tried(1), tried(2));
 }
 
 }  // namespace
