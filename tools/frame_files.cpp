@@ -112,8 +112,9 @@ void FrameFiles::Output::expect(size_t index, const char* extension) const {
   if (folder) folder->require_place(frame_name(index, extension));
 }
 
-void FrameFiles::Output::require_room(uint64_t bytes) const {
-  if (wanted()) voyager::require_room(folder ? (folder->path() / "").string() : file, bytes, "it");
+std::vector<Room> FrameFiles::Output::room(uint64_t bytes, const char* what) const {
+  if (!wanted()) return {};
+  return {{folder ? (folder->path() / "").string() : file, bytes, what}};
 }
 
 void FrameFiles::expect(size_t first, std::span<const Camera> cameras, size_t eyes) const {
@@ -124,8 +125,11 @@ void FrameFiles::expect(size_t first, std::span<const Camera> cameras, size_t ey
     if (i % eyes == 0) cut_.expect((first + i) / eyes, ".txt");
     pixels += uint64_t{cameras[i].width} * cameras[i].height;
   }
-  depth_.require_room(pixels * sizeof(float));
-  if (floats_) image_.require_room(pixels * 3 * sizeof(float));  // how small a .png is nobody knows
+  std::vector<Room> files = depth_.room(pixels * sizeof(float), "depths");
+  if (floats_)  // how small a .png is nobody knows
+    for (Room& images : image_.room(pixels * 3 * sizeof(float), "images"))
+      files.push_back(std::move(images));
+  require_room(files);
 }
 
 void FrameFiles::write_image(size_t index, const Camera& camera, const RenderedImage& image) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/output_path.h"
 #include "tools/output_folder.h"
 #include "tools/renderer.h"
 
@@ -42,7 +43,8 @@ class FrameFiles {
     bool wanted() const { return !file.empty() || folder; }
     std::string place(size_t index, const char* extension) const;
     void expect(size_t index, const char* extension) const;
-    void require_room(uint64_t bytes) const;
+    // Of all its files, where it is wanted.
+    std::vector<Room> room(uint64_t bytes, const char* what) const;
   };
   static Output open(const std::string& path, bool folder);
   const char* image_extension() const { return floats_ ? ".pfm" : ".png"; }

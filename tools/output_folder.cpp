@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 
@@ -18,10 +19,11 @@ namespace {
 
 constexpr const char* kStaging = ".partial-";
 
-// Its key lists the files, a line each.
+// Its notes list the files.
 constexpr FolderKind kPartialOutput = {
-    "an output that is not complete", "remove it", [](std::string_view name, std::string_view key) {
-      return key.find(fmt::format("\n{}\n", name)) != std::string_view::npos;
+    "an output that is not complete", "remove it",
+    [](std::string_view name, const std::vector<std::string>& notes) {
+      return std::find(notes.begin(), notes.end(), name) != notes.end();
     }};
 
 void clear_left_over(const std::filesystem::path& path) {
@@ -54,6 +56,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
 
 OutputFolder::~OutputFolder() {
   staging_->remove();
+  ::rmdir(staging_->path().c_str());
   if (created_) ::rmdir(path_.c_str());  // only if it is empty
 }
 
@@ -62,7 +65,7 @@ void OutputFolder::require_place(const std::string& name) const {
 }
 
 std::string OutputFolder::place(const std::string& name) {
-  staging_->add_to_key(name + "\n");
+  staging_->add_note(name);
   names_.push_back(name);
   return staging_->path() + "/" + name;
 }

@@ -77,7 +77,7 @@ void require_extension(const std::string& option, const std::string& path,
 
 void require_writable(const std::string& path, uint64_t bytes) {
   const AtomicFile nothing(path);
-  if (bytes != 0) require_room(path, bytes, "it");
+  if (bytes != 0) require_room(path, bytes);
 }
 
 }  // namespace voyager::tools

@@ -73,7 +73,7 @@ class Baker {
   // Says what failed for want of space, and how much it takes.
   template <class Action>
   void in_space(uint64_t bytes, const std::string& what, const Action& action) {
-    folder_.require_space(bytes, what);
+    require_room({folder_.room(bytes, what)});
     try {
       action();
     } catch (const Error& error) {
@@ -94,6 +94,7 @@ class Baker {
     const uint32_t level = choose_level(spool);
     if (level == 0) return false;
     const std::array<double, 3> origin = origin_of(spool, folder_);
+    folder_.expect_cells(uint32_t{1} << (2 * level));
     const SplitTree tree = find_medians(spool, level, kd_rule(bake_.rule), folder_, origin,
                                         bake_.memory / 2, workers_, progress_);
     in_space(spool.gaussians * (word_bytes(spool.sh_degree) + 4), "sorting the Gaussians", [&] {
@@ -112,9 +113,11 @@ class Baker {
       sh_degree = std::max(sh_degree, reader->sh_degree());
     }
     SpoolInfo spool;
+    const uint64_t bytes = count * word_bytes(sh_degree);
     if (bake_.step == BakeStep::all)
-      require_room(bake_.output, bytes_of_scene(count, sh_degree, bake_.quality), "it");
-    in_space(count * word_bytes(sh_degree), "a copy of the inputs", [&] {
+      require_room({{bake_.output, bytes_of_scene(count, sh_degree, bake_.quality), "the scene"},
+                    folder_.room(bytes, "a copy of the inputs")});
+    in_space(bytes, "a copy of the inputs", [&] {
       spool = spool_inputs([&] { return std::move(readers); }, folder_, bake_.memory / 2, workers_,
                            progress_);
     });
@@ -207,7 +210,7 @@ class Baker {
     uint64_t bytes = plan.chunk_count() * sizeof(ChunkEntry);
     for (uint32_t cell = 0; cell < plan.cells(); ++cell)
       bytes += std::filesystem::file_size(folder_.file(cell_chunks_name(cell)));
-    require_room(bake_.output, bytes, "it");
+    require_room(bake_.output, bytes);
     try {
       join_cells(split_, plan, top, bake_.quality, folder_, bake_.output, workers_, progress_);
     } catch (const Error& error) {

@@ -1,6 +1,7 @@
 #include "runtime/bake/work_files.h"
 
 #include <algorithm>
+#include <charconv>
 #include <initializer_list>
 
 namespace voyager {
@@ -35,12 +36,15 @@ std::string cell_chunks_name(uint32_t cell) {
   return cell_name(cell, kChunks);
 }
 
-bool is_work_file(std::string_view name) {
+bool is_work_file(std::string_view name, uint32_t cells) {
   if (is_one_of(name, {kPositionRows, kOtherRows, kSpoolDone, kSplitDone, kMerged})) return true;
   if (!name.starts_with(kCell)) return false;
-  name.remove_prefix(kCell.size());
-  const size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
-  return digits > 0 && is_one_of(name.substr(digits), {kRows, kTree, kLeaves, kChunks});
+  uint32_t cell = 0;
+  const std::string_view number = name.substr(kCell.size());
+  const auto end = std::from_chars(number.data(), number.data() + number.size(), cell).ptr;
+  const std::string_view ending = number.substr(static_cast<size_t>(end - number.data()));
+  return cell < cells && is_one_of(ending, {kRows, kTree, kLeaves, kChunks}) &&
+         name == cell_name(cell, ending);
 }
 
 }  // namespace voyager

@@ -21,6 +21,7 @@ std::string cell_tree_name(uint32_t cell);
 std::string cell_leaves_name(uint32_t cell);
 std::string cell_chunks_name(uint32_t cell);
 
-bool is_work_file(std::string_view name);
+// Of a bake that has cut the scene into `cells`; 0 before that.
+bool is_work_file(std::string_view name, uint32_t cells);
 
 }  // namespace voyager

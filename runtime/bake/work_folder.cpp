@@ -2,28 +2,41 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <filesystem>
 
 #include "runtime/bake/work_files.h"
 #include "runtime/base/file.h"
-#include "runtime/base/output_path.h"
 
 namespace voyager {
 namespace {
 
-constexpr FolderKind kBake = {
-    "a bake", "give another --work, or remove the folder",
-    [](std::string_view name, std::string_view) { return is_work_file(name); }};
+constexpr std::string_view kCells = "cells ";  // the note of how many there are
+
+bool is_own(std::string_view name, const std::vector<std::string>& notes) {
+  uint32_t most = 0;
+  for (const std::string& note : notes) {
+    uint32_t cells = 0;
+    if (note.starts_with(kCells))
+      std::from_chars(note.data() + kCells.size(), note.data() + note.size(), cells);
+    most = std::max(most, cells);
+  }
+  return is_work_file(name, most);
+}
+
+constexpr FolderKind kBake = {"a bake", "give another --work, or remove the folder", is_own};
 
 }  // namespace
 
 WorkFolder::WorkFolder(std::string path, const std::string& request, bool alone, bool temporary)
-    : folder_(std::move(path), kBake, request, alone), temporary_(temporary && folder_.made()) {}
+    : folder_(std::move(path), kBake, request, alone),
+      alone_(alone),
+      temporary_(temporary && folder_.marked()) {}
 
 WorkFolder::~WorkFolder() {
-  if (!temporary_) return;
   try {
-    remove();
+    if (temporary_ || (alone_ && folder_.own_files().empty())) remove();
   } catch (const std::exception&) {
     // A folder that cannot be read stays.
   }
@@ -39,25 +52,25 @@ void WorkFolder::drop(const std::string& name) const {
 }
 
 void WorkFolder::drop_all() const {
-  std::vector<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(path(), ignored))
-    names.push_back(entry.path().filename().string());
+  const std::vector<std::string> files = folder_.own_files();
   for (const char* done : {kSplitDone, kSpoolDone}) drop(done);
-  for (const std::string& name : names)
-    if (name != kMerged && is_work_file(without_partial(name)) && is_plain_file(file(name)))
-      drop(name);
+  for (const std::string& name : files)
+    if (name != kMerged) drop(name);
   drop(kMerged);
 }
 
 std::vector<std::string> WorkFolder::remove() {
-  temporary_ = false;
+  temporary_ = alone_ = false;
   drop_all();
   return folder_.remove();
 }
 
-void WorkFolder::require_space(uint64_t bytes, const std::string& what) const {
-  require_room(file(kSpoolDone), bytes, what);
+void WorkFolder::expect_cells(uint32_t cells) {
+  folder_.add_note(std::string(kCells) + std::to_string(cells));
+}
+
+Room WorkFolder::room(uint64_t bytes, const std::string& what) const {
+  return {path() + "/", bytes, what};
 }
 
 }  // namespace voyager

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/base/output_path.h"
 #include "runtime/base/owned_folder.h"
 
 namespace voyager {
@@ -15,7 +16,8 @@ class WorkFolder {
   // folder of another request, or with files of anybody else, is refused
   // (Error(refused_input)). `alone` keeps others out while the object lives; else others
   // that are not alone may be in, too (Error(io) where that cannot be had). `temporary`:
-  // goes with the object, where the object has made it.
+  // goes with the object, where the object has marked it. So does one in which nothing was
+  // written.
   WorkFolder(std::string path, const std::string& request, bool alone, bool temporary);
   ~WorkFolder();
   WorkFolder(const WorkFolder&) = delete;
@@ -28,15 +30,18 @@ class WorkFolder {
   // All files of the bake, in an order in which a bake that goes on after a kill trusts none of
   // them.
   void drop_all() const;
-  // The folder, too. Returns what is in it that no bake has written: that stays.
+  // The folder, too, unless it was there before. Returns what is in it that no bake has written:
+  // that stays.
   std::vector<std::string> remove();
 
-  // Error(io) where the device has not so many bytes free; `what` needs them.
-  void require_space(uint64_t bytes, const std::string& what) const;
+  // Before files of that many cells are written: no others are removed.
+  void expect_cells(uint32_t cells);
+  // For require_room().
+  Room room(uint64_t bytes, const std::string& what) const;
 
  private:
   OwnedFolder folder_;
-  bool temporary_;
+  bool alone_, temporary_;
 };
 
 }  // namespace voyager

@@ -4,6 +4,7 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 
@@ -49,14 +50,39 @@ void require_replaceable(const std::string& path) {
                                    std::strerror(errno) + "), expected another");
 }
 
-void require_room(const std::string& path, uint64_t bytes, const std::string& what) {
-  struct statvfs info = {};
-  if (::statvfs(folder_of(written_path(path)).c_str(), &info) != 0 || info.f_blocks == 0) return;
-  const uint64_t free = uint64_t{info.f_bavail} * info.f_frsize;
-  if (free < bytes)
-    throw Error(ErrorCode::io, path + ": found " + std::to_string(free / 1000000) +
-                                   " MB free on the device, expected " +
-                                   std::to_string(bytes / 1000000 + 1) + " MB for " + what);
+void require_room(const std::vector<Room>& files) {
+  struct Device {
+    dev_t id;
+    const Room* first;
+    uint64_t free, bytes;
+    std::string what;
+  };
+  std::vector<Device> devices;
+  for (const Room& file : files) {
+    const std::string folder = folder_of(written_path(file.path));
+    struct stat at = {};
+    struct statvfs info = {};
+    if (::stat(folder.c_str(), &at) != 0 || ::statvfs(folder.c_str(), &info) != 0 ||
+        info.f_blocks == 0)
+      continue;
+    auto device = std::find_if(devices.begin(), devices.end(),
+                               [&](const Device& known) { return known.id == at.st_dev; });
+    if (device == devices.end())
+      device = devices.insert(device,
+                              {at.st_dev, &file, uint64_t{info.f_bavail} * info.f_frsize, 0, ""});
+    device->bytes += file.bytes;
+    device->what += (device->what.empty() ? "" : " and ") + file.what;
+  }
+  for (const Device& device : devices)
+    if (device.free < device.bytes)
+      throw Error(ErrorCode::io,
+                  device.first->path + ": found " + std::to_string(device.free / 1000000) +
+                      " MB free on the device, expected " +
+                      std::to_string(device.bytes / 1000000 + 1) + " MB for " + device.what);
+}
+
+void require_room(const std::string& path, uint64_t bytes) {
+  require_room({{path, bytes, "it"}});
 }
 
 }  // namespace voyager

@@ -5,10 +5,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 
+#include "runtime/base/checksum.h"
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
 #include "runtime/base/system_error.h"
@@ -28,8 +32,43 @@ std::string first_line(const FolderKind& kind) {
   return "voyager: the folder of " + std::string(kind.of) + "\n";
 }
 
-void require_same(const std::string& path, const FolderKind& kind, const std::string& kept,
-                  const std::string& asked) {
+constexpr std::string_view kFoldersMade = "folders made ", kChecksum = ", checksum ";
+
+std::string note_line(const std::string& note) {
+  return note + std::string(kChecksum) + std::to_string(checksum(std::as_bytes(std::span(note)))) +
+         "\n";
+}
+
+// Of a mark: the kind, the key and the empty line.
+std::string key_part(const std::string& mark) {
+  const size_t empty_line = mark.find("\n\n");
+  return empty_line == std::string::npos ? mark : mark.substr(0, empty_line + 2);
+}
+
+// Nothing where one of them was altered.
+std::optional<std::vector<std::string>> notes_of(const std::string& mark) {
+  std::vector<std::string> notes;
+  const std::string lines = mark.substr(key_part(mark).size());
+  for (size_t begin = 0, end = 0; begin < lines.size(); begin = end) {
+    end = std::min(lines.find('\n', begin), lines.size() - 1) + 1;
+    const std::string line = lines.substr(begin, end - begin);
+    const std::string note = line.substr(0, line.rfind(kChecksum));
+    if (line != note_line(note)) return std::nullopt;
+    notes.push_back(note);
+  }
+  return notes;
+}
+
+unsigned folders_made(const std::vector<std::string>& notes) {
+  unsigned made = 0;
+  for (const std::string& note : notes)
+    if (note.starts_with(kFoldersMade))
+      std::from_chars(note.data() + kFoldersMade.size(), note.data() + note.size(), made);
+  return made;
+}
+
+[[noreturn]] void refuse_other(const std::string& path, const FolderKind& kind,
+                               const std::string& kept, const std::string& asked) {
   std::istringstream before(kept), now(asked);
   for (std::string old_line, new_line; before || now;) {
     if (!std::getline(before, old_line)) old_line.clear();
@@ -40,6 +79,7 @@ void require_same(const std::string& path, const FolderKind& kind, const std::st
     };
     refuse(path, std::string(kind.of) + " of " + quoted(old_line), quoted(new_line), kind);
   }
+  refuse(path, std::string("an altered ") + kFolderMark, "it as it was written", kind);
 }
 
 int lock_file(int fd, bool alone) {
@@ -56,28 +96,65 @@ bool is_plain_file(const std::string& path) {
 OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind, const std::string& key,
                          bool alone, OtherKey other)
     : OwnedFolder(std::move(path), kind) {
-  const std::string text = first_line(kind) + key;
+  try {
+    take(first_line(kind) + key + "\n", alone, other);
+  } catch (...) {
+    remove_made(made_);
+    throw;
+  }
+}
+
+OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind)
+    : path_(std::move(path)), kind_(kind) {
+  while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
+}
+
+void OwnedFolder::take(const std::string& text, bool alone, OtherKey other) {
   for (;;) {
-    std::error_code problem;
-    fs::create_directories(path_, problem);
-    if (problem) throw Error(ErrorCode::io, path_ + ": create: " + problem.message());
+    make();
     if (!open_mark()) {
       if (is_empty() && mark(text, alone)) return;
       continue;
     }
-    const std::string found = read_key();
-    if (!found.starts_with(first_line(kind)))
+    const std::string found = read_mark();
+    if (!found.starts_with(first_line(kind_)))
       refuse(path_, std::string("another file named ") + kFolderMark,
-             std::string("that of ") + kind.of, kind);
-    if (found != text && other == OtherKey::refused) require_same(path_, kind, found, text);
+             std::string("that of ") + kind_.of, kind_);
+    const bool same = found.starts_with(text) && notes_of(found);
+    if (!same && other == OtherKey::refused) refuse_other(path_, kind_, key_part(found), text);
     const Lock locked = lock(alone);
     if (locked == Lock::refused)
       throw Error(ErrorCode::io, path_ + ": found another process at work in the folder of " +
-                                     kind.of + ", expected none");
+                                     kind_.of + ", expected none");
     if (locked == Lock::stale) continue;
-    if (found == text) return;
+    if (same) return;
     remove();
   }
+}
+
+// Another process that ends may remove a folder above this one before this one is made.
+void OwnedFolder::make() {
+  std::error_code problem;
+  for (int tries = 0; tries < 20; ++tries) {
+    std::vector<fs::path> absent, made;
+    for (fs::path at = path_; !at.empty() && !fs::exists(at, problem); at = at.parent_path())
+      absent.push_back(at);
+    for (; !absent.empty(); absent.pop_back())
+      if (fs::create_directory(absent.back(), problem)) made.push_back(absent.back());
+    fs::create_directories(path_, problem);
+    if (!problem) {
+      if (!made.empty()) made_ = static_cast<unsigned>(made.size());
+      return;
+    }
+    for (; !made.empty(); made.pop_back()) ::rmdir(made.back().c_str());
+    if (problem != std::errc::no_such_file_or_directory) break;
+  }
+  throw Error(ErrorCode::io, path_ + ": create: " + problem.message());
+}
+
+void OwnedFolder::remove_made(unsigned folders) const {
+  fs::path at = path_;
+  for (; folders != 0 && ::rmdir(at.c_str()) == 0; --folders) at = at.parent_path();
 }
 
 bool OwnedFolder::open_mark() {
@@ -89,11 +166,12 @@ bool OwnedFolder::open_mark() {
 // The file has its name only when it is whole and locked.
 bool OwnedFolder::mark(const std::string& text, bool alone) try {
   AtomicFile file(mark_path());
-  file.write(std::as_bytes(std::span(text)));
+  const std::string whole = text + note_line(std::string(kFoldersMade) + std::to_string(made_));
+  file.write(std::as_bytes(std::span(whole)));
   lock_file(file.descriptor().get(), alone);
-  made_ = file.commit_new();
-  if (made_) mark_ = std::move(file.descriptor());
-  return made_;
+  marked_ = file.commit_new();
+  if (marked_) mark_ = std::move(file.descriptor());
+  return marked_;
 } catch (const Error&) {
   if (!fs::exists(path_)) return false;  // removed by the process that was in it
   throw;
@@ -110,7 +188,7 @@ OwnedFolder::Lock OwnedFolder::lock(bool alone) {
   return Lock::held;
 }
 
-std::string OwnedFolder::read_key() const {
+std::string OwnedFolder::read_mark() const {
   std::string text;
   char block[4096];
   for (ssize_t got = 0;
@@ -138,29 +216,45 @@ bool OwnedFolder::is_empty() const {
   return !problem;
 }
 
-void OwnedFolder::add_to_key(std::string_view text) {
+void OwnedFolder::add_note(const std::string& note) {
+  const auto notes = notes_of(read_mark());
+  if (notes && std::find(notes->begin(), notes->end(), note) != notes->end()) return;
+  const std::string line = note_line(note);
   struct stat info = {};
-  if (::fstat(mark_.get(), &info) != 0 ||
-      ::pwrite(mark_.get(), text.data(), text.size(), info.st_size) !=
-          static_cast<ssize_t>(text.size()))
-    throw_system_error(mark_path(), "write");
+  if (::fstat(mark_.get(), &info) != 0) throw_system_error(mark_path(), "write");
+  const ssize_t put = ::pwrite(mark_.get(), line.data(), line.size(), info.st_size);
+  if (put == static_cast<ssize_t>(line.size())) return;
+  const int reason = put < 0 ? errno : ENOSPC;
+  const bool whole = ::ftruncate(mark_.get(), info.st_size) == 0;
+  errno = reason;
+  throw_system_error(mark_path(), whole ? "write" : "write a line");
+}
+
+std::vector<std::string> OwnedFolder::names() const {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(path_, ignored))
+    if (entry.path().filename() != kFolderMark) names.push_back(entry.path().filename().string());
+  return names;
+}
+
+std::vector<std::string> OwnedFolder::own_files() const {
+  const auto notes = notes_of(read_mark()).value_or(std::vector<std::string>{});
+  std::vector<std::string> own = names();
+  std::erase_if(own, [&](const std::string& name) {
+    const std::string_view whole = without_partial(name);
+    const bool known = whole == kFolderMark || kind_.is_own(whole, notes);
+    return !known || !is_plain_file(path_ + "/" + name);
+  });
+  return own;
 }
 
 std::vector<std::string> OwnedFolder::remove() {
-  const std::string key = read_key();
-  std::vector<std::string> names, left;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(path_, ignored))
-    names.push_back(entry.path().filename().string());
-  for (const std::string& name : names) {
-    const std::string_view own = without_partial(name);
-    if (name == kFolderMark) continue;
-    const std::string file = path_ + "/" + name;
-    const bool known = own == kFolderMark || kind_.is_own(own, key);
-    if (!known || !is_plain_file(file) || ::unlink(file.c_str()) != 0) left.push_back(name);
-  }
+  for (const std::string& name : own_files()) ::unlink((path_ + "/" + name).c_str());
+  const std::vector<std::string> left = names();
+  const unsigned made = folders_made(notes_of(read_mark()).value_or(std::vector<std::string>{}));
   ::unlink(mark_path().c_str());  // last: what a kill leaves is still marked
-  ::rmdir(path_.c_str());
+  remove_made(made);
   mark_ = {};
   return left;
 }
@@ -171,8 +265,10 @@ void OwnedFolder::remove_abandoned(const std::string& path, const FolderKind& ki
     ::rmdir(path.c_str());  // killed before it was marked, or after: then it is empty
     return;
   }
-  if (!folder.read_key().starts_with(first_line(kind))) return;
-  if (lock_file(folder.mark_.get(), true) == 0 && folder.lock(true) == Lock::held) folder.remove();
+  if (!folder.read_mark().starts_with(first_line(kind))) return;
+  if (lock_file(folder.mark_.get(), true) != 0 || folder.lock(true) != Lock::held) return;
+  folder.remove();
+  ::rmdir(path.c_str());
 } catch (const Error&) {
   // Left as it is.
 }

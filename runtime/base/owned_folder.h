@@ -11,14 +11,15 @@
 
 namespace voyager {
 
-// The file that says whose a folder is: a line with the kind, then the key.
+// The file that says whose a folder is: a line with the kind, the key, an empty line, then notes,
+// each with its checksum.
 inline constexpr const char* kFolderMark = "made-by-voyager";
 
 struct FolderKind {
   const char* of;      // "a bake"
   const char* advice;  // what to do where the folder is another's: "give another --work, or ..."
-  // Whether the program writes a file of that name there.
-  bool (*is_own)(std::string_view name, std::string_view key);
+  // Whether the program writes a file of that name there, where it has left these notes.
+  bool (*is_own)(std::string_view name, const std::vector<std::string>& notes);
 };
 
 // A file itself, and no link to one: nothing else is ever removed.
@@ -28,34 +29,40 @@ class OwnedFolder {
  public:
   enum class OtherKey { refused, emptied };
 
-  // Made if absent, and marked if it was absent or empty. `alone` keeps other processes out while
-  // the object lives; else others that are not alone may be in, too. What is there under another
-  // key is refused, or removed to start anew. Throws Error(refused_input), with nothing touched,
-  // for a folder with files and no mark, or of another kind or key, naming the first line that
-  // differs; Error(io) where another process is in the folder.
+  // Made if absent, with the folders above it, and marked if it was absent or empty. `alone` keeps
+  // other processes out while the object lives; else others that are not alone may be in, too. What
+  // is there under another key is refused, or removed to start anew. Throws Error(refused_input),
+  // with nothing touched, for a folder with files and no mark, or of another kind or key, naming
+  // the first line that differs; Error(io) where another process is in the folder.
   OwnedFolder(std::string path, const FolderKind& kind, const std::string& key, bool alone,
               OtherKey other = OtherKey::refused);
 
   const std::string& path() const { return path_; }
-  bool made() const { return made_; }  // by this object: it was absent or empty
+  bool marked() const { return marked_; }  // by this object: it was absent or empty
 
-  // To the key, for is_own() of whoever removes the folder after a kill.
-  void add_to_key(std::string_view text);
-  // Removes own files and the folder. Returns what is left in it, by name. The object then holds
-  // nothing.
+  // A line for is_own(), also of whoever removes the folder after a kill.
+  void add_note(const std::string& note);
+  // The names of the files that the program has written, but for the mark.
+  std::vector<std::string> own_files() const;
+  // Removes own files, and the folders that were made for them where they are empty. Folders that
+  // were there before stay. Returns what is left, by name. The object then holds nothing.
   std::vector<std::string> remove();
 
-  // The same with a folder whose process was killed; one that is not marked as of this kind, or
-  // that a process works in, is left as it is.
+  // The same with a folder whose process was killed, which goes whoever made it if it is empty. One
+  // that is not marked as of this kind, or that a process works in, is left as it is.
   static void remove_abandoned(const std::string& path, const FolderKind& kind);
 
  private:
-  OwnedFolder(std::string path, const FolderKind& kind) : path_(std::move(path)), kind_(kind) {}
+  OwnedFolder(std::string path, const FolderKind& kind);
+  void take(const std::string& text, bool alone, OtherKey other);
+  void make();
+  void remove_made(unsigned folders) const;
   bool mark(const std::string& text, bool alone);  // false: another process was faster
   bool open_mark();                                // false: there is none
   enum class Lock { held, refused, stale };
   Lock lock(bool alone);
-  std::string read_key() const;
+  std::string read_mark() const;
+  std::vector<std::string> names() const;
   // False where another process has made the folder its own, or removed it, since it was looked at.
   // Throws Error(refused_input) where there are files and no mark.
   bool is_empty() const;
@@ -64,7 +71,8 @@ class OwnedFolder {
   std::string path_;
   const FolderKind& kind_;
   FileDescriptor mark_;
-  bool made_ = false;
+  unsigned made_ = 0;  // folders, of which path_ is the deepest
+  bool marked_ = false;
 };
 
 }  // namespace voyager

@@ -177,7 +177,7 @@ void export_hier(const SceneFile& scene, const std::string& path, const Progress
                                             " nodes, expected at most 2147483647 in a .hier file");
   const Layout layout(count);
   AtomicFile file(path);
-  require_room(path, layout.boxes + sizeof(HierBox) * uint64_t{count}, "it");
+  require_room(path, layout.boxes + sizeof(HierBox) * uint64_t{count});
   file.write_at(0, std::as_bytes(std::span(&count, 1)));
   file.write_at(layout.node_count, std::as_bytes(std::span(&count, 1)));
   Links links;

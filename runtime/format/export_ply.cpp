@@ -68,7 +68,7 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
 void export_ply(const SceneFile& scene, const std::string& path, const Progress& progress) {
   AtomicFile file(path);
   const SceneFileInfo& info = scene.info();
-  require_room(path, ply_bytes(info.leaf_count, info.sh_degree + info.left_out_bands), "it");
+  require_room(path, ply_bytes(info.leaf_count, info.sh_degree + info.left_out_bands));
   GaussianCloud cloud = read_leaves(scene, progress);
   put_back_zero_bands(cloud);
   const bool moved = cloud.origin != std::array<double, 3>{0, 0, 0};

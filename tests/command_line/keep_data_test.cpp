@@ -113,12 +113,38 @@ TEST_F(KeepData, WhatIsPutIntoAWorkFolderStaysAndIsNamed) {
   const std::string bake =
       "voyager bake " + small() + " -o " + file("s.voy") + " --work " + file("w");
   ASSERT_EQ(run(bake + " --step split").exit_code, 0);
-  write_bytes(file("w/thesis.txt"), "x");
+  // The last two look like a bake's, but this one has no cells.
+  const std::string names[] = {"thesis.txt", "cell-99999.rows", "cell-00.rows"};
+  for (const std::string& name : names) write_bytes(file("w/" + name), "x");
   const Outcome baked = run(bake);
   ASSERT_EQ(baked.exit_code, 0) << baked.output;
-  EXPECT_NE(baked.output.find("thesis.txt"), std::string::npos) << baked.output;
-  EXPECT_EQ(file_bytes(file("w/thesis.txt")), "x");
-  EXPECT_EQ(std::distance(fs::directory_iterator(file("w")), {}), 1);
+  for (const std::string& name : names) {
+    EXPECT_NE(baked.output.find(name), std::string::npos) << baked.output;
+    EXPECT_EQ(file_bytes(file("w/" + name)), "x");
+  }
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("w")), {}), 3);
+}
+
+TEST_F(KeepData, AWorkFolderThatWasThereStaysEmptied) {
+  fs::create_directory(file("w"));
+  const std::string bake = "voyager bake " + small() + " -o " + file("s.voy") + " --work ";
+  ASSERT_EQ(run(bake + file("w") + " --step split").exit_code, 0);
+  ASSERT_EQ(run(bake + file("w")).exit_code, 0);
+  EXPECT_TRUE(fs::is_empty(file("w")));
+  ASSERT_EQ(run(bake + file("new/w")).exit_code, 0);
+  EXPECT_FALSE(fs::exists(file("new")));
+}
+
+TEST_F(KeepData, ARefusedBakeLeavesNoWorkFolder) {
+  write_bytes(file("junk.ply"), "ply\nno header\n");
+  for (const std::string& input : {file("junk.ply"), "- <" + file("junk.ply")})
+    for (const std::string step : {"all", "split", "cells", "merge"})
+      expect_refused("voyager bake -o " + file("s.voy") + " --work " + file("new/w") + " --step " +
+                         step + " " + input,
+                     step == "all" || step == "split" ? 2 : 1, {});
+  fs::create_directory(file("w"));
+  expect_refused(
+      "voyager bake -o " + file("s.voy") + " --work " + file("w") + " " + file("junk.ply"), 2, {});
 }
 
 TEST_F(KeepData, ASecondBakeToTheSameOutputDoesNotTouchTheFirst) {

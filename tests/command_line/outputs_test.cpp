@@ -88,21 +88,30 @@ TEST_F(Outputs, RoomIsAskedForBeforeTheWork) {
   struct statvfs info = {};
   const bool there = ::access("/dev/shm", W_OK) == 0 && ::statvfs("/dev/shm", &info) == 0;
   const uint64_t free = uint64_t{info.f_bavail} * info.f_frsize;
-  if (!there || free > 150'000'000'000) GTEST_SKIP() << "no /dev/shm, or one of more than 150 GB";
+  if (!there || free > 100'000'000'000) GTEST_SKIP() << "no /dev/shm, or one of more than 100 GB";
   fs::create_symlink("/dev/shm/voyager-test-room.ply", file("shm.ply"));
   fs::create_symlink("/dev/shm/voyager-test-room.voy", file("shm.voy"));
   if (free < 24'000'000'000)
     expect_refused("voyager synth city --gaussians 100000000 -o " + file("shm.ply"), 4,
                    "MB free on the device, expected 24801 MB");
   // A header tells how much is to come.
-  const std::string ply = file_bytes(file("c.ply"));
-  std::string claim = ply.substr(0, ply.find("end_header\n") + 11);
-  claim.replace(claim.find("vertex 10000"), 12, "vertex 4000000000");
-  write_bytes(file("claim.ply"), claim);
+  const auto write_claim = [](uint64_t gaussians) {
+    const std::string ply = file_bytes(file("c.ply"));
+    std::string claim = ply.substr(0, ply.find("end_header\n") + 11);
+    claim.replace(claim.find("vertex 10000"), 12, "vertex " + std::to_string(gaussians));
+    write_bytes(file("claim.ply"), claim);
+  };
+  write_claim(4'000'000'000);
   for (const std::string& work : {std::string(), " --work " + file("work")})
     expect_refused("voyager bake - -o " + file("shm.voy") + " --memory 1000000000" + work + " <" +
                        file("claim.ply"),
                    4, "MB free on the device");
+  // The copy of the inputs takes 0.7 of the device, the scene 0.5: each has room, both have not.
+  write_claim(free / 80);
+  expect_refused("voyager bake - -o " + file("shm.voy") +
+                     " --work /dev/shm/voyager-test-room.work <" + file("claim.ply"),
+                 4, "MB for the scene and a copy of the inputs");
+  EXPECT_FALSE(fs::exists("/dev/shm/voyager-test-room.work"));
   EXPECT_FALSE(fs::exists("/dev/shm/voyager-test-room.ply"));
   EXPECT_FALSE(fs::exists("/dev/shm/voyager-test-room.voy"));
 }

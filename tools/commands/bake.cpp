@@ -287,7 +287,7 @@ void bake(const BakeArguments& arguments) {
   Readers readers = open_all(arguments.inputs);
   const Announced inputs = announced_by(readers);
   require_room(arguments.output,
-               bytes_of_scene(inputs.gaussians, inputs.sh_degree, arguments.quality), "it");
+               bytes_of_scene(inputs.gaussians, inputs.sh_degree, arguments.quality));
   if (bytes_in_memory(inputs, arguments.refine != 0) <= arguments.memory * 1'000'000)
     return print_summary(arguments, bake_in_memory(arguments, readers, progress), watch);
   print_summary(arguments,

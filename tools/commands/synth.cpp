@@ -43,7 +43,7 @@ void write_city(const SynthArguments& arguments) {
   require_distinct({arguments.output, cameras_path}, {});
   require_writable(cameras_path);
   AtomicFile file(arguments.output);
-  if (ply) require_room(arguments.output, ply_bytes(city.gaussians, city.sh_degree), "it");
+  if (ply) require_room(arguments.output, ply_bytes(city.gaussians, city.sh_degree));
   const auto sink = sink_to(file);
   if (ply)
     generate(city, *write_ply(*sink, city.gaussians, city.sh_degree, false));

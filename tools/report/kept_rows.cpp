@@ -19,7 +19,7 @@ std::string text_of(const std::filesystem::path& path) {
 
 constexpr FolderKind kReport = {
     "a report", "give another -o, or remove the folder",
-    [](std::string_view name, std::string_view) { return is_kept_file(name); }};
+    [](std::string_view name, const std::vector<std::string>&) { return is_kept_file(name); }};
 
 void write(const std::filesystem::path& path, const std::string& text) {
   AtomicFile file(path.string());

@@ -109,13 +109,13 @@ TEST(AtomicFile, RoomIsAskedOfTheDeviceThatALinkLeadsTo) {
   struct statvfs info = {};
   ASSERT_EQ(::statvfs(folder.file("").c_str(), &info), 0);
   const uint64_t free = uint64_t{info.f_bavail} * info.f_frsize;
-  EXPECT_NO_THROW(require_room(folder.file("a"), free / 2, "it"));
-  EXPECT_THROW(require_room(folder.file("a"), 4 * free + 1'000'000'000, "it"), Error);
-  EXPECT_NO_THROW(require_room(folder.file("no/such/folder"), ~uint64_t{0}, "it"));
+  EXPECT_NO_THROW(require_room(folder.file("a"), free / 2));
+  EXPECT_THROW(require_room(folder.file("a"), 4 * free + 1'000'000'000), Error);
+  EXPECT_NO_THROW(require_room(folder.file("no/such/folder"), ~uint64_t{0}));
   if (::statvfs("/dev/shm", &info) != 0 || ::access("/dev/shm", W_OK) != 0) return;
   fs::create_symlink("/dev/shm/voyager-room", folder.file("link"));
   const uint64_t there = uint64_t{info.f_bavail} * info.f_frsize;
-  EXPECT_THROW(require_room(folder.file("link"), 4 * there + 1'000'000'000, "it"), Error);
+  EXPECT_THROW(require_room(folder.file("link"), 4 * there + 1'000'000'000), Error);
 }
 
 TEST(AtomicFile, KnowsTheNamesThatItsFilesHaveOnTheWay) {
