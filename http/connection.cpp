@@ -223,9 +223,7 @@ void Connection::fail(CURLcode code, const Transfer& transfer) const {
     throw Error(ErrorCode::io, name_ + ": reading was cancelled");
   std::string found = error_[0] != '\0' ? error_ : curl_easy_strerror(code);
   if (transfer.got != 0) found += " after " + std::to_string(transfer.got) + " bytes";
-  if (code == CURLE_OPERATION_TIMEDOUT)
-    found +=
-        " (" + std::string(kTimeoutVariable) + " sets how many seconds may pass without a byte)";
+  if (code == CURLE_OPERATION_TIMEDOUT) found += " (" + time_text(options_) + ")";
   long redirects = 0;
   curl_easy_getinfo(easy_.get(), CURLINFO_REDIRECT_COUNT, &redirects);
   // A URL that a server names is the server's mistake.

@@ -1,6 +1,7 @@
 #include "http/options.h"
 
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 
@@ -21,6 +22,17 @@ Options options_of_environment() {
   options.stall_time = std::chrono::seconds(seconds);
   options.deadline = 3 * options.stall_time;
   return options;
+}
+
+std::string time_text(const Options& options) {
+  const auto seconds = [](std::chrono::milliseconds time) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g s", static_cast<double>(time.count()) / 1000);
+    return std::string(text);
+  };
+  return "a try ends after " + seconds(options.stall_time) + " without a byte, a read after " +
+         seconds(options.deadline) + ", which are three tries; " + kTimeoutVariable +
+         " sets the seconds of a try";
 }
 
 }  // namespace voyager::http

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace voyager::http {
 
@@ -27,5 +28,7 @@ struct Options {
 inline constexpr const char* kTimeoutVariable = "VOYAGER_HTTP_TIMEOUT";
 // Throws Error(invalid_argument) where it is no whole number from 1 to 3600.
 Options options_of_environment();
+// How long a silent server is waited for, and how to change it: for messages.
+std::string time_text(const Options& options);
 
 }  // namespace voyager::http
