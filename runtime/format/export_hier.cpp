@@ -6,6 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/output_path.h"
+#include "runtime/format/tree_check.h"
 #include "runtime/math/axes.h"
 
 namespace voyager {
@@ -123,22 +124,6 @@ struct Links {
   std::vector<int32_t> depth;  // 0 for a leaf
 };
 
-// A node that chunks after its own repeat has the same children in each.
-void check_repeats(const Chunk& chunk, uint32_t index, const Links& links,
-                   const std::string& scene) {
-  size_t record = 0;
-  for (const Subtree& subtree : chunk.subtrees)
-    for (uint32_t slot = 0; slot < subtree.node_count(); ++slot, ++record) {
-      const uint32_t node = subtree.node(slot);
-      if (chunk.records[record].child_count == links.child_count[node]) continue;
-      throw Error(ErrorCode::refused_input,
-                  scene + ": chunk " + std::to_string(index) + ": found node " +
-                      std::to_string(node) + " repeated with " +
-                      std::to_string(chunk.records[record].child_count) + " children, expected " +
-                      std::to_string(links.child_count[node]));
-    }
-}
-
 // Children come after their parent, so that one pass backwards sees them first.
 void set_depths(Links& links) {
   links.depth.resize(links.child_count.size());
@@ -183,15 +168,16 @@ void export_hier(const SceneFile& scene, const std::string& path, const Progress
   Links links;
   links.first_child.resize(count);
   links.child_count.resize(count);
+  TreeCheck check(scene);
   for (uint32_t index = 0; index < scene.chunks().size(); ++index) {
     report(progress, "exporting", index, scene.chunks().size());
     const Chunk chunk = scene.read_chunk(index);
+    check.add(chunk, index);
     write_chunk(file, layout, scene.nodes_of(index), gather(chunk));
     for (size_t i = 0; i < chunk.node.size(); ++i) {
       links.first_child[chunk.node[i]] = chunk.first_child[i];
       links.child_count[chunk.node[i]] = chunk.record_of(i).child_count;
     }
-    check_repeats(chunk, index, links, scene.name());
   }
   set_depths(links);
   write_nodes(file, layout, links);

@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/output_path.h"
+#include "runtime/format/tree_check.h"
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/sh_bands.h"
 
@@ -44,9 +45,11 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
   GaussianCloud cloud = room_for_leaves(scene.info());
   std::vector<bool> there(cloud.size());
   size_t leaves = 0;
+  TreeCheck check(scene);
   for (uint32_t index = 0; index < scene.chunks().size(); ++index) {
     report(progress, "exporting", index, scene.chunks().size());
     const Chunk chunk = scene.read_chunk(index);
+    check.add(chunk, index);
     for (size_t node = 0; node < chunk.node.size(); ++node) {
       if (!chunk.is_leaf(node)) continue;
       const uint32_t i = chunk.source_index[node];

@@ -1,5 +1,7 @@
 #include "runtime/format/export_ply.h"
 
+#include "runtime/format/export_hier.h"
+
 #include <cstring>
 
 #include "runtime/scene/import/importer.h"
@@ -76,6 +78,42 @@ TEST(ExportPly, ADamagedChunkLeavesNoFileBehind) {
   EXPECT_EQ(test::error_code([&] { export_ply(file, folder.file("out.ply")); }),
             ErrorCode::damaged_chunk);
   EXPECT_FALSE(std::filesystem::exists(folder.file("out.ply")));
+}
+
+// Chunks that are whole, of a tree that is not.
+TEST(ExportPly, ATreeThatIsNotSoundIsRefusedByChunk) {
+  for (const auto shape : {test::TreeShape::star, test::TreeShape::star_of_stars,
+                           test::TreeShape::recursive, test::TreeShape::eight_way}) {
+    const test::TempFolder folder;
+    const std::string ply = folder.file("out.ply"), hier = folder.file("out.hier");
+    const test::Bytes bytes = test::scene_bytes(test::baked_of(test::random_tree(shape, 320, 5)),
+                                                Quality::lossless, 1, kMinChunkBytes);
+    const SceneFile sound(test::source_of(bytes));
+    EXPECT_NO_THROW(export_ply(sound, ply));
+    EXPECT_NO_THROW(export_hier(sound, hier));
+    for (const std::string& path : {ply, hier}) std::filesystem::remove(path);
+    for (uint32_t chunk = 1; chunk < sound.chunks().size(); ++chunk) {
+      // Its first record is larger than the parent's, or than that of the same node before.
+      test::Bytes altered = bytes;
+      NodeRecord record;
+      std::byte* place = altered.data() + sound.chunks()[chunk].offset + sizeof(ChunkHeader);
+      std::memcpy(&record, place, sizeof record);
+      record.box_max.x += 1000;
+      std::memcpy(place, &record, sizeof record);
+      const SceneFile scene(test::source_of(test::sealed(std::move(altered))));
+      for (const std::string& path : {ply, hier}) {
+        try {
+          (path == ply ? export_ply : export_hier)(scene, path, {});
+          ADD_FAILURE() << path << " " << chunk;
+        } catch (const Error& error) {
+          EXPECT_EQ(error.code(), ErrorCode::refused_input);
+          const std::string where = ": chunk " + std::to_string(chunk) + ": node ";
+          EXPECT_NE(std::string(error.what()).find(where), std::string::npos) << error.what();
+        }
+        EXPECT_FALSE(std::filesystem::exists(path));
+      }
+    }
+  }
 }
 
 }  // namespace
