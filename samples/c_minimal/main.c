@@ -4,7 +4,7 @@
  *   c_minimal SCENE.voy|.ply|.spz OUT.png [path of libvoyager.so]
  *
  * Exit status: 0 done, 1 bad usage, 2 the scene was refused, 4 anything else. */
-#define _XOPEN_SOURCE 700 /* realpath, PATH_MAX */
+#define _XOPEN_SOURCE 700 /* readlink, PATH_MAX */
 
 #include <dlfcn.h>
 #include <errno.h>
@@ -131,23 +131,48 @@ static int render(VoyDevice device, const char* path, unsigned char* pixels) {
   return succeeded(render_frame(view, &frame)) ? 0 : 4;
 }
 
-/* Is there something that no picture may replace: a directory, a FIFO, a device, a link to nothing?
- */
-static int is_no_file(const char* path) {
-  struct stat info;
-  if (stat(path, &info) == 0 ? S_ISREG(info.st_mode) : lstat(path, &info) != 0) return 0;
-  fprintf(stderr, "c_minimal: %s: found no regular file, expected one or a free name\n", path);
-  return 1;
+/* What symbolic links at `path` lead to, whether it is there or not: the picture is written there.
+ * `place` has PATH_MAX characters. */
+static int follow_links(const char* path, char* place) {
+  char next[PATH_MAX];
+  int links;
+  snprintf(place, PATH_MAX, "%s", path);
+  for (links = 0; links < 40; ++links) { /* as many as the system follows */
+    const ssize_t length = readlink(place, next, sizeof next - 1);
+    char* name = strrchr(place, '/');
+    if (length < 0) return 1;
+    next[length] = 0;
+    name = next[0] == '/' || !name ? place : name + 1;
+    snprintf(name, (size_t)(place + PATH_MAX - name), "%s", next);
+  }
+  fprintf(stderr, "c_minimal: %s: found symbolic links in a circle, expected a file\n", path);
+  return 0;
 }
 
-/* Whole or not at all: beside its place first, under a name that no file has. Where the place is a
- * symbolic link, the file that it leads to is written. */
-static int write_png(const char* path, const unsigned char* pixels) {
-  char place[PATH_MAX], beside[PATH_MAX + 32];
+/* Before the work: can a file be put there, and is nothing there that no picture may replace, such
+ * as a directory, a FIFO or a device? */
+static int is_writable(const char* path, const char* place) {
+  char folder[PATH_MAX];
+  char* slash;
+  struct stat info;
+  if (stat(place, &info) == 0 && !S_ISREG(info.st_mode)) {
+    fprintf(stderr, "c_minimal: %s: found no regular file, expected one or a free name\n", path);
+    return 0;
+  }
+  snprintf(folder, sizeof folder, "%s", place);
+  slash = strrchr(folder, '/');
+  snprintf(slash ? slash + 1 : folder, 2, "%s", slash ? "" : ".");
+  if (access(folder, W_OK) == 0 && (access(place, W_OK) == 0 || errno == ENOENT)) return 1;
+  fprintf(stderr, "c_minimal: %s: %s\n", path, strerror(errno));
+  return 0;
+}
+
+/* Whole or not at all: beside its place first, under a name that no file has. */
+static int write_png(const char* path, const char* place, const unsigned char* pixels) {
+  char beside[PATH_MAX + 32];
   FILE* file;
   int written;
   png_image image;
-  if (!realpath(path, place)) snprintf(place, sizeof place, "%s", path);
   snprintf(beside, sizeof beside, "%s.part-%ld", place, (long)getpid());
   memset(&image, 0, sizeof image);
   image.version = PNG_IMAGE_VERSION;
@@ -166,6 +191,7 @@ static int write_png(const char* path, const unsigned char* pixels) {
 int main(int argc, char** argv) {
   VoyDeviceDesc device_desc = VOY_DEVICE_DESC_INIT;
   VoyDevice device;
+  char place[PATH_MAX];
   unsigned char* pixels;
   void* library;
   size_t i;
@@ -174,7 +200,7 @@ int main(int argc, char** argv) {
     fprintf(stderr, "usage: c_minimal SCENE.voy|.ply|.spz OUT.png [path of libvoyager.so]\n");
     return 1;
   }
-  if (is_no_file(argv[2])) return 4;
+  if (!follow_links(argv[2], place) || !is_writable(argv[2], place)) return 4;
   library = load(argc == 4 ? argv[3] : VOYAGER_LIBRARY);
   if (!library) return 4;
 
@@ -186,7 +212,7 @@ int main(int argc, char** argv) {
   }
   /* The background is opaque, so the picture is: alpha says how much of it is scene. */
   for (i = 0; status == 0 && i < (size_t)kWidth * kHeight; ++i) pixels[4 * i + 3] = 255;
-  if (status == 0) status = write_png(argv[2], pixels);
+  if (status == 0) status = write_png(argv[2], place, pixels);
   free(pixels);
   dlclose(library);
   return status;

@@ -18,17 +18,17 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What symbolic links lead to, whether it is there or not.
+// What symbolic links lead to, whether it is there or not; as `voyager` does with its outputs.
 fs::path written_path(const std::string& path) {
-  constexpr int kMostLinks = 40;
+  constexpr int kMostLinks = 40;  // as the system has it
   fs::path target = path;
   for (int links = 0; links < kMostLinks; ++links) {
     std::error_code no_link;
     const fs::path next = fs::read_symlink(target, no_link);
-    if (no_link) break;
+    if (no_link) return target;
     target = target.parent_path() / next;
   }
-  return target;
+  throw Failure(kMachine, path + ": found symbolic links in a circle, expected a file");
 }
 
 }  // namespace

@@ -146,5 +146,28 @@ TEST_F(Outputs, TheSampleReplacesNothingThatIsNoFile) {
   EXPECT_TRUE(fs::is_fifo(file("pipe")));
 }
 
+// As voyager itself.
+TEST_F(Outputs, TheSampleWritesThroughLinks) {
+  fs::create_directory(file("far"));
+  fs::create_symlink("far/there.png", file("dangling.png"));
+  fs::create_symlink("dangling.png", file("link.png"));
+  ASSERT_EQ(run("c_minimal " + file("c.voy") + " " + file("link.png")).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(file("link.png")) && fs::is_symlink(file("dangling.png")));
+  EXPECT_EQ(file_bytes(file("far/there.png")).substr(1, 3), "PNG");
+  EXPECT_EQ(std::distance(fs::directory_iterator(file("far")), {}), 1);
+  fs::create_symlink("b.png", file("a.png"));
+  fs::create_symlink("a.png", file("b.png"));
+  const std::string circle = file("a.png") + ": found symbolic links in a circle, expected a file";
+  expect_refused("c_minimal " + file("c.voy") + " " + file("a.png"), 4, circle);
+  expect_refused("voyager render " + file("c.voy") + " --backend cpu -o " + file("a.png"), 4,
+                 circle);
+}
+
+// A scene that is not there: what is said first is what was found out first.
+TEST_F(Outputs, TheSampleFindsAnUnwritableOutputBeforeTheWork) {
+  expect_refused("c_minimal " + file("absent.voy") + " " + file("no/such/o.png"), 4,
+                 file("no/such/o.png"));
+}
+
 }  // namespace
 }  // namespace voyager::outputs_test

@@ -100,6 +100,7 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
   write_bytes(file("folder_inside.gltf"), R"({"asset": {"version": "2.0"},
       "buffers": [{"byteLength": 36, "uri": "folder.gltf"}]})");
   ASSERT_EQ(::mkfifo(file("pipe").c_str(), 0666), 0);
+  std::filesystem::create_symlink("circle.json", file("circle.json"));
   const std::string out = " -o " + file("refused");
   const struct {
     std::string command;
@@ -143,6 +144,8 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
        2, "pipe: found a FIFO"},
       {host("--frames 1 --stats " + file("pipe") + out), 4, "pipe: "},
       {host("--frames 1 --stats " + file("folder.gltf") + out), 4, "folder.gltf: "},
+      {host("--frames 1 --stats " + file("circle.json") + out), 4,
+       "circle.json: found symbolic links in a circle, expected a file"},
   };
   for (const auto& each : cases) {
     const Outcome result = run_shell("timeout 60 " + program(each.command) + " 2>&1 >/dev/null");
