@@ -1,10 +1,10 @@
 #include "plugin/memory.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <new>
 
 #include "runtime/base/error.h"
+#include "runtime/base/megabytes.h"
 
 namespace voyager {
 
@@ -37,12 +37,9 @@ void Budget::take(uint64_t bytes) {
   uint64_t used = used_.load(std::memory_order_relaxed);
   do {
     if (limit_ == 0 || (used <= limit_ && bytes <= limit_ - used)) continue;
-    char message[160];
-    std::snprintf(message, sizeof message,
-                  "scene data needs at least %.3f MB, the memory budget allows %.3f MB",
-                  (static_cast<double>(used) + static_cast<double>(bytes)) / 1e6,
-                  static_cast<double>(limit_) / 1e6);
-    throw Error(ErrorCode::over_budget, message);
+    const uint64_t needed = used + std::min(bytes, UINT64_MAX - used);
+    throw Error(ErrorCode::over_budget, "scene data needs at least " + megabytes_text(needed) +
+                                            ", the memory budget allows " + megabytes_text(limit_));
   } while (!used_.compare_exchange_weak(used, used + bytes, std::memory_order_relaxed));
 }
 

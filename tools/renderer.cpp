@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/backend_name.h"
 #include "tools/console.h"
@@ -28,7 +29,7 @@ voy::Device create_device(const RenderChoices& choices, RendererLog& log) {
   desc.log = write_log;
   desc.logUser = &log;
   desc.logLevel = verbosity() == Verbosity::verbose ? VOY_LOG_INFO : VOY_LOG_WARNING;
-  desc.deviceMemoryBudget = static_cast<uint64_t>(choices.budget * 1e6);
+  desc.deviceMemoryBudget = static_cast<uint64_t>(std::llround(choices.budget * 1e6));
   const bool on_host = choices.backend == VOY_BACKEND_CPU ||
                        choices.backend == VOY_BACKEND_REFERENCE ||
                        (choices.budget > 0 && choices.backend == VOY_BACKEND_AUTO &&

@@ -4,8 +4,8 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
-#include <cstdio>
 
+#include "runtime/base/megabytes.h"
 #include "runtime/format/check_claims.h"
 #include "runtime/frame/load.h"
 #include "runtime/math/screen_size.h"
@@ -50,12 +50,9 @@ uint32_t slots_for(const SceneFile& file, const PoolBytes& bytes, uint64_t wante
   const uint64_t room = budget < bytes.fixed ? 0 : (budget - bytes.fixed) / bytes.slot;
   const uint32_t least = SceneStream::top_chunks(file);
   if (room >= least) return static_cast<uint32_t>(std::min<uint64_t>(room, chunks));
-  char message[160];
-  std::snprintf(message, sizeof message,
-                ": the top of the tree takes %.3f MB, the memory budget allows %.3f MB",
-                static_cast<double>(bytes.fixed + least * bytes.slot) / 1e6,
-                static_cast<double>(budget) / 1e6);
-  throw Error(ErrorCode::over_budget, file.name() + message);
+  throw Error(ErrorCode::over_budget, file.name() + ": the top of the tree takes " +
+                                          megabytes_text(bytes.fixed + least * bytes.slot) +
+                                          ", the memory budget allows " + megabytes_text(budget));
 }
 
 uint32_t first_of(const SceneFile& file, const StreamDesc& desc, uint64_t limit) {

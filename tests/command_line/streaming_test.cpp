@@ -56,6 +56,15 @@ TEST_F(Streaming, WithoutWaitingASmallBudgetDrawsACoarserImage) {
   EXPECT_FALSE(file_bytes(file("small.pfm")) == file_bytes(file("whole.pfm")));
 }
 
+TEST_F(Streaming, ABudgetOfAFewBytesIsSaidAsItWasGiven) {
+  for (const std::string budget : {"0.000001", "0.000003", "0.0002"}) {
+    const Outcome refused = run(render("c.voy", "--budget " + budget + " -o " + file("o.pfm")));
+    EXPECT_EQ(refused.exit_code, 4);
+    EXPECT_NE(refused.output.find("the memory budget allows " + budget), std::string::npos)
+        << refused.output;
+  }
+}
+
 // The megabytes that a refusal names are enough for the same frame.
 TEST_F(Streaming, ABudgetThatIsTooSmallIsToldWhatItTakes) {
   const std::string wait = " --wait-resident on -o " + file("fits.pfm");
