@@ -55,7 +55,7 @@ class Report {
     progress_("measuring", 1, 1);
     write();
     for (const std::string& name : kept_.remove())
-      note(fmt::format("{}: kept, for {} is no report's", folder_.string(), name));
+      note(fmt::format("{}: not removed: {} is not a file of the report", folder_.string(), name));
   }
 
  private:
