@@ -181,11 +181,13 @@ bool OwnedFolder::mark(const std::string& text, bool alone) try {
 OwnedFolder::Lock OwnedFolder::lock(bool alone) {
   if (lock_file(mark_.get(), alone) != 0 && errno == EWOULDBLOCK) return Lock::refused;
   // The process that was in the folder may have removed it since the file was opened.
+  return is_here() ? Lock::held : Lock::stale;
+}
+
+bool OwnedFolder::is_here() const {
   struct stat opened = {}, named = {};
-  if (::fstat(mark_.get(), &opened) != 0 || ::lstat(mark_path().c_str(), &named) != 0 ||
-      opened.st_dev != named.st_dev || opened.st_ino != named.st_ino)
-    return Lock::stale;
-  return Lock::held;
+  return ::fstat(mark_.get(), &opened) == 0 && ::lstat(mark_path().c_str(), &named) == 0 &&
+         opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
 std::string OwnedFolder::read_mark() const {
@@ -239,6 +241,7 @@ std::vector<std::string> OwnedFolder::names() const {
 }
 
 std::vector<std::string> OwnedFolder::own_files() const {
+  if (!is_here()) return {};
   const auto notes = notes_of(read_mark()).value_or(std::vector<std::string>{});
   std::vector<std::string> own = names();
   std::erase_if(own, [&](const std::string& name) {
@@ -250,6 +253,10 @@ std::vector<std::string> OwnedFolder::own_files() const {
 }
 
 std::vector<std::string> OwnedFolder::remove() {
+  if (!is_here()) {
+    mark_ = {};
+    return {};
+  }
   for (const std::string& name : own_files()) ::unlink((path_ + "/" + name).c_str());
   const std::vector<std::string> left = names();
   const unsigned made = folders_made(notes_of(read_mark()).value_or(std::vector<std::string>{}));

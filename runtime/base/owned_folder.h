@@ -61,6 +61,9 @@ class OwnedFolder {
   bool open_mark();                                // false: there is none
   enum class Lock { held, refused, stale };
   Lock lock(bool alone);
+  // Whether the folder's mark is still the one that is held: somebody may have moved the folder
+  // away, and another process made it anew.
+  bool is_here() const;
   std::string read_mark() const;
   std::vector<std::string> names() const;
   // False where another process has made the folder its own, or removed it, since it was looked at.

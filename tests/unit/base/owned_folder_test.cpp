@@ -95,6 +95,18 @@ TEST_F(OwnedFolderTest, NothingIsLeftOfFoldersThatCannotBeMade) {
   EXPECT_EQ(std::distance(fs::recursive_directory_iterator(temporary.file("")), {}), 2);
 }
 
+TEST_F(OwnedFolderTest, AFolderThatWasMovedAwayAndMadeAnewIsNotItsOwn) {
+  OwnedFolder first = take();
+  write(path + "/rows");
+  fs::rename(path, temporary.file("away"));
+  EXPECT_TRUE(first.own_files().empty());
+  const OwnedFolder second = take();
+  write(path + "/rows");
+  EXPECT_TRUE(first.remove().empty());
+  EXPECT_EQ(names(), (Names{kFolderMark, "rows"}));
+  EXPECT_TRUE(fs::exists(temporary.file("away/rows")));
+}
+
 constexpr FolderKind kNoted = {"a test", "give another",
                                [](std::string_view name, const std::vector<std::string>& notes) {
                                  return std::find(notes.begin(), notes.end(), name) != notes.end();
