@@ -1,10 +1,14 @@
 // No command removes or empties what it did not make, whatever it is told to write where.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <random>
 #include <thread>
 
 #include "tests/command_line/program.h"
@@ -161,6 +165,85 @@ TEST_F(KeepData, ASecondBakeToTheSameOutputDoesNotTouchTheFirst) {
       run("voyager bake " + small() + " -o " + file("whole.voy") + " --quality lossless").exit_code,
       0);
   EXPECT_TRUE(file_bytes(file("s.voy")) == file_bytes(file("whole.voy")));
+}
+
+TEST_F(KeepData, AWorkFolderThatIsGoneEndsTheBake) {
+  const WaitingBake bake("voyager bake - -o " + file("s.voy") + " --work " + file("w"), small(),
+                         file("made"));
+  ASSERT_TRUE(wait_for(file("w/words"))) << bake.said();
+  wait_until_still();
+  fs::rename(file("w"), file("elsewhere"));
+  bake.end();
+  EXPECT_NE(bake.said().find(file("w/spool") + ": create: No such file"), std::string::npos)
+      << bake.said();
+  EXPECT_FALSE(fs::exists(file("s.voy")) || fs::exists(file("w")));
+  EXPECT_TRUE(fs::exists(file("elsewhere/words")));
+}
+
+// Its exit code; 128 and the signal's number where it was ended after so many milliseconds.
+int run_ended(const std::string& command, double milliseconds, int signal) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const std::string quiet = "exec " + program(command) + " >/dev/null 2>&1";
+    ::execl("/bin/sh", "sh", "-c", quiet.c_str(), nullptr);
+    ::_exit(127);
+  }
+  std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(milliseconds));
+  ::kill(child, signal);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+// Of a .ply with so many rows.
+std::string first_rows(const std::string& ply, size_t rows, size_t wanted) {
+  std::string header = ply.substr(0, ply.find("end_header\n") + 11);
+  const std::string body = ply.substr(header.size(), (ply.size() - header.size()) / rows * wanted);
+  header.replace(header.find("vertex "),
+                 header.find('\n', header.find("vertex ")) - header.find("vertex "),
+                 "vertex " + std::to_string(wanted));
+  return header + body;
+}
+
+// In cells only where VOYAGER_LARGE_TREES is set: property.BakeStopped has cells of few Gaussians.
+TEST_F(KeepData, ABakeThatIsEndedAtAnyMomentGoesOnToTheSameBytes) {
+  const char* const given = std::getenv("VOYAGER_SEED");
+  const unsigned seed =
+      given != nullptr ? static_cast<unsigned>(std::stoul(given)) : std::random_device{}();
+  std::printf("seed %u (VOYAGER_SEED)\n", seed);
+  std::mt19937 random(seed);
+  const std::string ply = file("c.ply"), scene = file("s.voy"), work = file("w");
+  if (std::getenv("VOYAGER_LARGE_TREES") != nullptr)
+    ASSERT_EQ(run("voyager synth city --sh-degree 0 --gaussians 262144 -o " + ply).exit_code, 0);
+  else
+    write_bytes(ply, first_rows(file_bytes(small()), 10000, 2000));
+  ASSERT_EQ(run("voyager bake " + ply + " -o " + scene).exit_code, 0);
+  const std::string whole = file_bytes(scene);
+  const auto before = everything();
+  const std::string steps[] = {" --step split", " --step cells", " --step encode", ""};
+  double milliseconds[std::size(steps)];
+  for (const int signal : {0, SIGKILL, SIGTERM, SIGINT}) {  // first to see how long each takes
+    fs::remove(scene);
+    for (size_t i = 0; i < std::size(steps); ++i) {
+      const std::string bake =
+          "voyager bake " + ply + " -o " + scene + " --memory 160 --work " + work + steps[i];
+      for (int end = 0; signal != 0 && end < 2; ++end) {
+        const double after = std::uniform_real_distribution<>(0, milliseconds[i])(random);
+        const int code = run_ended(bake, after, signal);
+        ASSERT_TRUE(code == 0 || code == 128 + signal) << bake << ": " << code;
+        ASSERT_TRUE(!fs::exists(scene) || file_bytes(scene) == whole) << bake;
+      }
+      const auto start = std::chrono::steady_clock::now();
+      const Outcome ended = run(bake);
+      ASSERT_EQ(ended.exit_code, 0) << bake << "\n" << ended.output;
+      const std::chrono::duration<double, std::milli> took =
+          std::chrono::steady_clock::now() - start;
+      if (signal == 0) milliseconds[i] = took.count();
+    }
+    // What was ended before it was marked is an empty folder of somebody's.
+    if (fs::exists(work) && fs::is_empty(work)) fs::remove(work);
+    EXPECT_TRUE(everything() == before) << signal;
+  }
 }
 
 // The folder that nobody named is the first one's as well.

@@ -136,6 +136,10 @@ TEST_F(Headset, RefusalsAreOneLine) {
   std::filesystem::create_directory(file("dataset"));  // somebody's own
   std::filesystem::copy(file("city.cameras.json"), file("dataset/cameras.json"));
   write_bytes(file("dataset/0000_L.png"), "mine");
+  for (const std::string other : {"{}", "null"}) {
+    std::filesystem::create_directory(file("dataset" + other));
+    write_bytes(file("dataset" + other + "/cameras.json"), other);
+  }
   const std::string scene = "openxr_headset " + file("city.voy");
   const struct {
     std::string command;
@@ -155,6 +159,8 @@ TEST_F(Headset, RefusalsAreOneLine) {
       {"openxr_headset --frames 1 " + file("bad.voy"), 2, "bad.voy"},
       {scene + " --frames 1 --readback /proc/none", 4, "/proc/none"},
       {scene + " --frames 1 --readback " + file("dataset"), 1, "dataset/cameras.json"},
+      {scene + " --frames 1 --readback '" + file("dataset{}'"), 1, "dataset{}/cameras.json"},
+      {scene + " --frames 1 --readback " + file("datasetnull"), 1, "datasetnull/cameras.json"},
       {scene + " --frames 1 --camera-file " + file("pipe"), 2, "pipe: found a pipe or device"},
       {"openxr_headset --frames 1 " + file("pipe"), 2, "pipe: found a FIFO"},
   };
@@ -168,6 +174,8 @@ TEST_F(Headset, RefusalsAreOneLine) {
   EXPECT_FALSE(std::filesystem::exists(file("refused")));
   EXPECT_EQ(file_bytes(file("dataset/cameras.json")), file_bytes(file("city.cameras.json")));
   EXPECT_EQ(file_bytes(file("dataset/0000_L.png")), "mine");
+  EXPECT_EQ(file_bytes(file("dataset{}/cameras.json")), "{}");
+  EXPECT_EQ(file_bytes(file("datasetnull/cameras.json")), "null");
 }
 
 TEST_F(Headset, WhatARuntimeLacksIsNamed) {
