@@ -41,7 +41,7 @@ std::string note_line(const std::string& note) {
 
 // Of a mark: the kind, the key and the empty line.
 std::string key_part(const std::string& mark) {
-  const size_t empty_line = mark.find("\n\n");
+  const size_t empty_line = mark.rfind("\n\n");  // an input's name may have one, no note has
   return empty_line == std::string::npos ? mark : mark.substr(0, empty_line + 2);
 }
 
@@ -97,7 +97,8 @@ OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind, const std::st
                          bool alone, OtherKey other)
     : OwnedFolder(std::move(path), kind) {
   try {
-    take(first_line(kind) + key + "\n", alone, other);
+    const bool whole_lines = key.empty() || key.ends_with('\n');
+    take(first_line(kind) + key + (whole_lines ? "\n" : "\n\n"), alone, other);
   } catch (...) {
     remove_made(made_);
     throw;
@@ -120,7 +121,7 @@ void OwnedFolder::take(const std::string& text, bool alone, OtherKey other) {
     if (!found.starts_with(first_line(kind_)))
       refuse(path_, std::string("another file named ") + kFolderMark,
              std::string("that of ") + kind_.of, kind_);
-    const bool same = found.starts_with(text) && notes_of(found);
+    const bool same = key_part(found) == text && notes_of(found);
     if (!same && other == OtherKey::refused) refuse_other(path_, kind_, key_part(found), text);
     const Lock locked = lock(alone);
     if (locked == Lock::refused)

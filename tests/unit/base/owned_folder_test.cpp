@@ -124,6 +124,15 @@ TEST_F(OwnedFolderTest, NotesSayWhatIsOwnAndAreNotCompared) {
   EXPECT_EQ(folder.remove(), std::vector<std::string>{"third"});
 }
 
+TEST_F(OwnedFolderTest, AKeyIsAnyText) {
+  for (const std::string key : {"", "no line", "a line\n", "a line\n\nand another\n", "\n"}) {
+    OwnedFolder(path, kNoted, key, true).add_note("first");
+    write(path + "/first");
+    EXPECT_TRUE(OwnedFolder(path, kNoted, key, true).remove().empty()) << key;
+    EXPECT_FALSE(fs::exists(path)) << key;
+  }
+}
+
 TEST_F(OwnedFolderTest, AnAlteredMarkIsRefused) {
   OwnedFolder(path, kNoted, "one\n", true).add_note("first");
   const std::string mark = path + "/" + kFolderMark;
