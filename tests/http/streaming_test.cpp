@@ -1,5 +1,8 @@
 // Scenes streamed from a server: a real one, which goes and comes back, and one that answers as a
 // test says.
+#include <filesystem>
+#include <optional>
+
 #include "runtime/frame/open_streamed.h"
 #include "tests/command_line/program.h"
 #include "tests/http/http_test.h"
@@ -14,21 +17,31 @@ using namespace test;
 
 class HttpStreaming : public testing::Test {
  protected:
+  static void SetUpTestSuite() {
+    made_ = new TempFolder;
+    const std::string city = made_->file("city.");
+    failure_ = failure_of({"voyager synth city --gaussians 60000 --sh-degree 1 -o " + city + "ply",
+                           "voyager bake " + city + "ply -o " + city + "voy",
+                           render(city + "voy", "-o " + city + "pfm")});
+  }
+  static void TearDownTestSuite() { delete made_; }
   void SetUp() override {
     VOYAGER_NEEDS_NGINX();
-    const std::string city = nginx_.folder("files/city.");
-    ASSERT_EQ(failure_of({"voyager synth city --gaussians 60000 --sh-degree 1 -o " + city + "ply",
-                          "voyager bake " + city + "ply -o " + city + "voy",
-                          render(city + "voy", "-o " + city + "pfm")}),
-              "");
+    ASSERT_EQ(failure_, "");
+    for (const char* name : {"city.voy", "city.pfm"})
+      std::filesystem::copy(made_->file(name), local(name));
   }
-  std::string render(const std::string& scene, const std::string& rest) const {
-    return "voyager render " + scene + " --cameras " + nginx_.folder("files/city.cameras.json") +
+  static std::string render(const std::string& scene, const std::string& rest) {
+    return "voyager render " + scene + " --cameras " + made_->file("city.cameras.json") +
            " --backend cpu --camera 10 --size 96x54 " + rest;
   }
   std::string local(const std::string& name) const { return nginx_.folder("files/" + name); }
 
   Nginx nginx_;
+
+ private:
+  static inline TempFolder* made_ = nullptr;
+  static inline std::string failure_;
 };
 
 TEST_F(HttpStreaming, AFrameThatWaitsIsThatOfTheFile) {
@@ -62,23 +75,30 @@ struct Near {
   FrameInput input = frame_input(look({0, -1.7, -22}, {0, -1.6, 0}, 96, 54, 70), 1);
 };
 
-// At 500 kB/s, so that it is under way when the server goes.
+// At 500 kB/s, so that it is under way when the server goes. On a busy machine all may have come
+// by then: then once more.
 TEST_F(HttpStreaming, AServerThatComesBackIsGoneOnWith) {
-  ASSERT_EQ(nginx_.start("limit_rate 500k;"), "");
-  Near near(nginx_.url("city.voy"), local("city.voy"));
+  std::optional<Near> near;
   const auto draw = [&] {
-    const Frame frame = test::render(near.part, near.input);
-    EXPECT_TRUE(is_cut(near.resident->tree, frame.cut));
+    const Frame frame = test::render(near->part, near->input);
+    EXPECT_TRUE(is_cut(near->resident->tree, frame.cut));
     std::this_thread::sleep_for(10ms);
     return frame.stats.missing;
   };
-  const uint64_t before = near.scene->stream->counters().bytes_read;
-  for (int i = 0; i < 500 && near.scene->stream->counters().bytes_read == before; ++i) draw();
-  nginx_.stop();
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    ASSERT_EQ(
+        attempt == 0 ? nginx_.start("limit_rate 500k;") : nginx_.start_again("limit_rate 500k;"),
+        "");
+    near.emplace(nginx_.url("city.voy"), local("city.voy"));
+    const uint64_t before = near->scene->stream->counters().bytes_read;
+    for (int i = 0; i < 500 && near->scene->stream->counters().bytes_read == before; ++i) draw();
+    nginx_.stop();
+    if (draw() > 0) break;
+  }
   for (int i = 0; i < 30; ++i) EXPECT_GT(draw(), 0u);
   ASSERT_EQ(nginx_.start_again(""), "");
-  near.input.wait_resident = true;
-  expect_same_bits(test::render(near.part, near.input), test::render(near.whole, near.input));
+  near->input.wait_resident = true;
+  expect_same_bits(test::render(near->part, near->input), test::render(near->whole, near->input));
 }
 
 // What is wanted is refused, for good or for now, once the scene is open: a frame that does not
