@@ -167,6 +167,16 @@ static int is_writable(const char* path, const char* place) {
   return 0;
 }
 
+/* The same file by whatever names; what is not there yet is no scene. */
+static int is_scene(const char* path, const char* place, const char* scene) {
+  struct stat from, to;
+  if (stat(scene, &from) != 0 || stat(place, &to) != 0) return 0;
+  if (from.st_dev != to.st_dev || from.st_ino != to.st_ino) return 0;
+  fprintf(stderr, "c_minimal: %s: found it as the output and as the scene, expected two files\n",
+          path);
+  return 1;
+}
+
 /* Whole or not at all: beside its place first, under a name that no file has. */
 static int write_png(const char* path, const char* place, const unsigned char* pixels) {
   char beside[PATH_MAX + 32];
@@ -200,7 +210,9 @@ int main(int argc, char** argv) {
     fprintf(stderr, "usage: c_minimal SCENE.voy|.ply|.spz OUT.png [path of libvoyager.so]\n");
     return 1;
   }
-  if (!follow_links(argv[2], place) || !is_writable(argv[2], place)) return 4;
+  if (!follow_links(argv[2], place)) return 4;
+  if (is_scene(argv[2], place, argv[1])) return 1;
+  if (!is_writable(argv[2], place)) return 4;
   library = load(argc == 4 ? argv[3] : VOYAGER_LIBRARY);
   if (!library) return 4;
 

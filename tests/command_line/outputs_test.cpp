@@ -146,6 +146,15 @@ TEST_F(Outputs, TheSampleReplacesNothingThatIsNoFile) {
   EXPECT_TRUE(fs::is_fifo(file("pipe")));
 }
 
+TEST_F(Outputs, TheSampleDoesNotWriteOverItsScene) {
+  fs::copy(file("c.voy"), file("own.voy"));
+  fs::create_symlink("own.voy", file("own.png"));
+  fs::create_hard_link(file("own.voy"), file("hard.png"));
+  for (const std::string name : {"own.voy", "own.png", "hard.png"})
+    expect_refused("c_minimal " + file("own.voy") + " " + file(name), 1, "as the scene");
+  EXPECT_TRUE(file_bytes(file("own.voy")) == file_bytes(file("c.voy")));
+}
+
 // As voyager itself.
 TEST_F(Outputs, TheSampleWritesThroughLinks) {
   fs::create_directory(file("far"));
