@@ -31,6 +31,14 @@ fs::path written_path(const std::string& path) {
   throw Failure(kMachine, path + ": found symbolic links in a circle, expected a file");
 }
 
+// Without links, also where nothing is there yet.
+fs::path resolved(const fs::path& path) {
+  std::error_code problem;
+  const fs::path target = fs::absolute(written_path(path.string()), problem);
+  const fs::path found = fs::weakly_canonical(target, problem);
+  return problem ? target.lexically_normal() : found;
+}
+
 }  // namespace
 
 std::string read_file(const std::string& path) {
@@ -59,6 +67,32 @@ void require_writable(const std::string& path) {
   if (::access(folder.c_str(), W_OK) != 0 ||
       (::access(target.c_str(), W_OK) != 0 && errno != ENOENT))
     throw Failure(kMachine, path + ": " + std::strerror(errno));
+}
+
+void require_distinct(const std::string& output, const std::vector<std::string>& others) {
+  std::error_code ignored;
+  if (output.empty()) return;
+  for (const std::string& other : others)
+    if (!other.empty() &&
+        (fs::equivalent(output, other, ignored) || resolved(output) == resolved(other)))
+      throw Failure(kBadUsage, output + ": found it as an output and as " + other +
+                                   ", which is read or written too, expected different files");
+}
+
+void require_pictures(const std::string& folder, const std::vector<std::string>& others,
+                      const std::function<bool(std::string_view name)>& is_picture) {
+  std::error_code problem;
+  for (const auto& entry : fs::directory_iterator(folder, problem)) {
+    if (!is_picture(entry.path().filename().string())) continue;
+    require_distinct(entry.path().string(), others);
+    require_writable(entry.path().string());
+  }
+  for (const std::string& other : others) {
+    if (other.empty()) continue;
+    const fs::path path = resolved(other);
+    if (path.parent_path() == resolved(folder) && is_picture(path.filename().string()))
+      require_distinct(folder + "/" + path.filename().string(), {other});
+  }
 }
 
 void write_file(const std::string& path, std::span<const std::byte> bytes) {

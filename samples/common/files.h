@@ -1,8 +1,11 @@
 #pragma once
 // Files whole, and images to files: each appears under its name only when complete.
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace host {
 
@@ -12,6 +15,13 @@ std::string read_file(const std::string& path);
 
 // Before the work: throws Failure(kMachine) where write_file() would fail.
 void require_writable(const std::string& path);
+// Throws Failure(kBadUsage) where `output` is one of the other files, whatever links lead there.
+// Empty names do not count.
+void require_distinct(const std::string& output, const std::vector<std::string>& others);
+// Both, of the files in the folder whose names is_picture() accepts: pictures that are not there
+// yet can be put there.
+void require_pictures(const std::string& folder, const std::vector<std::string>& others,
+                      const std::function<bool(std::string_view name)>& is_picture);
 // Where `path` is a symbolic link, to what it leads to. Throws Failure(kMachine).
 void write_file(const std::string& path, std::span<const std::byte> bytes);
 // RGB from rows of RGBA.

@@ -11,7 +11,9 @@ void Patience::check(const std::string& what) const {
 Journey::Journey(const Options& chosen) : options(chosen) {
   // Files first: what is refused is refused before any device is made.
   if (!options.camera_file.empty()) cameras = read_cameras(options.camera_file);
-  if (!options.readback.empty()) recorder.emplace(options.readback);
+  if (!options.readback.empty())
+    recorder.emplace(options.readback,
+                     std::vector<std::string>{options.scene, options.camera_file});
 }
 
 }  // namespace host

@@ -1,5 +1,6 @@
 #include "recorder.h"
 
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <glm/mat3x3.hpp>
@@ -43,6 +44,12 @@ nlohmann::json to_json(const Camera& camera, uint64_t id, const std::string& nam
 
 constexpr const char* kCameras = "cameras.json";
 
+bool is_picture(std::string_view name) {
+  uint64_t frame = 0;
+  std::from_chars(name.data(), name.data() + name.size(), frame);
+  return name == picture_name(frame, 0) || name == picture_name(frame, 1);
+}
+
 // The pictures of a recording, from its cameras.json; any other file of that name is somebody's
 // own.
 std::vector<std::string> pictures_of(const std::string& path) {
@@ -64,11 +71,14 @@ std::vector<std::string> pictures_of(const std::string& path) {
 
 }  // namespace
 
-Recorder::Recorder(std::string folder) : folder_(std::move(folder)) {
+Recorder::Recorder(std::string folder, const std::vector<std::string>& inputs)
+    : folder_(std::move(folder)) {
   namespace fs = std::filesystem;
   const std::string cameras = folder_ + "/" + kCameras;
   try {
     fs::create_directories(folder_);
+    require_distinct(cameras, inputs);
+    require_pictures(folder_, inputs, is_picture);
     if (fs::exists(cameras)) {
       earlier_ = pictures_of(cameras);
       earlier_.emplace_back(kCameras);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "camera.h"
 #include "runtime.h"
@@ -15,8 +16,8 @@ class Recorder {
  public:
   // Makes the folder. An earlier recording in it, its cameras.json and the pictures which that
   // names, is removed when the first frame of this one is there. Throws Failure(kBadUsage) for a
-  // cameras.json that is not a recording's.
-  explicit Recorder(std::string folder);
+  // cameras.json that is not a recording's, and where one of its files is one of the `inputs`.
+  Recorder(std::string folder, const std::vector<std::string>& inputs);
 
   // Its pictures may come later. A frame that was lost before it was shown is added again.
   void add(uint64_t frame, const std::array<Camera, kEyes>& eyes);

@@ -57,14 +57,27 @@ void say_what_runs(const Device& device, const VoyagerLayer& voyager) {
   std::fflush(stdout);
 }
 
+OffscreenOptions offscreen_options(const Options& options) {
+  return {options.output, options.frames, options.write_depth};
+}
+
+// No file that is read is written.
+void check_outputs(const Options& options, const std::string& mesh_file) {
+  std::vector<std::string> others = {options.scene, options.camera_file, mesh_file};
+  require_distinct(options.stats_file, others);
+  if (!options.stats_file.empty()) require_writable(options.stats_file);
+  others.push_back(options.stats_file);
+  if (options.offscreen) prepare_folder(offscreen_options(options), others);
+}
+
 void run(const Options& options, Validation* validation) {
   // Files first: what is refused is refused before any device is made.
   std::vector<Camera> cameras;
   if (!options.camera_file.empty()) cameras = read_cameras(options.camera_file);
   std::optional<Mesh> mesh;
-  if (options.mesh) mesh = read_mesh(options.mesh_file.empty() ? own_mesh() : options.mesh_file);
-  if (!options.stats_file.empty()) require_writable(options.stats_file);
-  if (options.offscreen) make_folder(options.output);
+  const std::string mesh_file = options.mesh_file.empty() ? own_mesh() : options.mesh_file;
+  if (options.mesh) mesh = read_mesh(mesh_file);
+  check_outputs(options, options.mesh ? mesh_file : "");
 
   std::optional<Glfw> glfw;
   std::optional<Presentation> presentation;
@@ -88,8 +101,7 @@ void run(const Options& options, Validation* validation) {
   const Look look = {options.composite, options.mesh};
   FrameLog log(options.stats_file);
   if (options.offscreen) {
-    run_offscreen(device, renderer, voyager, depth, cameras, look,
-                  {options.output, options.frames, options.write_depth}, log);
+    run_offscreen(device, renderer, voyager, depth, cameras, look, offscreen_options(options), log);
   } else {
     HudState hud = {look, static_cast<float>(options.tau)};
     hud.budget_megabytes = options.budget_megabytes;

@@ -1,6 +1,7 @@
 #include "offscreen.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -11,6 +12,12 @@
 
 namespace host {
 namespace {
+
+std::string stem_of(uint64_t number) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%04llu", static_cast<unsigned long long>(number));
+  return name;
+}
 
 // A frame in flight, and the files that it becomes.
 struct Pending {
@@ -29,9 +36,7 @@ class Recorder {
     if (pending.readback.extent().width != extent.width ||
         pending.readback.extent().height != extent.height)
       pending.readback = Readback(device_, extent, options_.write_depth);
-    char name[32];
-    std::snprintf(name, sizeof name, "%04llu", static_cast<unsigned long long>(number));
-    pending.stem = options_.folder + "/" + name;
+    pending.stem = options_.folder + "/" + stem_of(number);
   }
   void record(uint32_t slot, VkCommandBuffer commands, const RenderTargets& targets) const {
     slots_[slot].readback.record(commands, targets);
@@ -60,11 +65,19 @@ class Recorder {
 
 }  // namespace
 
-void make_folder(const std::string& folder) {
+void prepare_folder(const OffscreenOptions& options, const std::vector<std::string>& others) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw Failure(kMachine, folder + ": " + error.message());
-  require_writable(folder + "/0000.png");
+  std::filesystem::create_directories(options.folder, error);
+  if (error) throw Failure(kMachine, options.folder + ": " + error.message());
+  require_pictures(options.folder, others, [&](std::string_view name) {
+    uint64_t number = 0;
+    const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), number);
+    const std::string_view extension = name.substr(static_cast<size_t>(end - name.data()));
+    return problem == std::errc() && number < options.frames &&
+           name.substr(0, name.size() - extension.size()) == stem_of(number) &&
+           (extension == ".png" || (extension == ".pfm" && options.write_depth));
+  });
+  require_writable(options.folder + "/" + stem_of(0) + ".png");
 }
 
 void run_offscreen(const Device& device, Renderer& renderer, VoyagerLayer& voyager,

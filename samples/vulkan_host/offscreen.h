@@ -14,8 +14,9 @@ struct OffscreenOptions {
   bool write_depth;
 };
 
-// Throws Failure(kMachine) where no picture could be written there.
-void make_folder(const std::string& folder);
+// Makes the folder. Throws Failure(kMachine) where one of the pictures could not be written there,
+// Failure(kBadUsage) where one is any of the other files.
+void prepare_folder(const OffscreenOptions& options, const std::vector<std::string>& others);
 // Into a folder that is there.
 void run_offscreen(const Device& device, Renderer& renderer, VoyagerLayer& voyager,
                    const DepthConvention& depth, const std::vector<Camera>& cameras,

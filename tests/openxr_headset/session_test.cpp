@@ -178,6 +178,23 @@ TEST_F(Headset, RefusalsAreOneLine) {
   EXPECT_EQ(file_bytes(file("datasetnull/cameras.json")), "null");
 }
 
+TEST_F(Headset, ARecordingDoesNotReplaceItsCameras) {
+  expect_well_behaved(Json::object(), "--frames 2 --readback " + file("own"));
+  const std::string before = file_bytes(file("own/cameras.json"));
+  std::filesystem::create_symlink("own/cameras.json", file("cameras_link.json"));
+  std::filesystem::create_directory(file("other"));
+  write_bytes(file("other/0007_R.png"), before);
+  for (const auto& [cameras, folder] :
+       {std::pair("own/cameras.json", "own"), std::pair("cameras_link.json", "own"),
+        std::pair("other/0007_R.png", "other")}) {
+    const Outcome result = run("openxr_headset " + file("city.voy") + " --frames 1 --camera-file " +
+                               file(cameras) + " --readback " + file(folder));
+    EXPECT_EQ(result.exit_code, 1) << result.output;
+    EXPECT_NE(result.output.find("found it as an output"), std::string::npos) << result.output;
+    EXPECT_EQ(file_bytes(file(cameras)), before) << cameras;
+  }
+}
+
 TEST_F(Headset, WhatARuntimeLacksIsNamed) {
   const struct {
     Json script;

@@ -101,7 +101,12 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       "buffers": [{"byteLength": 36, "uri": "folder.gltf"}]})");
   ASSERT_EQ(::mkfifo(file("pipe").c_str(), 0666), 0);
   std::filesystem::create_symlink("circle.json", file("circle.json"));
-  const std::string out = " -o " + file("refused");
+  namespace fs = std::filesystem;
+  fs::create_directories(file("over/0002.png"));
+  fs::copy(file("cameras.json"), file("over/0000.png"));
+  fs::create_symlink("../cameras.json", file("over/0001.pfm"));
+  fs::copy(VOYAGER_BIN_DIR "/../share/voyager/landmarks.gltf", file("own.gltf"));
+  const std::string out = " -o " + file("refused"), over = " -o " + file("over");
   const struct {
     std::string command;
     int exit_code;
@@ -142,6 +147,14 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       {"vulkan_host " + file("pipe") + " --offscreen --frames 1 --camera-file " +
            file("cameras.json") + out,
        2, "pipe: found a FIFO"},
+      {host("--frames 1 --stats " + file("city.voy") + out), 1, "city.voy: found it as an output"},
+      {host("--frames 1 --stats " + file("cameras.json") + out), 1, "cameras.json: found it as"},
+      {host("--frames 1 --mesh " + file("own.gltf") + " --stats " + file("own.gltf") + out), 1,
+       "own.gltf: found it as an output"},
+      {host("--frames 2 --stats " + file("over/0001.png") + over), 1, "over/0001.png: found it"},
+      {host("--frames 1" + over, "over/0000.png"), 1, "over/0000.png: found it as an output"},
+      {host("--frames 2 --write-depth" + over), 1, "over/0001.pfm: found it as an output"},
+      {host("--frames 3" + over), 4, "over/0002.png: "},
       {host("--frames 1 --stats " + file("pipe") + out), 4, "pipe: "},
       {host("--frames 1 --stats " + file("folder.gltf") + out), 4, "folder.gltf: "},
       {host("--frames 1 --stats " + file("circle.json") + out), 4,
