@@ -29,8 +29,9 @@ constexpr FolderKind kBake = {"a bake", "give another --work, or remove the fold
 
 }  // namespace
 
-WorkFolder::WorkFolder(std::string path, const std::string& request, bool alone, bool temporary)
-    : folder_(std::move(path), kBake, request, alone),
+WorkFolder::WorkFolder(const std::string& path, const std::string& request, bool alone,
+                       bool temporary)
+    : folder_(path, kBake, request, alone),
       alone_(alone),
       temporary_(temporary && folder_.marked()) {}
 

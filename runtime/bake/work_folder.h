@@ -12,13 +12,13 @@ namespace voyager {
 
 class WorkFolder {
  public:
-  // Made if absent, and then marked with `request`, lines of what is baked and how. A
-  // folder of another request, or with files of anybody else, is refused
-  // (Error(refused_input)). `alone` keeps others out while the object lives; else others
-  // that are not alone may be in, too (Error(io) where that cannot be had). `temporary`:
-  // goes with the object, where the object has marked it. So does one in which nothing was
-  // written.
-  WorkFolder(std::string path, const std::string& request, bool alone, bool temporary);
+  // Makes the folder if it is absent, and marks it with `request`, lines of what is baked and how.
+  // Throws Error(refused_input) for a folder of another request, or with files of anybody else.
+  // With `alone` no other process may be in the folder while the object lives; without it, others
+  // may that are not alone either. Throws Error(io) if another process prevents that. With
+  // `temporary` the object's end removes the folder, if the object has marked it. A folder in which
+  // nothing was written is removed too.
+  WorkFolder(const std::string& path, const std::string& request, bool alone, bool temporary);
   ~WorkFolder();
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;

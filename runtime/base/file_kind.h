@@ -7,6 +7,7 @@ namespace voyager {
 inline const char* file_kind(mode_t mode) {
   if (S_ISREG(mode)) return "a regular file";
   if (S_ISDIR(mode)) return "a directory";
+  if (S_ISLNK(mode)) return "a symbolic link";
   if (S_ISFIFO(mode)) return "a FIFO";
   if (S_ISSOCK(mode)) return "a socket";
   return S_ISBLK(mode) ? "a block device" : "a terminal or another character device";

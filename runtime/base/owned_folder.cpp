@@ -15,6 +15,7 @@
 #include "runtime/base/checksum.h"
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
+#include "runtime/base/file_kind.h"
 #include "runtime/base/system_error.h"
 
 namespace voyager {
@@ -32,6 +33,7 @@ std::string first_line(const FolderKind& kind) {
   return "voyager: the folder of " + std::string(kind.of) + "\n";
 }
 
+constexpr int kMostTries = 20;  // while other processes make and remove the same folder
 constexpr std::string_view kFoldersMade = "folders made ", kChecksum = ", checksum ";
 
 std::string note_line(const std::string& note) {
@@ -82,6 +84,21 @@ unsigned folders_made(const std::vector<std::string>& notes) {
   refuse(path, std::string("an altered ") + kFolderMark, "it as it was written", kind);
 }
 
+// Where folders above are to be made, the path without . and .. in it: of a/./b/../c no b is made.
+// Others stay as they are, for messages.
+std::string as_made(const std::string& path) {
+  const fs::path given(path);
+  std::error_code problem;
+  if (std::none_of(given.begin(), given.end(),
+                   [](const fs::path& name) { return name == "." || name == ".."; }) ||
+      fs::exists(given.parent_path(), problem))
+    return path;
+  const fs::path absolute = fs::absolute(given, problem);
+  if (problem) return path;
+  const fs::path found = fs::weakly_canonical(absolute, problem);
+  return problem ? path : found.string();
+}
+
 int lock_file(int fd, bool alone) {
   return ::flock(fd, (alone ? LOCK_EX : LOCK_SH) | LOCK_NB);
 }
@@ -93,9 +110,9 @@ bool is_plain_file(const std::string& path) {
   return ::lstat(path.c_str(), &info) == 0 && S_ISREG(info.st_mode);
 }
 
-OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind, const std::string& key,
+OwnedFolder::OwnedFolder(const std::string& path, const FolderKind& kind, const std::string& key,
                          bool alone, OtherKey other)
-    : OwnedFolder(std::move(path), kind) {
+    : OwnedFolder(path, kind) {
   try {
     const bool whole_lines = key.empty() || key.ends_with('\n');
     take(first_line(kind) + key + (whole_lines ? "\n" : "\n\n"), alone, other);
@@ -105,13 +122,13 @@ OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind, const std::st
   }
 }
 
-OwnedFolder::OwnedFolder(std::string path, const FolderKind& kind)
-    : path_(std::move(path)), kind_(kind) {
+OwnedFolder::OwnedFolder(const std::string& path, const FolderKind& kind)
+    : path_(as_made(path)), kind_(kind) {
   while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
 }
 
 void OwnedFolder::take(const std::string& text, bool alone, OtherKey other) {
-  for (;;) {
+  for (int stale = 0; stale < kMostTries;) {
     make();
     if (!open_mark()) {
       if (is_empty() && mark(text, alone)) return;
@@ -127,16 +144,21 @@ void OwnedFolder::take(const std::string& text, bool alone, OtherKey other) {
     if (locked == Lock::refused)
       throw Error(ErrorCode::io, path_ + ": found another process at work in the folder of " +
                                      kind_.of + ", expected none");
-    if (locked == Lock::stale) continue;
-    if (same) return;
-    remove();
+    if (locked == Lock::held && same) return;
+    if (locked == Lock::held)
+      remove();
+    else
+      ++stale;
   }
+  throw Error(ErrorCode::io, mark_path() + ": found another file there " +
+                                 std::to_string(kMostTries) +
+                                 " times after it was opened, expected the same one");
 }
 
 // Another process that ends may remove a folder above this one before this one is made.
 void OwnedFolder::make() {
   std::error_code problem;
-  for (int tries = 0; tries < 20; ++tries) {
+  for (int tries = 0; tries < kMostTries; ++tries) {
     std::vector<fs::path> absent, made;
     for (fs::path at = path_; !at.empty() && !fs::exists(at, problem); at = at.parent_path())
       absent.push_back(at);
@@ -159,6 +181,10 @@ void OwnedFolder::remove_made(unsigned folders) const {
 }
 
 bool OwnedFolder::open_mark() {
+  struct stat info = {};
+  if (::lstat(mark_path().c_str(), &info) == 0 && !S_ISREG(info.st_mode))
+    refuse(path_, std::string(file_kind(info.st_mode)) + " named " + kFolderMark,
+           std::string("the file of ") + kind_.of, kind_);
   mark_ = FileDescriptor(::open(mark_path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   if (mark_.get() < 0 && errno != ENOENT) throw_system_error(mark_path(), "open");
   return mark_.get() >= 0;
@@ -274,7 +300,9 @@ void OwnedFolder::remove_abandoned(const std::string& path, const FolderKind& ki
     return;
   }
   if (!folder.read_mark().starts_with(first_line(kind))) return;
-  if (lock_file(folder.mark_.get(), true) != 0 || folder.lock(true) != Lock::held) return;
+  // Where a file system has no locks, nobody knows whether a process is at work: unlike lock(),
+  // this then leaves the folder.
+  if (lock_file(folder.mark_.get(), true) != 0 || !folder.is_here()) return;
   folder.remove();
   ::rmdir(path.c_str());
 } catch (const Error&) {

@@ -34,7 +34,7 @@ class OwnedFolder {
   // is there under another key is refused, or removed to start anew. Throws Error(refused_input),
   // with nothing touched, for a folder with files and no mark, or of another kind or key, naming
   // the first line that differs; Error(io) where another process is in the folder.
-  OwnedFolder(std::string path, const FolderKind& kind, const std::string& key, bool alone,
+  OwnedFolder(const std::string& path, const FolderKind& kind, const std::string& key, bool alone,
               OtherKey other = OtherKey::refused);
 
   const std::string& path() const { return path_; }
@@ -44,16 +44,18 @@ class OwnedFolder {
   void add_note(const std::string& note);
   // The names of the files that the program has written, but for the mark.
   std::vector<std::string> own_files() const;
-  // Removes own files, and the folders that were made for them where they are empty. Folders that
-  // were there before stay. Returns what is left, by name. The object then holds nothing.
+  // Removes the files of own_files() and the mark; then the folder, and those above it that were
+  // made with it, as far as they are empty. Folders that were there before stay. Returns the names
+  // of what is left in the folder. The object then holds nothing.
   std::vector<std::string> remove();
 
-  // The same with a folder whose process was killed, which goes whoever made it if it is empty. One
-  // that is not marked as of this kind, or that a process works in, is left as it is.
+  // The same for a folder whose process was killed. If the folder is empty then, it is removed
+  // even if it was there before. A folder that is not marked as of this kind stays as it is; so
+  // does one in which a process works.
   static void remove_abandoned(const std::string& path, const FolderKind& kind);
 
  private:
-  OwnedFolder(std::string path, const FolderKind& kind);
+  OwnedFolder(const std::string& path, const FolderKind& kind);
   void take(const std::string& text, bool alone, OtherKey other);
   void make();
   void remove_made(unsigned folders) const;

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -175,6 +176,32 @@ TEST_F(OwnedFolderTest, AFolderOfSomebodyElsesIsNotTouched) {
   expect_refused(ErrorCode::refused_input, {kFolderMark, "that of a test"});
   fs::remove(path + "/" + kFolderMark);
   EXPECT_TRUE(take().marked());
+}
+
+// b is only on the way to c.
+TEST_F(OwnedFolderTest, FoldersOnTheWayAreNotLeft) {
+  const test::TempFolder within;
+  const std::string dots = within.file("a/./b/../c/");
+  {
+    OwnedFolder folder(dots, kTest, "one\n", true);
+    write(folder.path() + "/rows");
+    EXPECT_TRUE(fs::exists(within.file("a/c/rows")));
+    folder.remove();
+  }
+  EXPECT_FALSE(fs::exists(within.file("a")));
+}
+
+TEST_F(OwnedFolderTest, WhatIsNoFileUnderTheNameOfTheMarkIsNamed) {
+  fs::create_directories(path);
+  const std::string mark = path + "/" + kFolderMark;
+  ASSERT_EQ(::mkfifo(mark.c_str(), 0600), 0);
+  expect_refused(ErrorCode::refused_input, {std::string("found a FIFO named ") + kFolderMark});
+  fs::remove(mark);
+  fs::create_directory(mark);
+  expect_refused(ErrorCode::refused_input, {std::string("found a directory named ") + kFolderMark});
+  fs::remove(mark);
+  fs::create_symlink("elsewhere", mark);
+  expect_refused(ErrorCode::refused_input, {"found a symbolic link named "});
 }
 
 TEST_F(OwnedFolderTest, GoesOnUnderTheSameKeyAlone) {
