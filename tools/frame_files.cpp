@@ -89,19 +89,21 @@ Json to_json(const VoyFrameStats& s) {
 
 }  // namespace
 
-FrameFiles::Output FrameFiles::open(const std::string& path, bool folder) {
+FrameFiles::Output FrameFiles::open(const std::string& path, bool folder,
+                                    const OtherFiles& others) {
   if (!path.empty() && !folder) require_writable(path);
   if (path.empty() || !folder) return {path, nullptr};
-  return {"", std::make_unique<OutputFolder>(path)};
+  return {"", std::make_unique<OutputFolder>(path, others.inputs, others.outputs)};
 }
 
-FrameFiles::FrameFiles(OutputPaths paths)
-    : floats_(paths.floats),
-      stats_(std::move(paths.stats)),
-      image_(open(paths.image, paths.images_in)),
-      depth_(open(paths.depth, paths.images_in)),
-      cut_(open(paths.cut, paths.cuts_in)) {
-  open(stats_, false);
+FrameFiles::FrameFiles(OutputPaths paths, std::vector<std::string> inputs)
+    : floats_(paths.floats), stats_(std::move(paths.stats)) {
+  OtherFiles others = {std::move(inputs), {stats_}};
+  if (!paths.cuts_in) others.outputs.push_back(paths.cut);
+  image_ = open(paths.image, paths.images_in, others);
+  depth_ = open(paths.depth, paths.images_in, others);
+  cut_ = open(paths.cut, paths.cuts_in, others);
+  open(stats_, false, {});
 }
 
 std::string FrameFiles::Output::place(size_t index, const char* extension) const {

@@ -23,11 +23,12 @@ struct OutputPaths {
 
 class FrameFiles {
  public:
-  // Throws Error(io) where an output cannot be written.
-  explicit FrameFiles(OutputPaths paths);
+  // Throws Error(io) where an output cannot be written. expect() refuses to replace the inputs.
+  FrameFiles(OutputPaths paths, std::vector<std::string> inputs);
 
   // Before the first frame, with the numbers and cameras of all that write() will be given: throws
-  // Error(io) where one of their files could not be put in its place, or all of them have no room.
+  // Error(io) where one of their files could not be put in its place, or all of them have no room;
+  // Error(invalid_argument) where one is an input or another output.
   void expect(size_t first, std::span<const Camera> cameras, size_t eyes) const;
   // Writes a frame's images and depths, numbered by camera from `first` on, and its cut, numbered
   // by frame; and keeps its statistics.
@@ -46,7 +47,10 @@ class FrameFiles {
     // Of all its files, where it is wanted.
     std::vector<Room> room(uint64_t bytes, const char* what) const;
   };
-  static Output open(const std::string& path, bool folder);
+  struct OtherFiles {
+    std::vector<std::string> inputs, outputs;
+  };
+  static Output open(const std::string& path, bool folder, const OtherFiles& others);
   const char* image_extension() const { return floats_ ? ".pfm" : ".png"; }
   void write_image(size_t index, const Camera& camera, const RenderedImage& image);
   void write_stats(const Renderer& renderer) const;

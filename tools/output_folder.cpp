@@ -9,6 +9,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/output_path.h"
+#include "tools/output_paths.h"
 
 namespace voyager::tools {
 namespace {
@@ -36,7 +37,9 @@ void clear_left_over(const std::filesystem::path& path) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const std::string& path) : path_(path) {
+OutputFolder::OutputFolder(const std::string& path, std::vector<std::string> inputs,
+                           std::vector<std::string> outputs)
+    : path_(path), inputs_(std::move(inputs)), outputs_(std::move(outputs)) {
   created_ = !std::filesystem::exists(path_);
   clear_left_over(path_);
   std::error_code error;
@@ -61,7 +64,10 @@ OutputFolder::~OutputFolder() {
 }
 
 void OutputFolder::require_place(const std::string& name) const {
-  require_replaceable((path_ / name).string());
+  const std::string file = (path_ / name).string();
+  require_distinct({file}, inputs_);
+  for (const std::string& output : outputs_) require_distinct({output, file}, {});
+  require_replaceable(file);
 }
 
 std::string OutputFolder::place(const std::string& name) {

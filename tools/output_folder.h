@@ -15,13 +15,16 @@ namespace voyager::tools {
 // else ever is. Throws Error(io).
 class OutputFolder {
  public:
-  explicit OutputFolder(const std::string& path);
+  // `inputs` and `outputs` are files that the command reads, and writes elsewhere.
+  OutputFolder(const std::string& path, std::vector<std::string> inputs,
+               std::vector<std::string> outputs = {});
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  // Before the work: throws where no file of that name could be put.
+  // Before the work: throws where no file of that name could be put, and
+  // Error(invalid_argument) where it is one of the inputs or outputs, whatever links lead there.
   void require_place(const std::string& name) const;
   // Where to write the file that will be `name`.
   std::string place(const std::string& name);
@@ -29,6 +32,7 @@ class OutputFolder {
 
  private:
   std::filesystem::path path_;
+  std::vector<std::string> inputs_, outputs_;
   std::unique_ptr<OwnedFolder> staging_;
   std::vector<std::string> names_;
   bool created_ = false;

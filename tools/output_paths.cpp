@@ -32,6 +32,16 @@ bool same_file(const std::string& a, const std::string& b) {
   return fs::equivalent(a, b, ignored) || resolved(a) == resolved(b);
 }
 
+// Or the folder itself.
+bool is_within(const std::string& path, const std::string& folder) {
+  const fs::path within = resolved(folder);
+  std::error_code ignored;
+  fs::path at = resolved(path);
+  while (at != within && !fs::equivalent(at, within, ignored) && at.has_relative_path())
+    at = at.parent_path();
+  return at.has_relative_path();
+}
+
 void require_different(const std::string& output, const std::string& other, const char* what) {
   if (is_file(output) && is_file(other) && same_file(output, other))
     throw Error(ErrorCode::invalid_argument,
@@ -50,19 +60,20 @@ void require_distinct(const std::vector<std::string>& outputs,
 }
 
 void require_outside(const std::string& folder, const std::vector<std::string>& paths) {
-  const fs::path within = resolved(folder);
-  std::error_code ignored;
-  for (const std::string& path : paths) {
-    if (!is_file(path)) continue;
-    fs::path at = resolved(path);
-    while (at != within && !fs::equivalent(at, within, ignored) && at.has_relative_path())
-      at = at.parent_path();
-    if (at.has_relative_path())
+  for (const std::string& path : paths)
+    if (is_file(path) && is_within(path, folder))
       throw Error(ErrorCode::invalid_argument,
-                  fmt::format("{}: found it in the work folder {}, which is made for the bake and "
+                  fmt::format("{}: found it in the work folder {}, which is made for the work and "
                               "removed at its end, expected it outside",
                               path, folder));
-  }
+}
+
+void require_not_below(const std::string& output, const std::string& folder) {
+  if (is_within(folder, output))
+    throw Error(ErrorCode::invalid_argument,
+                fmt::format("{}: found the work folder {} below it, expected a file there: give "
+                            "another --work",
+                            output, folder));
 }
 
 void require_extension(const std::string& option, const std::string& path,

@@ -13,6 +13,10 @@ void require_distinct(const std::vector<std::string>& outputs,
 // Nor may any of them be in a folder that the command makes and removes, or be that folder.
 void require_outside(const std::string& folder, const std::vector<std::string>& paths);
 
+// Nor may that folder be below the name of an output, which is a file. Throws
+// Error(invalid_argument).
+void require_not_below(const std::string& output, const std::string& folder);
+
 // Throws Error(invalid_argument) unless the name ends in one of the extensions (".png").
 void require_extension(const std::string& option, const std::string& path,
                        const std::vector<std::string>& extensions);

@@ -135,8 +135,10 @@ TEST_F(KeepData, AWorkFolderThatWasThereStaysEmptied) {
   ASSERT_EQ(run(bake + file("w") + " --step split").exit_code, 0);
   ASSERT_EQ(run(bake + file("w")).exit_code, 0);
   EXPECT_TRUE(fs::is_empty(file("w")));
-  ASSERT_EQ(run(bake + file("new/w")).exit_code, 0);
-  EXPECT_FALSE(fs::exists(file("new")));
+  for (const std::string name : {"new/w", "new/./b/../w/"}) {
+    ASSERT_EQ(run(bake + file(name)).exit_code, 0);
+    EXPECT_FALSE(fs::exists(file("new"))) << name;
+  }
 }
 
 TEST_F(KeepData, ARefusedBakeLeavesNoWorkFolder) {
@@ -274,6 +276,9 @@ TEST_F(KeepData, OutputAndInputsAreNeverInTheWorkFolder) {
   expect_refused(bake + small() + " -o " + file("t/s.voy") + " --work " + file("link"), 1,
                  {inside});
   expect_refused(bake + small() + to + " --work " + file("s.voy"), 1, {inside});
+  for (const std::string work : {"s.voy/w", "s.voy/v/w", "x/../s.voy/w"})
+    expect_refused(bake + small() + to + " --work " + file(work), 1,
+                   {file("s.voy") + ": found the work folder"});
   for (const std::string input : {"t/within/a.ply", "t/words", "link/words", "b.ply"})
     expect_refused(bake + file(input) + to + " --work " + file("t"), 1, {file(input), inside});
   // The folder that nobody names.
@@ -324,6 +329,67 @@ TEST_F(KeepData, AWalkReplacesItsNumbersAndLeavesTheRest) {
   fs::remove(file("walk/0007.png"));
   fs::create_directory(file("walk/0007.png"));
   expect_refused(render, 4, {"walk/0007.png: found a directory"});
+}
+
+TEST_F(KeepData, AWalkDoesNotReplaceItsInputs) {
+  const std::string cameras = fs::path(small()).replace_extension(".cameras.json");
+  fs::create_directory(file("g"));
+  fs::create_directory(file("outside"));
+  fs::copy(cameras, file("g/0000.txt"));
+  fs::copy(cameras, file("g/0001.png"));
+  fs::copy(cameras, file("g/0002.pfm"));
+  fs::create_symlink("g/0000.txt", file("cameras.json"));
+  fs::create_hard_link(file("g/0001.png"), file("hard.json"));
+  ASSERT_EQ(run("voyager bake " + small() + " -o " + file("s.voy")).exit_code, 0);
+  const std::string render =
+      "voyager render " + file("s.voy") + " --backend cpu --size 16x9 --all --cameras ";
+  const std::string input = "as an input", other = "as another output";
+  for (const std::string cut : {"g/0000.txt", "cameras.json"})
+    expect_refused(render + file(cut) + " -o " + file("outside") + " --dump-cut " + file("g"), 1,
+                   {file("g/0000.txt"), input});
+  for (const std::string image : {"g/0001.png", "hard.json"})
+    expect_refused(render + file(image) + " -o " + file("g"), 1, {file("g/0001.png"), input});
+  expect_refused(render + file("g/0002.pfm") + " -o " + file("outside") + " --depth " + file("g"),
+                 1, {file("g/0002.pfm"), input});
+  expect_refused(render + cameras + " -o " + file("g") + " --stats " + file("g/0003.png"), 1,
+                 {file("g/0003.png"), other});
+}
+
+TEST_F(KeepData, AReportDoesNotReplaceItsInputs) {
+  const std::string cameras = fs::path(small()).replace_extension(".cameras.json");
+  const std::string options = " --quick --size 16x9 --backend cpu -o " + file("r") + " --cameras ";
+  const std::string report = "voyager report ";
+  fs::create_directories(file("r/.report"));
+  if (run(report + "--help").exit_code != 0) GTEST_SKIP() << "built without it";
+  ASSERT_EQ(run("voyager bake " + small() + " -o " + file("s.voy")).exit_code, 0);
+  for (const std::string name : {"report.json", "time_budget.png", "curve_flip.png"})
+    fs::copy(cameras, file("r/" + name));
+  fs::copy(file("s.voy"), file("r/curve.csv"));
+  fs::copy(file("s.voy"), file("r/.report/compact.voy"));
+  for (const std::string name : {"report.json", "time_budget.png"})
+    expect_refused(report + file("s.voy") + options + file("r/" + name), 1,
+                   {file("r/" + name), "as an input"});
+  expect_refused(report + file("r/.report/compact.voy") + options + cameras, 1,
+                 {".report/compact.voy", "found it in the work folder"});
+  expect_refused(report + file("s.voy") + options + file("r/curve_flip.png") + " --curve", 1,
+                 {file("r/curve_flip.png"), "as an input"});
+  expect_refused(
+      report + file("s.voy") + options + cameras + " --curve --trees " + file("r/curve.csv"), 1,
+      {file("r/curve.csv"), "as an input"});
+}
+
+// A scene that is not there: what is said first is what was found out first.
+TEST_F(KeepData, AReportWithoutAPlaceForAPictureIsRefusedBeforeTheWork) {
+  const std::string cameras = fs::path(small()).replace_extension(".cameras.json");
+  if (run("voyager report --help").exit_code != 0) GTEST_SKIP() << "built without it";
+  for (const std::string name : {"report.csv", "front.png", "time_budget.png", "curve_time.png"}) {
+    fs::create_directories(file("r/" + name));
+    const std::string curve = name.starts_with("curve") ? " --curve" : "";
+    expect_refused("voyager report " + file("absent.voy") + " --quick --backend cpu -o " +
+                       file("r") + " --cameras " + cameras + curve,
+                   4, {file("r/" + name) + ": found a directory"});
+    fs::remove(file("r/" + name));
+  }
 }
 
 TEST_F(KeepData, AHiddenFolderThatIsNotAReportsIsRefusedAndStays) {

@@ -234,6 +234,7 @@ BakeSummary bake_from_folder(const BakeArguments& arguments, const OpenInputs& o
   bake.work = bake.temporary ? arguments.output + ".work" : arguments.work;
   require_outside(bake.work, {arguments.output});
   require_outside(bake.work, arguments.inputs);
+  require_not_below(arguments.output, bake.work);
   bake.quality = arguments.quality;
   bake.chunk_bytes = arguments.chunk_bytes;
   bake.memory = arguments.memory * 1'000'000;

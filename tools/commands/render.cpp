@@ -112,7 +112,7 @@ void render(RenderArguments& arguments) {
     bad_usage(
         "--time-budget: found it with --lod off or --select flat, expected a cut: tau is what it "
         "changes");
-  FrameFiles files(arguments.outputs);
+  FrameFiles files(arguments.outputs, {arguments.scene, arguments.cameras});
   const Progress progress = progress_bar();
   const std::vector<Camera> cameras = choose_cameras(arguments, progress);
   const size_t eyes = arguments.choices.eyes;

@@ -73,14 +73,21 @@ constexpr const char* kCsv = "curve.csv";
 constexpr const char* kJson = "curve.json";
 constexpr const char* kPage = "curve.html";
 
+std::vector<std::string> inputs_of(const CurveRequest& request) {
+  std::vector<std::string> inputs = request.trees;
+  inputs.push_back(request.cameras);
+  return inputs;
+}
+
 class CurveReport {
  public:
   CurveReport(const CurveRequest& request, Backend& backend)
       : request_(request),
         backend_(backend),
-        output_(request.output),
+        output_(request.output, inputs_of(request)),
         plan_(curve_plan(request.cameras, request.size, request.extent)) {
     for (const char* name : {kCsv, kJson, kPage}) output_.require_place(name);
+    for (const char* name : kCurvePlotFiles) output_.require_place(name);
     require_one_scene(request.trees);
     names_ = names_of(request.trees);
     provenance_ = provenance(request.trees[0], request.cameras, backend, request.arguments);

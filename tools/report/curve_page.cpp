@@ -116,12 +116,12 @@ std::vector<PagePlot> curve_plots(const std::vector<CurveRow>& rows,
   const auto mean = [&](const char* title, const Axis& x, const Axis& y) {
     return plot_of_means(std::string(title) + ": mean of the views", curves, x, y);
   };
-  return {{"curve_first.png", of_first},
-          {"curve_mean.png", mean("Quality over cut size", kShare, kPsnr)},
-          {"curve_splats.png", mean("Quality over splats", kSplats, kPsnr)},
-          {"curve_time.png", mean("Quality over time", kTime, kPsnr)},
-          {"curve_ssim.png", mean("SSIM over cut size", kShare, kSsim)},
-          {"curve_flip.png", mean("FLIP over cut size", kShare, kFlip)}};
+  return {{kCurvePlotFiles[0], of_first},
+          {kCurvePlotFiles[1], mean("Quality over cut size", kShare, kPsnr)},
+          {kCurvePlotFiles[2], mean("Quality over splats", kSplats, kPsnr)},
+          {kCurvePlotFiles[3], mean("Quality over time", kTime, kPsnr)},
+          {kCurvePlotFiles[4], mean("SSIM over cut size", kShare, kSsim)},
+          {kCurvePlotFiles[5], mean("FLIP over cut size", kShare, kFlip)}};
 }
 
 std::string html(const CurvePage& page) {

@@ -13,6 +13,9 @@ struct CurvePage {
   const std::vector<Curve>& curves;  // of the rows
 };
 
+inline constexpr const char* kCurvePlotFiles[] = {"curve_first.png",  "curve_mean.png",
+                                                  "curve_splats.png", "curve_time.png",
+                                                  "curve_ssim.png",   "curve_flip.png"};
 // PSNR over the cut's share of the leaves, of the first view and of all; and over time.
 std::vector<PagePlot> curve_plots(const std::vector<CurveRow>& rows,
                                   const std::vector<Curve>& curves);

@@ -28,14 +28,25 @@ constexpr const char* kCsv = "report.csv";
 constexpr const char* kJson = "report.json";
 constexpr const char* kPage = "report.html";
 
+// Refused where a file that it will write has no place, or is an input.
+std::unique_ptr<OutputFolder> checked_output(const ReportRequest& request,
+                                             const std::filesystem::path& kept) {
+  const std::vector<std::string> inputs = {request.scene, request.cameras};
+  require_outside(kept.string(), inputs);
+  auto output = std::make_unique<OutputFolder>(request.output, inputs);
+  for (const char* name : {kCsv, kJson, kPage}) output->require_place(name);
+  for (const std::string& name : report_plot_files()) output->require_place(name);
+  return output;
+}
+
 class Report {
  public:
   Report(const ReportRequest& request, Backend& backend)
       : request_(request),
-        output_(request.output),
+        folder_(std::filesystem::path(request.output) / ".report"),
+        output_(checked_output(request, folder_)),
         backend_(backend),
         plan_(report_plan(request.cameras, request.size, request.extent)),
-        folder_(std::filesystem::path(request.output) / ".report"),
         scenes_(request.scene, folder_, workers_, progress_),
         provenance_(tools::provenance(request.scene, request.cameras, backend, request.arguments)),
         kept_(folder_, provenance_),
@@ -44,7 +55,6 @@ class Report {
         measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
 
   void run() {
-    for (const char* name : {kCsv, kJson, kPage}) output_.require_place(name);
     note("measuring on " + backend_.device_name());
     std::vector<ReportCase> cases = report_cases(request_.extent, subject());
     const size_t budgets = scenes_.own()->flat() || request_.extent == ReportExtent::quick ? 0 : 2;
@@ -94,7 +104,7 @@ class Report {
   }
 
   void write_text(const std::string& name, const std::string& text) {
-    AtomicFile file(output_.place(name));
+    AtomicFile file(output_->place(name));
     file.write(std::as_bytes(std::span(text)));
     file.commit();
   }
@@ -135,18 +145,18 @@ class Report {
                     {}};
     for (const size_t i : front) page.shown.push_back({i, pictures_[i]});
     write_text(kPage, html(page));
-    for (const PagePlot& plot : page.plots) write_plot_png(output_.place(plot.file), plot.plot);
-    output_.commit();
+    for (const PagePlot& plot : page.plots) write_plot_png(output_->place(plot.file), plot.plot);
+    output_->commit();
     say(fmt::format("{}\n{}/{}\n", advice, request_.output, kPage));
   }
 
   const ReportRequest& request_;
-  OutputFolder output_;
+  const std::filesystem::path folder_;
+  const std::unique_ptr<OutputFolder> output_;  // before all that takes time or writes
   Workers workers_;
   const Progress progress_ = progress_bar();
   Backend& backend_;
   const ReportPlan plan_;
-  const std::filesystem::path folder_;
   ReportScenes scenes_;  // before what writes: a file that is refused leaves nothing
   const Json provenance_;
   KeptRows kept_;

@@ -83,22 +83,36 @@ Plot select_plot(const std::vector<ReportRow>& rows) {
   return plot;
 }
 
+constexpr const char* kFrontFile = "front.png";
+constexpr const char* kPlottedGroups[] = {"tau", "select",  "exp",    "filter",
+                                          "sh",  "quality", "search", "time budget"};
+
+std::string file_of(const std::string& group) {
+  std::string file = group + ".png";
+  std::replace(file.begin(), file.end(), ' ', '_');
+  return file;
+}
+
 }  // namespace
+
+std::vector<std::string> report_plot_files() {
+  std::vector<std::string> files = {kFrontFile};
+  for (const char* group : kPlottedGroups) files.push_back(file_of(group));
+  return files;
+}
 
 std::vector<PagePlot> report_plots(const std::vector<ReportRow>& rows,
                                    const std::vector<size_t>& front) {
-  std::vector<PagePlot> plots = {{"front.png", front_plot(rows, front)}};
-  for (const char* group :
-       {"tau", "select", "exp", "filter", "sh", "quality", "search", "time budget"}) {
+  std::vector<PagePlot> plots = {{kFrontFile, front_plot(rows, front)}};
+  for (const char* group : kPlottedGroups) {
     const bool there = std::any_of(rows.begin(), rows.end(),
                                    [&](const ReportRow& row) { return row.is.group == group; });
     if (!there) continue;
     const std::string name(group);
-    std::string file = name + ".png";
-    std::replace(file.begin(), file.end(), ' ', '_');
-    plots.push_back({file, name == "select"
-                               ? select_plot(rows)
-                               : axis_plot(rows, name, name == "tau" || name == "time budget")});
+    plots.push_back(
+        {file_of(name), name == "select"
+                            ? select_plot(rows)
+                            : axis_plot(rows, name, name == "tau" || name == "time budget")});
   }
   return plots;
 }
