@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "failure.h"
-#include "files.h"
+#include "json_file.h"
 
 namespace host {
 namespace {
@@ -93,7 +93,7 @@ class Reader {
 }  // namespace
 
 std::vector<Camera> read_cameras(const std::string& path) {
-  const Json json = Json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
+  const Json json = read_json(path);
   if (!json.is_array() || json.empty())
     throw Failure(kRefusedInput, path + ": expected JSON, an array of at least one camera");
   std::vector<Camera> cameras;

@@ -41,18 +41,25 @@ fs::path resolved(const fs::path& path) {
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
+std::string read_file(const std::string& path, uint64_t most) {
   std::error_code ignored;
   if (fs::is_other(path, ignored))
     throw Failure(kRefusedInput, path + ": found a pipe or device, expected a file");
   const auto fail = [&] { throw Failure(kRefusedInput, path + ": " + std::strerror(errno)); };
+  const auto check = [&](uint64_t size) {
+    if (size > most)
+      throw Failure(kRefusedInput, path + ": found " + std::to_string(size) +
+                                       " bytes, expected at most " + std::to_string(most));
+  };
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
                                                              std::fclose);
   if (!file) fail();
+  const uint64_t size = fs::file_size(path, ignored);
+  if (!ignored) check(size);
   std::string bytes;
   char block[65536];
   for (size_t got = 0; (got = std::fread(block, 1, sizeof block, file.get())) > 0;)
-    bytes.append(block, got);
+    check(bytes.append(block, got).size());  // it may grow
   if (std::ferror(file.get()) != 0) fail();
   return bytes;
 }
@@ -99,7 +106,7 @@ void write_file(const std::string& path, std::span<const std::byte> bytes) {
   require_writable(path);
   const std::string target = written_path(path).string();
   const std::string temporary = target + ".part-" + std::to_string(::getpid());
-  std::FILE* file = std::fopen(temporary.c_str(), "wbx");  // x: no file of another is emptied
+  std::FILE* file = std::fopen(temporary.c_str(), "wbx");  // x: fails where there is one
   const auto fail = [&] {
     const std::string reason = std::strerror(errno);
     if (file) std::remove(temporary.c_str());

@@ -9,9 +9,11 @@
 
 namespace host {
 
-// All of it. Throws Failure(kRefusedInput) with the path, also for what is no file: nothing waits
-// for the other end of a pipe.
-std::string read_file(const std::string& path);
+inline constexpr uint64_t kLargestCameras = 64'000'000, kLargestMesh = 1'000'000'000;  // bytes
+
+// All of it. Throws Failure(kRefusedInput) with the path, also for more bytes than `most`, which
+// are not read, and for what is no file: nothing waits for the other end of a pipe.
+std::string read_file(const std::string& path, uint64_t most);
 
 // Before the work: throws Failure(kMachine) where write_file() would fail.
 void require_writable(const std::string& path);

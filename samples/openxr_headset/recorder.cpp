@@ -8,6 +8,7 @@
 
 #include "failure.h"
 #include "files.h"
+#include "json_file.h"
 #include "pose.h"
 
 namespace host {
@@ -53,8 +54,7 @@ bool is_picture(std::string_view name) {
 // The pictures of a recording, from its cameras.json; any other file of that name is somebody's
 // own.
 std::vector<std::string> pictures_of(const std::string& path) {
-  const nlohmann::json cameras =
-      nlohmann::json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
+  const nlohmann::json cameras = read_json(path);
   const auto refuse = [&] {
     throw Failure(kBadUsage, "--readback: found " + path +
                                  ", which no recording has written, expected another folder");

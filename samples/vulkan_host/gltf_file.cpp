@@ -39,9 +39,10 @@ std::string_view json_chunk(std::string_view glb) {
 
 // A buffer in a file of its own.
 bool read_buffer(std::vector<unsigned char>* out, std::string* error, const std::string& path,
-                 void*) {
+                 void* files) {
   try {
-    const std::string bytes = read_file(path);
+    static_cast<std::vector<std::string>*>(files)->push_back(path);
+    const std::string bytes = read_file(path, kLargestMesh);
     out->assign(bytes.begin(), bytes.end());
     return true;
   } catch (const Failure& failure) {
@@ -52,16 +53,16 @@ bool read_buffer(std::vector<unsigned char>* out, std::string* error, const std:
 
 }  // namespace
 
-tinygltf::Model read_gltf(const std::string& path) {
-  const std::string bytes = read_file(path);
-  if (bytes.size() > UINT32_MAX) throw Failure(kRefusedInput, path + ": expected at most 4 GiB");
+tinygltf::Model read_gltf(const std::string& path, std::vector<std::string>& files) {
+  files = {path};
+  const std::string bytes = read_file(path, kLargestMesh);
   const auto size = static_cast<uint32_t>(bytes.size());
   const bool binary = path.ends_with(".glb");
   check_nesting(path, binary ? json_chunk(bytes) : bytes);
 
   tinygltf::TinyGLTF loader;
   loader.SetFsCallbacks(
-      {tinygltf::FileExists, tinygltf::ExpandFilePath, read_buffer, nullptr, nullptr});
+      {tinygltf::FileExists, tinygltf::ExpandFilePath, read_buffer, nullptr, &files});
   // Images are never looked at.
   loader.SetImageLoader([](tinygltf::Image*, const int, std::string*, std::string*, int, int,
                            const unsigned char*, int, void*) { return true; },

@@ -62,8 +62,9 @@ OffscreenOptions offscreen_options(const Options& options) {
 }
 
 // No file that is read is written.
-void check_outputs(const Options& options, const std::string& mesh_file) {
-  std::vector<std::string> others = {options.scene, options.camera_file, mesh_file};
+void check_outputs(const Options& options, const std::optional<Mesh>& mesh) {
+  std::vector<std::string> others = {options.scene, options.camera_file};
+  if (mesh) others.insert(others.end(), mesh->files.begin(), mesh->files.end());
   require_distinct(options.stats_file, others);
   if (!options.stats_file.empty()) require_writable(options.stats_file);
   others.push_back(options.stats_file);
@@ -75,9 +76,8 @@ void run(const Options& options, Validation* validation) {
   std::vector<Camera> cameras;
   if (!options.camera_file.empty()) cameras = read_cameras(options.camera_file);
   std::optional<Mesh> mesh;
-  const std::string mesh_file = options.mesh_file.empty() ? own_mesh() : options.mesh_file;
-  if (options.mesh) mesh = read_mesh(mesh_file);
-  check_outputs(options, options.mesh ? mesh_file : "");
+  if (options.mesh) mesh = read_mesh(options.mesh_file.empty() ? own_mesh() : options.mesh_file);
+  check_outputs(options, mesh);
 
   std::optional<Glfw> glfw;
   std::optional<Presentation> presentation;

@@ -200,8 +200,11 @@ class Reader {
 }  // namespace
 
 Mesh read_mesh(const std::string& path) {
-  const tinygltf::Model model = read_gltf(path);
-  return Reader(path, model).read();
+  std::vector<std::string> files;
+  const tinygltf::Model model = read_gltf(path, files);
+  Mesh mesh = Reader(path, model).read();
+  mesh.files = std::move(files);
+  return mesh;
 }
 
 }  // namespace host

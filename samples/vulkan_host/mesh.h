@@ -16,7 +16,8 @@ struct Vertex {
 
 struct Mesh {
   std::vector<Vertex> vertices;
-  std::vector<uint32_t> indices;  // three a triangle, each below vertices.size()
+  std::vector<uint32_t> indices;   // three a triangle, each below vertices.size()
+  std::vector<std::string> files;  // that it was read from
 };
 
 // .gltf or .glb. Throws Failure(kRefusedInput) with file, place and what was expected.

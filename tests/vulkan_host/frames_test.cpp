@@ -105,7 +105,18 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
   fs::create_directories(file("over/0002.png"));
   fs::copy(file("cameras.json"), file("over/0000.png"));
   fs::create_symlink("../cameras.json", file("over/0001.pfm"));
+  write_bytes(file("in_two.bin"), std::string(36, '\0'));
+  write_bytes(file("in_two.gltf"), R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+      "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+      "bufferViews": [{"buffer": 0, "byteLength": 36}],
+      "buffers": [{"byteLength": 36, "uri": "in_two.bin"}]})");
   fs::copy(VOYAGER_BIN_DIR "/../share/voyager/landmarks.gltf", file("own.gltf"));
+  for (const auto& [name, size] :
+       {std::pair("large.json", 64'000'001), std::pair("large.gltf", 1'000'000'001)}) {
+    write_bytes(file(name), "[1");
+    fs::resize_file(file(name), size);
+  }
   const std::string out = " -o " + file("refused"), over = " -o " + file("over");
   const struct {
     std::string command;
@@ -128,7 +139,9 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       {host("--frames 1 --sharing host --sync binary" + out), 1, "sync"},
       {host("--frames 1" + out, "absent.json"), 2, "absent.json"},
       {host("--frames 1" + out, "bad.json"), 2, "bad.json: camera 0"},
-      {host("--frames 1" + out, "deep.json"), 2, "deep.json"},
+      {host("--frames 1" + out, "deep.json"), 2, "deep.json: found JSON of more than 16 levels"},
+      {host("--frames 1" + out, "large.json"), 2, "large.json: found 64000001 bytes"},
+      {host("--frames 1 --mesh " + file("large.gltf") + out), 2, "large.gltf: found 1000000001 b"},
       {host("--frames 1" + out, "folder.gltf"), 2, "folder.gltf: Is a directory"},
       {host("--frames 1 --mesh " + file("absent.gltf") + out), 2, "absent.gltf"},
       {host("--frames 1 --mesh " + file("bad.gltf") + out), 2, "bad.gltf: POSITION"},
@@ -149,6 +162,8 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
        2, "pipe: found a FIFO"},
       {host("--frames 1 --stats " + file("city.voy") + out), 1, "city.voy: found it as an output"},
       {host("--frames 1 --stats " + file("cameras.json") + out), 1, "cameras.json: found it as"},
+      {host("--frames 1 --mesh " + file("in_two.gltf") + " --stats " + file("in_two.bin") + out), 1,
+       "in_two.bin: found it as an output"},
       {host("--frames 1 --mesh " + file("own.gltf") + " --stats " + file("own.gltf") + out), 1,
        "own.gltf: found it as an output"},
       {host("--frames 2 --stats " + file("over/0001.png") + over), 1, "over/0001.png: found it"},
