@@ -13,9 +13,22 @@
 namespace voyager::tools {
 namespace {
 
-using Value = nlohmann::json;  // an ordered one copies by recursion: 150,000 levels are too many
+using Value = nlohmann::json;
 
 constexpr uint64_t kLargestFile = uint64_t{1} << 30;
+constexpr int kMostLevels = 16;  // cameras take 4, and other programs' fields may be in between
+
+// The limit is there because a level of one byte takes 76 in memory.
+Value parse(const std::string& path, const std::string& text) {
+  return Value::parse(text, [&](int level, Value::parse_event_t, const Value&) {
+    if (level > kMostLevels)
+      throw Error(ErrorCode::refused_input,
+                  fmt::format("{}: found JSON of more than {} levels in one another, expected a "
+                              "cameras.json",
+                              path, kMostLevels));
+    return true;
+  });
+}
 
 // right and forward are unit vectors at right angles.
 void set_orientation(VoyPose& pose, const Eigen::Vector3d& right, const Eigen::Vector3d& forward) {
@@ -171,7 +184,7 @@ std::vector<Camera> read_cameras(const std::string& path) {
   source->read(0, std::as_writable_bytes(std::span(text)));
   Value json;
   try {
-    json = Value::parse(text);
+    json = parse(path, text);
   } catch (const Value::parse_error& error) {
     throw Error(ErrorCode::refused_input,
                 fmt::format("{}: offset {}: found no JSON there, expected a cameras.json", path,

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "runtime/base/error.h"
+#include "runtime/base/file_data.h"
 #include "runtime/base/system_error.h"
 
 namespace voyager {
@@ -96,7 +97,9 @@ std::unique_ptr<ByteReader> read_source(const ByteSource& source) {
 }
 
 std::unique_ptr<ByteReader> read_stdin() {
-  return std::make_unique<StdinReader>();
+  auto reader = std::make_unique<StdinReader>();
+  require_data(STDIN_FILENO, reader->name());
+  return reader;
 }
 
 }  // namespace voyager

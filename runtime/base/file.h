@@ -43,8 +43,8 @@ class ByteSource {
 // Throws Error(refused_input) unless [offset, offset + count) is within the source.
 void check_range(const ByteSource& source, uint64_t offset, size_t count);
 
-// A regular file. Its reads fail with Error(io) once it has been truncated below them. Throws
-// Error(file_not_found), Error(refused_input) or Error(io).
+// A regular file, not most of it holes (file_data.h). Its reads fail with Error(io) once it has
+// been truncated below them. Throws Error(file_not_found), Error(refused_input) or Error(io).
 std::unique_ptr<ByteSource> open_file_source(const std::string& path);
 
 class MemorySource final : public ByteSource {
@@ -76,6 +76,7 @@ class ByteReader {
 
 // The source must outlive the reader.
 std::unique_ptr<ByteReader> read_source(const ByteSource& source);
+// Throws Error(refused_input) for a file most of which is holes.
 std::unique_ptr<ByteReader> read_stdin();
 
 // Has no name until commit(), which flushes and then takes `path` in one step; where `path` is a

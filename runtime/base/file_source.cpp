@@ -11,6 +11,7 @@
 #include "runtime/base/bounce_buffers.h"
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
+#include "runtime/base/file_data.h"
 #include "runtime/base/file_descriptor.h"
 #include "runtime/base/file_kind.h"
 
@@ -72,6 +73,7 @@ FileSource::FileSource(const std::string& path) : name_(path), fd_(open_regular(
   if (::fstat(fd_.get(), &info) != 0) fail_to_open(path);
   require_regular(path, info.st_mode);
   size_ = static_cast<uint64_t>(info.st_size);
+  require_data(fd_.get(), path);
 }
 
 bool FileSource::set_direct(bool on) const noexcept {

@@ -451,7 +451,8 @@ TEST_F(CommandLine, CamerasOutOfRangeAreRefusedWithFileCameraAndField) {
                  "camera 0: fx");
   expect_refusal(camera(R"("width": 9, "fx": 1e999, "position": [0, 0, 0])"), 2, "bad.json");
   const std::string deep = std::string(150000, '[') + std::string(150000, ']');
-  expect_refusal(camera("\"width\": " + deep), 2, "width: found an array");
+  expect_refusal(camera("\"width\": " + deep), 2, "bad.json: found JSON of more than 16 levels");
+  expect_refusal(camera(R"("width": [[9]])"), 2, "width: found an array");
   EXPECT_FALSE(fs::exists(file("x.png")));
 }
 

@@ -75,6 +75,37 @@ TEST_F(HostileFiles, SectionsInAHole) {
   }
 }
 
+// A header of rows that take 2 GB, and none of them.
+TEST_F(HostileFiles, RowsInAHole) {
+  const std::string small = file_bytes(file("small.ply"));
+  std::string header = small.substr(0, small.find("end_header\n") + 11);
+  header.replace(header.find("vertex 10000"), 12, "vertex 31000000");
+  write_bytes(file("claims.ply"), header);
+  std::filesystem::resize_file(file("claims.ply"), header.size() + uint64_t{68} * 31'000'000);
+  const std::vector<std::string> little = commands("small.voy"), hostile = commands("claims.ply");
+  for (size_t i = 0; i < 2; ++i)
+    expect_cheap_refusal(run_measured(program(hostile[i])), little_[i]);
+  for (const std::string from : {"", "- < "}) {
+    const Spent found = run_measured(
+        program("voyager bake -o " + file("claims.voy") + " " + from + file("claims.ply")));
+    expect_cheap_refusal(found, little_[0]);
+    EXPECT_NE(found.output.find("of data in a file of 2108.0"), std::string::npos) << found.output;
+  }
+}
+
+TEST_F(HostileFiles, CamerasInAHoleOrWithoutEnd) {
+  write_bytes(file("hole.json"), "[1");
+  std::filesystem::resize_file(file("hole.json"), 1'000'000'000);
+  write_bytes(file("deep.json"), std::string(5'000'000, '['));
+  for (const std::string& cameras : {file("hole.json"), file("deep.json")}) {
+    const Spent found =
+        run_measured(program("voyager render " + file("small.voy") + " --backend cpu --cameras " +
+                             cameras + " -o " + file("out.png")));
+    expect_cheap_refusal(found, little_[1]);
+    EXPECT_NE(found.output.find(cameras + ": found"), std::string::npos) << found.output;
+  }
+}
+
 TEST_F(HostileFiles, WideRowsOnStandardInput) {
   write_bytes(file("wide.ply"), wide_ply(9000));
   expect_cheap_refusal(

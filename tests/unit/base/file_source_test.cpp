@@ -230,6 +230,39 @@ TEST(FileSourceOnTmpfs, IsReadWithoutTheCacheAsWithIt) {
   ::unlink(path.c_str());
 }
 
+// In pieces of 64 kB, each in a hole.
+TEST(FileSourceHoles, AFileThatIsMostlyHolesIsRefusedByName) {
+  const std::string path = "file_source_test." + std::to_string(::getpid()) + ".holes";
+  const Bytes piece = random_bytes(65'536);
+  const struct {
+    off_t size;
+    int pieces;
+    bool refused;
+  } cases[] = {{60'000'000, 1, false},
+               {68'000'000, 0, true},
+               {68'000'000, 250, true},
+               {68'000'000, 270, false}};
+  for (const auto& [size, pieces, refused] : cases) {
+    const int fd = ::open(path.c_str(), O_CREAT | O_TRUNC | O_RDWR, 0600);
+    ASSERT_EQ(::ftruncate(fd, size), 0);
+    for (int i = 0; i < pieces; ++i)
+      ASSERT_EQ(::pwrite(fd, piece.data(), piece.size(), off_t{196'608} * i), 65'536);
+    const bool knows_holes = ::lseek(fd, 0, SEEK_HOLE) < size;
+    ::close(fd);
+    try {
+      open_file_source(path);
+      EXPECT_FALSE(refused && knows_holes) << pieces;
+    } catch (const Error& error) {
+      EXPECT_TRUE(refused) << pieces;
+      EXPECT_EQ(error.code(), ErrorCode::refused_input);
+      const std::string says = error.what();
+      EXPECT_TRUE(says.starts_with(path + ": found ")) << says;
+      EXPECT_NE(says.find(" of data in a file of 68.000 MB"), std::string::npos) << says;
+    }
+  }
+  ::unlink(path.c_str());
+}
+
 // Neither is it opened: that could wait for whoever writes to a FIFO.
 TEST(FileSourceKinds, WhatIsNoRegularFileIsRefusedByName) {
   const std::string path = "file_source_test." + std::to_string(::getpid()) + ".fifo";
