@@ -21,7 +21,7 @@ int fail(int code, const std::string& message) noexcept {
 
 // What was printed may still wait in the buffer when the disk is full.
 int finish() {
-  if (std::fflush(stdout) == 0) return voyager::tools::kSuccess;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return voyager::tools::kSuccess;
   return fail(voyager::tools::kMachine, "standard output: cannot be written to");
 }
 
@@ -45,7 +45,8 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
     if (app.get_subcommands().empty()) return show_commands(app);
     return finish();
   } catch (const CLI::Success& request) {
-    return app.exit(request);  // --help and --version
+    app.exit(request);  // --help and --version
+    return finish();
   } catch (const CLI::ParseError& error) {
     return fail(kBadUsage, usage_error(app, error));
   } catch (const voy::Error& error) {

@@ -140,6 +140,12 @@ TEST_F(Outputs, ScenesAndCamerasThatAreNoFilesAreRefusedAtOnce) {
   EXPECT_FALSE(fs::exists(file("o.voy")));
 }
 
+TEST_F(Outputs, AFullStandardOutputFailsForEveryText) {
+  for (const std::string& command :
+       {std::string("--help"), std::string("--version"), "info " + file("c.voy")})
+    expect_refused("voyager " + command + " >/dev/full", 4, "standard output");
+}
+
 TEST_F(Outputs, TheSampleReplacesNothingThatIsNoFile) {
   for (const std::string kind : {"pipe", "full", "folder"})
     expect_refused("c_minimal " + file("c.voy") + " " + file(kind), 4, file(kind));
