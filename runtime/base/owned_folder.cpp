@@ -285,7 +285,7 @@ std::vector<std::string> OwnedFolder::remove() {
     return {};
   }
   for (const std::string& name : own_files()) ::unlink((path_ + "/" + name).c_str());
-  const std::vector<std::string> left = names();
+  std::vector<std::string> left = names();
   const unsigned made = folders_made(notes_of(read_mark()).value_or(std::vector<std::string>{}));
   ::unlink(mark_path().c_str());  // last: what a kill leaves is still marked
   remove_made(made);

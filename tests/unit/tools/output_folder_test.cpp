@@ -26,12 +26,12 @@ TEST(OutputFolder, IsWholeOrNotThere) {
   const test::TempFolder folder;
   const std::string path = folder.file("out");
   {
-    OutputFolder output(path);
+    OutputFolder output(path, {});
     std::ofstream(output.place("a")) << "a";
   }
   EXPECT_FALSE(std::filesystem::exists(path));
   {
-    OutputFolder output(path);
+    OutputFolder output(path, {});
     std::ofstream(output.place("a")) << "a";
     EXPECT_FALSE(names_in(path).contains("a"));
     output.commit();
@@ -42,18 +42,18 @@ TEST(OutputFolder, IsWholeOrNotThere) {
 TEST(OutputFolder, WhatTheKilledLeftIsRemovedAndNothingElse) {
   const test::TempFolder folder;
   const std::string path = folder.file("");
-  OutputFolder living(path);
+  OutputFolder living(path, {});
   std::ofstream(living.place("b")) << "b";
   const pid_t child = ::fork();
   if (child == 0) {
-    OutputFolder killed(path);
+    OutputFolder killed(path, {});
     std::ofstream(killed.place("c")) << "half of it";
     ::raise(SIGKILL);
   }
   ::waitpid(child, nullptr, 0);
   std::filesystem::create_directory(folder.file(".report"));
   EXPECT_EQ(names_in(path).size(), 3u);
-  { OutputFolder next(path); }
+  { OutputFolder next(path, {}); }
   EXPECT_EQ(names_in(path).size(), 2u);
   EXPECT_TRUE(names_in(path).contains(".report"));
   living.commit();
