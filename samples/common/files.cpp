@@ -2,7 +2,9 @@
 
 #include <png.h>
 #include <unistd.h>
+#include <algorithm>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -77,13 +79,15 @@ void require_writable(const std::string& path) {
 }
 
 void require_distinct(const std::string& output, const std::vector<std::string>& others) {
-  std::error_code ignored;
   if (output.empty()) return;
-  for (const std::string& other : others)
-    if (!other.empty() &&
-        (fs::equivalent(output, other, ignored) || resolved(output) == resolved(other)))
-      throw Failure(kBadUsage, output + ": found it as an output and as " + other +
-                                   ", which is read or written too, expected different files");
+  const auto same = std::find_if(others.begin(), others.end(), [&](const std::string& other) {
+    std::error_code ignored;
+    return !other.empty() &&
+           (fs::equivalent(output, other, ignored) || resolved(output) == resolved(other));
+  });
+  if (same != others.end())
+    throw Failure(kBadUsage, output + ": found it as an output and as " + *same +
+                                 ", which is read or written too, expected different files");
 }
 
 void require_pictures(const std::string& folder, const std::vector<std::string>& others,
