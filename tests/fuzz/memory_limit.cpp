@@ -1,9 +1,8 @@
 #include "tests/fuzz/memory_limit.h"
 
-#if defined(__SANITIZE_ADDRESS__)
-#define VOYAGER_COUNTS_MEMORY
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
+// Of Clang's AddressSanitizer, which the fuzzers are built with: GCC's comes without the header.
+#if defined(__has_feature) && defined(__has_include)
+#if __has_feature(address_sanitizer) && __has_include(<sanitizer/allocator_interface.h>)
 #define VOYAGER_COUNTS_MEMORY
 #endif
 #endif
