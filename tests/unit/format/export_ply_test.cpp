@@ -100,7 +100,8 @@ TEST(ExportPly, ATreeThatIsNotSoundIsRefusedByChunk) {
       std::memcpy(&record, place, sizeof record);
       record.box_max.x += 1000;
       std::memcpy(place, &record, sizeof record);
-      const SceneFile scene(test::source_of(test::sealed(std::move(altered))));
+      const test::Bytes file = test::sealed(std::move(altered));
+      const SceneFile scene(test::source_of(file));
       for (const std::string& path : {ply, hier}) {
         try {
           (path == ply ? export_ply : export_hier)(scene, path, {});
