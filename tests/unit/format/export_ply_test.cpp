@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "runtime/scene/import/importer.h"
+#include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
 namespace voyager::export_ply_test {
