@@ -2,7 +2,6 @@
 
 #include <png.h>
 #include <unistd.h>
-#include <algorithm>
 
 #include <algorithm>
 #include <cerrno>

@@ -1,7 +1,7 @@
 #pragma once
 // Holds what one input may take to what its bytes justify: a small file that costs much is a
-// finding, whatever the program took before. Under Clang's
-// AddressSanitizer only, which the fuzzers are built with.
+// finding, whatever the program took before. Only under Clang's AddressSanitizer, with which the
+// fuzzers are built.
 #include <cstddef>
 
 namespace voyager::fuzz {
