@@ -12,8 +12,10 @@ namespace {
 
 class BaselinePipeline final : public Pipeline {
  public:
-  BaselinePipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances)
+  BaselinePipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances,
+                   const PipelineDesc& desc)
       : device_(std::move(device)),
+        desc_(desc),
         instances_(std::move(instances), 1),
         places_(instances_.all().size()) {}
 
@@ -40,6 +42,7 @@ class BaselinePipeline final : public Pipeline {
   BaselineView view(const TileGrid& grid, uint32_t places, unsigned long long pairs) const;
 
   std::shared_ptr<const Device> device_;
+  PipelineDesc desc_;
   DeviceInstances instances_;
   std::vector<uint32_t> places_;  // of each instance's list
   Buffer<BaselineSplat> splats_;
@@ -123,8 +126,7 @@ void BaselinePipeline::launch_projections(const FrameInput& frame, BaselineFrame
     work.places = places_[i];
     work.gaussians = instance.view();
     work.draws = instance.draws->view();
-    work.params = project_params(*instance.scene, instance_camera(frame, frame.eyes[0], i),
-                                 Exponential::exact);
+    work.params = project_params(*instance.scene, instance_camera(frame, frame.eyes[0], i), desc_);
     launch_baseline_project(work);
     work.first += work.places;
   }
@@ -190,7 +192,10 @@ std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device>
   if (desc.exponential != Exponential::exact)
     throw Error(ErrorCode::unsupported,
                 "exponential: found another than exact with 3dgs splatting, expected exact");
-  return std::make_unique<BaselinePipeline>(std::move(device), std::move(instances));
+  if (desc.antialias == Antialias::truth)
+    throw Error(ErrorCode::unsupported,
+                "antialias: found the truth's samples with 3dgs splatting, expected on or off");
+  return std::make_unique<BaselinePipeline>(std::move(device), std::move(instances), desc);
 }
 
 }  // namespace voyager::cuda

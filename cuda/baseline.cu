@@ -43,9 +43,11 @@ __device__ bool baseline_splat(const BaselineFrame& f, uint32_t place) {
   const Vec3f d = camera_relative(interpolated_mean(arrays, item), f.params.origin, f.params.eye);
   const Vec3f view = detail::to_view(f.params, d);
   if (!(view.z > f.params.near_z)) return false;
-  const Shape<float> shape = interpolated_shape<float>(arrays, item);
-  const ImageCovariance<float> covariance =
-      image_covariance(image_jacobian(f.params.view, view), shape.rotation, shape.scale);
+  Shape<float> shape = interpolated_shape<float>(arrays, item);
+  const PixelFilter<float>& filter = f.params.filter;
+  if (filter.footprint > 0.0f) shape.scale = widened(shape.scale, filter.footprint);
+  const ImageCovariance<float> covariance = image_covariance(
+      image_jacobian(f.params.view, view), shape.rotation, shape.scale, filter.low_pass);
   BaselineSplat splat;
   splat.x = detail::image_x(f.params, view);
   splat.y = detail::image_y(f.params, view);
@@ -57,6 +59,7 @@ __device__ bool baseline_splat(const BaselineFrame& f, uint32_t place) {
   splat.b = -covariance.xy * inverse_det;
   splat.c = covariance.xx * inverse_det;
   splat.opacity = expf(shape.log_opacity);
+  if (filter.compensated) splat.opacity *= sqrtf(covariance.kept);
   const Vec3f colour = interpolated_colour(arrays, item, (1.0f / std::sqrt(dot(d, d))) * d);
   splat.red = colour.x, splat.green = colour.y, splat.blue = colour.z;
   splat.depth = sort_depth(view.z, f.params.depth_scale);

@@ -48,6 +48,7 @@ class CudaBackend final : public Backend {
 
   std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                             std::pmr::memory_resource*, Workers& workers) override {
+    require_exponential_for_truth(desc);
     device_->use();
     std::vector<DeviceInstance> instances;
     for (const auto& scene : scenes) instances.push_back(instance_of(scene, desc, workers));

@@ -44,9 +44,9 @@ __global__ void __launch_bounds__(256)
     const bool has_parent = parent != kNoNode;
     const float parent_size =
         has_parent ? node_size(load_node(tree.records + parent), sight) : 0.0f;
-    weights[i] =
-        interpolation_weight(has_parent, parent_size,
-                             node_size(load_node(tree.records + node), sight), sight.target_size);
+    weights[i] = interpolation_weight(has_parent, parent_size,
+                                      node_size(load_node(tree.records + node), sight),
+                                      sight.target_size, tree.blend_share);
   }
 }
 

@@ -16,7 +16,7 @@ inline uint32_t upper_half(float x) {
 }
 
 inline float4 device_hull(const Gaussian& g) {
-  const float rho = rho_min(g.log_opacity);
+  const float rho = rho_min(g.log_opacity, kLogTruthThreshold);
   const float radius = rho <= 0.0f ? std::sqrt(2.0f * (kRhoMargin - rho)) : 0.0f;
   const uint32_t bounds = upper_half(detail::largest(g.scale)) << 16 | upper_half(radius);
   return {g.mean.x, g.mean.y, g.mean.z, bits_float(bounds)};

@@ -53,6 +53,7 @@ DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
       sh_degree_(scene.sh_degree),
       half_sh_(fits_half(scene)),
       doubles_(scene.doubles),
+      blend_share_(scene.tree.blend_share),
       chunks_(scene.search.chunks),
       piece_layout_(scene, shape, 1),
       layout_(piece_layout_),
@@ -113,6 +114,7 @@ TreeView DevicePool::tree() const {
           layout_.unit(kLeaves) == 0 ? nullptr : array<NodeRecord>(kLeaves),
           chunks_.back().first_subtree,
           static_cast<uint32_t>(chunks_.size() - 1),
+          blend_share_,
           array<uint32_t>(kNodeIds)};
 }
 

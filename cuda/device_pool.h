@@ -60,6 +60,7 @@ class DevicePool final : public ChunkPool {
   const SlotShape shape_;
   const int sh_degree_;
   const bool half_sh_, doubles_;
+  const float blend_share_;
   const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
   const PoolLayout piece_layout_;                // of one slot
   PoolLayout layout_;

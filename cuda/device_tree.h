@@ -14,6 +14,7 @@ struct TreeView {
   const SearchChunk* chunks;
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
   uint32_t subtree_count, chunk_count;
+  float blend_share;  // LodTree's
   // Of a streamed scene, whose nodes and records are addresses: the file's ids of nodes. Else null.
   const uint32_t* node_ids;
 };

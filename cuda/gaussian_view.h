@@ -11,8 +11,9 @@ namespace voyager::cuda {
 // By Gaussian: by node id, or by address in a pool.
 struct GaussianView {
   // Mean, and what bounds the support before all else is read: the largest scale (upper
-  // 16 bits) and the radius of the support in standard deviations, 0 where α never
-  // reaches α* (lower 16), both rounded up to the upper half of a binary32.
+  // 16 bits) and the radius of the support above the least α* there is, the truth's, in standard
+  // deviations, 0 where α never reaches it (lower 16), both rounded up to the upper half of a
+  // binary32.
   const float4* hulls;
   const float4* shapes;  // two each: scale and log o; rotation (w, x, y, z)
   // What interpolation reads; null where every leaf is drawn.
@@ -24,7 +25,7 @@ struct GaussianView {
   const void* coefficients;
   int sh_degree;
   bool half_sh;
-  bool doubles;  // nodes of one child are doubles (docs/lod-tree.md)
+  bool doubles;  // nodes of one child are doubles, as files of version 4 have them
   uint32_t count;
 };
 

@@ -99,8 +99,8 @@ void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work
     work.gaussians = instance.view();
     work.draws = instance.draws->view();
     for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
-      work.params[eye] = project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i),
-                                        desc_.exponential);
+      work.params[eye] =
+          project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i), desc_);
     if (launch_project(work, desc_.alpha_filter)) ++work.instance;
   }
 }
@@ -138,10 +138,11 @@ void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& r
 }
 
 void SplatPipeline::launch_image(const Eyes& eyes, FrameReport& report) {
-  launch_rasterize(work(report.tiles),
-                   {desc_.exponential, desc_.alpha_filter, desc_.count_pixels,
-                    instances_.siblings(), lut_.data(), desc_.lut_size},
-                   eyes.data());
+  launch_rasterize(
+      work(report.tiles),
+      {desc_.exponential, desc_.alpha_filter, desc_.count_pixels, instances_.siblings(),
+       lut_.data(), desc_.lut_size, log_threshold(desc_.antialias)},
+      eyes.data());
   report.timer.end(kRasterize);
 }
 

@@ -1,4 +1,4 @@
-// METHOD §5–7: the Gaussians of a frame to splats. project_cull reads their hulls and lists
+// METHOD §5–7, §12: the Gaussians of a frame to splats. project_cull reads their hulls and lists
 // those that may reach the image; project_splats reads the rest of these.
 #include "cuda/device_arrays.cuh"
 #include "cuda/draw_item.cuh"
@@ -27,6 +27,11 @@ __device__ Hull hull_at(const GaussianView& gaussians, uint32_t i) {
   return {{h.x, h.y, h.z}, __uint_as_float(bounds & 0xffff0000u), __uint_as_float(bounds << 16)};
 }
 
+// The radius of the support above α*, from the stored one.
+__device__ float radius_above(float stored, float log_threshold) {
+  return sqrtf(fmaxf(stored * stored - 2.0f * (log_threshold - kLogTruthThreshold), 0.0f));
+}
+
 // In the image of any eye.
 template <bool kLod, int kEyes>
 __device__ bool project_may_reach(const SplatFrame& f, uint32_t place) {
@@ -38,10 +43,11 @@ __device__ bool project_may_reach(const SplatFrame& f, uint32_t place) {
     hull = {lerp_rn(parent.mean, hull.mean, item.t), fmaxf(parent.max_scale, hull.max_scale),
             fmaxf(parent.radius, hull.radius)};
   }
+  const float radius = radius_above(hull.radius, f.params[0].log_threshold);
   bool reaches = false;
   for (int eye = 0; eye < kEyes; ++eye)
-    reaches = reaches || may_reach(f.params[eye], hull.mean, hull.max_scale, hull.radius);
-  return hull.radius > 0.0f && reaches;
+    reaches = reaches || may_reach(f.params[eye], hull.mean, hull.max_scale, radius);
+  return radius > 0.0f && reaches;
 }
 
 // The order of the candidates depends on scheduling; nothing that is made of them does.
@@ -107,7 +113,7 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
       rank = first_place + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
       DrawnGaussian drawn;
       // A rank beyond the room is that of a place that is, too: counted there.
-      if (rank < f.splats.places && read_gaussian(arrays, item, drawn)) {
+      if (rank < f.splats.places && read_gaussian(f.params[0], arrays, item, drawn)) {
 #pragma unroll
         for (int eye = 0; eye < kEyes; ++eye) {
           Splat splat;
@@ -115,8 +121,8 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
           if (!project(params, arrays, item, drawn, splat)) continue;
           const SplatRecord record = record_of(splat, params.log_scale);
           f.splats.records[rank * kEyes + eye] = record;
-          extent[eye] =
-              tile_extent(support_of(record, params.log_scale), f.splats.frame.grids[eye]);
+          extent[eye] = tile_extent(support_of(record, params.log_scale, params.log_threshold),
+                                    f.splats.frame.grids[eye]);
           depth[eye] = splat.depth;
           ++visible;
           boxed += extent[eye].boxed();

@@ -21,12 +21,6 @@ __device__ inline float lg2(float x) {
   return y;
 }
 
-// A splat contributes where log α is at least this, in the base of the exponential.
-template <Exponential E>
-__device__ constexpr float log_threshold() {
-  return is_base_2(E) ? kLogAlphaThreshold * kLog2e : kLogAlphaThreshold;
-}
-
 template <Exponential E>
 __device__ inline float alpha_of(float log_alpha, const float* lut, float lut_scale) {
   float alpha;

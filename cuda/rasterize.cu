@@ -28,8 +28,7 @@ struct Part {
 
 // Whether the support may touch the part: the least p² + q² over it is on one of the two
 // edges that face the centre.
-template <Exponential E>
-__device__ bool rasterize_touches(const RasterSplat& s, const Part& part) {
+__device__ bool rasterize_touches(const RasterSplat& s, const Part& part, float log_threshold) {
   const float p_x = s.shape.z, q_y = s.shape.w, skew = s.middle.x;
   const float pp = p_x * p_x, kq = skew * q_y;
   const float x0 = part.x0 - s.shape.x, x1 = part.x1 - s.shape.x;
@@ -43,7 +42,7 @@ __device__ bool rasterize_touches(const RasterSplat& s, const Part& part) {
   const float p2 = along * p_x, q2 = fmaf(-skew, along, y) * q_y;
   // Twice the growth of runtime/stages/project.h: this arithmetic rounds too.
   const float growth = 1.0f + 1.2e-7f * (64.0f + __fdividef(16.0f * fabsf(kq), p_x));
-  const float radius = (s.middle.y - log_threshold<E>()) + 2.0f * kRhoMargin;
+  const float radius = (s.middle.y - log_threshold) + 2.0f * kRhoMargin;
   return fminf(fmaf(p1, p1, q1 * q1), fmaf(p2, p2, q2 * q2)) <= radius * (growth * growth);
 }
 
@@ -52,6 +51,7 @@ struct RasterParams {
   RasterEye eyes[kMaxEyes];
   const float* lut;
   uint32_t lut_size;
+  float log_threshold;  // a splat contributes where log α, in the exponential's base, is no less
 };
 
 // A list's splats, 32 at a time, asked for before they are wanted.
@@ -118,11 +118,11 @@ __device__ void blend_chosen(const WarpSplats& chosen, int first, int last, cons
 
 // siblings: a bit for each splat that is to be corrected. Where few are, only those of their group
 // of kUnrolled pay for it.
-template <class Lane>
+template <Siblings kMost, class Lane>
 __device__ void blend_mixed(const WarpSplats& chosen, int count, unsigned siblings, const Lut& lut,
                             Lane& lane, Counts& counts) {
   if (2 * __popc(siblings) >= count)
-    return blend_chosen<Siblings::few>(chosen, 0, count, lut, lane, counts);
+    return blend_chosen<kMost>(chosen, 0, count, lut, lane, counts);
   for (int first = 0; first < count;) {
     const unsigned left = siblings >> first;
     // Whole groups up to the next that has one, or that group.
@@ -131,14 +131,15 @@ __device__ void blend_mixed(const WarpSplats& chosen, int count, unsigned siblin
     if (before != 0)
       blend_chosen<Siblings::none>(chosen, first, last, lut, lane, counts);
     else
-      blend_chosen<Siblings::few>(chosen, first, last, lut, lane, counts);
+      blend_chosen<kMost>(chosen, first, last, lut, lane, counts);
     first = last;
   }
 }
 
 template <class M, class Lane>
 __device__ void rasterize_list(const SplatView& splats, const TileList& list, const Part& part,
-                               const Lut& lut, WarpSplats& chosen, Lane& lane, Counts& counts) {
+                               float log_threshold, const Lut& lut, WarpSplats& chosen, Lane& lane,
+                               Counts& counts) {
   const uint32_t self = threadIdx.x % 32;
   Reader reader(splats, list, self);
   float farthest = kInfinity;
@@ -148,7 +149,7 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
     const bool valid = first + self < list.last;
     bool within = valid;
     if constexpr (M::kLimits) within = valid && splat.middle.z <= farthest;
-    const bool touches = within && (!M::kFilter || rasterize_touches<M::kExponential>(splat, part));
+    const bool touches = within && (!M::kFilter || rasterize_touches(splat, part, log_threshold));
     const unsigned lanes = __ballot_sync(kAll, touches);
     __syncwarp();
     const int at = __popc(lanes & ((1u << self) - 1));
@@ -162,12 +163,11 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
     if constexpr (M::kSiblings) {
       const Siblings own =
           touches ? siblings_of<M::kExponential>(splat.middle.w, splat.colour.w) : Siblings::none;
-      if (__any_sync(kAll, own == Siblings::many)) {
-        blend_chosen<Siblings::many>(chosen, 0, count, lut, lane, counts);
-      } else {
-        const unsigned few = __reduce_or_sync(kAll, own == Siblings::few ? 1u << at : 0);
-        blend_mixed(chosen, count, few, lut, lane, counts);
-      }
+      const unsigned siblings = __reduce_or_sync(kAll, own != Siblings::none ? 1u << at : 0);
+      if (__any_sync(kAll, own == Siblings::many))
+        blend_mixed<Siblings::many>(chosen, count, siblings, lut, lane, counts);
+      else
+        blend_mixed<Siblings::few>(chosen, count, siblings, lut, lane, counts);
     } else {
       blend_chosen<Siblings::none>(chosen, 0, count, lut, lane, counts);
     }
@@ -214,15 +214,15 @@ __global__ void __launch_bounds__(kThreads, 8)
   typename LaneOf<M>::Type lane(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
 #pragma unroll
   for (int row = 0; row < kRows; ++row)
-    lane.set_limit(row, inside(row) ? -log_threshold<M::kExponential>() : -kInfinity);
+    lane.set_limit(row, inside(row) ? -params.log_threshold : -kInfinity);
   if constexpr (M::kLimits)
     for (int row = 0; row < kRows; ++row)
       lane.set_farthest(row,
                         inside(row) ? limit_at(eye.limits, x, y + row * kLaneRows) : -kInfinity);
   Counts counts;
   const Lut lut{lut_entries, static_cast<float>(params.lut_size) / kLutRange};
-  rasterize_list<M>(params.splats, params.splats.tiles[list], part, lut, chosen[warp], lane,
-                    counts);
+  rasterize_list<M>(params.splats, params.splats.tiles[list], part, params.log_threshold, lut,
+                    chosen[warp], lane, counts);
 #pragma unroll
   for (int row = 0; row < kRows; ++row)
     if (inside(row)) write_pixel(eye.target, x, y + row * kLaneRows, lane.pixel(row));
@@ -269,7 +269,8 @@ void launch_for(const SplatFrame& f, const RasterChoices& choices, const RasterP
 }  // namespace
 
 void launch_rasterize(const SplatFrame& f, const RasterChoices& choices, const RasterEye* eyes) {
-  RasterParams params{f.splats, {}, choices.lut, choices.lut_size};
+  const float base = is_base_2(choices.exponential) ? kLog2e : 1.0f;
+  RasterParams params{f.splats, {}, choices.lut, choices.lut_size, choices.log_threshold * base};
   std::copy_n(eyes, f.splats.frame.eyes, params.eyes);
   switch (choices.exponential) {
     case Exponential::exact:

@@ -52,6 +52,7 @@ struct ExhaustiveTree {
   const NodeRecord* records;
   const uint32_t* parent;
   uint32_t size;
+  float blend_share;  // LodTree's
 };
 size_t exhaustive_scratch_bytes(const ExhaustiveTree& tree);
 void launch_exhaustive(const ExhaustiveTree& tree, const Sight& sight, void* scratch,

@@ -61,6 +61,7 @@ struct RasterChoices {
   bool siblings;     // some t may be below 1
   const float* lut;  // lut_size + 1 entries on the device
   uint32_t lut_size;
+  float log_threshold;  // log α*, natural
 };
 // An eye's image, and how far it may be seen: on the device.
 struct RasterEye {

@@ -18,8 +18,9 @@ struct alignas(16) SplatRecord {
 static_assert(sizeof(SplatRecord) == 48);
 
 // The grown support of a splat from its record, in every stage alike.
-VOYAGER_HD SupportEllipse support_of(const SplatRecord& r, float log_scale) {
-  const Rounded threshold = Rounded(kLogAlphaThreshold) * log_scale;
+// log_threshold: of α*, natural.
+VOYAGER_HD SupportEllipse support_of(const SplatRecord& r, float log_scale, float log_threshold) {
+  const Rounded threshold = Rounded(log_threshold) * log_scale;
   return support_ellipse(r.x, r.y, {r.p_x, r.skew, r.q_y}, (threshold - r.log_opacity).value);
 }
 

@@ -33,8 +33,9 @@ __global__ void __launch_bounds__(kWeightThreads)
     const CutOrigin origin = state.origin[i];
     const bool has_parent = origin.parent != kNoRecord;
     const float parent = has_parent ? record_size(tree, origin.parent, sight) : 0.0f;
-    state.weights[i] = interpolation_weight(
-        has_parent, parent, own_size(tree, origin.own, node, sight), sight.target_size);
+    state.weights[i] =
+        interpolation_weight(has_parent, parent, own_size(tree, origin.own, node, sight),
+                             sight.target_size, tree.blend_share);
   }
 }
 

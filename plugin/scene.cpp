@@ -100,7 +100,7 @@ VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
   info.damagedChunkCount = damaged_chunks(scene);
   info.shDegree = static_cast<uint32_t>(scene.sh_degree);
   info.storage = storage_of(scene.storage);
-  info.antialiased = scene.antialiased ? 1 : 0;
+  info.antialiased = scene.native.antialiased() ? 1 : 0;
   for (int i = 0; i < 3; ++i) {
     info.origin[i] = scene.origin[i];
     info.boundsMin[i] = scene.origin[i] + static_cast<double>(scene.bounds_min[i]);
@@ -110,6 +110,9 @@ VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
   info.droppedCount = scene.import.dropped();
   info.repairedCount = scene.import.repaired();
   info.positionError = scene.position_error;
+  info.nativePixel = scene.native.pixel;
+  info.lowPass = scene.native.low_pass;
+  info.nativeSource = static_cast<VoyNativeSource>(scene.native.source);
   return info;
 }
 

@@ -72,6 +72,17 @@ Exponential exponential_of(const VoyViewDesc& desc, VoyBackend backend) {
   }
 }
 
+Antialias antialias_of(VoyAntialias antialias) {
+  switch (antialias) {
+    case VOY_ANTIALIAS_OFF:
+      return Antialias::off;
+    case VOY_ANTIALIAS_TRUTH:
+      return Antialias::truth;
+    default:
+      return Antialias::on;
+  }
+}
+
 PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   check_tau(desc.tau);
   check_enum(desc.lod, VOY_LOD_LEVELS, "desc.lod");
@@ -80,6 +91,7 @@ PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   check_enum(desc.exponential, VOY_EXPONENTIAL_HALF2, "desc.exponential");
   check_count(desc.lutSize, 0, kMaxLutSize, "desc.lutSize");
   check_enum(desc.splatting, VOY_SPLATTING_3DGS, "desc.splatting");
+  check_enum(desc.antialias, VOY_ANTIALIAS_TRUTH, "desc.antialias");
   PipelineDesc choices;
   choices.eyes = desc.eyeCount;
   choices.lod = lod_of(desc.lod);
@@ -87,6 +99,7 @@ PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   choices.alpha_filter = desc.alphaFilter == VOY_ALPHA_FILTER_ON;
   choices.lut_size = desc.lutSize == 0 ? kDefaultLutSize : desc.lutSize;
   choices.exponential = exponential_of(desc, backend);
+  choices.antialias = antialias_of(desc.antialias);
   if (desc.splatting == VOY_SPLATTING_3DGS) choices.splatting = Splatting::baseline_3dgs;
   return choices;
 }

@@ -3,32 +3,14 @@
 #include <fmt/core.h>
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 
-#include "runtime/base/file.h"
+#include "runtime/base/error.h"
 #include "runtime/math/screen_size.h"
-#include "tools/byte_size.h"
-#include "tools/exit_code.h"
+#include "tools/json_fields.h"
+#include "tools/json_file.h"
 
 namespace voyager::tools {
 namespace {
-
-using Value = nlohmann::json;
-
-constexpr uint64_t kLargestFile = uint64_t{1} << 30;
-constexpr int kMostLevels = 16;  // cameras take 4, and other programs' fields may be in between
-
-// The limit is there because a level of one byte takes 76 in memory.
-Value parse(const std::string& path, const std::string& text) {
-  return Value::parse(text, [&](int level, Value::parse_event_t, const Value&) {
-    if (level > kMostLevels)
-      throw Error(ErrorCode::refused_input,
-                  fmt::format("{}: found JSON of more than {} levels in one another, expected a "
-                              "cameras.json",
-                              path, kMostLevels));
-    return true;
-  });
-}
 
 // right and forward are unit vectors at right angles.
 void set_orientation(VoyPose& pose, const Eigen::Vector3d& right, const Eigen::Vector3d& forward) {
@@ -41,108 +23,43 @@ void set_orientation(VoyPose& pose, const Eigen::Vector3d& right, const Eigen::V
   pose.orientation[3] = q.w();
 }
 
-class CameraReader {
- public:
-  CameraReader(const std::string& file, size_t index, const Value& json)
-      : file_(file), index_(index), json_(json) {}
+// Camera to world, as rows; its columns are the camera's right, down and
+// forward. Written in decimal, they are not quite orthonormal: forward is kept
+// as it is, because it orders the splats (METHOD §6).
+void read_orientation(const JsonFields& fields, VoyPose& pose) {
+  const Eigen::Matrix3d m = fields.matrix("rotation", 3, 3, 3);
+  if (!is_rotation(m)) fields.refuse("rotation", kRotationExpected);
+  const Eigen::Vector3d forward = m.col(2).normalized();
+  const Eigen::Vector3d right = (m.col(0) - m.col(0).dot(forward) * forward).normalized();
+  set_orientation(pose, right, forward);
+}
 
-  Camera read() const {
-    if (!json_.is_object()) refuse("", json_, "an object");
-    Camera camera;
-    camera.width = side("width");
-    camera.height = side("height");
-    camera.fx = positive("fx");
-    camera.fy = positive("fy");
-    camera.cx = json_.contains("cx") ? number("cx") : camera.width / 2.0;
-    camera.cy = json_.contains("cy") ? number("cy") : camera.height / 2.0;
-    const Eigen::Vector3d position = vector(field("position"), "position");
-    if (!(position.cwiseAbs().maxCoeff() < double{kMaxCoordinate}))
-      refuse("position", field("position"), "metres below 1e18 in magnitude");
-    for (int i = 0; i < 3; ++i) camera.pose.position[i] = position[i];
-    read_orientation(camera.pose);
-    check_frustum(camera);
-    return camera;
-  }
-
- private:
-  [[noreturn]] void refuse(const std::string& name, const Value& found,
-                           const std::string& expected) const {
-    std::string text = found.is_structured()
-                           ? fmt::format("an {} of {}", found.type_name(), found.size())
-                           : found.dump();
-    if (text.size() > 60) text = text.substr(0, 60) + "…";
+void check_frustum(const std::string& place, const Camera& camera) {
+  try {
+    camera.frustum();
+  } catch (const Error& error) {
     throw Error(ErrorCode::refused_input,
-                fmt::format("{}: camera {}{}{}: found {}, expected {}", file_, index_,
-                            name.empty() ? "" : ": ", name, text, expected));
+                fmt::format("{}: fx, fy, cx, cy: {}", place, error.what()));
   }
+}
 
-  const Value& field(const std::string& name) const {
-    const auto found = json_.find(name);
-    if (found == json_.end())
-      throw Error(
-          ErrorCode::refused_input,
-          fmt::format("{}: camera {}: found no field {}, expected one", file_, index_, name));
-    return *found;
-  }
-
-  void check_frustum(const Camera& camera) const {
-    try {
-      camera.frustum();
-    } catch (const Error& error) {
-      throw Error(ErrorCode::refused_input,
-                  fmt::format("{}: camera {}: fx, fy, cx, cy: {}", file_, index_, error.what()));
-    }
-  }
-
-  double number(const std::string& name) const {
-    const Value& value = field(name);
-    if (!value.is_number() || !std::isfinite(value.get<double>()))
-      refuse(name, value, "a finite number");
-    return value.get<double>();
-  }
-  double positive(const std::string& name) const {
-    const double value = number(name);
-    if (!(value > 0)) refuse(name, field(name), "a number above 0");
-    return value;
-  }
-  uint32_t side(const std::string& name) const {
-    const double value = number(name);
-    if (!(value >= 1 && value <= kLargestSide) || value != std::floor(value))
-      refuse(name, field(name), fmt::format("a whole number from 1 to {}", kLargestSide));
-    return static_cast<uint32_t>(value);
-  }
-  Eigen::Vector3d vector(const Value& value, const std::string& name) const {
-    Eigen::Vector3d v = Eigen::Vector3d::Zero();
-    if (!value.is_array() || value.size() != 3) refuse(name, value, "three numbers");
-    for (size_t i = 0; i < 3; ++i) {
-      if (!value[i].is_number()) refuse(name, value, "three finite numbers");
-      v[static_cast<Eigen::Index>(i)] = value[i].get<double>();
-    }
-    if (!v.allFinite()) refuse(name, value, "three finite numbers");
-    return v;
-  }
-
-  // Camera to world, as rows; its columns are the camera's right, down and
-  // forward. Written in decimal, they are not quite orthonormal: forward is kept
-  // as it is, because it orders the splats (METHOD §6).
-  void read_orientation(VoyPose& pose) const {
-    const Value& rows = field("rotation");
-    if (!rows.is_array() || rows.size() != 3)
-      refuse("rotation", rows, "three rows of three numbers");
-    Eigen::Matrix3d m;
-    for (int i = 0; i < 3; ++i)
-      m.row(i) = vector(rows[static_cast<size_t>(i)], "rotation").transpose();
-    if (!(m * m.transpose()).isIdentity(1e-3) || m.determinant() < 0)
-      refuse("rotation", rows, "a rotation (orthonormal within 0.001, determinant +1)");
-    const Eigen::Vector3d forward = m.col(2).normalized();
-    const Eigen::Vector3d right = (m.col(0) - m.col(0).dot(forward) * forward).normalized();
-    set_orientation(pose, right, forward);
-  }
-
-  const std::string& file_;
-  size_t index_;
-  const Value& json_;
-};
+Camera read_camera(const std::string& place, const nlohmann::json& json) {
+  const JsonFields fields(place, json);
+  Camera camera;
+  camera.width = fields.side("width", kLargestSide);
+  camera.height = fields.side("height", kLargestSide);
+  camera.fx = fields.positive("fx");
+  camera.fy = fields.positive("fy");
+  camera.cx = fields.has("cx") ? fields.number("cx") : camera.width / 2.0;
+  camera.cy = fields.has("cy") ? fields.number("cy") : camera.height / 2.0;
+  const Eigen::Vector3d position = fields.vector("position");
+  if (!(position.cwiseAbs().maxCoeff() < double{kMaxCoordinate}))
+    fields.refuse("position", "metres below 1e18 in magnitude");
+  for (int i = 0; i < 3; ++i) camera.pose.position[i] = position[i];
+  read_orientation(fields, camera.pose);
+  check_frustum(place, camera);
+  return camera;
+}
 
 }  // namespace
 
@@ -175,30 +92,14 @@ Camera looking(const Vec3d& from, const Vec3d& right, const Vec3d& forward, uint
 }
 
 std::vector<Camera> read_cameras(const std::string& path) {
-  const auto source = open_file_source(path);
-  if (source->size() > kLargestFile)
-    throw Error(ErrorCode::refused_input,
-                fmt::format("{}: found {}, expected a cameras.json of at most {}", path,
-                            size_text(source->size()), size_text(kLargestFile)));
-  std::string text(source->size(), '\0');
-  source->read(0, std::as_writable_bytes(std::span(text)));
-  Value json;
-  try {
-    json = parse(path, text);
-  } catch (const Value::parse_error& error) {
-    throw Error(ErrorCode::refused_input,
-                fmt::format("{}: offset {}: found no JSON there, expected a cameras.json", path,
-                            error.byte));
-  } catch (const Value::exception& error) {
-    throw Error(ErrorCode::refused_input,
-                fmt::format("{}: found {}, expected a cameras.json", path, error.what()));
-  }
+  const nlohmann::json json = read_json_file(path, "a cameras.json");
   if (!json.is_array() || json.empty())
     throw Error(ErrorCode::refused_input,
                 fmt::format("{}: found {}, expected an array of at least one camera", path,
                             json.type_name()));
   std::vector<Camera> cameras;
-  for (size_t i = 0; i < json.size(); ++i) cameras.push_back(CameraReader(path, i, json[i]).read());
+  for (size_t i = 0; i < json.size(); ++i)
+    cameras.push_back(read_camera(fmt::format("{}: camera {}", path, i), json[i]));
   return cameras;
 }
 

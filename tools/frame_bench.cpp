@@ -1,6 +1,7 @@
 #include "tools/frame_bench.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace voyager::tools {
 namespace {
@@ -95,6 +96,12 @@ RgbaImage draw_image(View& view, const FrameInput& frame) {
   seen.eyes[0].image = image;
   view.render(seen);
   return pixels;
+}
+
+std::vector<size_t> every_index(size_t count) {
+  std::vector<size_t> all(count);
+  std::iota(all.begin(), all.end(), size_t{0});
+  return all;
 }
 
 std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& desc,

@@ -47,6 +47,8 @@ FrameRun run_frames(const FrameMaker& maker, const PipelineDesc& desc, const Fra
 
 // The view's next frame, of two eyes the left, as floats before clamping.
 RgbaImage draw_image(View& view, const FrameInput& frame);
+// 0 to count − 1: all of so many frames.
+std::vector<size_t> every_index(size_t count);
 // The chosen frames, by a view of their own.
 std::vector<RgbaImage> draw_images(const FrameMaker& maker, const PipelineDesc& desc,
                                    const std::vector<FrameInput>& frames,

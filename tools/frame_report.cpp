@@ -63,6 +63,7 @@ Json choices(const FrameRow& row, const ReportContext& context) {
   json["slack"] = searched && desc.search == Search::temporal;
   json["splat"] = splatting_name(desc.splatting);
   json["filter"] = ours && desc.alpha_filter ? "on" : "off";
+  json["antialias"] = desc.antialias == Antialias::off ? "off" : "on";
   json["exp"] = exponential_name(desc.exponential);
   json["lut_size"] = desc.exponential == Exponential::lut ? Json(desc.lut_size) : Json();
   return json;

@@ -7,6 +7,7 @@
 
 #include "tools/backend_name.h"
 #include "tools/console.h"
+#include "tools/supersample.h"
 
 namespace voyager::tools {
 namespace {
@@ -54,8 +55,8 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
   desc.instanceCount = 1;
   desc.scenes = &scene;
   desc.eyeCount = choices.eyes;
-  desc.maxWidth = max_width;
-  desc.maxHeight = max_height;
+  desc.maxWidth = max_width * choices.supersample;
+  desc.maxHeight = max_height * choices.supersample;
   desc.lod = choices.lod;
   desc.tau = choices.tau;
   desc.search = choices.search == VOY_SEARCH_TEMPORAL && !choices.slack ? VOY_SEARCH_TEMPORAL_VISIT
@@ -64,6 +65,7 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
   desc.exponential = choices.exponential;
   desc.lutSize = choices.lut_size;
   desc.splatting = choices.splatting;
+  desc.antialias = choices.antialias;
   VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
   budget.milliseconds = choices.time_budget;
   if (choices.time_budget > 0) desc.next = &budget;
@@ -85,7 +87,7 @@ voy::Target Renderer::create_target(const Camera& camera, RenderedImage& image) 
   VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
   desc.width = camera.width;
   desc.height = camera.height;
-  if (choices_.floats) {
+  if (choices_.floats || samples()) {
     image.rgba32f.resize(4 * pixels);
     desc.colorFormat = VOY_COLOR_FORMAT_RGBA32F;
     desc.color = image.rgba32f.data();
@@ -98,6 +100,12 @@ voy::Target Renderer::create_target(const Camera& camera, RenderedImage& image) 
     desc.depth = image.depth.data();
   }
   return device_.create_target(desc);
+}
+
+// camera: of the picture.
+void Renderer::average(const Camera& camera, RenderedImage& image) const {
+  image.rgba32f = mean_of_samples(image.rgba32f, camera.width, camera.height, choices_.supersample);
+  if (!choices_.floats) image.rgba8 = to_rgba8(image.rgba32f);
 }
 
 void Renderer::describe() const {
@@ -114,8 +122,10 @@ void Renderer::render(std::span<const Camera> cameras) {
   std::vector<voy::Target> targets;
   std::vector<VoyFrameEye> eyes(cameras.size(), VoyFrameEye VOY_FRAME_EYE_INIT);
   for (size_t i = 0; i < cameras.size(); ++i) {
-    targets.push_back(create_target(cameras[i], images_[i]));
-    eyes[i].pose = cameras[i].pose;
+    const uint32_t side = choices_.supersample;
+    const Camera drawn = cameras[i].resized(cameras[i].width * side, cameras[i].height * side);
+    targets.push_back(create_target(drawn, images_[i]));
+    eyes[i].pose = drawn.pose;
     eyes[i].frustum = cameras[i].frustum();
     eyes[i].target = targets[i].get();
   }
@@ -128,6 +138,8 @@ void Renderer::render(std::span<const Camera> cameras) {
   streaming.standIn = choices_.keep_going ? 1 : 0;
   if (choices_.streamed) frame.next = &streaming;
   view_.render(frame);
+  if (!samples()) return;
+  for (size_t i = 0; i < cameras.size(); ++i) average(cameras[i], images_[i]);
 }
 
 }  // namespace voyager::tools

@@ -21,6 +21,8 @@ struct RenderChoices {
   VoyExponential exponential = VOY_EXPONENTIAL_AUTO;
   uint32_t lut_size = 32;
   VoySplatting splatting = VOY_SPLATTING_OURS;
+  VoyAntialias antialias = VOY_ANTIALIAS_ON;
+  uint32_t supersample = 1;  // samples a pixel along each axis: METHOD §12's truth where above 1
   float background[3] = {0, 0, 0};  // code values, 0 to 1
   bool floats = false;              // RGBA32F instead of RGBA8
   bool depth = false;
@@ -66,7 +68,9 @@ class Renderer {
   void describe() const;
 
  private:
+  bool samples() const { return choices_.supersample > 1; }
   voy::Target create_target(const Camera& camera, RenderedImage& image) const;
+  void average(const Camera& camera, RenderedImage& image) const;
 
   RenderChoices choices_;
   std::unique_ptr<RendererLog> log_ = std::make_unique<RendererLog>();

@@ -118,8 +118,8 @@ class Baker {
       require_room({{bake_.output, bytes_of_scene(count, sh_degree, bake_.quality), "the scene"},
                     folder_.room(bytes, "a copy of the inputs")});
     in_space(bytes, "a copy of the inputs", [&] {
-      spool = spool_inputs([&] { return std::move(readers); }, folder_, bake_.memory / 2, workers_,
-                           progress_);
+      spool = spool_inputs([&] { return std::move(readers); }, folder_, bake_.memory / 2,
+                           bake_.native, workers_, progress_);
     });
     return spool;
   }
@@ -252,7 +252,7 @@ class Baker {
     GaussianCloud cloud;
     cloud.sh_degree = spool.sh_degree;
     cloud.left_out_bands = spool.row_degree - spool.sh_degree;
-    cloud.antialiased = spool.antialiased;
+    cloud.native = spool.native;
     cloud.origin = spool.source_origin;
     cloud.report = spool.import;
     const size_t width = other_floats(spool.sh_degree);

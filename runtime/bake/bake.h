@@ -30,7 +30,8 @@ struct BakeInParts {
   BakeStep step = BakeStep::all;
   uint32_t part = 0, parts = 1;
   uint32_t most_in_cell = 0;  // Gaussians; 0: what memory and threads ask for
-  TreeRule rule;              // of a clustered tree: no other is baked in parts
+  NativeChoice native;
+  TreeRule rule;  // of a clustered tree: no other is baked in parts
 };
 
 struct BakeSummary {
@@ -53,7 +54,8 @@ BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Worke
 // nothing can be told; files count with size and time of change, URLs with size. Throws
 // Error(file_not_found), and for a URL what open_source() does.
 std::string bake_request(const std::vector<std::string>& inputs, Quality quality,
-                         uint32_t chunk_bytes, const TreeRule& rule = {});
+                         uint32_t chunk_bytes, const TreeRule& rule = {},
+                         const NativeChoice& native = {});
 
 // Bytes that baking in memory takes at most, about.
 uint64_t bytes_to_bake(uint64_t gaussians, int sh_degree);

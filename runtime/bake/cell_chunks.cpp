@@ -65,7 +65,7 @@ ChunkContext encoding_context(const SplitInfo& split, Quality quality) {
   context.quality = quality;
   context.sh_degree = split.spool.sh_degree;
   context.leaf_count = split.spool.gaussians;
-  context.tree = TreeKind::clustered;  // no other is baked in parts
+  context.extents = ExtentRule::error;  // no other is baked in parts
   return context;
 }
 

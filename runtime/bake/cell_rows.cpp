@@ -123,9 +123,8 @@ class Distributor {
 void write_info(const WorkFolder& folder, const SpoolInfo& spool, uint32_t cell_level,
                 const std::array<double, 3>& origin) {
   Packer packer;
-  packer.put(spool.gaussians)
-      .put(std::array{spool.sh_degree, spool.row_degree})
-      .put(spool.antialiased);
+  packer.put(spool.gaussians).put(std::array{spool.sh_degree, spool.row_degree});
+  put(packer, spool.native);
   packer.put(spool.source_origin).put(spool.import).put(cell_level).put(origin);
   write_sealed(folder.file(kSplitDone), packer.bytes());
 }
@@ -145,7 +144,7 @@ CellRows room_for(const SpoolInfo& spool, uint32_t count) {
   CellRows rows;
   GaussianCloud& cloud = rows.cloud;
   cloud.sh_degree = spool.sh_degree;
-  cloud.antialiased = spool.antialiased;
+  cloud.native = spool.native;
   cloud.origin = spool.source_origin;
   cloud.position.resize(3 * size_t{count});
   cloud.log_scale.resize(3 * size_t{count});
@@ -186,7 +185,7 @@ SplitInfo read_split_info(const WorkFolder& folder, const TreeRule& rule) {
   split.spool.gaussians = from.take<uint32_t>();
   const auto degrees = from.take<std::array<int32_t, 2>>();
   split.spool.sh_degree = degrees[0], split.spool.row_degree = degrees[1];
-  split.spool.antialiased = from.take<bool>();
+  split.spool.native = take_native(from);
   split.spool.source_origin = from.take<std::array<double, 3>>();
   split.spool.import = from.take<ImportReport>();
   split.cell_level = from.take<uint32_t>();

@@ -21,8 +21,7 @@ class Joiner {
     totals_.quality = quality;
     totals_.sh_degree = split.spool.sh_degree;
     totals_.left_out_bands = split.spool.row_degree - split.spool.sh_degree;
-    totals_.antialiased = split.spool.antialiased;
-    totals_.clustered = true;
+    totals_.native = split.spool.native;
     totals_.leaf_count = split.spool.gaussians;
     totals_.chunk_bytes = plan.chunk_bytes();
     totals_.tiers = plan.tiers();

@@ -11,7 +11,7 @@
 namespace voyager {
 namespace {
 
-constexpr int kWorkVersion = 6;  // of the files in the folder
+constexpr int kWorkVersion = 7;  // of the files in the folder
 
 std::string line_of(const std::string& path) {
   if (path == "-") return "input standard input\n";
@@ -31,12 +31,13 @@ std::string line_of(const std::string& path) {
 }  // namespace
 
 std::string bake_request(const std::vector<std::string>& inputs, Quality quality,
-                         uint32_t chunk_bytes, const TreeRule& rule) {
+                         uint32_t chunk_bytes, const TreeRule& rule, const NativeChoice& native) {
   std::string text = "work folder version " + std::to_string(kWorkVersion) + "\n.voy version " +
                      std::to_string(kSceneVersion) + "\nquality " +
                      (quality == Quality::compact ? "compact" : "lossless") + "\nchunk bytes " +
                      std::to_string(chunk_bytes) + "\nblocks of " + std::to_string(rule.block) +
                      " and " + std::to_string(rule.exposure_block) + "\n";
+  text += request_line(native);
   for (const std::string& input : inputs) text += line_of(input);
   return text;
 }

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 
-#include "runtime/bake/sealed_file.h"
 #include "runtime/base/checksum.h"
 #include "runtime/base/error.h"
 #include "runtime/lod/build.h"
 #include "runtime/scene/append.h"
 #include "runtime/scene/sanitise.h"
+#include "runtime/scene/scale_histogram.h"
 #include "runtime/scene/sh_bands.h"
 
 namespace voyager {
@@ -23,10 +23,11 @@ struct Job {
   const BlockReader* reader = nullptr;
   RawBlock raw;
   std::array<double, 3> origin{0, 0, 0};
-  bool antialiased = false;
+  NativeScale native;
   ImportReport import;
   std::vector<float> positions, others;
   int used_sh_degree = 0;
+  ScaleHistogram scales;
   SpoolPiece piece{};
 };
 
@@ -48,22 +49,23 @@ class Spooler {
  public:
   // blocks: on their way at once.
   Spooler(std::vector<std::unique_ptr<BlockReader>> readers, const WorkFolder& folder,
-          size_t in_block, size_t blocks, const Progress& progress)
+          const NativeChoice& native, size_t in_block, size_t blocks, const Progress& progress)
       : readers_(std::move(readers)),
         in_block_(in_block),
         jobs_(blocks),
         progress_(progress),
         positions_(ScratchFile::create(folder.file(kPositionRows))),
-        others_(ScratchFile::create(folder.file(kOtherRows))) {
+        others_(ScratchFile::create(folder.file(kOtherRows))),
+        choice_(native),
+        announced_(announced_by(readers_)),
+        pixels_(native.cameras, announced_) {
     for (Job& job : jobs_) idle_.push(&job);
-    for (const auto& reader : readers_) {
+    for (const auto& reader : readers_)
       info_.row_degree = std::max(info_.row_degree, reader->sh_degree());
-      announced_ += reader->count();
-    }
-    info_.antialiased = readers_.front()->antialiased();
+    info_.native = readers_.front()->native();
     const std::array<double, 3> any{};
     for (const auto& reader : readers_)
-      require_alike(any, info_.antialiased, any, reader->antialiased(), reader->name());
+      require_alike(any, info_.native, any, reader->native(), reader->name());
   }
 
   size_t blocks() const { return jobs_.size(); }
@@ -86,12 +88,13 @@ class Spooler {
     GaussianCloud cloud = job.reader->decode(job.raw);
     job.raw = {};
     job.origin = cloud.origin;
-    job.antialiased = cloud.antialiased;
+    job.native = cloud.native;
     sanitise(cloud);
     job.import = cloud.report;
     job.positions.assign(cloud.position.begin(), cloud.position.end());
     job.others = rows_of(cloud, info_.row_degree);
     job.used_sh_degree = used_sh_degree(cloud.sh, cloud.sh_degree);
+    job.scales.add(cloud);
     job.piece.count = static_cast<uint32_t>(cloud.size());
     job.piece.position_sum = checksum(std::as_bytes(std::span(job.positions)));
     job.piece.other_sum = checksum(std::as_bytes(std::span(job.others)));
@@ -101,12 +104,13 @@ class Spooler {
   void place(Job& job) {
     if (info_.import.read == 0 && job.reader == readers_.front().get())
       info_.source_origin = job.origin;
-    require_alike(info_.source_origin, info_.antialiased, job.origin, job.antialiased,
-                  job.reader->name());
+    require_alike(info_.source_origin, info_.native, job.origin, job.native, job.reader->name());
     add(info_.import, job.import);
+    scales_.add(job.scales);
     info_.sh_degree = std::max(info_.sh_degree, job.used_sh_degree);
     check_count(uint64_t{info_.gaussians} + job.piece.count);
     job.piece.first = info_.gaussians;
+    look(job);
     info_.gaussians += job.piece.count;
     if (job.piece.count != 0) info_.pieces.push_back(job.piece);
     report(progress_, "reading", info_.import.read, announced_);
@@ -121,9 +125,29 @@ class Spooler {
     idle_.push(&job);
   }
 
-  SpoolInfo take_info() { return std::move(info_); }
+  SpoolInfo take_info() {
+    info_.native = native_scale(choice_, info_.native, pixels_, scales_).scale;
+    return std::move(info_);
+  }
 
  private:
+  static uint64_t announced_by(const std::vector<std::unique_ptr<BlockReader>>& readers) {
+    uint64_t gaussians = 0;
+    for (const auto& reader : readers) gaussians += reader->count();
+    return gaussians;
+  }
+
+  // Where a Gaussian is in the whole is only known in order.
+  void look(const Job& job) {
+    if (choice_.pixel || choice_.cameras.empty()) return;
+    GaussianCloud cloud;
+    cloud.origin = job.origin;
+    cloud.position.assign(job.positions.begin(), job.positions.end());
+    const size_t width = other_floats(info_.row_degree);
+    for (size_t i = 7; i < job.others.size(); i += width) cloud.opacity.push_back(job.others[i]);
+    pixels_.add(cloud, job.piece.first);
+  }
+
   std::vector<std::unique_ptr<BlockReader>> readers_;
   size_t in_block_, current_ = 0;
   std::vector<Job> jobs_;
@@ -131,7 +155,10 @@ class Spooler {
   const Progress& progress_;
   ScratchFile positions_, others_;
   SpoolInfo info_;
-  uint64_t announced_ = 0;
+  const NativeChoice& choice_;
+  ScaleHistogram scales_;
+  uint64_t announced_;
+  NativePixelHistogram pixels_;
 };
 
 // What is passed on are plain pointers: oneTBB leaks any other kind where a filter throws.
@@ -161,7 +188,8 @@ void run(Spooler& spooler) {
 
 void write_info(const WorkFolder& folder, const SpoolInfo& info) {
   Packer packer;
-  packer.put(info.gaussians).put(std::array{info.sh_degree, info.row_degree}).put(info.antialiased);
+  packer.put(info.gaussians).put(std::array{info.sh_degree, info.row_degree});
+  put(packer, info.native);
   packer.put(info.source_origin).put(info.import).put_all(info.pieces);
   write_sealed(folder.file(kSpoolDone), packer.bytes());
 }
@@ -180,17 +208,29 @@ std::vector<float> read_rows(const ScratchFile& file, const SpoolPiece& piece, s
 }  // namespace
 
 SpoolInfo spool_inputs(const OpenInputs& open, const WorkFolder& folder, uint64_t memory,
-                       Workers& workers, const Progress& progress) {
+                       const NativeChoice& native, Workers& workers, const Progress& progress) {
   // A block is there as bytes, as a cloud and as rows.
   const size_t blocks = 2 * static_cast<size_t>(workers.count()) + 2;
   const size_t gaussian = 3 * sizeof(float) * (3 + other_floats(kMaxShDegree));
   const size_t in_block = std::clamp(static_cast<size_t>(memory / 2 / (blocks * gaussian)),
                                      kLeastInBlock, kMostInBlock);
-  Spooler spooler(open(), folder, in_block, blocks, progress);
+  Spooler spooler(open(), folder, native, in_block, blocks, progress);
   workers.run([&] { run(spooler); });
   SpoolInfo info = spooler.take_info();
   write_info(folder, info);
   return info;
+}
+
+void put(Packer& packer, const NativeScale& native) {
+  packer.put(native.source).put(native.pixel).put(native.low_pass);
+}
+
+NativeScale take_native(Unpacker& from) {
+  NativeScale native;
+  native.source = from.take<NativeSource>();
+  native.pixel = from.take<double>();
+  native.low_pass = from.take<double>();
+  return native;
 }
 
 SpoolInfo read_spool_info(const WorkFolder& folder) {
@@ -201,7 +241,7 @@ SpoolInfo read_spool_info(const WorkFolder& folder) {
   info.gaussians = from.take<uint32_t>();
   const auto degrees = from.take<std::array<int32_t, 2>>();
   info.sh_degree = degrees[0], info.row_degree = degrees[1];
-  info.antialiased = from.take<bool>();
+  info.native = take_native(from);
   info.source_origin = from.take<std::array<double, 3>>();
   info.import = from.take<ImportReport>();
   from.take_all(info.pieces);

@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "runtime/bake/native_choice.h"
+#include "runtime/bake/sealed_file.h"
 #include "runtime/bake/work_files.h"
 #include "runtime/bake/work_folder.h"
 #include "runtime/base/progress.h"
@@ -34,7 +36,7 @@ struct SpoolInfo {
   uint32_t gaussians = 0;
   int32_t sh_degree = 0;   // the highest that is used
   int32_t row_degree = 0;  // of the inputs, and so of the rows in the spool
-  bool antialiased = false;
+  NativeScale native;
   std::array<double, 3> source_origin{0, 0, 0};
   ImportReport import;
   std::vector<SpoolPiece> pieces;
@@ -42,11 +44,16 @@ struct SpoolInfo {
 
 // Reads, decodes, sanitises and writes in at most `memory` bytes; then the file "spool"
 // says that it is done. Inputs that differ where append() minds are refused as there,
-// more Gaussians than one tree takes too. Progress stage "reading".
+// more Gaussians than one tree takes too. The native scale is found by
+// `native`. Progress stage "reading".
 SpoolInfo spool_inputs(const OpenInputs& open, const WorkFolder& folder, uint64_t memory,
-                       Workers& workers, const Progress& progress);
+                       const NativeChoice& native, Workers& workers, const Progress& progress);
 
 SpoolInfo read_spool_info(const WorkFolder& folder);
+
+// Field by field: between them are bytes that nobody sets.
+void put(Packer& packer, const NativeScale& native);
+NativeScale take_native(Unpacker& from);
 
 // The rows of one piece. Throws Error(refused_input) where they were altered.
 std::vector<float> read_positions(const ScratchFile& file, const SpoolPiece& piece);

@@ -69,6 +69,7 @@ BakedScene build_top(const SplitInfo& split, const BakePlan& plan, const WorkFol
                      Workers& workers) {
   BakedScene top;
   top.leaves.sh_degree = split.spool.sh_degree;
+  top.leaves.native = split.spool.native;
   top.leaves.origin = split.spool.source_origin;
   top.origin = split.origin;
   const auto all = plan.tiers().level_begin;

@@ -103,7 +103,7 @@ void CpuPipeline::project_instance(const HostInstance& instance) {
   const auto& items = instance.draws.items();
   ProjectParams params[kEyes];
   for (size_t eye = 0; eye < kEyes; ++eye)
-    params[eye] = project_params(*instance.scene, instance.cameras[eye], desc_.exponential);
+    params[eye] = project_params(*instance.scene, instance.cameras[eye], desc_);
   const GaussianArrays arrays = gaussian_arrays(*instance.scene);
   workers_.for_blocks(items.size(), kProjectBlock, [&](size_t begin, size_t end) {
     const size_t first = instance.first + begin;
@@ -114,7 +114,8 @@ void CpuPipeline::project_instance(const HostInstance& instance) {
       const Vec3f mean = interpolated_mean(arrays, item);
       const auto sees = [&](const ProjectParams& eye) { return before_near_plane(eye, mean); };
       DrawnGaussian drawn;
-      if (std::none_of(params, params + kEyes, sees) || !read_gaussian(arrays, item, drawn))
+      if (std::none_of(params, params + kEyes, sees) ||
+          !read_gaussian(params[0], arrays, item, drawn))
         continue;
       for (size_t eye = 0; eye < kEyes; ++eye)
         out[eye] += voyager::project(params[eye], arrays, item, drawn, eyes_[eye].splats[out[eye]]);
@@ -200,6 +201,7 @@ class CpuBackend final : public Backend {
     if (desc.exponential == Exponential::half2)
       throw Error(ErrorCode::unsupported,
                   "exponential: found half2, the CPU backend has exact, ex2 and lut");
+    require_exponential_for_truth(desc);
     return std::make_unique<CpuPipeline>(scenes, desc, memory, workers);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,

@@ -19,7 +19,7 @@ struct ChunkContext {
   Vec3d origin{0, 0, 0}, source_origin{0, 0, 0};
   uint32_t leaf_count = 0;
   Tiers tiers;
-  TreeKind tree = TreeKind::clustered;
+  ExtentRule extents = ExtentRule::error;
   // What a decoded chunk must keep to; an encoder reads neither.
   float largest_sh = 0;             // no |coefficient| is larger
   bool leaves_have_extent = false;  // else every leaf's extent is 0

@@ -197,7 +197,8 @@ void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader
   const ChunkCounts counts = counts_of(chunk);
   const Families families = families_of(counts);
   const GaussianOrder order = gaussian_order(families, counts, chunk.record);
-  std::byte* const at = put_records(raw.data(), chunk, counts, families, context.tree, end_group);
+  std::byte* const at =
+      put_records(raw.data(), chunk, counts, families, context.extents, end_group);
   GaussianPlanes planes(at, order, gaussian_bytes(coefficients));
   const PlaneEncoder encoder(chunk, header, end_group);
   encoder.put_geometry(planes);
@@ -221,7 +222,7 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
   std::byte* at = raw.data();
   const ChunkCounts counts = take_counts(at, entry);
   const Families families = families_of(counts);
-  take_records(at, counts, families, context.tree, chunk);
+  take_records(at, counts, families, context.extents, chunk);
   link_subtrees(counts.children, counts.grandchildren, location, context, chunk);
   const GaussianOrder order = gaussian_order(families, counts, chunk.record);
   GaussianPlanes planes(at, order, gaussian_bytes(coefficients));

@@ -18,7 +18,7 @@ NodeRecord hull_of_children(const Families& families, uint32_t record, const Chu
 }
 
 std::byte* put_boxes_and_extents(std::byte* at, const Chunk& chunk, const ChunkCounts& counts,
-                                 const Families& families, TreeKind kind,
+                                 const Families& families, ExtentRule rule,
                                  const EndGroup& end_group) {
   const PlaneOrder boxes = box_order(families);
   std::vector<BoxWords> words;
@@ -39,7 +39,7 @@ std::byte* put_boxes_and_extents(std::byte* at, const Chunk& chunk, const ChunkC
   const PlaneOrder extents = extent_order(families, counts);
   const auto word_of = [&](size_t i) {
     const uint32_t record = extents.item[i];
-    return extent_word(kind, chunk.records[record], parent_of(families, record, chunk));
+    return extent_word(rule, chunk.records[record], parent_of(families, record, chunk));
   };
   BytePlanes plain_extents(told.position(), extents.plain);
   plain_extents.put(4, word_of);
@@ -69,14 +69,14 @@ void take_boxes(std::byte*& at, const Families& families, Chunk& chunk) {
 }
 
 void take_extents(std::byte*& at, const ChunkCounts& counts, const Families& families,
-                  TreeKind kind, Chunk& chunk) {
+                  ExtentRule rule, Chunk& chunk) {
   const PlaneOrder extents = extent_order(families, counts);
   const auto take = [&](size_t first, size_t end) {
     BytePlanes planes(at, end - first);
     planes.take(4, [&](size_t i, uint32_t v) {
       const uint32_t record = extents.item[first + i];
       NodeRecord& r = chunk.records[record];
-      r.extent = extent_of_word(v, kind, r, parent_of(families, record, chunk));
+      r.extent = extent_of_word(v, rule, r, parent_of(families, record, chunk));
     });
     at = planes.position();
   };
@@ -87,14 +87,14 @@ void take_extents(std::byte*& at, const ChunkCounts& counts, const Families& fam
 }  // namespace
 
 std::byte* put_records(std::byte* at, const Chunk& chunk, const ChunkCounts& counts,
-                       const Families& families, TreeKind kind, const EndGroup& end_group) {
+                       const Families& families, ExtentRule rule, const EndGroup& end_group) {
   BytePlanes table(at, chunk.subtrees.size());
   table.put(1, [&](size_t i) { return uint32_t{counts.children[i]}; });
   table.put(1, [&](size_t i) { return uint32_t{counts.grandchildren[i]}; });
   BytePlanes planes(table.position(), chunk.records.size());
   planes.put(4, [&](size_t i) { return counts.of_record[i]; });
   end_group(planes.position());
-  return put_boxes_and_extents(planes.position(), chunk, counts, families, kind, end_group);
+  return put_boxes_and_extents(planes.position(), chunk, counts, families, rule, end_group);
 }
 
 ChunkCounts take_counts(std::byte*& at, const ChunkEntry& entry) {
@@ -112,12 +112,12 @@ ChunkCounts take_counts(std::byte*& at, const ChunkEntry& entry) {
 }
 
 void take_records(std::byte*& at, const ChunkCounts& counts, const Families& families,
-                  TreeKind kind, Chunk& chunk) {
+                  ExtentRule rule, Chunk& chunk) {
   chunk.records.resize(counts.of_record.size());
   for (size_t i = 0; i < chunk.records.size(); ++i)
     chunk.records[i].child_count = counts.of_record[i];
   take_boxes(at, families, chunk);
-  take_extents(at, counts, families, kind, chunk);
+  take_extents(at, counts, families, rule, chunk);
 }
 
 }  // namespace voyager

@@ -16,7 +16,7 @@ GaussianCloud room_for_leaves(const SceneFileInfo& info) {
   const size_t n = info.leaf_count;
   cloud.sh_degree = info.sh_degree;
   cloud.left_out_bands = info.left_out_bands;
-  cloud.antialiased = info.antialiased;
+  cloud.native = info.native;
   cloud.origin = info.quality == Quality::lossless ? info.source_origin : info.origin;
   cloud.report = info.import;
   cloud.position.resize(3 * n);

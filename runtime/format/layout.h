@@ -21,7 +21,8 @@ inline constexpr uint64_t chunk_align(Quality quality) {
 
 // Line ends in both habits, so that a transfer in text mode is seen at once.
 inline constexpr unsigned char kSceneMagic[8] = {0x89, 'V', 'O', 'Y', '\r', '\n', 0x1a, '\n'};
-inline constexpr uint32_t kSceneVersion = 4;
+inline constexpr uint32_t kSceneVersion = 5;
+inline constexpr uint32_t kOldestSceneVersion = 4;  // that is read: without what version 5 adds
 inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0
 inline constexpr uint32_t kFlagClustered = 4;    // the rule of the tree (tree_rule.h)
@@ -71,9 +72,22 @@ struct FileHeader {
   Section tiers;
   float largest_sh;         // |coefficient|, over all that the chunks decode to
   uint32_t left_out_bands;  // of the input, above sh_degree: zero in every Gaussian
-  uint64_t checksum;        // XXH3-64 of the header's bytes before this field
+  // From version 5 on.
+  double native_pixel;     // metres (METHOD §12); 0: no footprint
+  double low_pass;         // of the pixel filter, pixels²
+  uint32_t native_source;  // a NativeSource
+  float blend_share;       // METHOD §4's β; before version 5 0.5
+  uint64_t checksum;       // XXH3-64 of the header's bytes before this field
 };
-static_assert(sizeof(FileHeader) == 288 && offsetof(FileHeader, checksum) == 280);
+static_assert(sizeof(FileHeader) == 312 && offsetof(FileHeader, checksum) == 304);
+
+// Bytes of a version's header that its checksum is of; the checksum follows, and ends the header.
+inline constexpr size_t checked_header_bytes(uint32_t version) {
+  return version == 4 ? offsetof(FileHeader, native_pixel) : offsetof(FileHeader, checksum);
+}
+inline constexpr size_t header_bytes(uint32_t version) {
+  return checked_header_bytes(version) + sizeof(uint64_t);
+}
 
 struct ChunkEntry {
   uint64_t offset;    // in the file, a multiple of chunk_align()

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "runtime/base/checksum.h"
+#include "runtime/lod/tree_rule.h"
 #include "runtime/scene/gaussian_cloud.h"
 
 namespace voyager {
@@ -49,6 +50,15 @@ void check_ranges(const FileHeader& h, const Check& check) {
   check.that(h.largest_sh >= 0 && h.largest_sh <= std::numeric_limits<float>::max(),
              offsetof(FileHeader, largest_sh), "a largest SH coefficient out of range",
              "finite, not negative");
+  check.that(h.native_pixel >= 0 && h.native_pixel <= kMaxNativePixel,
+             offsetof(FileHeader, native_pixel), "a native pixel out of range", "0 to 1e6 metres");
+  check.that(h.low_pass >= 0 && h.low_pass <= kMaxLowPass, offsetof(FileHeader, low_pass),
+             "a low-pass out of range", "0 to 100 square pixels");
+  check.that(h.native_source <= static_cast<uint32_t>(NativeSource::estimated),
+             offsetof(FileHeader, native_source), "an unknown source of the native pixel",
+             "0 to 4");
+  check.that(h.blend_share >= kHalfShare && h.blend_share < 1, offsetof(FileHeader, blend_share),
+             "a share of the parent's size out of range", "0.5 or more, below 1");
   const bool empty = h.largest_sh == 0 && (h.flags & kFlagLeafExtents) == 0;
   check.that(h.node_count != 0 || empty, offsetof(FileHeader, largest_sh),
              "SH or extents without nodes", "none");
@@ -61,21 +71,40 @@ bool has_scene_magic(std::span<const std::byte> first_bytes) {
          std::memcmp(first_bytes.data(), kSceneMagic, sizeof kSceneMagic) == 0;
 }
 
-FileHeader read_header(const ByteSource& source, const Check& check) {
-  FileHeader h;
-  if (source.size() < sizeof h)
+// The version, before anything that depends on it.
+uint32_t read_version(const ByteSource& source, const Check& check) {
+  constexpr size_t kBegin = offsetof(FileHeader, flags);
+  if (source.size() < kBegin)
     check.refuse(0, std::to_string(source.size()) + " bytes",
-                 "a header of " + std::to_string(sizeof h));
-  std::byte bytes[sizeof h];
+                 "a header of " + std::to_string(sizeof(FileHeader)));
+  std::byte bytes[kBegin];
   source.read(0, bytes);
   check.that(has_scene_magic(bytes), 0, "another signature", "the signature of a .voy file");
-  std::memcpy(&h, bytes, sizeof h);
-  if (h.version != kSceneVersion)
-    check.refuse(offsetof(FileHeader, version), "version " + std::to_string(h.version),
-                 std::to_string(kSceneVersion) + ": bake the scene again");
+  uint32_t version;
+  std::memcpy(&version, bytes + offsetof(FileHeader, version), sizeof version);
+  if (version < kOldestSceneVersion || version > kSceneVersion)
+    check.refuse(offsetof(FileHeader, version), "version " + std::to_string(version),
+                 std::to_string(kOldestSceneVersion) + " or " + std::to_string(kSceneVersion) +
+                     ": bake the scene again");
+  return version;
+}
+
+FileHeader read_header(const ByteSource& source, const Check& check) {
+  const uint32_t version = read_version(source, check);
+  const size_t checked = checked_header_bytes(version), whole = header_bytes(version);
+  FileHeader h{};
+  if (source.size() < whole)
+    check.refuse(0, std::to_string(source.size()) + " bytes",
+                 "a header of " + std::to_string(whole));
+  std::vector<std::byte> bytes(whole);
+  source.read(0, bytes);
+  // Where the file does not say.
+  h.low_pass = kPixelVariance;
+  h.blend_share = kHalfShare;
+  std::memcpy(&h, bytes.data(), checked);
+  std::memcpy(&h.checksum, bytes.data() + checked, sizeof h.checksum);
   check.equal(offsetof(FileHeader, file_length), "a file of length", source.size(), h.file_length);
-  check.equal(offsetof(FileHeader, checksum), "header checksum",
-              checksum(std::span(bytes).first(offsetof(FileHeader, checksum))), h.checksum);
+  check.equal(checked, "header checksum", checksum(std::span(bytes).first(checked)), h.checksum);
   check_counts(h, check);
   check_ranges(h, check);
   return h;

@@ -14,7 +14,7 @@ void read_tiers(const ByteSource& source, const FileHeader& h, const Check& chec
   const uint64_t levels = h.node_count == 0 ? 0 : uint64_t{h.depth} + 1;
   const uint64_t tiers =
       h.node_count == 0 ? 0 : uint64_t{Tiers::count_of(h.depth, h.first_tier_levels)} + 1;
-  const uint64_t offset = sizeof(FileHeader), count = levels + tiers;
+  const uint64_t offset = header_bytes(h.version), count = levels + tiers;
   std::vector<uint32_t> begins;
   SectionReader(source, h.tiers, SectionKind::tiers, offset, align_up(count * sizeof(uint32_t), 8),
                 check)

@@ -13,8 +13,12 @@ SceneFileInfo to_info(const FileHeader& h) {
   info.quality = static_cast<Quality>(h.quality);
   info.sh_degree = static_cast<int>(h.sh_degree);
   info.left_out_bands = static_cast<int>(h.left_out_bands);
-  info.antialiased = (h.flags & kFlagAntialiased) != 0;
+  if (h.version == 4 && (h.flags & kFlagAntialiased) != 0)
+    info.native = compensated_scale(kLowPass);
+  else
+    info.native = {static_cast<NativeSource>(h.native_source), h.native_pixel, h.low_pass};
   info.tree = (h.flags & kFlagClustered) != 0 ? TreeKind::clustered : TreeKind::hierarchicalgs;
+  info.blend_share = h.blend_share;
   info.node_count = h.node_count;
   info.leaf_count = h.leaf_count;
   info.chunk_count = h.chunk_count;
@@ -91,7 +95,7 @@ Chunk SceneFile::decode(uint32_t index, std::span<const std::byte> stored) const
       {info_.source_origin[0], info_.source_origin[1], info_.source_origin[2]},
       info_.leaf_count,
       tiers(),
-      info_.tree,
+      extent_rule(info_.tree, info_.blend_share),
       info_.largest_sh,
       info_.leaves_have_extent};
   return decode_chunk(stored, {name(), index, entry, place_after(index)}, context);

@@ -16,8 +16,9 @@ namespace voyager {
 struct SceneFileInfo {
   Quality quality;
   int sh_degree, left_out_bands;
-  bool antialiased;
+  NativeScale native;  // unknown in a file of version 4
   TreeKind tree;
+  float blend_share;  // LodTree's
   uint32_t node_count;
   uint32_t leaf_count;
   uint32_t chunk_count;

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "runtime/format/fold.h"
-#include "runtime/lod/stand_in.h"
 #include "runtime/lod/tree.h"
+#include "runtime/lod/tree_rule.h"
 #include "runtime/math/float_bits.h"
 
 namespace voyager {
@@ -62,23 +62,27 @@ inline void set_box(const BoxWords& w, const NodeRecord& hull, NodeRecord& r) {
   }
 }
 
-// By the rule of the tree: in a clustered one a leaf or a double is refined late, and no other
-// node tells where another is (no parent: nullptr); else an extent is the longest side of its
-// box, a leaf's 0.
-inline float usual_extent(TreeKind kind, const NodeRecord& r, const NodeRecord* parent) {
-  if (kind == TreeKind::clustered)
-    return r.child_count <= 1 && parent ? kLateExtent * parent->extent : 0.0f;
+// No parent: nullptr.
+inline float usual_extent(ExtentRule rule, const NodeRecord& r, const NodeRecord* parent) {
+  switch (rule) {
+    case ExtentRule::error:
+      return 0.0f;
+    case ExtentRule::error_with_doubles:
+      return r.child_count <= 1 && parent ? kLateShare * parent->extent : 0.0f;
+    case ExtentRule::longest_side:
+      break;
+  }
   if (r.child_count == 0) return 0.0f;
   return std::max(
       {r.box_max.x - r.box_min.x, r.box_max.y - r.box_min.y, r.box_max.z - r.box_min.z});
 }
-inline uint32_t extent_word(TreeKind kind, const NodeRecord& r, const NodeRecord* parent) {
-  return fold(float_bits(r.extent) - float_bits(usual_extent(kind, r, parent)));
+inline uint32_t extent_word(ExtentRule rule, const NodeRecord& r, const NodeRecord* parent) {
+  return fold(float_bits(r.extent) - float_bits(usual_extent(rule, r, parent)));
 }
 // The rest of the record is set.
-inline float extent_of_word(uint32_t word, TreeKind kind, const NodeRecord& r,
+inline float extent_of_word(uint32_t word, ExtentRule rule, const NodeRecord& r,
                             const NodeRecord* parent) {
-  return std::bit_cast<float>(unfold(word) + float_bits(usual_extent(kind, r, parent)));
+  return std::bit_cast<float>(unfold(word) + float_bits(usual_extent(rule, r, parent)));
 }
 
 }  // namespace voyager

@@ -17,9 +17,9 @@ FileHeader make_header(const SceneTotals& totals, size_t chunks) {
   FileHeader h{};
   std::memcpy(h.magic, kSceneMagic, sizeof h.magic);
   h.version = kSceneVersion;
-  h.flags = (totals.antialiased ? kFlagAntialiased : 0) |
+  h.flags = (totals.native.antialiased() ? kFlagAntialiased : 0) |
             (totals.leaves_have_extent ? kFlagLeafExtents : 0) |
-            (totals.clustered ? kFlagClustered : 0);
+            (totals.tree == TreeKind::clustered ? kFlagClustered : 0);
   h.quality = static_cast<uint32_t>(totals.quality);
   h.sh_degree = static_cast<uint32_t>(totals.sh_degree);
   h.node_count = totals.tiers.node_count();
@@ -39,6 +39,10 @@ FileHeader make_header(const SceneTotals& totals, size_t chunks) {
   h.position_error = totals.position_error;
   h.largest_sh = totals.largest_sh;
   h.left_out_bands = static_cast<uint32_t>(totals.left_out_bands);
+  h.native_pixel = totals.native.pixel;
+  h.low_pass = totals.native.low_pass;
+  h.native_source = static_cast<uint32_t>(totals.native.source);
+  h.blend_share = totals.blend_share;
   const ImportReport& report = totals.import;
   h.import_read = report.read;
   h.dropped_position = report.dropped_position;

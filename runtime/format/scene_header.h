@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "runtime/format/layout.h"
+#include "runtime/lod/tree_rule.h"
 #include "runtime/scene/gaussian_cloud.h"
 
 namespace voyager {
@@ -11,7 +12,9 @@ namespace voyager {
 struct SceneTotals {
   Quality quality = Quality::lossless;
   int sh_degree = 0, left_out_bands = 0;
-  bool antialiased = false, clustered = false;
+  TreeKind tree = TreeKind::clustered;
+  float blend_share = kLateShare;
+  NativeScale native;
   uint32_t leaf_count = 0;
   uint32_t chunk_bytes = 0;
   Tiers tiers;

@@ -47,7 +47,7 @@ SceneTotals totals_of(const BakedScene& baked, const Partition& partition, Quali
   totals.quality = quality;
   totals.sh_degree = baked.leaves.sh_degree;
   totals.left_out_bands = baked.leaves.left_out_bands;
-  totals.antialiased = baked.leaves.antialiased;
+  totals.native = baked.leaves.native;
   totals.leaf_count = static_cast<uint32_t>(baked.leaves.size());
   totals.chunk_bytes = partition.chunk_bytes;
   totals.tiers = tiers_of(partition);
@@ -58,7 +58,8 @@ SceneTotals totals_of(const BakedScene& baked, const Partition& partition, Quali
     totals.bounds_max = baked.tree.records[0].box_max;
   }
   totals.import = baked.leaves.report;
-  totals.clustered = baked.kind == TreeKind::clustered;
+  totals.tree = baked.kind;
+  totals.blend_share = baked.tree.blend_share;
   return totals;
 }
 
@@ -75,7 +76,7 @@ void write_scene_file(const BakedScene& baked, const Partition& partition, const
                              to_vec(baked.leaves.origin),
                              static_cast<uint32_t>(baked.leaves.size()),
                              tiers_of(partition),
-                             baked.kind,
+                             extent_rule(baked.kind, baked.tree.blend_share),
                              0,
                              false};
   std::vector<ChunkEntry> entries = make_entries(baked.tree, partition);

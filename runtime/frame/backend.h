@@ -29,6 +29,9 @@ constexpr bool is_base_2(Exponential exponential) {
 // baseline_3dgs: as 3DGS does it, the baseline of measurements (METHOD §4, §7: boxes of
 // 3σ, α' tested against α*).
 enum class Splatting { ours, baseline_3dgs };
+// on: METHOD §12. off: METHOD §5, 3DGS's own picture. truth: as on, with the lower α* of the
+// truth, for the samples of a picture that others are judged by; exact and ex2 only.
+enum class Antialias { on, off, truth };
 
 // Resolved once, at view creation.
 struct PipelineDesc {
@@ -38,6 +41,7 @@ struct PipelineDesc {
   Exponential exponential = Exponential::exact;
   uint32_t lut_size = 32;
   Splatting splatting = Splatting::ours;
+  Antialias antialias = Antialias::on;
   uint32_t eyes = 1;          // of each frame, up to kMaxEyes
   bool count_pixels = false;  // fill FrameStats::pixels_..., at a cost; for measurements
 };

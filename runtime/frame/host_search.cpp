@@ -65,7 +65,7 @@ void HostSearch::weigh(const CutQuery& query, Workers& workers) {
   items_.resize(cut().size());
   if (partitioned_) return weigh_cut(tree(), search_tree(), *partitioned_, query, items_, workers);
   const WeightParams weights{tree().records.data(), tree().parent.data(),
-                             exhaustive_->sizes().data(), query.target_size};
+                             exhaustive_->sizes().data(), query.target_size, tree().blend_share};
   workers.for_blocks(items_.size(), 16384, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) items_[i] = voyager::weigh(weights, cut()[i]);
   });

@@ -25,8 +25,9 @@ void set_info(const SceneFileInfo& info, Scene& scene) {
   scene.profile.input_sh_degree = info.sh_degree + info.left_out_bands;
   scene.profile.merged = info.node_count > info.leaf_count;
   scene.profile.interpolated = info.node_count > 1;
-  scene.antialiased = info.antialiased;
-  scene.doubles = info.tree == TreeKind::clustered;
+  scene.native = info.native;
+  scene.doubles = extent_rule(info.tree, info.blend_share) == ExtentRule::error_with_doubles;
+  scene.tree.blend_share = info.blend_share;
   scene.tree_depth = info.depth;
   scene.chunk_count = info.chunk_count;
   scene.leaf_count = info.leaf_count;

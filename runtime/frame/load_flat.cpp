@@ -5,6 +5,7 @@
 #include "runtime/lod/build.h"
 #include "runtime/lod/summarise.h"
 #include "runtime/scene/import/importer.h"
+#include "runtime/scene/scale_histogram.h"
 
 namespace voyager {
 namespace {
@@ -33,7 +34,8 @@ void load_flat(const ByteSource& source, Workers& workers, Scene& scene) {
   scene.storage = Storage::flat;
   scene.sh_degree = cloud.sh_degree;
   scene.profile.input_sh_degree = cloud.input_sh_degree();
-  scene.antialiased = cloud.antialiased;
+  scene.native =
+      cloud.native.source == NativeSource::unknown ? estimated_scale(cloud) : cloud.native;
   scene.leaf_count = cloud.size();
   scene.import = cloud.report;
   const std::array<double, 3> origin = scene_origin(cloud);

@@ -5,9 +5,30 @@
 
 namespace voyager {
 
+// What a scene is drawn with (METHOD §12), or 3DGS's own: also where nobody knows the scene's
+// native pixel, which a file of an older version does not say.
+template <class T>
+PixelFilter<T> pixel_filter(const Scene& scene, Antialias antialias) {
+  if (antialias == Antialias::off || scene.native.source == NativeSource::unknown)
+    return {T(kLowPass), T(0), false};
+  return {T(scene.native.low_pass), T(scene.native.footprint()), true};
+}
+
+inline float log_threshold(Antialias antialias) {
+  return antialias == Antialias::truth ? kLogTruthThreshold : kLogAlphaThreshold;
+}
+
+// Tables and binary16 reach no further down than METHOD §6's α*.
+inline void require_exponential_for_truth(const PipelineDesc& desc) {
+  if (desc.antialias == Antialias::truth && desc.exponential != Exponential::exact &&
+      desc.exponential != Exponential::ex2)
+    throw Error(ErrorCode::unsupported,
+                "exponential: found lut or half2 with the truth's samples, expected exact or ex2");
+}
+
 // camera: in the scene's coordinates.
 inline ProjectParams project_params(const Scene& scene, const Camera& camera,
-                                    Exponential exponential) {
+                                    const PipelineDesc& desc) {
   ProjectParams params;
   params.origin = scene.origin;
   params.eye = camera.eye;
@@ -17,7 +38,9 @@ inline ProjectParams project_params(const Scene& scene, const Camera& camera,
   params.depth_scale = static_cast<float>(camera.depth_scale);
   params.width = static_cast<float>(camera.width);
   params.height = static_cast<float>(camera.height);
-  params.log_scale = is_base_2(exponential) ? kLog2e : 1.0f;
+  params.filter = pixel_filter<float>(scene, desc.antialias);
+  params.log_scale = is_base_2(desc.exponential) ? kLog2e : 1.0f;
+  params.log_threshold = log_threshold(desc.antialias);
   params.half = 0.5f * params.log_scale;
   return params;
 }

@@ -12,6 +12,7 @@
 #include "runtime/frame/scene_profile.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/scene/gaussian_cloud.h"
+#include "runtime/scene/native_scale.h"
 #include "runtime/select/search_tree.h"
 #include "runtime/stream/scene_stream.h"
 
@@ -70,9 +71,9 @@ struct Scene {
 
   std::string name;
   Storage storage = Storage::flat;
-  int sh_degree = 0;  // of what is kept: SceneProfile has the input's
-  bool antialiased = false;
-  bool doubles = false;  // nodes of one child are doubles (docs/lod-tree.md)
+  int sh_degree = 0;     // of what is kept: SceneProfile has the input's
+  NativeScale native;    // what it is drawn with where the view antialiases
+  bool doubles = false;  // nodes of one child are doubles, as files of version 4 have them
   uint32_t tree_depth = 0, chunk_count = 0;
   uint64_t leaf_count = 0, node_count = 0;         // of the whole tree
   Vec3d origin{0, 0, 0};                           // world position of the scene-local zero

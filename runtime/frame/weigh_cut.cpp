@@ -81,9 +81,9 @@ class BlockWeights {
   Family family(uint32_t record, uint32_t parent, bool split) const {
     const SearchRecord& r = search_tree_.records[record];
     const float size = size_of(r), target = query_.target_size;
-    if (size > 2.0f * target) return {parent, size, true, 1.0f, 1.0f};
+    if (is_drawn_whole(size, target, tree_.blend_share)) return {parent, size, true, 1.0f, 1.0f};
     const uint32_t children = split ? tree_.records[parent].child_count : count_bits(r.children);
-    return {parent, size, false, interpolation_weight(true, size, 0.0f, target),
+    return {parent, size, false, interpolation_weight(true, size, 0.0f, target, tree_.blend_share),
             1.0f / static_cast<float>(children)};
   }
 
@@ -122,8 +122,8 @@ class BlockWeights {
                  DrawItem* items) const {
     for (; own != 0; own &= own - 1) {
       const auto slot = static_cast<uint32_t>(std::countr_zero(own));
-      const float t =
-          interpolation_weight(true, f.size, own_size(subtree, slot), query_.target_size);
+      const float t = interpolation_weight(true, f.size, own_size(subtree, slot),
+                                           query_.target_size, tree_.blend_share);
       const uint32_t node = subtree.node(slot);
       items[count_bits(slots & ((1u << slot) - 1))] =
           t == 1.0f ? whole(node) : DrawItem{node, f.parent, t, f.inverse_k};

@@ -15,6 +15,8 @@ namespace voyager {
 struct Exposure {
   float seen;      // in (0, 1]
   float contrast;  // code values, at least 0
+  // Opacity times surface times what is seen, of all its leaves (shown_weight()).
+  float weight;
 };
 
 struct BakedScene {

@@ -16,7 +16,6 @@ constexpr size_t kFewNodes = 16;
 
 struct Cluster {
   Blob blob;
-  double weight;  // opacity times surface (METHOD §2); the sum of its children's
   Exposure exposure;
   double pixel;  // from which on it stands in for its children
   uint32_t child[2];
@@ -36,7 +35,7 @@ class Clustering {
  public:
   Clustering(const GaussianCloud& cloud, const std::array<double, 3>& origin,
              std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure)
-      : leaves_(leaves.size()), coefficients_(cloud.coefficients()) {
+      : leaves_(leaves.size()), coefficients_(cloud.coefficients()), native_(cloud.native) {
     const size_t floats = size_t{3} * static_cast<size_t>(coefficients_);
     clusters_.reserve(2 * leaves_);
     colours_.resize(2 * leaves_ * floats);
@@ -44,8 +43,9 @@ class Clustering {
       GaussianWords words = cloud.words(leaves[i]);
       words.mean = local_mean(cloud, leaves[i], origin);
       const Gaussian g = activate(words, true);
-      clusters_.push_back(
-          {blob_of(g), merge_weight(g), exposure_of(exposure[leaves[i]]), 0, {0, 0}});
+      Exposure shown = exposure_of(exposure[leaves[i]]);
+      shown.weight = shown_weight(g, shown, native_.footprint());
+      clusters_.push_back({blob_of(g), shown, 0, {0, 0}});
       std::copy_n(&cloud.sh[leaves[i] * floats], floats, colour(i));
       active_.push_back(static_cast<uint32_t>(i));
     }
@@ -65,8 +65,9 @@ class Clustering {
   }
 
   double share_of(uint32_t first, uint32_t second) const {
-    const double total = clusters_[first].weight + clusters_[second].weight;
-    return total > 0 ? clusters_[first].weight / total : 0.5;
+    const double weight = double{clusters_[first].exposure.weight};
+    const double total = weight + double{clusters_[second].exposure.weight};
+    return total > 0 ? weight / total : 0.5;
   }
 
   // METHOD §2 for two, and the error of it.
@@ -76,6 +77,8 @@ class Clustering {
     const Blob children[2] = {a.blob, b.blob};
     Group group;
     group.children = children;
+    group.footprint = native_.footprint();
+    group.low_pass = native_.low_pass;
     group.parent.mean = share * a.blob.mean + other * b.blob.mean;
     const Vec3d d = b.blob.mean - a.blob.mean;
     int k = 0;
@@ -86,14 +89,11 @@ class Clustering {
     set_colours(share, other, squared_colour_distance(colour(first), colour(second), coefficients_),
                 group);
     const Exposure shown[2] = {a.exposure, b.exposure};
-    const double shares[2] = {share, other};
-    const Exposure exposure = set_exposure(shown, shares, group);
+    const double weights[2] = {double{a.exposure.weight}, double{b.exposure.weight}};
+    const Exposure exposure = set_exposure(shown, weights, group);
     const StandIn found = stand_in(group);
-    Cluster cluster{group.parent,
-                    a.weight + b.weight,
-                    exposure,
-                    std::max({found.pixel, a.pixel, b.pixel}),
-                    {first, second}};
+    Cluster cluster{
+        group.parent, exposure, std::max({found.pixel, a.pixel, b.pixel}), {first, second}};
     cluster.blob.opacity = found.opacity;
     return cluster;
   }
@@ -189,6 +189,7 @@ class Clustering {
 
   size_t leaves_;
   int coefficients_;
+  NativeScale native_;
   std::vector<Cluster> clusters_;
   std::vector<float> colours_;
   std::vector<uint32_t> active_;
@@ -230,19 +231,7 @@ class Flattening {
       child[count++] = gone.child[1];
     }
     ClusterTree::Node node{{}, count};
-    for (uint32_t i = 0; i < count; ++i)
-      node.child[i] = add_child(child[i], clusters_[cluster].pixel);
-    return push(node);
-  }
-
-  // A leaf's extent is free; another's says when it is refined, and only a double can blend late.
-  uint32_t add_child(uint32_t cluster, double parent_pixel) {
-    const uint32_t node = add(cluster);
-    if (cluster < leaves_ || clusters_[cluster].pixel >= kLateExtent * parent_pixel) return node;
-    return push({{node}, 1});
-  }
-
-  uint32_t push(const ClusterTree::Node& node) {
+    for (uint32_t i = 0; i < count; ++i) node.child[i] = add(child[i]);
     tree_.nodes.push_back(node);
     return static_cast<uint32_t>(tree_.nodes.size() - 1);
   }

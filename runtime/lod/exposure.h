@@ -7,6 +7,7 @@
 #include <span>
 
 #include "runtime/lod/baked_scene.h"
+#include "runtime/lod/merge.h"
 
 namespace voyager {
 
@@ -23,7 +24,14 @@ struct ExposureCode {
 inline constexpr uint8_t kLeastSeen = 13;
 
 constexpr Exposure exposure_of(ExposureCode code) {
-  return {static_cast<float>(code.seen) / 255, static_cast<float>(code.contrast) / 255};
+  return {static_cast<float>(code.seen) / 255, static_cast<float>(code.contrast) / 255, 0};
+}
+
+// What a leaf counts for where it is merged: METHOD §2's weight as it is drawn, with its footprint
+// (metres²), as far as it is seen. A colour that others hide is not seen from afar either.
+inline float shown_weight(Gaussian leaf, const Exposure& exposure, double footprint) {
+  leaf.scale = widened(leaf.scale, static_cast<float>(footprint));
+  return static_cast<float>(merge_weight(leaf) * double{exposure.seen});
 }
 
 // Of several as one, with these weights.
@@ -37,7 +45,8 @@ inline Exposure mean_exposure(std::span<const Exposure> of, std::span<const doub
     shown += share * s * s;
     contrast += share * s * s * c * c;
   }
-  return {static_cast<float>(seen), static_cast<float>(std::sqrt(contrast / shown))};
+  return {static_cast<float>(seen), static_cast<float>(std::sqrt(contrast / shown)),
+          static_cast<float>(total)};
 }
 
 // Of the Gaussians `leaves` of the cloud, drawn by themselves along fixed directions; written to

@@ -6,7 +6,7 @@ namespace {
 void allocate_merged(size_t count, BakedScene& baked) {
   GaussianCloud& merged = baked.merged;
   merged.sh_degree = baked.leaves.sh_degree;
-  merged.antialiased = baked.leaves.antialiased;
+  merged.native = baked.leaves.native;
   merged.origin = baked.origin;
   merged.position.resize(3 * count);
   merged.log_scale.resize(3 * count);
@@ -19,6 +19,7 @@ void allocate_merged(size_t count, BakedScene& baked) {
 
 std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked) {
   LodTree& tree = baked.tree;
+  tree.blend_share = blend_share(baked.kind);
   const size_t nodes = layout.child_count.size();
   tree.records.resize(nodes);
   tree.first_child.resize(nodes);
@@ -26,7 +27,7 @@ std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked)
   baked.gaussian.resize(nodes);
   baked.axis_code.resize(nodes);
   const bool exposed = !layout.exposure.empty();
-  if (baked.kind == TreeKind::clustered) baked.exposure.assign(nodes, {1, 0});
+  if (baked.kind == TreeKind::clustered) baked.exposure.assign(nodes, {1, 0, 0});
   std::vector<uint32_t> levels;
   uint32_t next = 1, level_end = 0, leaf = 0, merged = 0;
   for (uint32_t n = 0; n < nodes; ++n) {

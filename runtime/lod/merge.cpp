@@ -10,7 +10,7 @@ namespace voyager {
 namespace {
 
 double share(const MergeInput& child, double total, size_t count) {
-  return total > 0.0 ? merge_weight(child.gaussian) / total : 1.0 / static_cast<double>(count);
+  return total > 0.0 ? child.weight / total : 1.0 / static_cast<double>(count);
 }
 
 // Adds share·(Σ + d dᵀ). The float quaternion is normalised again in double:
@@ -67,7 +67,7 @@ double merge_weight(const Gaussian& gaussian) {
 
 Moments moments(std::span<const MergeInput> children) {
   Moments m{};
-  for (const MergeInput& child : children) m.weight += merge_weight(child.gaussian);
+  for (const MergeInput& child : children) m.weight += child.weight;
   for (const MergeInput& child : children) {
     const Vec3f& mean = child.gaussian.mean;
     m.mean = m.mean + share(child, m.weight, children.size()) * Vec3d{mean.x, mean.y, mean.z};

@@ -6,23 +6,28 @@
 
 namespace voyager {
 
+// Opacity times surface. It telescopes: a parent's is the sum of its children's.
+double merge_weight(const Gaussian& gaussian);
+
 // One child as merge() sees it.
 struct MergeInput {
+  MergeInput() = default;
+  MergeInput(const Gaussian& of, const float* coefficients)
+      : gaussian(of), sh(coefficients), weight(merge_weight(of)) {}
+
   Gaussian gaussian;
   const float* sh;  // coefficients * 3
+  double weight;    // what its share is found from; at least 0
 };
 
 struct Merged {
   GaussianWords words;  // log scale, unit rotation, linear opacity
 };
 
-// Opacity times surface. It telescopes: a parent's is the sum of its children's.
-double merge_weight(const Gaussian& gaussian);
-
 // What a parent has to match, in double.
 struct Moments {
-  double weight;         // Σ o·A(s)
-  Vec3d mean;            // weighted by o·A(s); equally where all weights are 0
+  double weight;         // the sum of theirs
+  Vec3d mean;            // by their weights; equally where all weights are 0
   double covariance[6];  // xx, xy, xz, yy, yz, zz
 };
 Moments moments(std::span<const MergeInput> children);

@@ -9,11 +9,14 @@ namespace voyager {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kTolerance = 0.01;  // code values × pixels, times 2τ + 1
+constexpr double kTolerance = 0.0045;  // code values × pixels, times 2τ + 1
 constexpr double kExtentOfPixel = 2 * kReferenceTau + 1;
+// Of a stand-in, times the root of what the pixel filter leaves of it. Above 1 it is cut off, and
+// so fills the gaps between its like; far above it swells (bench/NOTES.md).
+constexpr double kMostOpacity = 1.1;
 // Code values, beside the contrast that was found: a group covers what none of its children does,
 // before what none was seen against.
-constexpr double kUnknownContrast = 0.15;
+constexpr double kUnknownContrast = 0.1;
 constexpr int kRefinements = 4;
 constexpr double kLargestPixel = 1e29;  // metres; an extent stays finite in binary32
 
@@ -22,6 +25,7 @@ struct Footprint {
   double u, v;        // centre
   double uu, uv, vv;  // covariance, blurred
   double determinant;
+  double peak;  // that the blur leaves of 1
 };
 
 constexpr int kAxes = 3;
@@ -33,12 +37,24 @@ double determinant(double uu, double uv, double vv) {
   return std::max(uu * vv - uv * uv, 1e-14 * uu * vv);
 }
 
-Footprint footprint(const Blob& blob, const Vec3d& centre, int axis, double blur) {
+void blur_by(double blur, Footprint& f) {
+  const double sharp = f.determinant;
+  f.uu += blur;
+  f.vv += blur;
+  f.determinant = determinant(f.uu, f.uv, f.vv);
+  f.peak *= std::sqrt(std::min(sharp / f.determinant, 1.0));
+}
+
+Footprint sharp_footprint(const Blob& blob, const Vec3d& centre, int axis, double own) {
   const int* at = kCovarianceAt[axis];
   const int u = kAcross[axis][0], v = kAcross[axis][1];
-  Footprint f{blob.mean[u] - centre[u],      blob.mean[v] - centre[v],
-              blob.covariance[at[0]] + blur, blob.covariance[at[1]],
-              blob.covariance[at[2]] + blur, 0};
+  Footprint f{blob.mean[u] - centre[u],
+              blob.mean[v] - centre[v],
+              blob.covariance[at[0]] + own,
+              blob.covariance[at[1]],
+              blob.covariance[at[2]] + own,
+              0,
+              1};
   f.determinant = determinant(f.uu, f.uv, f.vv);
   return f;
 }
@@ -50,7 +66,8 @@ double overlap(const Footprint& a, const Footprint& b) {
   const double u = a.u - b.u, v = a.v - b.v;
   const double distance = ((vv * u * u - 2 * uv * u * v) + uu * v * v) / sum;
   if (!(distance < 1000)) return 0;
-  return 2 * kPi * std::sqrt(a.determinant / sum * b.determinant) * std::exp(-0.5 * distance);
+  return 2 * kPi * a.peak * b.peak * std::sqrt(a.determinant / sum * b.determinant) *
+         std::exp(-0.5 * distance);
 }
 
 struct Error {
@@ -59,29 +76,40 @@ struct Error {
 };
 
 Error error_at(const Group& group, double pixel) {
-  const double blur = kLowPass * pixel * pixel;
+  const double blur = group.low_pass * pixel * pixel;
   const size_t count = group.children.size();
   const double most = *std::max_element(group.seen, group.seen + count);
   // What coverage differs by shows what is behind, wherever any of them is seen.
   const double lack =
       3 * most * most * (group.contrast * group.contrast + kUnknownContrast * kUnknownContrast);
-  double error = 0, covered = 0, own = 0;
+  double error = 0, sharp_own = 0, own = 0, lacking = 0, added = 0;
   for (int axis = 0; axis < kAxes; ++axis) {
     Footprint child[kChildren];
-    const Footprint parent = footprint(group.parent, group.parent.mean, axis, blur);
-    for (size_t i = 0; i < count; ++i)
-      child[i] = footprint(group.children[i], group.parent.mean, axis, blur);
+    Footprint parent = sharp_footprint(group.parent, group.parent.mean, axis, group.footprint);
+    sharp_own += overlap(parent, parent);
+    blur_by(blur, parent);
     for (size_t i = 0; i < count; ++i) {
-      covered += group.children[i].opacity * overlap(child[i], parent);
-      for (size_t j = i; j < count; ++j)
-        error += (i == j ? 1 : 2) * group.children[i].opacity * group.children[j].opacity *
-                 overlap(child[i], child[j]) *
-                 (group.seen[i] * group.seen[j] * group.colours[i][j] + lack);
+      child[i] = sharp_footprint(group.children[i], group.parent.mean, axis, group.footprint);
+      blur_by(blur, child[i]);
+    }
+    for (size_t i = 0; i < count; ++i) {
+      added += group.children[i].opacity * overlap(child[i], parent);
+      for (size_t j = i; j < count; ++j) {
+        const double both = (i == j ? 1 : 2) * group.children[i].opacity *
+                            group.children[j].opacity * overlap(child[i], child[j]);
+        error += both * group.seen[i] * group.seen[j] * group.colours[i][j];
+        lacking += both;
+      }
     }
     own += overlap(parent, parent);
   }
   if (!(own > 0)) return {0, 0};
-  return {std::max(error - lack * covered * covered / own, 0.0) / kAxes, covered / own};
+  error += lack * lacking;
+  const double best = added / own,
+               opacity = std::min(best, kMostOpacity * std::sqrt(sharp_own / own));
+  // Least squares, and what is lost where the best would be more than all.
+  const double off = best - opacity;
+  return {std::max(error - lack * own * (best * best - off * off), 0.0) / kAxes, opacity};
 }
 
 }  // namespace

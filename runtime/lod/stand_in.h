@@ -26,6 +26,8 @@ struct Group {
   double colours[kChildren][kChildren];
   double seen[kChildren];  // Exposure, of each child
   double contrast;         // Exposure, of all
+  double footprint;        // METHOD §12's, metres²
+  double low_pass;         // of the pixel filter, pixels²
 };
 
 // Of two children with these shares of their parent's colour: from the square of the distance
@@ -45,20 +47,13 @@ struct StandIn {
   double opacity;  // the best at that size: the least squares' of coverage
 };
 
-// Good enough: an error of 0.01·(2·kReferenceTau + 1) code values × pixels, root of the squares,
+// Good enough: an error of 0.0045·(2·kReferenceTau + 1) code values × pixels, root of the squares,
 // for each Gaussian that is spared. Finite and ≥ 0 for finite input. Deterministic; thread-safe.
 StandIn stand_in(const Group& group);
 
 // The extent of a node with that stand-in: at kReferenceTau its size is τ* where a pixel is
 // StandIn::pixel wide (METHOD §3).
-inline constexpr double kReferenceTau = 12;
+inline constexpr double kReferenceTau = 3;  // the default
 double extent_of(double pixel);
-
-// Of its parent's, the extent that a node has at least in which nothing is to blend: METHOD §4
-// then gives it the last part of an octave only.
-inline constexpr float kLateExtent = 0.98f;
-inline float late_extent(float own, float parent) {
-  return std::max(own, kLateExtent * parent);
-}
 
 }  // namespace voyager

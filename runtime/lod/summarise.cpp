@@ -56,37 +56,19 @@ void measure(uint32_t node, std::span<const MergeInput> children, BakedScene& ba
   float extent = 0;
   double weights[kChildren];
   for (uint32_t i = 0; i < r.child_count; ++i) {
-    weights[i] = merge_weight(children[i].gaussian);
+    weights[i] = children[i].weight;
     extent = std::max(extent, baked.tree.records[first + i].extent);
   }
   const std::span<const Exposure> exposure(&baked.exposure[first], r.child_count);
   Blob blobs[kChildren];
   const MergeInput parent = node_gaussian(node, baked);
   Group group = group_of(children, blobs, parent, baked.merged.coefficients());
+  group.footprint = baked.leaves.native.footprint();
+  group.low_pass = baked.leaves.native.low_pass;
   baked.exposure[node] = set_exposure(exposure, {weights, r.child_count}, group);
   const StandIn found = stand_in(group);
   r.extent = std::max(extent, static_cast<float>(extent_of(found.pixel)));
   baked.merged.opacity[baked.gaussian[node]] = static_cast<float>(found.opacity);
-  for (uint32_t i = 0; i < r.child_count; ++i) {
-    NodeRecord& child = baked.tree.records[first + i];
-    // A leaf is exact as itself; a double is as good as its child.
-    if (child.child_count <= 1) child.extent = late_extent(child.extent, r.extent);
-  }
-}
-
-// As its child, which is interior.
-void repeat(uint32_t node, uint32_t child, BakedScene& baked) {
-  const NodeRecord& of = baked.tree.records[child];
-  NodeRecord& r = baked.tree.records[node];
-  r.box_min = of.box_min;
-  r.box_max = of.box_max;
-  r.extent = of.extent;
-  baked.exposure[node] = baked.exposure[child];
-  GaussianCloud& cloud = baked.merged;
-  const size_t from = baked.gaussian[child], to = baked.gaussian[node];
-  store(cloud.words(from), to, cloud);
-  const size_t floats = size_t{3} * static_cast<size_t>(cloud.coefficients());
-  std::copy_n(&cloud.sh[from * floats], floats, &cloud.sh[to * floats]);
 }
 
 }  // namespace
@@ -107,20 +89,29 @@ MergeInput node_gaussian(uint32_t node, const BakedScene& baked) {
   return {activate(words, leaf), cloud.sh.data() + i * floats};
 }
 
+MergeInput merge_input(uint32_t node, const BakedScene& baked) {
+  MergeInput input = node_gaussian(node, baked);
+  if (baked.kind == TreeKind::clustered) input.weight = double{baked.exposure[node].weight};
+  return input;
+}
+
 void summarise(uint32_t node, BakedScene& baked) {
   NodeRecord& r = baked.tree.records[node];
   if (r.child_count == 0) {
-    const Box box = leaf_box(node_gaussian(node, baked).gaussian);
+    const Gaussian leaf = node_gaussian(node, baked).gaussian;
+    const Box box = leaf_box(leaf);
     r.box_min = box.least;
     r.box_max = box.most;
     r.extent = 0.0f;
+    if (baked.kind == TreeKind::clustered)
+      baked.exposure[node].weight =
+          shown_weight(leaf, baked.exposure[node], baked.leaves.native.footprint());
     return;
   }
   const uint32_t first = baked.tree.first_child[node];
-  if (r.child_count == 1) return repeat(node, first, baked);
   hull_of_children(node, baked.tree);
   MergeInput children[kChildren];
-  for (uint32_t i = 0; i < r.child_count; ++i) children[i] = node_gaussian(first + i, baked);
+  for (uint32_t i = 0; i < r.child_count; ++i) children[i] = merge_input(first + i, baked);
   const size_t index = baked.gaussian[node];
   const int coefficients = baked.merged.coefficients();
   float* sh = baked.merged.sh.data() + index * size_t{3} * static_cast<size_t>(coefficients);

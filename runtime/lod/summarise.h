@@ -11,12 +11,14 @@ struct Box {
 // mean ± 3·max(s), each end rounded once to binary32.
 Box leaf_box(const Gaussian& gaussian);
 
-// The Gaussian of a node as it is drawn, with its SH: what its parent is merged from.
+// The Gaussian of a node as it is drawn, with its SH.
 MergeInput node_gaussian(uint32_t node, const BakedScene& baked);
 
+// The same with what it weighs where its parent is merged.
+MergeInput merge_input(uint32_t node, const BakedScene& baked);
+
 // Fills a node's box and extent, and an interior node's Gaussian, from its
-// children, which are done. Of a clustered tree also its exposure, and the extents of its leaves
-// and of its children with one child, which follow from its own. Nodes of one level may be done
+// children, which are done. Of a clustered tree also its exposure. Nodes of one level may be done
 // at once.
 void summarise(uint32_t node, BakedScene& baked);
 

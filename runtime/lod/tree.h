@@ -46,6 +46,7 @@ struct LodTree {
   std::pmr::vector<NodeRecord> records;
   std::pmr::vector<uint32_t> first_child;  // meaningless for a leaf
   std::pmr::vector<uint32_t> parent;       // kNoNode for the root
+  float blend_share = 0.5f;  // β of METHOD §4: of a parent's size, where a cut blends with it
 };
 
 }  // namespace voyager

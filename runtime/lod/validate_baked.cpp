@@ -77,8 +77,8 @@ void check_sh(uint32_t n, const BakedScene& baked, const std::vector<MergeInput>
   double largest[3 * sh_coefficients(kMaxShDegree)] = {};
   const int words = 3 * baked.merged.coefficients();
   for (const MergeInput& child : children) {
-    const double weight = total > 0.0 ? merge_weight(child.gaussian) / total
-                                      : 1.0 / static_cast<double>(children.size());
+    const double weight =
+        total > 0.0 ? child.weight / total : 1.0 / static_cast<double>(children.size());
     for (int k = 0; k < words; ++k) {
       expected[k] += weight * double{child.sh[k]};
       largest[k] = std::max(largest[k], std::fabs(double{child.sh[k]}));
@@ -95,7 +95,7 @@ void check_moments(uint32_t n, const BakedScene& baked, std::vector<MergeInput>&
                    Findings& findings) {
   children.clear();
   for (uint32_t i = 0; i < baked.tree.records[n].child_count; ++i)
-    children.push_back(node_gaussian(baked.tree.first_child[n] + i, baked));
+    children.push_back(merge_input(baked.tree.first_child[n] + i, baked));
   const MergeInput parent = node_gaussian(n, baked);
   const Moments expected = moments(children), found = moments({&parent, 1});
 
@@ -118,9 +118,6 @@ void check_moments(uint32_t n, const BakedScene& baked, std::vector<MergeInput>&
     const double least = 1e-38;  // where the opacity's word becomes subnormal, digits go
     check_near(n, "opacity times surface", found.weight, expected.weight,
                kWeightTolerance * expected.weight + least * std::max(trace, 1.0), findings);
-  } else if (children.size() == 1) {
-    check_near(n, "opacity of a double", double{parent.gaussian.opacity},
-               double{children[0].gaussian.opacity}, 0, findings);
   } else if (const float opacity = parent.gaussian.opacity;
              !(opacity >= 0 && opacity <= std::numeric_limits<float>::max())) {
     findings.add(name_of(n, "opacity"), text(opacity), "a finite one of at least 0");

@@ -18,10 +18,13 @@ inline constexpr float kAlphaThreshold = 1.0f / 255.0f;  // α*
 inline constexpr float kTransmittanceEnd = 1e-4f;
 inline constexpr float kLogAlphaThreshold = -5.541263545158426f;  // ln(1/255)
 
+// METHOD §12: α* of the truth.
+inline constexpr float kLogTruthThreshold = -9.210340371976182f;  // ln(1e-4)
+
 // METHOD §7: o·e^ρ ≥ α* exactly where ρ ≥ this.
 template <class T>
-VOYAGER_HD T rho_min(T log_opacity) {
-  return T(kLogAlphaThreshold) - log_opacity;
+VOYAGER_HD T rho_min(T log_opacity, T log_threshold = T(kLogAlphaThreshold)) {
+  return log_threshold - log_opacity;
 }
 
 inline constexpr float kLog2e = 1.44269504088896341f;

@@ -8,12 +8,19 @@
 
 namespace voyager {
 
+// Whether a child of a node of that size is drawn as itself, whatever its own size. share: β, of
+// the parent's size, where blending starts; in [0.5, 1).
+template <class T>
+VOYAGER_HD bool is_drawn_whole(T parent_size, T target, T share) {
+  return share * parent_size > target;
+}
+
 // t in [0, 1]; 1 is the node itself. Root: pass has_parent = false.
 template <class T>
-VOYAGER_HD T interpolation_weight(bool has_parent, T parent_size, T size, T target) {
-  if (!has_parent || parent_size > T(2) * target) return T(1);
-  const T half = parent_size / T(2);
-  const T start = half > size ? half : size;
+VOYAGER_HD T interpolation_weight(bool has_parent, T parent_size, T size, T target, T share) {
+  if (!has_parent || is_drawn_whole(parent_size, target, share)) return T(1);
+  const T least = share * parent_size;
+  const T start = least > size ? least : size;
   if (parent_size <= start) return T(1);
   const T over = target - start > T(0) ? target - start : T(0);
   const T t = T(1) - over / (parent_size - start);

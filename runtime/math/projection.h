@@ -1,13 +1,13 @@
 #pragma once
-// METHOD §5: a Gaussian's mean and covariance in the image. T is float in the
+// METHOD §5, §12: a Gaussian's mean and covariance in the image. T is float in the
 // backends and double in the reference.
 #include <cmath>
 
+#include "runtime/math/pixel_filter.h"
 #include "runtime/math/vec.h"
 
 namespace voyager {
 
-inline constexpr double kLowPass = 0.3;        // pixels², added to Σ'
 inline constexpr double kFrustumGrowth = 0.3;  // of the frustum's half-width, on each side
 
 // What projection needs of a camera, resolved once a frame.
@@ -40,10 +40,11 @@ ViewProjection<T> view_projection(const Mat3d& world_to_view, double fx, double 
 }
 
 // Σ' = [[xx, xy], [xy, yy]] with the low-pass, in pixels². y_given_x is
-// det Σ' / xx: the variance along y once x is known.
+// det Σ' / xx: the variance along y once x is known. kept is det TTᵀ / det Σ', both as below:
+// the square of the share of a splat's peak that the low-pass leaves, in [0, 1].
 template <class T>
 struct ImageCovariance {
-  T xx, xy, yy, y_given_x;
+  T xx, xy, yy, y_given_x, kept;
 };
 
 // The rows of J W: how the image moves with the mean, in pixels a metre.
@@ -69,7 +70,7 @@ VOYAGER_HD ImageJacobian<T> image_jacobian(const ViewProjection<T>& v, const Vec
 // length of T's first row before they are squared, so that nothing overflows.
 template <class T>
 VOYAGER_HD ImageCovariance<T> image_covariance(const ImageJacobian<T>& j, const Quat<T>& q,
-                                               const Vec3<T>& s) {
+                                               const Vec3<T>& s, T low) {
   const Mat3<T> r = rotation(q);
   T a[3], b[3];
   for (int i = 0; i < 3; ++i) {
@@ -80,12 +81,13 @@ VOYAGER_HD ImageCovariance<T> image_covariance(const ImageJacobian<T>& j, const 
   const T aa = (a[0] * a[0] + a[1] * a[1]) + a[2] * a[2];
   const T bb = (b[0] * b[0] + b[1] * b[1]) + b[2] * b[2];
   const T ab = (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-  const T low = T(kLowPass), xx = aa + low;
+  const T xx = aa + low;
   const T n = T(1) / std::sqrt(xx);
   const T m0 = (a[1] * b[2] - a[2] * b[1]) * n, m1 = (a[2] * b[0] - a[0] * b[2]) * n;
   const T m2 = (a[0] * b[1] - a[1] * b[0]) * n;
   const T minors = (m0 * m0 + m1 * m1) + m2 * m2;
-  return {xx, ab, bb + low, minors + low * ((aa + bb) + low) / xx};
+  const T y_given_x = minors + low * ((aa + bb) + low) / xx;
+  return {xx, ab, bb + low, y_given_x, minors / y_given_x};
 }
 
 // ρ = -(p² + q²) with p = dx·p_x and q = (dy - skew·dx)·q_y: never positive.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/project_params.h"
 #include "runtime/math/alpha.h"
 #include "runtime/math/sort_key.h"
 
@@ -15,7 +16,8 @@ Vec3f to_float(const Vec3d& v) {
 
 }  // namespace
 
-std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& cut_item) {
+std::optional<Splat> project(const Scene& scene, const Camera& camera, const PipelineDesc& desc,
+                             const DrawItem& cut_item) {
   const GaussianArrays arrays = gaussian_arrays(scene);
   const DrawItem item = drawn_item(cut_item, arrays.doubles);
   const Vec3f mean = interpolated_mean(arrays, item);
@@ -23,9 +25,9 @@ std::optional<Splat> project(const Scene& scene, const Camera& camera, const Dra
   const float z = view_depth(key, to_float(camera.world_to_view.row[2]));
   if (!(z > static_cast<float>(camera.near_z))) return std::nullopt;
 
-  const Shape<double> shape = interpolated_shape<double>(arrays, item);
-  const double rho = rho_min(std::log(shape.opacity));
-  if (!(rho <= 0)) return std::nullopt;
+  Shape<double> shape = interpolated_shape<double>(arrays, item);
+  const auto filter = pixel_filter<double>(scene, desc.antialias);
+  if (filter.footprint > 0) shape.scale = widened(shape.scale, filter.footprint);
 
   const Vec3d d{double{mean.x} + scene.origin.x - camera.eye.x,
                 double{mean.y} + scene.origin.y - camera.eye.y,
@@ -35,7 +37,10 @@ std::optional<Splat> project(const Scene& scene, const Camera& camera, const Dra
       view_projection<double>(camera.world_to_view, camera.fx, camera.fy, camera.cx, camera.cy,
                               camera.width, camera.height);
   const ImageCovariance<double> c =
-      image_covariance(image_jacobian(v, view), shape.rotation, shape.scale);
+      image_covariance(image_jacobian(v, view), shape.rotation, shape.scale, filter.low_pass);
+  if (filter.compensated) shape.opacity *= std::sqrt(c.kept);
+  const double rho = rho_min(std::log(shape.opacity), double{log_threshold(desc.antialias)});
+  if (!(rho <= 0)) return std::nullopt;
   Splat s;
   s.x = camera.fx * view.x / view.z + camera.cx;
   s.y = camera.fy * view.y / view.z + camera.cy;

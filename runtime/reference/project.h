@@ -1,5 +1,5 @@
 #pragma once
-// METHOD §5 in float64. The order of splats, the near plane and the
+// METHOD §5 and §12 in float64. The order of splats, the near plane and the
 // interpolated mean are binary32 by contract (§6).
 #include <optional>
 
@@ -20,6 +20,7 @@ struct Splat {
 };
 
 // camera: in the scene's coordinates.
-std::optional<Splat> project(const Scene& scene, const Camera& camera, const DrawItem& cut_item);
+std::optional<Splat> project(const Scene& scene, const Camera& camera, const PipelineDesc& desc,
+                             const DrawItem& cut_item);
 
 }  // namespace voyager::reference

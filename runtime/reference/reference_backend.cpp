@@ -52,7 +52,7 @@ class ReferencePipeline final : public HostPipeline {
  public:
   ReferencePipeline(const Scenes& scenes, const PipelineDesc& desc,
                     std::pmr::memory_resource* memory, Workers& workers)
-      : alpha_filter_(desc.alpha_filter),
+      : desc_(desc),
         workers_(workers),
         instances_(scenes, desc, 1, memory, workers),
         keys_(memory) {
@@ -92,9 +92,9 @@ class ReferencePipeline final : public HostPipeline {
       for (const uint64_t key : keys_) {
         const Splat& s = splats[depth_key_index(key)];
         const auto rows =
-            alpha_filter_ ? covered(s.y, s.half_height, begin, end) : std::pair(begin, end);
+            desc_.alpha_filter ? covered(s.y, s.half_height, begin, end) : std::pair(begin, end);
         const auto columns =
-            alpha_filter_ ? covered(s.x, s.half_width, 0, width) : std::pair(size_t{0}, width);
+            desc_.alpha_filter ? covered(s.x, s.half_width, 0, width) : std::pair(size_t{0}, width);
         for (size_t y = rows.first; y < rows.second; ++y)
           for (size_t x = columns.first; x < columns.second; ++x)
             blend(s, static_cast<double>(x), static_cast<double>(y), pixels[y * width + x]);
@@ -132,7 +132,7 @@ class ReferencePipeline final : public HostPipeline {
     workers_.for_blocks(items.size(), kBlock, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
         if (const auto splat =
-                reference::project(*instance.scene, instance.cameras[eye], items[i])) {
+                reference::project(*instance.scene, instance.cameras[eye], desc_, items[i])) {
           of.splats[instance.first + i] = *splat;
           of.visible[instance.first + i] = 1;
         }
@@ -148,7 +148,7 @@ class ReferencePipeline final : public HostPipeline {
                      : std::pair(low, low);
   }
 
-  bool alpha_filter_;
+  PipelineDesc desc_;
   Workers& workers_;
   HostInstances instances_;
   std::deque<Eye> eyes_;             // which are never moved

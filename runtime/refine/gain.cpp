@@ -27,14 +27,9 @@ struct Family {
   }
 };
 
-uint32_t without_double(const LodTree& tree, uint32_t node) {
-  return tree.records[node].child_count == 1 ? tree.first_child[node] : node;
-}
-
 Family family_of(const ProjectParams& params, const NodeArrays& arrays, const LodTree& tree,
                  uint32_t node) {
   Family family;
-  node = without_double(tree, node);
   family.merged = !tree.is_leaf(node);
   for (uint32_t i = 0; i < tree.records[node].child_count; ++i)
     if (const auto splat = splat_of(params, arrays, tree.first_child[node] + i)) family.add(*splat);
@@ -140,8 +135,7 @@ std::vector<NodeGain> gains(const ProjectParams& params, const NodeArrays& array
   std::vector<NodeGain> found;
   for (size_t i = 0; i < splats.size(); ++i)
     if (families[i].merged)
-      found.push_back(
-          {without_double(tree, splats[i].node), kUnit * static_cast<double>(sums[i].load())});
+      found.push_back({splats[i].node, kUnit * static_cast<double>(sums[i].load())});
   std::sort(found.begin(), found.end(),
             [](const NodeGain& a, const NodeGain& b) { return a.node < b.node; });
   return found;

@@ -6,7 +6,7 @@
 namespace voyager {
 
 struct NodeGain {
-  uint32_t node;  // a merged one with several children; for its double the double's child
+  uint32_t node;  // a merged one
   double squares;  // by how much the sum of squared errors falls, code values² × pixels; < 0: grows
 };
 

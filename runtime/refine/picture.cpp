@@ -26,8 +26,10 @@ ProjectParams picture_params(const Viewpoint& view) {
   params.depth_scale = 1;
   params.width = static_cast<float>(kPictureWidth);
   params.height = static_cast<float>(kPictureHeight);
+  params.filter = {static_cast<float>(kLowPass), 0, false};
   params.half = 0.5f;
   params.log_scale = 1;
+  params.log_threshold = kLogAlphaThreshold;
   return params;
 }
 
@@ -36,7 +38,7 @@ std::optional<Splat> splat_of(const ProjectParams& params, const NodeArrays& arr
   const DrawItem item{node, kNoNode, 1.0f, 1.0f};
   DrawnGaussian drawn;
   Splat splat;
-  if (!read_gaussian(arrays, item, drawn) || !project(params, arrays, item, drawn, splat))
+  if (!read_gaussian(params, arrays, item, drawn) || !project(params, arrays, item, drawn, splat))
     return std::nullopt;
   return splat;
 }

@@ -22,13 +22,9 @@ constexpr double kTaus[] = {2, 8, 30};
 constexpr double kFollow = 0.5, kBelief = 24, kMostChange = 16;
 constexpr double kKeepMilliseconds = 20000;
 
-bool is_double(const LodTree& tree, uint32_t node) {
-  return tree.records[node].child_count == 1;
-}
-
 bool is_measured(const LodTree& tree, uint32_t node) {
   const NodeRecord& r = tree.records[node];
-  return r.child_count > 1 && r.extent > 0 && std::isfinite(r.extent);
+  return r.child_count != 0 && r.extent > 0 && std::isfinite(r.extent);
 }
 
 class Measuring {
@@ -97,21 +93,11 @@ void set_measured(const Measured& measured, LodTree& tree) {
   }
 }
 
-// Of a tree whose merged nodes are set: extents never grow downwards, leaves and doubles blend
-// late.
-void set_others(LodTree& tree) {
+void never_grow_downwards(LodTree& tree) {
   for (auto n = static_cast<uint32_t>(tree.size()); n-- > 0;) {
     NodeRecord& r = tree.records[n];
-    if (tree.is_leaf(n)) continue;
-    const uint32_t first = tree.first_child[n];
-    if (is_double(tree, n)) r.extent = tree.records[first].extent;
     for (uint32_t i = 0; i < r.child_count; ++i)
-      if (!tree.is_leaf(first + i)) r.extent = std::max(r.extent, tree.records[first + i].extent);
-    for (uint32_t i = 0; i < r.child_count; ++i) {
-      NodeRecord& child = tree.records[first + i];
-      if (child.child_count == 0) child.extent = kLateExtent * r.extent;
-      if (child.child_count == 1) child.extent = late_extent(child.extent, r.extent);
-    }
+      r.extent = std::max(r.extent, tree.records[tree.first_child[n] + i].extent);
   }
 }
 
@@ -142,7 +128,7 @@ void refine_extents(BakedScene& baked, uint32_t views, const std::string& kept, 
     report(progress, "measuring", views, views);
   }
   set_measured(measured, tree);
-  set_others(tree);
+  never_grow_downwards(tree);
 }
 
 }  // namespace voyager

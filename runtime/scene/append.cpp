@@ -22,8 +22,8 @@ void append(std::pmr::vector<float>& to, std::pmr::vector<float>& from) {
 
 }  // namespace
 
-void require_alike(const std::array<double, 3>& origin, bool antialiased,
-                   const std::array<double, 3>& more_origin, bool more_antialiased,
+void require_alike(const std::array<double, 3>& origin, const NativeScale& native,
+                   const std::array<double, 3>& more_origin, const NativeScale& more_native,
                    const std::string& more_name) {
   const auto text = [](const std::array<double, 3>& o) {
     return "(" + std::to_string(o[0]) + ", " + std::to_string(o[1]) + ", " + std::to_string(o[2]) +
@@ -32,10 +32,15 @@ void require_alike(const std::array<double, 3>& origin, bool antialiased,
   if (origin != more_origin)
     throw Error(ErrorCode::refused_input, more_name + ": origin: found " + text(more_origin) +
                                               ", expected the first input's " + text(origin));
-  if (antialiased != more_antialiased)
-    throw Error(ErrorCode::refused_input, more_name + ": antialiased: found " +
-                                              (more_antialiased ? "yes" : "no") +
-                                              ", expected the same as in the first input");
+  const auto filter = [](const NativeScale& scale) {
+    return scale.antialiased()
+               ? "a compensated filter of " + std::to_string(scale.low_pass) + " square pixels"
+               : std::string("3DGS's filter");
+  };
+  if (native != more_native)
+    throw Error(ErrorCode::refused_input, more_name + ": trained with: found " +
+                                              filter(more_native) + ", expected " + filter(native) +
+                                              " as in the first input");
 }
 
 void add(ImportReport& sum, const ImportReport& more) {
@@ -50,7 +55,7 @@ void add(ImportReport& sum, const ImportReport& more) {
 }
 
 void append(GaussianCloud& cloud, GaussianCloud&& more, const std::string& more_name) {
-  require_alike(cloud.origin, cloud.antialiased, more.origin, more.antialiased, more_name);
+  require_alike(cloud.origin, cloud.native, more.origin, more.native, more_name);
   const int input_degree = std::max(cloud.input_sh_degree(), more.input_sh_degree());
   raise_degree(cloud, more.sh_degree);
   raise_degree(more, cloud.sh_degree);

@@ -9,6 +9,7 @@
 
 #include "runtime/math/gaussian.h"
 #include "runtime/math/sh.h"
+#include "runtime/scene/native_scale.h"
 
 namespace voyager {
 
@@ -48,8 +49,8 @@ struct GaussianCloud {
   }
 
   int sh_degree = 0;
-  int left_out_bands = 0;    // of the input, above sh_degree: zero in every Gaussian (sh_bands.h)
-  bool antialiased = false;  // the input says it was trained with the antialiased low-pass
+  int left_out_bands = 0;  // of the input, above sh_degree: zero in every Gaussian (sh_bands.h)
+  NativeScale native;      // as far as the input says
   std::array<double, 3> origin{0, 0, 0};  // world position = origin + position
   std::pmr::vector<float> position;       // 3 a Gaussian, metres
   std::pmr::vector<float> log_scale;      // 3

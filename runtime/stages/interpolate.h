@@ -20,13 +20,14 @@ struct WeightParams {
   const uint32_t* parent;
   const float* sizes;  // screen_size of each node
   float target_size;   // τ*
+  float blend_share;   // LodTree's
 };
 
 VOYAGER_HD DrawItem weigh(const WeightParams& params, uint32_t node) {
   const uint32_t parent = params.parent[node];
   const bool has_parent = parent != kNoNode;
   const float t = interpolation_weight(has_parent, has_parent ? params.sizes[parent] : 0.0f,
-                                       params.sizes[node], params.target_size);
+                                       params.sizes[node], params.target_size, params.blend_share);
   if (t == 1.0f) return {node, kNoNode, 1.0f, 1.0f};
   return {node, parent, t, 1.0f / static_cast<float>(params.records[parent].child_count)};
 }
@@ -38,7 +39,7 @@ struct GaussianArrays {
   const float* coefficients;  // [k][rgb] a Gaussian
   const uint8_t* axis_codes;  // of a tree; a flat scene has none
   int degree;
-  bool doubles;  // nodes of one child are doubles (docs/lod-tree.md)
+  bool doubles;  // nodes of one child are doubles, as files of version 4 have them
 
   int sh_degree() const { return degree; }
   const Vec3f& mean(uint32_t i) const { return gaussians[i].mean; }

@@ -1,5 +1,5 @@
 #pragma once
-// METHOD §5–7 as a stage: one Gaussian to one splat, or to nothing.
+// METHOD §5–7 and §12 as a stage: one Gaussian to one splat, or to nothing.
 #include "runtime/math/alpha.h"
 #include "runtime/math/projection.h"
 #include "runtime/math/sort_key.h"
@@ -10,11 +10,13 @@ namespace voyager {
 struct ProjectParams {
   Vec3d origin, eye;           // the scene's; in the scene's coordinates
   ViewProjection<float> view;  // view.world_to_view.row[2] is the view axis of the sort key
+  PixelFilter<float> filter;
   float near_z;
   float depth_scale;    // of the sort key
   float width, height;  // pixels
   float half;           // ½, or ½·log2(e) for a base-2 exponential
   float log_scale;      // what turns natural logarithms into the conic's: 1 or log2(e)
+  float log_threshold;  // log α*, natural
 };
 
 // A Gaussian in the image.
@@ -89,14 +91,14 @@ VOYAGER_HD float largest(const Vec3f& v) {
 }
 
 // A bound on the support before the covariance is known: no axis is longer than the
-// largest scale. radius: of the support, in standard deviations. 1.01 covers the
-// rounding of the sums behind it.
+// largest scale, footprint included. radius: of the support, in standard deviations. 1.01
+// covers the rounding of the sums behind it.
 VOYAGER_HD bool surely_outside(const ProjectParams& params, const ImageJacobian<float>& j,
-                               float max_scale, float radius, float x, float y) {
-  const float low = static_cast<float>(kLowPass), ss = max_scale * max_scale;
+                               float variance, float radius, float x, float y) {
+  const float low = params.filter.low_pass;
   radius *= 1.01f;
-  return misses(x, radius * std::sqrt(ss * dot(j.x, j.x) + low), params.width) ||
-         misses(y, radius * std::sqrt(ss * dot(j.y, j.y) + low), params.height);
+  return misses(x, radius * std::sqrt(variance * dot(j.x, j.x) + low), params.width) ||
+         misses(y, radius * std::sqrt(variance * dot(j.y, j.y) + low), params.height);
 }
 
 // The mean in view space.
@@ -114,30 +116,34 @@ VOYAGER_HD float image_y(const ProjectParams& params, const Vec3f& view) {
 
 }  // namespace detail
 
-// Whether a Gaussian may reach the image, from its mean and bounds on its largest scale
+// Whether a Gaussian may reach the image, from its mean and bounds on its stored largest scale
 // and on the radius of its support (standard deviations): what fails here, project()
 // drops too.
 VOYAGER_HD bool may_reach(const ProjectParams& params, const Vec3f& mean, float max_scale,
                           float radius) {
   const Vec3f view = detail::to_view(params, camera_relative(mean, params.origin, params.eye));
   if (!(view.z > params.near_z)) return false;
-  return !detail::surely_outside(params, image_jacobian(params.view, view), max_scale, radius,
+  return !detail::surely_outside(params, image_jacobian(params.view, view),
+                                 max_scale * max_scale + params.filter.footprint, radius,
                                  detail::image_x(params, view), detail::image_y(params, view));
 }
 
 // What a Gaussian's splats in the images of several eyes have in common.
 struct DrawnGaussian {
   Vec3f mean;
-  Shape<float> shape;
-  float rho_min;  // in natural logarithms
+  Shape<float> shape;  // its scale with the footprint
+  float rho_min;       // in natural logarithms; of a splat that loses nothing to the low-pass
 };
 
-// False where it is under the α threshold everywhere (METHOD §7a).
+// False where it is under the α threshold everywhere (METHOD §7a). params: of any eye.
 template <class Arrays>
-VOYAGER_HD bool read_gaussian(const Arrays& arrays, const DrawItem& item, DrawnGaussian& drawn) {
+VOYAGER_HD bool read_gaussian(const ProjectParams& params, const Arrays& arrays,
+                              const DrawItem& item, DrawnGaussian& drawn) {
   drawn.mean = interpolated_mean(arrays, item);
   drawn.shape = interpolated_shape<float>(arrays, item);
-  drawn.rho_min = rho_min(drawn.shape.log_opacity);
+  if (params.filter.footprint > 0.0f)
+    drawn.shape.scale = widened(drawn.shape.scale, params.filter.footprint);
+  drawn.rho_min = rho_min(drawn.shape.log_opacity, params.log_threshold);
   return drawn.rho_min <= 0.0f;
 }
 
@@ -147,7 +153,7 @@ VOYAGER_HD bool before_near_plane(const ProjectParams& params, const Vec3f& mean
 }
 
 // All of the splat but its colour. False where nothing of it can reach the image: behind the
-// near plane, or outside the image.
+// near plane, outside the image, or where the low-pass leaves no α above the threshold.
 // relative: where its mean is from the eye, in world axes.
 VOYAGER_HD bool project_shape(const ProjectParams& params, const DrawItem& item,
                               const DrawnGaussian& drawn, Splat& splat, Vec3f& relative) {
@@ -159,18 +165,27 @@ VOYAGER_HD bool project_shape(const ProjectParams& params, const DrawItem& item,
   splat.y = detail::image_y(params, view);
   const Shape<float>& shape = drawn.shape;
   const ImageJacobian<float> jacobian = image_jacobian(params.view, view);
-  if (detail::surely_outside(params, jacobian, detail::largest(shape.scale),
+  const float longest = detail::largest(shape.scale);
+  if (detail::surely_outside(params, jacobian, longest * longest,
                              std::sqrt(2.0f * (kRhoMargin - drawn.rho_min)), splat.x, splat.y))
     return false;
 
-  const ImageCovariance<float> covariance = image_covariance(jacobian, shape.rotation, shape.scale);
+  const ImageCovariance<float> covariance =
+      image_covariance(jacobian, shape.rotation, shape.scale, params.filter.low_pass);
+  splat.opacity = shape.opacity;
+  splat.log_opacity = shape.log_opacity;
+  float least = drawn.rho_min;
+  if (params.filter.compensated) {
+    splat.opacity *= std::sqrt(covariance.kept);
+    splat.log_opacity += 0.5f * std::log(covariance.kept);
+    least = rho_min(splat.log_opacity, params.log_threshold);
+    if (!(least <= 0.0f)) return false;
+  }
   splat.conic = conic(covariance, params.half);
-  splat.rho_min = drawn.rho_min * params.log_scale;
+  splat.rho_min = least * params.log_scale;
   const SupportEllipse support = support_ellipse(splat);
   splat.half_width = support.reach_x;
   splat.half_height = support.reach_y;
-  splat.opacity = shape.opacity;
-  splat.log_opacity = shape.log_opacity;
   splat.depth = sort_depth(view.z, params.depth_scale);
   splat.t = item.t;
   splat.inverse_k = item.inverse_k;

@@ -45,10 +45,10 @@ class ReportCurve : public ::testing::Test {
   static inline std::string failure_;
 };
 
-// Measured on this city, in dB; both qualities, all views and the flight are within 1.2 of it.
+// Measured on this city, in dB; both qualities, all views and the flight are within 1.3 of it.
 double expected_psnr(double share) {
-  const std::map<double, double> measured = {{0.9, 53.5},  {0.8, 41.3}, {0.65, 37.1}, {0.5, 34.0},
-                                             {0.35, 32.0}, {0.2, 29.9}, {0.1, 26.5}};
+  const std::map<double, double> measured = {{0.9, 42.6},  {0.8, 40.5}, {0.65, 38.6}, {0.5, 35.1},
+                                             {0.35, 32.7}, {0.2, 30.6}, {0.1, 26.8}};
   return measured.at(share);
 }
 

@@ -102,7 +102,7 @@ struct Choices {
 GaussianCloud make_cloud(Input& input, const Choices& choices) {
   GaussianCloud cloud;
   cloud.sh_degree = choices.sh_degree;
-  cloud.antialiased = choices.antialiased;
+  if (choices.antialiased) cloud.native = compensated_scale(kLowPass);
   cloud.origin = choices.origin;
   std::vector<float> fields(11 + 3 * static_cast<size_t>(cloud.coefficients()));
   fields[6] = 1;
@@ -144,7 +144,7 @@ bool same_bits(const std::pmr::vector<float>& a, const std::pmr::vector<float>& 
 }
 
 void expect_same_words(const GaussianCloud& a, const GaussianCloud& b) {
-  expect(a.sh_degree == b.sh_degree && a.origin == b.origin && a.antialiased == b.antialiased);
+  expect(a.sh_degree == b.sh_degree && a.origin == b.origin);
   expect(same_bits(a.position, b.position) && same_bits(a.log_scale, b.log_scale));
   expect(same_bits(a.rotation, b.rotation) && same_bits(a.opacity, b.opacity));
   expect(same_bits(a.sh, b.sh));
@@ -169,7 +169,7 @@ class CloudReader final : public BlockReader {
   const std::string& name() const override { return name_; }
   uint64_t count() const override { return cloud_.size(); }
   int sh_degree() const override { return cloud_.sh_degree; }
-  bool antialiased() const override { return cloud_.antialiased; }
+  NativeScale native() const override { return cloud_.native; }
 
   RawBlock next(size_t most) override {
     RawBlock block;
@@ -185,7 +185,7 @@ class CloudReader final : public BlockReader {
     std::memcpy(&first, block.bytes.data(), sizeof first);
     GaussianCloud part;
     part.sh_degree = cloud_.sh_degree;
-    part.antialiased = cloud_.antialiased;
+    part.native = cloud_.native;
     part.origin = cloud_.origin;
     const auto take = [&](std::pmr::vector<float>& to, const std::pmr::vector<float>& from) {
       const size_t width = from.size() / cloud_.size();
@@ -262,6 +262,7 @@ void bake(std::span<const uint8_t> bytes) {
   const GaussianCloud leaves = read_leaves(SceneFile(source));
   expect(leaves.size() == cloud.size());
   if (choices.quality == Quality::lossless) expect_same_words(leaves, cloud);
+  expect(leaves.native == baked.leaves.native);
   const auto scene = load_scene(source, std::pmr::get_default_resource(), workers);
   expect(scene->damaged.empty());
   draw_all(scene, workers);

@@ -29,7 +29,7 @@ class Pipe final : public ByteReader {
 
 void append_words(GaussianCloud& all, const GaussianCloud& block) {
   all.sh_degree = block.sh_degree;
-  all.antialiased = block.antialiased;
+  all.native = block.native;
   all.origin = block.origin;
   const auto add = [](auto& to, const auto& from) {
     to.insert(to.end(), from.begin(), from.end());
@@ -44,7 +44,7 @@ void append_words(GaussianCloud& all, const GaussianCloud& block) {
 GaussianCloud read_blocks(BlockReader& reader, size_t most) {
   GaussianCloud all;
   all.sh_degree = reader.sh_degree();
-  all.antialiased = reader.antialiased();
+  all.native = reader.native();
   for (;;) {
     const RawBlock block = reader.next(most);
     if (block.count > most) std::abort();
@@ -64,7 +64,7 @@ bool same_bits(const std::pmr::vector<float>& a, const std::pmr::vector<float>& 
 void expect_same(const std::optional<GaussianCloud>& a, const std::optional<GaussianCloud>& b) {
   if (a.has_value() != b.has_value()) std::abort();
   if (!a) return;
-  const bool same = a->sh_degree == b->sh_degree && a->antialiased == b->antialiased &&
+  const bool same = a->sh_degree == b->sh_degree && a->native == b->native &&
                     (a->origin == b->origin || a->size() == 0) &&
                     same_bits(a->position, b->position) && same_bits(a->log_scale, b->log_scale) &&
                     same_bits(a->rotation, b->rotation) && same_bits(a->opacity, b->opacity) &&

@@ -52,9 +52,9 @@ class Oracle {
     result.cut.assign(search_.cut().begin(), search_.cut().end());
     for (const uint32_t n : result.cut) {
       const uint32_t p = scene_.tree.parent[n];
-      result.weights.push_back(interpolation_weight(p != kNoNode,
-                                                    p == kNoNode ? 0.0f : search_.sizes()[p],
-                                                    search_.sizes()[n], query.target_size));
+      result.weights.push_back(
+          interpolation_weight(p != kNoNode, p == kNoNode ? 0.0f : search_.sizes()[p],
+                               search_.sizes()[n], query.target_size, scene_.tree.blend_share));
     }
     return result;
   }

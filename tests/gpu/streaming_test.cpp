@@ -191,7 +191,7 @@ TEST_F(Streaming, RoomForWhatIsSeenIsRoomForTheResidentImage) {
     for (int i = 0; i < 12; ++i) {
       const Vec3d eye{300.0 * i - 1650, -3, -60};
       FrameInput input =
-          frame_input(look(eye, eye + Vec3d{0.1 * (i % 4), 0.1, 1}, 96, 64, 40), 0.5);
+          frame_input(look(eye, eye + Vec3d{0.1 * (i % 4), 0.1, 1}, 96, 64, 12), 0.5);
       const Frame expected = render(*all, input);
       input.wait_resident = true;
       try {

@@ -95,6 +95,7 @@ struct Stage : Host {
   VoyView view_of(const std::vector<VoyScene>& scenes) {
     VoyViewDesc desc = view_desc();
     desc.exponential = VOY_EXPONENTIAL_EXACT;
+    desc.antialias = VOY_ANTIALIAS_OFF;  // halves estimate native pixels of their own
     desc.instanceCount = static_cast<uint32_t>(scenes.size());
     desc.scenes = scenes.data();
     VoyView made = nullptr;

@@ -25,7 +25,7 @@ ViewProjection<double> camera(bool clamped) {
 }
 
 ImageCovariance<double> covariance(const Cloudlet& g, bool clamped) {
-  return image_covariance(image_jacobian(camera(clamped), g.mean), g.rotation, g.scale);
+  return image_covariance(image_jacobian(camera(clamped), g.mean), g.rotation, g.scale, kLowPass);
 }
 
 // A metre away, so that its size is the angle it is seen under.

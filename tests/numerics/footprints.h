@@ -36,7 +36,7 @@ struct Footprint {
   }
   template <class T>
   ImageCovariance<T> covariance() const {
-    return image_covariance(jacobian<T>(), turned<T>(), cast<T>(scale));
+    return image_covariance(jacobian<T>(), turned<T>(), cast<T>(scale), static_cast<T>(kLowPass));
   }
 };
 

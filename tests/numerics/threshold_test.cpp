@@ -66,15 +66,17 @@ void compare(const Splat& found, const reference::Splat& exact, Edge& edge) {
 Edge measure(uint32_t image, double pixels) {
   const Camera camera = test::look({0, 0, 0}, {0, 0, 1}, image, image, 90);
   const auto scene = scene_of(1000, pixels, camera);
-  const ProjectParams params = project_params(*scene, camera, Exponential::exact);
+  const PipelineDesc desc{.exponential = Exponential::exact, .antialias = Antialias::off};
+  const ProjectParams params = project_params(*scene, camera, desc);
   const GaussianArrays arrays = gaussian_arrays(*scene);
   Edge edge;
   for (uint32_t i = 0; i < scene->gaussians.size(); ++i) {
     const DrawItem item{i, kNoNode, 1.0f, 1.0f};
-    const auto exact = reference::project(*scene, camera, item);
+    const auto exact = reference::project(*scene, camera, desc, item);
     DrawnGaussian drawn;
     Splat splat;
-    if (exact && read_gaussian(arrays, item, drawn) && project(params, arrays, item, drawn, splat))
+    if (exact && read_gaussian(params, arrays, item, drawn) &&
+        project(params, arrays, item, drawn, splat))
       compare(splat, *exact, edge);
   }
   return edge;

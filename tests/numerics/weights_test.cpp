@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <random>
 
+#include "runtime/lod/tree_rule.h"
 #include "runtime/math/axes.h"
 #include "tests/numerics/footprints.h"
 #include "tests/numerics/measured.h"
@@ -21,8 +22,8 @@ float step(float x, int times) {
 
 // The sizes are binary32 by contract. The target lies within a factor of two of start and of
 // the parent's size: both differences are exact. One quotient and one difference from 1 are
-// rounded, by ε/2 each.
-TEST(WeightEnds, TheWeightOfGivenSizesIsWithinAnEpsilon) {
+// rounded, by ε/2 each; and start itself, by ε/2 of it, where the share is not a power of two.
+void check_weights(float share, double bound, const char* record) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> uniform(0, 1);
   double worst = 0;
@@ -30,24 +31,32 @@ TEST(WeightEnds, TheWeightOfGivenSizesIsWithinAnEpsilon) {
   for (int i = 0; i < 20000; ++i) {
     const float parent = std::ldexp(1 + uniform(random), static_cast<int>(random() % 60) - 40);
     const float size = random() % 4 == 0 ? 0 : parent * std::sqrt(uniform(random));
-    const float start = std::max(parent / 2, size);
+    const float start = std::max(share * parent, size);
     for (int k = 0; k < 24; ++k) {
       const int ulps = static_cast<int>(random() % 16);
       const float target = k < 8    ? step(start, ulps)
                            : k < 16 ? step(parent, -ulps)
                                     : start + (parent - start) * uniform(random);
       if (target < start || target > parent) continue;
-      const double found = double{interpolation_weight(true, parent, size, target)};
-      const double t = interpolation_weight(true, double{parent}, double{size}, double{target});
+      const double found = double{interpolation_weight(true, parent, size, target, share)};
+      const double t =
+          interpolation_weight(true, double{parent}, double{size}, double{target}, double{share});
       worst = std::max(worst, std::fabs(found - t));
       near_zero += t > 0 && t < 1e-5, near_one += t < 1 && t > 1 - 1e-5;
       ASSERT_TRUE(found >= 0 && found <= 1);
     }
   }
-  EXPECT_LE(worst, kEpsilon);
+  EXPECT_LE(worst, bound * kEpsilon);
   EXPECT_GT(near_zero, 1000u);
   EXPECT_GT(near_one, 1000u);
-  test::record("weight_units", worst / kEpsilon);
+  test::record(record, worst / kEpsilon);
+}
+
+TEST(WeightEnds, TheWeightOfGivenSizesIsWithinAnEpsilon) {
+  check_weights(kHalfShare, 1, "weight_units");
+}
+TEST(WeightEnds, WhereBlendingStartsLateWithinFifty) {
+  check_weights(kLateShare, 50, "late_weight_units");
 }
 
 // Their own, however thin an axis is under its parent's: both terms are positive, so nothing

@@ -94,14 +94,15 @@ std::vector<Splat> splats_of(const std::shared_ptr<const Scene>& scene, const Fr
   Workers workers(1);
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource(), workers);
   draws.update(cut_query(input, 0, scene->origin), workers);
-  const ProjectParams params = project_params(*scene, input.eyes[0].camera, exponential);
+  const ProjectParams params =
+      project_params(*scene, input.eyes[0].camera, {.exponential = exponential});
   const GaussianArrays arrays = gaussian_arrays(*scene);
   std::vector<Splat> splats;
   Splat splat;
   for (const DrawItem& cut_item : draws.items()) {
     const DrawItem item = drawn_item(cut_item, arrays.doubles);
     DrawnGaussian drawn;
-    if (read_gaussian(arrays, item, drawn) && project(params, arrays, item, drawn, splat))
+    if (read_gaussian(params, arrays, item, drawn) && project(params, arrays, item, drawn, splat))
       splats.push_back(splat);
   }
   std::stable_sort(splats.begin(), splats.end(),

@@ -150,6 +150,7 @@ std::shared_ptr<Scene> part_of(const GaussianCloud& cloud, const Camera& camera,
   const auto whole = test::flat_scene(cloud);
   auto part = test::empty_scene();
   part->sh_degree = whole->sh_degree;
+  part->native = whole->native;
   const size_t words = whole->sh.size() / whole->gaussians.size();
   for (size_t i = 0; i < whole->gaussians.size(); ++i) {
     if ((key_of(*whole, i, camera) <= limit) != before) continue;

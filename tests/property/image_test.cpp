@@ -4,6 +4,7 @@
 
 #include "runtime/frame/draw_list.h"
 #include "tests/support/render_scene.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager::image_test {
 namespace {
@@ -50,14 +51,16 @@ size_t count_interpolated(const Scene& scene, const FrameInput& input) {
   for (const uint32_t n : search.cut()) {
     const uint32_t parent = scene.tree.parent[n];
     if (parent != kNoNode)
-      count += interpolation_weight(true, scene.tree.screen_size(parent, c),
-                                    scene.tree.screen_size(n, c), target) < 1;
+      count +=
+          interpolation_weight(true, scene.tree.screen_size(parent, c),
+                               scene.tree.screen_size(n, c), target, scene.tree.blend_share) < 1;
   }
   return count;
 }
 
 TEST(Image, TheAlphaFilterChangesNoBit) {
-  const auto scene = test::baked_scene(test::random_cloud(3000, 5, 2));
+  const auto scene = test::baked_scene(test::random_cloud(3000, 5, 2), Quality::lossless,
+                                       test::kHierarchicalGs);  // which blends most
   const auto cpu = create_cpu_backend(), reference = create_reference_backend();
   size_t interpolated = 0;
   for (const FrameInput& input : frames()) {

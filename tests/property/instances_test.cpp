@@ -101,6 +101,7 @@ TEST_F(Instances, APosedInstanceIsTheSceneWithItsGaussiansMoved) {
   const InstancePose turned{rotation(normalise(turn)), pose.position, pose.scale};
   const auto scene = test::flat_scene(test::random_cloud(4000, 9, 0));
   const auto moved = test::flat_scene(test::random_cloud(4000, 9, 0));
+  moved->native.pixel *= 1.5;
   for (Gaussian& g : moved->gaussians) {
     const Vec3d mean = test::to_world(turned, {g.mean.x, g.mean.y, g.mean.z});
     const Quatd q = normalise(turn) * Quatd{g.rotation.w, g.rotation.x, g.rotation.y, g.rotation.z};

@@ -54,17 +54,16 @@ TEST(Refine, AGainIsWhatThePictureGains) {
     const Picture cut(params, arrays, nodes, workers);
     const double error = squared_error(cut, leaves);
     for (const NodeGain& gain : gains(params, arrays, tree, cut, leaves, workers)) {
-      ASSERT_GT(tree.records[gain.node].child_count, 1u);
+      ASSERT_FALSE(tree.is_leaf(gain.node));
       ++compared;
       std::vector<uint32_t> refined;
       for (const uint32_t n : nodes) {
-        const uint32_t single = tree.records[n].child_count == 1 ? tree.first_child[n] : n;
-        if (single != gain.node) {
+        if (n != gain.node) {
           refined.push_back(n);
           continue;
         }
-        for (uint32_t i = 0; i < tree.records[single].child_count; ++i)
-          refined.push_back(tree.first_child[single] + i);
+        for (uint32_t i = 0; i < tree.records[n].child_count; ++i)
+          refined.push_back(tree.first_child[n] + i);
       }
       const double expected = error - squared_error({params, arrays, refined, workers}, leaves);
       most = std::max(most, std::fabs(expected));
@@ -77,7 +76,7 @@ TEST(Refine, AGainIsWhatThePictureGains) {
   EXPECT_LE(off, compared / 50);
 }
 
-TEST(Refine, ExtentsStillNeverGrowDownwardsAndLeavesBlendLate) {
+TEST(Refine, ExtentsStillNeverGrowDownwards) {
   Workers workers;
   const test::TempFolder folder;
   BakedScene baked = test::bake(test::random_cloud(2500, 5, 1));
@@ -92,12 +91,12 @@ TEST(Refine, ExtentsStillNeverGrowDownwardsAndLeavesBlendLate) {
     ASSERT_EQ(was.child_count, is.child_count);
     grown += is.extent > was.extent, shrunk += is.extent < was.extent;
     const uint32_t parent = tree.parent[n];
-    if (parent == kNoNode || is.child_count > 1) continue;
-    ASSERT_GE(is.extent, kLateExtent * tree.records[parent].extent) << n;
+    if (parent == kNoNode) continue;
     ASSERT_LE(is.extent, tree.records[parent].extent) << n;
+    ASSERT_TRUE(is.child_count != 0 || is.extent == 0) << n;
   }
-  EXPECT_GT(grown, 50u);
-  EXPECT_GT(shrunk, 50u);
+  EXPECT_GT(grown, 20u);
+  EXPECT_GT(shrunk, 20u);
 }
 
 TEST(Refine, NeitherThreadsNorStopsShow) {

@@ -70,7 +70,7 @@ TEST(StreamingMemory, RefusedAtAnyMomentIsOvercome) {
     test::expect_same_bits(waited, whole);
     ASSERT_FALSE(HasFailure()) << at;
   }
-  EXPECT_GT(refused, 10u);
+  EXPECT_GE(refused, 10u);
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ TEST_P(StreamingOfTree, RoomForWhatIsSeenIsRoomForTheResidentImage) {
     for (int i = 0; i < 12; ++i) {
       SCOPED_TRACE(i);
       const Vec3d eye{300.0 * i - 1650, -3, -60};
-      FrameInput input = frame_input(look(eye, eye + Vec3d{0.1 * (i % 4), 0.1, 1}, 96, 64, 40),
+      FrameInput input = frame_input(look(eye, eye + Vec3d{0.1 * (i % 4), 0.1, 1}, 96, 64, 12),
                                      of_one_colour ? 0 : 0.5);
       const Frame whole = render(rig.whole, input);
       input.wait_resident = true;

@@ -6,6 +6,7 @@
 #include "runtime/frame/frame_search.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_rules.h"
 
 namespace voyager::weights_test {
 namespace {
@@ -30,8 +31,9 @@ double exact_size(const NodeRecord& r, const Vec3d& c) {
   return squared == 0 ? INFINITY : double{r.extent} / std::sqrt(squared);
 }
 
-TEST(Weights, FollowTheMethodInDouble) {
-  const auto scene = test::baked_scene(test::random_cloud(5000, 1, 0));
+// Returns how many nodes lie between themselves and their parents.
+size_t check_weights(const TreeRule& rule) {
+  const auto scene = test::baked_scene(test::random_cloud(5000, 1, 0), Quality::lossless, rule);
   const LodTree& tree = scene->tree;
   Workers workers(2);
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource(), workers);
@@ -40,33 +42,40 @@ TEST(Weights, FollowTheMethodInDouble) {
     draws.update(cut_query(input, 0, scene->origin), workers);
     std::pmr::vector<uint32_t> cut;
     draws.read_cut(cut);
-    ASSERT_EQ(draws.items().size(), cut.size());
+    EXPECT_EQ(draws.items().size(), cut.size());
     const Vec3f eye = cut_centre(input.eyes[0].camera.eye, scene->origin);
     const double target = (2 * input.tau + 1) / input.eyes[0].camera.fx;
     for (size_t i = 0; i < draws.items().size(); ++i) {
       const DrawItem& item = draws.items()[i];
-      ASSERT_EQ(item.gaussian, cut[i]);
-      ASSERT_TRUE(i == 0 || draws.items()[i - 1].gaussian < item.gaussian);
+      EXPECT_EQ(item.gaussian, cut[i]);
+      EXPECT_TRUE(i == 0 || draws.items()[i - 1].gaussian < item.gaussian);
       const uint32_t parent = tree.parent[item.gaussian];
       if (item.t == 1.0f) {
-        ASSERT_EQ(item.parent, kNoNode);
+        EXPECT_EQ(item.parent, kNoNode);
       } else {
-        ASSERT_EQ(item.parent, parent);
-        ASSERT_EQ(item.inverse_k, 1.0f / static_cast<float>(tree.records[parent].child_count));
+        EXPECT_EQ(item.parent, parent);
+        EXPECT_EQ(item.inverse_k, 1.0f / static_cast<float>(tree.records[parent].child_count));
         ++between;
       }
       if (parent == kNoNode) continue;
       const Vec3d c{double{eye.x}, double{eye.y}, double{eye.z}};
       const double above = exact_size(tree.records[parent], c),
                    own = exact_size(tree.records[item.gaussian], c);
-      const double start = std::max(above / 2, own), span = above - start;
+      const double share = tree.blend_share;
+      const double start = std::max(share * above, own), span = above - start;
       double t = 1;
-      if (above <= 2 * target && span > 0) t = std::clamp(1 - (target - start) / span, 0.0, 1.0);
-      ASSERT_NEAR(double{item.t}, t, span > 0 && above < INFINITY ? 1e-6 * above / span : 0)
+      if (share * above <= target && span > 0)
+        t = std::clamp(1 - (target - start) / span, 0.0, 1.0);
+      EXPECT_NEAR(double{item.t}, t, span > 0 && above < INFINITY ? 1e-6 * above / span : 0)
           << item.gaussian;
     }
   }
-  EXPECT_GT(between, 1000u);
+  return between;
+}
+
+TEST(Weights, FollowTheMethodInDouble) {
+  EXPECT_GT(check_weights(test::kHierarchicalGs), 1000u);
+  EXPECT_GT(check_weights({}), 200u);
 }
 
 TEST(Weights, BothBackendsDrawTheSameCut) {

@@ -33,6 +33,7 @@ inline GaussianCloud part_of(const GaussianCloud& cloud, size_t first, size_t la
   GaussianCloud part;
   part.sh_degree = cloud.sh_degree;
   part.origin = cloud.origin;
+  part.native = cloud.native;
   const auto copy = [&](const auto& from, auto& into) {
     const auto each = static_cast<std::ptrdiff_t>(from.size() / cloud.size());
     into.assign(from.begin() + each * static_cast<std::ptrdiff_t>(first),

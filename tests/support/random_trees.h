@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "runtime/lod/tree.h"
+#include "runtime/lod/tree_rule.h"
 
 namespace voyager::test {
 
@@ -172,6 +173,7 @@ inline LodTree random_tree(TreeShape shape, uint32_t nodes, uint32_t seed,
                            Extents extents = Extents::longest_side) {
   std::mt19937 random(seed);
   LodTree tree = linked_tree(random_child_counts(shape, nodes, random));
+  tree.blend_share = extents == Extents::any ? kLateShare : kHalfShare;
   set_boxes(tree, random);
   set_extents(tree, extents, random);
   return tree;

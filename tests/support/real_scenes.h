@@ -34,7 +34,7 @@ inline GaussianCloud nearest(const GaussianCloud& cloud, const Vec3d& place, siz
   std::sort(kept.begin(), kept.end());
   GaussianCloud near;
   near.sh_degree = cloud.sh_degree, near.origin = cloud.origin;
-  near.antialiased = cloud.antialiased, near.left_out_bands = cloud.left_out_bands;
+  near.native = cloud.native, near.left_out_bands = cloud.left_out_bands;
   const auto take = [&](const auto& from, auto& into, size_t each) {
     for (const size_t i : kept)
       into.insert(into.end(), from.begin() + each * i, from.begin() + each * (i + 1));

@@ -10,16 +10,20 @@
 #include "runtime/frame/view.h"
 #include "runtime/lod/build.h"
 #include "runtime/reference/reference_backend.h"
+#include "runtime/scene/scale_histogram.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
 
-// A flat scene; its Gaussians may be changed before it is drawn.
+// A flat scene, with the footprint that load_scene() would give it; its Gaussians may be changed
+// before it is drawn.
 inline std::shared_ptr<Scene> flat_scene(const GaussianCloud& cloud) {
   auto scene = std::make_shared<Scene>(std::pmr::get_default_resource());
   scene->name = "flat";
   scene->sh_degree = cloud.sh_degree;
   scene->leaf_count = cloud.size();
+  scene->native =
+      cloud.native.source == NativeSource::unknown ? estimated_scale(cloud) : cloud.native;
   scene->origin = {cloud.origin[0], cloud.origin[1], cloud.origin[2]};
   for (size_t i = 0; i < cloud.size(); ++i)
     scene->gaussians.push_back(activate(cloud.words(i), true));

@@ -20,7 +20,7 @@ inline constexpr float kInfinity = INFINITY;
 inline std::vector<float> weights_of(const LodTree& tree, const ExhaustiveSearch& search,
                                      float target_size) {
   const WeightParams params{tree.records.data(), tree.parent.data(), search.sizes().data(),
-                            target_size};
+                            target_size, tree.blend_share};
   std::vector<float> t;
   for (const uint32_t node : search.cut()) t.push_back(weigh(params, node).t);
   return t;

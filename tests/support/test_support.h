@@ -55,6 +55,7 @@ inline GaussianCloud random_cloud(size_t count, uint32_t seed, int sh_degree = 1
   };
   GaussianCloud cloud;
   cloud.sh_degree = sh_degree;
+  cloud.native = {NativeSource::given, 0.05, kPixelVariance};  // parts of it have the same
   for (size_t i = 0; i < count; ++i) {
     for (int k = 0; k < 3; ++k) cloud.position.push_back(uniform(-spread, spread));
     for (int k = 0; k < 3; ++k) cloud.log_scale.push_back(uniform(-6.0f, 0.0f));

@@ -33,6 +33,7 @@
 #include "tools/options.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
+#include "tools/training_cameras.h"
 
 namespace voyager::tools {
 namespace {
@@ -53,7 +54,9 @@ struct BakeArguments {
   Quality quality = Quality::compact;
   uint32_t chunk_bytes = kDefaultChunkBytes;
   TreeKind tree = TreeKind::clustered;
-  uint32_t refine = 0;  // views
+  uint32_t refine = 0;       // views
+  double native_pixel = -1;  // metres; below 0: not given
+  std::string training_cameras;
   bool verify = false;
   uint64_t memory = half_of_memory() / 1'000'000;  // MB
   std::string work;
@@ -187,11 +190,32 @@ std::string refine_file(const BakeArguments& arguments) {
   return arguments.output + ".refine";
 }
 
-BakeSummary bake_in_memory(const BakeArguments& arguments, const Readers& readers,
-                           const Progress& progress) {
+// The pictures are taken to have been made as small as INRIA's trainer makes them by itself.
+NativeChoice native_choice(const BakeArguments& arguments) {
+  NativeChoice choice;
+  if (arguments.native_pixel >= 0) choice.pixel = arguments.native_pixel;
+  if (arguments.training_cameras.empty()) return choice;
+  for (const TrainingCamera& camera : read_training_cameras(arguments.training_cameras))
+    choice.cameras.push_back(downscaled(camera, usual_downscale(camera)));
+  return choice;
+}
+
+// How far one value for the whole scene is off.
+void describe(const NativePixel& found) {
+  note(
+      fmt::format("training cameras: they see {} of {} Gaussians, with pixels of {:.4g} m; a tenth "
+                  "below {:.4g} m, a tenth above {:.4g} m",
+                  found.seen, found.looked_at, found.median, found.tenth, found.ninetieth));
+}
+
+BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& native,
+                           const Readers& readers, const Progress& progress) {
   Workers workers;
-  BakedScene baked = build_tree(read_all(arguments.inputs, readers, progress), workers, progress,
-                                {.kind = arguments.tree});
+  GaussianCloud cloud = read_all(arguments.inputs, readers, progress);
+  const FoundScale found = native_scale(native, cloud);
+  cloud.native = found.scale;
+  if (found.by_cameras) describe(*found.by_cameras);
+  BakedScene baked = build_tree(std::move(cloud), workers, progress, {.kind = arguments.tree});
   const std::string kept = refine_file(arguments);
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
   if (arguments.verify) {
@@ -211,8 +235,8 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const Readers& reader
           partition.chunk_count(), baked.leaves.report, 0};
 }
 
-BakeSummary bake_from_folder(const BakeArguments& arguments, const OpenInputs& open,
-                             const Progress& progress) {
+BakeSummary bake_from_folder(const BakeArguments& arguments, const NativeChoice& native,
+                             const OpenInputs& open, const Progress& progress) {
   if (arguments.verify)
     throw Error(ErrorCode::unsupported,
                 "--verify: found a bake in a work folder, expected one in memory: the file is "
@@ -227,7 +251,9 @@ BakeSummary bake_from_folder(const BakeArguments& arguments, const OpenInputs& o
                 "--refine: found a bake in a work folder, expected one in memory: give more "
                 "--memory and no --work, or leave it out");
   BakeInParts bake;
-  bake.request = bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes);
+  bake.request =
+      bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes, {}, native);
+  bake.native = native;
   bake.output = arguments.output;
   // One that nobody named goes when the bake fails, too; a kill leaves it.
   bake.temporary = arguments.work.empty();
@@ -275,11 +301,12 @@ void bake(const BakeArguments& arguments) {
     throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
   for (const std::string& output : outputs_of(arguments)) require_writable(output);
   if (arguments.refine != 0) check_kept(refine_file(arguments));
+  const NativeChoice native = native_choice(arguments);
   const Progress progress = progress_bar();
   const Stopwatch watch;
   if (!arguments.work.empty()) {
     const BakeSummary result = bake_from_folder(
-        arguments, [&] { return open_all(arguments.inputs); }, progress);
+        arguments, native, [&] { return open_all(arguments.inputs); }, progress);
     if (writes_output(arguments)) return print_summary(arguments, result, watch);
     say(fmt::format("{}: {} Gaussians in {} cells, {:.1f} s\n", arguments.work, result.gaussians,
                     result.cells, watch.milliseconds() / 1000));
@@ -290,10 +317,10 @@ void bake(const BakeArguments& arguments) {
   require_room(arguments.output,
                bytes_of_scene(inputs.gaussians, inputs.sh_degree, arguments.quality));
   if (bytes_in_memory(inputs, arguments.refine != 0) <= arguments.memory * 1'000'000)
-    return print_summary(arguments, bake_in_memory(arguments, readers, progress), watch);
+    return print_summary(arguments, bake_in_memory(arguments, native, readers, progress), watch);
   print_summary(arguments,
                 bake_from_folder(
-                    arguments, [&] { return std::move(readers); }, progress),
+                    arguments, native, [&] { return std::move(readers); }, progress),
                 watch);
 }
 
@@ -304,6 +331,24 @@ Part parse_part(const std::string& text) {
   if (!part || !parts || *part >= *parts || *parts > std::numeric_limits<uint32_t>::max())
     throw CLI::ValidationError("--part", "found " + text + ", expected K/N with K from 0 to N - 1");
   return {static_cast<uint32_t>(*part), static_cast<uint32_t>(*parts)};
+}
+
+void add_native_options(CLI::App& command, BakeArguments& arguments) {
+  CLI::Option* pixel =
+      add_number_option(
+          command, "--native-pixel", arguments.native_pixel,
+          [](double metres) { return metres >= 0 && metres <= kMaxNativePixel; }, "0 to 1e6",
+          "How large a pixel of the training pictures is where the scene is, in metres. 0 draws "
+          "Gaussians as sharp as they are stored. Without this or cameras it is estimated")
+          ->type_name("METRES")
+          ->default_str("");
+  command
+      .add_option("--training-cameras", arguments.training_cameras,
+                  "Find it from the cameras that the scene was trained with: a cameras.json of "
+                  "INRIA, a model of COLMAP (its folder), or a transforms.json of nerfstudio")
+      ->type_name("PATH")
+      ->excludes(pixel);
+  name_group(command, "What the scene was trained with");
 }
 
 void add_work_options(CLI::App& command, BakeArguments& arguments) {
@@ -371,6 +416,7 @@ void add_bake(CLI::App& app) {
                    arguments->chunk_bytes, "Bytes of search records in a chunk, at most")
       ->default_str(std::to_string(arguments->chunk_bytes));
   name_group(*command, "The tree");
+  add_native_options(*command, *arguments);
   add_work_options(*command, *arguments);
   command->footer("Example: voyager bake city.ply -o city.voy --quality lossless --verify");
   command->callback([arguments] { bake(*arguments); });

@@ -114,6 +114,9 @@ void add_choices(CLI::App& command, BenchArguments& arguments) {
       command, "--splat", arguments.splatting,
       {{"ours", Splatting::ours}, {"3dgs", Splatting::baseline_3dgs}},
       "How Gaussians become pixels; 3dgs is the baseline, on CUDA only");
+  add_choice<Antialias>(command, "--antialias", arguments.antialias,
+                        {{"on", Antialias::on}, {"off", Antialias::off}},
+                        "off is the picture of 3DGS: say so in comparisons with it");
   add_choice<std::optional<Exponential>>(
       command, "--exp", arguments.exponential,
       {{"ex2", Exponential::ex2},

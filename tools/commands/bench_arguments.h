@@ -27,6 +27,7 @@ struct BenchArguments {
   std::optional<bool> slack, filter;
   std::optional<Splatting> splatting;
   std::optional<Exponential> exponential;
+  Antialias antialias = Antialias::on;
   std::optional<uint32_t> lut_size;
   std::optional<size_t> repeat;
   bool verify = false, stereo = false;

@@ -16,6 +16,8 @@ namespace voyager::tools {
 namespace {
 
 constexpr const char* kStorageNames[] = {"flat", "lossless", "compact"};
+constexpr const char* kNativeSources[] = {"unknown", "given", "training cameras", "file",
+                                          "estimated"};
 constexpr const char* kNoteKinds[] = {"omitted", "repaired", "dropped", "damaged"};
 
 // What only the file says: how the tree was built (docs/lod-tree.md) and how it is cut up. Zeros
@@ -49,6 +51,19 @@ void print_profile(const VoySceneInfo& info, const VoySceneProfile& profile) {
              profile.greatestAnisotropy);
 }
 
+// METHOD §12: at what size the scene was seen in training, and where that is known from.
+std::string native_text(const VoySceneInfo& info) {
+  switch (info.nativeSource) {
+    case VOY_NATIVE_SOURCE_FILE:
+      return fmt::format("none: trained with a compensated filter of {:.3g} square pixels",
+                         info.lowPass);
+    case VOY_NATIVE_SOURCE_UNKNOWN:
+      return "unknown: drawn as 3DGS does. Bake the scene again";
+    default:
+      return fmt::format("{:.4g} m, {}", info.nativePixel, kNativeSources[info.nativeSource]);
+  }
+}
+
 void print_text(const std::string& path, const VoySceneInfo& info, const VoySceneProfile& profile,
                 const TreeFacts& tree, const std::vector<VoySceneNote>& notes) {
   fmt::print("{}: {} scene\n", path, kStorageNames[info.storage]);
@@ -61,7 +76,7 @@ void print_text(const std::string& path, const VoySceneInfo& info, const VoyScen
     fmt::print("  subtrees      {} in {} tiers, chunks of up to {} bytes of search records\n",
                tree.subtrees, tree.tiers, tree.chunk_bytes);
   print_profile(info, profile);
-  fmt::print("  antialiased   {}\n", info.antialiased ? "yes" : "no");
+  fmt::print("  native pixel  {}\n", native_text(info));
   fmt::print("  origin        {} {} {} m\n", info.origin[0], info.origin[1], info.origin[2]);
   fmt::print("  bounds        {:.3f} {:.3f} {:.3f} to {:.3f} {:.3f} {:.3f} m\n", info.boundsMin[0],
              info.boundsMin[1], info.boundsMin[2], info.boundsMax[0], info.boundsMax[1],
@@ -103,6 +118,9 @@ void print_json(const std::string& path, const VoySceneInfo& info, const VoyScen
       {"chunk_bytes", tree.chunk_bytes},
       {"sh_degree", info.shDegree},
       {"antialiased", info.antialiased != 0},
+      {"native_pixel", info.nativePixel},
+      {"native_source", kNativeSources[info.nativeSource]},
+      {"low_pass", info.lowPass},
       {"origin", info.origin},
       {"bounds_min", info.boundsMin},
       {"bounds_max", info.boundsMax},

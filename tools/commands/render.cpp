@@ -80,6 +80,17 @@ void settle_streaming(RenderArguments& arguments) {
   choices.wait_resident = arguments.wait_resident.value_or(choices.keep_going);
 }
 
+// METHOD §12: every leaf, antialiased, with the truth's α threshold.
+void settle_truth(RenderArguments& arguments) {
+  RenderChoices& choices = arguments.choices;
+  if (choices.lod != VOY_LOD_ALL_LEAVES)
+    bad_usage("--supersample: found it with a cut, expected --lod off: the truth has every leaf");
+  if (choices.antialias != VOY_ANTIALIAS_ON)
+    bad_usage("--supersample: found it with --antialias off, expected on");
+  if (choices.depth) bad_usage("--supersample: found it with --depth, expected colours alone");
+  choices.antialias = VOY_ANTIALIAS_TRUTH;
+}
+
 VoyLod public_lod(Lod lod) {
   switch (lod) {
     case Lod::all_leaves:
@@ -112,6 +123,7 @@ void render(RenderArguments& arguments) {
     bad_usage(
         "--time-budget: found it with --lod off or --select flat, expected a cut: tau is what it "
         "changes");
+  if (arguments.choices.supersample > 1) settle_truth(arguments);
   FrameFiles files(arguments.outputs, {arguments.scene, arguments.cameras});
   const Progress progress = progress_bar();
   const std::vector<Camera> cameras = choose_cameras(arguments, progress);

@@ -134,6 +134,14 @@ void add_splatting(CLI::App& command, RenderChoices& choices) {
        {"lut", VOY_EXPONENTIAL_LUT},
        {"half2", VOY_EXPONENTIAL_HALF2}},
       "How the exponential is computed. auto is ex2 on CUDA with --splat ours, else exact");
+  add_choice<VoyAntialias>(command, "--antialias", choices.antialias,
+                           {{"on", VOY_ANTIALIAS_ON}, {"off", VOY_ANTIALIAS_OFF}},
+                           "off is the picture of 3DGS, in which what is smaller than a pixel "
+                           "swells");
+  add_whole_option(command, "--supersample", {1, 16}, choices.supersample,
+                   "Draw so many samples a pixel along each axis and average them: the truth that "
+                   "pictures are judged by (docs/metrics.md). With --lod off")
+      ->type_name("S");
   add_whole_option(command, "--lut-size", {1, 4096}, choices.lut_size,
                    "Intervals of the table of --exp lut")
       ->default_str("32");

@@ -8,6 +8,7 @@
 #include "tools/metrics/popping.h"
 #include "tools/report/compare_images.h"
 #include "tools/report/cut_counts.h"
+#include "tools/report/truth_images.h"
 #include "tools/statistics.h"
 
 namespace voyager::tools {
@@ -29,9 +30,8 @@ CurveMeasurement::CurveMeasurement(Backend& backend, const std::shared_ptr<const
     : backend_(backend), plan_(plan), workers_(workers) {
   // What a host gets that chooses nothing, as in the other report.
   if (backend.rates().bytes > 0) desc_.exponential = Exponential::ex2;
-  PipelineDesc leaves = desc_;
-  leaves.lod = Lod::all_leaves;
-  all_leaves_ = draw_images({backend, scene, workers}, leaves, plan.path, plan.compared);
+  for (const size_t i : plan.compared)
+    truth_.push_back(truth_image({backend, scene, workers}, plan.path[i]));
 }
 
 std::vector<CurveRow> CurveMeasurement::run(const std::string& tree,
@@ -113,7 +113,7 @@ CurveMeasurement::Drawn CurveMeasurement::draw(View& view, const std::vector<Fra
 // One image a task: metrics are on one thread each.
 void CurveMeasurement::compare(std::vector<Drawn>& drawn, size_t index) const {
   workers_.for_blocks(drawn.size(), 1, [&](size_t i, size_t) {
-    drawn[i].row.error = compare_images({drawn[i].image}, {all_leaves_[index]},
+    drawn[i].row.error = compare_images({drawn[i].image}, {truth_[index]},
                                         {{plan_.compared[index], width(index)}}, workers_);
   });
 }
@@ -128,8 +128,8 @@ std::vector<CurveRow> CurveMeasurement::pairs_of(const std::vector<Drawn>& own,
     // Cameras of a file may differ in size: there is no change from one to the other then.
     if (width(index) != width(index + 1) || own[i].image.size() != next[i].image.size()) continue;
     Popping popping;
-    popping.add(own[i].image, all_leaves_[index]);
-    popping.add(next[i].image, all_leaves_[index + 1]);
+    popping.add(own[i].image, truth_[index]);
+    popping.add(next[i].image, truth_[index + 1]);
     row.error.popping = popping.mean();
   }
   return rows;

@@ -19,7 +19,7 @@ class CutCounts;
 
 class CurveMeasurement {
  public:
-  // Of the plan's compared frames. scene: every leaf of it is what all trees are compared with.
+  // Of the plan's compared frames. scene: its truth is what all trees are compared with.
   // Throws Error(damaged_chunk).
   CurveMeasurement(Backend& backend, const std::shared_ptr<const Scene>& scene,
                    const ReportPlan& plan, Workers& workers);
@@ -53,7 +53,7 @@ class CurveMeasurement {
   const ReportPlan& plan_;
   Workers& workers_;
   PipelineDesc desc_;
-  std::vector<RgbaImage> all_leaves_;  // one a view
+  std::vector<RgbaImage> truth_;  // one a view
 };
 
 }  // namespace voyager::tools

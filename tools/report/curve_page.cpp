@@ -21,11 +21,11 @@ const Axis kSplats{"splats that reach a pixel",
                    [](const CurveRow& row) -> std::optional<double> { return row.splats; }};
 const Axis kTime{"ms a frame, median",
                  [](const CurveRow& row) -> std::optional<double> { return row.milliseconds; }};
-const Axis kPsnr{"PSNR against all leaves, dB",
+const Axis kPsnr{"PSNR against the truth, dB",
                  [](const CurveRow& row) -> std::optional<double> { return row.error.psnr; }};
-const Axis kSsim{"SSIM against all leaves",
+const Axis kSsim{"SSIM against the truth",
                  [](const CurveRow& row) -> std::optional<double> { return row.error.ssim; }};
-const Axis kFlip{"FLIP against all leaves",
+const Axis kFlip{"FLIP against the truth",
                  [](const CurveRow& row) -> std::optional<double> { return row.error.flip; }};
 
 // The points carry their shares where the axis has none.

@@ -7,7 +7,8 @@
 namespace voyager::tools {
 namespace {
 
-constexpr std::string_view kRow = "row-", kReference = "reference-", kImage = ".f32";
+constexpr std::string_view kRow = "row-", kReference = "reference-", kTruth = "truth-",
+                           kImage = ".f32";
 constexpr size_t kMarkDigits = 16;
 
 bool is_row(std::string_view name) {
@@ -29,8 +30,13 @@ std::string kept_reference_name(size_t frame, Lod lod, double tau) {
   return fmt::format("{}{}-{}-tau{:.17g}{}", kReference, frame, select_name(lod), tau, kImage);
 }
 
+std::string kept_truth_name(size_t frame) {
+  return fmt::format("{}{}{}", kTruth, frame, kImage);
+}
+
 bool is_kept_file(std::string_view name) {
-  return is_row(name) || (name.starts_with(kReference) && name.ends_with(kImage)) ||
+  return is_row(name) ||
+         ((name.starts_with(kReference) || name.starts_with(kTruth)) && name.ends_with(kImage)) ||
          name == kLosslessScene || name == kCompactScene || name == kSceneLeaves;
 }
 

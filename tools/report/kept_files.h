@@ -18,6 +18,9 @@ std::string kept_row_name(uint64_t mark, const char* ending);
 // An image of the reference.
 std::string kept_reference_name(size_t frame, Lod lod, double tau);
 
+// The truth of a frame.
+std::string kept_truth_name(size_t frame);
+
 // The scene in the storages that its own file lacks, and what these are baked from.
 inline constexpr const char* kLosslessScene = "lossless.voy";
 inline constexpr const char* kCompactScene = "compact.voy";

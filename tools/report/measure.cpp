@@ -1,5 +1,6 @@
 #include "tools/report/measure.h"
 
+#include "tools/metrics/shimmer.h"
 #include "tools/report/compare_images.h"
 #include "tools/report/frame_energy.h"
 #include "tools/statistics.h"
@@ -76,6 +77,19 @@ size_t Measurement::frames_drawn(const ReportCase& is) const {
   return path_of(is).frames_drawn();
 }
 
+// At the row's τ; one view draws each path, as a host would.
+void Measurement::measure_shimmer(const FrameMaker& maker, ReportRow& row) {
+  const std::span<const RgbaImage> truth = slow_truth_.get();
+  const auto along = [&](std::vector<FrameInput> path, size_t first) -> std::optional<double> {
+    if (path.empty()) return std::nullopt;
+    for (FrameInput& frame : path) frame.tau = row.tau;
+    return shimmer(draw_images(maker, row.is.desc, path, every_index(path.size())),
+                   truth.subspan(first, path.size()));
+  };
+  row.dolly = along(slow_.dolly, 0);
+  row.turn = along(slow_.turn, slow_.dolly.size());
+}
+
 ReportRow Measurement::run(const ReportCase& is, const std::function<void(size_t)>& frame_done) {
   const FrameMaker maker{backend_, scenes_.get(is.storage, is.sh_degree), workers_};
   FramePath path = path_of(is);
@@ -98,7 +112,8 @@ ReportRow Measurement::run(const ReportCase& is, const std::function<void(size_t
   for (const size_t i : plan_.compared) same.taus.push_back(path.frames[i].tau);
   const std::vector<ComparedFrame> frames = compared_frames(plan_);
   row.same = compare_images(images, references_.of(same), frames, workers_);
-  row.all = compare_images(images, references_.of({}), frames, workers_, &pictures_.difference);
+  row.truth = compare_images(images, truth_.get(), frames, workers_, &pictures_.difference);
+  measure_shimmer(maker, row);
   return row;
 }
 

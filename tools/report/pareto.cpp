@@ -23,7 +23,7 @@ std::vector<size_t> by_error(const std::vector<ReportRow>& rows) {
   std::vector<size_t> order(rows.size());
   std::iota(order.begin(), order.end(), size_t{0});
   const auto key = [&](size_t i) {
-    return std::tuple(rows[i].all.flip, i != 0, rows[i].frame.median);
+    return std::tuple(rows[i].truth.flip, i != 0, rows[i].frame.median);
   };
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return key(a) < key(b); });
   return order;
@@ -37,13 +37,13 @@ std::vector<size_t> pareto_front(const std::vector<ReportRow>& rows) {
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) {
     return rows[a].frame.median != rows[b].frame.median
                ? rows[a].frame.median < rows[b].frame.median
-               : rows[a].all.flip < rows[b].all.flip;
+               : rows[a].truth.flip < rows[b].truth.flip;
   });
   std::vector<size_t> front;
   double least = INFINITY;
   for (const size_t i : order)
-    if (rows[i].all.flip < least) {
-      least = rows[i].all.flip;
+    if (rows[i].truth.flip < least) {
+      least = rows[i].truth.flip;
       front.push_back(i);
     }
   return front;

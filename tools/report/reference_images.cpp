@@ -1,8 +1,8 @@
 #include "tools/report/reference_images.h"
 
-#include "runtime/base/file.h"
 #include "runtime/reference/reference_backend.h"
 #include "tools/report/kept_files.h"
+#include "tools/report/kept_image.h"
 
 namespace voyager::tools {
 
@@ -31,8 +31,8 @@ const std::vector<RgbaImage>& ReferenceImages::of(Detail detail) {
 }
 
 RgbaImage ReferenceImages::image(const Key& key) {
-  std::optional<RgbaImage> kept = read(key);
-  return kept ? std::move(*kept) : draw(key);
+  return kept_image(folder_ / kept_reference_name(key.frame, key.lod, key.tau),
+                    path_[key.frame].eyes[0].camera, [&] { return draw(key); });
 }
 
 RgbaImage ReferenceImages::draw(const Key& key) {
@@ -41,26 +41,7 @@ RgbaImage ReferenceImages::draw(const Key& key) {
   desc.search = Search::exhaustive;
   FrameInput frame = path_[key.frame];
   frame.tau = key.tau;
-  RgbaImage image = draw_images({*backend_, scene_, workers_}, desc, {frame}, {0})[0];
-  AtomicFile file(path_of(key).string());
-  file.write(std::as_bytes(std::span(image)));
-  file.commit();
-  return image;
-}
-
-std::filesystem::path ReferenceImages::path_of(const Key& key) const {
-  return folder_ / kept_reference_name(key.frame, key.lod, key.tau);
-}
-
-std::optional<RgbaImage> ReferenceImages::read(const Key& key) const {
-  const std::filesystem::path path = path_of(key);
-  if (!std::filesystem::exists(path)) return std::nullopt;
-  const auto source = open_file_source(path.string());
-  const auto& camera = path_[key.frame].eyes[0].camera;
-  RgbaImage image(size_t{4} * camera.width * camera.height);
-  if (source->size() != image.size() * sizeof(float)) return std::nullopt;
-  source->read(0, std::as_writable_bytes(std::span(image)));
-  return image;
+  return draw_images({*backend_, scene_, workers_}, desc, {frame}, {0})[0];
 }
 
 }  // namespace voyager::tools

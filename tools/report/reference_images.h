@@ -2,7 +2,6 @@
 // What a report compares with: the float64 reference's images of the scene as it is in its file.
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "tools/frame_bench.h"
@@ -42,8 +41,6 @@ class ReferenceImages {
 
   RgbaImage image(const Key& key);
   RgbaImage draw(const Key& key);
-  std::filesystem::path path_of(const Key& key) const;
-  std::optional<RgbaImage> read(const Key& key) const;
 
   std::shared_ptr<const Scene> scene_;
   std::vector<FrameInput> path_;

@@ -51,8 +51,12 @@ class Report {
         provenance_(tools::provenance(request.scene, request.cameras, backend, request.arguments)),
         kept_(folder_, provenance_),
         references_(scenes_.own(), plan_.path, plan_.compared, folder_, workers_),
+        truth_({backend, scenes_.own(), workers_}, plan_.path, plan_.compared, folder_, 0),
+        slow_(slow_paths(plan_.path[plan_.compared[0]], *scenes_.own(), plan_.slow_frames)),
+        slow_truth_(truth_of(slow_)),
         energy_(find_energy_meter(backend.device_uuid())),
-        measurement_(backend, scenes_, references_, plan_, energy_.get(), workers_) {}
+        measurement_(backend, scenes_, references_, truth_, slow_, slow_truth_, plan_,
+                     energy_.get(), workers_) {}
 
   void run() {
     note("measuring on " + backend_.device_name());
@@ -69,6 +73,13 @@ class Report {
   }
 
  private:
+  TruthImages truth_of(const SlowPaths& slow) {
+    std::vector<FrameInput> all = slow.dolly;
+    all.insert(all.end(), slow.turn.begin(), slow.turn.end());
+    const std::vector<size_t> every = every_index(all.size());
+    return {{backend_, scenes_.own(), workers_}, std::move(all), every, folder_, plan_.path.size()};
+  }
+
   ReportSubject subject() const {
     ReportSubject subject;
     subject.flat = scenes_.own()->flat();
@@ -100,7 +111,7 @@ class Report {
     }
     ++done_;
     rows_.push_back(kept->row);
-    pictures_.push_back({{"image", kept->picture}, {"FLIP against all leaves", kept->difference}});
+    pictures_.push_back({{"image", kept->picture}, {"FLIP against the truth", kept->difference}});
   }
 
   void write_text(const std::string& name, const std::string& text) {
@@ -161,6 +172,9 @@ class Report {
   const Json provenance_;
   KeptRows kept_;
   ReferenceImages references_;
+  TruthImages truth_;
+  const SlowPaths slow_;
+  TruthImages slow_truth_;
   std::unique_ptr<EnergyMeter> energy_;
   Measurement measurement_;
   size_t done_ = 0, total_ = 1;

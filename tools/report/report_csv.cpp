@@ -10,41 +10,15 @@
 namespace voyager::tools {
 namespace {
 
-const char* const kColumns[] = {"scene",
-                                "camera_set",
-                                "backend",
-                                "group",
-                                "lod",
-                                "tau",
-                                "search",
-                                "select",
-                                "filter",
-                                "splat",
-                                "exp",
-                                "lut_size",
-                                "sh_degree",
-                                "quality",
-                                "time_budget_ms",
-                                "cut",
-                                "splats",
-                                "pairs",
-                                "psnr_ref_db",
-                                "psnr_all_leaves_db",
-                                "ssim",
-                                "flip",
-                                "max_abs",
-                                "p999_abs",
-                                "popping",
-                                "ssim_all_leaves",
-                                "flip_all_leaves",
-                                "max_abs_all_leaves",
-                                "p999_abs_all_leaves",
-                                "popping_all_leaves",
-                                "ms_median",
-                                "ms_p95",
-                                "ms_p99",
-                                "bytes",
-                                "joules"};
+const char* const kColumns[] = {
+    "scene",         "camera_set",   "backend",       "group",          "lod",
+    "tau",           "search",       "select",        "filter",         "splat",
+    "exp",           "lut_size",     "sh_degree",     "quality",        "time_budget_ms",
+    "cut",           "splats",       "pairs",         "psnr_ref_db",    "psnr_truth_db",
+    "ssim",          "flip",         "max_abs",       "p999_abs",       "popping",
+    "ssim_truth",    "flip_truth",   "max_abs_truth", "p999_abs_truth", "popping_truth",
+    "shimmer_dolly", "shimmer_turn", "ms_median",     "ms_p95",         "ms_p99",
+    "bytes",         "joules"};
 
 void add_choices(CsvLine& line, const ReportRow& row) {
   const PipelineDesc& desc = row.is.desc;
@@ -80,9 +54,10 @@ std::string report_csv(const ReportNames& names, const std::vector<ReportRow>& r
     add_choices(line, row);
     line.number(row.cut).number(row.splats).number(row.pairs);
     line.decibels(row.same.psnr);
-    line.decibels(row.all.psnr);
+    line.decibels(row.truth.psnr);
     add_errors(line, row.same);
-    add_errors(line, row.all);
+    add_errors(line, row.truth);
+    line.number(row.dolly).number(row.turn);
     line.number(row.frame.median).number(row.frame.p95).number(row.frame.p99);
     line.where(row.bytes > 0, row.bytes).number(row.joules);
     for (const ReportTimes& stage : row.stages) line.number(stage.median);

@@ -11,12 +11,13 @@ namespace {
 
 struct Frames {
   size_t path, compared, timed;  // at most; timed: at least, by repeats
+  size_t slow;
 };
 
 Frames frames_of(ReportExtent extent) {
-  if (extent == ReportExtent::quick) return {16, 2, 16};
-  if (extent == ReportExtent::full) return {600, 8, 200};
-  return {60, 3, 40};
+  if (extent == ReportExtent::quick) return {16, 2, 16, 3};
+  if (extent == ReportExtent::full) return {600, 8, 200, 9};
+  return {60, 3, 40, 5};
 }
 
 // Each of `spread` frames, and the one behind it where there is one.
@@ -43,6 +44,7 @@ ReportPlan report_plan(const std::string& file, const ImageSize& size, ReportExt
   plan.path = frame_path(cameras, 0);
   plan.repeats = std::max<size_t>(1, frames.timed / plan.path.size());
   plan.compared = compared_frames(plan.path.size(), frames.compared);
+  plan.slow_frames = frames.slow;
   return plan;
 }
 

@@ -29,14 +29,14 @@ std::string axis_label(const ReportCase& is, const std::string& axis) {
 
 Plot front_plot(const std::vector<ReportRow>& rows, const std::vector<size_t>& front) {
   Plot plot{
-      "FLIP against all leaves, and time", "ms a frame, median", "FLIP", {}, true, false, 820, 480};
+      "FLIP against the truth, and time", "ms a frame, median", "FLIP", {}, true, false, 820, 480};
   PlotSeries others{"measured", {}, false}, best{"front", {}, true};
   for (size_t i = 0; i < rows.size(); ++i) {
     const bool on_front = std::find(front.begin(), front.end(), i) != front.end();
-    if (!on_front) others.points.push_back({rows[i].frame.median, rows[i].all.flip, "", false});
+    if (!on_front) others.points.push_back({rows[i].frame.median, rows[i].truth.flip, "", false});
   }
   for (const size_t i : front)
-    best.points.push_back({rows[i].frame.median, rows[i].all.flip, rows[i].is.name(), true});
+    best.points.push_back({rows[i].frame.median, rows[i].truth.flip, rows[i].is.name(), true});
   plot.series = {best, others};
   return plot;
 }
@@ -45,7 +45,7 @@ Plot front_plot(const std::vector<ReportRow>& rows, const std::vector<size_t>& f
 Plot axis_plot(const std::vector<ReportRow>& rows, const std::string& group, bool all) {
   Plot plot{group,
             "ms a frame, median",
-            all ? "PSNR against all leaves, dB" : "PSNR against the same cut, dB",
+            all ? "PSNR against the truth, dB" : "PSNR against the same cut, dB",
             {},
             false,
             false,
@@ -54,7 +54,7 @@ Plot axis_plot(const std::vector<ReportRow>& rows, const std::string& group, boo
   PlotSeries series{"", {}, false};
   for (const ReportRow& row : rows)
     if (row.is.group == group || row.is.group == "default")
-      series.points.push_back({row.frame.median, all ? row.all.psnr : row.same.psnr,
+      series.points.push_back({row.frame.median, all ? row.truth.psnr : row.same.psnr,
                                axis_label(row.is, group), row.is.group == "default"});
   plot.series = {series};
   return plot;
@@ -67,7 +67,7 @@ PlotSeries select_series(const std::vector<ReportRow>& rows, Lod lod) {
     const std::string& group = row.is.group;
     const bool chosen = group == "default" || group == "tau" || group == "select";
     if (!chosen || row.is.desc.lod != lod || (draws_cut(lod) && row.tau == 0)) continue;
-    by_tau[row.tau] = {row.frame.median, row.all.psnr,
+    by_tau[row.tau] = {row.frame.median, row.truth.psnr,
                        draws_cut(lod) ? fmt::format("τ {:g}", row.tau) : "", group == "default"};
   }
   PlotSeries series{select_name(lod), {}, true};
@@ -76,7 +76,7 @@ PlotSeries select_series(const std::vector<ReportRow>& rows, Lod lod) {
 }
 
 Plot select_plot(const std::vector<ReportRow>& rows) {
-  Plot plot{"select", "ms a frame, median", "PSNR against all leaves, dB", {}, false, false, 400,
+  Plot plot{"select", "ms a frame, median", "PSNR against the truth, dB", {}, false, false, 400,
             300};
   for (const Lod lod : {Lod::cut, Lod::blocks, Lod::levels, Lod::all_leaves})
     plot.series.push_back(select_series(rows, lod));

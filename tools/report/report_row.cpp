@@ -90,7 +90,8 @@ Json to_json(const ReportRow& row) {
   for (size_t stage = 0; stage < row.stages.size(); ++stage)
     json["ms"][voyStageName(static_cast<VoyStage>(stage))] = to_json(row.stages[stage]);
   json["error"] = to_json(row.same);
-  json["total_error"] = to_json(row.all);
+  json["total_error"] = to_json(row.truth);
+  json["shimmer"] = {{"dolly", number(row.dolly)}, {"turn", number(row.turn)}};
   return json;
 }
 
@@ -108,7 +109,9 @@ ReportRow row_from_json(const Json& json, const ReportCase& is) {
   for (int stage = 0; stage < kStageCount; ++stage)
     row.stages.push_back(times_of(json["ms"][voyStageName(static_cast<VoyStage>(stage))]));
   row.same = error_of(json["error"]);
-  row.all = error_of(json["total_error"]);
+  row.truth = error_of(json["total_error"]);
+  row.dolly = optional_of(json["shimmer"]["dolly"]);
+  row.turn = optional_of(json["shimmer"]["turn"]);
   return row;
 }
 

@@ -9,7 +9,7 @@
 
 namespace voyager::tools {
 
-// Against the float64 reference; docs/metrics.md.
+// docs/metrics.md
 struct ReportError {
   double psnr = 0;             // dB; infinite where nothing differs
   std::optional<double> ssim;  // none of images smaller than its window
@@ -28,13 +28,14 @@ struct ReportRow {
   // Means over the timed frames.
   double cut = 0, splats = 0, pairs = 0, bytes = 0;
   ReportTimes frame;
-  std::vector<ReportTimes> stages;  // by Stage
-  size_t timed = 0;                 // frames
-  std::optional<double> joules;     // a frame
-  ReportError same;                 // against the reference of the same cut
-  ReportError all;                  // against the reference of all leaves: what is lost in all
+  std::vector<ReportTimes> stages;    // by Stage
+  size_t timed = 0;                   // frames
+  std::optional<double> joules;       // a frame
+  ReportError same;                   // against the reference of the same cut
+  ReportError truth;                  // against the truth (METHOD §12): what is lost in all
+  std::optional<double> dolly, turn;  // shimmer along slow_paths(), against the truth's own
 
-  size_t not_finite() const { return std::max(same.not_finite, all.not_finite); }
+  size_t not_finite() const { return std::max(same.not_finite, truth.not_finite); }
 };
 
 // Infinity, which JSON has not, is null; so is what is not known.

@@ -54,9 +54,12 @@ std::string ReportScenes::path_of(Storage storage) {
 void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
   std::filesystem::path input = path_;
   TreeRule rule;
+  NativeScale native;
   if (own_->storage != Storage::flat) {
     const SceneFile file(open_source(path_));
-    rule.kind = file.info().tree;  // another would be compared, too
+    // Others would be compared, too.
+    rule.kind = file.info().tree;
+    native = file.info().native;
     input = folder_ / kSceneLeaves;
     export_ply(file, input.string(), progress_);
   }
@@ -64,6 +67,7 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
   ImportOptions options;
   options.progress = progress_;
   GaussianCloud cloud = import_gaussians(*read_source(*source), options);
+  if (native.source != NativeSource::unknown) cloud.native = native;
   const BakedScene baked = build_tree(std::move(cloud), workers_, progress_, rule);
   write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), output.string(),
                    storage == Storage::compact ? Quality::compact : Quality::lossless, workers_,

@@ -45,9 +45,9 @@ std::string advice_text(const std::vector<ReportRow>& rows, const Advice& advice
                         target);
   return head + fmt::format(
                     "{} (SH degree {}, {}). It takes {:.3f} ms, {:.3f} at p95, for a FLIP of "
-                    "{:.4f} against all leaves.",
+                    "{:.4f} against the truth.",
                     render_options(row.is, row.tau), row.is.sh_degree, storage_name(row.is.storage),
-                    row.frame.median, row.frame.p95, row.all.flip);
+                    row.frame.median, row.frame.p95, row.truth.flip);
 }
 
 }  // namespace voyager::tools

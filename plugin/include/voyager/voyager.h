@@ -370,6 +370,16 @@ typedef enum VoySceneStorage {
   VOY_SCENE_STORAGE_MAX_ENUM = 0x7fffffff
 } VoySceneStorage;
 
+/* Where VoySceneInfo.nativePixel and lowPass are known from. */
+typedef enum VoyNativeSource {
+  VOY_NATIVE_SOURCE_UNKNOWN = 0,   /* nothing is known: no footprint */
+  VOY_NATIVE_SOURCE_GIVEN = 1,     /* named when the scene was baked */
+  VOY_NATIVE_SOURCE_CAMERAS = 2,   /* the training cameras */
+  VOY_NATIVE_SOURCE_FILE = 3,      /* the input was trained with a compensated filter */
+  VOY_NATIVE_SOURCE_ESTIMATED = 4, /* from the Gaussians: expect it within a factor of 2 */
+  VOY_NATIVE_SOURCE_MAX_ENUM = 0x7fffffff
+} VoyNativeSource;
+
 typedef struct VoySceneInfo {
   VoyStructureType type;  /* VOY_STRUCTURE_TYPE_SCENE_INFO */
   void* next;             /* NULL or a VoySceneProfile */
@@ -389,11 +399,17 @@ typedef struct VoySceneInfo {
   uint64_t repairedCount; /* repairs at import, counted for each Gaussian and attribute
                              (scale, rotation, opacity, SH) */
   double positionError;   /* compact storage: largest error of a mean, metres. Else 0 */
+  /* What VOY_ANTIALIAS_ON draws with (METHOD §12): the side of a training picture's pixel where the
+   * Gaussians are, metres, 0 where they get no footprint; and the pixel filter, square pixels. */
+  double nativePixel;
+  double lowPass;
+  VoyNativeSource nativeSource;
+  uint32_t reserved; /* 0 */
 } VoySceneInfo;
 #define VOY_SCENE_INFO_INIT                                                                      \
   {                                                                                              \
     VOY_STRUCTURE_TYPE_SCENE_INFO, NULL, 0, 0, 0, 0, 0, 0, VOY_SCENE_STORAGE_FLAT, 0, {0, 0, 0}, \
-        {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0                                                         \
+        {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0, 0, 0, VOY_NATIVE_SOURCE_UNKNOWN, 0                     \
   }
 
 /* In VoySceneInfo.next: the properties of a scene that decide which work and memory can be left out
@@ -576,6 +592,18 @@ typedef enum VoySplatting {
   VOY_SPLATTING_MAX_ENUM = 0x7fffffff
 } VoySplatting;
 
+/* How a splat that is about a pixel large, or smaller, is drawn (docs/method.md, METHOD §12). */
+typedef enum VoyAntialias {
+  VOY_ANTIALIAS_ON = 0,    /* as in the scene's training pictures at any distance: Gaussians get the
+                              scene's native footprint (VoySceneInfo.nativePixel), and a splat that
+                              the pixel filter widens loses opacity */
+  VOY_ANTIALIAS_OFF = 1,   /* 3DGS's own picture: 0.3 square pixels are added to every splat. What
+                              is smaller than a pixel swells */
+  VOY_ANTIALIAS_TRUTH = 2, /* ON with an alpha threshold of 1e-4: for the samples of pictures that
+                              others are judged by. EXACT and EX2 only, slower */
+  VOY_ANTIALIAS_MAX_ENUM = 0x7fffffff
+} VoyAntialias;
+
 /* In VoyViewDesc.next, or passed to voySetViewTimeBudget: the view chooses tau for each frame so
  * that VoyFrameStats.millisecondsTotal stays within the budget. It aims at nine tenths of it. On
  * CUDA this is GPU time, on the CPU the time of voyRenderFrame. What the host draws does not count.
@@ -613,11 +641,12 @@ typedef struct VoyViewDesc {
   VoyExponential exponential;
   uint32_t lutSize; /* intervals of VOY_EXPONENTIAL_LUT, 1 to 4096; 0: 32 */
   VoySplatting splatting;
+  VoyAntialias antialias;
 } VoyViewDesc;
 #define VOY_VIEW_DESC_INIT                                                                   \
   {                                                                                          \
     VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_CUT, 3.0, VOY_SEARCH_AUTO, \
-        VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, VOY_SPLATTING_OURS                     \
+        VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, VOY_SPLATTING_OURS, VOY_ANTIALIAS_ON   \
   }
 
 /* Creates a view. The host destroys it with voyDestroyView.

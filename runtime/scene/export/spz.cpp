@@ -45,7 +45,7 @@ class SpzWriter final : public GaussianWriter {
   void append(const GaussianCloud& batch) override {
     const uint64_t first = check_.written();
     check_.accept(batch);
-    antialiased_ = antialiased_ || batch.antialiased;
+    antialiased_ = antialiased_ || batch.native.antialiased();
     for (size_t begin = 0; begin < batch.size(); begin += kBlockGaussians) {
       const size_t end = std::min(batch.size(), begin + kBlockGaussians);
       for (size_t i = begin; i < end; ++i) put_gaussian(batch, i, first + i);

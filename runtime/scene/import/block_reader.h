@@ -24,7 +24,7 @@ class BlockReader {
   virtual const std::string& name() const = 0;
   virtual uint64_t count() const = 0;
   virtual int sh_degree() const = 0;
-  virtual bool antialiased() const = 0;
+  virtual NativeScale native() const = 0;
 
   // The next Gaussians, at most `most`, which is at least 1, and of few bytes (16 MiB) unless one
   // alone has more. From one thread at a time. Throws Error(refused_input) as the importer of the

@@ -85,7 +85,7 @@ class PlyReader final : public BlockReader {
   const std::string& name() const override { return input_.name(); }
   uint64_t count() const override { return vertex().count; }
   int sh_degree() const override { return sh_degree_; }
-  bool antialiased() const override { return false; }
+  NativeScale native() const override { return header_.native; }
 
   RawBlock next(size_t most) override {
     RawBlock block;
@@ -112,6 +112,7 @@ class PlyReader final : public BlockReader {
   GaussianCloud decode(const RawBlock& block) const override {
     GaussianCloud cloud;
     cloud.sh_degree = sh_degree_;
+    cloud.native = header_.native;
     resize(cloud, block.count);
     store(block, 0, cloud);
     return cloud;

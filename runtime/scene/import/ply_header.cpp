@@ -39,8 +39,10 @@ class Parser {
     if (line_ != "ply") refuse_line("first line", "\"ply\"");
     for (next_line(); line_ != "end_header"; next_line()) {
       const std::string_view keyword = words_.empty() ? std::string_view() : words_[0];
-      if (keyword == "comment" || keyword == "obj_info") continue;
-      if (keyword == "format")
+      if (keyword == "obj_info") continue;
+      if (keyword == "comment")
+        comment();
+      else if (keyword == "format")
         format();
       else if (keyword == "element")
         element();
@@ -56,6 +58,15 @@ class Parser {
  private:
   [[noreturn]] void refuse_line(const std::string& field, const std::string& expected) const {
     refuse(input_.name(), line_start_, field, quoted(line_), expected);
+  }
+
+  // What trainers write of their filter; other comments are free text.
+  void comment() {
+    if (words_.size() != 3) return;
+    const bool brush = words_[1] == "SplatRenderMode:" || words_[1] == "SplatRenderMode";
+    if (brush && words_[2] == "mip") header_.native = compensated_scale(kMipSplattingLowPass);
+    if (words_[1] == "antialiased" && words_[2] == "1")
+      header_.native = compensated_scale(kLowPass);
   }
 
   void next_line() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/scene/import/peek_reader.h"
+#include "runtime/scene/native_scale.h"
 
 namespace voyager::ply {
 
@@ -31,7 +32,8 @@ struct Element {
 struct Header {
   bool big_endian = false;
   std::vector<Element> elements;
-  size_t vertex = 0;  // index of the element that holds the Gaussians
+  NativeScale native;  // what a comment says of the training
+  size_t vertex = 0;   // index of the element that holds the Gaussians
 };
 
 // Leaves `input` at the first byte of the first element. Refuses ASCII, a list

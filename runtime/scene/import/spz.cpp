@@ -43,7 +43,7 @@ class SpzImport {
     header_ = spz::read_header(plain, newest_version);
     spz::check_count(input_, header_);
     cloud_.sh_degree = header_.sh_degree;
-    cloud_.antialiased = header_.antialiased;
+    cloud_.native = header_.native();
   }
 
   // v1-v3: one attribute after the other, then extensions if there are any.

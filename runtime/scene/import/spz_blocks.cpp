@@ -85,7 +85,7 @@ class SpzReader final : public BlockReader {
   const std::string& name() const override { return source_->name(); }
   uint64_t count() const override { return header_.count; }
   int sh_degree() const override { return header_.sh_degree; }
-  bool antialiased() const override { return header_.antialiased; }
+  NativeScale native() const override { return header_.native(); }
 
   RawBlock next(size_t most) override {
     RawBlock block;
@@ -108,7 +108,7 @@ class SpzReader final : public BlockReader {
   GaussianCloud decode(const RawBlock& block) const override {
     GaussianCloud cloud;
     cloud.sh_degree = header_.sh_degree;
-    cloud.antialiased = header_.antialiased;
+    cloud.native = header_.native();
     cloud.position.resize(3 * block.count);
     cloud.log_scale.resize(3 * block.count);
     cloud.rotation.resize(4 * block.count);

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "runtime/scene/import/peek_reader.h"
+#include "runtime/scene/native_scale.h"
 #include "runtime/scene/spz_format.h"
 
 namespace voyager::spz {
@@ -16,6 +17,7 @@ struct Header {
   bool antialiased = false, has_extensions = false;
   uint8_t last = 0;  // v1-v3: reserved; v4: number of streams
 
+  NativeScale native() const { return antialiased ? compensated_scale(kLowPass) : NativeScale{}; }
   size_t bytes_of(Attribute attribute) const { return width(attribute, version, sh_degree); }
   // The attributes that are present are the first so many.
   int attributes() const { return sh_degree > 0 ? kAttributes : kSh; }

@@ -25,7 +25,7 @@ Splat make_splat(float x, float y, double sigma_x, double sigma_y, double correl
                yy = sigma_y * sigma_y + 0.3;
   const double given = (1 - correlation) * (1 + correlation) * sigma_y * sigma_y + 0.3;
   s.conic = conic(ImageCovariance<float>{static_cast<float>(xx), static_cast<float>(xy),
-                                         static_cast<float>(yy), static_cast<float>(given)},
+                                         static_cast<float>(yy), static_cast<float>(given), 1},
                   0.5f);
   s.rho_min = rho;
   s.opacity = s.t = 1;

@@ -93,11 +93,12 @@ TEST(Quantise, RecordsSurviveToTheBit) {
     set_box(box_words(r, other), other, told);
     ASSERT_EQ(std::memcmp(&plain, &r, sizeof r), 0);
     ASSERT_EQ(std::memcmp(&told, &r, sizeof r), 0);
-    for (const TreeKind kind : {TreeKind::clustered, TreeKind::hierarchicalgs})
+    for (const ExtentRule rule :
+         {ExtentRule::longest_side, ExtentRule::error, ExtentRule::error_with_doubles})
       for (const NodeRecord* parent : {&other, static_cast<const NodeRecord*>(nullptr)}) {
         NodeRecord back = r;
         back.extent = 7;
-        back.extent = extent_of_word(extent_word(kind, r, parent), kind, back, parent);
+        back.extent = extent_of_word(extent_word(rule, r, parent), rule, back, parent);
         ASSERT_EQ(back.extent, r.extent);
       }
   }
@@ -115,9 +116,13 @@ TEST(Quantise, WhatIsUsualIsZero) {
   for (const uint32_t word : box_words(parent, hull_of_boxes(children, 2)).word)
     EXPECT_EQ(word, 0u);
   parent.extent = 5;
-  EXPECT_EQ(extent_word(TreeKind::clustered, child, &parent), 0u);
+  EXPECT_EQ(extent_word(ExtentRule::error_with_doubles, child, &parent), 0u);
   child.child_count = 1;
-  EXPECT_EQ(extent_word(TreeKind::clustered, child, &parent), 0u);
+  EXPECT_EQ(extent_word(ExtentRule::error_with_doubles, child, &parent), 0u);
+  child.child_count = 0;
+  child.extent = 0;
+  EXPECT_EQ(extent_word(ExtentRule::error, child, &parent), 0u);
+  EXPECT_EQ(extent_word(ExtentRule::longest_side, child, &parent), 0u);
 }
 
 }  // namespace

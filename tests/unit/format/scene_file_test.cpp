@@ -90,7 +90,7 @@ TEST(SceneFile, AnEmptySceneIsWrittenAndRead) {
 
 TEST(SceneFile, CarriesWhatTheImportReported) {
   GaussianCloud cloud = test::random_cloud(10, 2);
-  cloud.antialiased = true;
+  cloud.native = compensated_scale(kLowPass);
   cloud.report.read = 17;
   cloud.report.dropped_position = 1;
   cloud.report.dropped_scale = 2;
@@ -101,7 +101,7 @@ TEST(SceneFile, CarriesWhatTheImportReported) {
   cloud.report.repaired_sh = 7;
   const Bytes bytes = test::scene_bytes(test::bake(cloud), Quality::compact);
   const SceneFile file(test::source_of(bytes));
-  EXPECT_TRUE(file.info().antialiased);
+  EXPECT_TRUE(file.info().native.antialiased());
   EXPECT_TRUE(same_bits(&file.info().import, &cloud.report, sizeof cloud.report));
 }
 
@@ -146,7 +146,8 @@ TEST(SceneFile, TheHeaderTellsTheKindOfTheTree) {
       const Bytes bytes = test::scene_bytes(baked, quality);
       const SceneFileInfo info = SceneFile(test::source_of(bytes)).info();
       EXPECT_EQ(info.tree, named.rule.kind) << named.name;
-      EXPECT_EQ(info.leaves_have_extent, named.rule.kind == TreeKind::clustered) << named.name;
+      EXPECT_EQ(info.blend_share, blend_share(named.rule.kind)) << named.name;
+      EXPECT_FALSE(info.leaves_have_extent) << named.name;
     }
 }
 
@@ -213,7 +214,7 @@ TEST(SceneFile, RefusalsNameFilePlaceFoundAndExpected) {
 
 TEST(SceneFile, AnotherVersionIsRefusedAndSaysToBakeAgain) {
   Bytes bytes = test::scene_bytes(test::bake(test::random_cloud(10, 5)), Quality::lossless);
-  for (const uint32_t version : {1u, 2u, 3u, 5u}) {
+  for (const uint32_t version : {1u, 2u, 3u, 6u}) {
     std::memcpy(bytes.data() + offsetof(FileHeader, version), &version, sizeof version);
     try {
       const SceneFile file(test::source_of(bytes));
@@ -222,7 +223,7 @@ TEST(SceneFile, AnotherVersionIsRefusedAndSaysToBakeAgain) {
       EXPECT_EQ(error.code(), ErrorCode::refused_input);
       const std::string message = error.what(), found = "version " + std::to_string(version);
       for (const char* part :
-           {"test.voy", "offset 8", found.c_str(), "expected 4: bake the scene again"})
+           {"test.voy", "offset 8", found.c_str(), "expected 4 or 5: bake the scene again"})
         EXPECT_NE(message.find(part), std::string::npos) << message;
     }
   }

@@ -65,8 +65,7 @@ TEST(Cluster, LowNodesShareAColour) {
   EXPECT_EQ(mixed, 0u) << "of " << low;
 }
 
-// Of a double the one child is interior, and has more than one.
-TEST(Cluster, EachGaussianIsALeafOnceAndNodesHaveUpToFourChildren) {
+TEST(Cluster, EachGaussianIsALeafOnceAndNodesHaveTwoToFourChildren) {
   for (const test::NamedCloud& named : test::all_clouds()) {
     if (named.cloud.size() > 1000) continue;
     SCOPED_TRACE(named.name);
@@ -80,10 +79,7 @@ TEST(Cluster, EachGaussianIsALeafOnceAndNodesHaveUpToFourChildren) {
         ASSERT_EQ(children, 0u);
         continue;
       }
-      ASSERT_TRUE(children >= 1 && children <= kChildren) << children;
-      if (children == 1) {
-        ASSERT_GT(tree.nodes[tree.nodes[i].child[0]].children, 1u);
-      }
+      ASSERT_TRUE(children >= 2 && children <= kChildren) << children;
       for (uint32_t k = 0; k < children; ++k) ASSERT_LT(tree.nodes[i].child[k], i);
     }
   }

@@ -155,7 +155,7 @@ TEST(Exposure, BeyondThePictureContrastIsTakenToBeModerate) {
 }
 
 TEST(Exposure, TheMeanIsWeightedByWhatIsSeen) {
-  const Exposure of[2] = {{1, 0.1f}, {0.1f, 1}};
+  const Exposure of[2] = {{1, 0.1f, 1}, {0.1f, 1, 1}};
   const double equal[2] = {1, 1}, none[2] = {0, 0}, first[2] = {5, 0};
   for (const double* weights : {equal, none}) {
     const Exposure mean = mean_exposure(of, {weights, 2});

@@ -10,7 +10,8 @@
 namespace voyager::stand_in_test {
 namespace {
 
-constexpr double kLowPass = 0.3;  // pixels², METHOD §5
+constexpr double kLowPass = 1.0 / 12;  // pixels², METHOD §12
+constexpr double kFootprint = 0.01;    // metres²
 constexpr double kPi = 3.14159265358979323846;
 
 Blob blob(const Vec3d& mean, const Vec3d& scale, double opacity) {
@@ -44,7 +45,7 @@ Blob matched(std::span<const Blob> children) {
 struct Greys {
   std::vector<Blob> children;
   std::vector<float> greys;
-  double contrast = 0.4;
+  double contrast = 0.4, footprint = kFootprint;
 
   Group group(double seen = 1) const {
     std::vector<std::array<float, 3>> colours;
@@ -61,6 +62,8 @@ struct Greys {
     set_colours({rows, colours.size()}, mean.data(), 1, group);
     std::fill_n(group.seen, colours.size(), seen);
     group.contrast = contrast;
+    group.footprint = footprint;
+    group.low_pass = kLowPass;
     return group;
   }
 };
@@ -77,14 +80,16 @@ const Greys kFour{
      blob({0, 0.6, 0}, {0.1, 0.2, 0.02}, 0.9), blob({0.4, 0.4, 0.05}, {0.2, 0.2, 0.2}, 0.3)},
     {0.4f, -0.3f, 0.1f, 0.2f}};
 
-// A blurred Gaussian's picture along an axis of the scene, at (u, v).
+// A Gaussian's picture along an axis of the scene, at (u, v): with the footprint, and blurred so
+// that it keeps its sum.
 double picture(const Blob& b, int axis, double pixel, double u, double v) {
   const int across[3][2] = {{1, 2}, {0, 2}, {0, 1}}, at[3][3] = {{3, 4, 5}, {0, 2, 5}, {0, 1, 3}};
-  const double blur = kLowPass * pixel * pixel;
-  const double uu = b.covariance[at[axis][0]] + blur, uv = b.covariance[at[axis][1]],
-               vv = b.covariance[at[axis][2]] + blur;
+  const double blur = kLowPass * pixel * pixel, sharp_uu = b.covariance[at[axis][0]] + kFootprint,
+               uv = b.covariance[at[axis][1]], sharp_vv = b.covariance[at[axis][2]] + kFootprint;
+  const double uu = sharp_uu + blur, vv = sharp_vv + blur, determinant = uu * vv - uv * uv;
+  const double peak = std::sqrt((sharp_uu * sharp_vv - uv * uv) / determinant);
   const double x = u - b.mean[across[axis][0]], y = v - b.mean[across[axis][1]];
-  return std::exp(-0.5 * (vv * x * x - 2 * uv * x * y + uu * y * y) / (uu * vv - uv * uv));
+  return peak * std::exp(-0.5 * (vv * x * x - 2 * uv * x * y + uu * y * y) / determinant);
 }
 
 // f(axis, u, v), summed over the three views.
@@ -135,7 +140,7 @@ TEST(StandIn, IdenticalChildrenInOnePlaceAreReplacedWithoutError) {
 
 // Of the pictures with the parent and without, in pixels.
 double error_in_pixels(const Greys& greys, const StandIn& found) {
-  const double contrast = 3 * (greys.contrast * greys.contrast + 0.15 * 0.15);
+  const double contrast = 3 * (greys.contrast * greys.contrast + 0.1 * 0.1);
   const double error = contrast * coverage_error(greys.group(), found.pixel, found.opacity) +
                        colour_error(greys, found.pixel);
   return std::sqrt(error / 3) / found.pixel;
@@ -161,6 +166,14 @@ TEST(StandIn, OpacityIsThatOfTheLeastErrorOfCoverage) {
     for (const double factor : {0.9, 0.99, 1.01, 1.1})
       EXPECT_GT(coverage_error(group, found.pixel, factor * found.opacity), least) << factor;
   }
+}
+
+// What is opaque on top of one another covers no more than one of them.
+TEST(StandIn, OpacityIsNotFarAboveOne) {
+  const Greys pile{std::vector<Blob>(4, blob({0, 0, 0}, {0.2, 0.2, 0.2}, 1)), {0, 0, 0, 0}};
+  const StandIn found = stand_in(pile.group());
+  const double left = picture(pile.group().parent, 0, found.pixel, 0, 0);
+  EXPECT_NEAR(found.opacity * std::sqrt(left), 1.1, 1e-8);
 }
 
 // Seen more, a group is wrong up to a larger pixel: there it leaves less of the error.
@@ -221,6 +234,7 @@ TEST(StandIn, ScalesWithTheScene) {
     b.mean = 1000.0 * b.mean;
     for (double& c : b.covariance) c *= 1e6;
   }
+  larger.footprint *= 1e6;
   const StandIn large = stand_in(larger.group()), small = stand_in(kFour.group());
   EXPECT_NEAR(large.pixel / small.pixel, 1000, 1e-6);
   EXPECT_NEAR(large.opacity, small.opacity, 1e-9);

@@ -51,51 +51,18 @@ TEST(TreeBuild, NodesHaveUpToFourChildren) {
     }
 }
 
-bool is_double(const LodTree& tree, uint32_t node) {
-  return tree.records[node].child_count == 1;
-}
-
-// Of a clustered tree: a leaf is drawn as itself until shortly before its parent takes over.
-TEST(TreeBuild, LeavesOfAClusteredTreeHaveTheGreaterPartOfTheirParentsExtent) {
+// Of a clustered tree: it says over which part of its parent's size a node blends, so that leaves
+// need no extent and no node stands there twice.
+TEST(TreeBuild, AClusteredTreeBlendsLate) {
   Workers workers(2);
-  const BakedScene baked = build_tree(test::random_cloud(2000, 3), workers);
-  for (uint32_t n = 1; n < baked.tree.size(); ++n) {
-    if (!baked.tree.is_leaf(n)) continue;
-    const float parent = baked.tree.records[baked.tree.parent[n]].extent;
-    ASSERT_GT(parent, 0.0f);
-    ASSERT_NEAR(baked.tree.records[n].extent / parent, double{kLateExtent}, 1e-6) << n;
-  }
-}
-
-// And so is a merged Gaussian: a node that has one child holds the same, to the bit, and is drawn
-// until shortly before its parent takes over; from it to its child nothing changes.
-TEST(TreeBuild, ADoubleIsAsItsChildAndBlendsLate) {
-  Workers workers(2);
-  for (const TreeRule& rule : {TreeRule{}, test::kSmallBlocks}) {
+  for (const TreeRule& rule : {TreeRule{}, test::kSmallBlocks, test::kHierarchicalGs}) {
     const BakedScene baked = build_tree(test::random_cloud(3000, 3), workers, {}, rule);
-    const LodTree& tree = baked.tree;
-    const GaussianCloud& merged = baked.merged;
-    const size_t floats = size_t{3} * static_cast<size_t>(merged.coefficients());
-    size_t doubles = 0;
-    for (uint32_t n = 0; n < tree.size(); ++n) {
-      if (!is_double(tree, n)) continue;
-      ++doubles;
-      const uint32_t child = tree.first_child[n], parent = tree.parent[n];
-      ASSERT_NE(parent, kNoNode) << "the root blends with nothing";
-      ASSERT_FALSE(tree.is_leaf(child) || is_double(tree, child) || is_double(tree, parent)) << n;
-      const size_t a = baked.gaussian[n], b = baked.gaussian[child];
-      const GaussianWords of = merged.words(a), as = merged.words(b);
-      ASSERT_EQ(std::memcmp(&of, &as, sizeof of), 0) << n;
-      ASSERT_TRUE(std::equal(&merged.sh[a * floats], &merged.sh[a * floats] + floats,
-                             &merged.sh[b * floats]))
-          << n;
-      const NodeRecord &r = tree.records[n], &c = tree.records[child];
-      ASSERT_TRUE(r.box_min == c.box_min && r.box_max == c.box_max) << n;
-      ASSERT_GE(r.extent, c.extent) << n;
-      ASSERT_GE(r.extent, kLateExtent * tree.records[parent].extent) << n;
-      ASSERT_LE(r.extent, tree.records[parent].extent) << n;
+    EXPECT_EQ(baked.tree.blend_share, blend_share(rule.kind));
+    for (uint32_t n = 0; n < baked.tree.size(); ++n) {
+      const NodeRecord& r = baked.tree.records[n];
+      ASSERT_NE(r.child_count, 1u) << n;
+      ASSERT_TRUE(r.child_count != 0 || r.extent == 0) << n;
     }
-    EXPECT_GT(doubles, 300u);
   }
 }
 

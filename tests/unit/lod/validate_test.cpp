@@ -110,18 +110,6 @@ TEST(Validate, Moments) {
     expect_caught("node 0, opacity", [&](BakedScene& b) { b.merged.opacity[0] = opacity; });
 }
 
-// Of a clustered tree: what has one child holds the same.
-TEST(Validate, Doubles) {
-  BakedScene baked = sound({});
-  uint32_t n = 0;
-  while (baked.tree.records.at(n).child_count != 1) ++n;
-  baked.merged.opacity[baked.gaussian[n]] *= 1.001f;
-  const std::vector<std::string> messages = validate(baked, 10000);
-  EXPECT_TRUE(std::any_of(messages.begin(), messages.end(), [](const std::string& message) {
-    return message.find("opacity of a double: found") != std::string::npos;
-  }));
-}
-
 TEST(Validate, AxisCodes) {
   expect_caught("axis code", [](BakedScene& b) { b.axis_code[first_leaf(b.tree)] = 24; });
   expect_caught("node 0, axis code", [](BakedScene& b) { b.axis_code[0] = 1; });

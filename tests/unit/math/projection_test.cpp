@@ -40,7 +40,7 @@ ImageCovariance<T> covariance(const Case& c) {
   return image_covariance(
       image_jacobian(v, Vec3<T>{cast(c.view.x), cast(c.view.y), cast(c.view.z)}),
       Quat<T>{cast(c.rotation.w), cast(c.rotation.x), cast(c.rotation.y), cast(c.rotation.z)},
-      Vec3<T>{cast(c.scale.x), cast(c.scale.y), cast(c.scale.z)});
+      Vec3<T>{cast(c.scale.x), cast(c.scale.y), cast(c.scale.z)}, cast(kLowPass));
 }
 
 // J W Σ Wᵀ Jᵀ + 0.3 I by plain matrices.
@@ -67,7 +67,7 @@ ImageCovariance<double> textbook(const Case& c) {
       for (int m = 0; m < 3; ++m)
         for (int n = 0; n < 3; ++n) out[a][b] += jw[a][m] * sigma[m][n] * jw[b][n];
   return {out[0][0], out[0][1], out[1][1],
-          (out[0][0] * out[1][1] - out[0][1] * out[0][1]) / out[0][0]};
+          (out[0][0] * out[1][1] - out[0][1] * out[0][1]) / out[0][0], 0};
 }
 
 TEST(Projection, IsTheTextbookCovarianceWhereThatIsWellConditioned) {

@@ -49,13 +49,13 @@ TEST(SpzExport, WritingWhatWasReadLosesNothingMore) {
 TEST(SpzExport, CoarserStepsForALargerCity) {
   GaussianCloud cloud = test::random_cloud(50, 31, 0, 9000.0f);
   cloud.origin = {1024.0, 0.0, -2048.0};
-  cloud.antialiased = true;
+  cloud.native = compensated_scale(kLowPass);
   test::BytesSink sink;
   const auto writer = write_spz(sink, cloud.size(), 0, 12000.0f);
   writer->append(cloud);
   writer->finish();
   const GaussianCloud read = test::import_bytes(sink.bytes);
-  EXPECT_TRUE(read.antialiased);
+  EXPECT_TRUE(read.native.antialiased());
   expect_within_a_quantum(cloud, read, 1.0f / 512);
 }
 

@@ -126,8 +126,8 @@ TEST(SpzImport, ShSignsFollowTheBasis) {
 }
 
 TEST(SpzImport, FlagsAndExtensions) {
-  EXPECT_FALSE(test::import_bytes(test::planar_spz(3, 2, 1, 0)).antialiased);
-  EXPECT_TRUE(test::import_bytes(test::planar_spz(3, 2, 1, 1)).antialiased);
+  EXPECT_FALSE(test::import_bytes(test::planar_spz(3, 2, 1, 0)).native.antialiased());
+  EXPECT_TRUE(test::import_bytes(test::planar_spz(3, 2, 1, 1)).native.antialiased());
   Bytes planar = test::planar_spz(3, 2, 1, 2);
   planar.resize(planar.size() + 33);
   EXPECT_EQ(test::import_bytes(planar).size(), 2u);
@@ -138,7 +138,7 @@ TEST(SpzImport, FlagsAndExtensions) {
   v4.insert(v4.begin() + 32, 21, std::byte{7});
   const GaussianCloud read = test::import_bytes(v4);
   EXPECT_EQ(read.size(), 4u);
-  EXPECT_TRUE(read.antialiased);
+  EXPECT_TRUE(read.native.antialiased());
   EXPECT_EQ(read.sh, test::import_bytes(test::spz_v4(cloud)).sh);
 }
 

@@ -3,25 +3,28 @@
 
 #include <limits>
 
+#include "runtime/lod/tree_rule.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::interpolate_test {
 namespace {
 
 TEST(Interpolate, WeightIsOneAtTheOctaveAndZeroAtTheParent) {
-  for (const float parent : {1e-6f, 0.01f, 1.0f, 1e20f})
-    for (const float share : {0.0f, 0.1f, 0.5f, 0.7f, 0.99f}) {
-      const float size = share * parent, start = std::max(parent / 2, size);
-      EXPECT_EQ(interpolation_weight(true, parent, size, start), 1.0f);
-      EXPECT_EQ(interpolation_weight(true, parent, size, parent), 0.0f);
-      EXPECT_EQ(interpolation_weight(true, parent, size, parent * 0.499f), 1.0f);
-      EXPECT_EQ(interpolation_weight(false, parent, size, parent), 1.0f);
-    }
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(interpolation_weight(true, kInfinity, 1.0f, 2.0f), 1.0f);
-  EXPECT_EQ(interpolation_weight(true, kInfinity, kInfinity, kInfinity), 1.0f);
-  EXPECT_EQ(interpolation_weight(true, kInfinity, 1.0f, 3e38f), 1.0f);
-  EXPECT_EQ(interpolation_weight(true, 1.0f, 1.0f, 1.0f), 1.0f);
+  for (const float share : {kHalfShare, 0.75f, kLateShare}) {
+    for (const float parent : {1e-6f, 0.01f, 1.0f, 1e20f})
+      for (const float of_parent : {0.0f, 0.1f, 0.5f, 0.7f, 0.99f}) {
+        const float size = of_parent * parent, start = std::max(share * parent, size);
+        EXPECT_EQ(interpolation_weight(true, parent, size, start, share), 1.0f);
+        EXPECT_EQ(interpolation_weight(true, parent, size, parent, share), 0.0f);
+        EXPECT_EQ(interpolation_weight(true, parent, size, 0.999f * share * parent, share), 1.0f);
+        EXPECT_EQ(interpolation_weight(false, parent, size, parent, share), 1.0f);
+      }
+    EXPECT_EQ(interpolation_weight(true, kInfinity, 1.0f, 2.0f, share), 1.0f);
+    EXPECT_EQ(interpolation_weight(true, kInfinity, kInfinity, kInfinity, share), 1.0f);
+    EXPECT_EQ(interpolation_weight(true, kInfinity, 1.0f, 3e38f, share), 1.0f);
+    EXPECT_EQ(interpolation_weight(true, 1.0f, 1.0f, 1.0f, share), 1.0f);
+  }
 }
 
 TEST(Interpolate, WeightFallsAsTheTargetGrowsAndFollowsDouble) {
@@ -32,7 +35,7 @@ TEST(Interpolate, WeightFallsAsTheTargetGrowsAndFollowsDouble) {
     float before = 1;
     for (int k = 0; k <= 100; ++k) {
       const float target = parent * (0.4f + 0.006f * static_cast<float>(k));
-      const float t = interpolation_weight(true, parent, size, target);
+      const float t = interpolation_weight(true, parent, size, target, kHalfShare);
       ASSERT_GE(t, 0.0f);
       ASSERT_LE(t, before);
       before = t;

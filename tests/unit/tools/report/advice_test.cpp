@@ -15,7 +15,7 @@ ReportRow row(double tau, double ms, double flip) {
   found.is.storage = Storage::compact;
   found.is.tau = found.tau = tau;
   found.frame = {ms, 1.1 * ms, 1.2 * ms};
-  found.all.flip = flip;
+  found.truth.flip = flip;
   return found;
 }
 
@@ -58,7 +58,7 @@ TEST(ReportAdvice, NamesTheWholeConfiguration) {
   const std::vector<ReportRow> rows = {row(3, 9, 0.03)};
   const std::string whole =
       "--tau 3 --exp exact (SH degree 3, compact). It takes 9.000 ms, 9.900 at p95, for a FLIP of "
-      "0.0300 against all leaves.";
+      "0.0300 against the truth.";
   EXPECT_EQ(advice_text(rows, {0, true}, 11.111), "For 11.11 ms a frame: " + whole);
   EXPECT_EQ(advice_text(rows, {0, false}, 5),
             "Nothing that was measured stays within 5 ms at p95. The fastest: " + whole);

@@ -45,7 +45,7 @@ TEST(ReportImages, PoppingThatIsNotKnownIsEmpty) {
   EXPECT_EQ(kept.same.popping, std::nullopt);
   row.same.popping = 0.0;
   EXPECT_EQ(row_from_json(to_json(row), row.is).same.popping, 0.0);
-  row.all.popping = 1.5;
+  row.truth.popping = 1.5;
   const std::string known = report_csv({}, {row}), unknown = report_csv({}, {kept});
   EXPECT_NE(known.find(",0,,0,0,0,1.5,"), std::string::npos) << known;
   EXPECT_NE(unknown.find(",0,,,0,0,0,,"), std::string::npos) << unknown;

@@ -100,7 +100,11 @@ class ReportMeasure : public ::testing::Test {
     ReportScenes scenes(folder_.file("scene.voy"), folder_.file(""), workers_, progress_);
     ReferenceImages references(scenes.own(), plan_.path, plan_.compared, folder_.file(""),
                                workers_);
-    Measurement measurement(backend_, scenes, references, plan_, meter, workers_);
+    TruthImages truth({backend_, scenes.own(), workers_}, plan_.path, plan_.compared,
+                      folder_.file(""), 0);
+    const SlowPaths still;
+    Measurement measurement(backend_, scenes, references, truth, still, truth, plan_, meter,
+                            workers_);
     ReportCase is;
     is.time_budget = time_budget;
     is.storage = Storage::lossless;
@@ -141,7 +145,7 @@ TEST_F(ReportMeasure, ComparedFramesAreDrawnAtTheTauThatTheyHad) {
   backend_.script.milliseconds = [](size_t frame) { return frame < kFrames - 7 ? 0.9 : 9; };
   const ReportRow row = measure(1);
   const std::vector<Drawn>& drawn = backend_.script.drawn;
-  ASSERT_EQ(drawn.size(), kFrames + 2);
+  ASSERT_EQ(drawn.size(), kFrames + 2 + plan_.compared.size());  // the truth is drawn last
   EXPECT_NE(drawn[kFrames - 3].tau, row.tau);
   for (const auto& [image, frame] : {std::pair{kFrames, kFrames - 3}, {kFrames + 1, kFrames - 1}}) {
     EXPECT_TRUE(drawn[image].seen);

@@ -22,7 +22,7 @@ std::vector<ReportRow> standard_rows() {
     row.is = is;
     row.tau = is.tau;
     row.frame.median = static_cast<double>(rows.size() + 1);
-    row.all.psnr = row.same.psnr = 40;
+    row.truth.psnr = row.same.psnr = 40;
     rows.push_back(row);
   }
   return rows;

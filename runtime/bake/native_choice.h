@@ -1,0 +1,33 @@
+#pragma once
+// Where a bake has METHOD §12's native pixel from: whoever bakes gives it, or the cameras that the
+// scene was trained with; else what the inputs say of themselves, or an estimate.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/scene/native_pixel.h"
+#include "runtime/scene/scale_histogram.h"
+
+namespace voyager {
+
+struct NativeChoice {
+  std::optional<double> pixel;          // metres, 0 to kMaxNativePixel
+  std::vector<TrainingCamera> cameras;  // used where no pixel is given; none: inputs or an estimate
+};
+
+// A line of a bake's request (bake.h); empty where nothing is chosen.
+std::string request_line(const NativeChoice& choice);
+
+struct FoundScale {
+  NativeScale scale;
+  std::optional<NativePixel> by_cameras;  // where cameras were asked
+};
+
+// Of a whole cloud, sanitised. Throws Error(refused_input) where no camera sees a Gaussian.
+FoundScale native_scale(const NativeChoice& choice, const GaussianCloud& cloud);
+
+// The same from histograms of its parts. of_inputs: as they say.
+FoundScale native_scale(const NativeChoice& choice, const NativeScale& of_inputs,
+                        const NativePixelHistogram& pixels, const ScaleHistogram& scales);
+
+}  // namespace voyager
