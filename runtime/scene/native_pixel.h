@@ -50,7 +50,7 @@ class NativePixelHistogram {
   // Bins as wide as 1/64 of the power of two below them, so that no logarithm is needed, whose last
   // bits differ between machines.
   static constexpr int kSteps = 64, kLowest = -30, kHighest = 20;  // powers of two, metres
-  static constexpr size_t kBins = static_cast<size_t>((kHighest - kLowest) * kSteps);
+  static constexpr size_t kBins = size_t{kHighest - kLowest} * kSteps;
 
   double percentile(double share) const;
 

@@ -91,7 +91,7 @@ TrainingCamera colmap_camera(const ColmapLenses& lenses, const std::string& plac
       normalise(Quatd{pose[0] / largest, pose[1] / largest, pose[2] / largest, pose[3] / largest}));
   for (int axis = 0; axis < 3; ++axis)
     camera.position =
-        camera.position - pose[static_cast<size_t>(4 + axis)] * camera.world_to_view.row[axis];
+        camera.position - pose[4 + static_cast<size_t>(axis)] * camera.world_to_view.row[axis];
   for (int axis = 0; axis < 3; ++axis)
     if (!(std::fabs(camera.position[axis]) < double{kMaxCoordinate}))
       refuse_cameras(place, "a camera 1e18 or more away from the origin", "one that is nearer");
