@@ -31,7 +31,7 @@ def order(row):
     return row["lut_size"] or 0
 
 
-HEADS = ["", "Gaussians", "pairs", "ms, median / p95", "search", "PSNR, same cut", "PSNR, every leaf", "SSIM", "FLIP", "largest", "popping"]
+HEADS = ["", "Gaussians", "pairs", "ms, median / p95", "search", "PSNR, same cut", "PSNR, truth", "SSIM", "FLIP", "largest", "popping"]
 
 
 def cells(row):

@@ -111,7 +111,8 @@ VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
   info.repairedCount = scene.import.repaired();
   info.positionError = scene.position_error;
   info.nativePixel = scene.native.pixel;
-  info.lowPass = scene.native.low_pass;
+  const bool known = scene.native.source != NativeSource::unknown;
+  info.lowPass = known ? scene.native.low_pass : kLowPass;
   info.nativeSource = static_cast<VoyNativeSource>(scene.native.source);
   return info;
 }

@@ -52,7 +52,7 @@ void export_cut(const std::string& scene_path, const Camera& camera, double tau,
 
   const auto sink = sink_to(file);
   const bool far = scene->origin.x != 0 || scene->origin.y != 0 || scene->origin.z != 0;
-  const auto writer = write_ply(*sink, cloud.size(), cloud.sh_degree, far);
+  const auto writer = write_ply(*sink, cloud.size(), cloud.sh_degree, far, scene->native);
   writer->append(cloud);
   writer->finish();
   file.commit();

@@ -121,6 +121,7 @@ class Baker {
       spool = spool_inputs([&] { return std::move(readers); }, folder_, bake_.memory / 2,
                            bake_.native, workers_, progress_);
     });
+    by_cameras_ = spool.by_cameras;
     return spool;
   }
 
@@ -243,6 +244,7 @@ class Baker {
     } catch (const Error&) {
     }
     result.left = folder_.remove();
+    result.by_cameras = by_cameras_;
     return result;
   }
 
@@ -276,6 +278,7 @@ class Baker {
     result.gaussians = split_.spool.gaussians;
     result.import = split_.spool.import;
     result.cells = split_.cells();
+    result.by_cameras = by_cameras_;
     return result;
   }
   BakeSummary summary(const BakePlan& plan) const {
@@ -292,6 +295,7 @@ class Baker {
   const Progress& progress_;
   WorkFolder folder_;
   SplitInfo split_;
+  std::optional<NativePixel> by_cameras_;
 };
 
 }  // namespace

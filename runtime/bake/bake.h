@@ -40,6 +40,7 @@ struct BakeSummary {
   ImportReport import;
   uint32_t cells = 0;               // 0: baked in one piece
   std::vector<std::string> left{};  // in the work folder, by others: for these it is still there
+  std::optional<NativePixel> by_cameras{};  // where this call read the inputs and asked cameras
 };
 
 // `open` is called where the folder has not yet all of the inputs. Throws

@@ -26,6 +26,7 @@ std::string request_line(const NativeChoice& choice) {
 
 FoundScale native_scale(const NativeChoice& choice, const NativeScale& of_inputs,
                         const NativePixelHistogram& pixels, const ScaleHistogram& scales) {
+  if (of_inputs.antialiased()) return {of_inputs, {}};
   if (choice.pixel) return {{NativeSource::given, *choice.pixel, kPixelVariance}, {}};
   if (!choice.cameras.empty()) {
     const NativePixel found = pixels.find();

@@ -1,6 +1,7 @@
 #pragma once
-// Where a bake has METHOD §12's native pixel from: whoever bakes gives it, or the cameras that the
-// scene was trained with; else what the inputs say of themselves, or an estimate.
+// Where a bake has METHOD §12's native pixel from: inputs that were trained with a compensated
+// filter say so; else whoever bakes gives it, or the cameras that the scene was trained with; else
+// it is estimated.
 #include <optional>
 #include <string>
 #include <vector>

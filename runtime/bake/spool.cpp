@@ -126,7 +126,9 @@ class Spooler {
   }
 
   SpoolInfo take_info() {
-    info_.native = native_scale(choice_, info_.native, pixels_, scales_).scale;
+    const FoundScale found = native_scale(choice_, info_.native, pixels_, scales_);
+    info_.native = found.scale;
+    info_.by_cameras = found.by_cameras;
     return std::move(info_);
   }
 

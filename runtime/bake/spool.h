@@ -40,6 +40,7 @@ struct SpoolInfo {
   std::array<double, 3> source_origin{0, 0, 0};
   ImportReport import;
   std::vector<SpoolPiece> pieces;
+  std::optional<NativePixel> by_cameras;  // where cameras were asked; not in the file
 };
 
 // Reads, decodes, sanitises and writes in at most `memory` bytes; then the file "spool"

@@ -77,7 +77,7 @@ void export_ply(const SceneFile& scene, const std::string& path, const Progress&
   const bool moved = cloud.origin != std::array<double, 3>{0, 0, 0};
   const std::unique_ptr<ByteSink> sink = sink_to(file);
   const std::unique_ptr<GaussianWriter> writer =
-      write_ply(*sink, cloud.size(), cloud.sh_degree, moved);
+      write_ply(*sink, cloud.size(), cloud.sh_degree, moved, cloud.native);
   writer->append(cloud);
   writer->finish();
   file.commit();

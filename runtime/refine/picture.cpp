@@ -15,7 +15,7 @@ int tile_at(float along, int tiles) {
 
 }  // namespace
 
-ProjectParams picture_params(const Viewpoint& view) {
+ProjectParams picture_params(const Viewpoint& view, const NativeScale& native) {
   ProjectParams params;
   params.origin = {0, 0, 0};
   params.eye = view.eye;
@@ -26,7 +26,8 @@ ProjectParams picture_params(const Viewpoint& view) {
   params.depth_scale = 1;
   params.width = static_cast<float>(kPictureWidth);
   params.height = static_cast<float>(kPictureHeight);
-  params.filter = {static_cast<float>(kLowPass), 0, false};
+  params.filter = {static_cast<float>(native.low_pass), static_cast<float>(native.footprint()),
+                   true};
   params.half = 0.5f;
   params.log_scale = 1;
   params.log_threshold = kLogAlphaThreshold;

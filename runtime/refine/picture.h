@@ -42,7 +42,8 @@ TileRange tiles_of(const Splat& splat);
 using TileLists = std::vector<std::vector<uint32_t>>;
 TileLists tile_lists(std::span<const TileRange> ranges);
 
-ProjectParams picture_params(const Viewpoint& view);
+// native: of the scene, known.
+ProjectParams picture_params(const Viewpoint& view, const NativeScale& native);
 
 // Nothing where it does not reach the picture.
 std::optional<Splat> splat_of(const ProjectParams& params, const NodeArrays& arrays, uint32_t node);

@@ -30,7 +30,11 @@ bool is_measured(const LodTree& tree, uint32_t node) {
 class Measuring {
  public:
   Measuring(const BakedScene& baked, Workers& workers)
-      : tree_(baked.tree), arrays_(baked, workers), viewpoints_(baked), workers_(workers) {
+      : tree_(baked.tree),
+        native_(baked.leaves.native),
+        arrays_(baked, workers),
+        viewpoints_(baked),
+        workers_(workers) {
     for (uint32_t n = 0; n < tree_.size(); ++n)
       if (tree_.is_leaf(n)) leaves_.push_back(n);
   }
@@ -38,7 +42,7 @@ class Measuring {
   // The next view.
   void look(Measured& measured) {
     const Viewpoint view = viewpoints_(measured.views++);
-    const ProjectParams params = picture_params(view);
+    const ProjectParams params = picture_params(view, native_);
     const Vec3f eye = cut_centre(view.eye, {0, 0, 0});
     const Picture leaves(params, arrays_, leaves_, workers_);
     for (const double tau : kTaus) {
@@ -56,6 +60,7 @@ class Measuring {
 
  private:
   const LodTree& tree_;
+  const NativeScale native_;
   const NodeArrays arrays_;
   const Viewpoints viewpoints_;
   Workers& workers_;

@@ -2,7 +2,8 @@
 // An estimate of METHOD §12's native pixel from the Gaussians alone. Where pictures show detail,
 // training makes Gaussians about as small as a pixel and hardly any smaller across two of their
 // axes: the third may be as thin as a surface is. So the pixel is taken to be the tenth percentile
-// of the middle axis, of those Gaussians that can be seen. bench/NOTES.md has how far off that is.
+// of the middle axis, of those Gaussians that can be seen. It is too
+// large where a scene has few Gaussians for its size (bench/NOTES.md).
 #include <array>
 #include <cstdint>
 

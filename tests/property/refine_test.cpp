@@ -46,7 +46,7 @@ TEST(Refine, AGainIsWhatThePictureGains) {
   double most = 0;
   for (const uint32_t k : {0u, 1u, 2u, 3u, 4u, 5u}) {
     const Viewpoint view = Viewpoints(baked)(k);
-    const ProjectParams params = picture_params(view);
+    const ProjectParams params = picture_params(view, baked.leaves.native);
     const Picture leaves(params, arrays, leaves_of(tree), workers);
     ExhaustiveSearch search;
     search.run(tree, {}, {cut_centre(view.eye, {0, 0, 0}), 0.3f}, workers);

@@ -113,7 +113,7 @@ GaussianCloud read_stream(BlockReader& reader, const Progress& progress) {
     const RawBlock block = reader.next(kAtOnce);
     if (block.count == 0) break;
     GaussianCloud more = reader.decode(block);
-    if (done == 0) cloud.origin = more.origin;
+    if (done == 0) cloud.origin = more.origin, cloud.native = more.native;
     make_room(cloud, done + block.count, reader.count());
     append(cloud, std::move(more), reader.name());
     done += block.count;
@@ -208,6 +208,20 @@ void describe(const NativePixel& found) {
                   found.seen, found.looked_at, found.median, found.tenth, found.ninetieth));
 }
 
+// A file that was trained with a compensated filter is drawn with that, and with no footprint
+// beside it: there is nothing to choose.
+Readers open_inputs(const BakeArguments& arguments, const NativeChoice& native) {
+  Readers readers = open_all(arguments.inputs);
+  const bool chosen = native.pixel || !native.cameras.empty();
+  for (const auto& reader : readers)
+    if (chosen && reader->native().antialiased())
+      throw Error(ErrorCode::refused_input,
+                  reader->name() +
+                      ": found a scene that was trained with a compensated filter, expected none "
+                      "with --native-pixel and --training-cameras: it has no footprint");
+  return readers;
+}
+
 BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& native,
                            const Readers& readers, const Progress& progress) {
   Workers workers;
@@ -231,8 +245,14 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
     verify_file(arguments.output, baked.tree, partition);
     progress("verifying", 1, 1);
   }
-  return {baked.leaves.size(),     baked.tree.size(),   partition.subtrees.size(),
-          partition.chunk_count(), baked.leaves.report, 0};
+  return {baked.leaves.size(),
+          baked.tree.size(),
+          partition.subtrees.size(),
+          partition.chunk_count(),
+          baked.leaves.report,
+          0,
+          {},
+          {}};
 }
 
 BakeSummary bake_from_folder(const BakeArguments& arguments, const NativeChoice& native,
@@ -270,6 +290,7 @@ BakeSummary bake_from_folder(const BakeArguments& arguments, const NativeChoice&
   bake.parts = part.parts;
   Workers workers;
   BakeSummary result = bake_in_parts(bake, open, workers, progress);
+  if (result.by_cameras) describe(*result.by_cameras);
   for (const std::string& name : result.left)
     note(fmt::format("{}: not removed: {} is not a file of the bake", bake.work, name));
   return result;
@@ -306,13 +327,13 @@ void bake(const BakeArguments& arguments) {
   const Stopwatch watch;
   if (!arguments.work.empty()) {
     const BakeSummary result = bake_from_folder(
-        arguments, native, [&] { return open_all(arguments.inputs); }, progress);
+        arguments, native, [&] { return open_inputs(arguments, native); }, progress);
     if (writes_output(arguments)) return print_summary(arguments, result, watch);
     say(fmt::format("{}: {} Gaussians in {} cells, {:.1f} s\n", arguments.work, result.gaussians,
                     result.cells, watch.milliseconds() / 1000));
     return;
   }
-  Readers readers = open_all(arguments.inputs);
+  Readers readers = open_inputs(arguments, native);
   const Announced inputs = announced_by(readers);
   require_room(arguments.output,
                bytes_of_scene(inputs.gaussians, inputs.sh_degree, arguments.quality));

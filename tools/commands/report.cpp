@@ -81,8 +81,8 @@ void add_report(CLI::App& app) {
   CLI::Option* curve =
       command
           ->add_flag("--curve", arguments->curve,
-                     "Measure only what cuts of 90 % to 10 % of the leaves look like against all "
-                     "leaves, and what they cost. Writes curve.html, curve.csv, curve.json and "
+                     "Measure only what cuts of 90 % to 10 % of the leaves look like against the "
+                     "truth, and what they cost. Writes curve.html, curve.csv, curve.json and "
                      "plots")
           ->excludes(target);
   command

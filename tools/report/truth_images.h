@@ -8,9 +8,9 @@
 
 namespace voyager::tools {
 
-// Of one frame: every leaf, the mean of 8 x 8 samples a pixel, or of 4 x 4 where an image of that
-// many would be too large to hold. A scene of which nobody knows the native pixel has no truth:
-// this is then every leaf at the picture's own size.
+// Of one frame: every leaf, the mean of 8 x 8 samples a pixel, or of 4 x 4 where 8 x 8 would take
+// more than half a gigabyte (16 bytes a sample). A scene of which nobody knows the native pixel has
+// no truth: this is then every leaf at the picture's own size.
 RgbaImage truth_image(const FrameMaker& maker, FrameInput frame);
 
 class TruthImages {

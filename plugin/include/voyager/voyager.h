@@ -372,11 +372,11 @@ typedef enum VoySceneStorage {
 
 /* Where VoySceneInfo.nativePixel and lowPass are known from. */
 typedef enum VoyNativeSource {
-  VOY_NATIVE_SOURCE_UNKNOWN = 0,   /* nothing is known: no footprint */
+  VOY_NATIVE_SOURCE_UNKNOWN = 0,   /* nothing is known: drawn as by VOY_ANTIALIAS_OFF */
   VOY_NATIVE_SOURCE_GIVEN = 1,     /* named when the scene was baked */
   VOY_NATIVE_SOURCE_CAMERAS = 2,   /* the training cameras */
   VOY_NATIVE_SOURCE_FILE = 3,      /* the input was trained with a compensated filter */
-  VOY_NATIVE_SOURCE_ESTIMATED = 4, /* from the Gaussians: expect it within a factor of 2 */
+  VOY_NATIVE_SOURCE_ESTIMATED = 4, /* from the Gaussians: expect it within a factor of 3 */
   VOY_NATIVE_SOURCE_MAX_ENUM = 0x7fffffff
 } VoyNativeSource;
 

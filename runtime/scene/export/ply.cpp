@@ -14,9 +14,17 @@ static_assert(std::endian::native == std::endian::little,
 
 constexpr size_t kBlockBytes = 1 << 20;
 
-std::string header(uint64_t count, int sh_degree, bool double_positions) {
-  std::string text =
-      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(count) + "\n";
+// As their trainers write it: Brush and Mip-Splatting's filter, or 3DGS's.
+const char* filter_comment(const NativeScale& native) {
+  if (!native.antialiased()) return "";
+  return native.low_pass == kMipSplattingLowPass ? "comment SplatRenderMode: mip\n"
+                                                 : "comment antialiased 1\n";
+}
+
+std::string header(uint64_t count, int sh_degree, bool double_positions,
+                   const NativeScale& native) {
+  std::string text = std::string("ply\nformat binary_little_endian 1.0\n") +
+                     filter_comment(native) + "element vertex " + std::to_string(count) + "\n";
   const auto add = [&](const std::string& name, const char* type = "float") {
     text += std::string("property ") + type + " " + name + "\n";
   };
@@ -32,10 +40,11 @@ std::string header(uint64_t count, int sh_degree, bool double_positions) {
 
 class PlyWriter final : public GaussianWriter {
  public:
-  PlyWriter(ByteSink& sink, uint64_t count, int sh_degree, bool double_positions)
+  PlyWriter(ByteSink& sink, uint64_t count, int sh_degree, bool double_positions,
+            const NativeScale& native)
       : sink_(sink), check_(count, sh_degree), double_positions_(double_positions) {
     check_sh_degree(sh_degree);
-    const std::string text = header(count, sh_degree, double_positions);
+    const std::string text = header(count, sh_degree, double_positions, native);
     sink_.write(std::as_bytes(std::span(text)));
     block_.reserve(kBlockBytes + 1024);
   }
@@ -106,8 +115,8 @@ uint64_t ply_bytes(uint64_t count, int sh_degree, bool double_positions) {
 }
 
 std::unique_ptr<GaussianWriter> write_ply(ByteSink& sink, uint64_t count, int sh_degree,
-                                          bool double_positions) {
-  return std::make_unique<PlyWriter>(sink, count, sh_degree, double_positions);
+                                          bool double_positions, const NativeScale& native) {
+  return std::make_unique<PlyWriter>(sink, count, sh_degree, double_positions, native);
 }
 
 }  // namespace voyager

@@ -35,8 +35,10 @@ std::unique_ptr<ByteSink> sink_to_stdout();
 // Binary little-endian .ply in INRIA's property order: x y z nx ny nz f_dc_* f_rest_* opacity
 // scale_* rot_*. `count` and `sh_degree` (0-3) are announced in the header. Words are kept to the
 // bit. A cloud with a non-zero origin needs double_positions: x, y, z are then world coordinates.
+// native: a comment says so where the scene was trained with a compensated filter.
 std::unique_ptr<GaussianWriter> write_ply(ByteSink& sink, uint64_t count, int sh_degree,
-                                          bool double_positions = false);
+                                          bool double_positions = false,
+                                          const NativeScale& native = {});
 
 // Bytes of its rows: what it takes at least.
 uint64_t ply_bytes(uint64_t count, int sh_degree, bool double_positions = false);
@@ -46,7 +48,8 @@ uint64_t ply_bytes(uint64_t count, int sh_degree, bool double_positions = false)
 // bits (1/4096 m), fewer where `largest_coordinate` (metres, world) does not fit; a coordinate
 // beyond what then fits is an error, never clamped. Other parameters are rounded to the nearest
 // step and clamped to the format's range: log scale [-10, 5.9375], SH [-1, 0.992], f_dc [-10/3,
-// 10/3].
+// 10/3]. The flag says that a scene was trained with a compensated filter, not which: it is read
+// as 3DGS's.
 std::unique_ptr<GaussianWriter> write_spz(ByteSink& sink, uint64_t count, int sh_degree,
                                           float largest_coordinate = 2047.0f);
 

@@ -266,6 +266,7 @@ GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options) {
   PlyReader rows(reader);
   GaussianCloud cloud(options.memory);
   cloud.sh_degree = rows.sh_degree();
+  cloud.native = rows.native();
   RawBlock block;
   for (uint64_t done = 0;;) {
     rows.next(rows.rows_at_once(), block);

@@ -53,6 +53,20 @@ TEST(PlyExport, DoublesHoldTheWorldPosition) {
   EXPECT_THROW(test::ply_of(cloud, false), Error);
 }
 
+// However it is read; and that of one which was not nothing is said.
+TEST(PlyExport, SaysWhatCompensatedFilterASceneWasTrainedWith) {
+  const GaussianCloud cloud = test::random_cloud(20, 3, 1);
+  for (const NativeScale& native :
+       {compensated_scale(kLowPass), compensated_scale(kMipSplattingLowPass), NativeScale{}}) {
+    test::BytesSink sink;
+    const auto writer = write_ply(sink, 20, 1, false, native);
+    writer->append(cloud);
+    writer->finish();
+    EXPECT_EQ(test::import_bytes(sink.bytes).native, native);
+    EXPECT_EQ(test::import_piped(sink.bytes).native, native);
+  }
+}
+
 TEST(PlyExport, HoldsItsCallerToTheAnnouncement) {
   test::BytesSink sink;
   const GaussianCloud cloud = test::random_cloud(3, 3, 1);

@@ -1,0 +1,75 @@
+// Where a bake has the native pixel from, as a user says it and is told.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "runtime/format/reader.h"
+#include "tests/command_line/program.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::test {
+namespace native_pixel_command_test {
+namespace {
+
+class NativePixelCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(
+        run("voyager synth city --gaussians 10000 --sh-degree 0 -o " + file("c.ply")).exit_code, 0);
+    std::string ply = file_bytes(file("c.ply"));
+    const std::string format = "format binary_little_endian 1.0\n";
+    ply.insert(ply.find(format) + format.size(), "comment SplatRenderMode: mip\n");
+    std::ofstream(file("mip.ply"), std::ios::binary) << ply;
+  }
+
+  std::string file(const std::string& name) const { return folder_.file(name); }
+  // Of what is baked with these arguments.
+  NativeScale bake(const std::string& arguments) const {
+    const Outcome baked = run("voyager bake " + arguments + " -o " + file("o.voy"));
+    EXPECT_EQ(baked.exit_code, 0) << baked.output;
+    said_ = baked.output;
+    return SceneFile(open_file_source(file("o.voy"))).info().native;
+  }
+
+  const TempFolder folder_;
+  mutable std::string said_;
+};
+
+TEST_F(NativePixelCommand, IsGivenFoundByCamerasOrEstimated) {
+  EXPECT_EQ(bake(file("c.ply") + " --native-pixel 0.25"),
+            (NativeScale{NativeSource::given, 0.25, kPixelVariance}));
+  EXPECT_EQ(bake(file("c.ply")).source, NativeSource::estimated);
+  for (const std::string work : {"", " --work " + file("work")}) {
+    const NativeScale found =
+        bake(file("c.ply") + " --training-cameras " + file("c.cameras.json") + work);
+    EXPECT_EQ(found.source, NativeSource::cameras);
+    EXPECT_NEAR(found.pixel, 0.0913, 0.01);  // of a walk and a flight, at 960 pixels
+    EXPECT_NE(said_.find("they see"), std::string::npos) << said_;
+  }
+}
+
+TEST_F(NativePixelCommand, ACompensatedFilterIsTheFilesOwnHoweverItIsRead) {
+  const NativeScale mip = compensated_scale(kMipSplattingLowPass);
+  EXPECT_EQ(bake(file("mip.ply")), mip);
+  EXPECT_EQ(bake(file("mip.ply") + " --work " + file("work")), mip);
+  EXPECT_EQ(bake("- < " + file("mip.ply")), mip);
+  EXPECT_EQ(run("voyager export " + file("o.voy") + " -o " + file("again.ply")).exit_code, 0);
+  const Outcome info = run("voyager info " + file("again.ply") + " --json");
+  EXPECT_EQ(nlohmann::json::parse(info.output)["low_pass"], 0.1) << info.output;
+  for (const std::string option :
+       {" --native-pixel 0.1", " --training-cameras " + file("c.cameras.json")}) {
+    const Outcome refused =
+        run("voyager bake " + file("mip.ply") + option + " -o " + file("n.voy"));
+    EXPECT_EQ(refused.exit_code, 2) << refused.output;
+    EXPECT_NE(refused.output.find("mip.ply: found a scene that was trained with a compensated"),
+              std::string::npos)
+        << refused.output;
+    EXPECT_FALSE(std::filesystem::exists(file("n.voy")));
+  }
+}
+
+}  // namespace
+}  // namespace native_pixel_command_test
+}  // namespace voyager::test
