@@ -41,7 +41,7 @@ TEST_F(NativePixelCommand, IsGivenFoundByCamerasOrEstimated) {
   EXPECT_EQ(bake(file("c.ply") + " --native-pixel 0.25"),
             (NativeScale{NativeSource::given, 0.25, kPixelVariance}));
   EXPECT_EQ(bake(file("c.ply")).source, NativeSource::estimated);
-  for (const std::string work : {"", " --work " + file("work")}) {
+  for (const std::string& work : {std::string(), " --work " + file("work")}) {
     const NativeScale found =
         bake(file("c.ply") + " --training-cameras " + file("c.cameras.json") + work);
     EXPECT_EQ(found.source, NativeSource::cameras);
@@ -58,8 +58,8 @@ TEST_F(NativePixelCommand, ACompensatedFilterIsTheFilesOwnHoweverItIsRead) {
   EXPECT_EQ(run("voyager export " + file("o.voy") + " -o " + file("again.ply")).exit_code, 0);
   const Outcome info = run("voyager info " + file("again.ply") + " --json");
   EXPECT_EQ(nlohmann::json::parse(info.output)["low_pass"], 0.1) << info.output;
-  for (const std::string option :
-       {" --native-pixel 0.1", " --training-cameras " + file("c.cameras.json")}) {
+  for (const std::string& option :
+       {std::string(" --native-pixel 0.1"), " --training-cameras " + file("c.cameras.json")}) {
     const Outcome refused =
         run("voyager bake " + file("mip.ply") + option + " -o " + file("n.voy"));
     EXPECT_EQ(refused.exit_code, 2) << refused.output;
