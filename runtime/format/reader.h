@@ -16,7 +16,7 @@ namespace voyager {
 struct SceneFileInfo {
   Quality quality;
   int sh_degree, left_out_bands;
-  NativeScale native;  // unknown in a file of version 4
+  NativeScale native;  // of a file of version 4 unknown, or compensated
   TreeKind tree;
   float blend_share;  // LodTree's
   uint32_t node_count;

@@ -34,8 +34,7 @@ void load_flat(const ByteSource& source, Workers& workers, Scene& scene) {
   scene.storage = Storage::flat;
   scene.sh_degree = cloud.sh_degree;
   scene.profile.input_sh_degree = cloud.input_sh_degree();
-  scene.native =
-      cloud.native.source == NativeSource::unknown ? estimated_scale(cloud) : cloud.native;
+  scene.native = known_scale(cloud);
   scene.leaf_count = cloud.size();
   scene.import = cloud.report;
   const std::array<double, 3> origin = scene_origin(cloud);

@@ -52,7 +52,7 @@ BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& pro
   check_scales(cloud);
   const std::array<double, 3> origin = scene_origin(cloud);
   check_means(cloud, origin);
-  if (cloud.native.source == NativeSource::unknown) cloud.native = estimated_scale(cloud);
+  cloud.native = known_scale(cloud);
   BakedScene baked{std::move(cloud),
                    GaussianCloud(memory),
                    origin,

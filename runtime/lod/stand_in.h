@@ -1,6 +1,7 @@
 #pragma once
 // What is lost where one Gaussian is drawn for several. The error is that of their pictures,
-// blurred by a pixel as the renderer does it (METHOD §5), along the three axes of the scene.
+// with the footprint and the pixel filter of the renderer (METHOD §12), along the three axes of the
+// scene.
 #include <algorithm>
 #include <span>
 

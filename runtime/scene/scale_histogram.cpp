@@ -53,4 +53,8 @@ NativeScale estimated_scale(const GaussianCloud& cloud) {
   return histogram.estimate();
 }
 
+NativeScale known_scale(const GaussianCloud& cloud) {
+  return cloud.native.source == NativeSource::unknown ? estimated_scale(cloud) : cloud.native;
+}
+
 }  // namespace voyager

@@ -2,8 +2,8 @@
 // An estimate of METHOD §12's native pixel from the Gaussians alone. Where pictures show detail,
 // training makes Gaussians about as small as a pixel and hardly any smaller across two of their
 // axes: the third may be as thin as a surface is. So the pixel is taken to be the tenth percentile
-// of the middle axis, of those Gaussians that can be seen. It is too
-// large where a scene has few Gaussians for its size (bench/NOTES.md).
+// of the middle axis, of those Gaussians that can be seen. It is too large where a scene has few
+// Gaussians for its size (bench/NOTES.md).
 #include <array>
 #include <cstdint>
 
@@ -29,5 +29,7 @@ class ScaleHistogram {
 };
 
 NativeScale estimated_scale(const GaussianCloud& cloud);
+// The cloud's own where it is known, else the estimate.
+NativeScale known_scale(const GaussianCloud& cloud);
 
 }  // namespace voyager

@@ -22,8 +22,7 @@ inline std::shared_ptr<Scene> flat_scene(const GaussianCloud& cloud) {
   scene->name = "flat";
   scene->sh_degree = cloud.sh_degree;
   scene->leaf_count = cloud.size();
-  scene->native =
-      cloud.native.source == NativeSource::unknown ? estimated_scale(cloud) : cloud.native;
+  scene->native = known_scale(cloud);
   scene->origin = {cloud.origin[0], cloud.origin[1], cloud.origin[2]};
   for (size_t i = 0; i < cloud.size(); ++i)
     scene->gaussians.push_back(activate(cloud.words(i), true));

@@ -113,7 +113,10 @@ GaussianCloud read_stream(BlockReader& reader, const Progress& progress) {
     const RawBlock block = reader.next(kAtOnce);
     if (block.count == 0) break;
     GaussianCloud more = reader.decode(block);
-    if (done == 0) cloud.origin = more.origin, cloud.native = more.native;
+    if (done == 0) {
+      cloud.origin = more.origin;
+      cloud.native = more.native;
+    }
     make_room(cloud, done + block.count, reader.count());
     append(cloud, std::move(more), reader.name());
     done += block.count;
@@ -245,14 +248,13 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
     verify_file(arguments.output, baked.tree, partition);
     progress("verifying", 1, 1);
   }
-  return {baked.leaves.size(),
-          baked.tree.size(),
-          partition.subtrees.size(),
-          partition.chunk_count(),
-          baked.leaves.report,
-          0,
-          {},
-          {}};
+  BakeSummary summary;
+  summary.gaussians = baked.leaves.size();
+  summary.nodes = baked.tree.size();
+  summary.subtrees = partition.subtrees.size();
+  summary.chunks = partition.chunk_count();
+  summary.import = baked.leaves.report;
+  return summary;
 }
 
 BakeSummary bake_from_folder(const BakeArguments& arguments, const NativeChoice& native,

@@ -136,6 +136,11 @@ void render(RenderArguments& arguments) {
     width = std::max(width, camera.width);
     height = std::max(height, camera.height);
   }
+  if (uint64_t{std::max(width, height)} * arguments.choices.supersample > kLargestSide)
+    bad_usage(
+        fmt::format("--supersample: found {} samples along each side of each pixel of {}x{}, "
+                    "expected at most {} along a side of the picture",
+                    arguments.choices.supersample, width, height, kLargestSide));
   arguments.choices.start = cameras.front().pose.position;
   progress("opening", 0, 0);
   Renderer renderer(arguments.scene, arguments.choices, width, height);

@@ -93,8 +93,7 @@ std::string curve_method_text(const ReportPlan& plan, const std::string& first,
       "{} views of {}, each at the τ at which its cut has the share of the leaves. Errors are "
       "against the truth of {}: every leaf, the mean of many samples a pixel, drawn by the same "
       "backend ({}) with the exact exponential. Milliseconds are of a view that stands still; of "
-      "the "
-      "flight, of the second view of a pair that comes after the first.",
+      "the flight, of the second view of a pair that comes after the first.",
       plan.compared.size(), sizes_text(plan.path), first, backend.device_name());
 }
 

@@ -19,7 +19,9 @@ double median_depth(const Scene& scene, const voyager::Camera& camera) {
   std::vector<double> depths;
   const size_t leaves = scene.flat() ? scene.gaussians.size() : scene.leaves.size();
   for (size_t i = 0; i < leaves; ++i) {
-    const Vec3f& mean = scene.gaussians[scene.flat() ? i : scene.leaves[i]].mean;
+    const size_t leaf = scene.flat() ? i : scene.leaves[i];
+    if (leaf == kNoNode) continue;  // in a damaged chunk
+    const Vec3f& mean = scene.gaussians[leaf].mean;
     const Vec3d local{double{mean.x}, double{mean.y}, double{mean.z}};
     const Vec3d p = camera.world_to_view * (scene.origin + local - camera.eye);
     if (is_in_picture(camera, p)) depths.push_back(p.z);

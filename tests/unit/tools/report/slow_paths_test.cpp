@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/render_scene.h"
+#include "tests/support/scene_files.h"
 
 namespace voyager::tools {
 namespace slow_paths_test {
@@ -45,6 +46,16 @@ TEST(SlowPaths, EachFrameMovesThePictureByAQuarterOfAPixel) {
   }
   ASSERT_GT(all, 100u);
   EXPECT_NEAR(static_cast<double>(faster) / static_cast<double>(all), 0.5, 0.02);
+}
+
+TEST(SlowPaths, LeavesOfDamagedChunksAreLeftOut) {
+  auto bytes = test::scene_bytes(test::bake(test::random_cloud(3000, 3, 0)), Quality::lossless);
+  bytes[bytes.size() / 2] ^= std::byte{1};
+  Workers workers(2);
+  const auto scene = load_scene(test::source_of(bytes), std::pmr::get_default_resource(), workers);
+  ASSERT_FALSE(scene->damaged.empty());
+  const FrameInput first = test::frame_input(test::look({0, -5, -60}, {0, 0, 0}, 160, 100), 3);
+  EXPECT_EQ(slow_paths(first, *scene, 2).dolly.size(), 2u);
 }
 
 TEST(SlowPaths, WhereNothingIsInThePictureThereIsNoDolly) {
