@@ -138,8 +138,8 @@ void render(RenderArguments& arguments) {
   }
   if (uint64_t{std::max(width, height)} * arguments.choices.supersample > kLargestSide)
     bad_usage(
-        fmt::format("--supersample: found {} samples along each side of each pixel of {}x{}, "
-                    "expected at most {} along a side of the picture",
+        fmt::format("--supersample: found {} with a picture of {}x{}, expected at most {} "
+                    "samples along a side",
                     arguments.choices.supersample, width, height, kLargestSide));
   arguments.choices.start = cameras.front().pose.position;
   progress("opening", 0, 0);
