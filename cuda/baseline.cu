@@ -45,7 +45,8 @@ __device__ bool baseline_splat(const BaselineFrame& f, uint32_t place) {
   if (!(view.z > f.params.near_z)) return false;
   Shape<float> shape = interpolated_shape<float>(arrays, item);
   const PixelFilter<float>& filter = f.params.filter;
-  if (filter.footprint > 0.0f) shape.scale = widened(shape.scale, filter.footprint);
+  if (filter.footprint > 0.0f)
+    shape.scale = widened(shape.scale, interpolated_footprint(arrays, item, filter.footprint));
   const ImageCovariance<float> covariance = image_covariance(
       image_jacobian(f.params.view, view), shape.rotation, shape.scale, filter.low_pass);
   BaselineSplat splat;

@@ -50,7 +50,8 @@ struct DeviceArrays {
 
   __device__ int sh_degree() const { return Sh::degree(gaussians); }
   __device__ Sh sh(uint32_t i) const { return Sh::load(gaussians, i); }
-  __device__ int axis_code(uint32_t i) const { return __ldg(gaussians.axis_codes + i); }
+  __device__ int node_code(uint32_t i) const { return __ldg(gaussians.node_codes + i); }
+  __device__ bool footprints_differ() const { return gaussians.footprints; }
   __device__ Vec3f mean(uint32_t i) const {
     const float4 hull = __ldg(gaussians.hulls + i);
     return {hull.x, hull.y, hull.z};

@@ -18,7 +18,7 @@ class DeviceParents {
 
  private:
   Buffer<float> opacities_;
-  Buffer<uint8_t> axis_codes_;
+  Buffer<uint8_t> node_codes_;
   Buffer<uint32_t> parents_, child_counts_;
 };
 

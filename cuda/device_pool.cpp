@@ -53,6 +53,7 @@ DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
       sh_degree_(scene.sh_degree),
       half_sh_(fits_half(scene)),
       doubles_(scene.doubles),
+      footprints_(footprints_differ(scene)),
       blend_share_(scene.tree.blend_share),
       chunks_(scene.search.chunks),
       piece_layout_(scene, shape, 1),
@@ -96,13 +97,14 @@ GaussianView DevicePool::gaussians() const {
   return {array<float4>(kHulls),
           array<float4>(kShapes),
           array<float>(kOpacities),
-          array<uint8_t>(kAxisCodes),
+          array<uint8_t>(kNodeCodes),
           array<uint32_t>(kParents),
           array<uint32_t>(kChildCounts),
           array<uint4>(kCoefficients),
           sh_degree_,
           half_sh_,
           doubles_,
+          footprints_,
           slots_ * shape_.nodes};
 }
 
@@ -129,7 +131,7 @@ void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* i
     put(at(kShapes), 2 * i, device_shape(g, 0));
     put(at(kShapes), 2 * i + 1, device_shape(g, 1));
     put(at(kOpacities), i, g.opacity);
-    put(at(kAxisCodes), i, chunk.axis_code[i]);
+    put(at(kNodeCodes), i, chunk.node_code[i]);
     const uint32_t parent = staged.parent[i];
     put(at(kParents), i, parent == kNoNode ? kNoNode : slot * shape_.nodes + parent);
     put(at(kChildCounts), i, chunk.record_of(i).child_count);

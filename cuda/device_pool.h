@@ -59,7 +59,7 @@ class DevicePool final : public ChunkPool {
   const std::shared_ptr<const Device> device_;
   const SlotShape shape_;
   const int sh_degree_;
-  const bool half_sh_, doubles_;
+  const bool half_sh_, doubles_, footprints_;
   const float blend_share_;
   const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
   const PoolLayout piece_layout_;                // of one slot

@@ -29,16 +29,18 @@ bool fits_binary16(const Scene& scene, Workers& workers) {
 DeviceScene::DeviceScene(const Scene& scene, Workers& workers) {
   upload_gaussians(scene);
   const bool half = upload_coefficients(scene, workers);
+  if (footprints_differ(scene)) node_codes_ = upload(std::span<const uint8_t>(scene.node_code));
   view_ = {hulls_.data(),
            shapes_.data(),
            nullptr,
-           nullptr,
+           node_codes_.data(),
            nullptr,
            nullptr,
            half ? static_cast<const void*>(half_coefficients_.data()) : coefficients_.data(),
            scene.sh_degree,
            half,
            scene.doubles,
+           footprints_differ(scene),
            static_cast<uint32_t>(hulls_.size())};
 }
 
@@ -80,7 +82,8 @@ GaussianView DeviceScene::view() const {
 
 uint32_t DeviceScene::bytes_a_gaussian() const {
   const GaussianView of = view();
-  return 3 * sizeof(float4) + coefficient_bytes(of.sh_degree, of.half_sh);
+  const uint32_t code = of.footprints ? sizeof(uint8_t) : 0;
+  return 3 * sizeof(float4) + code + coefficient_bytes(of.sh_degree, of.half_sh);
 }
 
 }  // namespace voyager::cuda

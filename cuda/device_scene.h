@@ -20,7 +20,7 @@ class DeviceScene {
   explicit DeviceScene(const DevicePool& pool) : pool_(&pool) {}
 
   // For a frame: a pool may have another size in the next. Of a resident scene without what
-  // DeviceParents adds.
+  // DeviceParents adds; but with the nodes' codes, where every view reads their footprints.
   GaussianView view() const;
   // Stored bytes that projection reads of a Gaussian that is visible.
   uint32_t bytes_a_gaussian() const;
@@ -33,6 +33,7 @@ class DeviceScene {
   Buffer<float4> hulls_, shapes_;
   Buffer<__half> half_coefficients_;
   Buffer<float> coefficients_;
+  Buffer<uint8_t> node_codes_;
   GaussianView view_{};
   const DevicePool* pool_ = nullptr;
 };

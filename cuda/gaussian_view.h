@@ -16,16 +16,18 @@ struct GaussianView {
   // binary32.
   const float4* hulls;
   const float4* shapes;  // two each: scale and log o; rotation (w, x, y, z)
-  // What interpolation reads; null where every leaf is drawn.
+  // What interpolation reads; null where every leaf is drawn, but for codes of a scene whose
+  // footprints differ.
   const float* opacities;
-  const uint8_t* axis_codes;
+  const uint8_t* node_codes;
   const uint32_t* parents;
   const uint32_t* child_counts;
   // SH coefficients [k][rgb]: binary16 padded to 16 bytes, or binary32.
   const void* coefficients;
   int sh_degree;
   bool half_sh;
-  bool doubles;  // nodes of one child are doubles, as files of version 4 have them
+  bool doubles;     // nodes of one child are doubles, as files of version 4 have them
+  bool footprints;  // that differ between nodes (METHOD §12)
   uint32_t count;
 };
 

@@ -18,7 +18,7 @@ enum PoolArray : uint32_t {
   kParents,
   kChildCounts,
   kNodeIds,
-  kAxisCodes,
+  kNodeCodes,
   kRecords,
   kFilledArrays,
   // What links chunks: by record, and two of the whole tree.

@@ -171,13 +171,14 @@ class Baker {
 
   void build_cells() {
     const std::vector<uint32_t> cells = cells_without(cell_tree_name);
-    // A child count a node, of which a leaf has up to three, an index and an exposure a leaf; the
-    // topmost nodes of each cell.
-    const uint64_t bytes = split_.spool.gaussians * uint64_t{9} +
+    // A child count a node, of which a leaf has up to three, an index, an exposure and a footprint
+    // a leaf; the topmost nodes of each cell.
+    const uint64_t bytes = split_.spool.gaussians * uint64_t{10} +
                            cells.size() * (1 + kChildren) * uint64_t{sizeof(NodeRow)};
     in_space(bytes, "layouts of cells", [&] {
-      for_cells(cells, lanes(), workers_, progress_, "merging",
-                [&](uint32_t cell) { build_cell(split_, cell, bake_.rule, folder_, workers_); });
+      for_cells(cells, lanes(), workers_, progress_, "merging", [&](uint32_t cell) {
+        build_cell(split_, cell, bake_.rule, bake_.native.cameras, folder_, workers_);
+      });
     });
   }
 
@@ -228,7 +229,8 @@ class Baker {
     result.gaussians = spool.gaussians;
     result.import = spool.import;
     if (bake_.step != BakeStep::all && bake_.step != BakeStep::merge) return result;
-    const BakedScene baked = build_tree(read_cloud(spool), workers_, progress_, bake_.rule);
+    const BakedScene baked = build_tree(read_cloud(spool), workers_, progress_, bake_.rule,
+                                        {bake_.native.cameras, spool.unseen_level});
     const Partition partition = partition_tree(baked.tree, bake_.chunk_bytes);
     write_scene_file(baked, partition, bake_.output, bake_.quality, workers_, progress_);
     result.nodes = baked.tree.size();

@@ -32,7 +32,9 @@ void read_leaves(uint32_t gaussians, uint32_t cell, const WorkFolder& folder, Tr
   Unpacker from(path, bytes);
   from.take_all(layout.leaf);
   from.take_all(layout.exposure);
-  for (const size_t found : {layout.leaf.size(), layout.exposure.size()})
+  from.take_all(layout.footprint);
+  if (layout.footprint.empty()) layout.footprint.resize(gaussians);
+  for (const size_t found : {layout.leaf.size(), layout.exposure.size(), layout.footprint.size()})
     if (found != gaussians)
       refuse_folder(path, std::to_string(found) + " Gaussians", std::to_string(gaussians));
 }
@@ -54,6 +56,7 @@ NodeRow row_of(const BakedScene& baked, uint32_t node) {
   const size_t i = baked.gaussian[node];
   row.words = baked.merged.words(i);
   row.exposure = baked.exposure[node];
+  row.code = baked.node_code[node];
   const size_t floats = static_cast<size_t>(baked.merged.coefficients()) * 3;
   std::copy_n(baked.merged.sh.data() + i * floats, floats, row.sh);
   return row;
@@ -62,15 +65,17 @@ NodeRow row_of(const BakedScene& baked, uint32_t node) {
 }  // namespace
 
 void build_cell(const SplitInfo& split, uint32_t cell, const TreeRule& rule,
-                const WorkFolder& folder, Workers& workers) {
+                std::span<const TrainingCamera> cameras, const WorkFolder& folder,
+                Workers& workers) {
   CellRows rows = read_cell_rows(split, cell, folder);
-  const TreeLayout layout = find_layout(rows.cloud, split.origin, rule, workers);
+  const TreeLayout layout =
+      find_layout(rows.cloud, split.origin, rule, workers, {}, {cameras, split.spool.unseen_level});
   const uint32_t shared = cell_levels(layout.child_count)[kSharedLevels];
   const CellTree tree = merge_cell(std::move(rows), layout, split.origin, workers);
   std::vector<NodeRow> nodes;
   for (uint32_t node = 0; node < shared; ++node) nodes.push_back(row_of(tree.baked, node));
   Packer leaves, shape;
-  leaves.put_all(layout.leaf).put_all(layout.exposure);
+  leaves.put_all(layout.leaf).put_all(layout.exposure).put_all(layout.footprint);
   shape.put_all(nodes).put_all(layout.child_count);
   write_sealed(folder.file(cell_leaves_name(cell)), leaves.bytes());
   write_sealed(folder.file(cell_tree_name(cell)), shape.bytes());

@@ -17,13 +17,15 @@ struct NodeRow {
   NodeRecord record;
   GaussianWords words;
   Exposure exposure;
+  uint32_t code;  // node_code.h
   float sh[3 * sh_coefficients(kMaxShDegree)];
 };
 
 // Lays out and merges a cell, and writes its files. Throws Error(internal) for a layout
 // that cell_levels() refuses: no clustered tree's.
 void build_cell(const SplitInfo& split, uint32_t cell, const TreeRule& rule,
-                const WorkFolder& folder, Workers& workers);
+                std::span<const TrainingCamera> cameras, const WorkFolder& folder,
+                Workers& workers);
 
 // The same tree again, from its layout.
 CellTree rebuild_cell(const SplitInfo& split, uint32_t cell, const WorkFolder& folder,

@@ -2,6 +2,7 @@
 
 #include "runtime/base/checksum.h"
 #include "runtime/format/scene_header.h"
+#include "runtime/lod/build.h"
 
 namespace voyager {
 namespace {
@@ -22,6 +23,7 @@ class Joiner {
     totals_.sh_degree = split.spool.sh_degree;
     totals_.left_out_bands = split.spool.row_degree - split.spool.sh_degree;
     totals_.native = split.spool.native;
+    totals_.native.levels = footprint_levels(top);
     totals_.leaf_count = split.spool.gaussians;
     totals_.chunk_bytes = plan.chunk_bytes();
     totals_.tiers = plan.tiers();

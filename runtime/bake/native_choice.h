@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/lod/block_footprints.h"
 #include "runtime/scene/native_pixel.h"
 #include "runtime/scene/scale_histogram.h"
 
@@ -22,6 +23,8 @@ std::string request_line(const NativeChoice& choice);
 struct FoundScale {
   NativeScale scale;
   std::optional<NativePixel> by_cameras;  // where cameras were asked
+  // Of a block that no camera sees: the scene's median.
+  int unseen_level() const { return by_cameras ? scale.level_of(by_cameras->median) : 0; }
 };
 
 // Of a whole cloud, sanitised. Throws Error(refused_input) where no camera sees a Gaussian.

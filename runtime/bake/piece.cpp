@@ -23,7 +23,7 @@ void Piece::append(const Piece& next) {
   voyager::append(chunk.records, next.chunk.records);
   voyager::append(chunk.words, next.chunk.words);
   voyager::append(chunk.sh, next.chunk.sh);
-  voyager::append(chunk.axis_code, next.chunk.axis_code);
+  voyager::append(chunk.node_code, next.chunk.node_code);
   voyager::append(chunk.source_index, next.chunk.source_index);
   voyager::append(chunk.position_words, next.chunk.position_words);
 }
@@ -45,7 +45,7 @@ void pack(const Piece& piece, Packer& packer) {
   const Chunk& chunk = piece.chunk;
   packer.put(chunk.first_subtree).put(piece.place).put(piece.hull);
   packer.put_all(chunk.subtrees).put_all(chunk.records).put_all(chunk.record);
-  packer.put_all(chunk.words).put_all(chunk.sh).put_all(chunk.axis_code);
+  packer.put_all(chunk.words).put_all(chunk.sh).put_all(chunk.node_code);
   packer.put_all(chunk.source_index).put_all(chunk.position_words);
 }
 
@@ -60,7 +60,7 @@ Piece unpack_piece(Unpacker& from) {
   from.take_all(chunk.record);
   from.take_all(chunk.words);
   from.take_all(chunk.sh);
-  from.take_all(chunk.axis_code);
+  from.take_all(chunk.node_code);
   from.take_all(chunk.source_index);
   from.take_all(chunk.position_words);
   return piece;

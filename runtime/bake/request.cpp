@@ -11,7 +11,7 @@
 namespace voyager {
 namespace {
 
-constexpr int kWorkVersion = 7;  // of the files in the folder
+constexpr int kWorkVersion = 8;  // of the files in the folder
 
 std::string line_of(const std::string& path) {
   if (path == "-") return "input standard input\n";

@@ -128,6 +128,7 @@ class Spooler {
   SpoolInfo take_info() {
     const FoundScale found = native_scale(choice_, info_.native, pixels_, scales_);
     info_.native = found.scale;
+    info_.unseen_level = found.unseen_level();
     info_.by_cameras = found.by_cameras;
     return std::move(info_);
   }
@@ -192,6 +193,7 @@ void write_info(const WorkFolder& folder, const SpoolInfo& info) {
   Packer packer;
   packer.put(info.gaussians).put(std::array{info.sh_degree, info.row_degree});
   put(packer, info.native);
+  packer.put(info.unseen_level);
   packer.put(info.source_origin).put(info.import).put_all(info.pieces);
   write_sealed(folder.file(kSpoolDone), packer.bytes());
 }
@@ -224,7 +226,7 @@ SpoolInfo spool_inputs(const OpenInputs& open, const WorkFolder& folder, uint64_
 }
 
 void put(Packer& packer, const NativeScale& native) {
-  packer.put(native.source).put(native.pixel).put(native.low_pass);
+  packer.put(native.source).put(native.pixel).put(native.low_pass).put(native.levels);
 }
 
 NativeScale take_native(Unpacker& from) {
@@ -232,6 +234,7 @@ NativeScale take_native(Unpacker& from) {
   native.source = from.take<NativeSource>();
   native.pixel = from.take<double>();
   native.low_pass = from.take<double>();
+  native.levels = from.take<int>();
   return native;
 }
 
@@ -244,6 +247,7 @@ SpoolInfo read_spool_info(const WorkFolder& folder) {
   const auto degrees = from.take<std::array<int32_t, 2>>();
   info.sh_degree = degrees[0], info.row_degree = degrees[1];
   info.native = take_native(from);
+  info.unseen_level = from.take<int32_t>();
   info.source_origin = from.take<std::array<double, 3>>();
   info.import = from.take<ImportReport>();
   from.take_all(info.pieces);

@@ -37,6 +37,7 @@ struct SpoolInfo {
   int32_t sh_degree = 0;   // the highest that is used
   int32_t row_degree = 0;  // of the inputs, and so of the rows in the spool
   NativeScale native;
+  int32_t unseen_level = 0;  // BlockFootprints
   std::array<double, 3> source_origin{0, 0, 0};
   ImportReport import;
   std::vector<SpoolPiece> pieces;

@@ -22,13 +22,14 @@ void make_room(uint32_t nodes, BakedScene& top) {
   merged.opacity.resize(nodes);
   merged.sh.resize(nodes * static_cast<size_t>(merged.coefficients()) * 3);
   for (uint32_t i = 0; i < nodes; ++i) top.gaussian.push_back(i);
-  top.axis_code.resize(nodes);
+  top.node_code.resize(nodes);
   top.exposure.resize(nodes);
 }
 
 void put_node(const NodeRow& row, uint32_t node, BakedScene& top) {
   top.tree.records[node] = row.record;
   top.exposure[node] = row.exposure;
+  top.node_code[node] = static_cast<uint8_t>(row.code);
   GaussianCloud& merged = top.merged;
   std::copy_n(&row.words.mean.x, 3, &merged.position[3 * size_t{node}]);
   std::copy_n(&row.words.log_scale.x, 3, &merged.log_scale[3 * size_t{node}]);

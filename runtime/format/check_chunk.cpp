@@ -3,7 +3,7 @@
 #include <bit>
 #include <cmath>
 
-#include "runtime/math/axes.h"
+#include "runtime/math/node_code.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager {
@@ -57,7 +57,6 @@ const char* fault(const Chunk& chunk, size_t i, const ChunkContext& context) {
   const bool leaf = chunk.is_leaf(i);
   if (leaf ? chunk.source_index[i] >= context.leaf_count : chunk.source_index[i] != kNoNode)
     return "a source index that does not fit the node";
-  if (chunk.axis_code[i] >= kAxisCodes) return "an axis code over 23";
   if (!below(w.mean, kMaxCoordinate)) return "a mean that is not finite and below 1e18";
   if (!below(w.log_scale, kMaxLogScaleWord)) return "a log scale out of range";
   if (!finite(w.rotation)) return "a rotation that is not finite";
@@ -112,9 +111,15 @@ void link_subtrees(std::span<const uint8_t> child_counts,
 }
 
 void check_words(const Chunk& chunk, const ChunkLocation& location, const ChunkContext& context) {
-  for (size_t i = 0; i < chunk.node.size(); ++i)
+  const int codes = kAxisCodes * context.footprint_levels;
+  for (size_t i = 0; i < chunk.node.size(); ++i) {
+    if (chunk.node_code[i] >= codes)
+      location.damaged("node " + std::to_string(chunk.node[i]) + " with node code " +
+                           std::to_string(chunk.node_code[i]),
+                       "less than " + std::to_string(codes));
     if (const char* wrong = fault(chunk, i, context))
       location.damaged("node " + std::to_string(chunk.node[i]) + " with " + wrong, "a sound node");
+  }
 }
 
 }  // namespace voyager

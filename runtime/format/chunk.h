@@ -19,11 +19,11 @@ struct Chunk {
 
   // Of the owned nodes, in the order of their records.
   std::vector<uint32_t> node;
-  std::vector<uint32_t> record;       // its index in records
-  std::vector<uint32_t> first_child;  // meaningless for a leaf
-  std::vector<GaussianWords> words;   // scene-local means; leaf opacity is a logit, merged linear
-  std::vector<float> sh;              // coefficients * 3 a node, [k][rgb]
-  std::vector<uint8_t> axis_code;
+  std::vector<uint32_t> record;        // its index in records
+  std::vector<uint32_t> first_child;   // meaningless for a leaf
+  std::vector<GaussianWords> words;    // scene-local means; leaf opacity is a logit, merged linear
+  std::vector<float> sh;               // coefficients * 3 a node, [k][rgb]
+  std::vector<uint8_t> node_code;      // runtime/math/node_code.h
   std::vector<uint32_t> source_index;  // leaf: its index in the input; interior: kNoNode
   // Lossless storage: the input's own position words of leaves (world = cloud
   // origin + word), three a node; empty where they equal words.mean.

@@ -20,9 +20,10 @@ struct ChunkContext {
   uint32_t leaf_count = 0;
   Tiers tiers;
   ExtentRule extents = ExtentRule::error;
-  // What a decoded chunk must keep to; an encoder reads neither.
+  // What a decoded chunk must keep to; an encoder reads none of it.
   float largest_sh = 0;             // no |coefficient| is larger
   bool leaves_have_extent = false;  // else every leaf's extent is 0
+  int footprint_levels = 1;         // no node's level is as high
 
   size_t coefficients() const {
     const auto n = static_cast<size_t>(sh_degree) + 1;

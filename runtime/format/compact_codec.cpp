@@ -129,7 +129,7 @@ class PlaneEncoder {
 
   void put_sources(GaussianPlanes& planes) const {
     planes.put(4, [&](size_t i) { return chunk_.source_index[i]; });
-    planes.put(1, [&](size_t i) { return uint32_t{chunk_.axis_code[i]}; });
+    planes.put(1, [&](size_t i) { return uint32_t{chunk_.node_code[i]}; });
     end_group_(planes.end());
   }
 
@@ -232,8 +232,8 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
   take_sh(planes, header, coefficients, chunk);
   chunk.source_index.resize(nodes);
   planes.take(4, [&](size_t i, uint32_t v) { chunk.source_index[i] = v; });
-  chunk.axis_code.resize(nodes);
-  planes.take(1, [&](size_t i, uint32_t v) { chunk.axis_code[i] = static_cast<uint8_t>(v); });
+  chunk.node_code.resize(nodes);
+  planes.take(1, [&](size_t i, uint32_t v) { chunk.node_code[i] = static_cast<uint8_t>(v); });
 }
 
 }  // namespace voyager

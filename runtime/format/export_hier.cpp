@@ -7,7 +7,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/output_path.h"
 #include "runtime/format/tree_check.h"
-#include "runtime/math/axes.h"
+#include "runtime/math/node_code.h"
 
 namespace voyager {
 namespace {
@@ -87,7 +87,8 @@ Nodes gather(const Chunk& chunk) {
   Nodes nodes(n);
   for (size_t to = 0; to < n; ++to) {
     const size_t i = order[to];
-    const GaussianWords g = turned(chunk.words[i], chunk.axis_code[i], chunk.is_leaf(i));
+    const GaussianWords g =
+        turned(chunk.words[i], axis_code_of(chunk.node_code[i]), chunk.is_leaf(i));
     const NodeRecord& r = chunk.record_of(i);
     nodes.positions[to] = g.mean;
     nodes.log_scales[to] = g.log_scale;

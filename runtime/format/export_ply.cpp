@@ -1,6 +1,8 @@
 #include "runtime/format/export_ply.h"
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 
 #include "runtime/base/error.h"
 #include "runtime/base/output_path.h"
@@ -39,12 +41,24 @@ void put_leaf(const Chunk& chunk, size_t node, GaussianCloud& cloud) {
   std::copy_n(&chunk.sh[node * floats], floats, &cloud.sh[i * floats]);
 }
 
+// The one that half of the leaves are not above. leaves: how many have each level.
+NativeScale median_scale(const std::array<uint64_t, kFootprintLevels>& leaves,
+                         const NativeScale& native) {
+  const uint64_t all = std::accumulate(leaves.begin(), leaves.end(), uint64_t{0});
+  uint64_t above = 0;
+  int level = 0;
+  while (level + 1 < native.levels && 2 * (above += leaves[static_cast<size_t>(level)]) < all)
+    ++level;
+  return {native.source, native.pixel_of(level), native.low_pass};
+}
+
 }  // namespace
 
 GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
   GaussianCloud cloud = room_for_leaves(scene.info());
   std::vector<bool> there(cloud.size());
   size_t leaves = 0;
+  std::array<uint64_t, kFootprintLevels> leaves_of_level{};
   TreeCheck check(scene);
   for (uint32_t index = 0; index < scene.chunks().size(); ++index) {
     report(progress, "exporting", index, scene.chunks().size());
@@ -59,12 +73,14 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
                                                   " a second time, expected each once");
       there[i] = true;
       ++leaves;
+      ++leaves_of_level[static_cast<size_t>(footprint_level_of(chunk.node_code[node]))];
       put_leaf(chunk, node, cloud);
     }
   }
   if (leaves != cloud.size())
     throw Error(ErrorCode::refused_input, scene.name() + ": found " + std::to_string(leaves) +
                                               " leaves, expected " + std::to_string(cloud.size()));
+  cloud.native = median_scale(leaves_of_level, cloud.native);
   return cloud;
 }
 

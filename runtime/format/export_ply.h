@@ -8,7 +8,8 @@ namespace voyager {
 
 // The leaves in the input's order, with the input's own words where the file
 // is lossless (compact: restored words, scene-local). Its origin is the one of
-// those positions. Holds the whole cloud. Throws Error(damaged_chunk), and
+// those positions. A cloud has one native pixel: where those of the file differ, the median leaf's.
+// Holds the whole cloud. Throws Error(damaged_chunk), and
 // Error(refused_input) where a leaf is missing or there twice, or a chunk does
 // not go on with the tree (tree_check.h).
 GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress = {});

@@ -13,7 +13,7 @@ void add_gaussian(const BakedScene& baked, uint32_t node, size_t floats, Chunk& 
   chunk.words.push_back(leaf ? leaf_words(baked, index) : words);
   const float* sh = cloud.sh.data() + index * floats;
   chunk.sh.insert(chunk.sh.end(), sh, sh + floats);
-  chunk.axis_code.push_back(baked.axis_code[node]);
+  chunk.node_code.push_back(baked.node_code[node]);
   chunk.source_index.push_back(leaf ? index : kNoNode);
 }
 

@@ -26,6 +26,8 @@ inline constexpr uint32_t kOldestSceneVersion = 4;  // that is read: without wha
 inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0
 inline constexpr uint32_t kFlagClustered = 4;    // the rule of the tree (tree_rule.h)
+// From version 5 on: footprint levels beyond the first (node_code.h).
+inline constexpr uint32_t kFootprintShift = 4, kFootprintMask = 0xfu << kFootprintShift;
 inline constexpr uint32_t kFlags = kFlagAntialiased | kFlagLeafExtents | kFlagClustered;
 inline constexpr uint32_t kChunkTag = 0x4b484356;  // "VCHK"
 
@@ -73,7 +75,7 @@ struct FileHeader {
   float largest_sh;         // |coefficient|, over all that the chunks decode to
   uint32_t left_out_bands;  // of the input, above sh_degree: zero in every Gaussian
   // From version 5 on.
-  double native_pixel;     // metres (METHOD §12); 0: no footprint
+  double native_pixel;     // metres (METHOD §12), of level 0; 0: no footprint
   double low_pass;         // of the pixel filter, pixels²
   uint32_t native_source;  // a NativeSource
   float blend_share;       // METHOD §4's β; before version 5 0.5

@@ -86,7 +86,7 @@ void encode_lossless(const Chunk& chunk, EncodedChunk& out) {
   for (const GaussianWords& w : chunk.words) planes.put(&w.opacity, 1);
   planes.put(chunk.sh.data(), chunk.sh.size());
   planes.put(chunk.source_index.data(), chunk.source_index.size());
-  planes.put(chunk.axis_code.data(), chunk.axis_code.size());
+  planes.put(chunk.node_code.data(), chunk.node_code.size());
   for (const float sh : chunk.sh) out.largest_sh = std::max(out.largest_sh, std::fabs(sh));
 }
 
@@ -106,8 +106,8 @@ void decode_lossless(std::span<const std::byte> payload, const ChunkLocation& lo
   planes.take(chunk.sh.data(), chunk.sh.size());
   chunk.source_index.resize(nodes);
   planes.take(chunk.source_index.data(), nodes);
-  chunk.axis_code.resize(nodes);
-  planes.take(chunk.axis_code.data(), nodes);
+  chunk.node_code.resize(nodes);
+  planes.take(chunk.node_code.data(), nodes);
   place_leaves(context, chunk);
 }
 

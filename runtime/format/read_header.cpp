@@ -12,7 +12,11 @@ namespace voyager {
 namespace {
 
 void check_counts(const FileHeader& h, const Check& check) {
-  check.at_most(offsetof(FileHeader, flags), "flags", h.flags, kFlags);
+  const uint32_t levels = h.version == 4 ? 0 : (h.flags & kFootprintMask) >> kFootprintShift;
+  check.at_most(offsetof(FileHeader, flags), "flags", h.flags - (levels << kFootprintShift),
+                kFlags);
+  check.at_most(offsetof(FileHeader, flags), "footprint levels beyond the first", levels,
+                kFootprintLevels - 1);
   check.that(h.quality == 1 || h.quality == 2, offsetof(FileHeader, quality), "an unknown quality",
              "1 or 2");
   check.at_most(offsetof(FileHeader, sh_degree), "SH degree", h.sh_degree, kMaxShDegree);

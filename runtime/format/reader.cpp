@@ -16,7 +16,8 @@ SceneFileInfo to_info(const FileHeader& h) {
   if (h.version == 4 && (h.flags & kFlagAntialiased) != 0)
     info.native = compensated_scale(kLowPass);
   else
-    info.native = {static_cast<NativeSource>(h.native_source), h.native_pixel, h.low_pass};
+    info.native = {static_cast<NativeSource>(h.native_source), h.native_pixel, h.low_pass,
+                   1 + static_cast<int>((h.flags & kFootprintMask) >> kFootprintShift)};
   info.tree = (h.flags & kFlagClustered) != 0 ? TreeKind::clustered : TreeKind::hierarchicalgs;
   info.blend_share = h.blend_share;
   info.node_count = h.node_count;
@@ -97,7 +98,8 @@ Chunk SceneFile::decode(uint32_t index, std::span<const std::byte> stored) const
       tiers(),
       extent_rule(info_.tree, info_.blend_share),
       info_.largest_sh,
-      info_.leaves_have_extent};
+      info_.leaves_have_extent,
+      info_.native.levels};
   return decode_chunk(stored, {name(), index, entry, place_after(index)}, context);
 }
 

@@ -19,7 +19,8 @@ FileHeader make_header(const SceneTotals& totals, size_t chunks) {
   h.version = kSceneVersion;
   h.flags = (totals.native.antialiased() ? kFlagAntialiased : 0) |
             (totals.leaves_have_extent ? kFlagLeafExtents : 0) |
-            (totals.tree == TreeKind::clustered ? kFlagClustered : 0);
+            (totals.tree == TreeKind::clustered ? kFlagClustered : 0) |
+            static_cast<uint32_t>(totals.native.levels - 1) << kFootprintShift;
   h.quality = static_cast<uint32_t>(totals.quality);
   h.sh_degree = static_cast<uint32_t>(totals.sh_degree);
   h.node_count = totals.tiers.node_count();

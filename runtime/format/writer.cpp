@@ -78,7 +78,8 @@ void write_scene_file(const BakedScene& baked, const Partition& partition, const
                              tiers_of(partition),
                              extent_rule(baked.kind, baked.tree.blend_share),
                              0,
-                             false};
+                             false,
+                             1};
   std::vector<ChunkEntry> entries = make_entries(baked.tree, partition);
   const size_t chunks = entries.size();
   SceneTotals totals = totals_of(baked, partition, quality);

@@ -8,8 +8,8 @@
 namespace voyager {
 
 GaussianArrays gaussian_arrays(const Scene& scene) {
-  return {scene.gaussians.data(), scene.sh.data(), scene.axis_code.data(), scene.sh_degree,
-          scene.doubles};
+  return {scene.gaussians.data(), scene.sh.data(), scene.node_code.data(),
+          scene.sh_degree,        scene.doubles,   footprints_differ(scene)};
 }
 
 DrawList::DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,

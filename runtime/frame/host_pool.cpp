@@ -35,7 +35,7 @@ class HostPool final : public ChunkPool {
       scene_.tree.records[at] = chunk.record_of(i);
       scene_.tree.parent[at] =
           staged.parent[i] == kNoNode ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
-      scene_.axis_code[at] = chunk.axis_code[i];
+      scene_.node_code[at] = chunk.node_code[i];
       scene_.node_ids[at] = chunk.node[i];
     }
     std::copy(chunk.sh.begin(), chunk.sh.end(),
@@ -72,7 +72,7 @@ class HostPool final : public ChunkPool {
       fit(scene_.sh, nodes * floats_of(scene_));
       fit(scene_.tree.records, nodes);
       fit(scene_.tree.parent, nodes);
-      fit(scene_.axis_code, nodes);
+      fit(scene_.node_code, nodes);
       fit(scene_.node_ids, nodes);
       fit(scene_.search.records, records);
       fit(scene_.search.opens, records);

@@ -49,7 +49,7 @@ void make_room(const SceneFileInfo& info, Scene& scene) {
   scene.tree.records.resize(nodes);
   scene.tree.first_child.resize(nodes);
   scene.tree.parent.resize(nodes, kNoNode);
-  scene.axis_code.resize(nodes);
+  scene.node_code.resize(nodes);
   scene.leaves.resize(info.leaf_count, kNoNode);
 }
 
@@ -132,7 +132,7 @@ void store_nodes(const Chunk& chunk, Scene& scene) {
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const uint32_t node = chunk.node[i];
     scene.tree.records[node] = chunk.record_of(i);
-    scene.axis_code[node] = chunk.axis_code[i];
+    scene.node_code[node] = chunk.node_code[i];
     set_gaussian(scene, node, chunk.words[i], chunk.is_leaf(i));
     if (!chunk.is_leaf(i)) scene.tree.first_child[node] = chunk.first_child[i];
     std::copy_n(chunk.sh.data() + i * floats, floats, scene.sh.data() + node * floats);

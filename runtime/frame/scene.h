@@ -57,7 +57,7 @@ struct Scene {
         sh(memory),
         tree(memory),
         search(memory),
-        axis_code(memory),
+        node_code(memory),
         leaves(memory),
         partition(memory),
         node_ids(memory) {}
@@ -87,7 +87,7 @@ struct Scene {
   std::pmr::vector<float> sh;            // coefficients() * 3 each
   LodTree tree;                          // empty for a flat scene
   SearchTree search;                     // of the tree; empty for a flat scene
-  std::pmr::vector<uint8_t> axis_code;   // by node id
+  std::pmr::vector<uint8_t> node_code;   // by node id (runtime/math/node_code.h)
   std::pmr::vector<uint32_t> leaves;     // node ids of the leaves in the input's order; flat: empty
   Partition partition;                   // of the tree; empty for a flat scene
   std::vector<DamagedNodes> damaged;     // by first, disjoint
@@ -98,6 +98,11 @@ struct Scene {
   std::unique_ptr<ChunkPool> pool;
   std::unique_ptr<SceneStream> stream;  // fills the pool, so goes before it
 };
+
+// METHOD §12: its nodes' codes say which each has. A flat scene has one.
+inline bool footprints_differ(const Scene& scene) {
+  return !scene.flat() && scene.native.levels > 1;
+}
 
 // Told by the first bytes: a baked .voy, or a flat scene. Throws Error(refused_input) for
 // anything else.

@@ -32,7 +32,7 @@ void align_children(uint32_t node, BakedScene& baked) {
   for (uint32_t child = baked.tree.first_child[node], i = 0; i < count; ++i, ++child) {
     const int code = nearest_axis_code(parent, stored_rotation(child, baked));
     if (baked.tree.is_leaf(child))
-      baked.axis_code[child] = static_cast<uint8_t>(code);
+      baked.node_code[child] = node_code(code, footprint_level_of(baked.node_code[child]));
     else
       turn_merged(baked.gaussian[child], code, baked.merged);
   }

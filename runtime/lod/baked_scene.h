@@ -7,6 +7,7 @@
 
 #include "runtime/lod/tree.h"
 #include "runtime/lod/tree_rule.h"
+#include "runtime/math/node_code.h"
 #include "runtime/scene/gaussian_cloud.h"
 
 namespace voyager {
@@ -26,11 +27,17 @@ struct BakedScene {
   LodTree tree;
   // Per node: index into `leaves` for a leaf, into `merged` otherwise.
   std::pmr::vector<uint32_t> gaussian;
-  // Per node: how its stored axes turn to its parent's (runtime/math/axes.h).
-  // Merged Gaussians are stored turned already: 0.
-  std::pmr::vector<uint8_t> axis_code;
+  // Per node (runtime/math/node_code.h): how its stored axes turn to its parent's, 0 of merged
+  // Gaussians, which are stored turned already; and which footprint it has. A merged one has the
+  // smallest of its children's.
+  std::pmr::vector<uint8_t> node_code;
   TreeKind kind = TreeKind::clustered;
   std::vector<Exposure> exposure;  // per node of a clustered tree; for building
+
+  // METHOD §12's, metres².
+  double footprint_of(uint32_t node) const {
+    return footprint_at(leaves.native.footprint(), footprint_level_of(node_code[node]));
+  }
 };
 
 // A Gaussian's mean in a scene's local metres: the one rounding to binary32 is here.

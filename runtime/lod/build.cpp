@@ -43,8 +43,13 @@ void check_mean(size_t gaussian, const Vec3f& mean) {
       refuse(gaussian, "a position", mean[axis], "a magnitude below 1e18 m");
 }
 
+// The root has the smallest footprint of all.
+int footprint_levels(const BakedScene& baked) {
+  return baked.node_code.empty() ? 1 : 1 + footprint_level_of(baked.node_code[0]);
+}
+
 BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& progress,
-                      const TreeRule& rule) {
+                      const TreeRule& rule, const BlockFootprints& footprints) {
   const FloatingPointMode mode;
   check_count(cloud.size());
   std::pmr::memory_resource* memory = cloud.position.get_allocator().resource();
@@ -62,10 +67,11 @@ BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& pro
                    rule.kind,
                    {}};
 
-  const std::vector<uint32_t> levels =
-      lay_out_scene(find_layout(baked.leaves, baked.origin, rule, workers, progress), baked);
+  const std::vector<uint32_t> levels = lay_out_scene(
+      find_layout(baked.leaves, baked.origin, rule, workers, progress, footprints), baked);
   summarise_levels(levels, baked, workers, progress);
   align_levels(levels, baked, workers, progress);
+  baked.leaves.native.levels = baked.merged.native.levels = footprint_levels(baked);
   return baked;
 }
 

@@ -2,6 +2,7 @@
 #include "runtime/base/progress.h"
 #include "runtime/base/workers.h"
 #include "runtime/lod/baked_scene.h"
+#include "runtime/lod/block_footprints.h"
 
 namespace voyager {
 
@@ -11,8 +12,12 @@ namespace voyager {
 // of the result comes from the cloud's memory resource. O(n log n) time.
 // Throws Error(refused_input) for coordinates that METHOD §3 excludes, scales
 // beyond kMaxLogScale, and more Gaussians than 32-bit node ids can name.
+// Where cloud.native has levels, each block gets its own footprint.
 BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& progress = {},
-                      const TreeRule& rule = {});
+                      const TreeRule& rule = {}, const BlockFootprints& footprints = {});
+
+// Footprint levels that are used, of a tree or the top of one.
+int footprint_levels(const BakedScene& baked);
 
 // What build_tree() refuses of a cloud, for builders that never hold the whole: more
 // Gaussians than kMaxGaussians, and a mean beyond the coordinates of METHOD §3.

@@ -34,8 +34,12 @@ struct Pair {
 class Clustering {
  public:
   Clustering(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-             std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure)
-      : leaves_(leaves.size()), coefficients_(cloud.coefficients()), native_(cloud.native) {
+             std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure,
+             int footprint_level)
+      : leaves_(leaves.size()),
+        coefficients_(cloud.coefficients()),
+        footprint_(footprint_at(cloud.native.footprint(), footprint_level)),
+        low_pass_(cloud.native.low_pass) {
     const size_t floats = size_t{3} * static_cast<size_t>(coefficients_);
     clusters_.reserve(2 * leaves_);
     colours_.resize(2 * leaves_ * floats);
@@ -44,7 +48,7 @@ class Clustering {
       words.mean = local_mean(cloud, leaves[i], origin);
       const Gaussian g = activate(words, true);
       Exposure shown = exposure_of(exposure[leaves[i]]);
-      shown.weight = shown_weight(g, shown, native_.footprint());
+      shown.weight = shown_weight(g, shown, footprint_);
       clusters_.push_back({blob_of(g), shown, 0, {0, 0}});
       std::copy_n(&cloud.sh[leaves[i] * floats], floats, colour(i));
       active_.push_back(static_cast<uint32_t>(i));
@@ -77,8 +81,8 @@ class Clustering {
     const Blob children[2] = {a.blob, b.blob};
     Group group;
     group.children = children;
-    group.footprint = native_.footprint();
-    group.low_pass = native_.low_pass;
+    group.footprint = footprint_;
+    group.low_pass = low_pass_;
     group.parent.mean = share * a.blob.mean + other * b.blob.mean;
     const Vec3d d = b.blob.mean - a.blob.mean;
     int k = 0;
@@ -189,7 +193,7 @@ class Clustering {
 
   size_t leaves_;
   int coefficients_;
-  NativeScale native_;
+  double footprint_, low_pass_;
   std::vector<Cluster> clusters_;
   std::vector<float> colours_;
   std::vector<uint32_t> active_;
@@ -244,8 +248,10 @@ class Flattening {
 }  // namespace
 
 ClusterTree cluster(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-                    std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure) {
-  const std::vector<Cluster> clusters = Clustering(cloud, origin, leaves, exposure).run();
+                    std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure,
+                    int footprint_level) {
+  const std::vector<Cluster> clusters =
+      Clustering(cloud, origin, leaves, exposure, footprint_level).run();
   return Flattening(clusters, leaves.size()).run();
 }
 

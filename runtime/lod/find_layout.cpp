@@ -10,9 +10,10 @@
 namespace voyager {
 namespace {
 
-// The blocks of a clustered tree, in kd order.
+// The blocks, in kd order.
 struct Clusters {
-  std::vector<ExposureCode> exposure;  // by Gaussian
+  std::vector<uint8_t> footprint;      // level by Gaussian; none: 0
+  std::vector<ExposureCode> exposure;  // by Gaussian; this and trees of a clustered tree alone
   std::vector<ClusterTree> trees;
 };
 
@@ -40,6 +41,7 @@ class LayoutWriter {
       append(level.child_count, layout.child_count);
       append(level.leaf, layout.leaf);
       append(level.exposure, layout.exposure);
+      append(level.footprint, layout.footprint);
       level = {};
     }
     return layout;
@@ -78,6 +80,7 @@ class LayoutWriter {
     add_node(0, level);
     at(level).leaf.push_back(gaussian);
     if (!clusters_.exposure.empty()) at(level).exposure.push_back(clusters_.exposure[gaussian]);
+    if (!clusters_.footprint.empty()) at(level).footprint.push_back(clusters_.footprint[gaussian]);
   }
 
   const std::vector<uint32_t>& order_;
@@ -87,12 +90,26 @@ class LayoutWriter {
   std::vector<TreeLayout> levels_;
 };
 
-Clusters find_clusters(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-                       const std::vector<uint32_t>& order, const TreeRule& rule, Workers& workers,
-                       const Progress& progress) {
+// By Gaussian.
+std::vector<uint8_t> find_footprints(const GaussianCloud& cloud, const std::vector<uint32_t>& order,
+                                     const TreeRule& rule, const BlockFootprints& footprints,
+                                     Workers& workers) {
+  const auto size = static_cast<uint32_t>(order.size());
+  std::vector<uint8_t> levels(size);
+  const std::vector<Range> blocks = parts_of(size, rule.block, kd_rule(rule));
+  workers.for_blocks(blocks.size(), 1, [&](size_t i, size_t) {
+    const auto leaves = std::span(order).subspan(blocks[i].begin, blocks[i].size);
+    const uint8_t level = footprint_level(cloud, leaves, footprints);
+    for (const uint32_t leaf : leaves) levels[leaf] = level;
+  });
+  return levels;
+}
+
+void find_clusters(const GaussianCloud& cloud, const std::array<double, 3>& origin,
+                   const std::vector<uint32_t>& order, const TreeRule& rule, Workers& workers,
+                   const Progress& progress, Clusters& clusters) {
   const auto size = static_cast<uint32_t>(order.size());
   const KdRule kd = kd_rule(rule);
-  Clusters clusters;
   std::mutex telling;
   uint64_t done = 0;
   const auto tell = [&](uint32_t gaussians) {
@@ -112,23 +129,26 @@ Clusters find_clusters(const GaussianCloud& cloud, const std::array<double, 3>& 
   });
   clusters.trees.resize(parts_of(size, rule.block, kd).size());
   for_parts(rule.block, [&](size_t i, std::span<const uint32_t> leaves) {
-    clusters.trees[i] = cluster(cloud, origin, leaves, clusters.exposure);
+    const int level = clusters.footprint.empty() ? 0 : clusters.footprint[leaves.front()];
+    clusters.trees[i] = cluster(cloud, origin, leaves, clusters.exposure, level);
   });
-  return clusters;
 }
 
 }  // namespace
 
 TreeLayout find_layout(const GaussianCloud& cloud, const std::array<double, 3>& origin,
-                       const TreeRule& rule, Workers& workers, const Progress& progress) {
+                       const TreeRule& rule, Workers& workers, const Progress& progress,
+                       const BlockFootprints& footprints) {
   if (cloud.size() == 0) return {};
   const KdRule kd = kd_rule(rule);
   report(progress, "splitting", 0, cloud.size());
   const std::vector<uint32_t> order = kd_order(cloud, origin, kd, workers);
   report(progress, "splitting", cloud.size(), cloud.size());
   Clusters clusters;
+  if (cloud.native.levels > 1)
+    clusters.footprint = find_footprints(cloud, order, rule, footprints, workers);
   if (rule.kind == TreeKind::clustered)
-    clusters = find_clusters(cloud, origin, order, rule, workers, progress);
+    find_clusters(cloud, origin, order, rule, workers, progress, clusters);
   LayoutWriter writer(order, kd, clusters);
   writer.visit(static_cast<uint32_t>(order.size()));
   return writer.joined();

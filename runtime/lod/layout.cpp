@@ -25,7 +25,7 @@ std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked)
   tree.first_child.resize(nodes);
   tree.parent.resize(nodes, kNoNode);
   baked.gaussian.resize(nodes);
-  baked.axis_code.resize(nodes);
+  baked.node_code.resize(nodes);
   const bool exposed = !layout.exposure.empty();
   if (baked.kind == TreeKind::clustered) baked.exposure.assign(nodes, {1, 0, 0});
   std::vector<uint32_t> levels;
@@ -39,6 +39,7 @@ std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked)
     tree.records[n].child_count = children;
     if (children == 0) {
       if (exposed) baked.exposure[n] = exposure_of(layout.exposure[leaf]);
+      if (!layout.footprint.empty()) baked.node_code[n] = node_code(0, layout.footprint[leaf]);
       baked.gaussian[n] = layout.leaf[leaf++];
       continue;
     }

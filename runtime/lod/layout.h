@@ -14,10 +14,11 @@ struct TreeLayout {
   std::vector<uint8_t> child_count;    // of each node, breadth-first; 0: a leaf
   std::vector<uint32_t> leaf;          // of each leaf, in the order of nodes: its Gaussian
   std::vector<ExposureCode> exposure;  // of each leaf; empty: all is seen
+  std::vector<uint8_t> footprint;      // of each leaf: its level (node_code.h); empty: 0
 };
 
-// Fills the topology of baked.tree, `gaussian` and the room for axis codes and merged
-// Gaussians: of interior nodes, in their order. Returns the first node of each level, and
+// Fills the topology of baked.tree, `gaussian`, footprints of leaves, and the room for
+// merged Gaussians: of interior nodes, in their order. Returns the first node of each level, and
 // the number of nodes last; nothing for an empty layout.
 std::vector<uint32_t> lay_out_scene(const TreeLayout& layout, BakedScene& baked);
 

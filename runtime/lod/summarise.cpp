@@ -28,6 +28,15 @@ void hull_of_children(uint32_t node, LodTree& tree) {
   }
 }
 
+// Of its children's: what is more in the others goes into the merged Gaussian.
+void take_least_footprint(uint32_t node, BakedScene& baked) {
+  const uint32_t first = baked.tree.first_child[node];
+  int level = 0;
+  for (uint32_t i = 0; i < baked.tree.records[node].child_count; ++i)
+    level = std::max(level, footprint_level_of(baked.node_code[first + i]));
+  baked.node_code[node] = node_code(0, level);
+}
+
 // HierarchicalGS's extent: of nested boxes it never grows downwards, since binary32 subtraction
 // is monotone.
 float longest_side(const NodeRecord& r) {
@@ -63,7 +72,7 @@ void measure(uint32_t node, std::span<const MergeInput> children, BakedScene& ba
   Blob blobs[kChildren];
   const MergeInput parent = node_gaussian(node, baked);
   Group group = group_of(children, blobs, parent, baked.merged.coefficients());
-  group.footprint = baked.leaves.native.footprint();
+  group.footprint = baked.footprint_of(node);
   group.low_pass = baked.leaves.native.low_pass;
   baked.exposure[node] = set_exposure(exposure, {weights, r.child_count}, group);
   const StandIn found = stand_in(group);
@@ -89,8 +98,13 @@ MergeInput node_gaussian(uint32_t node, const BakedScene& baked) {
   return {activate(words, leaf), cloud.sh.data() + i * floats};
 }
 
-MergeInput merge_input(uint32_t node, const BakedScene& baked) {
+MergeInput merge_input(uint32_t node, double footprint, const BakedScene& baked) {
   MergeInput input = node_gaussian(node, baked);
+  if (const double more = baked.footprint_of(node) - footprint; more > 0) {
+    Gaussian wider = input.gaussian;
+    wider.scale = widened(wider.scale, static_cast<float>(more));
+    input = {wider, input.sh};
+  }
   if (baked.kind == TreeKind::clustered) input.weight = double{baked.exposure[node].weight};
   return input;
 }
@@ -105,13 +119,16 @@ void summarise(uint32_t node, BakedScene& baked) {
     r.extent = 0.0f;
     if (baked.kind == TreeKind::clustered)
       baked.exposure[node].weight =
-          shown_weight(leaf, baked.exposure[node], baked.leaves.native.footprint());
+          shown_weight(leaf, baked.exposure[node], baked.footprint_of(node));
     return;
   }
   const uint32_t first = baked.tree.first_child[node];
   hull_of_children(node, baked.tree);
+  take_least_footprint(node, baked);
+  const double footprint = baked.footprint_of(node);
   MergeInput children[kChildren];
-  for (uint32_t i = 0; i < r.child_count; ++i) children[i] = merge_input(first + i, baked);
+  for (uint32_t i = 0; i < r.child_count; ++i)
+    children[i] = merge_input(first + i, footprint, baked);
   const size_t index = baked.gaussian[node];
   const int coefficients = baked.merged.coefficients();
   float* sh = baked.merged.sh.data() + index * size_t{3} * static_cast<size_t>(coefficients);

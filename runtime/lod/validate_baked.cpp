@@ -95,7 +95,7 @@ void check_moments(uint32_t n, const BakedScene& baked, std::vector<MergeInput>&
                    Findings& findings) {
   children.clear();
   for (uint32_t i = 0; i < baked.tree.records[n].child_count; ++i)
-    children.push_back(merge_input(baked.tree.first_child[n] + i, baked));
+    children.push_back(merge_input(baked.tree.first_child[n] + i, baked.footprint_of(n), baked));
   const MergeInput parent = node_gaussian(n, baked);
   const Moments expected = moments(children), found = moments({&parent, 1});
 
@@ -125,10 +125,23 @@ void check_moments(uint32_t n, const BakedScene& baked, std::vector<MergeInput>&
   check_sh(n, baked, children, expected.weight, findings);
 }
 
+void check_footprint(uint32_t n, const BakedScene& baked, Findings& findings) {
+  const int level = footprint_level_of(baked.node_code[n]);
+  int expected = 0;
+  for (uint32_t i = 0; i < baked.tree.records[n].child_count; ++i)
+    expected =
+        std::max(expected, footprint_level_of(baked.node_code[baked.tree.first_child[n] + i]));
+  if (level >= baked.leaves.native.levels)
+    findings.add(name_of(n, "footprint level"), std::to_string(level),
+                 "less than " + std::to_string(baked.leaves.native.levels));
+  else if (!baked.tree.is_leaf(n) && level != expected)
+    findings.add(name_of(n, "footprint level"), std::to_string(level), std::to_string(expected));
+}
+
 void check_axes(uint32_t n, const BakedScene& baked, Findings& findings) {
-  const int code = baked.axis_code[n];
+  const int code = axis_code_of(baked.node_code[n]);
   const uint32_t parent = baked.tree.parent[n];
-  if (code >= kAxisCodes || (code != 0 && (parent == kNoNode || !baked.tree.is_leaf(n)))) {
+  if (code != 0 && (parent == kNoNode || !baked.tree.is_leaf(n))) {
     findings.add(name_of(n, "axis code"), std::to_string(code),
                  "0, or up to 23 for a leaf with a parent");
     return;
@@ -154,7 +167,7 @@ std::vector<std::string> validate(const BakedScene& baked, size_t limit) {
   check_arrays("merged", baked.merged, findings);
   findings.check_equal("merged, SH degree", baked.merged.sh_degree, baked.leaves.sh_degree);
   findings.check_equal("tree, Gaussian indices", baked.gaussian.size(), baked.tree.size());
-  findings.check_equal("tree, axis codes", baked.axis_code.size(), baked.tree.size());
+  findings.check_equal("tree, node codes", baked.node_code.size(), baked.tree.size());
   broken = findings.take();
   if (!broken.empty()) return broken;
   check_gaussians(baked, findings);
@@ -163,6 +176,7 @@ std::vector<std::string> validate(const BakedScene& baked, size_t limit) {
 
   std::vector<MergeInput> children;
   for (uint32_t n = 0; n < baked.tree.size() && !findings.full(); ++n) {
+    check_footprint(n, baked, findings);
     if (baked.tree.is_leaf(n))
       check_leaf_box(baked, n, findings);
     else

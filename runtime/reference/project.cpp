@@ -27,7 +27,8 @@ std::optional<Splat> project(const Scene& scene, const Camera& camera, const Pip
 
   Shape<double> shape = interpolated_shape<double>(arrays, item);
   const auto filter = pixel_filter<double>(scene, desc.antialias);
-  if (filter.footprint > 0) shape.scale = widened(shape.scale, filter.footprint);
+  if (filter.footprint > 0)
+    shape.scale = widened(shape.scale, interpolated_footprint(arrays, item, filter.footprint));
 
   const Vec3d d{double{mean.x} + scene.origin.x - camera.eye.x,
                 double{mean.y} + scene.origin.y - camera.eye.y,

@@ -13,7 +13,11 @@ class NodeArrays {
  public:
   // The scene outlives this.
   NodeArrays(const BakedScene& baked, Workers& workers)
-      : degree_(baked.leaves.sh_degree), gaussians_(baked.tree.size()), sh_(baked.tree.size()) {
+      : degree_(baked.leaves.sh_degree),
+        footprints_(baked.leaves.native.levels > 1),
+        codes_(baked.node_code.data()),
+        gaussians_(baked.tree.size()),
+        sh_(baked.tree.size()) {
     workers.for_blocks(gaussians_.size(), 4096, [&](size_t begin, size_t end) {
       for (size_t n = begin; n < end; ++n) {
         const MergeInput node = node_gaussian(static_cast<uint32_t>(n), baked);
@@ -27,13 +31,16 @@ class NodeArrays {
   const Vec3f& mean(uint32_t i) const { return gaussians_[i].mean; }
   const Gaussian& gaussian(uint32_t i) const { return gaussians_[i]; }
   float opacity(uint32_t i) const { return gaussians_[i].opacity; }
-  int axis_code(uint32_t) const { return 0; }  // nodes are drawn as themselves
+  int node_code(uint32_t i) const { return codes_[i]; }
+  bool footprints_differ() const { return footprints_; }
   auto sh(uint32_t i) const {
     return [own = sh_[i]](int k, int channel) { return own[3 * k + channel]; };
   }
 
  private:
   int degree_;
+  bool footprints_;
+  const uint8_t* codes_;
   std::vector<Gaussian> gaussians_;
   std::vector<const float*> sh_;
 };

@@ -41,7 +41,11 @@ double native_pixel_at(const Vec3d& p, std::span<const TrainingCamera> cameras) 
 
 NativeScale NativePixel::scale() const {
   if (seen == 0) return {};
-  return {NativeSource::cameras, median, kPixelVariance};
+  const double spread = ninety_eighth / second;
+  if (spread * spread <= 2) return {NativeSource::cameras, median, kPixelVariance};
+  const double reach = std::sqrt(1.0 / footprint_at(1.0, kFootprintLevels - 1));
+  return {NativeSource::cameras, std::min(ninety_eighth, second * reach), kPixelVariance,
+          kFootprintLevels};
 }
 
 NativePixelHistogram::NativePixelHistogram(std::span<const TrainingCamera> cameras,
@@ -79,7 +83,8 @@ double NativePixelHistogram::percentile(double share) const {
 }
 
 NativePixel NativePixelHistogram::find() const {
-  return {looked_at_, seen_, percentile(0.1), percentile(0.5), percentile(0.9)};
+  return {looked_at_,      seen_,           percentile(0.02), percentile(0.1),
+          percentile(0.5), percentile(0.9), percentile(0.98)};
 }
 
 NativePixel native_pixel(std::span<const TrainingCamera> cameras, const GaussianCloud& cloud) {

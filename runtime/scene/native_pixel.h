@@ -20,12 +20,12 @@ struct NativePixel {
   uint64_t looked_at = 0;  // Gaussians that are not too faint to see
   uint64_t seen = 0;       // of those, by at least one camera
   // Percentiles of those seen, metres; 0 where there are none.
-  double tenth = 0, median = 0, ninetieth = 0;
+  double second = 0, tenth = 0, median = 0, ninetieth = 0, ninety_eighth = 0;
 
-  // The footprint is one for the whole scene, and may be wrong by the same factor either way
-  // (METHOD §12: two will do). The median is the value that is off by the least factor on average,
-  // and the few Gaussians right before a camera or far behind the scene do not move it. Unknown
-  // where no Gaussian was seen.
+  // With levels for the blocks of Gaussians (lod/block_footprints.h). The few Gaussians right
+  // before a camera or far behind the scene count neither way: level 0 is the 98th percentile, or
+  // less where the 2nd is further below it than levels reach. Where both are within one level, the
+  // scene has the median. Unknown where no Gaussian was seen.
   NativeScale scale() const;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 // METHOD §4 as a stage: which Gaussian a cut node draws, and how much of its parent.
 #include "runtime/lod/tree.h"
-#include "runtime/math/axes.h"
 #include "runtime/math/lerp.h"
+#include "runtime/math/node_code.h"
 #include "runtime/math/sh.h"
 
 namespace voyager {
@@ -37,15 +37,17 @@ VOYAGER_HD DrawItem weigh(const WeightParams& params, uint32_t node) {
 struct GaussianArrays {
   const Gaussian* gaussians;
   const float* coefficients;  // [k][rgb] a Gaussian
-  const uint8_t* axis_codes;  // of a tree; a flat scene has none
+  const uint8_t* node_codes;  // of a tree; a flat scene has none
   int degree;
-  bool doubles;  // nodes of one child are doubles, as files of version 4 have them
+  bool doubles;     // nodes of one child are doubles, as files of version 4 have them
+  bool footprints;  // that differ between nodes
 
   int sh_degree() const { return degree; }
   const Vec3f& mean(uint32_t i) const { return gaussians[i].mean; }
   const Gaussian& gaussian(uint32_t i) const { return gaussians[i]; }
   float opacity(uint32_t i) const { return gaussians[i].opacity; }
-  int axis_code(uint32_t i) const { return axis_codes[i]; }
+  int node_code(uint32_t i) const { return node_codes[i]; }
+  bool footprints_differ() const { return footprints; }
   // sh(i)(k, channel)
   auto sh(uint32_t i) const {
     const float* own = coefficients + i * 3 * static_cast<size_t>(sh_coefficients(degree));
@@ -86,7 +88,7 @@ VOYAGER_HD Shape<T> interpolated_shape(const Arrays& arrays, const DrawItem& ite
   Shape<T> shape = stored_shape<T>(arrays.gaussian(item.gaussian));
   if (item.t == 1.0f) return shape;
   const Shape<T> parent = stored_shape<T>(arrays.gaussian(item.parent));
-  const int code = arrays.axis_code(item.gaussian);
+  const int code = axis_code_of(arrays.node_code(item.gaussian));
   if (code != 0) {
     shape.scale = turn_scale(shape.scale, code);
     shape.rotation = shape.rotation * cube_rotation<T>(code);
@@ -98,6 +100,16 @@ VOYAGER_HD Shape<T> interpolated_shape(const Arrays& arrays, const DrawItem& ite
       lerp_positive(T(arrays.opacity(item.parent)), T(arrays.opacity(item.gaussian)), t);
   shape.log_opacity = std::log(shape.opacity);
   return shape;
+}
+
+// METHOD §12; largest: the scene's of level 0. Where all have that one, no code is read.
+template <class T, class Arrays>
+VOYAGER_HD T interpolated_footprint(const Arrays& arrays, const DrawItem& item, T largest) {
+  if (!arrays.footprints_differ()) return largest;
+  const T own = footprint_at(largest, footprint_level_of(arrays.node_code(item.gaussian)));
+  if (item.t == 1.0f) return own;
+  const T parent = footprint_at(largest, footprint_level_of(arrays.node_code(item.parent)));
+  return lerp_positive(parent, own, T(item.t));
 }
 
 // direction: unit, from the camera to the interpolated mean, world axes.

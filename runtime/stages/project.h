@@ -10,7 +10,7 @@ namespace voyager {
 struct ProjectParams {
   Vec3d origin, eye;           // the scene's; in the scene's coordinates
   ViewProjection<float> view;  // view.world_to_view.row[2] is the view axis of the sort key
-  PixelFilter<float> filter;
+  PixelFilter<float> filter;   // its footprint is the largest of the scene
   float near_z;
   float depth_scale;    // of the sort key
   float width, height;  // pixels
@@ -142,7 +142,8 @@ VOYAGER_HD bool read_gaussian(const ProjectParams& params, const Arrays& arrays,
   drawn.mean = interpolated_mean(arrays, item);
   drawn.shape = interpolated_shape<float>(arrays, item);
   if (params.filter.footprint > 0.0f)
-    drawn.shape.scale = widened(drawn.shape.scale, params.filter.footprint);
+    drawn.shape.scale =
+        widened(drawn.shape.scale, interpolated_footprint(arrays, item, params.filter.footprint));
   drawn.rho_min = rho_min(drawn.shape.log_opacity, params.log_threshold);
   return drawn.rho_min <= 0.0f;
 }

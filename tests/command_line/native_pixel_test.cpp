@@ -45,8 +45,19 @@ TEST_F(NativePixelCommand, IsGivenFoundByCamerasOrEstimated) {
     const NativeScale found =
         bake(file("c.ply") + " --training-cameras " + file("c.cameras.json") + work);
     EXPECT_EQ(found.source, NativeSource::cameras);
-    EXPECT_NEAR(found.pixel, 0.0913, 0.01);  // of a walk and a flight, at 960 pixels
     EXPECT_NE(said_.find("they see"), std::string::npos) << said_;
+    // Of a walk and a flight, at 960 pixels: blocks in the street, and seen from above.
+    EXPECT_NE(said_.find("pixels of 0.09"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("each block of Gaussians gets its own"), std::string::npos) << said_;
+    EXPECT_NEAR(found.pixel, 0.188, 0.02);
+    EXPECT_GE(found.levels, 4);
+    const Outcome text = run("voyager info " + file("o.voy"));
+    EXPECT_NE(text.output.find(" to 0.1"), std::string::npos) << text.output;
+    EXPECT_NE(text.output.find(" m, training cameras"), std::string::npos) << text.output;
+    const auto json =
+        nlohmann::json::parse(run("voyager info " + file("o.voy") + " --json").output);
+    EXPECT_EQ(json["native_pixel"], found.pixel);
+    EXPECT_DOUBLE_EQ(json["least_native_pixel"], found.pixel_of(found.levels - 1));
   }
 }
 

@@ -56,7 +56,7 @@ std::shared_ptr<const Scene> star(uint32_t count) {
   }
   baked.gaussian.resize(count + 1);
   std::iota(baked.gaussian.begin() + 1, baked.gaussian.end(), 0u);
-  baked.axis_code.resize(count + 1);
+  baked.node_code.resize(count + 1);
   baked.kind = TreeKind::hierarchicalgs;  // an only child is another than its parent
   return scene_of(baked);
 }

@@ -10,6 +10,7 @@
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/sh_bands.h"
+#include "tests/support/mixed_footprints.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
 
@@ -143,6 +144,31 @@ TEST(BakeInParts, HoldsForEverySizeOfCellsChunksMemoryAndThreads) {
   for (const uint64_t memory : {uint64_t{100'000}, uint64_t{100'000'000}})
     for (const unsigned threads : {1u, 4u})
       folder.expect_equal({.memory = memory, .threads = threads});
+}
+
+TEST(BakeInParts, GivesBlocksTheFootprintsOfABakeInMemory) {
+  const Folder folder({test::specks(9000, 33, 1)});
+  NativeChoice native;
+  native.cameras = test::close_camera();
+  const BakedScene baked =
+      test::bake_by_cameras(folder.read_inputs(), native.cameras, test::kSmallBlocks);
+  ASSERT_GT(baked.leaves.native.levels, 3);
+  for (const uint32_t most_in_cell : {1300u, 1u << 20})
+    for (const Quality quality : {Quality::compact, Quality::lossless}) {
+      BakeInParts bake = folder.request({.quality = quality, .most_in_cell = most_in_cell});
+      bake.native = native;
+      const Bytes whole = test::scene_bytes(baked, quality);
+      folder.run(bake);
+      EXPECT_TRUE(folder.output() == whole) << most_in_cell;
+      std::filesystem::remove(bake.output);
+      for (const BakeStep step :
+           {BakeStep::split, BakeStep::cells, BakeStep::encode, BakeStep::merge}) {
+        if (most_in_cell > 9000) break;
+        bake.step = step;
+        folder.run(bake);
+      }
+      EXPECT_TRUE(most_in_cell > 9000 || folder.output() == whole);
+    }
 }
 
 TEST(BakeInParts, SaysWhatIsKnownAfterEachStep) {

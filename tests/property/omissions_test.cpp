@@ -49,7 +49,7 @@ class Omissions : public ::testing::Test {
 };
 
 TEST_F(Omissions, AFlatSceneHasNoTreeAndNoSearchAndDrawsWhatTheTreesLeavesDraw) {
-  EXPECT_EQ(flat->tree.size() + flat->search.bytes() + flat->axis_code.size() +
+  EXPECT_EQ(flat->tree.size() + flat->search.bytes() + flat->node_code.size() +
                 flat->partition.subtrees.size() + flat->node_ids.size(),
             0u);
   const Frame frame = draw(flat, {}, input);

@@ -20,7 +20,7 @@ void expect_identical(const BakedScene& a, const BakedScene& b) {
   EXPECT_TRUE(same_bits(a.tree.first_child, b.tree.first_child));
   EXPECT_TRUE(same_bits(a.tree.parent, b.tree.parent));
   EXPECT_TRUE(same_bits(a.gaussian, b.gaussian));
-  EXPECT_TRUE(same_bits(a.axis_code, b.axis_code));
+  EXPECT_TRUE(same_bits(a.node_code, b.node_code));
   EXPECT_TRUE(same_bits(a.merged.position, b.merged.position));
   EXPECT_TRUE(same_bits(a.merged.log_scale, b.merged.log_scale));
   EXPECT_TRUE(same_bits(a.merged.rotation, b.merged.rotation));

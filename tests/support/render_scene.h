@@ -30,17 +30,23 @@ inline std::shared_ptr<Scene> flat_scene(const GaussianCloud& cloud) {
   return scene;
 }
 
-// Through build_tree(), a file and load_scene().
-inline std::shared_ptr<const Scene> baked_scene(const GaussianCloud& cloud,
-                                                Quality quality = Quality::lossless,
-                                                const TreeRule& rule = {}) {
+// Through a file and load_scene().
+inline std::shared_ptr<const Scene> loaded(const BakedScene& baked,
+                                           Quality quality = Quality::lossless) {
   Workers workers;
   const TempFolder folder;
-  const BakedScene baked = build_tree(cloud, workers, {}, rule);
   write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), folder.file("scene.voy"),
                    quality, workers);
   return load_scene(open_file_source(folder.file("scene.voy")), std::pmr::get_default_resource(),
                     workers);
+}
+
+// Through build_tree(), too.
+inline std::shared_ptr<const Scene> baked_scene(const GaussianCloud& cloud,
+                                                Quality quality = Quality::lossless,
+                                                const TreeRule& rule = {}) {
+  Workers workers;
+  return loaded(build_tree(cloud, workers, {}, rule), quality);
 }
 
 // One grey Gaussian with SH degree 0, for scenes made by hand.

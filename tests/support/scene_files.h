@@ -83,7 +83,7 @@ inline BakedScene baked_of(LodTree tree) {
   baked.leaves = random_cloud(leaves.size(), 1, 0);
   baked.merged = random_cloud(merged, 2, 0);
   for (float& opacity : baked.merged.opacity) opacity = std::fabs(opacity);
-  baked.axis_code.resize(nodes);
+  baked.node_code.resize(nodes);
   baked.kind = TreeKind::hierarchicalgs;  // which asks nothing of nodes of one child
   baked.tree = std::move(tree);
   return baked;

@@ -203,12 +203,12 @@ NativeChoice native_choice(const BakeArguments& arguments) {
   return choice;
 }
 
-// How far one value for the whole scene is off.
 void describe(const NativePixel& found) {
-  note(
-      fmt::format("training cameras: they see {} of {} Gaussians, with pixels of {:.4g} m; a tenth "
-                  "below {:.4g} m, a tenth above {:.4g} m",
-                  found.seen, found.looked_at, found.median, found.tenth, found.ninetieth));
+  note(fmt::format(
+      "training cameras: they see {} of {} Gaussians, with pixels of {:.4g} m; a tenth "
+      "below {:.4g} m, a tenth above {:.4g} m: {}",
+      found.seen, found.looked_at, found.median, found.tenth, found.ninetieth,
+      found.scale().levels > 1 ? "each block of Gaussians gets its own" : "the scene gets one"));
 }
 
 // A file that was trained with a compensated filter is drawn with that, and with no footprint
@@ -232,7 +232,8 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
   const FoundScale found = native_scale(native, cloud);
   cloud.native = found.scale;
   if (found.by_cameras) describe(*found.by_cameras);
-  BakedScene baked = build_tree(std::move(cloud), workers, progress, {.kind = arguments.tree});
+  BakedScene baked = build_tree(std::move(cloud), workers, progress, {.kind = arguments.tree},
+                                {native.cameras, found.unseen_level()});
   const std::string kept = refine_file(arguments);
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
   if (arguments.verify) {

@@ -25,13 +25,16 @@ constexpr const char* kNoteKinds[] = {"omitted", "repaired", "dropped", "damaged
 struct TreeFacts {
   const char* rule = nullptr;
   uint32_t subtrees = 0, tiers = 0, chunk_bytes = 0;
+  double least_pixel = 0;  // the native one, metres
 };
 
 TreeFacts tree_facts(const std::string& path, const VoySceneInfo& info) {
-  if (info.storage == VOY_SCENE_STORAGE_FLAT) return {};
+  if (info.storage == VOY_SCENE_STORAGE_FLAT) return {.least_pixel = info.nativePixel};
   const SceneFile file(open_source(path));
+  const NativeScale& native = file.info().native;
   return {file.info().tree == TreeKind::clustered ? "clustered" : "hierarchicalgs",
-          file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes};
+          file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes,
+          native.pixel_of(native.levels - 1)};
 }
 
 void print_profile(const VoySceneInfo& info, const VoySceneProfile& profile) {
@@ -52,7 +55,7 @@ void print_profile(const VoySceneInfo& info, const VoySceneProfile& profile) {
 }
 
 // METHOD §12: at what size the scene was seen in training, and where that is known from.
-std::string native_text(const VoySceneInfo& info) {
+std::string native_text(const VoySceneInfo& info, double least_pixel) {
   switch (info.nativeSource) {
     case VOY_NATIVE_SOURCE_FILE:
       return fmt::format("none: trained with a compensated filter of {:.3g} square pixels",
@@ -60,7 +63,10 @@ std::string native_text(const VoySceneInfo& info) {
     case VOY_NATIVE_SOURCE_UNKNOWN:
       return "unknown: drawn as 3DGS does. Bake the scene again";
     default:
-      return fmt::format("{:.4g} m, {}", info.nativePixel, kNativeSources[info.nativeSource]);
+      return fmt::format(
+          "{}{:.4g} m, {}",
+          least_pixel < info.nativePixel ? fmt::format("{:.4g} to ", least_pixel) : "",
+          info.nativePixel, kNativeSources[info.nativeSource]);
   }
 }
 
@@ -76,7 +82,7 @@ void print_text(const std::string& path, const VoySceneInfo& info, const VoyScen
     fmt::print("  subtrees      {} in {} tiers, chunks of up to {} bytes of search records\n",
                tree.subtrees, tree.tiers, tree.chunk_bytes);
   print_profile(info, profile);
-  fmt::print("  native pixel  {}\n", native_text(info));
+  fmt::print("  native pixel  {}\n", native_text(info, tree.least_pixel));
   fmt::print("  origin        {} {} {} m\n", info.origin[0], info.origin[1], info.origin[2]);
   fmt::print("  bounds        {:.3f} {:.3f} {:.3f} to {:.3f} {:.3f} {:.3f} m\n", info.boundsMin[0],
              info.boundsMin[1], info.boundsMin[2], info.boundsMax[0], info.boundsMax[1],
@@ -119,6 +125,7 @@ void print_json(const std::string& path, const VoySceneInfo& info, const VoyScen
       {"sh_degree", info.shDegree},
       {"antialiased", info.antialiased != 0},
       {"native_pixel", info.nativePixel},
+      {"least_native_pixel", tree.least_pixel},
       {"native_source", kNativeSources[info.nativeSource]},
       {"low_pass", info.lowPass},
       {"origin", info.origin},

@@ -55,6 +55,7 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
   std::filesystem::path input = path_;
   TreeRule rule;
   NativeScale native;
+  std::vector<uint8_t> levels;
   if (own_->storage != Storage::flat) {
     const SceneFile file(open_source(path_));
     // Others would be compared, too.
@@ -62,13 +63,16 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
     native = file.info().native;
     input = folder_ / kSceneLeaves;
     export_ply(file, input.string(), progress_);
+    for (const uint32_t leaf : own_->leaves)
+      levels.push_back(static_cast<uint8_t>(footprint_level_of(own_->node_code[leaf])));
   }
   const auto source = open_source(input.string());
   ImportOptions options;
   options.progress = progress_;
   GaussianCloud cloud = import_gaussians(*read_source(*source), options);
   if (native.source != NativeSource::unknown) cloud.native = native;
-  const BakedScene baked = build_tree(std::move(cloud), workers_, progress_, rule);
+  const BakedScene baked =
+      build_tree(std::move(cloud), workers_, progress_, rule, {.known = levels});
   write_scene_file(baked, partition_tree(baked.tree, kDefaultChunkBytes), output.string(),
                    storage == Storage::compact ? Quality::compact : Quality::lossless, workers_,
                    progress_);

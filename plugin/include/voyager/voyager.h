@@ -400,7 +400,8 @@ typedef struct VoySceneInfo {
                              (scale, rotation, opacity, SH) */
   double positionError;   /* compact storage: largest error of a mean, metres. Else 0 */
   /* What VOY_ANTIALIAS_ON draws with (METHOD §12): the side of a training picture's pixel where the
-   * Gaussians are, metres, 0 where they get no footprint; and the pixel filter, square pixels. */
+   * Gaussians are, metres, the largest where blocks of Gaussians have different ones, 0 where they
+   * get no footprint; and the pixel filter, square pixels. */
   double nativePixel;
   double lowPass;
   VoyNativeSource nativeSource;

@@ -31,7 +31,7 @@ Chunk family(size_t coefficients) {
     chunk.records.push_back(
         {{x - 1, -1, -1}, i == 0 ? 9.0f : 0.0f, {x + 1, 1, 1}, i == 0 ? 3u : 0u});
     chunk.words.push_back({{x, 0, 0}, {-1, -2, -3}, {1, 0, 0, 0}, 0.5f});
-    chunk.axis_code.push_back(i == 0 ? 0 : 5);
+    chunk.node_code.push_back(i == 0 ? 0 : 5);
     chunk.source_index.push_back(i == 0 ? kNoNode : i - 1);
   }
   chunk.sh.assign(4 * coefficients * 3, 0.25f);
@@ -123,7 +123,7 @@ TEST(ChunkCodec, ImpossibleValuesAreRefusedUnderARightChecksum) {
       [](Chunk& c) { c.records[0].child_count = 0xffffffff; },
       [](Chunk& c) { c.source_index[1] = 3; },
       [](Chunk& c) { c.source_index[0] = 0; },
-      [](Chunk& c) { c.axis_code[1] = 24; },
+      [](Chunk& c) { c.node_code[1] = 24; },
   };
   for (const Quality quality : {Quality::lossless, Quality::compact}) {
     ASSERT_NO_THROW(round_trip(family(4), context_of(quality)));
@@ -135,6 +135,42 @@ TEST(ChunkCodec, ImpossibleValuesAreRefusedUnderARightChecksum) {
           << i;
     }
   }
+}
+
+TEST(ChunkCodec, EveryNodeCodeComesBack) {
+  for (const Quality quality : {Quality::lossless, Quality::compact}) {
+    ChunkContext context = context_of(quality);
+    context.footprint_levels = kFootprintLevels;
+    Chunk chunk = family(4);
+    for (int level = 0; level < kFootprintLevels; ++level)
+      for (int axis = 0; axis < kAxisCodes; ++axis) {
+        chunk.node_code = {node_code(0, level), node_code(axis, level), node_code(23 - axis, 0),
+                           node_code(axis, kFootprintLevels - 1)};
+        ASSERT_EQ(round_trip(chunk, context).node_code, chunk.node_code);
+      }
+  }
+}
+
+TEST(ChunkCodec, ALevelBeyondTheHeadersIsRefusedWithWhatWasExpected) {
+  for (const Quality quality : {Quality::lossless, Quality::compact})
+    for (int levels = 1; levels < kFootprintLevels; ++levels) {
+      ChunkContext context = context_of(quality);
+      context.footprint_levels = levels;
+      Chunk chunk = family(4);
+      chunk.node_code[2] = node_code(23, levels - 1);
+      EXPECT_NO_THROW(round_trip(chunk, context));
+      chunk.node_code[2] = node_code(0, levels);
+      try {
+        round_trip(chunk, context);
+        ADD_FAILURE() << levels << " levels";
+      } catch (const Error& error) {
+        const std::string code = std::to_string(24 * levels);
+        EXPECT_NE(std::string(error.what())
+                      .find("node 2 with node code " + code + ", expected less than " + code),
+                  std::string::npos)
+            << error.what();
+      }
+    }
 }
 
 // Bytes of a sound chunk that are changed, under a checksum that is right.
@@ -382,7 +418,7 @@ TEST(ChunkCodec, KeptFilesHoldWhatTheyHeld) {
     };
     for (uint32_t index = 0; index < file.chunks().size(); ++index) {
       const Chunk chunk = file.read_chunk(index);
-      add(chunk.records), add(chunk.node), add(chunk.sh), add(chunk.axis_code);
+      add(chunk.records), add(chunk.node), add(chunk.sh), add(chunk.node_code);
       add(chunk.source_index);
       for (const GaussianWords& words : chunk.words)
         add(std::array{words.mean.x, words.mean.y, words.mean.z, words.log_scale.x});

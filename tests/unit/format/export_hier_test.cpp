@@ -88,8 +88,8 @@ TEST(ExportHier, LeavesAreTheSameGaussiansTurnedToTheirParents) {
   for (uint32_t i = 0; i < baked.tree.size(); ++i) {
     if (!baked.tree.is_leaf(i)) continue;
     const GaussianWords words = leaf_words(baked, baked.gaussian[i]);
-    const Vec3f log_scale = turn_scale(words.log_scale, baked.axis_code[i]);
-    turned += baked.axis_code[i] != 0;
+    const Vec3f log_scale = turn_scale(words.log_scale, baked.node_code[i]);
+    turned += baked.node_code[i] != 0;
     Vec3d scale{}, own{};
     for (int k = 0; k < 3; ++k) {
       ASSERT_EQ(hier.log_scale(i, static_cast<size_t>(k)), log_scale[k]);

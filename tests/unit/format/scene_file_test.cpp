@@ -1,5 +1,6 @@
 #include <cstring>
 
+#include "tests/support/mixed_footprints.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_rules.h"
@@ -39,7 +40,7 @@ TEST(SceneFile, LosslessGivesBackEveryWord) {
       ASSERT_TRUE(same_bits(&chunk.record_of(i), &baked.tree.records[node], sizeof(NodeRecord)));
       ASSERT_TRUE(same_bits(&chunk.sh[i * floats], &cloud.sh[baked.gaussian[node] * floats],
                             floats * sizeof(float)));
-      ASSERT_EQ(chunk.axis_code[i], baked.axis_code[node]);
+      ASSERT_EQ(chunk.node_code[i], baked.node_code[node]);
       ASSERT_EQ(chunk.source_index[i], leaf ? baked.gaussian[node] : kNoNode);
     });
   }
@@ -149,6 +150,39 @@ TEST(SceneFile, TheHeaderTellsTheKindOfTheTree) {
       EXPECT_EQ(info.blend_share, blend_share(named.rule.kind)) << named.name;
       EXPECT_FALSE(info.leaves_have_extent) << named.name;
     }
+}
+
+TEST(SceneFile, TheHeaderTellsHowManyFootprintLevelsThereAre) {
+  const BakedScene one = test::bake(test::random_cloud(300, 1, 0));
+  const BakedScene many =
+      test::bake_by_cameras(test::random_cloud(3000, 1, 0), test::close_camera());
+  ASSERT_GT(many.leaves.native.levels, 3);
+  for (const Quality quality : {Quality::lossless, Quality::compact}) {
+    Bytes bytes = test::scene_bytes(one, quality);
+    EXPECT_EQ(SceneFile(test::source_of(bytes)).info().native.levels, 1);
+    const Bytes mixed = test::scene_bytes(many, quality);
+    const SceneFile file(test::source_of(mixed));
+    EXPECT_EQ(file.info().native, many.leaves.native);
+    int most = 0;
+    for (uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk)
+      for (const uint8_t code : file.read_chunk(chunk).node_code)
+        most = std::max(most, footprint_level_of(code));
+    EXPECT_EQ(most + 1, file.info().native.levels);
+
+    uint32_t flags = 0;
+    std::memcpy(&flags, bytes.data() + offsetof(FileHeader, flags), sizeof flags);
+    flags |= 10u << kFootprintShift;
+    std::memcpy(bytes.data() + offsetof(FileHeader, flags), &flags, sizeof flags);
+    try {
+      bytes = test::sealed(bytes);
+      const SceneFile refused(test::source_of(bytes));
+      ADD_FAILURE();
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("footprint levels beyond the first 10"),
+                std::string::npos)
+          << error.what();
+    }
+  }
 }
 
 TEST(SceneFile, EveryTruncationIsRefused) {

@@ -59,7 +59,7 @@ TEST(LoadScene, BringsTheTreeBack) {
     const auto scene = load(test::scene_bytes(baked, quality));
     ASSERT_EQ(scene->tree.size(), baked.tree.size());
     EXPECT_EQ(scene->tree.parent, baked.tree.parent);
-    EXPECT_EQ(scene->axis_code, baked.axis_code);
+    EXPECT_EQ(scene->node_code, baked.node_code);
     for (uint32_t n = 0; n < baked.tree.size(); ++n) {
       if (baked.tree.is_leaf(n)) {
         ASSERT_EQ(scene->leaves[baked.gaussian[n]], n);

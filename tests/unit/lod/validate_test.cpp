@@ -90,7 +90,7 @@ TEST(Validate, LeafBoxesAndGaussians) {
   expect_caught("Gaussian of a leaf", [](BakedScene& b) { b.gaussian[first_leaf(b.tree)] = 300; });
   expect_caught("merged Gaussian", [](BakedScene& b) { b.gaussian[0] = 1; });
   expect_caught("Gaussian indices", [](BakedScene& b) { b.gaussian.pop_back(); });
-  expect_caught("axis codes", [](BakedScene& b) { b.axis_code.clear(); });
+  expect_caught("node codes", [](BakedScene& b) { b.node_code.clear(); });
   expect_caught("leaves, position", [](BakedScene& b) { b.leaves.position.pop_back(); });
   expect_caught("merged, SH", [](BakedScene& b) { b.merged.sh.pop_back(); });
   expect_caught("SH degree", [](BakedScene& b) { b.merged.sh_degree = 2; });
@@ -111,10 +111,15 @@ TEST(Validate, Moments) {
 }
 
 TEST(Validate, AxisCodes) {
-  expect_caught("axis code", [](BakedScene& b) { b.axis_code[first_leaf(b.tree)] = 24; });
-  expect_caught("node 0, axis code", [](BakedScene& b) { b.axis_code[0] = 1; });
+  expect_caught("footprint level",
+                [](BakedScene& b) { b.node_code[first_leaf(b.tree)] += kAxisCodes; });
+  expect_caught("node 0, footprint level", [](BakedScene& b) {
+    b.leaves.native.levels = 2;
+    b.node_code[0] = kAxisCodes;
+  });
+  expect_caught("node 0, axis code", [](BakedScene& b) { b.node_code[0] = 1; });
   expect_caught("axis code", [](BakedScene& b) {
-    uint8_t& code = b.axis_code[first_leaf(b.tree)];
+    uint8_t& code = b.node_code[first_leaf(b.tree)];
     code = static_cast<uint8_t>((code + 5) % 24);
   });
 }

@@ -72,7 +72,38 @@ TEST(NativePixel, OfASceneIsTheMedianOfWhatIsSeen) {
   EXPECT_NEAR(found.tenth, 0.020, 0.020 / 64);
   EXPECT_NEAR(found.median, 0.100, 0.100 / 64);
   EXPECT_NEAR(found.ninetieth, 0.180, 0.180 / 64);
-  EXPECT_EQ(found.scale(), (NativeScale{NativeSource::cameras, found.median, kPixelVariance}));
+  EXPECT_NEAR(found.second, 0.004, 0.004 / 64);
+  EXPECT_NEAR(found.ninety_eighth, 0.196, 0.196 / 64);
+  const NativeScale levels{NativeSource::cameras, found.second * std::sqrt(512.0), kPixelVariance,
+                           kFootprintLevels};
+  EXPECT_EQ(found.scale(), levels);
+}
+
+TEST(NativePixel, HasLevelsWhereGaussiansWereSeenAtDifferentSizes) {
+  const auto scale = [](double near, double far) {
+    GaussianCloud cloud;
+    for (int i = 0; i < 50; ++i) add(cloud, {0, 0, near}), add(cloud, {0, 0, far});
+    return native_pixel(Cameras{camera_at({0, 0, 0})}, cloud).scale();
+  };
+  EXPECT_EQ(scale(10, 13.5).levels, 1);
+  EXPECT_NEAR(scale(10, 13.5).pixel, 0.020, 0.020 / 64);
+  EXPECT_EQ(scale(10, 15).levels, kFootprintLevels);
+  EXPECT_NEAR(scale(10, 15).pixel, 0.030, 0.030 / 64);
+  // As far as levels reach from the smallest.
+  EXPECT_NEAR(scale(1, 1000).pixel, 0.002 * std::sqrt(512.0), 0.002);
+}
+
+TEST(NativePixel, ALevelIsTheNearestByFactor) {
+  const NativeScale scale{NativeSource::cameras, 0.4, kPixelVariance, kFootprintLevels};
+  for (int level = 0; level < kFootprintLevels; ++level) {
+    const double pixel = 0.4 * std::pow(2, -0.5 * level);
+    EXPECT_NEAR(scale.pixel_of(level), pixel, 1e-15);
+    for (const double factor : {0.85, 1.0, 1.18})
+      EXPECT_EQ(scale.level_of(factor * pixel), level) << factor;
+  }
+  EXPECT_EQ(scale.level_of(1e6), 0);
+  EXPECT_EQ(scale.level_of(1e-9), kFootprintLevels - 1);
+  EXPECT_EQ((NativeScale{NativeSource::given, 0.4, kPixelVariance}).level_of(1e-9), 0);
 }
 
 TEST(NativePixel, IsUnknownWhereNothingIsSeen) {

@@ -62,7 +62,7 @@ struct Pair {  // Gaussian 0 is the parent, 1 its child
   Gaussian gaussians[2];
   float sh[6] = {1, 2, 3, -1, 0, 5};
   uint8_t codes[2] = {0, 0};
-  GaussianArrays arrays() const { return {gaussians, sh, codes, 0, false}; }
+  GaussianArrays arrays() const { return {gaussians, sh, codes, 0, false, true}; }
 };
 
 Pair random_pair(std::mt19937& random) {
@@ -120,6 +120,27 @@ TEST(Interpolate, AxisCodesLeaveTheChildsCovarianceAlone) {
           ASSERT_NEAR(c.row[a][b], expected.row[a][b], 1e-5) << "code " << code;
     }
   }
+}
+
+TEST(Interpolate, FootprintsGoFromTheParentsToTheChilds) {
+  Pair pair;
+  pair.codes[0] = node_code(0, 5);
+  pair.codes[1] = node_code(17, 2);
+  const auto at = [&](float t) {
+    return interpolated_footprint(pair.arrays(), {1, 0, t, 0.25f}, 0.64f);
+  };
+  EXPECT_EQ(at(1), 0.16f);
+  EXPECT_EQ(at(0), 0.02f);
+  EXPECT_FLOAT_EQ(at(0.25f), 0.75f * 0.02f + 0.25f * 0.16f);
+  EXPECT_EQ(interpolated_footprint(pair.arrays(), {0, kNoNode, 1, 1}, 0.64), 0.64 / 32);
+}
+
+TEST(Interpolate, WhereAllHaveOneFootprintNoCodeIsRead) {
+  Pair pair;
+  GaussianArrays arrays = pair.arrays();
+  arrays.footprints = false;
+  arrays.node_codes = nullptr;
+  EXPECT_EQ(interpolated_footprint(arrays, {1, 0, 0.5f, 0.25f}, 0.64f), 0.64f);
 }
 
 TEST(Interpolate, AtZeroTheParentIsDrawnAndFloatFollowsDouble) {
