@@ -10,6 +10,7 @@
 #include "cuda/pipeline.h"
 #include "cuda/search.h"
 #include "cuda/shared_by_scene.h"
+#include "cuda/train/node_trainer.h"
 #include "runtime/base/error.h"
 
 namespace voyager::cuda {
@@ -63,6 +64,11 @@ class CudaBackend final : public Backend {
   }
   PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const override {
     return DevicePool::bytes(*device_, scene, shape);
+  }
+
+  std::unique_ptr<NodeTrainer> create_trainer(std::shared_ptr<const Scene> scene,
+                                              Workers&) override {
+    return create_node_trainer(device_, std::move(scene));
   }
 
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,

@@ -11,11 +11,11 @@
 namespace voyager::cuda {
 
 // x ≥ 0, rounded up to 16 bits of a binary32.
-inline uint32_t upper_half(float x) {
+VOYAGER_HD uint32_t upper_half(float x) {
   return (float_bits(x) + 0xffffu) >> 16;
 }
 
-inline float4 device_hull(const Gaussian& g) {
+VOYAGER_HD float4 device_hull(const Gaussian& g) {
   const float rho = rho_min(g.log_opacity, kLogTruthThreshold);
   const float radius = rho <= 0.0f ? std::sqrt(2.0f * (kRhoMargin - rho)) : 0.0f;
   const uint32_t bounds = upper_half(detail::largest(g.scale)) << 16 | upper_half(radius);

@@ -1,4 +1,5 @@
 #include "runtime/cpu/cpu_backend.h"
+#include "runtime/cpu/node_trainer.h"
 
 #include <algorithm>
 #include <deque>
@@ -203,6 +204,10 @@ class CpuBackend final : public Backend {
                   "exponential: found half2, the CPU backend has exact, ex2 and lut");
     require_exponential_for_truth(desc);
     return std::make_unique<CpuPipeline>(scenes, desc, memory, workers);
+  }
+  std::unique_ptr<NodeTrainer> create_trainer(std::shared_ptr<const Scene> scene,
+                                              Workers& workers) override {
+    return create_host_trainer(std::move(scene), *this, workers);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                              const SearchDesc& desc,

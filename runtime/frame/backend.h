@@ -117,6 +117,8 @@ struct FrameStats {
 
 using Scenes = std::vector<std::shared_ptr<const Scene>>;
 
+class NodeTrainer;  // node_trainer.h
+
 class Pipeline {
  public:
   virtual ~Pipeline() = default;
@@ -179,6 +181,10 @@ class Backend {
   virtual std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, uint32_t slots);
   // What that takes of the memory that a budget for streaming bounds: a slot, and beside them.
   virtual PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const;
+  // Of a resident scene with a tree, which stays as it is. Throws Error(unsupported) where the
+  // backend has none, Error(over_budget).
+  virtual std::unique_ptr<NodeTrainer> create_trainer(std::shared_ptr<const Scene> scene,
+                                                      Workers& workers);
   // The scene has a tree. Throws Error(unsupported) where the backend has no such search.
   virtual std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                                      const SearchDesc& desc,

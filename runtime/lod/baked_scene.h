@@ -32,6 +32,7 @@ struct BakedScene {
   // smallest of its children's.
   std::pmr::vector<uint8_t> node_code;
   TreeKind kind = TreeKind::clustered;
+  bool learned = false;  // merged Gaussians have learned, and are not their children's moments
   std::vector<Exposure> exposure;  // per node of a clustered tree; for building
 
   // METHOD §12's, metres².

@@ -125,6 +125,22 @@ void check_moments(uint32_t n, const BakedScene& baked, std::vector<MergeInput>&
   check_sh(n, baked, children, expected.weight, findings);
 }
 
+// What learned is anything that can be drawn and stored.
+void check_learned(uint32_t n, const BakedScene& baked, Findings& findings) {
+  const MergeInput node = node_gaussian(n, baked);
+  const Gaussian& g = node.gaussian;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(std::fabs(g.mean[axis]) < kMaxCoordinate))
+      findings.add(name_of(n, "mean"), text(g.mean[axis]), "a magnitude below 1e18 m");
+    if (!(g.scale[axis] > 0 && g.scale[axis] < kMaxCoordinate))
+      findings.add(name_of(n, "scale"), text(g.scale[axis]), "above 0 and below 1e18 m");
+  }
+  if (!(g.opacity >= 0 && g.opacity <= std::numeric_limits<float>::max()))
+    findings.add(name_of(n, "opacity"), text(g.opacity), "a finite one of at least 0");
+  for (int k = 0; k < 3 * baked.merged.coefficients(); ++k)
+    if (!std::isfinite(node.sh[k])) findings.add(name_of(n, "SH"), text(node.sh[k]), "finite");
+}
+
 void check_footprint(uint32_t n, const BakedScene& baked, Findings& findings) {
   const int level = footprint_level_of(baked.node_code[n]);
   int expected = 0;
@@ -179,6 +195,8 @@ std::vector<std::string> validate(const BakedScene& baked, size_t limit) {
     check_footprint(n, baked, findings);
     if (baked.tree.is_leaf(n))
       check_leaf_box(baked, n, findings);
+    else if (baked.learned)
+      check_learned(n, baked, findings);
     else
       check_moments(n, baked, children, findings);
     check_axes(n, baked, findings);

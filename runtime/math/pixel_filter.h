@@ -27,8 +27,9 @@ constexpr double native_footprint(double pixel) {
 
 template <class T>
 VOYAGER_HD Vec3<T> widened(const Vec3<T>& scale, T footprint) {
-  return {std::sqrt(scale.x * scale.x + footprint), std::sqrt(scale.y * scale.y + footprint),
-          std::sqrt(scale.z * scale.z + footprint)};
+  using std::sqrt;
+  return {sqrt(scale.x * scale.x + footprint), sqrt(scale.y * scale.y + footprint),
+          sqrt(scale.z * scale.z + footprint)};
 }
 
 }  // namespace voyager

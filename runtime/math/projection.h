@@ -82,7 +82,8 @@ VOYAGER_HD ImageCovariance<T> image_covariance(const ImageJacobian<T>& j, const 
   const T bb = (b[0] * b[0] + b[1] * b[1]) + b[2] * b[2];
   const T ab = (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
   const T xx = aa + low;
-  const T n = T(1) / std::sqrt(xx);
+  using std::sqrt;  // also of what gradients are found with (dual.h)
+  const T n = T(1) / sqrt(xx);
   const T m0 = (a[1] * b[2] - a[2] * b[1]) * n, m1 = (a[2] * b[0] - a[0] * b[2]) * n;
   const T m2 = (a[0] * b[1] - a[1] * b[0]) * n;
   const T minors = (m0 * m0 + m1 * m1) + m2 * m2;
@@ -99,7 +100,8 @@ struct Conic {
 
 template <class T>
 VOYAGER_HD Conic<T> conic(const ImageCovariance<T>& c, T half) {  // half = ½, or ½·log2(e)
-  return {std::sqrt(half / c.xx), c.xy / c.xx, std::sqrt(half / c.y_given_x)};
+  using std::sqrt;
+  return {sqrt(half / c.xx), c.xy / c.xx, sqrt(half / c.y_given_x)};
 }
 
 }  // namespace voyager

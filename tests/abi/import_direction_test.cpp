@@ -27,6 +27,7 @@ const std::map<std::string, Folders>& allowed() {
       {"refine", {"math", "base", "scene", "lod", "bake", "select", "stages"}},
       {"stream", {"math", "base", "scene", "lod", "format", "select"}},
       {"frame", {"math", "base", "scene", "lod", "format", "select", "stages", "stream"}},
+      {"optimize", {"math", "base", "scene", "lod", "bake", "refine", "select", "stages", "frame"}},
       {"cpu", below_backends},
       {"reference", below_backends},
   };

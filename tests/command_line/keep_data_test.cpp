@@ -298,6 +298,12 @@ TEST_F(KeepData, AFileNamedLikeWhatRefineKeepsIsRefusedAndStays) {
                  {"s.voy.refine: found a file that no bake has written"});
 }
 
+TEST_F(KeepData, AFileNamedLikeWhatOptimizeKeepsIsRefusedAndStays) {
+  write_bytes(file("s.voy.optimize"), "my own");
+  expect_refused("voyager bake " + small() + " -o " + file("s.voy") + " --optimize draft", 2,
+                 {"s.voy.optimize: found a file that no bake has written"});
+}
+
 TEST_F(KeepData, AnOutputIsWrittenThroughASymbolicLink) {
   fs::create_directory(file("far"));
   write_bytes(file("far/there.voy"), "before");

@@ -1,0 +1,72 @@
+#include "runtime/optimize/held_out.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/lod/stand_in.h"
+
+namespace voyager {
+namespace {
+
+// Far behind those that are learned from.
+constexpr uint32_t kFirst = uint32_t{1} << 28;
+constexpr double kTaus[] = {kReferenceTau, 2 * kReferenceTau, 5 * kReferenceTau};
+// Of 2τ + 1, that are tried: each so much more than the one before.
+constexpr double kLeastSize = 1.5, kStep = 1.2599210498948732;  // ∛2
+constexpr int kSteps = 16;
+
+}  // namespace
+
+TrainingView HeldOutViews::view(uint32_t i, double tau) const {
+  TrainingView view = views_(kFirst + i);
+  view.tau = tau;
+  return view;
+}
+
+double HeldOutViews::psnr_of(const TrainingView& view, const TrainingError& error) const {
+  const double mean = error.squares / (3.0 * view.camera.width * view.camera.height);
+  return -10 * std::log10(std::max(mean, 1e-10));
+}
+
+std::vector<HeldOut> HeldOutViews::look(NodeTrainer& trainer) const {
+  std::vector<HeldOut> all;
+  for (const double tau : kTaus) all.push_back({tau, 0, 0, 0});
+  for (uint32_t i = 0; i < count_; ++i) {
+    const TrainingView whole = view(i, 0);
+    const double leaves = psnr_of(whole, trainer.error_of_leaves(whole)) / count_;
+    for (HeldOut& found : all) {
+      const TrainingView at = view(i, found.tau);
+      const TrainingError error = trainer.error(at);
+      found.cut += psnr_of(at, error) / count_;
+      found.leaves += leaves;
+      found.share += error.cut / leaves_ / count_;
+    }
+  }
+  return all;
+}
+
+double HeldOutViews::best_tau(NodeTrainer& trainer) const {
+  std::vector<std::pair<double, uint32_t>> by_distance;
+  for (uint32_t i = 0; i < count_; ++i) by_distance.emplace_back(views_.distance(kFirst + i), i);
+  std::sort(by_distance.begin(), by_distance.end());
+  std::vector<double> leaves(count_);
+  for (uint32_t i = 0; i < count_; ++i) {
+    const TrainingView whole = view(i, 0);
+    leaves[i] = psnr_of(whole, trainer.error_of_leaves(whole));
+  }
+  double best = 0.5 * (kLeastSize - 1), size = kLeastSize;
+  for (int step = 0; step < kSteps; ++step, size *= kStep) {
+    const double tau = 0.5 * (size - 1);
+    double gained[2] = {0, 0};  // near, far
+    for (uint32_t i = 0; i < count_; ++i) {
+      const uint32_t k = by_distance[i].second;
+      const TrainingView at = view(k, tau);
+      gained[i < count_ / 2 ? 0 : 1] += psnr_of(at, trainer.error(at)) - leaves[k];
+    }
+    if (gained[0] < -0.05 * (count_ / 2) || gained[1] < -0.05 * (count_ / 2)) break;
+    best = tau;
+  }
+  return best;
+}
+
+}  // namespace voyager

@@ -1,0 +1,28 @@
+#pragma once
+// Where an optimization stands, in a file: it goes on from there after a stop.
+#include <string>
+
+#include "runtime/frame/node_trainer.h"
+#include "runtime/lod/baked_scene.h"
+
+namespace voyager {
+
+struct Standing {
+  uint32_t steps = 0;  // in all
+  uint32_t done = 0;
+  std::vector<float> extents;  // by node
+  TrainingState state;
+};
+
+// Tells scenes apart, before anything was learned.
+uint64_t mark_of(const BakedScene& baked);
+
+// A file of its own, whole or absent.
+void keep(const Standing& standing, uint64_t mark, const std::string& path);
+// Throws Error(refused_input) where something is there that keep() did not write.
+void check_kept_standing(const std::string& path);
+// False where there is none. Throws Error(refused_input) where it is of another scene or was
+// altered.
+bool read_kept(uint64_t mark, const std::string& path, Standing& standing);
+
+}  // namespace voyager

@@ -1,0 +1,225 @@
+#include "runtime/optimize/optimize.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/frame/built_scene.h"
+#include "runtime/lod/align.h"
+#include "runtime/lod/stand_in.h"
+#include "runtime/optimize/held_out.h"
+#include "runtime/optimize/kept.h"
+#include "runtime/refine/extents.h"
+
+namespace voyager {
+namespace {
+
+// Chosen on one district (bench/NOTES.md).
+constexpr LearningRates kRates{0.02f, 0.01f, 0.002f, 0.03f, 0.006f, 0.0006f, 1};
+constexpr double kLastPace = 0.05;  // at the end
+
+// Extents are measured anew when these shares of the steps are done: what learned has another
+// error, and other cuts learn from then on.
+constexpr double kMeasureAt[] = {0.4, 0.7, 1.0};
+// Of the cuts that are measured, as refine.cpp's; views of them, for each of so many steps.
+constexpr double kMeasureTaus[] = {2, 8, 30};
+constexpr uint32_t kStepsPerMeasure = 60, kLeastMeasures = 8, kMostMeasures = 256;
+constexpr uint32_t kFirstMeasure = uint32_t{1} << 27;
+
+constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
+// Extents are scaled at the end, by this at most.
+constexpr double kMostScale = 8;
+
+LearningRates rates_at(double done) {
+  LearningRates rates = kRates;
+  rates.pace = static_cast<float>(std::pow(kLastPace, done));
+  return rates;
+}
+
+class Optimizing {
+ public:
+  Optimizing(BakedScene& baked, const OptimizeGoal& goal, Backend& backend, const std::string& kept,
+             Workers& workers, const Progress& progress)
+      : baked_(baked),
+        kept_(kept),
+        progress_(progress),
+        mark_(mark_of(baked)),
+        views_(baked),
+        held_out_(views_, goal.held_out, static_cast<double>(baked.leaves.size())),
+        trainer_(backend.create_trainer(scene_of(baked, workers), workers)) {}
+
+  OptimizeSummary run(const OptimizeGoal& goal) {
+    OptimizeSummary summary;
+    summary.before = held_out_.look(*trainer_);
+    start(goal);
+    learn(goal.keep_milliseconds);
+    summary.pictures = standing_.steps;
+    summary.extents_by = calibrate();
+    summary.after = held_out_.look(*trainer_);
+    take_learned();
+    return summary;
+  }
+
+ private:
+  // Where it was left, or at the beginning.
+  void start(const OptimizeGoal& goal) {
+    if (read_kept(mark_, kept_, standing_)) {
+      if (goal.pictures != 0 && goal.pictures != standing_.steps)
+        throw Error(ErrorCode::refused_input,
+                    kept_ + ": found what is learned from " + std::to_string(standing_.steps) +
+                        " pictures, expected " + std::to_string(goal.pictures) +
+                        ": ask for as many, or remove it");
+      trainer_->set_state(standing_.state);
+      take_extents();
+      return;
+    }
+    standing_.steps = goal.pictures != 0 ? goal.pictures : steps_in(goal.minutes);
+    standing_.extents.resize(baked_.tree.size());
+    give_extents();
+  }
+
+  uint32_t steps_in(double minutes) {
+    const TrainingState untouched = trainer_->state();
+    for (uint32_t k = 0; k < kWarmSteps; ++k) trainer_->step(views_(k), {});
+    const Stopwatch watch;
+    for (uint32_t k = 0; k < kTimedSteps; ++k) trainer_->step(views_(k), {});
+    const double each = std::max(watch.milliseconds() / kTimedSteps, 1e-3);
+    trainer_->set_state(untouched);
+    return static_cast<uint32_t>(std::clamp(minutes * 60000 / each, 1.0, 1e9));
+  }
+
+  void learn(double keep_milliseconds) {
+    Stopwatch since_kept;
+    const uint32_t steps = standing_.steps;
+    while (standing_.done < steps) {
+      const uint32_t k = standing_.done++;
+      report(progress_, "optimizing", k, steps);
+      trainer_->step(views_(k), rates_at(static_cast<double>(k) / steps));
+      for (const double share : kMeasureAt)
+        if (standing_.done == static_cast<uint32_t>(std::ceil(share * steps))) measure();
+      if (since_kept.milliseconds() < keep_milliseconds) continue;
+      standing_.state = trainer_->state();
+      give_extents();
+      keep(standing_, mark_, kept_);
+      since_kept = {};
+    }
+    report(progress_, "optimizing", steps, steps);
+  }
+
+  void measure() {
+    Measured measured(baked_.tree.size());
+    const uint32_t views =
+        std::clamp(standing_.steps / kStepsPerMeasure, kLeastMeasures, kMostMeasures);
+    for (uint32_t i = 0; i < views; ++i)
+      for (const double tau : kMeasureTaus) {
+        TrainingView view = views_(kFirstMeasure + i);
+        view.tau = tau;
+        const Vec3d& eye = view.camera.eye;
+        const Vec3f centre =
+            cut_centre(eye, {baked_.origin[0], baked_.origin[1], baked_.origin[2]});
+        for (const NodeError& found : trainer_->node_errors(view)) {
+          const NodeRecord& r = baked_.tree.records[found.node];
+          const double metres = double{squared_distance(centre, r.box_min, r.box_max)} /
+                                (view.camera.fx * view.camera.fx);
+          measured.gain[found.node] += double{found.squares} * metres / (r.child_count - 1);
+          ++measured.pictures[found.node];
+        }
+      }
+    set_extents(measured, baked_.tree);
+    give_extents();
+    trainer_->set_extents(standing_.extents);
+  }
+
+  // Extents such that the default τ is as good as every leaf. Returns what they grew by.
+  double calibrate() {
+    const double tau = held_out_.best_tau(*trainer_);
+    const double by =
+        std::clamp((2 * kReferenceTau + 1) / (2 * tau + 1), 1 / kMostScale, kMostScale);
+    for (NodeRecord& r : baked_.tree.records) {
+      const auto changed = static_cast<float>(by * double{r.extent});
+      if (std::isfinite(changed)) r.extent = changed;
+    }
+    give_extents();
+    trainer_->set_extents(standing_.extents);
+    return by;
+  }
+
+  void give_extents() {
+    for (size_t n = 0; n < baked_.tree.size(); ++n)
+      standing_.extents[n] = baked_.tree.records[n].extent;
+  }
+  void take_extents() {
+    for (size_t n = 0; n < baked_.tree.size(); ++n)
+      baked_.tree.records[n].extent = standing_.extents[n];
+    trainer_->set_extents(standing_.extents);
+  }
+
+  void take_learned() {
+    const TrainingState state = trainer_->state();
+    const auto numbers = static_cast<size_t>(numbers_of(baked_.leaves.sh_degree));
+    const size_t coefficients = numbers - kShapeNumbers;
+    GaussianCloud& merged = baked_.merged;
+    size_t row = 0;
+    for (uint32_t n = 0; n < baked_.tree.size(); ++n) {
+      if (baked_.tree.is_leaf(n)) continue;
+      const float* v = &state.values[row * numbers];
+      const size_t i = baked_.gaussian[n];
+      std::copy_n(v, 3, &merged.position[3 * i]);
+      for (size_t axis = 0; axis < 3; ++axis)
+        merged.log_scale[3 * i + axis] = std::log(v[3 + axis]);
+      std::copy_n(v + 6, 4, &merged.rotation[4 * i]);
+      merged.opacity[i] = state.opacities[row++];
+      std::copy_n(v + kShapeNumbers, coefficients, &merged.sh[i * coefficients]);
+    }
+    baked_.learned = true;
+    // Parents come before their children.
+    for (uint32_t n = 0; n < baked_.tree.size(); ++n) align_children(n, baked_);
+  }
+
+  BakedScene& baked_;
+  const std::string& kept_;
+  const Progress& progress_;
+  const uint64_t mark_;
+  const TrainingViews views_;
+  const HeldOutViews held_out_;
+  std::unique_ptr<NodeTrainer> trainer_;
+  Standing standing_;
+};
+
+}  // namespace
+
+uint32_t pictures_of(OptimizeQuality quality, uint64_t merged_nodes) {
+  // For a thousand merged nodes, and at least.
+  const auto number = [&](uint64_t of_thousand, uint64_t least) {
+    return static_cast<uint32_t>(
+        std::clamp<uint64_t>(merged_nodes * of_thousand / 1000, least, 1'000'000'000));
+  };
+  switch (quality) {
+    case OptimizeQuality::draft:
+      return number(10, 300);
+    case OptimizeQuality::best:
+      return number(250, 5000);
+    default:
+      return number(50, 1200);
+  }
+}
+
+OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Backend& backend,
+                               const std::string& kept, Workers& workers,
+                               const Progress& progress) {
+  if (baked.kind != TreeKind::clustered)
+    throw Error(ErrorCode::unsupported,
+                kept + ": found a tree of another kind, expected a clustered one");
+  if (baked.tree.size() < 2) return {};
+  return Optimizing(baked, goal, backend, kept, workers, progress).run(goal);
+}
+
+// Rows of 3 × numbers, for each of about half as many merged nodes, in the trainer's state, in what
+// is kept and in its file's bytes; and the scene as backends draw it.
+uint64_t bytes_to_optimize(uint64_t gaussians, int sh_degree) {
+  const auto numbers = static_cast<uint64_t>(numbers_of(sh_degree));
+  return gaussians * (3 * 3 * numbers * sizeof(float) / 2 + 3 * numbers * sizeof(float));
+}
+
+}  // namespace voyager

@@ -1,0 +1,54 @@
+#pragma once
+// Merged Gaussians that learn what they stand for (docs/optimizing.md): pictures of cuts are
+// compared with the truth of METHOD §12, and nodes follow the gradient of the squared error.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/base/progress.h"
+#include "runtime/base/workers.h"
+#include "runtime/frame/backend.h"
+#include "runtime/lod/baked_scene.h"
+
+namespace voyager {
+
+// How many pictures to learn from. 0: as many as the backend draws in `minutes`.
+struct OptimizeGoal {
+  uint32_t pictures = 0;
+  double minutes = 0;
+  uint32_t held_out = 24;            // views
+  double keep_milliseconds = 60000;  // between one time that what was learned is kept and the next
+};
+// So many for each merged node.
+enum class OptimizeQuality { draft, good, best };
+uint32_t pictures_of(OptimizeQuality quality, uint64_t merged_nodes);
+
+// Means over held-out views at a τ: PSNR to the truth, dB.
+struct HeldOut {
+  double tau = 0;
+  double cut = 0, leaves = 0;  // every leaf drawn
+  double share = 0;            // nodes of the cut, in leaves
+};
+struct OptimizeSummary {
+  uint32_t pictures = 0;
+  std::vector<HeldOut> before, after;  // at the same τ
+  double extents_by = 1;               // what extents were multiplied by at the end
+};
+
+// Changes the merged Gaussians of a clustered tree and its extents; leaves stay as they are. With a
+// number of pictures the same scene on the same device gives the same bytes, however often this was
+// stopped. At the end extents are such that at the default τ a cut's held-out pictures are about as
+// near to the truth as every leaf's.
+// kept: a file in which what was learned is kept now and then, and from which this goes on; whoever
+// calls removes it. Progress counts pictures.
+// Throws Error(refused_input) where the file is of another scene or was altered,
+// Error(unsupported) for another kind of tree or where the backend has no trainer,
+// Error(over_budget), Error(io).
+OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Backend& backend,
+                               const std::string& kept, Workers& workers,
+                               const Progress& progress = {});
+
+// Bytes that this takes of the host's memory beside the scene, about.
+uint64_t bytes_to_optimize(uint64_t gaussians, int sh_degree);
+
+}  // namespace voyager

@@ -1,0 +1,136 @@
+#include "runtime/optimize/training_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace voyager {
+namespace {
+
+// Of the pictures. Those of few leaves are smaller: as many pixels teach a node, in less time.
+constexpr uint32_t kWidth = 1920, kHeight = 1080, kSmaller = 4, kSmallerOfFew = 8;
+constexpr double kFocal = 1400;
+constexpr size_t kFewLeaves = 100'000;
+// Of the cuts: coarser ones are not drawn where pictures count.
+constexpr double kFinestTau = 0.75, kCoarsestTau = 15;
+
+constexpr size_t kSample = 1 << 16;
+// Of the native pixel in a picture's pixel at the leaf that is looked at: closer nothing is to be
+// seen that nodes could show.
+constexpr double kClosest = 0.3;
+// Sine of the elevation. What nobody has seen from below looks like nothing from there, and what
+// learned it would look worse from above.
+constexpr double kLowestOfFlat = -0.05, kLowestOfOther = -0.5;
+constexpr double kNearestOfRadius = 0.02, kFarthestOfRadius = 3;
+
+double radical_inverse(uint64_t k, uint32_t base) {
+  double value = 0, digit = 1;
+  for (; k != 0; k /= base) {
+    digit /= base;
+    value += digit * static_cast<double>(k % base);
+  }
+  return value;
+}
+
+Vec3d cross(const Vec3d& a, const Vec3d& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+double between(double low, double high, double share) {
+  return low * std::pow(high / low, share);
+}
+
+// Means of an even sample along each axis, ascending, without the fiftieth at either end.
+struct Spread {
+  std::vector<float> means[3];
+
+  explicit Spread(const BakedScene& baked) {
+    const size_t count = baked.leaves.size(), stride = (count + kSample - 1) / kSample;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (size_t i = 0; i < count; i += stride)
+        means[axis].push_back(local_mean(baked.leaves, i, baked.origin)[axis]);
+      std::sort(means[axis].begin(), means[axis].end());
+      const size_t outside = means[axis].size() / 50;
+      means[axis].erase(means[axis].end() - static_cast<std::ptrdiff_t>(outside),
+                        means[axis].end());
+      means[axis].erase(means[axis].begin(),
+                        means[axis].begin() + static_cast<std::ptrdiff_t>(outside));
+    }
+  }
+  double side(int axis) const { return double{means[axis].back()} - double{means[axis].front()}; }
+  double radius() const {
+    return 0.5 * std::sqrt(side(0) * side(0) + side(1) * side(1) + side(2) * side(2));
+  }
+};
+
+// What is up, and whether the scene is flat: narrower along one axis than a third of the others,
+// as a landscape is. Trainers and viewers of 3DGS have y down (METHOD §1), maps z up.
+struct Upward {
+  Vec3d up;
+  bool flat;
+};
+Upward upward(const Spread& spread) {
+  const auto flat = [&](int axis) {
+    return spread.side(axis) <
+           std::min(spread.side((axis + 1) % 3), spread.side((axis + 2) % 3)) / 3;
+  };
+  if (flat(2)) return {{0, 0, 1}, true};
+  return {{0, -1, 0}, flat(1)};
+}
+
+}  // namespace
+
+TrainingViews::TrainingViews(const BakedScene& baked)
+    : baked_(baked), smaller_(baked.leaves.size() < kFewLeaves ? kSmallerOfFew : kSmaller) {
+  const Spread spread(baked);
+  const Upward found = upward(spread);
+  const Vec3d& up = found.up;
+  const Vec3d level = std::fabs(up.x) > 0.5 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+  axes_ = {{level, cross(up, level), up}};
+  lowest_rise_ = found.flat ? kLowestOfFlat : kLowestOfOther;
+  const double radius = std::max(spread.radius(), 1e-6);
+  const double native = baked.leaves.native.pixel;
+  nearest_ = std::clamp(kClosest * native * kFocal / smaller_, 1e-3 * kNearestOfRadius * radius,
+                        kNearestOfRadius * 10 * radius);
+  if (!(native > 0)) nearest_ = kNearestOfRadius * radius;
+  farthest_ = std::max(kFarthestOfRadius * radius, 4 * nearest_);
+}
+
+double TrainingViews::distance(uint32_t k) const {
+  return between(nearest_, farthest_, radical_inverse(uint64_t{k} + 1, 7));
+}
+
+TrainingView TrainingViews::operator()(uint32_t k) const {
+  const uint64_t index = uint64_t{k} + 1;
+  const auto leaves = static_cast<double>(baked_.leaves.size());
+  const auto leaf = static_cast<size_t>(radical_inverse(index, 2) * leaves);
+  const Vec3f target = local_mean(baked_.leaves, leaf, baked_.origin);
+  const double around = 2 * std::numbers::pi * radical_inverse(index, 3);
+  const double rise = lowest_rise_ + (1 - lowest_rise_) * radical_inverse(index, 5);
+  const double level = std::sqrt(std::max(1 - rise * rise, 0.0));
+  const Vec3d outward = level * std::cos(around) * axes_.row[0] +
+                        level * std::sin(around) * axes_.row[1] + rise * axes_.row[2];
+  const Vec3d forward = -1.0 * outward;
+  const Vec3d right = -std::sin(around) * axes_.row[0] + std::cos(around) * axes_.row[1];
+
+  TrainingView view;
+  Camera& camera = view.camera;
+  camera.eye = Vec3d{double{target.x}, double{target.y}, double{target.z}} + distance(k) * outward +
+               Vec3d{baked_.origin[0], baked_.origin[1], baked_.origin[2]};
+  camera.world_to_view.row[0] = right;
+  camera.world_to_view.row[1] = cross(forward, right);
+  camera.world_to_view.row[2] = forward;
+  camera.fx = camera.fy = kFocal / smaller_;
+  camera.width = kWidth / smaller_, camera.height = kHeight / smaller_;
+  camera.cx = 0.5 * camera.width, camera.cy = 0.5 * camera.height;
+  const double coarse =
+      between(2 * kFinestTau + 1, 2 * kCoarsestTau + 1, radical_inverse(index, 11));
+  view.tau = 0.5 * (coarse - 1);
+  // As METHOD §12 asks: at least 4, 8 where leaves are far below a pixel.
+  const double pixels = distance(k) / camera.fx / std::max(baked_.leaves.native.pixel, 1e-9);
+  view.samples = pixels < 1 ? 4 : pixels < 3 ? 6 : 8;
+  return view;
+}
+
+}  // namespace voyager

@@ -1,0 +1,30 @@
+#pragma once
+// Where a scene is looked at from while its nodes learn. No camera of the scene's is needed.
+#include <cstdint>
+
+#include "runtime/frame/node_trainer.h"
+#include "runtime/lod/baked_scene.h"
+
+namespace voyager {
+
+// Each looks at a leaf, from outside or from amid the scene, and draws a cut of some τ. The k-th is
+// the same whatever comes before it; those from 0 to any k are spread evenly (Halton's sequence)
+// over leaves, directions, the logarithm of the distance and that of the cut's coarseness.
+class TrainingViews {
+ public:
+  // At least one leaf.
+  explicit TrainingViews(const BakedScene& baked);
+
+  TrainingView operator()(uint32_t k) const;
+  // From the eye to the leaf, metres.
+  double distance(uint32_t k) const;
+
+ private:
+  const BakedScene& baked_;
+  Mat3d axes_;          // rows: two level ones, and up
+  double lowest_rise_;  // sine of the elevation
+  double nearest_, farthest_;
+  uint32_t smaller_;  // than 1920×1080 at a focal length of 1400: by so much along each side
+};
+
+}  // namespace voyager
