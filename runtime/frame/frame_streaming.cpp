@@ -86,7 +86,9 @@ std::optional<Vec3d> FrameStreaming::velocity(const FrameInput& frame) {
 
 Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance) {
   const Vec3d& origin = scenes_[instance]->origin;
-  Viewer viewer{cut_query(frame, instance, origin), {}, false};
+  const double footprint = scenes_[instance]->native.footprint();
+  Viewer viewer{
+      cut_query(frame, instance, origin), {}, false, static_cast<float>(std::sqrt(footprint))};
   for (const FrameEye& eye : frame.eyes)
     viewer.eyes.push_back(wedge_of(instance_camera(frame, eye, instance), origin,
                                    kWedgeMargin * double{viewer.query.target_size}));

@@ -35,21 +35,27 @@ struct Wedge {
 // nodes in a box of longest side L is taken to reach L beyond it: a leaf is drawn to 3.33 σ where
 // its box has 3, a merged Gaussian over a uniform patch (σ = 0.29 L) to 0.46 L beyond. The extent
 // says nothing of that: it is an error (docs/lod-tree.md), between 0.006 and thousands of L.
+// A footprint widens what is drawn and no box: √(s² + v) ≤ s + √v, and 4 of its standard deviations
+// are what a splat reaches whose opacity is 11.
 inline constexpr float kWedgeMargin = 10.0f;
 inline constexpr float kHullReach = 1.0f;
+inline constexpr float kFootprintReach = 4.0f;
 
 // One camera, or two eyes that share a cut, in a scene's coordinates.
 struct Viewer {
   CutQuery query;
   std::vector<Wedge> eyes;
   bool ahead = false;  // where it will be, by its way so far
+  // The standard deviation of the scene's largest footprint (METHOD §12), metres.
+  float footprint = 0;
 
   bool operator==(const Viewer&) const = default;
 
   bool sees(const EntryHull& hull) const {
     if (!std::isfinite(hull.extent)) return true;
     const Vec3f side = hull.box_max - hull.box_min;
-    const float reach = kHullReach * std::max({side.x, side.y, side.z});
+    const float reach =
+        kHullReach * std::max({side.x, side.y, side.z}) + kFootprintReach * footprint;
     for (const Wedge& eye : eyes)
       if (eye.meets(hull.box_min, hull.box_max, reach)) return true;
     return false;

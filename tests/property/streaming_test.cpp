@@ -135,6 +135,31 @@ TEST(Streaming, WhatReachesIntoAFrameIsOfTheBoxWhateverTheExtent) {
   }
 }
 
+// METHOD §12: Gaussians far smaller than their footprint are drawn metres beyond their boxes.
+TEST(Streaming, WhatReachesIntoAFrameHasItsFootprint) {
+  GaussianCloud cloud = test::random_cloud(4000, 6, 0);
+  for (float& scale : cloud.log_scale) scale = std::log(0.01f);
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    cloud.position[3 * i] *= 2;
+    cloud.position[3 * i + 1] *= 0.05f;
+    cloud.position[3 * i + 2] *= 0.05f;
+  }
+  cloud.native = {NativeSource::given, 5, kPixelVariance};
+  StreamRig rig(test::bake(cloud, test::kHierarchicalGs), 1.0);
+  const auto chunks = static_cast<uint32_t>(rig.stream().file().chunks().size());
+  for (const double x : {-10.0, 0.0, 10.0}) {
+    // The Gaussians are 4 m below the picture.
+    FrameInput input = frame_input(look({x, -7, -30}, {x, -7, 0}, 96, 64, 13.7), 0);
+    rig.give_room(chunks);
+    const Frame whole = render(rig.whole, input);
+    ASSERT_GT(whole.at(48, 63)[3], 0.5f);
+    input.wait_resident = true;
+    expect_same_bits(render(rig.part, input), whole);
+    rig.give_room(static_cast<uint32_t>(rig.stream().counters().need.seen) + rig.stream().pinned());
+    expect_same_bits(render(rig.part, input), whole);
+  }
+}
+
 class StreamingOfTree : public ::testing::TestWithParam<test::NamedRule> {
  protected:
   BakedScene bake(const GaussianCloud& cloud) const { return test::bake(cloud, GetParam().rule); }
