@@ -66,9 +66,9 @@ class CudaBackend final : public Backend {
     return DevicePool::bytes(*device_, scene, shape);
   }
 
-  std::unique_ptr<NodeTrainer> create_trainer(std::shared_ptr<const Scene> scene,
+  std::unique_ptr<NodeTrainer> create_trainer(const std::shared_ptr<const Scene>& scene,
                                               Workers&) override {
-    return create_node_trainer(device_, std::move(scene));
+    return create_node_trainer(device_, scene);
   }
 
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,

@@ -96,7 +96,7 @@ std::vector<Camera> read_cameras(const std::string& path) {
   if (!json.is_array() || json.empty())
     throw Error(ErrorCode::refused_input,
                 fmt::format("{}: found {}, expected an array of at least one camera", path,
-                            json.type_name()));
+                            json.is_array() ? "an empty array" : json.type_name()));
   std::vector<Camera> cameras;
   for (size_t i = 0; i < json.size(); ++i)
     cameras.push_back(read_camera(fmt::format("{}: camera {}", path, i), json[i]));

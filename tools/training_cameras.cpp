@@ -65,6 +65,9 @@ char json_start(const std::string& path) {
 // COLMAP's other file lies beside the one that was given.
 std::vector<TrainingCamera> colmap_beside(const fs::path& path) {
   const std::string name = path.filename().string();
+  if (path.extension() == ".json")
+    refuse_cameras(path.string(), "no JSON: its first character is neither [ nor {",
+                   "a cameras.json or a transforms.json");
   if (name.starts_with("cameras"))
     return colmap_at(path, path.parent_path() / ("images" + name.substr(7)));
   if (name.starts_with("images"))
@@ -87,14 +90,19 @@ std::vector<TrainingCamera> read_file(const std::string& path) {
 
 // INRIA's trainer prefers COLMAP's files, and COLMAP its binary ones.
 std::vector<TrainingCamera> read_folder(const fs::path& path) {
+  fs::path missing;  // of COLMAP's two files
   for (const fs::path& folder : {path, path / "sparse" / "0", path / "sparse"})
     for (const char* ending : {".bin", ".txt"}) {
       const fs::path cameras = folder / (std::string("cameras") + ending);
       const fs::path images = folder / (std::string("images") + ending);
       if (is_there(cameras) && is_there(images)) return colmap_at(cameras, images);
+      if (missing.empty() && is_there(cameras)) missing = images;
+      if (missing.empty() && is_there(images)) missing = cameras;
     }
   for (const char* name : {"transforms.json", "cameras.json"})
     if (is_there(path / name)) return read_file((path / name).string());
+  if (!missing.empty())
+    refuse_cameras(missing.string(), "no such file", "it beside COLMAP's other one");
   refuse_cameras(path.string(), "a folder without cameras",
                  "COLMAP's cameras and images, .bin or .txt, there or in sparse/0, a "
                  "transforms.json, or a cameras.json");

@@ -205,9 +205,9 @@ class CpuBackend final : public Backend {
     require_exponential_for_truth(desc);
     return std::make_unique<CpuPipeline>(scenes, desc, memory, workers);
   }
-  std::unique_ptr<NodeTrainer> create_trainer(std::shared_ptr<const Scene> scene,
+  std::unique_ptr<NodeTrainer> create_trainer(const std::shared_ptr<const Scene>& scene,
                                               Workers& workers) override {
-    return create_host_trainer(std::move(scene), *this, workers);
+    return create_host_trainer(scene, *this, workers);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                              const SearchDesc& desc,

@@ -75,10 +75,12 @@ void TrainPicture::list_tiles() {
       const int bottom = at_most(s.y + s.half_height, height_ - 1) / kTile;
       for (int row = top; row <= bottom; ++row)
         for (int column = left; column <= right; ++column)
-          put(static_cast<size_t>(row * columns_ + column), i);
+          put(static_cast<size_t>(row) * static_cast<size_t>(columns_) +
+                  static_cast<size_t>(column),
+              i);
     }
   };
-  tile_begin_.assign(static_cast<size_t>(columns_ * rows_) + 1, 0);
+  tile_begin_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_) + 1, 0);
   each([&](size_t tile, uint32_t) { ++tile_begin_[tile + 1]; });
   for (size_t tile = 1; tile < tile_begin_.size(); ++tile)
     tile_begin_[tile] += tile_begin_[tile - 1];
@@ -117,7 +119,7 @@ void TrainPicture::blend(int tile) {
           open[local] = false;
           continue;
         }
-        TrainPixel& pixel = pixels_[static_cast<size_t>(y * width_ + x)];
+        TrainPixel& pixel = pixels_[index(x, y)];
         pixel.r += a * before * s.colour.x;
         pixel.g += a * before * s.colour.y;
         pixel.b += a * before * s.colour.z;
@@ -147,7 +149,7 @@ void TrainPicture::blend_back(int tile, std::span<const TrainPixel> truth, float
     const int x = left + local % kTile, y = top + local / kTile;
     open[local] = x < width_ && y < height_;
     if (!open[local]) continue;
-    const auto i = static_cast<size_t>(y * width_ + x);
+    const size_t i = index(x, y);
     const TrainPixel &drawn = pixels_[i], &wanted = truth[i];
     const Vec3f off{drawn.r - wanted.r, drawn.g - wanted.g, drawn.b - wanted.b};
     adjoint[local] = {{drawn.r, drawn.g, drawn.b},

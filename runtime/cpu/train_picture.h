@@ -43,6 +43,9 @@ class TrainPicture {
   struct Span {
     int x0, x1, y0, y1;
   };
+  size_t index(int x, int y) const {
+    return static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x);
+  }
   Span span_of(const Splat& splat, int tile) const;
   void list_tiles();
   void blend(int tile);

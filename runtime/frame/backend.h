@@ -183,7 +183,7 @@ class Backend {
   virtual PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const;
   // Of a resident scene with a tree, which stays as it is. Throws Error(unsupported) where the
   // backend has none, Error(over_budget).
-  virtual std::unique_ptr<NodeTrainer> create_trainer(std::shared_ptr<const Scene> scene,
+  virtual std::unique_ptr<NodeTrainer> create_trainer(const std::shared_ptr<const Scene>& scene,
                                                       Workers& workers);
   // The scene has a tree. Throws Error(unsupported) where the backend has no such search.
   virtual std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,

@@ -19,9 +19,8 @@ struct ClusterTree {
 
 // leaves: indices of at least one Gaussian of `cloud`; exposure: of each Gaussian of the cloud;
 // footprint_level: of the block (node_code.h).
-// Two to four children a node, or one: of a Gaussian that is to be drawn unblended for as long as
-// it stands in (docs/lod-tree.md), so that two nodes hold it. Depends on nothing but its arguments;
-// thread-safe. O(n²) time in distances, O(n) in errors.
+// Two to four children a node. Depends on nothing but its arguments; thread-safe. O(n²) time in
+// distances, O(n) in errors.
 ClusterTree cluster(const GaussianCloud& cloud, const std::array<double, 3>& origin,
                     std::span<const uint32_t> leaves, std::span<const ExposureCode> exposure,
                     int footprint_level = 0);

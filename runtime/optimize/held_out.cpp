@@ -14,6 +14,7 @@ constexpr double kTaus[] = {kReferenceTau, 2 * kReferenceTau, 5 * kReferenceTau}
 // Of 2τ + 1, that are tried: each so much more than the one before.
 constexpr double kLeastSize = 1.5, kStep = 1.2599210498948732;  // ∛2
 constexpr int kSteps = 16;
+constexpr double kTolerated = 0.05;  // dB, below every leaf
 
 }  // namespace
 
@@ -54,6 +55,9 @@ double HeldOutViews::best_tau(NodeTrainer& trainer) const {
     const TrainingView whole = view(i, 0);
     leaves[i] = psnr_of(whole, trainer.error_of_leaves(whole));
   }
+  const uint32_t near_views = count_ / 2;
+  const double near_least = -kTolerated * near_views,
+               far_least = -kTolerated * (count_ - near_views);
   double best = 0.5 * (kLeastSize - 1), size = kLeastSize;
   for (int step = 0; step < kSteps; ++step, size *= kStep) {
     const double tau = 0.5 * (size - 1);
@@ -61,9 +65,9 @@ double HeldOutViews::best_tau(NodeTrainer& trainer) const {
     for (uint32_t i = 0; i < count_; ++i) {
       const uint32_t k = by_distance[i].second;
       const TrainingView at = view(k, tau);
-      gained[i < count_ / 2 ? 0 : 1] += psnr_of(at, trainer.error(at)) - leaves[k];
+      gained[i < near_views ? 0 : 1] += psnr_of(at, trainer.error(at)) - leaves[k];
     }
-    if (gained[0] < -0.05 * (count_ / 2) || gained[1] < -0.05 * (count_ / 2)) break;
+    if (gained[0] < near_least || gained[1] < far_least) break;
     best = tau;
   }
   return best;

@@ -237,8 +237,8 @@ NativeChoice native_choice(const BakeArguments& arguments) {
 
 void describe(const NativePixel& found) {
   note(fmt::format(
-      "training cameras: they see {} of {} Gaussians, with pixels of {:.4g} m; a tenth "
-      "below {:.4g} m, a tenth above {:.4g} m: {}",
+      "training cameras: they see {} of {} Gaussians, half of them with pixels below {:.4g} m, a "
+      "tenth below {:.4g} m, a tenth above {:.4g} m: {}",
       found.seen, found.looked_at, found.median, found.tenth, found.ninetieth,
       found.scale().levels > 1 ? "each block of Gaussians gets its own" : "the scene gets one"));
 }

@@ -89,6 +89,8 @@ TEST_F(TrainingCameras, OfAFolderAreColmapsBeforeTheOthers) {
   expect_three(folder_.file("model"));
   file("none/readme", "");
   expect_refused(folder_.file("none"), "found a folder without cameras, expected COLMAP's");
+  file("half/cameras.txt", "");
+  expect_refused(folder_.file("half"), "half/images.txt: found no such file, expected it beside");
 }
 
 // Content counts, not a name.
@@ -104,6 +106,7 @@ TEST_F(TrainingCameras, OfOneKindUnderTheNameOfAnother) {
   EXPECT_EQ(read_training_cameras(file("91/images.bin", images)).size(), 1u);
   expect_refused(file("photo.png", "\x89PNG"), "expected a cameras.json, a transforms.json, or");
   expect_refused(file("empty.json", ""), "found an empty file");
+  expect_refused(file("cameras.json", "x[]"), "found no JSON: its first character is neither");
 }
 
 TEST_F(TrainingCameras, OfColmapMayHaveAnyModelWithAFocalLength) {
