@@ -32,8 +32,9 @@ struct BakedScene {
   // smallest of its children's.
   std::pmr::vector<uint8_t> node_code;
   TreeKind kind = TreeKind::clustered;
-  bool learned = false;  // merged Gaussians have learned, and are not their children's moments
   std::vector<Exposure> exposure;  // per node of a clustered tree; for building
+  // Merged Gaussians have learned (runtime/optimize), and are not their children's moments.
+  bool learned = false;
 
   // METHOD §12's, metres².
   double footprint_of(uint32_t node) const {

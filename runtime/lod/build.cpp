@@ -65,7 +65,8 @@ BakedScene build_tree(GaussianCloud cloud, Workers& workers, const Progress& pro
                    std::pmr::vector<uint32_t>(memory),
                    std::pmr::vector<uint8_t>(memory),
                    rule.kind,
-                   {}};
+                   {},
+                   false};
 
   const std::vector<uint32_t> levels = lay_out_scene(
       find_layout(baked.leaves, baked.origin, rule, workers, progress, footprints), baked);

@@ -72,6 +72,14 @@ TEST_F(SplatExtreme, ScalesNeedlesAndOpacities) {
   for (const float opacity : kOpacities) expect_sound(opacity_shot(opacity));
 }
 
+TEST_F(SplatExtreme, ScalesNeedlesAndOpacitiesAntialiased) {
+  for (const NativeScale& native : kExtremeNatives) {
+    expect_sound(scales_shot(native));
+    for (const float length : kNeedleLengths) expect_sound(needles_shot(length, native));
+    for (const float opacity : kOpacities) expect_sound(opacity_shot(opacity, native));
+  }
+}
+
 TEST_F(SplatExtreme, ColoursDegenerateCloudsAndFarCameras) {
   for (const ExtremeShot& shot : wild_colour_shots()) expect_sound(shot);
   const Frame frame = expect_sound(negative_colour_shot());

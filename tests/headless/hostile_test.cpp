@@ -65,6 +65,8 @@ TEST_F(Hostile, ViewSizesAndChoices) {
                    "exponential");
     expect_invalid(with([&](VoyViewDesc& d) { d.splatting = bad_enum<VoySplatting>(choice); }),
                    "splatting");
+    expect_invalid(with([&](VoyViewDesc& d) { d.antialias = bad_enum<VoyAntialias>(choice); }),
+                   "antialias");
   }
   expect_invalid(with([](VoyViewDesc& d) { d.lutSize = 4097; }), "lutSize");
 }

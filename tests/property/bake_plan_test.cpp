@@ -115,7 +115,7 @@ TEST(BakePlan, RefusesCellsWhoseSubtreesItCouldNotKnow) {
   const TreeLayout sound = test::random_cell(64, 1);
   const auto code_with = [&](const std::vector<uint8_t>& child_count) {
     return test::error_code([&] {
-      plan_of({1, {sound, sound, {child_count, {}, {}}, sound}}, kDefaultChunkBytes);
+      plan_of({1, {sound, sound, {child_count, {}, {}, {}}, sound}}, kDefaultChunkBytes);
     });
   };
   EXPECT_EQ(code_with({}), ErrorCode::internal);
@@ -124,7 +124,7 @@ TEST(BakePlan, RefusesCellsWhoseSubtreesItCouldNotKnow) {
   EXPECT_EQ(code_with({1, 5, 0, 0, 0, 0, 0}), ErrorCode::internal);  // five children
   EXPECT_EQ(code_with({1, 2, 0}), ErrorCode::internal);              // a node is missing
   EXPECT_EQ(code_with({1, 1, 0, 0}), ErrorCode::internal);           // one too many
-  EXPECT_NO_THROW(plan_of({1, {sound, sound, {{1, 1, 0}, {}, {}}, sound}}, kDefaultChunkBytes));
+  EXPECT_NO_THROW(plan_of({1, {sound, sound, {{1, 1, 0}, {}, {}, {}}, sound}}, kDefaultChunkBytes));
 }
 
 }  // namespace

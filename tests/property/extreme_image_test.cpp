@@ -122,6 +122,16 @@ TEST(ExtremeImage, NeedlesOfAThousandKilometresAtArmsLength) {
   for (const float length : test::kNeedleLengths) expect_sound(test::needles_shot(length));
 }
 
+TEST(ExtremeImage, ScalesNeedlesAndOpacitiesAntialiased) {
+  for (const NativeScale& native : test::kExtremeNatives) {
+    SCOPED_TRACE(native.pixel);
+    expect_sound(test::scales_shot(native));
+    for (const float length : test::kNeedleLengths)
+      expect_sound(test::needles_shot(length, native));
+    for (const float opacity : test::kOpacities) expect_sound(test::opacity_shot(opacity, native));
+  }
+}
+
 TEST(ExtremeImage, OpacitiesFromNothingToMerged) {
   for (const float opacity : test::kOpacities) {
     SCOPED_TRACE(opacity);

@@ -130,10 +130,16 @@ inline ExtremeShot near_plane_shot(bool one_beyond) {
   return {"near plane", scene, ahead(20, 20)};
 }
 
-// From a nanometre up.
-inline ExtremeShot scales_shot() {
+// METHOD §12 at its ends: no footprint, one between the sizes below, one that covers all.
+inline const NativeScale kExtremeNatives[] = {{NativeSource::given, 0, kPixelVariance},
+                                              {NativeSource::given, 0.05, kPixelVariance},
+                                              {NativeSource::given, 1e6, kPixelVariance}};
+
+// From a nanometre up. native: unknown is 3DGS's picture, as below.
+inline ExtremeShot scales_shot(const NativeScale& native = {}) {
   std::mt19937 random(5);
   auto scene = empty_scene();
+  scene->native = native;
   std::uniform_real_distribution<float> uniform(-1, 1);
   for (int i = 0; i < 400; ++i) {
     const auto scale = [&] {
@@ -149,10 +155,11 @@ inline ExtremeShot scales_shot() {
 }
 
 // At arm's length. Where rounding moves a needle by more than a pixel, backends part.
-inline ExtremeShot needles_shot(float length) {
+inline ExtremeShot needles_shot(float length, const NativeScale& native = {}) {
   std::mt19937 random(6);
   std::uniform_real_distribution<float> uniform(-1, 1);
   auto scene = empty_scene();
+  scene->native = native;
   for (int i = 0; i < 100; ++i)
     add_gaussian(*scene, {uniform(random), uniform(random), 1 + uniform(random)},
                  {length, i % 2 ? length : 1e-9f, 1e-9f}, 0.3f, {0.2f, 0.7f, 0.6f},
@@ -161,8 +168,9 @@ inline ExtremeShot needles_shot(float length) {
 }
 inline constexpr float kNeedleLengths[] = {1e3f, 1e6f, 1e12f, 1e18f};
 
-inline ExtremeShot opacity_shot(float opacity) {
+inline ExtremeShot opacity_shot(float opacity, const NativeScale& native = {}) {
   auto scene = empty_scene();
+  scene->native = native;
   add_gaussian(*scene, {0, 0, 4}, {0.1f, 0.1f, 0.1f}, opacity, {1, 1, 1});
   return {"opacity " + std::to_string(opacity), scene, ahead(65, 65)};
 }

@@ -506,8 +506,9 @@ void add_bake(CLI::App& app) {
       "HierarchicalGS does, for comparison, in memory only");
   add_whole_option(*command, "--refine", {1, uint64_t{1} << 20}, arguments->refine,
                    "Also draw the scene from so many places, and measure where detail is seen "
-                   "(docs/lod-tree.md). Better pictures for about a second a place: 400 places for "
-                   "a million Gaussians. A bake that was stopped goes on from FILE.refine when it "
+                   "(docs/lod-tree.md). It takes about a second a place, and helps in some views: "
+                   "400 places for a million Gaussians. A bake that was stopped goes on from "
+                   "FILE.refine when it "
                    "is run again. In memory only")
       ->type_name("VIEWS");
   add_whole_option(*command, "--chunk-bytes", {kMinChunkBytes, kMaxChunkBytes},
