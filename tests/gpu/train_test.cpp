@@ -4,6 +4,7 @@
 #include "runtime/optimize/training_views.h"
 #include "tests/gpu/splat_test.h"
 #include "tests/support/mixed_footprints.h"
+#include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
 
 namespace voyager::test {
@@ -28,17 +29,17 @@ class Train : public SplatTest {
 };
 
 TEST_F(Train, GradientsAreTheCpus) {
-  for (const double tau : {2.0, 60.0}) {
-    const BakedScene baked = tau < 4
-                                 ? bake(specks(3000, 5, 3))
-                                 : bake_by_cameras(random_cloud(3000, 4, 2), close_camera(), {});
+  const std::pair<double, BakedScene> cases[] = {
+      {10, bake(specks(3000, 5, 3))},
+      {8, bake_by_cameras(random_cloud(3000, 4, 2), close_camera())}};
+  for (const auto& [tau, baked] : cases) {
     const TrainingState host = learned(*cpu, baked, 1, tau), device = learned(*cuda, baked, 1, tau);
     ASSERT_EQ(host.first.size(), device.first.size());
     const auto numbers = static_cast<size_t>(numbers_of(baked.leaves.sh_degree));
     for (size_t number = 0; number < numbers; ++number) {
       double off = 0, all = 0;
       for (size_t i = number; i < host.first.size(); i += numbers) {
-        off += std::fabs(double{host.first[i]} - device.first[i]);
+        off += std::fabs(double{host.first[i]} - double{device.first[i]});
         all += std::fabs(double{host.first[i]});
       }
       EXPECT_GT(all, 0) << number;
