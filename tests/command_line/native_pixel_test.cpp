@@ -47,7 +47,7 @@ TEST_F(NativePixelCommand, IsGivenFoundByCamerasOrEstimated) {
     EXPECT_EQ(found.source, NativeSource::cameras);
     EXPECT_NE(said_.find("they see"), std::string::npos) << said_;
     // Of a walk and a flight, at 960 pixels: blocks in the street, and seen from above.
-    EXPECT_NE(said_.find("pixels of 0.09"), std::string::npos) << said_;
+    EXPECT_NE(said_.find("half of them with pixels below 0.09"), std::string::npos) << said_;
     EXPECT_NE(said_.find("each block of Gaussians gets its own"), std::string::npos) << said_;
     EXPECT_NEAR(found.pixel, 0.188, 0.02);
     EXPECT_GE(found.levels, 4);
