@@ -53,14 +53,6 @@ void grow(Buffer<T>& buffer, size_t count) {
   buffer = Buffer<T>(count + count / 4);
 }
 
-// Bigger by `samples` along each side.
-Camera enlarged(const Camera& camera, uint32_t samples) {
-  Camera large = camera;
-  large.width *= samples, large.height *= samples;
-  large.fx *= samples, large.fy *= samples, large.cx *= samples, large.cy *= samples;
-  return large;
-}
-
 // What one picture is drawn with.
 struct Lists {
   Lists(unsigned blocks) : splats(blocks, 1), counters(sizeof(SplatCounters)) {}
@@ -267,7 +259,7 @@ TrainingError CudaTrainer::compare(const TrainingView& view, bool leaves) {
   }
   const DrawView drawn = leaves ? leaves_->view() : DrawView{search_->list(), nullptr};
   for (;;) {
-    launch_picture(truth_, leaves_->view(), enlarged(camera, view.samples), Antialias::truth);
+    launch_picture(truth_, leaves_->view(), truth_camera(view), Antialias::truth);
     launch_picture(cut_, drawn, camera, Antialias::on);
     grow(truth_mean_, size_t{camera.width} * camera.height);
     launch_mean(truth_.picture.data(), view.samples, truth_mean_.data(), camera.width,

@@ -14,10 +14,6 @@ constexpr int kTrainRows = 32 / kPartWidth;  // of a warp's part
 constexpr int kWarps = kTile * kTile / 32;
 constexpr unsigned kThreads = 32 * kWarps;
 
-// Beside the error of colours, that of the coverage counts so much: what is behind a scene is not
-// always black.
-constexpr float kAlphaWeight = 0.1f;
-
 struct TrainSplats {
   float4 shape[32], middle[32], colour[32];
   uint32_t slot[32];
@@ -59,7 +55,7 @@ __device__ PixelAdjoint<float> adjoint_at(const TrainPictures& pictures, uint32_
   return {{drawn.x, drawn.y, drawn.z},
           1.0f - drawn.w,
           {twice * (drawn.x - truth.x), twice * (drawn.y - truth.y), twice * (drawn.z - truth.z)},
-          twice * kAlphaWeight * (drawn.w - truth.w)};
+          twice * kCoverageWeight * (drawn.w - truth.w)};
 }
 
 // What a pixel adds to the sums of a splat.

@@ -1,9 +1,20 @@
 #include "runtime/bake/sealed_file.h"
 
+#include <filesystem>
+
 #include "runtime/base/checksum.h"
 #include "runtime/base/error.h"
 
 namespace voyager {
+namespace {
+
+[[noreturn]] void refuse(const std::string& path, const std::string& found,
+                         const std::string& expected, const char* advice) {
+  throw Error(ErrorCode::refused_input,
+              path + ": found " + found + ", expected " + expected + ": " + advice);
+}
+
+}  // namespace
 
 void write_sealed(const std::string& path, std::span<const std::byte> bytes) {
   const uint64_t sum = checksum(bytes);
@@ -13,24 +24,31 @@ void write_sealed(const std::string& path, std::span<const std::byte> bytes) {
   file.commit_unflushed();
 }
 
-std::vector<std::byte> read_sealed(const std::string& path) {
+std::vector<std::byte> read_sealed(const std::string& path, const char* advice) {
   const auto source = open_file_source(path);
   uint64_t sum = 0;
   if (source->size() < sizeof sum)
-    refuse_folder(path, std::to_string(source->size()) + " bytes", "at least 8");
+    refuse(path, std::to_string(source->size()) + " bytes", "at least 8", advice);
   std::vector<std::byte> bytes(source->size());
   source->read(0, bytes);
   std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
   bytes.resize(bytes.size() - sizeof sum);
   if (checksum(bytes) != sum)
-    refuse_folder(path, "checksum " + std::to_string(checksum(bytes)), std::to_string(sum));
+    refuse(path, "checksum " + std::to_string(checksum(bytes)), std::to_string(sum), advice);
   return bytes;
 }
 
+void check_kind(const std::string& path, uint64_t kind, const std::string& content) {
+  if (!std::filesystem::exists(path)) return;
+  const auto source = open_file_source(path);
+  uint64_t found = 0;
+  if (source->size() >= sizeof found) source->read(0, std::as_writable_bytes(std::span(&found, 1)));
+  if (found != kind)
+    refuse(path, "a file that no bake has written", content, "give another -o, or move it away");
+}
+
 void refuse_folder(const std::string& path, const std::string& found, const std::string& expected) {
-  throw Error(ErrorCode::refused_input, path + ": found " + found + ", expected " + expected +
-                                            ": the work folder was altered; remove it and bake "
-                                            "again");
+  refuse(path, found, expected, kFolderAltered);
 }
 
 }  // namespace voyager

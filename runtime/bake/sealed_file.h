@@ -14,8 +14,14 @@ namespace voyager {
 // Appears in one step. Throws Error(io).
 void write_sealed(const std::string& path, std::span<const std::byte> bytes);
 
-// Throws Error(refused_input) naming the file where its checksum does not match.
-std::vector<std::byte> read_sealed(const std::string& path);
+// Throws Error(refused_input) naming the file where its checksum does not match; advice: what to do
+// then.
+inline constexpr char kFolderAltered[] = "the work folder was altered; remove it and bake again";
+std::vector<std::byte> read_sealed(const std::string& path, const char* advice = kFolderAltered);
+
+// Of a file outside a work folder, which begins with a number that says what it is. Throws
+// Error(refused_input) where there is another one; content: what was expected.
+void check_kind(const std::string& path, uint64_t kind, const std::string& content);
 
 [[noreturn]] void refuse_folder(const std::string& path, const std::string& found,
                                 const std::string& expected);

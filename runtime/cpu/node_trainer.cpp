@@ -113,10 +113,8 @@ class HostTrainer final : public NodeTrainer {
 std::vector<TrainPixel> HostTrainer::draw_truth(const TrainingView& view) {
   const uint32_t samples = view.samples;
   FrameInput frame;
-  Camera& camera = frame.eyes[0].camera;
-  camera = view.camera;
-  camera.width *= samples, camera.height *= samples;
-  camera.fx *= samples, camera.fy *= samples, camera.cx *= samples, camera.cy *= samples;
+  const Camera camera = truth_camera(view);
+  frame.eyes[0].camera = camera;
   std::vector<TrainPixel> fine(size_t{camera.width} * camera.height);
   Image& image = frame.eyes[0].image;
   image.format = ColorFormat::rgba32f;

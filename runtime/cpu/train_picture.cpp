@@ -11,9 +11,6 @@ namespace {
 
 constexpr size_t kItemsBlock = 2048;
 constexpr uint32_t kNowhere = 0xffffffffu;
-// Beside the error of colours, that of the coverage counts so much: what is behind a scene is not
-// always black.
-constexpr float kAlphaWeight = 0.1f;
 
 // α of METHOD §6 at a pixel, and where that is in the conic's axes. False outside the support.
 struct Alpha {
@@ -155,7 +152,7 @@ void TrainPicture::blend_back(int tile, std::span<const TrainPixel> truth, float
     adjoint[local] = {{drawn.r, drawn.g, drawn.b},
                       1.0f - drawn.alpha,
                       (2.0f * weight) * off,
-                      2.0f * weight * kAlphaWeight * (drawn.alpha - wanted.alpha)};
+                      2.0f * weight * kCoverageWeight * (drawn.alpha - wanted.alpha)};
     error[local] = dot(off, off);
   }
   for (size_t k = 0; k < pairs.size(); ++k) {

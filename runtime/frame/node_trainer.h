@@ -18,6 +18,15 @@ struct TrainingView {
   uint32_t samples = 4;
 };
 
+// Of the picture whose samples × samples pixels are a pixel's truth.
+inline Camera truth_camera(const TrainingView& view) {
+  Camera camera = view.camera;
+  camera.width *= view.samples, camera.height *= view.samples;
+  camera.fx *= view.samples, camera.fy *= view.samples;
+  camera.cx *= view.samples, camera.cy *= view.samples;
+  return camera;
+}
+
 // Of a picture against the truth.
 struct TrainingError {
   double squares = 0;  // summed over pixels and colours, code values²
@@ -48,6 +57,7 @@ struct TrainingState {
   std::vector<uint32_t> steps;       // a row's
   bool operator==(const TrainingState&) const = default;
 };
+
 // Not thread-safe. The same calls on the same device give the same bits.
 class NodeTrainer {
  public:

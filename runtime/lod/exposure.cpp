@@ -35,9 +35,6 @@ Direction direction(int index) {
   const double z = 1 - 2 * (index + 0.5) / kDirections, r = std::sqrt(1 - z * z);
   const Vec3d f{r * std::cos(golden * index), r * std::sin(golden * index), z};
   const Vec3d up = std::fabs(f.z) < 0.9 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
-  const auto cross = [](const Vec3d& a, const Vec3d& b) {
-    return Vec3d{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-  };
   const Vec3d c = cross(f, up);
   const Vec3d right = (1 / std::sqrt(dot(c, c))) * c;
   return {f, right, cross(f, right)};

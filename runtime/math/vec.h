@@ -32,6 +32,11 @@ VOYAGER_HD T dot(const Vec3<T>& a, const Vec3<T>& b) {
   return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
 
+template <class T>
+VOYAGER_HD Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 // Rows.
 template <class T>
 struct Mat3 {

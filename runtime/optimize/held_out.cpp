@@ -14,7 +14,7 @@ constexpr double kTaus[] = {kReferenceTau, 2 * kReferenceTau, 5 * kReferenceTau}
 // Of 2τ + 1, that are tried: each so much more than the one before.
 constexpr double kLeastSize = 1.5, kStep = 1.2599210498948732;  // ∛2
 constexpr int kSteps = 16;
-constexpr double kTolerated = 0.05;  // dB, below every leaf
+constexpr double kTolerated = 0.5;  // dB, below every leaf
 
 }  // namespace
 

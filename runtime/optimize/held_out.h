@@ -14,8 +14,8 @@ class HeldOutViews {
 
   // At the default τ, twice and five times it.
   std::vector<HeldOut> look(NodeTrainer& trainer) const;
-  // The greatest τ, of a few a factor apart, at which a cut's pictures are in the mean no worse
-  // than every leaf's, of the nearer half of the views and of the farther half.
+  // The greatest τ, of a few a factor apart, at which a cut's pictures have in the mean half a dB
+  // less than every leaf's at most: those of the nearer half of the views, and of the farther half.
   double best_tau(NodeTrainer& trainer) const;
 
  private:

@@ -8,8 +8,8 @@
 #include "runtime/frame/built_scene.h"
 #include "runtime/lod/align.h"
 #include "runtime/lod/stand_in.h"
+#include "runtime/optimize/checkpoint.h"
 #include "runtime/optimize/held_out.h"
-#include "runtime/optimize/kept.h"
 #include "runtime/refine/extents.h"
 
 namespace voyager {
@@ -28,8 +28,8 @@ constexpr uint32_t kStepsPerMeasure = 60, kLeastMeasures = 8, kMostMeasures = 25
 constexpr uint32_t kFirstMeasure = uint32_t{1} << 27;
 
 constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
-// Extents are scaled at the end, by this at most.
-constexpr double kMostScale = 8;
+// Extents shrink at the end by this factor at most.
+constexpr double kMostShrink = 8;
 
 LearningRates rates_at(double done) {
   LearningRates rates = kRates;
@@ -54,7 +54,7 @@ class Optimizing {
     summary.before = held_out_.look(*trainer_);
     start(goal);
     learn(goal.keep_milliseconds);
-    summary.pictures = standing_.steps;
+    summary.pictures = checkpoint_.pictures;
     summary.extents_by = calibrate();
     summary.after = held_out_.look(*trainer_);
     take_learned();
@@ -64,18 +64,18 @@ class Optimizing {
  private:
   // Where it was left, or at the beginning.
   void start(const OptimizeGoal& goal) {
-    if (read_kept(mark_, kept_, standing_)) {
-      if (goal.pictures != 0 && goal.pictures != standing_.steps)
+    if (read_checkpoint(mark_, kept_, checkpoint_)) {
+      if (goal.pictures != 0 && goal.pictures != checkpoint_.pictures)
         throw Error(ErrorCode::refused_input,
-                    kept_ + ": found what is learned from " + std::to_string(standing_.steps) +
+                    kept_ + ": found what is learned from " + std::to_string(checkpoint_.pictures) +
                         " pictures, expected " + std::to_string(goal.pictures) +
                         ": ask for as many, or remove it");
-      trainer_->set_state(standing_.state);
+      trainer_->set_state(checkpoint_.state);
       take_extents();
       return;
     }
-    standing_.steps = goal.pictures != 0 ? goal.pictures : steps_in(goal.minutes);
-    standing_.extents.resize(baked_.tree.size());
+    checkpoint_.pictures = goal.pictures != 0 ? goal.pictures : steps_in(goal.minutes);
+    checkpoint_.extents.resize(baked_.tree.size());
     give_extents();
   }
 
@@ -91,17 +91,17 @@ class Optimizing {
 
   void learn(double keep_milliseconds) {
     Stopwatch since_kept;
-    const uint32_t steps = standing_.steps;
-    while (standing_.done < steps) {
-      const uint32_t k = standing_.done++;
+    const uint32_t steps = checkpoint_.pictures;
+    while (checkpoint_.done < steps) {
+      const uint32_t k = checkpoint_.done++;
       report(progress_, "optimizing", k, steps);
       trainer_->step(views_(k), rates_at(static_cast<double>(k) / steps));
       for (const double share : kMeasureAt)
-        if (standing_.done == static_cast<uint32_t>(std::ceil(share * steps))) measure();
+        if (checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps))) measure();
       if (since_kept.milliseconds() < keep_milliseconds) continue;
-      standing_.state = trainer_->state();
+      checkpoint_.state = trainer_->state();
       give_extents();
-      keep(standing_, mark_, kept_);
+      write_checkpoint(checkpoint_, mark_, kept_);
       since_kept = {};
     }
     report(progress_, "optimizing", steps, steps);
@@ -110,7 +110,7 @@ class Optimizing {
   void measure() {
     Measured measured(baked_.tree.size());
     const uint32_t views =
-        std::clamp(standing_.steps / kStepsPerMeasure, kLeastMeasures, kMostMeasures);
+        std::clamp(checkpoint_.pictures / kStepsPerMeasure, kLeastMeasures, kMostMeasures);
     for (uint32_t i = 0; i < views; ++i)
       for (const double tau : kMeasureTaus) {
         TrainingView view = views_(kFirstMeasure + i);
@@ -128,31 +128,31 @@ class Optimizing {
       }
     set_extents(measured, baked_.tree);
     give_extents();
-    trainer_->set_extents(standing_.extents);
+    trainer_->set_extents(checkpoint_.extents);
   }
 
-  // Extents such that the default τ is as good as every leaf. Returns what they grew by.
+  // Extents such that the default τ draws no more than it has to. They never grow: frames of a tree
+  // that learned are not to be slower. Returns what they are multiplied by.
   double calibrate() {
     const double tau = held_out_.best_tau(*trainer_);
-    const double by =
-        std::clamp((2 * kReferenceTau + 1) / (2 * tau + 1), 1 / kMostScale, kMostScale);
+    const double by = std::clamp((2 * kReferenceTau + 1) / (2 * tau + 1), 1 / kMostShrink, 1.0);
     for (NodeRecord& r : baked_.tree.records) {
       const auto changed = static_cast<float>(by * double{r.extent});
       if (std::isfinite(changed)) r.extent = changed;
     }
     give_extents();
-    trainer_->set_extents(standing_.extents);
+    trainer_->set_extents(checkpoint_.extents);
     return by;
   }
 
   void give_extents() {
     for (size_t n = 0; n < baked_.tree.size(); ++n)
-      standing_.extents[n] = baked_.tree.records[n].extent;
+      checkpoint_.extents[n] = baked_.tree.records[n].extent;
   }
   void take_extents() {
     for (size_t n = 0; n < baked_.tree.size(); ++n)
-      baked_.tree.records[n].extent = standing_.extents[n];
-    trainer_->set_extents(standing_.extents);
+      baked_.tree.records[n].extent = checkpoint_.extents[n];
+    trainer_->set_extents(checkpoint_.extents);
   }
 
   void take_learned() {
@@ -184,7 +184,7 @@ class Optimizing {
   const TrainingViews views_;
   const HeldOutViews held_out_;
   std::unique_ptr<NodeTrainer> trainer_;
-  Standing standing_;
+  Checkpoint checkpoint_;
 };
 
 }  // namespace

@@ -37,13 +37,11 @@ struct OptimizeSummary {
 
 // Changes the merged Gaussians of a clustered tree and its extents; leaves stay as they are. With a
 // number of pictures the same scene on the same device gives the same bytes, however often this was
-// stopped. At the end extents are such that at the default τ a cut's held-out pictures are about as
-// near to the truth as every leaf's.
-// kept: a file in which what was learned is kept now and then, and from which this goes on; whoever
-// calls removes it. Progress counts pictures.
-// Throws Error(refused_input) where the file is of another scene or was altered,
-// Error(unsupported) for another kind of tree or where the backend has no trainer,
-// Error(over_budget), Error(io).
+// stopped. At the end extents shrink as far as a cut's held-out pictures at the default τ stay
+// within half a dB of every leaf's. kept: a file in which what was learned is kept now and then,
+// and from which this goes on; whoever calls removes it. Progress counts pictures. Throws
+// Error(refused_input) where the file is of another scene or was altered, Error(unsupported) for
+// another kind of tree or where the backend has no trainer, Error(over_budget), Error(io).
 OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Backend& backend,
                                const std::string& kept, Workers& workers,
                                const Progress& progress = {});

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "runtime/math/halton.h"
+
 namespace voyager {
 namespace {
 
@@ -16,26 +18,14 @@ constexpr size_t kFewLeaves = 100'000;
 constexpr double kFinestTau = 0.75, kCoarsestTau = 15;
 
 constexpr size_t kSample = 1 << 16;
-// Of the native pixel in a picture's pixel at the leaf that is looked at: closer nothing is to be
-// seen that nodes could show.
+// A picture's pixel, at the leaf that is looked at, is this share of the native pixel or more:
+// closer than that every cut has its leaves.
 constexpr double kClosest = 0.3;
 // Sine of the elevation. What nobody has seen from below looks like nothing from there, and what
 // learned it would look worse from above.
 constexpr double kLowestOfFlat = -0.05, kLowestOfOther = -0.5;
 constexpr double kNearestOfRadius = 0.02, kFarthestOfRadius = 3;
-
-double radical_inverse(uint64_t k, uint32_t base) {
-  double value = 0, digit = 1;
-  for (; k != 0; k /= base) {
-    digit /= base;
-    value += digit * static_cast<double>(k % base);
-  }
-  return value;
-}
-
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+constexpr double kNearPlane = 0.1;  // of the distance, at most
 
 double between(double low, double high, double share) {
   return low * std::pow(high / low, share);
@@ -86,7 +76,7 @@ TrainingViews::TrainingViews(const BakedScene& baked)
   const Spread spread(baked);
   const Upward found = upward(spread);
   const Vec3d& up = found.up;
-  const Vec3d level = std::fabs(up.x) > 0.5 ? Vec3d{0, 1, 0} : Vec3d{1, 0, 0};
+  const Vec3d level{1, 0, 0};
   axes_ = {{level, cross(up, level), up}};
   lowest_rise_ = found.flat ? kLowestOfFlat : kLowestOfOther;
   const double radius = std::max(spread.radius(), 1e-6);
@@ -124,6 +114,8 @@ TrainingView TrainingViews::operator()(uint32_t k) const {
   camera.fx = camera.fy = kFocal / smaller_;
   camera.width = kWidth / smaller_, camera.height = kHeight / smaller_;
   camera.cx = 0.5 * camera.width, camera.cy = 0.5 * camera.height;
+  // Scenes of a few centimetres are to be seen, too.
+  camera.near_z = std::min(camera.near_z, kNearPlane * distance(k));
   const double coarse =
       between(2 * kFinestTau + 1, 2 * kCoarsestTau + 1, radical_inverse(index, 11));
   view.tau = 0.5 * (coarse - 1);

@@ -40,15 +40,7 @@ void keep(const Measured& measured, const LodTree& tree, const std::string& path
 }
 
 void check_kept(const std::string& path) {
-  if (!std::filesystem::exists(path)) return;
-  const auto source = open_file_source(path);
-  uint64_t kind = 0;
-  if (source->size() >= sizeof kind) source->read(0, std::as_writable_bytes(std::span(&kind, 1)));
-  if (kind != kKind)
-    throw Error(ErrorCode::refused_input,
-                path +
-                    ": found a file that no bake has written, expected what --refine has measured: "
-                    "give another -o, or move it away");
+  check_kind(path, kKind, "what --refine has measured");
 }
 
 Measured read_kept(const LodTree& tree, const std::string& path) {

@@ -5,25 +5,14 @@
 #include <numbers>
 #include <vector>
 
+#include "runtime/math/halton.h"
+
 namespace voyager {
 namespace {
 
 constexpr double kNearest = 0.03, kFarthest = 0.45;  // of the scene's radius
 constexpr double kLowestRise = -1;  // sine of the elevation: a scene does not say what is up
 constexpr size_t kSample = 1 << 16;
-
-double radical_inverse(uint64_t k, uint32_t base) {
-  double value = 0, digit = 1;
-  for (; k != 0; k /= base) {
-    digit /= base;
-    value += digit * static_cast<double>(k % base);
-  }
-  return value;
-}
-
-Vec3d cross(const Vec3d& a, const Vec3d& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 // Half the diagonal of the box of the middle 96 % of the means on each axis, of an even sample.
 double radius_of(const BakedScene& baked) {

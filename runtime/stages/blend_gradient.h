@@ -6,6 +6,10 @@
 
 namespace voyager {
 
+// Of a loss: the squared error of the coverage, beside that of each colour. What is behind a scene
+// is not always black.
+inline constexpr float kCoverageWeight = 0.1f;
+
 // A pixel in progress. `colour` and `transmittance` are those of the finished pixel, over black;
 // by_colour and by_alpha how the loss changes with its colour and with 1 - transmittance.
 template <class T>

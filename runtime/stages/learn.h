@@ -93,8 +93,8 @@ VOYAGER_HD float clamped(float x, float low, float high) {
 }
 }  // namespace detail
 
-// moves: by number, down. Stays within what importers take (runtime/scene/sanitise.h); an opacity
-// above e² covers no more.
+// moves: by number, down. Scales stay within what importers take (runtime/scene/sanitise.h) and
+// opacities between e^-6, which is fainter than α*, and e².
 VOYAGER_HD void move_shape(const float* moves, Gaussian& g) {
   for (int i = 0; i < 3; ++i) {
     g.mean[i] -= moves[i];

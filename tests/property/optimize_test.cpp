@@ -9,7 +9,7 @@
 #include "runtime/cpu/cpu_backend.h"
 #include "runtime/frame/built_scene.h"
 #include "runtime/lod/validate.h"
-#include "runtime/optimize/kept.h"
+#include "runtime/optimize/checkpoint.h"
 #include "runtime/optimize/training_views.h"
 #include "runtime/scene/append.h"
 #include "tests/support/render_scene.h"
@@ -114,10 +114,10 @@ TEST(Optimize, WhatWasLearnedOfAnotherSceneOrWasAlteredIsRefused) {
   const test::TempFolder folder;
   const std::string kept = folder.file("kept");
   const BakedScene baked = test::bake(test::specks(300, 7, 0));
-  Standing standing;
-  standing.steps = 5;
-  standing.extents.resize(baked.tree.size());
-  keep(standing, mark_of(baked), kept);
+  Checkpoint checkpoint;
+  checkpoint.pictures = 5;
+  checkpoint.extents.resize(baked.tree.size());
+  write_checkpoint(checkpoint, mark_of(baked), kept);
   const auto refusal = [&](const BakedScene& scene, uint32_t pictures) {
     try {
       learn(scene, pictures, 1, kept);
@@ -138,7 +138,9 @@ TEST(Optimize, WhatWasLearnedOfAnotherSceneOrWasAlteredIsRefused) {
   file.seekp(40);
   file.put('\x5a');
   file.close();
-  EXPECT_NE(refusal(baked, 5).find(kept + ": "), std::string::npos);
+  const std::string altered = refusal(baked, 5);
+  EXPECT_TRUE(altered.starts_with(kept + ": found checksum ")) << altered;
+  EXPECT_TRUE(altered.ends_with(": remove it, and learning starts anew")) << altered;
 }
 
 }  // namespace

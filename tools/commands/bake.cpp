@@ -20,8 +20,7 @@
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
 #include "runtime/lod/validate.h"
-#include "runtime/optimize/kept.h"
-#include "runtime/optimize/optimize.h"
+#include "runtime/optimize/checkpoint.h"
 #include "runtime/refine/measured.h"
 #include "runtime/refine/refine.h"
 #include "runtime/scene/append.h"
@@ -31,7 +30,7 @@
 #include "runtime/scene/sh_bands.h"
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
-#include "tools/commands/measured_backend.h"
+#include "tools/commands/optimize_options.h"
 #include "tools/console.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
@@ -51,12 +50,6 @@ struct Part {
   uint32_t part = 0, parts = 1;
 };
 
-// A quality, or minutes where they are above 0.
-struct Optimize {
-  OptimizeQuality quality = OptimizeQuality::good;
-  double minutes = 0;
-};
-
 struct BakeArguments {
   std::vector<std::string> inputs;
   std::string output;
@@ -64,8 +57,7 @@ struct BakeArguments {
   uint32_t chunk_bytes = kDefaultChunkBytes;
   TreeKind tree = TreeKind::clustered;
   uint32_t refine = 0;  // views
-  std::optional<Optimize> optimize;
-  BackendChoice backend;     // of --optimize
+  OptimizeOptions optimize;
   double native_pixel = -1;  // metres; below 0: not given
   std::string training_cameras;
   bool verify = false;
@@ -104,7 +96,7 @@ Announced announced_by(const Readers& readers) {
 uint64_t bytes_in_memory(const Announced& inputs, const BakeArguments& arguments) {
   return bytes_to_bake(inputs.gaussians, inputs.sh_degree) +
          (arguments.refine != 0 ? bytes_to_refine(inputs.gaussians) : 0) +
-         (arguments.optimize ? bytes_to_optimize(inputs.gaussians, inputs.sh_degree) : 0);
+         (arguments.optimize.wanted() ? bytes_to_optimize(inputs.gaussians, inputs.sh_degree) : 0);
 }
 
 // So that many appends copy little.
@@ -210,21 +202,6 @@ std::string optimize_file(const BakeArguments& arguments) {
   return arguments.output + ".optimize";
 }
 
-OptimizeGoal goal_of(const Optimize& wanted, uint64_t merged_nodes) {
-  if (wanted.minutes > 0) return {0, wanted.minutes};
-  return {pictures_of(wanted.quality, merged_nodes)};
-}
-
-void describe(const OptimizeSummary& learned) {
-  for (size_t i = 0; i < learned.after.size(); ++i) {
-    const HeldOut &before = learned.before[i], &after = learned.after[i];
-    say(fmt::format(
-        "tau {}: {:.1f} dB with {:.1f} % of the Gaussians, before {:.1f} dB with {:.1f} "
-        "%; every Gaussian {:.1f} dB\n",
-        after.tau, after.cut, 100 * after.share, before.cut, 100 * before.share, after.leaves));
-  }
-}
-
 // The pictures are taken to have been made as small as INRIA's trainer makes them by itself.
 NativeChoice native_choice(const BakeArguments& arguments) {
   NativeChoice choice;
@@ -269,10 +246,10 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
   const std::string kept = refine_file(arguments);
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
   const std::string learned = optimize_file(arguments);
-  if (arguments.optimize) {
-    const std::unique_ptr<Backend> backend = create_backend(arguments.backend);
-    describe(optimize_nodes(baked, goal_of(*arguments.optimize, baked.merged.size()), *backend,
-                            learned, workers, progress));
+  if (arguments.optimize.wanted()) {
+    const std::unique_ptr<Backend> backend = create_backend(arguments.optimize.backend);
+    const OptimizeGoal goal = arguments.optimize.goal(baked.merged.size());
+    print_learned(optimize_nodes(baked, goal, *backend, learned, workers, progress));
   }
   if (arguments.verify) {
     progress("verifying", 0, 0);
@@ -282,7 +259,7 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
   if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
   write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
   if (arguments.refine != 0) ::unlink(written_path(kept).c_str());
-  if (arguments.optimize) ::unlink(written_path(learned).c_str());
+  if (arguments.optimize.wanted()) ::unlink(written_path(learned).c_str());
   if (arguments.verify) {
     progress("verifying", 0, 0);
     verify_file(arguments.output, baked.tree, partition);
@@ -312,7 +289,7 @@ BakeSummary bake_from_folder(const BakeArguments& arguments, const NativeChoice&
     throw Error(ErrorCode::unsupported,
                 "--refine: found a bake in a work folder, expected one in memory: give more "
                 "--memory and no --work, or leave it out");
-  if (arguments.optimize)
+  if (arguments.optimize.wanted())
     throw Error(ErrorCode::unsupported,
                 "--optimize: found a bake in a work folder, expected one in memory: give more "
                 "--memory and no --work, or leave it out");
@@ -351,7 +328,7 @@ std::vector<std::string> outputs_of(const BakeArguments& arguments) {
   std::vector<std::string> outputs;
   if (writes_output(arguments)) outputs.push_back(arguments.output);
   if (arguments.refine != 0) outputs.push_back(refine_file(arguments));
-  if (arguments.optimize) outputs.push_back(optimize_file(arguments));
+  if (arguments.optimize.wanted()) outputs.push_back(optimize_file(arguments));
   return outputs;
 }
 
@@ -362,7 +339,7 @@ void bake(const BakeArguments& arguments) {
     throw Error(ErrorCode::invalid_argument,
                 "--refine: found --tree hierarchicalgs, expected the clustered tree: the other's "
                 "extents are sides of boxes");
-  if (arguments.optimize && arguments.tree != TreeKind::clustered)
+  if (arguments.optimize.wanted() && arguments.tree != TreeKind::clustered)
     throw Error(ErrorCode::invalid_argument,
                 "--optimize: found --tree hierarchicalgs, expected the clustered tree");
   if (arguments.part && arguments.step != BakeStep::cells && arguments.step != BakeStep::encode)
@@ -372,7 +349,7 @@ void bake(const BakeArguments& arguments) {
     throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
   for (const std::string& output : outputs_of(arguments)) require_writable(output);
   if (arguments.refine != 0) check_kept(refine_file(arguments));
-  if (arguments.optimize) check_kept_standing(optimize_file(arguments));
+  if (arguments.optimize.wanted()) check_checkpoint(optimize_file(arguments));
   const NativeChoice native = native_choice(arguments);
   const Progress progress = progress_bar();
   const Stopwatch watch;
@@ -396,18 +373,6 @@ void bake(const BakeArguments& arguments) {
                 watch);
 }
 
-Optimize parse_goal(const std::string& text) {
-  if (text == "draft") return {OptimizeQuality::draft, 0};
-  if (text == "good") return {OptimizeQuality::good, 0};
-  if (text == "best") return {OptimizeQuality::best, 0};
-  const auto minutes = parse_number(text);
-  if (!minutes || !(*minutes > 0 && *minutes <= 10000))
-    throw CLI::ValidationError("--optimize", "found " + text +
-                                                 ", expected draft, good or best, or minutes above "
-                                                 "0 up to 10000");
-  return {OptimizeQuality::good, *minutes};
-}
-
 Part parse_part(const std::string& text) {
   const size_t slash = std::min(text.find('/'), text.size());
   const auto part = parse_whole(text.substr(0, slash));
@@ -415,20 +380,6 @@ Part parse_part(const std::string& text) {
   if (!part || !parts || *part >= *parts || *parts > std::numeric_limits<uint32_t>::max())
     throw CLI::ValidationError("--part", "found " + text + ", expected K/N with K from 0 to N - 1");
   return {static_cast<uint32_t>(*part), static_cast<uint32_t>(*parts)};
-}
-
-void add_optimize_options(CLI::App& command, BakeArguments& arguments) {
-  command
-      .add_option_function<std::string>(
-          "--optimize",
-          [&arguments](const std::string& text) { arguments.optimize = parse_goal(text); },
-          "Let merged Gaussians learn from pictures of the scene (docs/optimizing.md): a cut of "
-          "the same size looks better, and the default cut is smaller. draft, good or best, or how "
-          "many minutes to take. A bake that was stopped goes on from FILE.optimize when it is run "
-          "again. In memory only")
-      ->type_name("QUALITY|MINUTES");
-  add_backend_options(command, arguments.backend);
-  name_group(command, "Optimizing");
 }
 
 void add_native_options(CLI::App& command, BakeArguments& arguments) {
@@ -508,14 +459,13 @@ void add_bake(CLI::App& app) {
                    "Also draw the scene from so many places, and measure where detail is seen "
                    "(docs/lod-tree.md). It takes about a second a place, and helps in some views: "
                    "400 places for a million Gaussians. A bake that was stopped goes on from "
-                   "FILE.refine when it "
-                   "is run again. In memory only")
+                   "FILE.refine when it is run again. In memory only")
       ->type_name("VIEWS");
   add_whole_option(*command, "--chunk-bytes", {kMinChunkBytes, kMaxChunkBytes},
                    arguments->chunk_bytes, "Bytes of search records in a chunk, at most")
       ->default_str(std::to_string(arguments->chunk_bytes));
   name_group(*command, "The tree");
-  add_optimize_options(*command, *arguments);
+  add_optimize_options(*command, arguments->optimize);
   add_native_options(*command, *arguments);
   add_work_options(*command, *arguments);
   command->footer("Example: voyager bake city.ply -o city.voy --quality lossless --verify");

@@ -9,6 +9,7 @@
 #include "tools/commands/render_arguments.h"
 #include "tools/console.h"
 #include "tools/default_camera.h"
+#include "tools/options.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
 

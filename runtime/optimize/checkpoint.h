@@ -7,8 +7,8 @@
 
 namespace voyager {
 
-struct Standing {
-  uint32_t steps = 0;  // in all
+struct Checkpoint {
+  uint32_t pictures = 0;  // to learn from, in all
   uint32_t done = 0;
   std::vector<float> extents;  // by node
   TrainingState state;
@@ -18,11 +18,11 @@ struct Standing {
 uint64_t mark_of(const BakedScene& baked);
 
 // A file of its own, whole or absent.
-void keep(const Standing& standing, uint64_t mark, const std::string& path);
-// Throws Error(refused_input) where something is there that keep() did not write.
-void check_kept_standing(const std::string& path);
+void write_checkpoint(const Checkpoint& checkpoint, uint64_t mark, const std::string& path);
+// Throws Error(refused_input) where there is a file that write_checkpoint() did not write.
+void check_checkpoint(const std::string& path);
 // False where there is none. Throws Error(refused_input) where it is of another scene or was
 // altered.
-bool read_kept(uint64_t mark, const std::string& path, Standing& standing);
+bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpoint);
 
 }  // namespace voyager

@@ -1,0 +1,66 @@
+#include "runtime/optimize/checkpoint.h"
+
+#include <filesystem>
+
+#include "runtime/bake/sealed_file.h"
+#include "runtime/base/checksum.h"
+#include "runtime/base/error.h"
+
+namespace voyager {
+namespace {
+
+constexpr uint64_t kKind = 0x31696d6974706f;  // "optimi1"
+constexpr char kStartAnew[] = "remove it, and learning starts anew";
+
+template <class Values>
+uint64_t sum_of(const Values& values) {
+  return checksum(std::as_bytes(std::span(values.data(), values.size())));
+}
+
+}  // namespace
+
+uint64_t mark_of(const BakedScene& baked) {
+  const uint64_t parts[] = {sum_of(baked.tree.records),     sum_of(baked.merged.position),
+                            sum_of(baked.merged.sh),        sum_of(baked.leaves.position),
+                            sum_of(baked.leaves.log_scale), sum_of(baked.leaves.opacity),
+                            sum_of(baked.leaves.sh)};
+  return checksum(std::as_bytes(std::span(parts)));
+}
+
+void write_checkpoint(const Checkpoint& checkpoint, uint64_t mark, const std::string& path) {
+  Packer packer;
+  const uint64_t head[] = {kKind, mark, checkpoint.pictures, checkpoint.done};
+  packer.put(std::span(head));
+  packer.put_all(checkpoint.extents).put_all(checkpoint.state.values);
+  packer.put_all(checkpoint.state.opacities).put_all(checkpoint.state.first);
+  packer.put_all(checkpoint.state.second).put_all(checkpoint.state.steps);
+  write_sealed(path, packer.bytes());
+}
+
+void check_checkpoint(const std::string& path) {
+  check_kind(path, kKind, "what --optimize has learned");
+}
+
+bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpoint) {
+  if (!std::filesystem::exists(path)) return false;
+  check_checkpoint(path);
+  const std::vector<std::byte> bytes = read_sealed(path, kStartAnew);
+  Unpacker from(path, bytes);
+  uint64_t head[4];
+  from.take(std::span<uint64_t>(head));
+  if (head[1] != mark)
+    throw Error(
+        ErrorCode::refused_input,
+        path + ": found what was learned of another scene, expected this one: " + kStartAnew);
+  checkpoint.pictures = static_cast<uint32_t>(head[2]);
+  checkpoint.done = static_cast<uint32_t>(head[3]);
+  from.take_all(checkpoint.extents);
+  from.take_all(checkpoint.state.values);
+  from.take_all(checkpoint.state.opacities);
+  from.take_all(checkpoint.state.first);
+  from.take_all(checkpoint.state.second);
+  from.take_all(checkpoint.state.steps);
+  return true;
+}
+
+}  // namespace voyager
