@@ -190,6 +190,7 @@ class CudaTrainer final : public NodeTrainer {
   void launch_picture(Lists& lists, const DrawView& draws, const Camera& camera,
                       Antialias antialias);
   bool has_room(Lists& lists) { return !lists.splats.grow(room_for(lists.counted())); }
+  void launch_truth(const TrainingView& view);
   TrainingError compare(const TrainingView& view, bool leaves);
   void launch_sums(const TrainingView& view, double weight, uint32_t places);
 
@@ -216,6 +217,7 @@ class CudaTrainer final : public NodeTrainer {
   std::unique_ptr<CutSearch> search_;
   Lists cut_, truth_;
   Buffer<float4> truth_mean_;
+  TruthOf truth_drawn_;
   Buffer<FixedSum> sums_;
   Buffer<float> gradients_;
   Stream stream_;
@@ -248,6 +250,15 @@ void CudaTrainer::launch_picture(Lists& lists, const DrawView& draws, const Came
         "counters");
 }
 
+void CudaTrainer::launch_truth(const TrainingView& view) {
+  const Camera& camera = view.camera;
+  launch_picture(truth_, leaves_->view(), truth_camera(view), Antialias::truth);
+  grow(truth_mean_, size_t{camera.width} * camera.height);
+  launch_mean(truth_.picture.data(), view.samples, truth_mean_.data(), camera.width, camera.height,
+              stream_.get());
+  truth_drawn_ = truth_of(view);
+}
+
 // Lists that found too little room are made again with more.
 TrainingError CudaTrainer::compare(const TrainingView& view, bool leaves) {
   const Camera& camera = view.camera;
@@ -259,11 +270,8 @@ TrainingError CudaTrainer::compare(const TrainingView& view, bool leaves) {
   }
   const DrawView drawn = leaves ? leaves_->view() : DrawView{search_->list(), nullptr};
   for (;;) {
-    launch_picture(truth_, leaves_->view(), truth_camera(view), Antialias::truth);
+    if (truth_drawn_ != truth_of(view)) launch_truth(view);
     launch_picture(cut_, drawn, camera, Antialias::on);
-    grow(truth_mean_, size_t{camera.width} * camera.height);
-    launch_mean(truth_.picture.data(), view.samples, truth_mean_.data(), camera.width,
-                camera.height, stream);
     check(cudaMemsetAsync(squares_.data(), 0, squares_.bytes(), stream), "squares");
     launch_squares(pictures(camera), squares_.data(), stream);
     check(cudaMemcpyAsync(found_.data(), squares_.data(), sizeof(FixedSum), cudaMemcpyDeviceToHost,
@@ -271,6 +279,7 @@ TrainingError CudaTrainer::compare(const TrainingView& view, bool leaves) {
           "squares");
     stream_.wait();
     const bool truth_fits = has_room(truth_), cut_fits = has_room(cut_);
+    if (!truth_fits) truth_drawn_ = {};
     if (truth_fits && cut_fits) break;
   }
   const FixedSum squares = *reinterpret_cast<const FixedSum*>(found_.data());

@@ -102,7 +102,7 @@ class HostTrainer final : public NodeTrainer {
   std::vector<DrawItem> leaves_, cut_;
   ExhaustiveSearch search_;
   struct KeptTruth {
-    Vec3d eye;
+    TruthOf of;
     std::vector<TrainPixel> pixels;
   };
   std::vector<KeptTruth> truths_;
@@ -142,8 +142,8 @@ std::vector<TrainPixel> HostTrainer::draw_truth(const TrainingView& view) {
 
 const std::vector<TrainPixel>& HostTrainer::kept_truth(const TrainingView& view) {
   for (const KeptTruth& truth : truths_)
-    if (truth.eye == view.camera.eye) return truth.pixels;
-  KeptTruth truth{view.camera.eye, draw_truth(view)};
+    if (truth.of == truth_of(view)) return truth.pixels;
+  KeptTruth truth{truth_of(view), draw_truth(view)};
   if (truths_.size() < kKeptTruths) {
     truths_.push_back(std::move(truth));
     return truths_.back().pixels;
@@ -245,7 +245,7 @@ TrainingError HostTrainer::step(const TrainingView& view, const LearningRates& r
   find_cut(view);
   const ProjectParams projection = params(view);
   const TrainPicture picture(projection, arrays(), cut_, workers_);
-  const std::vector<TrainPixel> truth = draw_truth(view);
+  const std::vector<TrainPixel>& truth = kept_truth(view);
   const std::vector<TrainSums> sums =
       picture.adjoint(truth, loss_weight(view, picture.squares(truth)), workers_);
   std::vector<Drawn> drawn(cut_.size());

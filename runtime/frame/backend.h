@@ -56,6 +56,7 @@ struct Camera {
   double near_z = 0.2;  // metres
   // Where these are a scaled instance's coordinates: metres in the world a unit here.
   double depth_scale = 1;
+  bool operator==(const Camera&) const = default;
 };
 
 // Where an instance stands: x in its scene's axes is position + scale·rotation·x in the world.

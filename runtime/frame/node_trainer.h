@@ -18,6 +18,16 @@ struct TrainingView {
   uint32_t samples = 4;
 };
 
+// What a view's truth depends on. Leaves never change, so that one truth serves many cuts.
+struct TruthOf {
+  Camera camera;
+  uint32_t samples = 0;
+  bool operator==(const TruthOf&) const = default;
+};
+inline TruthOf truth_of(const TrainingView& view) {
+  return {view.camera, view.samples};
+}
+
 // Of the picture whose samples × samples pixels are a pixel's truth.
 inline Camera truth_camera(const TrainingView& view) {
   Camera camera = view.camera;

@@ -41,6 +41,7 @@ VOYAGER_HD Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
 template <class T>
 struct Mat3 {
   Vec3<T> row[3];
+  bool operator==(const Mat3&) const = default;
   VOYAGER_HD Vec3<T> operator*(const Vec3<T>& v) const {
     return {dot(row[0], v), dot(row[1], v), dot(row[2], v)};
   }

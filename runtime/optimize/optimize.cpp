@@ -81,9 +81,9 @@ class Optimizing {
 
   uint32_t steps_in(double minutes) {
     const TrainingState untouched = trainer_->state();
-    for (uint32_t k = 0; k < kWarmSteps; ++k) trainer_->step(views_(k), {});
+    for (uint32_t k = 0; k < kWarmSteps; ++k) trainer_->step(views_.picture(k), {});
     const Stopwatch watch;
-    for (uint32_t k = 0; k < kTimedSteps; ++k) trainer_->step(views_(k), {});
+    for (uint32_t k = 0; k < kTimedSteps; ++k) trainer_->step(views_.picture(k), {});
     const double each = std::max(watch.milliseconds() / kTimedSteps, 1e-3);
     trainer_->set_state(untouched);
     return static_cast<uint32_t>(std::clamp(minutes * 60000 / each, 1.0, 1e9));
@@ -95,7 +95,7 @@ class Optimizing {
     while (checkpoint_.done < steps) {
       const uint32_t k = checkpoint_.done++;
       report(progress_, "optimizing", k, steps);
-      trainer_->step(views_(k), rates_at(static_cast<double>(k) / steps));
+      trainer_->step(views_.picture(k), rates_at(static_cast<double>(k) / steps));
       for (const double share : kMeasureAt)
         if (checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps))) measure();
       if (since_kept.milliseconds() < keep_milliseconds) continue;
@@ -197,11 +197,11 @@ uint32_t pictures_of(OptimizeQuality quality, uint64_t merged_nodes) {
   };
   switch (quality) {
     case OptimizeQuality::draft:
-      return number(10, 300);
+      return number(20, 600);
     case OptimizeQuality::best:
-      return number(250, 5000);
+      return number(400, 10'000);
     default:
-      return number(50, 1200);
+      return number(100, 2400);
   }
 }
 

@@ -16,6 +16,7 @@ constexpr double kFocal = 1400;
 constexpr size_t kFewLeaves = 100'000;
 // Of the cuts: coarser ones are not drawn where pictures count.
 constexpr double kFinestTau = 0.75, kCoarsestTau = 15;
+constexpr uint32_t kCutsOfView = 4;
 
 constexpr size_t kSample = 1 << 16;
 // A picture's pixel, at the leaf that is looked at, is this share of the native pixel or more:
@@ -116,12 +117,18 @@ TrainingView TrainingViews::operator()(uint32_t k) const {
   camera.cx = 0.5 * camera.width, camera.cy = 0.5 * camera.height;
   // Scenes of a few centimetres are to be seen, too.
   camera.near_z = std::min(camera.near_z, kNearPlane * distance(k));
-  const double coarse =
-      between(2 * kFinestTau + 1, 2 * kCoarsestTau + 1, radical_inverse(index, 11));
-  view.tau = 0.5 * (coarse - 1);
   // As METHOD §12 asks: at least 4, 8 where leaves are far below a pixel.
   const double pixels = distance(k) / camera.fx / std::max(baked_.leaves.native.pixel, 1e-9);
   view.samples = pixels < 1 ? 4 : pixels < 3 ? 6 : 8;
+  return view;
+}
+
+TrainingView TrainingViews::picture(uint32_t k) const {
+  const uint32_t number = k / kCutsOfView;
+  TrainingView view = (*this)(number);
+  const double within = k % kCutsOfView + radical_inverse(uint64_t{number} + 1, 11);
+  const double coarse = between(2 * kFinestTau + 1, 2 * kCoarsestTau + 1, within / kCutsOfView);
+  view.tau = 0.5 * (coarse - 1);
   return view;
 }
 

@@ -7,15 +7,19 @@
 
 namespace voyager {
 
-// Each looks at a leaf, from outside or from amid the scene, and draws a cut of some τ. The k-th is
-// the same whatever comes before it; those from 0 to any k are spread evenly (Halton's sequence)
-// over leaves, directions, the logarithm of the distance and that of the cut's coarseness.
+// Each looks at a leaf, from outside or from amid the scene. The k-th is the same whatever comes
+// before it; those from 0 to any k are spread evenly (Halton's sequence) over leaves, directions
+// and the logarithm of the distance.
 class TrainingViews {
  public:
   // At least one leaf.
   explicit TrainingViews(const BakedScene& baked);
 
+  // At the default τ.
   TrainingView operator()(uint32_t k) const;
+  // What is learned from, the k-th. A view shows some cuts one after another, from fine to coarse:
+  // its truth, which costs the most, is then drawn once, and most of its nodes learn from it.
+  TrainingView picture(uint32_t k) const;
   // From the eye to the leaf, metres.
   double distance(uint32_t k) const;
 

@@ -20,7 +20,7 @@ class Train : public SplatTest {
     const auto trainer = backend.create_trainer(scene_of(baked, workers), workers);
     const TrainingViews views(baked);
     for (uint32_t k = 0; k < steps; ++k) {
-      TrainingView view = views(k);
+      TrainingView view = views.picture(k);
       view.tau = tau;
       trainer->step(view, kRates);
     }
@@ -61,10 +61,10 @@ TEST_F(Train, GoesOnFromAStateAsIfItHadNotStopped) {
   const auto whole = cuda->create_trainer(scene, workers),
              stopped = cuda->create_trainer(scene, workers),
              resumed = cuda->create_trainer(scene, workers);
-  for (uint32_t k = 0; k < 4; ++k) whole->step(views(k), kRates);
-  for (uint32_t k = 0; k < 2; ++k) stopped->step(views(k), kRates);
+  for (uint32_t k = 0; k < 4; ++k) whole->step(views.picture(k), kRates);
+  for (uint32_t k = 0; k < 2; ++k) stopped->step(views.picture(k), kRates);
   resumed->set_state(stopped->state());
-  for (uint32_t k = 2; k < 4; ++k) resumed->step(views(k), kRates);
+  for (uint32_t k = 2; k < 4; ++k) resumed->step(views.picture(k), kRates);
   EXPECT_TRUE(resumed->state() == whole->state());
 }
 
@@ -75,14 +75,15 @@ TEST_F(Train, ErrorsOfLeavesAndCutsAreTheCpus) {
              device = cuda->create_trainer(scene, workers);
   const TrainingViews views(baked);
   for (uint32_t k = 0; k < 3; ++k) {
-    const double leaves = host->error_of_leaves(views(k)).squares;
-    EXPECT_NEAR(device->error_of_leaves(views(k)).squares, leaves, 1e-3 * leaves + 1e-4);
-    const TrainingError cut = host->error(views(k)), found = device->error(views(k));
+    const double leaves = host->error_of_leaves(views.picture(k)).squares;
+    EXPECT_NEAR(device->error_of_leaves(views.picture(k)).squares, leaves, 1e-3 * leaves + 1e-4);
+    const TrainingError cut = host->error(views.picture(k)),
+                        found = device->error(views.picture(k));
     EXPECT_NEAR(found.squares, cut.squares, 1e-3 * cut.squares + 1e-4);
     EXPECT_EQ(found.cut, cut.cut);
     double sum = 0, sum_found = 0;
-    for (const NodeError& e : host->node_errors(views(k))) sum += double{e.squares};
-    for (const NodeError& e : device->node_errors(views(k))) sum_found += double{e.squares};
+    for (const NodeError& e : host->node_errors(views.picture(k))) sum += double{e.squares};
+    for (const NodeError& e : device->node_errors(views.picture(k))) sum_found += double{e.squares};
     EXPECT_NEAR(sum_found, sum, 1e-3 * sum + 1e-4);
   }
 }

@@ -83,6 +83,36 @@ TEST(Optimize, ComesNearerToTheTruthInViewsThatItDidNotLearnFrom) {
   EXPECT_GT(decibels(), before + 0.3);
 }
 
+TEST(Optimize, FourCutsOfAViewShareItsTruth) {
+  const BakedScene baked = city(200);
+  const TrainingViews views(baked);
+  for (uint32_t k = 0; k < 12; ++k) {
+    const TrainingView found = views.picture(k);
+    EXPECT_EQ(truth_of(found), truth_of(views(k / 4)));
+    EXPECT_GE(found.tau, 0.75);
+    EXPECT_LE(found.tau, 15);
+    if (k % 4 != 0) {
+      EXPECT_GT(found.tau, views.picture(k - 1).tau);
+    }
+  }
+}
+
+TEST(Optimize, ATruthIsNotTakenForThatOfAnotherView) {
+  Workers workers;
+  const BakedScene baked = city(300);
+  const auto backend = create_cpu_backend();
+  const auto scene = scene_of(baked, workers);
+  const auto kept = backend->create_trainer(scene, workers);
+  const TrainingView one = small_view(TrainingViews(baked), 3, 6);
+  TrainingView turned = one, finer = one, smaller = one;
+  std::swap(turned.camera.world_to_view.row[0], turned.camera.world_to_view.row[1]);
+  finer.samples = 6;
+  smaller.camera.width /= 2;
+  for (const TrainingView& view : {one, turned, finer, smaller, one})
+    EXPECT_EQ(kept->error(view).squares,
+              backend->create_trainer(scene, workers)->error(view).squares);
+}
+
 TEST(Optimize, NeitherThreadsNorStopsShow) {
   const test::TempFolder folder;
   const BakedScene baked = test::bake(test::specks(1500, 6, 1));
