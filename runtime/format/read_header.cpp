@@ -11,8 +11,13 @@
 namespace voyager {
 namespace {
 
+// Footprint levels beyond the first.
+uint32_t levels_of(const FileHeader& h) {
+  return h.version == 4 ? 0 : (h.flags & kFootprintMask) >> kFootprintShift;
+}
+
 void check_counts(const FileHeader& h, const Check& check) {
-  const uint32_t levels = h.version == 4 ? 0 : (h.flags & kFootprintMask) >> kFootprintShift;
+  const uint32_t levels = levels_of(h);
   check.at_most(offsetof(FileHeader, flags), "flags", h.flags - (levels << kFootprintShift),
                 kFlags);
   check.at_most(offsetof(FileHeader, flags), "footprint levels beyond the first", levels,
@@ -61,6 +66,12 @@ void check_ranges(const FileHeader& h, const Check& check) {
   check.that(h.native_source <= static_cast<uint32_t>(NativeSource::estimated),
              offsetof(FileHeader, native_source), "an unknown source of the native pixel",
              "0 to 4");
+  const auto source = static_cast<NativeSource>(h.native_source);
+  const bool has_footprint = source != NativeSource::unknown && source != NativeSource::file;
+  check.that(has_footprint || h.native_pixel == 0, offsetof(FileHeader, native_pixel),
+             "a native pixel of a scene whose source says that it has none", "0");
+  check.that(h.native_pixel > 0 || levels_of(h) == 0, offsetof(FileHeader, flags),
+             "footprint levels beyond the first without a native pixel", "none");
   check.that(h.blend_share >= kHalfShare && h.blend_share < 1, offsetof(FileHeader, blend_share),
              "a share of the parent's size out of range", "0.5 or more, below 1");
   const bool empty = h.largest_sh == 0 && (h.flags & kFlagLeafExtents) == 0;

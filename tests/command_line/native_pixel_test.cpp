@@ -1,6 +1,7 @@
 // Where a bake has the native pixel from, as a user says it and is told.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -79,6 +80,37 @@ TEST_F(NativePixelCommand, ACompensatedFilterIsTheFilesOwnHoweverItIsRead) {
         << refused.output;
     EXPECT_FALSE(std::filesystem::exists(file("n.voy")));
   }
+}
+
+// From afar 3DGS's own picture swells: it is farther from the truth.
+TEST_F(NativePixelCommand, AntialiasedPicturesAreNearerToTheTruth) {
+  bake(file("c.ply") + " --native-pixel 0.05");
+  std::ofstream(file("far.json"))
+      << R"([{"id": 0, "img_name": "far", "width": 64, "height": 48, "position": [0, -400, -400],)"
+         R"( "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]], "fx": 60, "fy": 60}])";
+  const auto drawn = [&](const std::string& with) {
+    const Outcome found = run("voyager render " + file("o.voy") + " --cameras " + file("far.json") +
+                              " --camera 0 --lod off --backend cpu -o " + file("o.pfm") + with);
+    EXPECT_EQ(found.exit_code, 0) << found.output;
+    const std::string bytes = file_bytes(file("o.pfm"));
+    std::vector<float> values(64 * 48 * 3);
+    const size_t size = values.size() * sizeof(float);
+    EXPECT_GT(bytes.size(), size) << with;
+    if (bytes.size() > size) std::memcpy(values.data(), &bytes[bytes.size() - size], size);
+    return values;
+  };
+  const std::vector<float> truth = drawn(" --supersample 8");
+  const auto squares = [&](const std::vector<float>& values) {
+    double sum = 0;
+    for (size_t i = 0; i < values.size(); ++i) {
+      const double d = double{values[i]} - double{truth[i]};
+      sum += d * d;
+    }
+    return sum;
+  };
+  const double on = squares(drawn("")), off = squares(drawn(" --antialias off"));
+  EXPECT_GT(on, 0);
+  EXPECT_LT(4 * on, off);
 }
 
 }  // namespace

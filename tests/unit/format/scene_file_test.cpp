@@ -296,5 +296,32 @@ TEST(SceneFile, ChunksAreRunsOfSubtreesWithinTheirBytes) {
   }
 }
 
+TEST(SceneFile, ANativePixelThatItsSourceDeniesIsRefused) {
+  const BakedScene many =
+      test::bake_by_cameras(test::random_cloud(3000, 1, 0), test::close_camera());
+  const Bytes bytes = test::scene_bytes(many, Quality::compact);
+  const auto refusal = [&](const auto& change) -> std::string {
+    Bytes changed = bytes;
+    FileHeader header;
+    std::memcpy(&header, changed.data(), sizeof header);
+    change(header);
+    std::memcpy(changed.data(), &header, sizeof header);
+    try {
+      const SceneFile file(test::source_of(changed = test::sealed(changed)));
+      return "";
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refusal([](FileHeader&) {}), "");
+  for (const NativeSource source : {NativeSource::unknown, NativeSource::file})
+    EXPECT_NE(refusal([&](FileHeader& h) {
+                h.native_source = static_cast<uint32_t>(source);
+              }).find("a native pixel of a scene whose source says that it has none"),
+              std::string::npos);
+  EXPECT_NE(refusal([](FileHeader& h) { h.native_pixel = 0; }).find("without a native pixel"),
+            std::string::npos);
+}
+
 }  // namespace
 }  // namespace voyager::scene_file_test
