@@ -9,7 +9,7 @@
 namespace voyager {
 namespace {
 
-constexpr uint64_t kKind = 0x31696d6974706f;  // "optimi1"
+constexpr uint64_t kKind = 0x32696d6974706f;  // "optimi2": another for each schedule of pictures
 constexpr char kStartAnew[] = "remove it, and learning starts anew";
 
 template <class Values>

@@ -83,7 +83,7 @@ class Optimizing {
     const TrainingState untouched = trainer_->state();
     for (uint32_t k = 0; k < kWarmSteps; ++k) trainer_->step(views_.picture(k), {});
     const Stopwatch watch;
-    for (uint32_t k = 0; k < kTimedSteps; ++k) trainer_->step(views_.picture(k), {});
+    for (uint32_t k = 0; k < kTimedSteps; ++k) trainer_->step(views_.picture(kWarmSteps + k), {});
     const double each = std::max(watch.milliseconds() / kTimedSteps, 1e-3);
     trainer_->set_state(untouched);
     return static_cast<uint32_t>(std::clamp(minutes * 60000 / each, 1.0, 1e9));
@@ -131,8 +131,8 @@ class Optimizing {
     trainer_->set_extents(checkpoint_.extents);
   }
 
-  // Extents such that the default τ draws no more than it has to. They never grow: frames of a tree
-  // that learned are not to be slower. Returns what they are multiplied by.
+  // Extents such that the default τ draws no more than it has to. They never grow
+  // here. Returns what they are multiplied by.
   double calibrate() {
     const double tau = held_out_.best_tau(*trainer_);
     const double by = std::clamp((2 * kReferenceTau + 1) / (2 * tau + 1), 1 / kMostShrink, 1.0);

@@ -61,10 +61,10 @@ TEST_F(Train, GoesOnFromAStateAsIfItHadNotStopped) {
   const auto whole = cuda->create_trainer(scene, workers),
              stopped = cuda->create_trainer(scene, workers),
              resumed = cuda->create_trainer(scene, workers);
-  for (uint32_t k = 0; k < 4; ++k) whole->step(views.picture(k), kRates);
-  for (uint32_t k = 0; k < 2; ++k) stopped->step(views.picture(k), kRates);
+  for (uint32_t k = 0; k < 8; ++k) whole->step(views.picture(k), kRates);
+  for (uint32_t k = 0; k < 6; ++k) stopped->step(views.picture(k), kRates);
   resumed->set_state(stopped->state());
-  for (uint32_t k = 2; k < 4; ++k) resumed->step(views.picture(k), kRates);
+  for (uint32_t k = 6; k < 8; ++k) resumed->step(views.picture(k), kRates);
   EXPECT_TRUE(resumed->state() == whole->state());
 }
 
@@ -75,15 +75,17 @@ TEST_F(Train, ErrorsOfLeavesAndCutsAreTheCpus) {
              device = cuda->create_trainer(scene, workers);
   const TrainingViews views(baked);
   for (uint32_t k = 0; k < 3; ++k) {
-    const double leaves = host->error_of_leaves(views.picture(k)).squares;
-    EXPECT_NEAR(device->error_of_leaves(views.picture(k)).squares, leaves, 1e-3 * leaves + 1e-4);
-    const TrainingError cut = host->error(views.picture(k)),
-                        found = device->error(views.picture(k));
+    const double leaves = host->error_of_leaves(views.picture(5 * k)).squares;
+    EXPECT_NEAR(device->error_of_leaves(views.picture(5 * k)).squares, leaves,
+                1e-3 * leaves + 1e-4);
+    const TrainingError cut = host->error(views.picture(5 * k)),
+                        found = device->error(views.picture(5 * k));
     EXPECT_NEAR(found.squares, cut.squares, 1e-3 * cut.squares + 1e-4);
     EXPECT_EQ(found.cut, cut.cut);
     double sum = 0, sum_found = 0;
-    for (const NodeError& e : host->node_errors(views.picture(k))) sum += double{e.squares};
-    for (const NodeError& e : device->node_errors(views.picture(k))) sum_found += double{e.squares};
+    for (const NodeError& e : host->node_errors(views.picture(5 * k))) sum += double{e.squares};
+    for (const NodeError& e : device->node_errors(views.picture(5 * k)))
+      sum_found += double{e.squares};
     EXPECT_NEAR(sum_found, sum, 1e-3 * sum + 1e-4);
   }
 }
