@@ -131,8 +131,8 @@ class Optimizing {
     trainer_->set_extents(checkpoint_.extents);
   }
 
-  // Extents such that the default τ draws no more than it has to. They never grow
-  // here. Returns what they are multiplied by.
+  // Extents such that the default τ draws no more than it has to. They never grow here. Returns
+  // what they are multiplied by.
   double calibrate() {
     const double tau = held_out_.best_tau(*trainer_);
     const double by = std::clamp((2 * kReferenceTau + 1) / (2 * tau + 1), 1 / kMostShrink, 1.0);

@@ -17,8 +17,8 @@ class TrainingViews {
 
   // At the default τ.
   TrainingView operator()(uint32_t k) const;
-  // What is learned from, the k-th. A view shows some cuts one after another, from fine to coarse:
-  // its truth, which costs the most, is then drawn once, and most of its nodes learn from it.
+  // The k-th picture to learn from. Each view gives four, one after another, of cuts from fine to
+  // coarse. The truth costs more than a cut, and is then drawn once for all four.
   TrainingView picture(uint32_t k) const;
   // From the eye to the leaf, metres.
   double distance(uint32_t k) const;
