@@ -53,6 +53,7 @@ Json bench(Backend& backend, const std::shared_ptr<const Scene>& scene,
   const std::vector<CutQuery> path = cut_path(cameras, tau, scene->origin);
   Json rows = Json::array();
   for (const SearchCandidate& candidate : kSearchCandidates) {
+    if (backend.search_for(*scene, candidate.kind) != candidate.kind) continue;
     Json row = {{"search", candidate.name}, {"slack", candidate.slack}};
     row.update(time_search(backend, scene, candidate.kind, path, workers, [](size_t) {}));
     rows.push_back(row);

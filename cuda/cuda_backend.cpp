@@ -29,6 +29,10 @@ int find_device(const uint8_t* uuid) {
                                         " devices, none with the UUID that was asked for");
 }
 
+// Nodes up to which a sweep is faster than the temporal search with its weights, on the whole of a
+// large GPU and on 16 multiprocessors: bench/NOTES.md, "A sweep".
+constexpr size_t kMostSwept = 4'000'000;
+
 class CudaBackend final : public Backend {
  public:
   explicit CudaBackend(const BackendModuleOptions& options)
@@ -41,6 +45,7 @@ class CudaBackend final : public Backend {
   }
   std::array<uint8_t, 16> device_uuid() const override { return device_->uuid(); }
   DeviceRates rates() const override { return device_->rates(); }
+  uint64_t memory_bytes() const override { return device_->memory_bytes(); }
   std::shared_ptr<void> enter() const override { return keep_context(); }
   ExternalSupport external_support() const override { return device_->external_support(); }
   std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc&& desc) const override {
@@ -71,11 +76,18 @@ class CudaBackend final : public Backend {
     return create_node_trainer(device_, scene);
   }
 
+  Search search_for(const Scene& scene, Search asked) const override {
+    const bool wanted =
+        asked == Search::sweep || (asked == Search::fastest && scene.tree.size() <= kMostSwept);
+    const bool can =
+        !scene.streamed() && scene.damaged_chunks.empty() && !scene.search.leaves_have_extent;
+    return wanted && can ? Search::sweep : without_sweep(asked);
+  }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                              const SearchDesc& desc, std::pmr::memory_resource*,
                                              Workers& workers) override {
     device_->use();
-    return create_timed_search(device_, search_for(scene, desc, workers), desc);
+    return create_timed_search(device_, cut_search_for(scene, desc, workers), desc);
   }
 
  private:
@@ -86,7 +98,8 @@ class CudaBackend final : public Backend {
                           : std::make_shared<DeviceScene>(s, workers);
     });
     const bool searches = !scene->flat() && draws_cut(desc.lod);
-    auto search = searches ? search_for(scene, {desc.search, true, desc.lod}, workers) : nullptr;
+    auto search =
+        searches ? cut_search_for(scene, {desc.search, true, desc.lod}, workers) : nullptr;
     return {scene, std::move(gaussians), searches ? parents_of(scene) : nullptr,
             create_draws(*scene, desc.lod, std::move(search))};
   }
@@ -97,18 +110,25 @@ class CudaBackend final : public Backend {
     return parents_.of(scene, [](const Scene& s) { return std::make_shared<DeviceParents>(s); });
   }
 
-  std::unique_ptr<CutSearch> search_for(const std::shared_ptr<const Scene>& scene,
-                                        const SearchDesc& desc, Workers& workers) {
+  std::unique_ptr<CutSearch> cut_search_for(const std::shared_ptr<const Scene>& scene,
+                                            const SearchDesc& desc, Workers& workers) {
     check_detail(*scene, desc.lod);
     if (desc.lod != Lod::cut) return search_of_baseline(scene, desc, workers);
     if (!scene->damaged_chunks.empty()) return create_host_cut_search(scene, desc.kind, workers);
     if (desc.kind == Search::exhaustive)
       return create_exhaustive_search(device_, *scene, scene->tree, desc.weights);
+    const Search kind = search_for(*scene, desc.kind);
+    if (kind == Search::sweep)
+      return create_sweep_search(
+          device_,
+          sweep_trees_.of(scene,
+                          [](const Scene& s) { return std::make_shared<const SweepTree>(s.tree); }),
+          *scene, desc.weights);
     const auto tree = trees_.of(scene, [&](const Scene& s) {
       return s.streamed() ? std::make_shared<const DeviceTree>(pool_of(s, *device_))
                           : upload_tree(s);
     });
-    return create_partitioned_search(device_, tree, scene, desc.kind, desc.weights);
+    return create_partitioned_search(device_, tree, scene, kind, desc.weights);
   }
 
   // Its tree is this view's alone.
@@ -125,6 +145,7 @@ class CudaBackend final : public Backend {
 
   std::shared_ptr<const Device> device_;
   SharedByScene<DeviceTree> trees_;
+  SharedByScene<SweepTree> sweep_trees_;
   SharedByScene<DeviceScene> gaussians_;
   SharedByScene<DeviceParents> parents_;
 };

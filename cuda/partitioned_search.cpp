@@ -31,7 +31,7 @@ class PartitionedSearch final : public CutSearch {
       : device_(std::move(device)),
         tree_(std::move(tree)),
         scene_(std::move(scene)),
-        kind_(kind),
+        kind_(without_sweep(kind)),
         weights_(weights),
         streamed_(scene_->streamed() ? std::make_unique<Streamed>(*scene_, *device_) : nullptr),
         most_(most_nodes()),

@@ -6,6 +6,7 @@
 
 #include "cuda/device.h"
 #include "cuda/device_tree.h"
+#include "cuda/sweep_tree.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
 
@@ -47,7 +48,7 @@ class CutSearch {
 // Arrays of a scene that searches share.
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
-// streaming, temporal or temporal_visit. Device memory besides the scene's arrays:
+// kind: any but exhaustive; temporal in place of a sweep. Device memory besides the scene's arrays:
 // 24 bytes a subtree and, for the list, 4.5 bytes a leaf, with weights 18; of a streamed scene
 // 28 a subtree, and 4.5 more for each node that there are places for in its pool. Such a scene's
 // search runs under SceneStream::hold(), and ends each run with end_frame().
@@ -62,6 +63,13 @@ std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Devic
 std::unique_ptr<CutSearch> create_exhaustive_search(std::shared_ptr<const Device> device,
                                                     const Scene& scene, const LodTree& tree,
                                                     bool weights);
+
+// Of a scene that is resident and undamaged, and whose leaves have no extent. weigh() has nothing
+// left to do. Device memory besides the tree's: 4 bytes a node with children, 8 a leaf, and a bit a
+// node.
+std::unique_ptr<CutSearch> create_sweep_search(std::shared_ptr<const Device> device,
+                                               std::shared_ptr<const SweepTree> tree,
+                                               const Scene& scene, bool weights);
 
 // Runs on the host, for scenes with damaged chunks; find() throws Error(damaged_chunk)
 // where the cut needs one. Throws Error(unsupported) for a streamed scene.

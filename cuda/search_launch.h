@@ -3,6 +3,7 @@
 #include <cuda_runtime_api.h>
 
 #include "cuda/cut_state.h"
+#include "cuda/sweep_tree.h"
 #include "runtime/select/cut.h"
 
 namespace voyager::cuda {
@@ -60,5 +61,22 @@ void launch_exhaustive(const ExhaustiveTree& tree, const Sight& sight, void* scr
 void launch_weights(const ExhaustiveTree& tree, const Sight& sight, const uint32_t* nodes,
                     const uint32_t* count, float* weights, unsigned multiprocessors,
                     cudaStream_t stream);
+
+// cut_sweep.cu. What a view keeps of its cut.
+struct SweepCounters {
+  uint32_t cut_size, next_tile, entered, left;
+};
+struct SweepState {
+  float* sizes;               // of each record, of this run
+  uint32_t* cut;              // bits: nodes in the last cut
+  unsigned long long* tiles;  // sweep_tiles(); 0 before the first run
+  SweepCounters* counters;
+  uint32_t* nodes;  // the cut, ascending; room for every leaf
+  float* weights;   // of each; may be null
+};
+size_t sweep_tiles(uint32_t nodes);
+// run: from 1 to 2^31 - 1, another each time. The tree has a node.
+void launch_sweep(const SweepView& tree, const SweepState& state, const Sight& sight, uint32_t run,
+                  unsigned multiprocessors, cudaStream_t stream);
 
 }  // namespace voyager::cuda

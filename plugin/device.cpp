@@ -159,7 +159,7 @@ VoyResult VOY_CALL voyGetCapabilities(VoyDevice device, VoyCapabilities* capabil
     found.maxInstances = kMaxInstances;
     found.maxEyes = kMaxEyes;
     found.maxWidth = found.maxHeight = kMaxImageSide;
-    found.searches = bits_up_to(VOY_SEARCH_TEMPORAL_VISIT);
+    found.searches = bits_up_to(VOY_SEARCH_SWEEP);
     found.exponentials = exponentials_of(object->backend_kind);
     found.splattings = splattings_of(object->backend_kind);
     found.targetKinds =

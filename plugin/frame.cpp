@@ -26,9 +26,12 @@ VoySearch search_of(const FrameStats& stats) {
     case Search::temporal:
       return VOY_SEARCH_TEMPORAL;
     case Search::temporal_visit:
+      return VOY_SEARCH_TEMPORAL_VISIT;
+    case Search::sweep:
+    case Search::fastest:
       break;
   }
-  return VOY_SEARCH_TEMPORAL_VISIT;
+  return VOY_SEARCH_SWEEP;
 }
 
 VoyBudgetState budget_of(const FrameStats& stats) {

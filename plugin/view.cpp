@@ -35,10 +35,14 @@ Search search_of(VoySearch search) {
       return Search::exhaustive;
     case VOY_SEARCH_STREAMING:
       return Search::streaming;
+    case VOY_SEARCH_TEMPORAL:
+      return Search::temporal;
+    case VOY_SEARCH_SWEEP:
+      return Search::sweep;
     case VOY_SEARCH_TEMPORAL_VISIT:
       return Search::temporal_visit;
     default:
-      return Search::temporal;
+      return Search::fastest;
   }
 }
 
@@ -86,7 +90,7 @@ Antialias antialias_of(VoyAntialias antialias) {
 PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
   check_tau(desc.tau);
   check_enum(desc.lod, VOY_LOD_LEVELS, "desc.lod");
-  check_enum(desc.search, VOY_SEARCH_TEMPORAL_VISIT, "desc.search");
+  check_enum(desc.search, VOY_SEARCH_SWEEP, "desc.search");
   check_enum(desc.alphaFilter, VOY_ALPHA_FILTER_OFF, "desc.alphaFilter");
   check_enum(desc.exponential, VOY_EXPONENTIAL_HALF2, "desc.exponential");
   check_count(desc.lutSize, 0, kMaxLutSize, "desc.lutSize");

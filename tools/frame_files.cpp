@@ -38,6 +38,8 @@ const char* name_of(VoySearch search) {
     case VOY_SEARCH_TEMPORAL:
     case VOY_SEARCH_TEMPORAL_VISIT:
       return "temporal";
+    case VOY_SEARCH_SWEEP:
+      return "sweep";
     default:
       return "none";
   }

@@ -25,14 +25,14 @@ PipelineDesc ours(Search search, Exponential exponential) {
 
 }  // namespace
 
-std::vector<FrameRow> ablation_rows() {
+std::vector<FrameRow> ablation_rows(Search fastest) {
   return {{"3dgs", baseline(Lod::all_leaves, Search::exhaustive)},
           {"base", baseline(Lod::cut, Search::exhaustive)},
           {"+ streaming", baseline(Lod::cut, Search::streaming)},
           {"+ temporal", baseline(Lod::cut, Search::temporal_visit)},
           {"+ alpha-filter", ours(Search::temporal_visit, Exponential::exact)},
           {"+ lut", ours(Search::temporal_visit, Exponential::lut)},
-          {"ours", ours(Search::temporal, Exponential::ex2)}};
+          {"ours", ours(fastest, Exponential::ex2)}};
 }
 
 std::vector<FrameRow> exponential_rows(PipelineDesc desc) {
@@ -69,9 +69,13 @@ const char* search_name(Search search) {
       return "streaming";
     case Search::temporal:
     case Search::temporal_visit:
+      return "temporal";
+    case Search::fastest:
+      return "temporal";
+    case Search::sweep:
       break;
   }
-  return "temporal";
+  return "sweep";
 }
 
 const char* exponential_name(Exponential exponential) {

@@ -13,8 +13,8 @@ struct FrameRow {
 };
 
 // From 3DGS, every leaf and no search, to ours, one step a row. "base" is the exhaustive
-// search with 3DGS's splatting.
-std::vector<FrameRow> ablation_rows();
+// search with 3DGS's splatting. fastest: the search of "ours".
+std::vector<FrameRow> ablation_rows(Search fastest);
 
 // `desc` with each exponential; "exact" is the first.
 std::vector<FrameRow> exponential_rows(PipelineDesc desc);

@@ -59,8 +59,8 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
   desc.maxHeight = max_height * choices.supersample;
   desc.lod = choices.lod;
   desc.tau = choices.tau;
-  desc.search = choices.search == VOY_SEARCH_TEMPORAL && !choices.slack ? VOY_SEARCH_TEMPORAL_VISIT
-                                                                        : choices.search;
+  const bool temporal = choices.search == VOY_SEARCH_AUTO || choices.search == VOY_SEARCH_TEMPORAL;
+  desc.search = temporal && !choices.slack ? VOY_SEARCH_TEMPORAL_VISIT : choices.search;
   desc.alphaFilter = choices.alpha_filter;
   desc.exponential = choices.exponential;
   desc.lutSize = choices.lut_size;

@@ -15,7 +15,7 @@ struct RenderChoices {
   VoyLod lod = VOY_LOD_CUT;
   double tau = 3;
   double time_budget = 0;  // milliseconds; 0: tau is fixed
-  VoySearch search = VOY_SEARCH_TEMPORAL;
+  VoySearch search = VOY_SEARCH_AUTO;
   bool slack = true;  // off: VOY_SEARCH_TEMPORAL visits all of the last cut
   VoyAlphaFilter alpha_filter = VOY_ALPHA_FILTER_ON;
   VoyExponential exponential = VOY_EXPONENTIAL_AUTO;

@@ -19,7 +19,8 @@ struct SearchCandidate {
 inline constexpr SearchCandidate kSearchCandidates[] = {{Search::exhaustive, "exhaustive", false},
                                                         {Search::streaming, "streaming", false},
                                                         {Search::temporal_visit, "temporal", false},
-                                                        {Search::temporal, "temporal", true}};
+                                                        {Search::temporal, "temporal", true},
+                                                        {Search::sweep, "sweep", false}};
 
 // What a camera path asks of the search.
 std::vector<CutQuery> cut_path(const std::vector<Camera>& cameras, double tau, const Vec3d& origin);

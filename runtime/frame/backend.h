@@ -166,6 +166,8 @@ class Backend {
   // As VkPhysicalDeviceIDProperties has it; zero for a CPU.
   virtual std::array<uint8_t, 16> device_uuid() const { return {}; }
   virtual DeviceRates rates() const { return {}; }
+  // Of a device's own memory; 0 where scenes are in the host's.
+  virtual uint64_t memory_bytes() const { return 0; }
   // While the result lives, this thread's calls may change what is current to a device's
   // driver; then all is as it was.
   virtual std::shared_ptr<void> enter() const { return nullptr; }
@@ -186,6 +188,8 @@ class Backend {
   // backend has none, Error(over_budget).
   virtual std::unique_ptr<NodeTrainer> create_trainer(const std::shared_ptr<const Scene>& scene,
                                                       Workers& workers);
+  // The search of the scene's cut that runs where `asked` is asked for; never Search::fastest.
+  virtual Search search_for(const Scene&, Search asked) const { return without_sweep(asked); }
   // The scene has a tree. Throws Error(unsupported) where the backend has no such search.
   virtual std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                                      const SearchDesc& desc,

@@ -11,6 +11,7 @@ namespace voyager {
 HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
                        std::pmr::memory_resource* memory, Workers& workers)
     : scene_(std::move(scene)), desc_(desc), items_(memory) {
+  desc_.kind = without_sweep(desc.kind);
   check_detail(*scene_, desc.lod);
   if (scene_->streamed() && desc.kind == Search::exhaustive)
     throw Error(ErrorCode::unsupported,

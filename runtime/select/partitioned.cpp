@@ -43,7 +43,7 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
 }
 
 void PartitionedSearch::run(const CutQuery& query, Search kind, Workers& workers) {
-  assert(kind != Search::exhaustive);
+  assert(kind == Search::streaming || kind == Search::temporal || kind == Search::temporal_visit);
   stats_ = {};
   stats_.ran = kind;
   if (known_ && query == query_ && kind == Search::temporal && !relinked_) {

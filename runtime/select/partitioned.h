@@ -39,7 +39,7 @@ class PartitionedSearch {
   explicit PartitionedSearch(const SearchTree& tree,
                              std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-  // kind: any but exhaustive.
+  // kind: streaming or one of the temporal ones.
   void run(const CutQuery& query, Search kind, Workers& workers);
   // The next run starts from nothing.
   void forget() { known_ = false; }

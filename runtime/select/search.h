@@ -10,7 +10,15 @@ enum class Search {
   streaming,       // chunk by chunk from the top, skipping those that no refined node leads to
   temporal,        // the last cut's subtrees, where their slack has run out
   temporal_visit,  // the same, but visiting every subtree of the last cut, as the paper does
+  sweep,           // every node that has children, in one pass over compact records; on CUDA, of a
+                   // resident scene without damage whose leaves have no extent. Else temporal runs
+  fastest,         // to ask for, never in stats: sweep where it is faster than temporal
 };
+
+// What runs where no sweep does.
+constexpr Search without_sweep(Search kind) {
+  return kind == Search::sweep || kind == Search::fastest ? Search::temporal : kind;
+}
 
 // Of one run.
 struct SearchStats {

@@ -15,7 +15,7 @@ namespace search_test {
 namespace {
 
 constexpr Search kSearches[] = {Search::exhaustive, Search::streaming, Search::temporal,
-                                Search::temporal_visit};
+                                Search::temporal_visit, Search::sweep};
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 std::shared_ptr<Scene> scene_of(LodTree tree, uint32_t chunk_bytes = kDefaultChunkBytes) {
@@ -70,11 +70,19 @@ class SearchTest : public DeviceTest {
   static std::unique_ptr<SceneSearch> create(const std::shared_ptr<Scene>& scene, Search kind,
                                              unsigned multiprocessors = 0) {
     const auto on = device(multiprocessors);
-    auto search =
-        kind == Search::exhaustive
-            ? cuda::create_exhaustive_search(on, *scene, scene->tree, true)
-            : cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true);
-    return cuda::create_timed_search(on, std::move(search), {kind, true});
+    return cuda::create_timed_search(on, search_of(on, scene, kind), {kind, true});
+  }
+
+  // As the backend chooses: where leaves have an extent, temporal runs in place of a sweep.
+  static std::unique_ptr<cuda::CutSearch> search_of(const std::shared_ptr<const cuda::Device>& on,
+                                                    const std::shared_ptr<Scene>& scene,
+                                                    Search kind) {
+    if (kind == Search::exhaustive)
+      return cuda::create_exhaustive_search(on, *scene, scene->tree, true);
+    if (kind == Search::sweep && !scene->search.leaves_have_extent)
+      return cuda::create_sweep_search(on, std::make_shared<cuda::SweepTree>(scene->tree), *scene,
+                                       true);
+    return cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true);
   }
 
   static Result run(SceneSearch& search, const CutQuery& query) {
@@ -241,7 +249,9 @@ TEST_F(SearchTest, ViewsOfOneSceneAreIndependent) {
 TEST_F(SearchTest, CountsWhatEntersAndLeaves) {
   const auto scene = scene_of(random_tree(TreeShape::four_way, 50000, 8));
   std::mt19937 random(8);
-  for (const Search kind : {Search::streaming, Search::temporal, Search::temporal_visit}) {
+  ASSERT_FALSE(scene->search.leaves_have_extent);
+  for (const Search kind :
+       {Search::streaming, Search::temporal, Search::temporal_visit, Search::sweep}) {
     const auto search = create(scene, kind);
     std::vector<uint32_t> before;
     for (const CutQuery& query : walk(random, 60, 0.03f)) {

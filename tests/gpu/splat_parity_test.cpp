@@ -88,8 +88,8 @@ TEST_F(SplatParity, ASyntheticCityFromTheStreetAndFromTheAir) {
 
 TEST_F(SplatParity, OneTreeForWhichEverySearchDrawsTheSame) {
   const auto scene = baked_scene(random_cloud(20000, 32, 1));
-  constexpr Search kSearches[] = {Search::exhaustive, Search::streaming, Search::temporal,
-                                  Search::temporal_visit};
+  constexpr Search kSearches[] = {Search::exhaustive,     Search::streaming, Search::temporal,
+                                  Search::temporal_visit, Search::sweep,     Search::fastest};
   std::vector<std::unique_ptr<View>> views;
   for (const Search search : kSearches) views.push_back(view(scene, {.search = search}));
   for (const FrameInput& input : varied_frames()) {

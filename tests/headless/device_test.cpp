@@ -171,8 +171,9 @@ void expect_views_as_capable(Host& host, const VoyCapabilities& found) {
     EXPECT_EQ(host.voy.DestroyView(view), VOY_SUCCESS);
   };
   VoyViewDesc desc = host.view_desc();
-  for (const VoySearch search : {VOY_SEARCH_AUTO, VOY_SEARCH_EXHAUSTIVE, VOY_SEARCH_STREAMING,
-                                 VOY_SEARCH_TEMPORAL, VOY_SEARCH_TEMPORAL_VISIT}) {
+  for (const VoySearch search :
+       {VOY_SEARCH_AUTO, VOY_SEARCH_EXHAUSTIVE, VOY_SEARCH_STREAMING, VOY_SEARCH_TEMPORAL,
+        VOY_SEARCH_TEMPORAL_VISIT, VOY_SEARCH_SWEEP}) {
     desc.search = search;
     expect_made(has(found.searches, search), desc);
   }

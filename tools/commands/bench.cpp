@@ -99,11 +99,14 @@ void add_choices(CLI::App& command, BenchArguments& arguments) {
   add_lod_options(command, arguments.lod);
   add_choice<std::optional<SearchChoice>>(command, "--search", arguments.search,
                                           {{"all", SearchChoice::all},
+                                           {"auto", SearchChoice::automatic},
                                            {"exhaustive", SearchChoice::exhaustive},
                                            {"streaming", SearchChoice::streaming},
-                                           {"temporal", SearchChoice::temporal}},
+                                           {"temporal", SearchChoice::temporal},
+                                           {"sweep", SearchChoice::sweep}},
                                           "How the nodes to draw are found; all compares them in "
-                                          "one run. Whole frames take temporal");
+                                          "one run. Whole frames take auto: temporal, or on a GPU "
+                                          "a sweep of all nodes where that is faster");
   add_choice<std::optional<bool>>(command, "--slack", arguments.slack,
                                   {{"on", true}, {"off", false}},
                                   "off: the temporal search visits all of the last cut");

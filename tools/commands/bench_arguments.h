@@ -14,7 +14,7 @@
 namespace voyager::tools {
 
 enum class BenchStages { search, splat, all };
-enum class SearchChoice { all, exhaustive, streaming, temporal };
+enum class SearchChoice { all, automatic, exhaustive, streaming, temporal, sweep };
 
 // Options that were not given have no value where that means something else than a default.
 struct BenchArguments {
@@ -43,8 +43,8 @@ struct BenchSubject {
   Workers& workers;
 };
 
-// Of whole frames; what is not chosen is as in the row "ours".
-PipelineDesc chosen_desc(const BenchArguments& arguments);
+// Of whole frames; what is not chosen is as in the row "ours". The search is the one that runs.
+PipelineDesc chosen_desc(const BenchArguments& arguments, const BenchSubject& subject);
 // How often a path of so many frames is timed: enough that a median means something.
 size_t chosen_repeats(const BenchArguments& arguments, size_t frames);
 

@@ -4,8 +4,14 @@
 namespace voyager::tools {
 namespace {
 
+// A choice of slack is one of the temporal search.
 Search chosen_search(const BenchArguments& arguments) {
-  switch (arguments.search.value_or(SearchChoice::temporal)) {
+  switch (arguments.search.value_or(arguments.slack ? SearchChoice::temporal
+                                                    : SearchChoice::automatic)) {
+    case SearchChoice::automatic:
+      return Search::fastest;
+    case SearchChoice::sweep:
+      return Search::sweep;
     case SearchChoice::exhaustive:
       return Search::exhaustive;
     case SearchChoice::streaming:
@@ -23,10 +29,12 @@ Search chosen_search(const BenchArguments& arguments) {
 }  // namespace
 
 // 3DGS has expf only.
-PipelineDesc chosen_desc(const BenchArguments& arguments) {
+PipelineDesc chosen_desc(const BenchArguments& arguments, const BenchSubject& subject) {
   PipelineDesc desc;
   desc.lod = arguments.lod.value();
-  desc.search = chosen_search(arguments);
+  const Search asked = chosen_search(arguments);
+  desc.search = desc.lod == Lod::cut ? subject.backend.search_for(*subject.scene, asked)
+                                     : without_sweep(asked);
   desc.splatting = arguments.splatting.value_or(Splatting::ours);
   const bool ours = desc.splatting == Splatting::ours;
   desc.alpha_filter = ours && arguments.filter.value_or(true);  // 3DGS has none

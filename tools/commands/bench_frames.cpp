@@ -29,15 +29,16 @@ bool has_choice(const BenchArguments& arguments) {
          arguments.filter || arguments.splatting || arguments.exponential;
 }
 
-Plan make_plan(const BenchArguments& arguments, bool flat) {
+Plan make_plan(const BenchArguments& arguments, const BenchSubject& subject) {
   if (arguments.stages == BenchStages::all && !has_choice(arguments))
-    return {ablation_rows(), true, false};
-  PipelineDesc desc = chosen_desc(arguments);
+    return {ablation_rows(subject.backend.search_for(*subject.scene, Search::fastest)), true,
+            false};
+  PipelineDesc desc = chosen_desc(arguments, subject);
   if (arguments.stereo) desc.eyes = 2;
   if (arguments.stages == BenchStages::splat && !arguments.exponential &&
       desc.splatting == Splatting::ours)
     return {exponential_rows(desc), true, true};
-  return {{chosen_row(desc, flat)}, false, false};
+  return {{chosen_row(desc, subject.scene->flat())}, false, false};
 }
 
 FramePath make_path(const BenchArguments& arguments, const BenchSubject& subject) {
@@ -147,7 +148,7 @@ class Rows {
 }  // namespace
 
 Json bench_frames(const BenchArguments& arguments, const BenchSubject& subject) {
-  const Plan plan = make_plan(arguments, subject.scene->flat());
+  const Plan plan = make_plan(arguments, subject);
   const FramePath path = make_path(arguments, subject);
   Rows rows(subject, path, plan);
   rows.run();

@@ -11,8 +11,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool wanted(const SearchCandidate& candidate, const BenchArguments& arguments) {
+bool wanted(const SearchCandidate& candidate, const BenchArguments& arguments,
+            const BenchSubject& subject) {
   switch (arguments.search.value_or(SearchChoice::all)) {
+    case SearchChoice::automatic:
+      throw Error(ErrorCode::invalid_argument,
+                  "--search: found auto with --stages search, expected a search by its name, or "
+                  "all");
+    case SearchChoice::sweep:
+      return candidate.kind == Search::sweep;
     case SearchChoice::exhaustive:
       return candidate.kind == Search::exhaustive;
     case SearchChoice::streaming:
@@ -23,7 +30,7 @@ bool wanted(const SearchCandidate& candidate, const BenchArguments& arguments) {
     case SearchChoice::all:
       break;
   }
-  return true;
+  return subject.backend.search_for(*subject.scene, candidate.kind) == candidate.kind;
 }
 
 Json time_searches(const BenchArguments& arguments, const BenchSubject& subject) {
@@ -31,7 +38,7 @@ Json time_searches(const BenchArguments& arguments, const BenchSubject& subject)
       cut_path(subject.cameras, arguments.tau, subject.scene->origin);
   std::vector<SearchCandidate> searches;
   for (const SearchCandidate& candidate : kSearchCandidates)
-    if (wanted(candidate, arguments)) searches.push_back(candidate);
+    if (wanted(candidate, arguments, subject)) searches.push_back(candidate);
   const Progress progress = progress_bar();
   Json rows = Json::array();
   for (size_t i = 0; i < searches.size(); ++i) {

@@ -56,7 +56,7 @@ Json bench_stereo(const BenchArguments& arguments, const BenchSubject& subject) 
       {"right", frame_path(every_other(subject.cameras, 1), arguments.tau)},
       {"both", stereo_path(subject.cameras, arguments.tau)}};
   const FrameMaker maker{subject.backend, subject.scene, subject.workers};
-  const PipelineDesc chosen = chosen_desc(arguments);
+  const PipelineDesc chosen = chosen_desc(arguments, subject);
   // Draws nothing; the scene stays on its device from row to row.
   const View keeper(subject.scene, subject.backend, chosen, std::pmr::get_default_resource(),
                     subject.workers);

@@ -109,10 +109,13 @@ void add_streaming(CLI::App& command, RenderArguments& arguments) {
 void add_detail(CLI::App& command, RenderArguments& arguments) {
   add_lod_options(command, arguments.lod);
   add_choice<VoySearch>(command, "--search", arguments.choices.search,
-                        {{"temporal", VOY_SEARCH_TEMPORAL},
+                        {{"auto", VOY_SEARCH_AUTO},
+                         {"temporal", VOY_SEARCH_TEMPORAL},
+                         {"sweep", VOY_SEARCH_SWEEP},
                          {"streaming", VOY_SEARCH_STREAMING},
                          {"exhaustive", VOY_SEARCH_EXHAUSTIVE}},
-                        "How the nodes to draw are found. All find the same ones");
+                        "How the nodes to draw are found. All find the same ones. auto: temporal, "
+                        "or on a GPU a sweep of all nodes where that is faster");
   add_choice<bool>(command, "--slack", arguments.choices.slack, {{"on", true}, {"off", false}},
                    "off: the temporal search visits all of the last cut, for measurements");
   name_group(command, "Level of detail");

@@ -89,6 +89,7 @@ class Report {
     subject.exponentials = {Exponential::exact, Exponential::ex2, Exponential::lut};
     if (cuda) subject.exponentials.push_back(Exponential::half2);
     subject.baseline = cuda;
+    subject.search = backend_.search_for(*scenes_.own(), Search::fastest);
     return subject;
   }
 

@@ -29,6 +29,7 @@ class Cases {
       : extent_(extent), subject_(subject), axes_(extents_of(extent)) {
     base_.group = "default";
     base_.sh_degree = subject.sh_degree;
+    base_.desc.search = subject.search;
     base_.storage = subject.storages.front();
     base_.desc.exponential =
         has(Exponential::ex2) && subject.baseline ? Exponential::ex2 : Exponential::exact;
@@ -70,16 +71,21 @@ class Cases {
     for (const double tau : axes_.taus) add("tau", [&](ReportCase& c) { c.tau = tau; });
     if (extent_ == ReportExtent::quick) return;
     for (const Lod lod : {Lod::blocks, Lod::levels}) add_selection(lod);
-    for (const Search search : {Search::exhaustive, Search::streaming, Search::temporal_visit})
+    for (const Search search :
+         {Search::exhaustive, Search::streaming, Search::temporal_visit, Search::temporal})
       add("search", [&](ReportCase& c) { c.desc.search = search; });
   }
 
   // At several τ, so that they can be compared at one error.
   void add_selection(Lod lod) {
-    add("select", [&](ReportCase& c) { c.desc.lod = lod; });
+    const auto select = [&](ReportCase& c) {
+      c.desc.lod = lod;
+      c.desc.search = without_sweep(c.desc.search);
+    };
+    add("select", select);
     for (const double tau : axes_.taus_of_baselines)
       add("select", [&](ReportCase& c) {
-        c.desc.lod = lod;
+        select(c);
         c.tau = tau;
       });
   }

@@ -29,7 +29,8 @@ struct ReportSubject {
   int sh_degree = 0;
   std::vector<Storage> storages;  // the file's own first
   std::vector<Exponential> exponentials;
-  bool baseline = false;  // the backend has Splatting::baseline_3dgs
+  Search search = Search::temporal;  // that runs where none is chosen
+  bool baseline = false;             // the backend has Splatting::baseline_3dgs
 };
 
 // One case for each value of each axis, the others as in the first, which is what a host gets that

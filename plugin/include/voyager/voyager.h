@@ -558,13 +558,16 @@ typedef enum VoyLod {
 /* How the cut is found. All searches find the same cut, to the bit. They differ in what they
  * read. */
 typedef enum VoySearch {
-  VOY_SEARCH_AUTO = 0,           /* TEMPORAL */
+  VOY_SEARCH_AUTO = 0,           /* TEMPORAL, or SWEEP where that is faster */
   VOY_SEARCH_EXHAUSTIVE = 1,     /* tests every node: the baseline */
   VOY_SEARCH_STREAMING = 2,      /* reads chunks from the top and skips those below the cut */
   VOY_SEARCH_TEMPORAL = 3,       /* starts from the view's last cut and tests what may have changed.
                                     Falls back to STREAMING for a view's first frame, and where that
                                     is cheaper */
   VOY_SEARCH_TEMPORAL_VISIT = 4, /* TEMPORAL, but visits all of the last cut: for measurements */
+  VOY_SEARCH_SWEEP = 5,          /* tests every node that has children, in one pass; a jump costs no
+                                    more than a step. On CUDA, of a scene that is resident, without
+                                    damage, and baked by this version; TEMPORAL runs elsewhere */
   VOY_SEARCH_MAX_ENUM = 0x7fffffff
 } VoySearch;
 

@@ -53,7 +53,7 @@ FrameRun run_of_two() {
 
 Json report(const FrameRun& run, const DeviceRates& rates = kRates) {
   const FramePath path = two_cameras();
-  return report_row(ablation_rows().back(), run, {path, rates, 3, false});
+  return report_row(ablation_rows(Search::temporal).back(), run, {path, rates, 3, false});
 }
 
 TEST(FrameReport, TheFrameIsAllButHandingOut) {
@@ -117,13 +117,13 @@ TEST(FrameReport, SpeedupsAreOverBaseAnd3dgs) {
 
 // From one row to the next, one thing changes; only "ours" also changes how α is found.
 TEST(FrameReport, AblationGoesFrom3dgsToOursInSteps) {
-  const std::vector<FrameRow> rows = ablation_rows();
+  const std::vector<FrameRow> rows = ablation_rows(Search::sweep);
   ASSERT_EQ(rows.size(), 7u);
   EXPECT_EQ(rows[0].desc.lod, Lod::all_leaves);
   for (size_t i = 0; i < 4; ++i) EXPECT_EQ(rows[i].desc.splatting, Splatting::baseline_3dgs);
   for (size_t i = 4; i < 7; ++i) EXPECT_EQ(rows[i].desc.splatting, Splatting::ours);
   const Search searches[] = {Search::exhaustive,     Search::streaming,      Search::temporal_visit,
-                             Search::temporal_visit, Search::temporal_visit, Search::temporal};
+                             Search::temporal_visit, Search::temporal_visit, Search::sweep};
   for (size_t i = 1; i < 7; ++i) {
     EXPECT_EQ(rows[i].desc.lod, Lod::cut) << rows[i].name;
     EXPECT_EQ(rows[i].desc.search, searches[i - 1]) << rows[i].name;

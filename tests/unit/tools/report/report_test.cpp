@@ -45,6 +45,7 @@ ReportRow row(double tau, double ms, double flip) {
 TEST(Report, NoConfigurationIsMeasuredTwice) {
   ReportSubject cuda = city(), flat = city();
   cuda.baseline = true;
+  cuda.search = Search::sweep;
   cuda.exponentials.push_back(Exponential::half2);
   flat.flat = true;
   flat.storages = {Storage::flat, Storage::lossless, Storage::compact};
