@@ -20,6 +20,7 @@ Device::Device(int ordinal, unsigned multiprocessors) : ordinal_(ordinal) {
   name_ = properties.name;
   std::memcpy(uuid_.data(), properties.uuid.bytes, uuid_.size());
   multiprocessors_ = static_cast<unsigned>(properties.multiProcessorCount);
+  memory_bytes_ = properties.totalGlobalMem;
   if (multiprocessors != 0 && multiprocessors < multiprocessors_)
     make_green_context(multiprocessors);
 }

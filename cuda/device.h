@@ -33,6 +33,7 @@ class Device {
   int ordinal() const { return ordinal_; }
   const std::string& name() const { return name_; }
   unsigned multiprocessors() const { return multiprocessors_; }
+  uint64_t memory_bytes() const { return memory_bytes_; }  // of the whole card
   const std::array<uint8_t, 16>& uuid() const { return uuid_; }
   // What it takes of another API's on the same card, as the driver says.
   ExternalSupport external_support() const;
@@ -46,6 +47,7 @@ class Device {
   std::string name_;
   std::array<uint8_t, 16> uuid_;
   unsigned multiprocessors_ = 0;
+  uint64_t memory_bytes_ = 0;
   void* green_ = nullptr;    // CUgreenCtx
   void* context_ = nullptr;  // its CUcontext; null for the whole device
 };

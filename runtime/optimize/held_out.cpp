@@ -8,8 +8,6 @@
 namespace voyager {
 namespace {
 
-// Far behind those that are learned from.
-constexpr uint32_t kFirst = uint32_t{1} << 28;
 constexpr double kTaus[] = {kReferenceTau, 2 * kReferenceTau, 5 * kReferenceTau};
 // Of 2τ + 1, that are tried: each so much more than the one before.
 constexpr double kLeastSize = 1.5, kStep = 1.2599210498948732;  // ∛2
@@ -19,7 +17,7 @@ constexpr double kTolerated = 0.5;  // dB, below every leaf
 }  // namespace
 
 TrainingView HeldOutViews::view(uint32_t i, double tau) const {
-  TrainingView view = views_(kFirst + i);
+  TrainingView view = views_(first_ + i);
   view.tau = tau;
   return view;
 }
@@ -40,7 +38,8 @@ std::vector<HeldOut> HeldOutViews::look(NodeTrainer& trainer) const {
       const TrainingError error = trainer.error(at);
       found.cut += psnr_of(at, error) / count_;
       found.leaves += leaves;
-      found.share += error.cut / leaves_ / count_;
+      found.share +=
+          static_cast<double>(error.cut - around_) / static_cast<double>(looked_at_) / count_;
     }
   }
   return all;
@@ -48,7 +47,7 @@ std::vector<HeldOut> HeldOutViews::look(NodeTrainer& trainer) const {
 
 double HeldOutViews::best_tau(NodeTrainer& trainer) const {
   std::vector<std::pair<double, uint32_t>> by_distance;
-  for (uint32_t i = 0; i < count_; ++i) by_distance.emplace_back(views_.distance(kFirst + i), i);
+  for (uint32_t i = 0; i < count_; ++i) by_distance.emplace_back(views_.distance(first_ + i), i);
   std::sort(by_distance.begin(), by_distance.end());
   std::vector<double> leaves(count_);
   for (uint32_t i = 0; i < count_; ++i) {
@@ -71,6 +70,13 @@ double HeldOutViews::best_tau(NodeTrainer& trainer) const {
     best = tau;
   }
   return best;
+}
+
+uint32_t HeldOutViews::pictures_of_look() const {
+  return count_ * (1 + static_cast<uint32_t>(std::size(kTaus)));
+}
+uint32_t HeldOutViews::pictures_of_best_tau() const {
+  return count_ * (1 + kSteps);
 }
 
 }  // namespace voyager

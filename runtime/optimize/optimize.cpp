@@ -1,190 +1,128 @@
 #include "runtime/optimize/optimize.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "runtime/base/clock.h"
 #include "runtime/base/error.h"
-#include "runtime/frame/built_scene.h"
 #include "runtime/lod/align.h"
-#include "runtime/lod/stand_in.h"
-#include "runtime/optimize/checkpoint.h"
-#include "runtime/optimize/held_out.h"
+#include "runtime/optimize/learn_scene.h"
+#include "runtime/optimize/part.h"
 #include "runtime/refine/extents.h"
+#include "runtime/stages/learn.h"
 
 namespace voyager {
 namespace {
 
-// Chosen on one district (bench/NOTES.md).
-constexpr LearningRates kRates{0.02f, 0.01f, 0.002f, 0.03f, 0.006f, 0.0006f, 1};
-constexpr double kLastPace = 0.05;  // at the end
+// Of a device's memory: the rest is for pictures and lists.
+constexpr double kShareOfDevice = 0.7;
+// Leaves around a part, for each of its own; and how many more pictures a part's nodes need, as
+// those around do not learn from them.
+constexpr double kAround = 1, kMorePictures = 2;
+constexpr uint64_t kFewestLeaves = 256;
+constexpr uint64_t kMostParts = 256;  // each is learned with what is around it
 
-// Extents are measured anew when these shares of the steps are done: what learned has another
-// error, and other cuts learn from then on.
-constexpr double kMeasureAt[] = {0.4, 0.7, 1.0};
-// Of the cuts that are measured, as refine.cpp's; views of them, for each of so many steps.
-constexpr double kMeasureTaus[] = {2, 8, 30};
-constexpr uint32_t kStepsPerMeasure = 60, kLeastMeasures = 8, kMostMeasures = 256;
-constexpr uint32_t kFirstMeasure = uint32_t{1} << 27;
-
-constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
-// Extents shrink at the end by this factor at most.
-constexpr double kMostShrink = 8;
-
-LearningRates rates_at(double done) {
-  LearningRates rates = kRates;
-  rates.pace = static_cast<float>(std::pow(kLastPace, done));
-  return rates;
+// Of the device's memory, by the trainer's arrays: a Gaussian and what finds it for each of about
+// one and a half nodes a leaf, and two moments for each number of half a merged node.
+double device_bytes_of_leaf(int sh_degree) {
+  const int numbers = numbers_of(sh_degree);
+  return 1.5 * (120 + 4.0 * numbers) + 0.5 * 8 * numbers;
 }
 
-class Optimizing {
+// Leaves that learn at once.
+uint64_t most_at_once(const BakedScene& baked, const OptimizeGoal& goal, const Backend& backend) {
+  const int degree = baked.leaves.sh_degree;
+  double room = static_cast<double>(baked.leaves.size());
+  const auto fit = [&](double bytes, double of_leaf) {
+    if (bytes >= of_leaf * static_cast<double>(baked.leaves.size())) return;
+    room = std::min(room, bytes / (of_leaf * (1 + kAround)));
+  };
+  if (backend.memory_bytes() != 0)
+    fit(kShareOfDevice * static_cast<double>(backend.memory_bytes()), device_bytes_of_leaf(degree));
+  if (goal.memory != 0)
+    fit(static_cast<double>(goal.memory), static_cast<double>(bytes_to_optimize(1, degree)));
+  const auto most = static_cast<uint64_t>(room);
+  const uint64_t least = std::max(baked.leaves.size() / kMostParts,
+                                  std::min<uint64_t>(baked.leaves.size(), kFewestLeaves));
+  if (most < least)
+    throw Error(ErrorCode::over_budget, "memory: found room for " + std::to_string(most) +
+                                            " Gaussians that learn at once, expected room for " +
+                                            std::to_string(least) + " at least");
+  return most;
+}
+
+void add_means(std::vector<HeldOut>& sums, const std::vector<HeldOut>& of, double share) {
+  sums.resize(of.size());
+  for (size_t i = 0; i < of.size(); ++i) {
+    sums[i].tau = of[i].tau;
+    sums[i].cut += share * of[i].cut;
+    sums[i].leaves += share * of[i].leaves;
+    sums[i].share += share * of[i].share;
+  }
+}
+
+// One part after another, then what is above them all.
+class InParts {
  public:
-  Optimizing(BakedScene& baked, const OptimizeGoal& goal, Backend& backend, const std::string& kept,
-             Workers& workers, const Progress& progress)
+  InParts(BakedScene& baked, const OptimizeGoal& goal, uint64_t most_leaves, Backend& backend,
+          const std::string& kept, Workers& workers, const Progress& progress)
       : baked_(baked),
+        goal_(goal),
+        most_leaves_(most_leaves),
+        backend_(backend),
         kept_(kept),
-        progress_(progress),
-        mark_(mark_of(baked)),
-        views_(baked),
-        held_out_(views_, goal.held_out, static_cast<double>(baked.leaves.size())),
-        trainer_(backend.create_trainer(scene_of(baked, workers), workers)) {}
+        workers_(workers),
+        progress_(progress) {}
 
-  OptimizeSummary run(const OptimizeGoal& goal) {
-    OptimizeSummary summary;
-    summary.before = held_out_.look(*trainer_);
-    start(goal);
-    learn(goal.keep_milliseconds);
-    summary.pictures = checkpoint_.pictures;
-    summary.extents_by = calibrate();
-    summary.after = held_out_.look(*trainer_);
-    take_learned();
-    return summary;
-  }
-
- private:
-  // Where it was left, or at the beginning.
-  void start(const OptimizeGoal& goal) {
-    if (read_checkpoint(mark_, kept_, checkpoint_)) {
-      if (goal.pictures != 0 && goal.pictures != checkpoint_.pictures)
-        throw Error(ErrorCode::refused_input,
-                    kept_ + ": found what is learned from " + std::to_string(checkpoint_.pictures) +
-                        " pictures, expected " + std::to_string(goal.pictures) +
-                        ": ask for as many, or remove it");
-      trainer_->set_state(checkpoint_.state);
-      take_extents();
-      return;
+  OptimizeSummary run() {
+    const std::vector<PartRoots> parts = part_roots(baked_.tree, most_leaves_);
+    const auto most_around = static_cast<uint64_t>(kAround * static_cast<double>(most_leaves_));
+    uint64_t own = 0;
+    for (const PartRoots& roots : parts) own += roots.leaves;
+    // What has learned in a part is not changed by the top, in which it learns once more.
+    std::vector<bool> done(baked_.tree.size(), false);
+    for (const PartRoots& roots : parts) {
+      learn(take_part(baked_, roots, most_around), done,
+            static_cast<double>(roots.leaves) / static_cast<double>(own));
+      std::fill_n(done.begin() + roots.first, roots.count, true);
     }
-    checkpoint_.pictures = goal.pictures != 0 ? goal.pictures : steps_in(goal.minutes);
-    checkpoint_.extents.resize(baked_.tree.size());
-    give_extents();
-  }
-
-  uint32_t steps_in(double minutes) {
-    const TrainingState untouched = trainer_->state();
-    for (uint32_t k = 0; k < kWarmSteps; ++k) trainer_->step(views_.picture(k), {});
-    const Stopwatch watch;
-    for (uint32_t k = 0; k < kTimedSteps; ++k) trainer_->step(views_.picture(kWarmSteps + k), {});
-    const double each = std::max(watch.milliseconds() / kTimedSteps, 1e-3);
-    trainer_->set_state(untouched);
-    return static_cast<uint32_t>(std::clamp(minutes * 60000 / each, 1.0, 1e9));
-  }
-
-  void learn(double keep_milliseconds) {
-    Stopwatch since_kept;
-    const uint32_t steps = checkpoint_.pictures;
-    while (checkpoint_.done < steps) {
-      const uint32_t k = checkpoint_.done++;
-      report(progress_, "optimizing", k, steps);
-      trainer_->step(views_.picture(k), rates_at(static_cast<double>(k) / steps));
-      for (const double share : kMeasureAt)
-        if (checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps))) measure();
-      if (since_kept.milliseconds() < keep_milliseconds) continue;
-      checkpoint_.state = trainer_->state();
-      give_extents();
-      write_checkpoint(checkpoint_, mark_, kept_);
-      since_kept = {};
-    }
-    report(progress_, "optimizing", steps, steps);
-  }
-
-  void measure() {
-    Measured measured(baked_.tree.size());
-    const uint32_t views =
-        std::clamp(checkpoint_.pictures / kStepsPerMeasure, kLeastMeasures, kMostMeasures);
-    for (uint32_t i = 0; i < views; ++i)
-      for (const double tau : kMeasureTaus) {
-        TrainingView view = views_(kFirstMeasure + i);
-        view.tau = tau;
-        const Vec3d& eye = view.camera.eye;
-        const Vec3f centre =
-            cut_centre(eye, {baked_.origin[0], baked_.origin[1], baked_.origin[2]});
-        for (const NodeError& found : trainer_->node_errors(view)) {
-          const NodeRecord& r = baked_.tree.records[found.node];
-          const double metres = double{squared_distance(centre, r.box_min, r.box_max)} /
-                                (view.camera.fx * view.camera.fx);
-          measured.gain[found.node] += double{found.squares} * metres / (r.child_count - 1);
-          ++measured.pictures[found.node];
-        }
-      }
-    set_extents(measured, baked_.tree);
-    give_extents();
-    trainer_->set_extents(checkpoint_.extents);
-  }
-
-  // Extents such that the default τ draws no more than it has to. They never grow here. Returns
-  // what they are multiplied by.
-  double calibrate() {
-    const double tau = held_out_.best_tau(*trainer_);
-    const double by = std::clamp((2 * kReferenceTau + 1) / (2 * tau + 1), 1 / kMostShrink, 1.0);
-    for (NodeRecord& r : baked_.tree.records) {
-      const auto changed = static_cast<float>(by * double{r.extent});
-      if (std::isfinite(changed)) r.extent = changed;
-    }
-    give_extents();
-    trainer_->set_extents(checkpoint_.extents);
-    return by;
-  }
-
-  void give_extents() {
-    for (size_t n = 0; n < baked_.tree.size(); ++n)
-      checkpoint_.extents[n] = baked_.tree.records[n].extent;
-  }
-  void take_extents() {
-    for (size_t n = 0; n < baked_.tree.size(); ++n)
-      baked_.tree.records[n].extent = checkpoint_.extents[n];
-    trainer_->set_extents(checkpoint_.extents);
-  }
-
-  void take_learned() {
-    const TrainingState state = trainer_->state();
-    const auto numbers = static_cast<size_t>(numbers_of(baked_.leaves.sh_degree));
-    const size_t coefficients = numbers - kShapeNumbers;
-    GaussianCloud& merged = baked_.merged;
-    size_t row = 0;
-    for (uint32_t n = 0; n < baked_.tree.size(); ++n) {
-      if (baked_.tree.is_leaf(n)) continue;
-      const float* v = &state.values[row * numbers];
-      const size_t i = baked_.gaussian[n];
-      std::copy_n(v, 3, &merged.position[3 * i]);
-      for (size_t axis = 0; axis < 3; ++axis)
-        merged.log_scale[3 * i + axis] = std::log(v[3 + axis]);
-      std::copy_n(v + 6, 4, &merged.rotation[4 * i]);
-      merged.opacity[i] = state.opacities[row++];
-      std::copy_n(v + kShapeNumbers, coefficients, &merged.sh[i * coefficients]);
-    }
+    for (uint32_t n = 1; n < done.size(); ++n) done[n] = done[n] || done[baked_.tree.parent[n]];
+    learn(take_top(baked_, most_leaves_), done, 0);
+    never_grow_downwards(baked_.tree);
     baked_.learned = true;
     // Parents come before their children.
     for (uint32_t n = 0; n < baked_.tree.size(); ++n) align_children(n, baked_);
+    return std::move(summary_);
+  }
+
+ private:
+  // weight: of its held-out views in the summary.
+  void learn(ScenePart part, const std::vector<bool>& done, double weight) {
+    if (part.scene.merged.size() == 0) return;
+    OptimizeGoal goal = goal_;
+    const double share = kMorePictures * kMorePictures *
+                         static_cast<double>(part.scene.merged.size()) /
+                         static_cast<double>(baked_.merged.size());
+    goal.pictures =
+        goal.pictures == 0 ? 0 : std::max(1u, static_cast<uint32_t>(goal.pictures * share));
+    goal.minutes *= share;
+    const std::string kept = kept_ + "." + std::to_string(summary_.kept.size());
+    const OptimizeSummary found =
+        learn_scene(part.scene, {part.own_leaves, part.leaf_size, part.largest}, goal, backend_,
+                    kept, workers_, progress_);
+    give_back(part, done, baked_);
+    summary_.kept.push_back(kept);
+    summary_.pictures += found.pictures;
+    add_means(summary_.before, found.before, weight);
+    add_means(summary_.after, found.after, weight);
   }
 
   BakedScene& baked_;
+  const OptimizeGoal& goal_;
+  const uint64_t most_leaves_;
+  Backend& backend_;
   const std::string& kept_;
+  Workers& workers_;
   const Progress& progress_;
-  const uint64_t mark_;
-  const TrainingViews views_;
-  const HeldOutViews held_out_;
-  std::unique_ptr<NodeTrainer> trainer_;
-  Checkpoint checkpoint_;
+  OptimizeSummary summary_;
 };
 
 }  // namespace
@@ -212,7 +150,13 @@ OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Back
     throw Error(ErrorCode::unsupported,
                 kept + ": found a tree of another kind, expected a clustered one");
   if (baked.tree.size() < 2) return {};
-  return Optimizing(baked, goal, backend, kept, workers, progress).run(goal);
+  const uint64_t most = most_at_once(baked, goal, backend);
+  if (most < baked.leaves.size())
+    return InParts(baked, goal, most, backend, kept, workers, progress).run();
+  OptimizeSummary summary =
+      learn_scene(baked, {baked.leaves.size(), 0, 0}, goal, backend, kept, workers, progress);
+  summary.kept = {kept};
+  return summary;
 }
 
 // Rows of 3 × numbers, for each of about half as many merged nodes, in the trainer's state, in what
@@ -220,6 +164,11 @@ OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Back
 uint64_t bytes_to_optimize(uint64_t gaussians, int sh_degree) {
   const auto numbers = static_cast<uint64_t>(numbers_of(sh_degree));
   return gaussians * (3 * 3 * numbers * sizeof(float) / 2 + 3 * numbers * sizeof(float));
+}
+
+uint64_t least_bytes_to_optimize(uint64_t gaussians, int sh_degree) {
+  return bytes_to_optimize(std::max(gaussians / kMostParts, std::min(gaussians, kFewestLeaves)),
+                           sh_degree);
 }
 
 }  // namespace voyager

@@ -16,7 +16,8 @@ namespace voyager {
 struct OptimizeGoal {
   uint32_t pictures = 0;
   double minutes = 0;
-  uint32_t held_out = 24;            // views
+  uint64_t memory = 0;     // bytes of the host's that this may take beside the scene; 0: any number
+  uint32_t held_out = 24;  // views
   double keep_milliseconds = 60000;  // between one time that what was learned is kept and the next
 };
 // So many for each merged node.
@@ -31,22 +32,26 @@ struct HeldOut {
 };
 struct OptimizeSummary {
   uint32_t pictures = 0;
-  std::vector<HeldOut> before, after;  // at the same τ
-  double extents_by = 1;               // what extents were multiplied by at the end
+  std::vector<HeldOut> before, after;  // at the same τ; of parts, the mean by their leaves
+  std::vector<std::string> kept;       // files in which what was learned is kept
 };
 
 // Changes the merged Gaussians of a clustered tree and its extents; leaves stay as they are. With a
 // number of pictures the same scene on the same device gives the same bytes, however often this was
 // stopped. At the end extents shrink as far as a cut's held-out pictures at the default τ stay
-// within half a dB of every leaf's. kept: a file in which what was learned is kept now and then,
-// and from which this goes on; whoever calls removes it. Progress counts pictures. Throws
+// within half a dB of every leaf's. Where there is not the memory for all at once, parts learn one
+// after another (part.h). kept: a file in which what was learned is kept now and then, and from
+// which this goes on, `kept`.0, .1 and so on of parts; whoever calls removes them. Progress counts
+// pictures, of each part anew. Throws
 // Error(refused_input) where the file is of another scene or was altered, Error(unsupported) for
 // another kind of tree or where the backend has no trainer, Error(over_budget), Error(io).
 OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Backend& backend,
                                const std::string& kept, Workers& workers,
                                const Progress& progress = {});
 
-// Bytes that this takes of the host's memory beside the scene, about.
+// Bytes that this takes of the host's memory beside the scene, about: where all learn at once, and
+// in the smallest parts.
 uint64_t bytes_to_optimize(uint64_t gaussians, int sh_degree);
+uint64_t least_bytes_to_optimize(uint64_t gaussians, int sh_degree);
 
 }  // namespace voyager

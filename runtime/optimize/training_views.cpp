@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "runtime/lod/stand_in.h"
 #include "runtime/math/halton.h"
 
 namespace voyager {
@@ -22,6 +23,9 @@ constexpr size_t kSample = 1 << 16;
 // A picture's pixel, at the leaf that is looked at, is this share of the native pixel or more:
 // closer than that every cut has its leaves.
 constexpr double kClosest = 0.3;
+// Of a node's extent: such a pixel, taken as native, puts the closest eye where the node is drawn
+// at τ = ½ (size = extent / distance = (2τ + 1) / focal length).
+constexpr double kPixelOfExtent = 1 / (2 * kClosest);
 // Sine of the elevation. What nobody has seen from below looks like nothing from there, and what
 // learned it would look worse from above.
 constexpr double kLowestOfFlat = -0.05, kLowestOfOther = -0.5;
@@ -72,8 +76,10 @@ Upward upward(const Spread& spread) {
 
 }  // namespace
 
-TrainingViews::TrainingViews(const BakedScene& baked)
-    : baked_(baked), smaller_(baked.leaves.size() < kFewLeaves ? kSmallerOfFew : kSmaller) {
+TrainingViews::TrainingViews(const BakedScene& baked, const LookedAt& looked_at)
+    : baked_(baked),
+      leaves_(looked_at.leaves),
+      smaller_(looked_at.leaves < kFewLeaves ? kSmallerOfFew : kSmaller) {
   const Spread spread(baked);
   const Upward found = upward(spread);
   const Vec3d& up = found.up;
@@ -81,11 +87,14 @@ TrainingViews::TrainingViews(const BakedScene& baked)
   axes_ = {{level, cross(up, level), up}};
   lowest_rise_ = found.flat ? kLowestOfFlat : kLowestOfOther;
   const double radius = std::max(spread.radius(), 1e-6);
-  const double native = baked.leaves.native.pixel;
+  const double native = std::max(baked.leaves.native.pixel, kPixelOfExtent * looked_at.leaf_size);
   nearest_ = std::clamp(kClosest * native * kFocal / smaller_, 1e-3 * kNearestOfRadius * radius,
                         kNearestOfRadius * 10 * radius);
   if (!(native > 0)) nearest_ = kNearestOfRadius * radius;
-  farthest_ = std::max(kFarthestOfRadius * radius, 4 * nearest_);
+  double farthest = kFarthestOfRadius * radius;
+  if (looked_at.largest > 0)
+    farthest = std::min(farthest, looked_at.largest * kFocal / smaller_ / (2 * kReferenceTau + 1));
+  farthest_ = std::max(farthest, 4 * nearest_);
 }
 
 double TrainingViews::distance(uint32_t k) const {
@@ -94,7 +103,7 @@ double TrainingViews::distance(uint32_t k) const {
 
 TrainingView TrainingViews::operator()(uint32_t k) const {
   const uint64_t index = uint64_t{k} + 1;
-  const auto leaves = static_cast<double>(baked_.leaves.size());
+  const auto leaves = static_cast<double>(leaves_);
   const auto leaf = static_cast<size_t>(radical_inverse(index, 2) * leaves);
   const Vec3f target = local_mean(baked_.leaves, leaf, baked_.origin);
   const double around = 2 * std::numbers::pi * radical_inverse(index, 3);

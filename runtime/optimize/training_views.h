@@ -7,13 +7,21 @@
 
 namespace voyager {
 
+// What views look at.
+struct LookedAt {
+  size_t leaves;     // the scene's first ones, at least one
+  double leaf_size;  // metres: the extent of nodes that stand as leaves, 0 where none do
+  // The greatest extent of what learns, which is drawn at the default τ from the farthest eye; 0:
+  // the scene is whole, and eyes are as far as three of its radii.
+  double largest;
+};
+
 // Each looks at a leaf, from outside or from amid the scene. The k-th is the same whatever comes
 // before it; those from 0 to any k are spread evenly (Halton's sequence) over leaves, directions
 // and the logarithm of the distance.
 class TrainingViews {
  public:
-  // At least one leaf.
-  explicit TrainingViews(const BakedScene& baked);
+  TrainingViews(const BakedScene& baked, const LookedAt& looked_at);
 
   // At the default τ.
   TrainingView operator()(uint32_t k) const;
@@ -25,6 +33,7 @@ class TrainingViews {
 
  private:
   const BakedScene& baked_;
+  size_t leaves_;       // that are looked at
   Mat3d axes_;          // rows: two level ones, and up
   double lowest_rise_;  // sine of the elevation
   double nearest_, farthest_;

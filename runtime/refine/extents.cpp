@@ -45,6 +45,8 @@ void change_extents(const Measured& measured, LodTree& tree) {
   }
 }
 
+}  // namespace
+
 void never_grow_downwards(LodTree& tree) {
   for (auto n = static_cast<uint32_t>(tree.size()); n-- > 0;) {
     NodeRecord& r = tree.records[n];
@@ -52,8 +54,6 @@ void never_grow_downwards(LodTree& tree) {
       r.extent = std::max(r.extent, tree.records[tree.first_child[n] + i].extent);
   }
 }
-
-}  // namespace
 
 void set_extents(const Measured& measured, LodTree& tree) {
   change_extents(measured, tree);

@@ -18,7 +18,7 @@ class Train : public SplatTest {
   // First moments are a tenth of what the loss changes with a step.
   TrainingState learned(Backend& backend, const BakedScene& baked, uint32_t steps, double tau) {
     const auto trainer = backend.create_trainer(scene_of(baked, workers), workers);
-    const TrainingViews views(baked);
+    const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
     for (uint32_t k = 0; k < steps; ++k) {
       TrainingView view = views.picture(k);
       view.tau = tau;
@@ -57,7 +57,7 @@ TEST_F(Train, TheSameBitsEachTime) {
 TEST_F(Train, GoesOnFromAStateAsIfItHadNotStopped) {
   const BakedScene baked = bake(specks(3000, 5, 1));
   const auto scene = scene_of(baked, workers);
-  const TrainingViews views(baked);
+  const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
   const auto whole = cuda->create_trainer(scene, workers),
              stopped = cuda->create_trainer(scene, workers),
              resumed = cuda->create_trainer(scene, workers);
@@ -73,7 +73,7 @@ TEST_F(Train, ErrorsOfLeavesAndCutsAreTheCpus) {
   const auto scene = scene_of(baked, workers);
   const auto host = cpu->create_trainer(scene, workers),
              device = cuda->create_trainer(scene, workers);
-  const TrainingViews views(baked);
+  const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
   for (uint32_t k = 0; k < 3; ++k) {
     const double leaves = host->error_of_leaves(views.picture(5 * k)).squares;
     EXPECT_NEAR(device->error_of_leaves(views.picture(5 * k)).squares, leaves,

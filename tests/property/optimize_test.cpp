@@ -10,8 +10,10 @@
 #include "runtime/frame/built_scene.h"
 #include "runtime/lod/validate.h"
 #include "runtime/optimize/checkpoint.h"
+#include "runtime/optimize/part.h"
 #include "runtime/optimize/training_views.h"
 #include "runtime/scene/append.h"
+#include "runtime/select/cut.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
@@ -66,7 +68,7 @@ TEST(Optimize, ComesNearerToTheTruthInViewsThatItDidNotLearnFrom) {
   const BakedScene baked = city(6000);
   const auto backend = create_cpu_backend();
   const auto trainer = backend->create_trainer(scene_of(baked, workers), workers);
-  const TrainingViews views(baked);
+  const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
   const auto decibels = [&] {
     double sum = 0;
     for (uint32_t k = 1000; k < 1006; ++k)
@@ -85,7 +87,7 @@ TEST(Optimize, ComesNearerToTheTruthInViewsThatItDidNotLearnFrom) {
 
 TEST(Optimize, FourCutsOfAViewShareItsTruth) {
   const BakedScene baked = city(200);
-  const TrainingViews views(baked);
+  const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
   for (uint32_t k = 0; k < 12; ++k) {
     const TrainingView found = views.picture(k);
     EXPECT_EQ(truth_of(found), truth_of(views(k / 4)));
@@ -103,7 +105,7 @@ TEST(Optimize, ATruthIsNotTakenForThatOfAnotherView) {
   const auto backend = create_cpu_backend();
   const auto scene = scene_of(baked, workers);
   const auto kept = backend->create_trainer(scene, workers);
-  const TrainingView one = small_view(TrainingViews(baked), 3, 6);
+  const TrainingView one = small_view(TrainingViews(baked, {baked.leaves.size(), 0, 0}), 3, 6);
   TrainingView turned = one, finer = one, smaller = one;
   std::swap(turned.camera.world_to_view.row[0], turned.camera.world_to_view.row[1]);
   finer.samples = 6;
@@ -138,6 +140,144 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
                  Stop);
   }
   EXPECT_TRUE(same(learn(baked, 8, 2, kept).scene, expected));
+}
+
+// Of the host's memory, so that specks(1500, ...) of degree 1 learns in parts.
+constexpr uint64_t kMemoryOfParts = 690'000;
+
+OptimizeSummary learn_in_parts(BakedScene& scene, unsigned threads, const std::string& kept,
+                               const Progress& progress = {}) {
+  Workers workers(threads);
+  const auto backend = create_cpu_backend();
+  return optimize_nodes(
+      scene, {.pictures = 8, .memory = kMemoryOfParts, .held_out = 2, .keep_milliseconds = 0},
+      *backend, kept, workers, progress);
+}
+
+TEST(Optimize, InPartsNeitherThreadsNorStopsShow) {
+  const test::TempFolder folder;
+  const BakedScene baked = test::bake(test::specks(1500, 6, 1));
+  BakedScene expected = baked;
+  const OptimizeSummary summary = learn_in_parts(expected, 1, folder.file("one"));
+  ASSERT_GE(summary.kept.size(), 4u);  // three parts and the top
+  for (size_t i = 0; i < summary.kept.size(); ++i)
+    EXPECT_EQ(summary.kept[i], folder.file("one") + "." + std::to_string(i));
+  EXPECT_FALSE(same(expected, baked));
+  EXPECT_TRUE(validate(expected).empty()) << validate(expected).front();
+  EXPECT_EQ(expected.leaves.position, baked.leaves.position);
+  EXPECT_EQ(expected.leaves.opacity, baked.leaves.opacity);
+  EXPECT_EQ(expected.leaves.sh, baked.leaves.sh);
+
+  struct Stop {};
+  const std::string kept = folder.file("stopped");
+  for (const int at : {3, 11}) {
+    BakedScene scene = baked;
+    int calls = 0;
+    EXPECT_THROW(learn_in_parts(scene, 2, kept,
+                                [&](const char*, uint64_t, uint64_t) {
+                                  if (++calls == at) throw Stop{};
+                                }),
+                 Stop);
+  }
+  BakedScene again = baked;
+  learn_in_parts(again, 3, kept);
+  EXPECT_TRUE(same(again, expected));
+}
+
+TEST(Optimize, MinutesGiveAsManyPicturesAsThereIsTimeFor) {
+  const test::TempFolder folder;
+  const BakedScene baked = test::bake(test::specks(300, 7, 0));
+  Workers workers;
+  const auto backend = create_cpu_backend();
+  const auto pictures_in = [&](double minutes) {
+    BakedScene scene = baked;
+    return optimize_nodes(scene, {.minutes = minutes, .held_out = 1}, *backend,
+                          folder.file(std::to_string(minutes)), workers)
+        .pictures;
+  };
+  EXPECT_EQ(pictures_in(1e-6), 1u);  // measuring takes all of it
+  EXPECT_GT(pictures_in(0.01), 1u);
+}
+
+TEST(Optimize, LessMemoryThanTheSmallestPartTakesIsRefused) {
+  const test::TempFolder folder;
+  BakedScene baked = test::bake(test::specks(1500, 6, 1));
+  Workers workers;
+  const auto backend = create_cpu_backend();
+  try {
+    optimize_nodes(baked, {.pictures = 8, .memory = 1000}, *backend, folder.file("kept"), workers);
+    FAIL() << "nothing was refused";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::over_budget);
+    EXPECT_EQ(std::string(error.what()),
+              "memory: found room for 0 Gaussians that learn at once, expected room for 256 at "
+              "least");
+  }
+}
+
+// By node of the tree.
+std::vector<bool> cut_of(const LodTree& tree, const CutQuery& query) {
+  Workers workers(1);
+  ExhaustiveSearch search;
+  search.run(tree, {}, query, workers);
+  std::vector<bool> cut(tree.size(), false);
+  for (const uint32_t n : search.cut()) cut[n] = true;
+  return cut;
+}
+
+// By node of the part: whether it is below the roots, or one.
+std::vector<bool> own_nodes(const ScenePart& part, const PartRoots& roots) {
+  std::vector<bool> own(part.whole.size(), false);
+  for (uint32_t p = 1; p < own.size(); ++p) {
+    const uint32_t parent = part.scene.tree.parent[p];
+    own[p] = parent == 0 ? part.whole[p] - roots.first < roots.count : own[parent];
+  }
+  return own;
+}
+
+// What is around a part is in every cut; the rest of its cut is the whole's, but for the roots,
+// which have another parent.
+TEST(Optimize, APartShowsWhatTheWholeShows) {
+  const BakedScene baked = city(10000);
+  const std::vector<PartRoots> parts = part_roots(baked.tree, 2500);
+  ASSERT_GE(parts.size(), 4u);
+  for (const PartRoots& roots : parts) {
+    const ScenePart part = take_part(baked, roots, 2500);
+    const LodTree& tree = part.scene.tree;
+    EXPECT_LE(roots.leaves, 2500u);
+    EXPECT_EQ(part.own_leaves, roots.leaves);
+    EXPECT_GT(part.scene.leaves.size(), roots.leaves);
+    EXPECT_LE(part.scene.leaves.size(), roots.leaves + 2500);
+    const std::vector<bool> own = own_nodes(part, roots);
+    for (const float target : {0.002f, 0.02f, 0.2f}) {
+      const CutQuery query{{10, -20, 5}, target};
+      const std::vector<bool> cut = cut_of(tree, query), whole = cut_of(baked.tree, query);
+      EXPECT_FALSE(cut[0]);
+      for (uint32_t p = 1; p < own.size(); ++p) {
+        const bool expected = !own[p] || (tree.parent[p] == 0 ? cut[p] : whole[part.whole[p]]);
+        ASSERT_EQ(cut[p], expected) << p;
+      }
+    }
+  }
+}
+
+// All that merges is in one part, or above them.
+TEST(Optimize, PartsHaveEveryMergedNodeOnce) {
+  const LodTree tree = city(10000).tree;
+  std::vector<int> parts_with(tree.size(), 0);
+  for (const PartRoots& roots : part_roots(tree, 2500))
+    for (uint32_t n = roots.first; n < roots.first + roots.count; ++n) ++parts_with[n];
+  std::vector<bool> has_part(tree.size(), false);  // below it
+  for (auto n = static_cast<uint32_t>(tree.size()); n-- > 1;)
+    if (parts_with[n] != 0 || has_part[n]) has_part[tree.parent[n]] = true;
+  for (uint32_t n = 1; n < tree.size(); ++n) {
+    const int above = parts_with[tree.parent[n]];
+    parts_with[n] += above;
+    EXPECT_LE(parts_with[n], 1) << n;
+    if (!tree.is_leaf(n)) {
+      EXPECT_TRUE(parts_with[n] == 1 || has_part[n]) << n;
+    }
+  }
 }
 
 TEST(Optimize, WhatWasLearnedOfAnotherSceneOrWasAlteredIsRefused) {

@@ -96,7 +96,8 @@ Announced announced_by(const Readers& readers) {
 uint64_t bytes_in_memory(const Announced& inputs, const BakeArguments& arguments) {
   return bytes_to_bake(inputs.gaussians, inputs.sh_degree) +
          (arguments.refine != 0 ? bytes_to_refine(inputs.gaussians) : 0) +
-         (arguments.optimize.wanted() ? bytes_to_optimize(inputs.gaussians, inputs.sh_degree) : 0);
+         (arguments.optimize.wanted() ? least_bytes_to_optimize(inputs.gaussians, inputs.sh_degree)
+                                      : 0);
 }
 
 // So that many appends copy little.
@@ -245,11 +246,16 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
                                 {native.cameras, found.unseen_level()});
   const std::string kept = refine_file(arguments);
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
-  const std::string learned = optimize_file(arguments);
+  std::vector<std::string> learned;
   if (arguments.optimize.wanted()) {
     const std::unique_ptr<Backend> backend = create_backend(arguments.optimize.backend);
-    const OptimizeGoal goal = arguments.optimize.goal(baked.merged.size());
-    print_learned(optimize_nodes(baked, goal, *backend, learned, workers, progress));
+    OptimizeGoal goal = arguments.optimize.goal(baked.merged.size());
+    const uint64_t taken = bytes_to_bake(baked.leaves.size(), baked.leaves.sh_degree);
+    goal.memory = std::max(arguments.memory * 1'000'000, taken + 1) - taken;
+    const OptimizeSummary summary =
+        optimize_nodes(baked, goal, *backend, optimize_file(arguments), workers, progress);
+    print_learned(summary);
+    learned = summary.kept;
   }
   if (arguments.verify) {
     progress("verifying", 0, 0);
@@ -259,7 +265,7 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
   if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
   write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
   if (arguments.refine != 0) ::unlink(written_path(kept).c_str());
-  if (arguments.optimize.wanted()) ::unlink(written_path(learned).c_str());
+  for (const std::string& file : learned) ::unlink(written_path(file).c_str());
   if (arguments.verify) {
     progress("verifying", 0, 0);
     verify_file(arguments.output, baked.tree, partition);

@@ -1,0 +1,205 @@
+#include "runtime/optimize/learn_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/base/clock.h"
+#include "runtime/base/error.h"
+#include "runtime/frame/built_scene.h"
+#include "runtime/lod/align.h"
+#include "runtime/lod/stand_in.h"
+#include "runtime/optimize/checkpoint.h"
+#include "runtime/optimize/held_out.h"
+#include "runtime/refine/extents.h"
+
+namespace voyager {
+namespace {
+
+// Chosen on one district (bench/NOTES.md).
+constexpr LearningRates kRates{0.02f, 0.01f, 0.002f, 0.03f, 0.006f, 0.0006f, 1};
+constexpr double kLastPace = 0.05;  // at the end
+
+// Extents are measured anew when these shares of the steps are done: what learned has another
+// error, and other cuts learn from then on.
+constexpr double kMeasureAt[] = {0.4, 0.7, 1.0};
+// Of the cuts that are measured, as refine.cpp's; views of them, for each of so many steps.
+constexpr double kMeasureTaus[] = {2, 8, 30};
+constexpr uint32_t kStepsPerMeasure = 60, kLeastMeasures = 8, kMostMeasures = 256;
+// Of views that extents are measured in, that choose their scale, and that say what was gained.
+constexpr uint32_t kFirstMeasure = uint32_t{1} << 27, kFirstChosenBy = uint32_t{3} << 26,
+                   kFirstHeldOut = uint32_t{1} << 28;
+
+constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
+// Extents shrink at the end by this factor at most.
+constexpr double kMostShrink = 8;
+
+LearningRates rates_at(double done) {
+  LearningRates rates = kRates;
+  rates.pace = static_cast<float>(std::pow(kLastPace, done));
+  return rates;
+}
+
+class Learning {
+ public:
+  Learning(BakedScene& baked, const LookedAt& looked_at, const OptimizeGoal& goal, Backend& backend,
+           const std::string& kept, Workers& workers, const Progress& progress)
+      : baked_(baked),
+        kept_(kept),
+        progress_(progress),
+        mark_(mark_of(baked)),
+        views_(baked, looked_at),
+        held_out_(views_, kFirstHeldOut, goal.held_out, looked_at.leaves, baked.leaves.size()),
+        chosen_by_(views_, kFirstChosenBy, goal.held_out, looked_at.leaves, baked.leaves.size()),
+        trainer_(backend.create_trainer(scene_of(baked, workers), workers)) {}
+
+  OptimizeSummary run(const OptimizeGoal& goal) {
+    OptimizeSummary summary;
+    summary.before = held_out_.look(*trainer_);
+    start(goal);
+    learn(goal.keep_milliseconds);
+    summary.pictures = checkpoint_.pictures;
+    calibrate();
+    summary.after = held_out_.look(*trainer_);
+    take_learned();
+    return summary;
+  }
+
+ private:
+  // Where it was left, or at the beginning.
+  void start(const OptimizeGoal& goal) {
+    if (read_checkpoint(mark_, kept_, checkpoint_)) {
+      if (goal.pictures != 0 && goal.pictures != checkpoint_.pictures)
+        throw Error(ErrorCode::refused_input,
+                    kept_ + ": found what is learned from " + std::to_string(checkpoint_.pictures) +
+                        " pictures, expected " + std::to_string(goal.pictures) +
+                        ": ask for as many, or remove it");
+      trainer_->set_state(checkpoint_.state);
+      take_extents();
+      return;
+    }
+    checkpoint_.pictures = goal.pictures != 0 ? goal.pictures : steps_in(goal.minutes);
+    checkpoint_.extents.resize(baked_.tree.size());
+    give_extents();
+  }
+
+  uint32_t steps_in(double minutes) {
+    const TrainingState untouched = trainer_->state();
+    for (uint32_t k = 0; k < kWarmSteps; ++k) trainer_->step(views_.picture(k), {});
+    const Stopwatch watch;
+    for (uint32_t k = 0; k < kTimedSteps; ++k) trainer_->step(views_.picture(kWarmSteps + k), {});
+    const double each = std::max(watch.milliseconds() / kTimedSteps, 1e-3);
+    trainer_->set_state(untouched);
+    // Beside the steps: three measurements of extents, held-out views before and after, and those
+    // that choose the extents' scale.
+    constexpr double kMeasured =
+        double{std::size(kMeasureAt)} * std::size(kMeasureTaus) / kStepsPerMeasure;
+    const double others = 2.0 * held_out_.pictures_of_look() + chosen_by_.pictures_of_best_tau();
+    return static_cast<uint32_t>(
+        std::clamp((minutes * 60000 / each - others) / (1 + kMeasured), 1.0, 1e9));
+  }
+
+  void learn(double keep_milliseconds) {
+    Stopwatch since_kept;
+    const uint32_t steps = checkpoint_.pictures;
+    while (checkpoint_.done < steps) {
+      const uint32_t k = checkpoint_.done++;
+      report(progress_, "optimizing", k, steps);
+      trainer_->step(views_.picture(k), rates_at(static_cast<double>(k) / steps));
+      for (const double share : kMeasureAt)
+        if (checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps))) measure();
+      if (since_kept.milliseconds() < keep_milliseconds && checkpoint_.done < steps) continue;
+      checkpoint_.state = trainer_->state();
+      give_extents();
+      write_checkpoint(checkpoint_, mark_, kept_);
+      since_kept = {};
+    }
+    report(progress_, "optimizing", steps, steps);
+  }
+
+  void measure() {
+    Measured measured(baked_.tree.size());
+    const uint32_t views =
+        std::clamp(checkpoint_.pictures / kStepsPerMeasure, kLeastMeasures, kMostMeasures);
+    for (uint32_t i = 0; i < views; ++i)
+      for (const double tau : kMeasureTaus) {
+        TrainingView view = views_(kFirstMeasure + i);
+        view.tau = tau;
+        const Vec3d& eye = view.camera.eye;
+        const Vec3f centre =
+            cut_centre(eye, {baked_.origin[0], baked_.origin[1], baked_.origin[2]});
+        for (const NodeError& found : trainer_->node_errors(view)) {
+          const NodeRecord& r = baked_.tree.records[found.node];
+          const double metres = double{squared_distance(centre, r.box_min, r.box_max)} /
+                                (view.camera.fx * view.camera.fx);
+          measured.gain[found.node] += double{found.squares} * metres / (r.child_count - 1);
+          ++measured.pictures[found.node];
+        }
+      }
+    set_extents(measured, baked_.tree);
+    give_extents();
+    trainer_->set_extents(checkpoint_.extents);
+  }
+
+  // Extents such that the default τ draws no more than it has to. They never grow here.
+  void calibrate() {
+    const double tau = chosen_by_.best_tau(*trainer_);
+    const double by = std::clamp((2 * kReferenceTau + 1) / (2 * tau + 1), 1 / kMostShrink, 1.0);
+    for (NodeRecord& r : baked_.tree.records) {
+      const auto changed = static_cast<float>(by * double{r.extent});
+      if (std::isfinite(changed)) r.extent = changed;
+    }
+    give_extents();
+    trainer_->set_extents(checkpoint_.extents);
+  }
+
+  void give_extents() {
+    for (size_t n = 0; n < baked_.tree.size(); ++n)
+      checkpoint_.extents[n] = baked_.tree.records[n].extent;
+  }
+  void take_extents() {
+    for (size_t n = 0; n < baked_.tree.size(); ++n)
+      baked_.tree.records[n].extent = checkpoint_.extents[n];
+    trainer_->set_extents(checkpoint_.extents);
+  }
+
+  void take_learned() {
+    const TrainingState state = trainer_->state();
+    const auto numbers = static_cast<size_t>(numbers_of(baked_.leaves.sh_degree));
+    const size_t coefficients = numbers - kShapeNumbers;
+    GaussianCloud& merged = baked_.merged;
+    size_t row = 0;
+    for (uint32_t n = 0; n < baked_.tree.size(); ++n) {
+      if (baked_.tree.is_leaf(n)) continue;
+      const float* v = &state.values[row * numbers];
+      const size_t i = baked_.gaussian[n];
+      std::copy_n(v, 3, &merged.position[3 * i]);
+      for (size_t axis = 0; axis < 3; ++axis)
+        merged.log_scale[3 * i + axis] = std::log(v[3 + axis]);
+      std::copy_n(v + 6, 4, &merged.rotation[4 * i]);
+      merged.opacity[i] = state.opacities[row++];
+      std::copy_n(v + kShapeNumbers, coefficients, &merged.sh[i * coefficients]);
+    }
+    baked_.learned = true;
+    // Parents come before their children.
+    for (uint32_t n = 0; n < baked_.tree.size(); ++n) align_children(n, baked_);
+  }
+
+  BakedScene& baked_;
+  const std::string& kept_;
+  const Progress& progress_;
+  const uint64_t mark_;
+  const TrainingViews views_;
+  const HeldOutViews held_out_, chosen_by_;
+  std::unique_ptr<NodeTrainer> trainer_;
+  Checkpoint checkpoint_;
+};
+
+}  // namespace
+
+OptimizeSummary learn_scene(BakedScene& baked, const LookedAt& looked_at, const OptimizeGoal& goal,
+                            Backend& backend, const std::string& kept, Workers& workers,
+                            const Progress& progress) {
+  return Learning(baked, looked_at, goal, backend, kept, workers, progress).run(goal);
+}
+
+}  // namespace voyager

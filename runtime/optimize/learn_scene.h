@@ -1,0 +1,14 @@
+#pragma once
+// The nodes of one scene, or of a part of one, learn in the trainer's memory.
+#include "runtime/optimize/optimize.h"
+#include "runtime/optimize/training_views.h"
+
+namespace voyager {
+
+// As optimize_nodes(), of a clustered tree with a merged node; all of it at once. Views look at
+// some leaves only; shares of cuts are of these, and do not count the others.
+OptimizeSummary learn_scene(BakedScene& baked, const LookedAt& looked_at, const OptimizeGoal& goal,
+                            Backend& backend, const std::string& kept, Workers& workers,
+                            const Progress& progress);
+
+}  // namespace voyager
