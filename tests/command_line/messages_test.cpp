@@ -57,6 +57,8 @@ TEST_F(Messages, AWrongOptionNamesItselfAndWhatIsExpected) {
       {"render S -o o.png --antialias maybe", "--antialias: found maybe, expected on|off"},
       {"render S -o o.png --supersample 0", "--supersample: found 0, expected a whole number from"},
       {"render S -o o.png --supersample 4", "--supersample: found it with a cut, expected --lod"},
+      {"render S -o o.png --lod off --supersample 4 --exp lut",
+       "--supersample: found it with --exp lut or half2, expected auto, exact or ex2"},
       {"render S -o o.png --lut-size 0", "--lut-size: found 0, expected a whole number from 1 to"},
       {"render S -o o.png --budget -1", "--budget: found -1, expected a number of MB above 0"},
       {"render S -o o.png --budget 0", "--budget: found 0, expected a number of MB above 0, from"},

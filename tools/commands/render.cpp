@@ -88,6 +88,8 @@ void settle_truth(RenderArguments& arguments) {
     bad_usage("--supersample: found it with a cut, expected --lod off: the truth has every leaf");
   if (choices.antialias != VOY_ANTIALIAS_ON)
     bad_usage("--supersample: found it with --antialias off, expected on");
+  if (choices.exponential == VOY_EXPONENTIAL_LUT || choices.exponential == VOY_EXPONENTIAL_HALF2)
+    bad_usage("--supersample: found it with --exp lut or half2, expected auto, exact or ex2");
   if (choices.depth) bad_usage("--supersample: found it with --depth, expected colours alone");
   choices.antialias = VOY_ANTIALIAS_TRUTH;
 }
