@@ -35,7 +35,7 @@ struct Verdict {
   float weight;
 };
 
-// Of the word's node at a lane.
+// Whether the node of a word at a lane is in the cut, and its weight.
 __device__ Verdict judge_node(const SweepView& tree, const SweepState& state, const Sight& sight,
                               uint32_t word, unsigned lane) {
   const uint32_t node = 32 * word + lane;
@@ -62,8 +62,8 @@ __device__ void publish(unsigned long long* tile, uint32_t run, bool all, uint32
   *static_cast<volatile unsigned long long*>(tile) = value;
 }
 
-// Cut nodes in the tiles before this one; by a whole warp. Tiles are taken in order, so that
-// those before are under way.
+// Cut nodes in the tiles before this one; by a whole warp. Tiles are taken in order, so that those
+// before have running blocks, and the wait ends.
 __device__ uint32_t count_before(const unsigned long long* tiles, uint32_t run, uint32_t tile,
                                  unsigned lane) {
   uint32_t before = 0;

@@ -37,13 +37,26 @@ void write_checkpoint(const Checkpoint& checkpoint, uint64_t mark, const std::st
   write_sealed(path, packer.bytes());
 }
 
-void check_checkpoint(const std::string& path) {
-  check_kind(path, kKind, "what --optimize has learned");
+std::string kept_of_part(const std::string& kept, uint32_t k) {
+  return kept + "." + std::to_string(k);
+}
+
+std::vector<std::string> kept_files(const std::string& kept) {
+  std::vector<std::string> files;
+  if (std::filesystem::exists(kept)) files.push_back(kept);
+  for (uint32_t k = 0; std::filesystem::exists(kept_of_part(kept, k)); ++k)
+    files.push_back(kept_of_part(kept, k));
+  return files;
+}
+
+void check_checkpoints(const std::string& kept) {
+  for (const std::string& path : kept_files(kept))
+    check_kind(path, kKind, "what --optimize has learned");
 }
 
 bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpoint) {
   if (!std::filesystem::exists(path)) return false;
-  check_checkpoint(path);
+  check_kind(path, kKind, "what --optimize has learned");
   const std::vector<std::byte> bytes = read_sealed(path, kStartAnew);
   Unpacker from(path, bytes);
   uint64_t head[4];
@@ -51,7 +64,10 @@ bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpo
   if (head[1] != mark)
     throw Error(
         ErrorCode::refused_input,
-        path + ": found what was learned of another scene, expected this one: " + kStartAnew);
+        path +
+            ": found what was learned of another scene, or with another --memory, expected this "
+            "one: " +
+            kStartAnew);
   checkpoint.pictures = static_cast<uint32_t>(head[2]);
   checkpoint.done = static_cast<uint32_t>(head[3]);
   from.take_all(checkpoint.extents);

@@ -26,8 +26,9 @@ constexpr double kMeasureAt[] = {0.4, 0.7, 1.0};
 constexpr double kMeasureTaus[] = {2, 8, 30};
 constexpr uint32_t kStepsPerMeasure = 60, kLeastMeasures = 8, kMostMeasures = 256;
 // Of views that extents are measured in, that choose their scale, and that say what was gained.
-constexpr uint32_t kFirstMeasure = uint32_t{1} << 27, kFirstChosenBy = uint32_t{3} << 26,
-                   kFirstHeldOut = uint32_t{1} << 28;
+// Multiples of no base of Halton's sequence, so that each looks at other leaves than the others.
+constexpr uint32_t kFirstMeasure = 134'217'757, kFirstChosenBy = 201'326'611,
+                   kFirstHeldOut = 268'435'459;
 
 constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
 // Extents shrink at the end by this factor at most.

@@ -4,6 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/lod/align.h"
+#include "runtime/optimize/checkpoint.h"
 #include "runtime/optimize/learn_scene.h"
 #include "runtime/optimize/part.h"
 #include "runtime/refine/extents.h"
@@ -12,19 +13,27 @@
 namespace voyager {
 namespace {
 
-// Of a device's memory: the rest is for pictures and lists.
+// The rest of a device's memory is left to pictures and to lists of splats.
 constexpr double kShareOfDevice = 0.7;
-// Leaves around a part, for each of its own; and how many more pictures a part's nodes need, as
-// those around do not learn from them.
-constexpr double kAround = 1, kMorePictures = 2;
-constexpr uint64_t kFewestLeaves = 256;
-constexpr uint64_t kMostParts = 256;  // each is learned with what is around it
+// Leaves that stand around a part, for each of its own.
+constexpr double kAround = 1;
+// How many times as many pictures a part's nodes get as all at once: what stands around them is in
+// the same pictures, and learns nothing.
+constexpr double kMorePictures = 4;
+constexpr double kMinutesOfTop = 0.1;  // of all
+constexpr uint32_t kFewestHeldOut = 6;
+constexpr uint64_t kFewestLeaves = 256, kMostParts = 256;
 
-// Of the device's memory, by the trainer's arrays: a Gaussian and what finds it for each of about
-// one and a half nodes a leaf, and two moments for each number of half a merged node.
+// The arrays of the device's trainer: each of about 1.5 nodes a leaf is a Gaussian, with what finds
+// it in a search; half a merged node a leaf has two moments for each of its numbers; and at most a
+// node a leaf is in a cut, with its gradient and the sums that it is made from.
 double device_bytes_of_leaf(int sh_degree) {
   const int numbers = numbers_of(sh_degree);
-  return 1.5 * (120 + 4.0 * numbers) + 0.5 * 8 * numbers;
+  return 1.5 * (120 + 4.0 * numbers) + 0.5 * 8 * numbers + (120 + 4.0 * numbers);
+}
+
+uint64_t fewest_at_once(uint64_t leaves) {
+  return std::max(leaves / kMostParts, std::min(leaves, kFewestLeaves));
 }
 
 // Leaves that learn at once.
@@ -40,8 +49,7 @@ uint64_t most_at_once(const BakedScene& baked, const OptimizeGoal& goal, const B
   if (goal.memory != 0)
     fit(static_cast<double>(goal.memory), static_cast<double>(bytes_to_optimize(1, degree)));
   const auto most = static_cast<uint64_t>(room);
-  const uint64_t least = std::max(baked.leaves.size() / kMostParts,
-                                  std::min<uint64_t>(baked.leaves.size(), kFewestLeaves));
+  const uint64_t least = fewest_at_once(baked.leaves.size());
   if (most < least)
     throw Error(ErrorCode::over_budget, "memory: found room for " + std::to_string(most) +
                                             " Gaussians that learn at once, expected room for " +
@@ -77,39 +85,53 @@ class InParts {
     const auto most_around = static_cast<uint64_t>(kAround * static_cast<double>(most_leaves_));
     uint64_t own = 0;
     for (const PartRoots& roots : parts) own += roots.leaves;
+    const auto held_out =
+        std::max(kFewestHeldOut, static_cast<uint32_t>(2 * goal_.held_out / parts.size()));
+    held_out_ = std::min(goal_.held_out, held_out);
     // What has learned in a part is not changed by the top, in which it learns once more.
     std::vector<bool> done(baked_.tree.size(), false);
-    for (const PartRoots& roots : parts) {
-      learn(take_part(baked_, roots, most_around), done,
-            static_cast<double>(roots.leaves) / static_cast<double>(own));
-      std::fill_n(done.begin() + roots.first, roots.count, true);
+    for (size_t k = 0; k < parts.size(); ++k) {
+      stage_ = "optimizing part " + std::to_string(k + 1) + " of " + std::to_string(parts.size());
+      const double share = static_cast<double>(parts[k].leaves) / static_cast<double>(own);
+      learn(take_part(baked_, parts[k], most_around), done, kMorePictures,
+            (1 - kMinutesOfTop) * share, share);
+      std::fill_n(done.begin() + parts[k].first, parts[k].count, true);
     }
+    mend_tree();
     for (uint32_t n = 1; n < done.size(); ++n) done[n] = done[n] || done[baked_.tree.parent[n]];
-    learn(take_top(baked_, most_leaves_), done, 0);
-    never_grow_downwards(baked_.tree);
-    baked_.learned = true;
-    // Parents come before their children.
-    for (uint32_t n = 0; n < baked_.tree.size(); ++n) align_children(n, baked_);
+    stage_ = "optimizing what is above the parts";
+    learn(take_top(baked_, most_leaves_), done, 1, kMinutesOfTop, 0);
+    mend_tree();
     return std::move(summary_);
   }
 
  private:
-  // weight: of its held-out views in the summary.
-  void learn(ScenePart part, const std::vector<bool>& done, double weight) {
-    if (part.scene.merged.size() == 0) return;
+  // After some of its nodes have learned.
+  void mend_tree() {
+    never_grow_downwards(baked_.tree);
+    baked_.learned = true;
+    // Parents come before their children.
+    for (uint32_t n = 0; n < baked_.tree.size(); ++n) align_children(n, baked_);
+  }
+
+  // pictures: times those of its share of the merged nodes; minutes: of all; weight: of its
+  // held-out views in the summary.
+  void learn(ScenePart part, const std::vector<bool>& done, double pictures, double minutes,
+             double weight) {
     OptimizeGoal goal = goal_;
-    const double share = kMorePictures * kMorePictures *
-                         static_cast<double>(part.scene.merged.size()) /
+    goal.held_out = held_out_;
+    goal.minutes *= minutes;
+    const double share = pictures * static_cast<double>(part.scene.merged.size()) /
                          static_cast<double>(baked_.merged.size());
-    goal.pictures =
-        goal.pictures == 0 ? 0 : std::max(1u, static_cast<uint32_t>(goal.pictures * share));
-    goal.minutes *= share;
-    const std::string kept = kept_ + "." + std::to_string(summary_.kept.size());
+    if (goal.pictures != 0)
+      goal.pictures = std::max(1u, static_cast<uint32_t>(goal.pictures * share));
+    const Progress progress = [&](const char*, uint64_t at, uint64_t of) {
+      report(progress_, stage_.c_str(), at, of);
+    };
     const OptimizeSummary found =
         learn_scene(part.scene, {part.own_leaves, part.leaf_size, part.largest}, goal, backend_,
-                    kept, workers_, progress_);
+                    kept_of_part(kept_, number_++), workers_, progress);
     give_back(part, done, baked_);
-    summary_.kept.push_back(kept);
     summary_.pictures += found.pictures;
     add_means(summary_.before, found.before, weight);
     add_means(summary_.after, found.after, weight);
@@ -122,6 +144,8 @@ class InParts {
   const std::string& kept_;
   Workers& workers_;
   const Progress& progress_;
+  uint32_t held_out_ = 0, number_ = 0;
+  std::string stage_;
   OptimizeSummary summary_;
 };
 
@@ -153,22 +177,20 @@ OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Back
   const uint64_t most = most_at_once(baked, goal, backend);
   if (most < baked.leaves.size())
     return InParts(baked, goal, most, backend, kept, workers, progress).run();
-  OptimizeSummary summary =
-      learn_scene(baked, {baked.leaves.size(), 0, 0}, goal, backend, kept, workers, progress);
-  summary.kept = {kept};
-  return summary;
+  return learn_scene(baked, {baked.leaves.size(), 0, 0}, goal, backend, kept, workers, progress);
 }
 
-// Rows of 3 × numbers, for each of about half as many merged nodes, in the trainer's state, in what
-// is kept and in its file's bytes; and the scene as backends draw it.
+// About half a merged node a leaf has its numbers and two moments of each, three times: in the
+// trainer's state, in what is kept, and in the bytes of its file. Beside them is the scene as
+// backends draw it.
 uint64_t bytes_to_optimize(uint64_t gaussians, int sh_degree) {
   const auto numbers = static_cast<uint64_t>(numbers_of(sh_degree));
   return gaussians * (3 * 3 * numbers * sizeof(float) / 2 + 3 * numbers * sizeof(float));
 }
 
 uint64_t least_bytes_to_optimize(uint64_t gaussians, int sh_degree) {
-  return bytes_to_optimize(std::max(gaussians / kMostParts, std::min(gaussians, kFewestLeaves)),
-                           sh_degree);
+  return static_cast<uint64_t>(1 + kAround) *
+         bytes_to_optimize(fewest_at_once(gaussians) + 1, sh_degree);
 }
 
 }  // namespace voyager

@@ -12,7 +12,8 @@
 
 namespace voyager {
 
-// How many pictures to learn from. 0: as many as the backend draws in `minutes`.
+// How many pictures to learn from. 0: as many as there is time for in `minutes`, with what is
+// measured beside them.
 struct OptimizeGoal {
   uint32_t pictures = 0;
   double minutes = 0;
@@ -33,7 +34,6 @@ struct HeldOut {
 struct OptimizeSummary {
   uint32_t pictures = 0;
   std::vector<HeldOut> before, after;  // at the same τ; of parts, the mean by their leaves
-  std::vector<std::string> kept;       // files in which what was learned is kept
 };
 
 // Changes the merged Gaussians of a clustered tree and its extents; leaves stay as they are. With a
@@ -41,8 +41,8 @@ struct OptimizeSummary {
 // stopped. At the end extents shrink as far as a cut's held-out pictures at the default τ stay
 // within half a dB of every leaf's. Where there is not the memory for all at once, parts learn one
 // after another (part.h). kept: a file in which what was learned is kept now and then, and from
-// which this goes on, `kept`.0, .1 and so on of parts; whoever calls removes them. Progress counts
-// pictures, of each part anew. Throws
+// which this goes on, `kept`.0, .1 and so on of parts; whoever calls removes them
+// (checkpoint.h's kept_files()). Progress counts pictures, of each part anew. Throws
 // Error(refused_input) where the file is of another scene or was altered, Error(unsupported) for
 // another kind of tree or where the backend has no trainer, Error(over_budget), Error(io).
 OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Backend& backend,

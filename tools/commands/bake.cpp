@@ -246,16 +246,14 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
                                 {native.cameras, found.unseen_level()});
   const std::string kept = refine_file(arguments);
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
-  std::vector<std::string> learned;
+  const std::string learned = optimize_file(arguments);
   if (arguments.optimize.wanted()) {
     const std::unique_ptr<Backend> backend = create_backend(arguments.optimize.backend);
     OptimizeGoal goal = arguments.optimize.goal(baked.merged.size());
-    const uint64_t taken = bytes_to_bake(baked.leaves.size(), baked.leaves.sh_degree);
+    const uint64_t taken = bytes_to_bake(baked.leaves.size(), baked.leaves.sh_degree) +
+                           (arguments.refine != 0 ? bytes_to_refine(baked.leaves.size()) : 0);
     goal.memory = std::max(arguments.memory * 1'000'000, taken + 1) - taken;
-    const OptimizeSummary summary =
-        optimize_nodes(baked, goal, *backend, optimize_file(arguments), workers, progress);
-    print_learned(summary);
-    learned = summary.kept;
+    print_learned(optimize_nodes(baked, goal, *backend, learned, workers, progress));
   }
   if (arguments.verify) {
     progress("verifying", 0, 0);
@@ -265,7 +263,8 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
   if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
   write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
   if (arguments.refine != 0) ::unlink(written_path(kept).c_str());
-  for (const std::string& file : learned) ::unlink(written_path(file).c_str());
+  if (arguments.optimize.wanted())
+    for (const std::string& file : kept_files(learned)) ::unlink(written_path(file).c_str());
   if (arguments.verify) {
     progress("verifying", 0, 0);
     verify_file(arguments.output, baked.tree, partition);
@@ -355,7 +354,7 @@ void bake(const BakeArguments& arguments) {
     throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
   for (const std::string& output : outputs_of(arguments)) require_writable(output);
   if (arguments.refine != 0) check_kept(refine_file(arguments));
-  if (arguments.optimize.wanted()) check_checkpoint(optimize_file(arguments));
+  if (arguments.optimize.wanted()) check_checkpoints(optimize_file(arguments));
   const NativeChoice native = native_choice(arguments);
   const Progress progress = progress_bar();
   const Stopwatch watch;
@@ -371,7 +370,13 @@ void bake(const BakeArguments& arguments) {
   const Announced inputs = announced_by(readers);
   require_room(arguments.output,
                bytes_of_scene(inputs.gaussians, inputs.sh_degree, arguments.quality));
-  if (bytes_in_memory(inputs, arguments) <= arguments.memory * 1'000'000)
+  const uint64_t bytes = bytes_in_memory(inputs, arguments);
+  if (bytes > arguments.memory * 1'000'000 && arguments.optimize.wanted())
+    throw Error(ErrorCode::over_budget,
+                fmt::format("--memory: found {} MB, expected at least {} with --optimize, which "
+                            "bakes in memory",
+                            arguments.memory, bytes / 1'000'000 + 1));
+  if (bytes <= arguments.memory * 1'000'000)
     return print_summary(arguments, bake_in_memory(arguments, native, readers, progress), watch);
   print_summary(arguments,
                 bake_from_folder(

@@ -4,7 +4,7 @@
 namespace voyager::tools {
 namespace {
 
-// A choice of slack is one of the temporal search.
+// --slack without --search chooses the temporal search: no other has slack.
 Search chosen_search(const BenchArguments& arguments) {
   switch (arguments.search.value_or(arguments.slack ? SearchChoice::temporal
                                                     : SearchChoice::automatic)) {

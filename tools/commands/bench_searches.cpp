@@ -19,6 +19,10 @@ bool wanted(const SearchCandidate& candidate, const BenchArguments& arguments,
                   "--search: found auto with --stages search, expected a search by its name, or "
                   "all");
     case SearchChoice::sweep:
+      if (subject.backend.search_for(*subject.scene, Search::sweep) != Search::sweep)
+        throw Error(ErrorCode::unsupported,
+                    "--search: found sweep, expected another: a sweep runs on CUDA only, of a "
+                    "resident tree without damage whose leaves have no extent");
       return candidate.kind == Search::sweep;
     case SearchChoice::exhaustive:
       return candidate.kind == Search::exhaustive;

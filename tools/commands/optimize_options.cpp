@@ -41,7 +41,8 @@ void add_optimize_options(CLI::App& command, OptimizeOptions& options) {
           "--optimize", [&options](const std::string& text) { parse(text, options); },
           "Let merged Gaussians learn from pictures of the scene (docs/optimizing.md), so that "
           "cuts look better: draft, good or best, or how many minutes to take. A bake that was "
-          "stopped goes on from FILE.optimize when it is run again. In memory only")
+          "stopped goes on from FILE.optimize when it is run again. In memory only; where that, or "
+          "a GPU's memory, is short, one part of the scene after another")
       ->type_name("QUALITY|MINUTES");
   add_backend_options(command, options.backend);
   name_group(command, "Optimizing");

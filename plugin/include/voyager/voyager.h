@@ -567,7 +567,8 @@ typedef enum VoySearch {
   VOY_SEARCH_TEMPORAL_VISIT = 4, /* TEMPORAL, but visits all of the last cut: for measurements */
   VOY_SEARCH_SWEEP = 5,          /* tests every node that has children, in one pass; a jump costs no
                                     more than a step. On CUDA, of a scene that is resident, without
-                                    damage, and baked by this version; TEMPORAL runs elsewhere */
+                                    damage, and whose leaves have no extent, as all that this version
+                                    bakes; TEMPORAL runs elsewhere */
   VOY_SEARCH_MAX_ENUM = 0x7fffffff
 } VoySearch;
 
