@@ -29,14 +29,15 @@ double HeldOutViews::psnr_of(const TrainingView& view, const TrainingError& erro
 
 std::vector<HeldOut> HeldOutViews::look(NodeTrainer& trainer) const {
   std::vector<HeldOut> all;
-  for (const double tau : kTaus) all.push_back({tau, 0, 0, 0});
+  for (const double tau : kTaus) all.push_back({tau, 0, 0, 0, {}});
   for (uint32_t i = 0; i < count_; ++i) {
     const TrainingView whole = view(i, 0);
     const double leaves = psnr_of(whole, trainer.error_of_leaves(whole)) / count_;
     for (HeldOut& found : all) {
       const TrainingView at = view(i, found.tau);
       const TrainingError error = trainer.error(at);
-      found.cut += psnr_of(at, error) / count_;
+      found.of_view.push_back(psnr_of(at, error));
+      found.cut += found.of_view.back() / count_;
       found.leaves += leaves;
       found.share +=
           static_cast<double>(error.cut - around_) / static_cast<double>(looked_at_) / count_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
@@ -31,6 +32,9 @@ constexpr uint32_t kFirstMeasure = 134'217'757, kFirstChosenBy = 201'326'611,
                    kFirstHeldOut = 268'435'459;
 
 constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
+// Views in which progress is told, and which of HeldOutViews' τ it is of.
+constexpr uint32_t kFew = 6;
+constexpr size_t kToldTau = 1;
 // Extents shrink at the end by this factor at most.
 constexpr double kMostShrink = 8;
 
@@ -50,6 +54,8 @@ class Learning {
         mark_(mark_of(baked)),
         views_(baked, looked_at),
         held_out_(views_, kFirstHeldOut, goal.held_out, looked_at.leaves, baked.leaves.size()),
+        few_(views_, kFirstHeldOut, std::min(goal.held_out, kFew), looked_at.leaves,
+             baked.leaves.size()),
         chosen_by_(views_, kFirstChosenBy, goal.held_out, looked_at.leaves, baked.leaves.size()),
         trainer_(backend.create_trainer(scene_of(baked, workers), workers)) {}
 
@@ -57,7 +63,7 @@ class Learning {
     OptimizeSummary summary;
     summary.before = held_out_.look(*trainer_);
     start(goal);
-    learn(goal.keep_milliseconds);
+    learn(goal.keep_milliseconds, summary.before);
     summary.pictures = checkpoint_.pictures;
     calibrate();
     summary.after = held_out_.look(*trainer_);
@@ -99,15 +105,19 @@ class Learning {
         std::clamp((minutes * 60000 / each - others) / (1 + kMeasured), 1.0, 1e9));
   }
 
-  void learn(double keep_milliseconds) {
+  void learn(double keep_milliseconds, const std::vector<HeldOut>& before) {
     Stopwatch since_kept;
     const uint32_t steps = checkpoint_.pictures;
+    std::string stage = "optimizing";
     while (checkpoint_.done < steps) {
       const uint32_t k = checkpoint_.done++;
-      report(progress_, "optimizing", k, steps);
+      report(progress_, stage.c_str(), k, steps);
       trainer_->step(views_.picture(k), rates_at(static_cast<double>(k) / steps));
       for (const double share : kMeasureAt)
-        if (checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps))) measure();
+        if (checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps))) {
+          measure();
+          stage = "optimizing (" + gained_so_far(before) + ")";
+        }
       if (since_kept.milliseconds() < keep_milliseconds && checkpoint_.done < steps) continue;
       checkpoint_.state = trainer_->state();
       give_extents();
@@ -115,6 +125,18 @@ class Learning {
       since_kept = {};
     }
     report(progress_, "optimizing", steps, steps);
+  }
+
+  // In a few of the held-out views.
+  std::string gained_so_far(const std::vector<HeldOut>& before) const {
+    const HeldOut now = few_.look(*trainer_)[kToldTau];
+    double gained = 0;
+    for (size_t view = 0; view < now.of_view.size(); ++view)
+      gained += now.of_view[view] - before[kToldTau].of_view[view];
+    char text[64];
+    std::snprintf(text, sizeof text, "%+.1f dB at tau %g",
+                  gained / static_cast<double>(std::max<size_t>(now.of_view.size(), 1)), now.tau);
+    return text;
   }
 
   void measure() {
@@ -190,7 +212,7 @@ class Learning {
   const Progress& progress_;
   const uint64_t mark_;
   const TrainingViews views_;
-  const HeldOutViews held_out_, chosen_by_;
+  const HeldOutViews held_out_, few_, chosen_by_;
   std::unique_ptr<NodeTrainer> trainer_;
   Checkpoint checkpoint_;
 };

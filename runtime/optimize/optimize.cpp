@@ -1,6 +1,7 @@
 #include "runtime/optimize/optimize.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "runtime/base/error.h"
 #include "runtime/lod/align.h"
@@ -64,6 +65,7 @@ void add_means(std::vector<HeldOut>& sums, const std::vector<HeldOut>& of, doubl
     sums[i].cut += share * of[i].cut;
     sums[i].leaves += share * of[i].leaves;
     sums[i].share += share * of[i].share;
+    sums[i].of_view.insert(sums[i].of_view.end(), of[i].of_view.begin(), of[i].of_view.end());
   }
 }
 
@@ -91,7 +93,7 @@ class InParts {
     // What has learned in a part is not changed by the top, in which it learns once more.
     std::vector<bool> done(baked_.tree.size(), false);
     for (size_t k = 0; k < parts.size(); ++k) {
-      stage_ = "optimizing part " + std::to_string(k + 1) + " of " + std::to_string(parts.size());
+      stage_ = "part " + std::to_string(k + 1) + " of " + std::to_string(parts.size()) + ", ";
       const double share = static_cast<double>(parts[k].leaves) / static_cast<double>(own);
       learn(take_part(baked_, parts[k], most_around), done, kMorePictures,
             (1 - kMinutesOfTop) * share, share);
@@ -99,7 +101,7 @@ class InParts {
     }
     mend_tree();
     for (uint32_t n = 1; n < done.size(); ++n) done[n] = done[n] || done[baked_.tree.parent[n]];
-    stage_ = "optimizing what is above the parts";
+    stage_ = "above the parts, ";
     learn(take_top(baked_, most_leaves_), done, 1, kMinutesOfTop, 0);
     mend_tree();
     return std::move(summary_);
@@ -125,14 +127,15 @@ class InParts {
                          static_cast<double>(baked_.merged.size());
     if (goal.pictures != 0)
       goal.pictures = std::max(1u, static_cast<uint32_t>(goal.pictures * share));
-    const Progress progress = [&](const char*, uint64_t at, uint64_t of) {
-      report(progress_, stage_.c_str(), at, of);
+    const Progress progress = [&](const char* stage, uint64_t at, uint64_t of) {
+      report(progress_, (stage_ + stage).c_str(), at, of);
     };
     const OptimizeSummary found =
         learn_scene(part.scene, {part.own_leaves, part.leaf_size, part.largest}, goal, backend_,
                     kept_of_part(kept_, number_++), workers_, progress);
     give_back(part, done, baked_);
     summary_.pictures += found.pictures;
+    if (weight == 0) return;
     add_means(summary_.before, found.before, weight);
     add_means(summary_.after, found.after, weight);
   }
@@ -150,6 +153,13 @@ class InParts {
 };
 
 }  // namespace
+
+double OptimizeSummary::least_gain(size_t of) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t view = 0; view < after[of].of_view.size(); ++view)
+    least = std::min(least, after[of].of_view[view] - before[of].of_view[view]);
+  return least;
+}
 
 uint32_t pictures_of(OptimizeQuality quality, uint64_t merged_nodes) {
   // For a thousand merged nodes, and at least.

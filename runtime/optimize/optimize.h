@@ -28,12 +28,15 @@ uint32_t pictures_of(OptimizeQuality quality, uint64_t merged_nodes);
 // Means over held-out views at a τ: PSNR to the truth, dB.
 struct HeldOut {
   double tau = 0;
-  double cut = 0, leaves = 0;  // every leaf drawn
-  double share = 0;            // nodes of the cut, in leaves
+  double cut = 0, leaves = 0;   // every leaf drawn
+  double share = 0;             // nodes of the cut, in leaves
+  std::vector<double> of_view;  // the cut's, each
 };
 struct OptimizeSummary {
   uint32_t pictures = 0;
   std::vector<HeldOut> before, after;  // at the same τ; of parts, the mean by their leaves
+  // Of the view that gained least at that τ, dB; below 0 where it lost.
+  double least_gain(size_t of) const;
 };
 
 // Changes the merged Gaussians of a clustered tree and its extents; leaves stay as they are. With a

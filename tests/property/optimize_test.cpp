@@ -160,6 +160,8 @@ TEST(Optimize, InPartsNeitherThreadsNorStopsShow) {
   BakedScene expected = baked;
   const OptimizeSummary summary = learn_in_parts(expected, 1, folder.file("one"));
   EXPECT_GT(summary.pictures, 8u);
+  for (size_t i = 0; i < summary.after.size(); ++i)
+    EXPECT_LE(summary.least_gain(i), summary.after[i].cut - summary.before[i].cut + 1e-9);
   ASSERT_GE(kept_files(folder.file("one")).size(), 4u);  // three parts and the top
   EXPECT_EQ(kept_files(folder.file("one"))[1], folder.file("one") + ".1");
   EXPECT_FALSE(same(expected, baked));
