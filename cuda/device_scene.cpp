@@ -8,20 +8,36 @@
 #include "cuda/device_gaussian.h"
 #include "cuda/device_pool.h"
 #include "cuda/upload_made.h"
+#include "runtime/frame/scene_sh.h"
 
 namespace voyager::cuda {
 namespace {
 
+size_t floats_of(const Scene& scene) {
+  return 3 * static_cast<size_t>(scene.coefficients());
+}
+
 bool fits_binary16(const Scene& scene, Workers& workers) {
   std::atomic<bool> fits{true};
-  workers.for_blocks(scene.sh.size(), size_t{1} << 20, [&](size_t begin, size_t end) {
-    const bool all = std::all_of(
-        scene.sh.begin() + static_cast<std::ptrdiff_t>(begin),
-        scene.sh.begin() + static_cast<std::ptrdiff_t>(end),
-        [](float coefficient) { return std::fabs(coefficient) <= kMaxHalfCoefficient; });
-    if (!all) fits.store(false, std::memory_order_relaxed);
+  workers.for_blocks(scene.gaussians.size(), size_t{1} << 15, [&](size_t begin, size_t end) {
+    std::vector<float> sh(floats_of(scene));
+    for (size_t i = begin; i < end; ++i) {
+      copy_sh(scene, i, sh.data());
+      const bool all = std::all_of(sh.begin(), sh.end(), [](float coefficient) {
+        return std::fabs(coefficient) <= kMaxHalfCoefficient;
+      });
+      if (!all) fits.store(false, std::memory_order_relaxed);
+    }
   });
   return fits.load();
+}
+
+std::vector<float> all_coefficients(const Scene& scene, Workers& workers) {
+  std::vector<float> all(scene.gaussians.size() * floats_of(scene));
+  workers.for_blocks(scene.gaussians.size(), size_t{1} << 15, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) copy_sh(scene, i, &all[i * floats_of(scene)]);
+  });
+  return all;
 }
 
 }  // namespace
@@ -54,10 +70,9 @@ void DeviceScene::upload_gaussians(const Scene& scene) {
 
 bool DeviceScene::upload_coefficients(const Scene& scene, Workers& workers) {
   if (!fits_binary16(scene, workers)) {
-    coefficients_ = upload(std::span<const float>(scene.sh));
+    coefficients_ = upload(std::span<const float>(all_coefficients(scene, workers)));
     return false;
   }
-  const size_t used = 3 * static_cast<size_t>(scene.coefficients());
   const size_t stride = 8 * static_cast<size_t>(half_sh_words(scene.sh_degree));
   const size_t count = scene.gaussians.size();
   half_coefficients_ = Buffer<__half>(count * stride);
@@ -65,8 +80,11 @@ bool DeviceScene::upload_coefficients(const Scene& scene, Workers& workers) {
   for (size_t first = 0; first < count; first += kUploadBlock) {
     const size_t n = std::min(kUploadBlock, count - first);
     workers.for_blocks(n, 4096, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        put_half_coefficients(&scene.sh[(first + i) * used], scene.sh_degree, &staging[i * stride]);
+      std::vector<float> sh(floats_of(scene));
+      for (size_t i = begin; i < end; ++i) {
+        copy_sh(scene, first + i, sh.data());
+        put_half_coefficients(sh.data(), scene.sh_degree, &staging[i * stride]);
+      }
     });
     check(cudaMemcpy(half_coefficients_.data() + first * stride, staging.data(),
                      n * stride * sizeof(__half), cudaMemcpyHostToDevice),

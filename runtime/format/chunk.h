@@ -7,6 +7,7 @@
 
 #include "runtime/lod/subtrees.h"
 #include "runtime/math/gaussian.h"
+#include "runtime/math/sh_code.h"
 
 namespace voyager {
 
@@ -23,6 +24,7 @@ struct Chunk {
   std::vector<uint32_t> first_child;   // meaningless for a leaf
   std::vector<GaussianWords> words;    // scene-local means; leaf opacity is a logit, merged linear
   std::vector<float> sh;               // coefficients * 3 a node, [k][rgb]
+  ShScales sh_scale{};                 // of compact storage: that it was restored with
   std::vector<uint8_t> node_code;      // runtime/math/node_code.h
   std::vector<uint32_t> source_index;  // leaf: its index in the input; interior: kNoNode
   // Lossless storage: the input's own position words of leaves (world = cloud

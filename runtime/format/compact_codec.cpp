@@ -14,7 +14,10 @@
 namespace voyager {
 namespace {
 
-constexpr size_t kBandStart[4] = {1, 4, 9, 16};  // first coefficient of bands 1, 2, 3, and the end
+// First coefficient of a band, from 0 for band 1, or the end.
+size_t band_start(size_t band) {
+  return static_cast<size_t>(kShBandStart[band]);
+}
 
 // Bytes of a Gaussian before compression, and of a chunk.
 size_t gaussian_bytes(size_t coefficients) {
@@ -47,7 +50,7 @@ double position_step(const Chunk& chunk, int axis) {
 void set_sh_scales(const Chunk& chunk, size_t coefficients, ChunkHeader& header) {
   for (size_t i = 0; i < chunk.words.size(); ++i)
     for (size_t band = 0; band < 3; ++band)
-      for (size_t k = 3 * kBandStart[band]; k < 3 * std::min(coefficients, kBandStart[band + 1]);
+      for (size_t k = 3 * band_start(band); k < 3 * std::min(coefficients, band_start(band + 1));
            ++k)
         header.sh_scale[band] =
             std::max(header.sh_scale[band], std::fabs(chunk.sh[i * coefficients * 3 + k]));
@@ -116,13 +119,13 @@ class PlaneEncoder {
     for (size_t c = 0; c < 3; ++c)
       planes.put(2, [&](size_t i) { return uint32_t{float_to_half(sh[i * stride + c])}; });
     end_group_(planes.position());
-    for (size_t band = 0; kBandStart[band] < coefficients; ++band) {
-      for (size_t k = 3 * kBandStart[band]; k < 3 * kBandStart[band + 1]; ++k)
+    for (size_t band = 0; band_start(band) < coefficients; ++band) {
+      for (size_t k = 3 * band_start(band); k < 3 * band_start(band + 1); ++k)
         planes.put(1, [&](size_t i) {
           return static_cast<uint32_t>(
               quantise_sh(sh[i * stride + k], header_.sh_scale[band], kShSteps[band]));
         });
-      const bool more = kBandStart[band + 1] < coefficients;
+      const bool more = band_start(band + 1) < coefficients;
       if (!more || kShSteps[band + 1] != kShSteps[band]) end_group_(planes.position());
     }
   }
@@ -167,8 +170,8 @@ void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficie
     planes.take(2, [&](size_t i, uint32_t q) {
       sh[i * stride + c] = half_to_float(static_cast<uint16_t>(q));
     });
-  for (size_t band = 0; kBandStart[band] < coefficients; ++band)
-    for (size_t k = 3 * kBandStart[band]; k < 3 * kBandStart[band + 1]; ++k)
+  for (size_t band = 0; band_start(band) < coefficients; ++band)
+    for (size_t k = 3 * band_start(band); k < 3 * band_start(band + 1); ++k)
       planes.take(1, [&](size_t i, uint32_t q) {
         sh[i * stride + k] =
             restore_sh(static_cast<int8_t>(q), header.sh_scale[band], kShSteps[band]);
@@ -228,6 +231,7 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
   GaussianPlanes planes(at, order, gaussian_bytes(coefficients));
   chunk.words.resize(nodes);
   take_geometry(planes, header, chunk);
+  std::copy_n(header.sh_scale, 3, chunk.sh_scale.begin());
   chunk.sh.resize(nodes * coefficients * 3);
   take_sh(planes, header, coefficients, chunk);
   chunk.source_index.resize(nodes);

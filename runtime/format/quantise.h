@@ -10,6 +10,7 @@
 #include "runtime/format/fold.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/math/half.h"
+#include "runtime/math/sh_code.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager {
@@ -88,18 +89,6 @@ inline float restore_leaf_opacity(uint16_t q) {
   if (q == 0) return -kMaxLogit;
   if (q == 65535) return kMaxLogit;
   return static_cast<float>(std::log(q / (65535.0 - q)));
-}
-
-// SH bands 1 to 3: signed steps of the chunk's largest coefficient of the band.
-// Error: scale / (2 * steps).
-inline constexpr std::array<int, 3> kShSteps = {127, 31, 31};
-
-inline int8_t quantise_sh(float coefficient, float scale, int steps) {
-  if (scale == 0) return 0;
-  return static_cast<int8_t>(std::nearbyint(static_cast<double>(coefficient) / scale * steps));
-}
-inline float restore_sh(int8_t q, float scale, int steps) {
-  return static_cast<float>(static_cast<double>(q) / steps * scale);
 }
 
 }  // namespace voyager

@@ -8,8 +8,13 @@
 namespace voyager {
 
 GaussianArrays gaussian_arrays(const Scene& scene) {
-  return {scene.gaussians.data(), scene.sh.data(), scene.node_code.data(),
-          scene.sh_degree,        scene.doubles,   footprints_differ(scene)};
+  return {scene.gaussians.data(),
+          scene.sh.data(),
+          scene.node_code.data(),
+          scene.sh_degree,
+          scene.doubles,
+          footprints_differ(scene),
+          {scene.sh_rows.data(), scene.sh_scales.data()}};
 }
 
 DrawList::DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/frame/load.h"
+#include "runtime/frame/scene_sh.h"
 
 namespace voyager {
 namespace {
@@ -38,8 +39,9 @@ class HostPool final : public ChunkPool {
       scene_.node_code[at] = chunk.node_code[i];
       scene_.node_ids[at] = chunk.node[i];
     }
-    std::copy(chunk.sh.begin(), chunk.sh.end(),
-              scene_.sh.begin() + static_cast<std::ptrdiff_t>(base * floats));
+    set_sh_scales(slot, chunk.sh_scale, scene_);
+    for (size_t i = 0; i < chunk.node.size(); ++i)
+      set_sh(base + i, slot, chunk.sh.data() + i * floats, scene_);
     std::copy(
         staged.records.begin(), staged.records.end(),
         scene_.search.records.begin() + static_cast<std::ptrdiff_t>(size_t{slot} * shape_.records));
@@ -69,7 +71,7 @@ class HostPool final : public ChunkPool {
         std::decay_t<decltype(array)>(room ? size : 0, array.get_allocator()).swap(array);
       };
       fit(scene_.gaussians, nodes);
-      fit(scene_.sh, nodes * floats_of(scene_));
+      make_sh_room(room ? nodes : 0, room ? slots : 0, scene_);
       fit(scene_.tree.records, nodes);
       fit(scene_.tree.parent, nodes);
       fit(scene_.node_code, nodes);
@@ -86,11 +88,12 @@ class HostPool final : public ChunkPool {
 }  // namespace
 
 PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
-  const uint64_t node = sizeof(Gaussian) + floats_of(scene) * sizeof(float) + sizeof(NodeRecord) +
+  const uint64_t node = sizeof(Gaussian) + sh_bytes(scene) + sizeof(NodeRecord) +
                         2 * sizeof(uint32_t) + sizeof(uint8_t);
   const uint64_t record = sizeof(SearchRecord) + sizeof(SubtreeSpan);
   const SearchTree& search = scene.search;
-  return {shape.nodes * node + shape.records * record,
+  const uint64_t scales = packs_sh(scene) ? sizeof(ShScales) : 0;
+  return {shape.nodes * node + shape.records * record + scales,
           search.subtree_count() * sizeof(SearchSubtree) +
               search.chunks.size() * sizeof(SearchChunk) +
               search.tier_begin.size() * sizeof(uint32_t)};

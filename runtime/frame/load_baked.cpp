@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
+#include <cmath>
 #include <limits>
 
 #include "runtime/base/error.h"
 #include "runtime/frame/load.h"
+#include "runtime/frame/scene_sh.h"
 #include "runtime/lod/nesting.h"
 #include "runtime/scene/sh_bands.h"
 
@@ -45,7 +46,7 @@ namespace {
 void make_room(const SceneFileInfo& info, Scene& scene) {
   const size_t nodes = info.node_count;
   scene.gaussians.resize(nodes);
-  scene.sh.resize(nodes * static_cast<size_t>(scene.coefficients()) * 3);
+  make_sh_room(nodes, info.chunk_count, scene);
   scene.tree.records.resize(nodes);
   scene.tree.first_child.resize(nodes);
   scene.tree.parent.resize(nodes, kNoNode);
@@ -80,6 +81,7 @@ bool place_leaf(Scene& scene, uint32_t source_index, uint32_t node) {
 struct ChunkFindings {
   std::string damage;
   int sh_degree = 0;                                      // that it uses
+  float largest_sh = 0;                                   // magnitude of a coefficient
   std::vector<std::pair<uint32_t, NodeRecord>> repeated;  // node ids with their records
 };
 
@@ -127,7 +129,8 @@ void store_subtrees(const Chunk& chunk, Scene& scene, ChunkFindings& findings) {
   }
 }
 
-void store_nodes(const Chunk& chunk, Scene& scene) {
+void store_nodes(const Chunk& chunk, size_t index, Scene& scene) {
+  set_sh_scales(index, chunk.sh_scale, scene);
   const size_t floats = static_cast<size_t>(scene.coefficients()) * 3;
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const uint32_t node = chunk.node[i];
@@ -135,7 +138,7 @@ void store_nodes(const Chunk& chunk, Scene& scene) {
     scene.node_code[node] = chunk.node_code[i];
     set_gaussian(scene, node, chunk.words[i], chunk.is_leaf(i));
     if (!chunk.is_leaf(i)) scene.tree.first_child[node] = chunk.first_child[i];
-    std::copy_n(chunk.sh.data() + i * floats, floats, scene.sh.data() + node * floats);
+    set_sh(node, index, chunk.sh.data() + i * floats, scene);
   }
 }
 
@@ -171,6 +174,12 @@ void report_damage(const SceneFile& file, const std::vector<ChunkFindings>& find
             [](const DamagedNodes& a, const DamagedNodes& b) { return a.first < b.first; });
 }
 
+float largest_magnitude(const std::vector<float>& values) {
+  float largest = 0;
+  for (const float value : values) largest = std::max(largest, std::fabs(value));
+  return largest;
+}
+
 std::vector<ChunkFindings> read_chunks(const SceneFile& file, Workers& workers, Scene& scene) {
   std::vector<ChunkFindings> findings(file.chunks().size());
   std::atomic<bool> leaves_once{true};
@@ -178,8 +187,9 @@ std::vector<ChunkFindings> read_chunks(const SceneFile& file, Workers& workers, 
     for (size_t index = begin; index < end; ++index) {
       try {
         const Chunk chunk = file.read_chunk(static_cast<uint32_t>(index));
-        store_nodes(chunk, scene);
+        store_nodes(chunk, index, scene);
         findings[index].sh_degree = used_sh_degree(chunk.sh, scene.sh_degree);
+        findings[index].largest_sh = largest_magnitude(chunk.sh);
         store_subtrees(chunk, scene, findings[index]);
         if (!store_leaves(chunk, scene)) leaves_once = false;
       } catch (const Error& error) {
@@ -276,21 +286,12 @@ void check_hulls(const Scene& scene) {
     }
 }
 
-float largest_magnitude(const std::pmr::vector<float>& values, Workers& workers) {
-  std::atomic<uint32_t> largest{0};  // magnitudes are in the order of their bits
-  workers.for_blocks(values.size(), size_t{1} << 20, [&](size_t begin, size_t end) {
-    uint32_t most = 0;
-    for (size_t i = begin; i < end; ++i)
-      most = std::max(most, std::bit_cast<uint32_t>(values[i]) & 0x7fffffffu);
-    for (uint32_t seen = largest; most > seen && !largest.compare_exchange_weak(seen, most);) {
-    }
-  });
-  return std::bit_cast<float>(largest.load());
-}
-
 // What the header says for readers that never see the whole.
-void check_claims(const SceneFileInfo& info, const Scene& scene, Workers& workers) {
-  if (const float largest = largest_magnitude(scene.sh, workers); largest != info.largest_sh)
+void check_claims(const SceneFileInfo& info, const Scene& scene,
+                  const std::vector<ChunkFindings>& findings) {
+  float largest = 0;
+  for (const ChunkFindings& f : findings) largest = std::max(largest, f.largest_sh);
+  if (largest != info.largest_sh)
     refuse(scene, "a largest SH coefficient of " + std::to_string(largest),
            "the header's " + std::to_string(info.largest_sh));
   const auto has_extent = [](const NodeRecord& r) { return r.child_count == 0 && r.extent != 0; };
@@ -336,10 +337,12 @@ void load_baked(const SceneFile& file, Workers& workers, Scene& scene) {
   check_hulls(scene);
   if (scene.damaged.empty() && scene.tree.size() != 0) {
     check_totals(scene);
-    check_claims(file.info(), scene, workers);
+    check_claims(file.info(), scene, findings);
   }
   add_search(scene, workers);
-  leave_out_zero_bands(scene);
+  int used = 0;
+  for (const ChunkFindings& f : findings) used = std::max(used, f.sh_degree);
+  lower_sh_degree(used, scene);
   complete_profile(scene, workers);
   add_notes(scene);
 }

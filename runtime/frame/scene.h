@@ -11,6 +11,7 @@
 #include "runtime/base/workers.h"
 #include "runtime/frame/scene_profile.h"
 #include "runtime/math/gaussian.h"
+#include "runtime/math/sh_code.h"
 #include "runtime/scene/gaussian_cloud.h"
 #include "runtime/scene/native_scale.h"
 #include "runtime/select/search_tree.h"
@@ -55,6 +56,8 @@ struct Scene {
   explicit Scene(std::pmr::memory_resource* memory)
       : gaussians(memory),
         sh(memory),
+        sh_rows(memory),
+        sh_scales(memory),
         tree(memory),
         search(memory),
         node_code(memory),
@@ -65,9 +68,6 @@ struct Scene {
   bool flat() const { return storage == Storage::flat; }
   bool streamed() const { return stream != nullptr; }
   int coefficients() const { return sh_coefficients(sh_degree); }
-  const float* sh_of(uint32_t i) const {
-    return sh.data() + size_t{i} * 3 * static_cast<size_t>(coefficients());
-  }
 
   std::string name;
   Storage storage = Storage::flat;
@@ -84,13 +84,16 @@ struct Scene {
   SceneProfile profile;
 
   std::pmr::vector<Gaussian> gaussians;  // by node id; a flat scene's by index
-  std::pmr::vector<float> sh;            // coefficients() * 3 each
-  LodTree tree;                          // empty for a flat scene
-  SearchTree search;                     // of the tree; empty for a flat scene
-  std::pmr::vector<uint8_t> node_code;   // by node id (runtime/math/node_code.h)
-  std::pmr::vector<uint32_t> leaves;     // node ids of the leaves in the input's order; flat: empty
-  Partition partition;                   // of the tree; empty for a flat scene
-  std::vector<DamagedNodes> damaged;     // by first, disjoint
+  // Of those coefficients() * 3 floats each, or rows (scene_sh.h): the other arrays are empty.
+  std::pmr::vector<float> sh;
+  std::pmr::vector<uint8_t> sh_rows;
+  std::pmr::vector<ShScales> sh_scales;
+  LodTree tree;                         // empty for a flat scene
+  SearchTree search;                    // of the tree; empty for a flat scene
+  std::pmr::vector<uint8_t> node_code;  // by node id (runtime/math/node_code.h)
+  std::pmr::vector<uint32_t> leaves;    // node ids of the leaves in the input's order; flat: empty
+  Partition partition;                  // of the tree; empty for a flat scene
+  std::vector<DamagedNodes> damaged;    // by first, disjoint
   std::vector<DamagedChunk> damaged_chunks;  // by chunk
   std::vector<SceneNote> notes;
 

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "runtime/frame/scene.h"
+#include "runtime/frame/scene_sh.h"
 #include "runtime/scene/sh_bands.h"
 
 namespace voyager {
@@ -69,9 +70,7 @@ void complete_profile(Scene& scene, Workers& workers) {
 }
 
 void leave_out_zero_bands(Scene& scene) {
-  const int used = used_sh_degree(scene.sh, scene.sh_degree);
-  change_sh_degree(scene.sh, scene.sh_degree, used);
-  scene.sh_degree = used;
+  lower_sh_degree(used_sh_degree(scene.sh, scene.sh_degree), scene);
 }
 
 }  // namespace voyager

@@ -4,6 +4,7 @@
 #include "runtime/math/lerp.h"
 #include "runtime/math/node_code.h"
 #include "runtime/math/sh.h"
+#include "runtime/math/sh_code.h"
 
 namespace voyager {
 
@@ -32,15 +33,38 @@ VOYAGER_HD DrawItem weigh(const WeightParams& params, uint32_t node) {
   return {node, parent, t, 1.0f / static_cast<float>(params.records[parent].child_count)};
 }
 
+// The coefficients of one Gaussian on the host, [k][rgb]: where they lie, or unpacked.
+class ShOf {
+ public:
+  explicit ShOf(const float* floats) : floats_(floats) {}
+  ShOf(const uint8_t* row, int degree, const ShScales* scales) : floats_(nullptr) {
+    unpack_sh(row, degree, scales, unpacked_);
+  }
+  float operator()(int k, int channel) const {
+    return (floats_ != nullptr ? floats_ : unpacked_)[3 * k + channel];
+  }
+
+ private:
+  const float* floats_;
+  float unpacked_[3 * sh_coefficients(kMaxShDegree)];
+};
+
+// Rows of sh_code.h; none where coefficients are floats.
+struct PackedSh {
+  const uint8_t* rows = nullptr;
+  const ShScales* scales = nullptr;
+};
+
 // What a stage reads of the scene, on the host. A device has a layout of its own with
 // the same members, which is why the functors below take any.
 struct GaussianArrays {
   const Gaussian* gaussians;
-  const float* coefficients;  // [k][rgb] a Gaussian
+  const float* coefficients;  // [k][rgb] a Gaussian; where there are no rows
   const uint8_t* node_codes;  // of a tree; a flat scene has none
   int degree;
   bool doubles;     // nodes of one child are doubles, as files of version 4 have them
   bool footprints;  // that differ between nodes
+  PackedSh packed{};
 
   int sh_degree() const { return degree; }
   const Vec3f& mean(uint32_t i) const { return gaussians[i].mean; }
@@ -49,9 +73,10 @@ struct GaussianArrays {
   int node_code(uint32_t i) const { return node_codes[i]; }
   bool footprints_differ() const { return footprints; }
   // sh(i)(k, channel)
-  auto sh(uint32_t i) const {
-    const float* own = coefficients + i * 3 * static_cast<size_t>(sh_coefficients(degree));
-    return [own](int k, int channel) { return own[3 * k + channel]; };
+  ShOf sh(uint32_t i) const {
+    if (packed.rows != nullptr)
+      return {packed.rows + i * sh_row_bytes(degree), degree, packed.scales};
+    return ShOf(coefficients + i * 3 * static_cast<size_t>(sh_coefficients(degree)));
   }
 };
 

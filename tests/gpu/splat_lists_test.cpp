@@ -45,7 +45,7 @@ std::shared_ptr<Scene> sorted(const Scene& scene) {
   auto result = empty_scene();
   for (const uint32_t i : order) {
     result->gaussians.push_back(scene.gaussians[i]);
-    result->sh.insert(result->sh.end(), scene.sh_of(i), scene.sh_of(i) + 3);
+    result->sh.insert(result->sh.end(), &scene.sh[3 * i], &scene.sh[3 * i] + 3);
   }
   result->leaf_count = order.size();
   return result;

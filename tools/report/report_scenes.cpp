@@ -3,9 +3,9 @@
 #include "runtime/base/open_source.h"
 #include "runtime/format/export_ply.h"
 #include "runtime/format/writer.h"
+#include "runtime/frame/scene_sh.h"
 #include "runtime/lod/build.h"
 #include "runtime/scene/import/importer.h"
-#include "runtime/scene/sh_bands.h"
 #include "tools/report/kept_files.h"
 
 namespace voyager::tools {
@@ -34,10 +34,7 @@ std::shared_ptr<const Scene> ReportScenes::get(Storage storage, int sh_degree) {
   other_.reset();
   const std::shared_ptr<Scene> scene =
       load_scene(open_source(path_of(storage)), std::pmr::get_default_resource(), workers_);
-  if (sh_degree < scene->sh_degree) {
-    change_sh_degree(scene->sh, scene->sh_degree, sh_degree);
-    scene->sh_degree = sh_degree;
-  }
+  lower_sh_degree(sh_degree, *scene);
   other_storage_ = storage;
   other_ = scene;
   return scene;

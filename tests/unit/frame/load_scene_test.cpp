@@ -5,6 +5,7 @@
 
 #include "runtime/base/checksum.h"
 #include "runtime/frame/scene.h"
+#include "runtime/frame/scene_sh.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
@@ -24,16 +25,21 @@ std::shared_ptr<const Scene> load(const Bytes& bytes) {
   return load(test::source_of(bytes));
 }
 
+std::vector<float> sh_of(const Scene& scene, uint32_t i) {
+  std::vector<float> sh(static_cast<size_t>(scene.coefficients()) * 3);
+  copy_sh(scene, i, sh.data());
+  return sh;
+}
+
 void expect_leaves_equal_flat(const Scene& baked, const Scene& flat) {
   ASSERT_TRUE(flat.flat());
   ASSERT_FALSE(baked.flat());
   ASSERT_EQ(baked.leaves.size(), flat.gaussians.size());
   EXPECT_EQ(std::memcmp(&baked.origin, &flat.origin, sizeof flat.origin), 0);
-  const size_t floats = static_cast<size_t>(flat.coefficients()) * 3;
   for (uint32_t i = 0; i < flat.gaussians.size(); ++i) {
     const uint32_t node = baked.leaves[i];
     ASSERT_EQ(std::memcmp(&baked.gaussians[node], &flat.gaussians[i], sizeof(Gaussian)), 0);
-    ASSERT_EQ(std::memcmp(baked.sh_of(node), flat.sh_of(i), floats * sizeof(float)), 0);
+    ASSERT_EQ(sh_of(baked, node), sh_of(flat, i));
   }
 }
 
@@ -49,6 +55,27 @@ TEST(LoadScene, LeavesOfALosslessBakeEqualTheFlatScene) {
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_EQ(flat->bounds_min[axis], baked->bounds_min[axis]);
       EXPECT_EQ(flat->bounds_max[axis], baked->bounds_max[axis]);
+    }
+  }
+}
+
+// A compact scene keeps what the file stores, and draws what the file restores.
+TEST(LoadScene, CoefficientsOfACompactSceneAreTheFilesToTheBit) {
+  for (const int degree : {0, 1, 2, 3}) {
+    const auto bytes =
+        test::scene_bytes(test::bake(test::random_cloud(3000, 43, degree)), Quality::compact);
+    const auto scene = load(bytes);
+    const size_t floats = static_cast<size_t>(scene->coefficients()) * 3;
+    EXPECT_EQ(scene->sh.empty(), degree > 0);
+    const SceneFile file(test::source_of(bytes));
+    for (uint32_t i = 0; i < file.info().chunk_count; ++i) {
+      const Chunk chunk = file.read_chunk(i);
+      for (size_t n = 0; n < chunk.node.size(); ++n) {
+        const std::vector<float> stored(
+            chunk.sh.begin() + static_cast<std::ptrdiff_t>(n * floats),
+            chunk.sh.begin() + static_cast<std::ptrdiff_t>((n + 1) * floats));
+        ASSERT_EQ(sh_of(*scene, chunk.node[n]), stored) << degree;
+      }
     }
   }
 }

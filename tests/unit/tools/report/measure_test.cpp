@@ -127,7 +127,7 @@ TEST_F(ReportMeasure, WithoutItsBandsASceneIsThatOfALowerDegree) {
   EXPECT_EQ(lower->sh_degree, 0);
   ASSERT_EQ(lower->sh.size() * 4, whole.sh.size());
   for (uint32_t i = 0; i < lower->sh.size() / 3; ++i)
-    for (int k = 0; k < 3; ++k) EXPECT_EQ(lower->sh_of(i)[k], whole.sh_of(i)[k]);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(lower->sh[3 * i + k], whole.sh[12 * i + k]);
 }
 
 // τ starts far from its place: what it takes to get there is no part of the figures.
