@@ -69,8 +69,7 @@ const char* search_name(Search search) {
       return "streaming";
     case Search::temporal:
     case Search::temporal_visit:
-      return "temporal";
-    case Search::fastest:
+    case Search::fastest:  // never in a row
       return "temporal";
     case Search::sweep:
       break;
