@@ -96,13 +96,8 @@ class Learning {
     for (uint32_t k = 0; k < kTimedSteps; ++k) trainer_->step(views_.picture(kWarmSteps + k), {});
     const double each = std::max(watch.milliseconds() / kTimedSteps, 1e-3);
     trainer_->set_state(untouched);
-    // Beside the steps: three measurements of extents, held-out views before and after, and those
-    // that choose the extents' scale.
-    constexpr double kMeasured =
-        double{std::size(kMeasureAt)} * std::size(kMeasureTaus) / kStepsPerMeasure;
-    const double others = 2.0 * held_out_.pictures_of_look() + chosen_by_.pictures_of_best_tau();
-    return static_cast<uint32_t>(
-        std::clamp((minutes * 60000 / each - others) / (1 + kMeasured), 1.0, 1e9));
+    return pictures_in(minutes, each,
+                       2 * held_out_.pictures_of_look() + chosen_by_.pictures_of_best_tau());
   }
 
   void learn(double keep_milliseconds, const std::vector<HeldOut>& before) {
@@ -218,6 +213,14 @@ class Learning {
 };
 
 }  // namespace
+
+uint32_t pictures_in(double minutes, double milliseconds, uint32_t others) {
+  // Extents are measured after some of the pictures.
+  constexpr double kMeasured =
+      double{std::size(kMeasureAt)} * std::size(kMeasureTaus) / kStepsPerMeasure;
+  const double all = minutes * 60000 / milliseconds;
+  return static_cast<uint32_t>(std::clamp((all - others) / (1 + kMeasured), 1.0, 1e9));
+}
 
 OptimizeSummary learn_scene(BakedScene& baked, const LookedAt& looked_at, const OptimizeGoal& goal,
                             Backend& backend, const std::string& kept, Workers& workers,

@@ -10,6 +10,7 @@
 #include "runtime/frame/built_scene.h"
 #include "runtime/lod/validate.h"
 #include "runtime/optimize/checkpoint.h"
+#include "runtime/optimize/learn_scene.h"
 #include "runtime/optimize/part.h"
 #include "runtime/optimize/training_views.h"
 #include "runtime/scene/append.h"
@@ -191,18 +192,22 @@ TEST(Optimize, InPartsNeitherThreadsNorStopsShow) {
 }
 
 TEST(Optimize, MinutesGiveAsManyPicturesAsThereIsTimeFor) {
+  for (const double minutes : {0.5, 5.0, 60.0})
+    for (const double each : {1.4, 70.0})
+      for (const uint32_t others : {0u, 200u}) {
+        const double learned = pictures_in(minutes, each, others), measured = 9.0 / 60 * learned;
+        EXPECT_NEAR((learned + measured + others) * each, minutes * 60000, 2 * each);
+      }
+  EXPECT_EQ(pictures_in(1e-6, 1, 100), 1u);
+  EXPECT_EQ(pictures_in(1e9, 1e-3, 0), 1'000'000'000u);
   const test::TempFolder folder;
-  const BakedScene baked = test::bake(test::specks(300, 7, 0));
+  BakedScene scene = test::bake(test::specks(300, 7, 0));
   Workers workers;
   const auto backend = create_cpu_backend();
-  const auto pictures_in = [&](double minutes) {
-    BakedScene scene = baked;
-    return optimize_nodes(scene, {.minutes = minutes, .held_out = 1}, *backend,
-                          folder.file(std::to_string(minutes)), workers)
-        .pictures;
-  };
-  EXPECT_EQ(pictures_in(1e-6), 1u);  // measuring takes all of it
-  EXPECT_GT(pictures_in(0.01), 1u);
+  EXPECT_EQ(optimize_nodes(scene, {.minutes = 1e-6, .held_out = 1}, *backend, folder.file("kept"),
+                           workers)
+                .pictures,
+            1u);
 }
 
 TEST(Optimize, LessMemoryThanTheSmallestPartTakesIsRefused) {
@@ -244,16 +249,16 @@ std::vector<bool> own_nodes(const ScenePart& part, const PartRoots& roots) {
 // What is around a part is in every cut; the rest of its cut is the whole's, but for the roots,
 // which have another parent.
 TEST(Optimize, APartShowsWhatTheWholeShows) {
-  const BakedScene baked = city(10000);
-  const std::vector<PartRoots> parts = part_roots(baked.tree, 2500);
+  const BakedScene baked = city(4000);
+  const std::vector<PartRoots> parts = part_roots(baked.tree, 1000);
   ASSERT_GE(parts.size(), 4u);
   for (const PartRoots& roots : parts) {
-    const ScenePart part = take_part(baked, roots, 2500);
+    const ScenePart part = take_part(baked, roots, 1000);
     const LodTree& tree = part.scene.tree;
-    EXPECT_LE(roots.leaves, 2500u);
+    EXPECT_LE(roots.leaves, 1000u);
     EXPECT_EQ(part.own_leaves, roots.leaves);
     EXPECT_GT(part.scene.leaves.size(), roots.leaves);
-    EXPECT_LE(part.scene.leaves.size(), roots.leaves + 2500);
+    EXPECT_LE(part.scene.leaves.size(), roots.leaves + 1000);
     const std::vector<bool> own = own_nodes(part, roots);
     for (const float target : {0.002f, 0.02f, 0.2f}) {
       const CutQuery query{{10, -20, 5}, target};
@@ -269,9 +274,9 @@ TEST(Optimize, APartShowsWhatTheWholeShows) {
 
 // All that merges is in one part, or above them.
 TEST(Optimize, PartsHaveEveryMergedNodeOnce) {
-  const LodTree tree = city(10000).tree;
+  const LodTree tree = city(4000).tree;
   std::vector<int> parts_with(tree.size(), 0);
-  for (const PartRoots& roots : part_roots(tree, 2500))
+  for (const PartRoots& roots : part_roots(tree, 1000))
     for (uint32_t n = roots.first; n < roots.first + roots.count; ++n) ++parts_with[n];
   std::vector<bool> has_part(tree.size(), false);  // below it
   for (auto n = static_cast<uint32_t>(tree.size()); n-- > 1;)
