@@ -1,4 +1,5 @@
 #include "runtime/frame/load.h"
+#include "runtime/frame/scene_sh.h"
 
 namespace voyager {
 namespace {
@@ -10,7 +11,8 @@ void add_sh_note(Scene& scene, int kept, int stored, const char* why) {
   if (kept >= stored) return;
   const auto missing = static_cast<uint64_t>(sh_coefficients(stored) - sh_coefficients(kept));
   const uint64_t gaussians = std::max<uint64_t>(scene.gaussians.size(), scene.node_count);
-  scene.notes.push_back({SceneNote::Kind::omitted, 0, gaussians * missing * 3 * sizeof(float),
+  const uint64_t each = sh_bytes(scene.storage, stored) - sh_bytes(scene.storage, kept);
+  scene.notes.push_back({SceneNote::Kind::omitted, 0, gaussians * each,
                          "SH bands above degree " + std::to_string(kept), why,
                          static_cast<uint32_t>(missing) * 3 * kLeastCoefficientBytes});
 }

@@ -27,8 +27,10 @@ void shorten_rows(size_t from, size_t to, std::pmr::vector<uint8_t>& rows) {
 
 }  // namespace
 
-size_t sh_bytes(const Scene& scene) {
-  return packs_sh(scene) ? sh_row_bytes(scene.sh_degree) : floats_of(scene) * sizeof(float);
+size_t sh_bytes(Storage storage, int degree) {
+  return packs_sh(storage, degree)
+             ? sh_row_bytes(degree)
+             : 3 * sizeof(float) * static_cast<size_t>(sh_coefficients(degree));
 }
 
 void make_sh_room(size_t gaussians, size_t groups, Scene& scene) {

@@ -6,11 +6,17 @@
 namespace voyager {
 
 // Whether a scene keeps rows: what a compact file stores, where there is more than the constant.
+inline bool packs_sh(Storage storage, int degree) {
+  return storage == Storage::compact && degree > 0;
+}
 inline bool packs_sh(const Scene& scene) {
-  return scene.storage == Storage::compact && scene.sh_degree > 0;
+  return packs_sh(scene.storage, scene.sh_degree);
 }
 // Bytes of a Gaussian.
-size_t sh_bytes(const Scene& scene);
+size_t sh_bytes(Storage storage, int degree);
+inline size_t sh_bytes(const Scene& scene) {
+  return sh_bytes(scene.storage, scene.sh_degree);
+}
 
 // Empties the arrays, then makes room; groups: of Gaussians that have their scales in common.
 void make_sh_room(size_t gaussians, size_t groups, Scene& scene);
