@@ -4,8 +4,6 @@
 #include <mutex>
 
 #include "runtime/frame/scene.h"
-#include "runtime/frame/scene_sh.h"
-#include "runtime/scene/sh_bands.h"
 
 namespace voyager {
 namespace {
@@ -67,10 +65,6 @@ void complete_profile(Scene& scene, Workers& workers) {
   profile.opacities_above_one = all.above_one;
   profile.least_anisotropy = all.least;
   profile.greatest_anisotropy = all.greatest;
-}
-
-void leave_out_zero_bands(Scene& scene) {
-  lower_sh_degree(used_sh_degree(scene.sh, scene.sh_degree), scene);
 }
 
 }  // namespace voyager

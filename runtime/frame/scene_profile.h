@@ -26,7 +26,4 @@ struct SceneProfile {
 // What the loaded Gaussians show: opacities and anisotropy.
 void complete_profile(Scene& scene, Workers& workers);
 
-// Leaves out the SH bands that no Gaussian of a loaded scene uses.
-void leave_out_zero_bands(Scene& scene);
-
 }  // namespace voyager

@@ -27,7 +27,9 @@ constexpr double kMeasureAt[] = {0.4, 0.7, 1.0};
 constexpr double kMeasureTaus[] = {2, 8, 30};
 constexpr uint32_t kStepsPerMeasure = 60, kLeastMeasures = 8, kMostMeasures = 256;
 // Of views that extents are measured in, that choose their scale, and that say what was gained.
-// Multiples of no base of Halton's sequence, so that each looks at other leaves than the others.
+// Their last digits differ in the bases of Halton's sequence. A large power of a base would differ
+// from 0 in a far digit only, and its views would look at the leaves of those that are learned
+// from.
 constexpr uint32_t kFirstMeasure = 134'217'757, kFirstChosenBy = 201'326'611,
                    kFirstHeldOut = 268'435'459;
 

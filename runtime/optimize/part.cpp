@@ -83,7 +83,7 @@ std::vector<uint32_t> around(const LodTree& tree, const PartRoots& roots, double
 
 // Those of which there are so many at most, or the coarsest there are.
 std::vector<uint32_t> finest_around(const LodTree& tree, const PartRoots& roots, uint64_t most) {
-  if (roots.leaves == 0 || roots.first == 0) return {};
+  if (roots.first == 0) return {};
   for (double finest = kFinestAround; finest < 1e6; finest *= kCoarser) {
     std::vector<uint32_t> found = around(tree, roots, finest, most);
     if (!found.empty()) return found;
