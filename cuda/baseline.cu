@@ -206,16 +206,7 @@ size_t baseline_scratch(const BaselineView& view) {
 
 void launch_baseline_project(const BaselineFrame& f) {
   if (f.places == 0) return;
-  if (!f.gaussians.half_sh)
-    launch_project<FloatSh>(f);
-  else if (f.gaussians.sh_degree == 0)
-    launch_project<HalfSh<0>>(f);
-  else if (f.gaussians.sh_degree == 1)
-    launch_project<HalfSh<1>>(f);
-  else if (f.gaussians.sh_degree == 2)
-    launch_project<HalfSh<2>>(f);
-  else
-    launch_project<HalfSh<3>>(f);
+  with_sh(f.gaussians, [&]<class Sh>() { launch_project<Sh>(f); });
   check(cudaGetLastError(), "baseline_project");
 }
 

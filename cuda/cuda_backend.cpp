@@ -95,7 +95,7 @@ class CudaBackend final : public Backend {
                              Workers& workers) {
     auto gaussians = gaussians_.of(scene, [&](const Scene& s) {
       return s.streamed() ? std::make_shared<DeviceScene>(pool_of(s, *device_))
-                          : std::make_shared<DeviceScene>(s, workers);
+                          : std::make_shared<DeviceScene>(*device_, s, workers);
     });
     const bool searches = !scene->flat() && draws_cut(desc.lod);
     auto search =

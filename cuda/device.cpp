@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "cuda/check.h"
+#include "cuda/code_tables.h"
 #include "cuda/machine.h"
 #include "runtime/base/error.h"
 
@@ -23,6 +24,13 @@ Device::Device(int ordinal, unsigned multiprocessors) : ordinal_(ordinal) {
   memory_bytes_ = properties.totalGlobalMem;
   if (multiprocessors != 0 && multiprocessors < multiprocessors_)
     make_green_context(multiprocessors);
+}
+
+std::shared_ptr<const CodeTables> Device::code_tables() const {
+  const std::lock_guard lock(tables_mutex_);
+  std::shared_ptr<const CodeTables> tables = tables_.lock();
+  if (tables == nullptr) tables_ = tables = std::make_shared<const CodeTables>();
+  return tables;
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "runtime/frame/backend.h"
@@ -11,6 +12,8 @@ namespace voyager::cuda {
 
 // The context that is current to this thread; it is so again once the result is gone.
 std::shared_ptr<void> keep_context();
+
+class CodeTables;
 
 class Device {
  public:
@@ -29,6 +32,9 @@ class Device {
   bool is_part() const { return context_ != nullptr; }
   // For destructors: what fails has failed before.
   void use_quietly() const noexcept;
+
+  // What coded scenes are restored with: one for all that hold it. The device is in use().
+  std::shared_ptr<const CodeTables> code_tables() const;
 
   int ordinal() const { return ordinal_; }
   const std::string& name() const { return name_; }
@@ -50,6 +56,8 @@ class Device {
   uint64_t memory_bytes_ = 0;
   void* green_ = nullptr;    // CUgreenCtx
   void* context_ = nullptr;  // its CUcontext; null for the whole device
+  mutable std::mutex tables_mutex_;
+  mutable std::weak_ptr<const CodeTables> tables_;
 };
 
 }  // namespace voyager::cuda

@@ -1,6 +1,7 @@
 #include "cuda/device_parents.h"
 
 #include "cuda/upload_made.h"
+#include "runtime/frame/scene_gaussians.h"
 
 namespace voyager::cuda {
 
@@ -21,8 +22,9 @@ void DeviceParents::add_to(GaussianView& gaussians) const {
 }
 
 uint64_t DeviceParents::bytes(const Scene& scene) {
-  const size_t code = footprints_differ(scene) ? 0 : sizeof(uint8_t);
-  return scene.node_count * (sizeof(float) + code + 2 * sizeof(uint32_t));
+  const size_t code = footprints_differ(scene) ? 0 : sizeof(uint8_t),
+               own = is_coded(scene) ? 0 : sizeof(float) + code;
+  return scene.node_count * (own + 2 * sizeof(uint32_t));
 }
 
 }  // namespace voyager::cuda

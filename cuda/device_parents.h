@@ -17,6 +17,7 @@ class DeviceParents {
   static uint64_t bytes(const Scene& scene);
 
  private:
+  // A coded scene has these in its shapes.
   Buffer<float> opacities_;
   Buffer<uint8_t> node_codes_;
   Buffer<uint32_t> parents_, child_counts_;

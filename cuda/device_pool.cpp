@@ -5,6 +5,7 @@
 
 #include "cuda/device_gaussian.h"
 #include "runtime/base/error.h"
+#include "runtime/frame/scene_gaussians.h"
 
 namespace voyager::cuda {
 namespace {
@@ -42,6 +43,7 @@ void check_addresses(SlotShape shape, uint32_t slots) {
 PoolBytes DevicePool::bytes(const Device& device, const Scene& scene, SlotShape shape) {
   const PoolLayout piece(scene, shape, 1);
   PoolBytes bytes = piece.pool_bytes();
+  if (is_coded(scene)) bytes.fixed += CodeTables::kBytes;
   if (shares_memory(device)) bytes.fixed += pieces_of(piece) * piece.filled_bytes();
   return bytes;
 }
@@ -49,9 +51,10 @@ PoolBytes DevicePool::bytes(const Device& device, const Scene& scene, SlotShape 
 DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
                        uint32_t slots)
     : device_(std::move(device)),
+      tables_(is_coded(scene) ? device_->code_tables() : nullptr),
       shape_(shape),
       sh_degree_(scene.sh_degree),
-      half_sh_(fits_half(scene)),
+      sh_form_(sh_form(scene)),
       doubles_(scene.doubles),
       footprints_(footprints_differ(scene)),
       blend_share_(scene.tree.blend_share),
@@ -95,17 +98,20 @@ DevicePool::~DevicePool() {
 
 GaussianView DevicePool::gaussians() const {
   return {array<float4>(kHulls),
-          array<float4>(kShapes),
+          array<unsigned char>(kShapes),
           array<float>(kOpacities),
           array<uint8_t>(kNodeCodes),
           array<uint32_t>(kParents),
           array<uint32_t>(kChildCounts),
           array<uint4>(kCoefficients),
           sh_degree_,
-          half_sh_,
+          sh_form_,
           doubles_,
           footprints_,
-          slots_ * shape_.nodes};
+          slots_ * shape_.nodes,
+          tables_ == nullptr ? ShapeTables{} : tables_->view(),
+          array<ShStepSizes>(kStepSizes),
+          {nullptr, shape_.nodes}};
 }
 
 TreeView DevicePool::tree() const {
@@ -124,6 +130,37 @@ TreeView DevicePool::tree() const {
 void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* into) const {
   const Chunk& chunk = staged.content;
   const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
+  for (size_t i = 0; i < chunk.node.size(); ++i) {
+    const uint32_t parent = staged.parent[i];
+    put(at(kParents), i, parent == kNoNode ? kNoNode : slot * shape_.nodes + parent);
+    put(at(kChildCounts), i, chunk.record_of(i).child_count);
+    if (layout_.unit(kLeaves) != 0) put(at(kLeaves), i, chunk.record_of(i));
+  }
+  if (sh_form_ == ShForm::coded)
+    pack_codes(chunk, into);
+  else
+    pack_floats(chunk, into);
+  std::memcpy(at(kNodeIds), chunk.node.data(), chunk.node.size() * sizeof(uint32_t));
+  std::memcpy(at(kRecords), staged.records.data(), staged.records.size() * sizeof(SearchRecord));
+}
+
+void DevicePool::pack_codes(const Chunk& chunk, unsigned char* into) const {
+  const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
+  const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
+  for (size_t i = 0; i < chunk.node.size(); ++i) {
+    const ShapeCode code = shape_code(chunk, i);
+    Gaussian g = restored_shape(code, shape_tables());
+    g.mean = chunk.words[i].mean;
+    put(at(kHulls), i, device_hull(g));
+    put(at(kShapes), i, code);
+    pack_sh(&chunk.sh[i * floats], sh_degree_, chunk.sh_scale,
+            at(kCoefficients) + i * layout_.unit(kCoefficients));
+  }
+  put(at(kStepSizes), 0, step_sizes(chunk.sh_scale));
+}
+
+void DevicePool::pack_floats(const Chunk& chunk, unsigned char* into) const {
+  const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
   const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const Gaussian g = activate(chunk.words[i], chunk.is_leaf(i));
@@ -132,18 +169,13 @@ void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* i
     put(at(kShapes), 2 * i + 1, device_shape(g, 1));
     put(at(kOpacities), i, g.opacity);
     put(at(kNodeCodes), i, chunk.node_code[i]);
-    const uint32_t parent = staged.parent[i];
-    put(at(kParents), i, parent == kNoNode ? kNoNode : slot * shape_.nodes + parent);
-    put(at(kChildCounts), i, chunk.record_of(i).child_count);
-    if (layout_.unit(kLeaves) != 0) put(at(kLeaves), i, chunk.record_of(i));
-    if (half_sh_)
+    if (sh_form_ == ShForm::half)
       put_half_coefficients(
           &chunk.sh[i * floats], sh_degree_,
           reinterpret_cast<__half*>(at(kCoefficients) + i * layout_.unit(kCoefficients)));
   }
-  if (!half_sh_) std::memcpy(at(kCoefficients), chunk.sh.data(), chunk.sh.size() * sizeof(float));
-  std::memcpy(at(kNodeIds), chunk.node.data(), chunk.node.size() * sizeof(uint32_t));
-  std::memcpy(at(kRecords), staged.records.data(), staged.records.size() * sizeof(SearchRecord));
+  if (sh_form_ == ShForm::single)
+    std::memcpy(at(kCoefficients), chunk.sh.data(), chunk.sh.size() * sizeof(float));
 }
 
 PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
@@ -152,7 +184,9 @@ PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
   for (uint32_t a = 0; a < kFilledArrays; ++a) {
     const auto which = static_cast<PoolArray>(a);
     const size_t unit = layout_.unit(which);
-    const size_t count = which == kRecords ? staged.records.size() : staged.content.node.size();
+    const size_t count = which == kRecords     ? staged.records.size()
+                         : which == kStepSizes ? 1
+                                               : staged.content.node.size();
     const size_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
     fill.copies[a] = {from + piece_layout_.begin(which),
                       array<unsigned char>(which) + slot * layout_.slot_bytes(which),

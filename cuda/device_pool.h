@@ -9,6 +9,7 @@
 #include <mutex>
 #include <vector>
 
+#include "cuda/code_tables.h"
 #include "cuda/device.h"
 #include "cuda/gaussian_view.h"
 #include "cuda/patch_buffers.h"
@@ -50,6 +51,8 @@ class DevicePool final : public ChunkPool {
     return reinterpret_cast<T*>(memory_.data() + layout_.begin(which));
   }
   void pack(uint32_t slot, const StagedChunk& chunk, unsigned char* into) const;
+  void pack_codes(const Chunk& chunk, unsigned char* into) const;
+  void pack_floats(const Chunk& chunk, unsigned char* into) const;
   PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;
   // Throws Error(over_budget) where a resize has left no memory.
   void require_room() const;
@@ -57,9 +60,11 @@ class DevicePool final : public ChunkPool {
   void make_room(uint32_t slots);
 
   const std::shared_ptr<const Device> device_;
+  const std::shared_ptr<const CodeTables> tables_;  // of a coded scene
   const SlotShape shape_;
   const int sh_degree_;
-  const bool half_sh_, doubles_, footprints_;
+  const ShForm sh_form_;
+  const bool doubles_, footprints_;
   const float blend_share_;
   const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
   const PoolLayout piece_layout_;                // of one slot

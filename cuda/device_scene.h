@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "cuda/buffer.h"
+#include "cuda/code_tables.h"
+#include "cuda/device.h"
 #include "cuda/gaussian_view.h"
 #include "runtime/base/workers.h"
 #include "runtime/frame/scene.h"
@@ -15,7 +17,8 @@ class DevicePool;
 
 class DeviceScene {
  public:
-  DeviceScene(const Scene& scene, Workers& workers);
+  // Resident; the device is in use().
+  DeviceScene(const Device& device, const Scene& scene, Workers& workers);
   // Of a streamed scene: its pool's, which outlives this.
   explicit DeviceScene(const DevicePool& pool) : pool_(&pool) {}
 
@@ -26,7 +29,8 @@ class DeviceScene {
   uint32_t bytes_a_gaussian() const;
 
  private:
-  void upload_gaussians(const Scene& scene);
+  void upload_codes(const Device& device, const Scene& scene);
+  void upload_floats(const Scene& scene, Workers& workers);
   // Whether in binary16.
   bool upload_coefficients(const Scene& scene, Workers& workers);
 
@@ -34,6 +38,12 @@ class DeviceScene {
   Buffer<__half> half_coefficients_;
   Buffer<float> coefficients_;
   Buffer<uint8_t> node_codes_;
+  // Of a coded scene.
+  Buffer<ShapeCode> shape_codes_;
+  Buffer<uint8_t> sh_rows_;
+  Buffer<ShStepSizes> sh_steps_;
+  Buffer<ShGroupBlock> sh_blocks_;
+  std::shared_ptr<const CodeTables> tables_;
   GaussianView view_{};
   const DevicePool* pool_ = nullptr;
 };

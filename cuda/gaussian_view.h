@@ -5,8 +5,12 @@
 #include <cstdint>
 
 #include "runtime/math/sh.h"
+#include "runtime/math/sh_code.h"
+#include "runtime/math/shape_code.h"
 
 namespace voyager::cuda {
+
+enum class ShForm { half, single, coded };
 
 // By Gaussian: by node id, or by address in a pool.
 struct GaussianView {
@@ -15,20 +19,25 @@ struct GaussianView {
   // deviations, 0 where α never reaches it (lower 16), both rounded up to the upper half of a
   // binary32.
   const float4* hulls;
-  const float4* shapes;  // two each: scale and log o; rotation (w, x, y, z)
+  // Two each: scale and log o; rotation (w, x, y, z). Of a coded scene one ShapeCode each.
+  const void* shapes;
   // What interpolation reads; null where every leaf is drawn, but for codes of a scene whose
-  // footprints differ.
+  // footprints differ. A coded scene has opacities and node codes in its shapes.
   const float* opacities;
   const uint8_t* node_codes;
   const uint32_t* parents;
   const uint32_t* child_counts;
-  // SH coefficients [k][rgb]: binary16 padded to 16 bytes, or binary32.
+  // SH coefficients [k][rgb]: binary16 padded to 16 bytes, binary32, or a coded scene's rows.
   const void* coefficients;
   int sh_degree;
-  bool half_sh;
+  ShForm sh_form;
   bool doubles;     // nodes of one child are doubles, as files of version 4 have them
   bool footprints;  // that differ between nodes (METHOD §12)
   uint32_t count;
+  // Of a coded scene.
+  ShapeTables tables;
+  const ShStepSizes* sh_steps;  // by group
+  ShGroups sh_groups;
 };
 
 // 16-byte words of a Gaussian's coefficients in binary16.
@@ -40,9 +49,13 @@ VOYAGER_HD constexpr int half_sh_words(int degree) {
 // at most 2⁻⁹ (docs/numerics.md has what that does to colours).
 inline constexpr float kMaxHalfCoefficient = 8.0f;
 
-inline constexpr uint32_t coefficient_bytes(int degree, bool half) {
-  return half ? 16u * static_cast<uint32_t>(half_sh_words(degree))
-              : 12u * static_cast<uint32_t>(sh_coefficients(degree));
+inline constexpr uint32_t coefficient_bytes(int degree, ShForm form) {
+  return form == ShForm::coded  ? sh_row_bytes(degree)
+         : form == ShForm::half ? 16u * static_cast<uint32_t>(half_sh_words(degree))
+                                : 12u * static_cast<uint32_t>(sh_coefficients(degree));
+}
+inline constexpr uint32_t shape_bytes(ShForm form) {
+  return form == ShForm::coded ? sizeof(ShapeCode) : 2 * sizeof(float4);
 }
 
 }  // namespace voyager::cuda

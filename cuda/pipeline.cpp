@@ -303,7 +303,8 @@ void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) co
                            sizeof(uint32_t) / desc_.eyes;
   const uint64_t pairs = counted.pairs;
   uint64_t candidates = 0;
-  for (const InstanceCounters& instance : counted.instances) candidates += instance.candidates;
+  for (const InstanceCounters& instance : counted.instances)
+    candidates += instance.whole + instance.blended;
   constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
   stats.gaussian_bytes = instances_.bytes_a_gaussian();
   stats.bytes[kProject] = uint64_t{counted.places} * instances_.bytes_a_place() +

@@ -1,6 +1,6 @@
 #include "cuda/pool_layout.h"
 
-#include "cuda/gaussian_view.h"
+#include "runtime/frame/scene_gaussians.h"
 
 namespace voyager::cuda {
 namespace {
@@ -17,21 +17,25 @@ bool by_record(uint32_t array) {
 
 }  // namespace
 
-bool fits_half(const Scene& scene) {
-  return scene.largest_sh <= kMaxHalfCoefficient;
+ShForm sh_form(const Scene& scene) {
+  if (is_coded(scene)) return ShForm::coded;
+  return scene.largest_sh <= kMaxHalfCoefficient ? ShForm::half : ShForm::single;
 }
 
 PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots) {
+  const ShForm form = sh_form(scene);
+  const bool coded = form == ShForm::coded;
   unit_ = {sizeof(float4),
-           2 * sizeof(float4),
-           coefficient_bytes(scene.sh_degree, fits_half(scene)),
+           shape_bytes(form),
+           coefficient_bytes(scene.sh_degree, form),
            scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0,
-           sizeof(float),
+           coded ? 0 : sizeof(float),
            sizeof(uint32_t),
            sizeof(uint32_t),
            sizeof(uint32_t),
-           sizeof(uint8_t),
+           coded ? 0 : sizeof(uint8_t),
            sizeof(SearchRecord),
+           coded ? sizeof(ShStepSizes) : 0,
            sizeof(SubtreeSpan),
            sizeof(SearchSubtree),
            sizeof(SearchChunk)};
@@ -40,6 +44,7 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots) {
   fixed_bytes_[kChunks] = scene.search.chunks.size() * unit_[kChunks];
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
     const size_t places = a == kSubtrees || a == kChunks ? 0
+                          : a == kStepSizes              ? 1
                           : by_record(a)                 ? shape.records
                                                          : shape.nodes;
     slot_bytes_[a] = places * unit_[a];

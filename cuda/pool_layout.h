@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "cuda/gaussian_view.h"
 #include "runtime/frame/backend.h"
 
 namespace voyager::cuda {
@@ -20,6 +21,7 @@ enum PoolArray : uint32_t {
   kNodeIds,
   kNodeCodes,
   kRecords,
+  kStepSizes,  // one a slot
   kFilledArrays,
   // What links chunks: by record, and two of the whole tree.
   kOpens = kFilledArrays,
@@ -29,7 +31,7 @@ enum PoolArray : uint32_t {
 };
 
 // Of the coefficients of a streamed scene, as a resident one decides it.
-bool fits_half(const Scene& scene);
+ShForm sh_form(const Scene& scene);
 
 class PoolLayout {
  public:

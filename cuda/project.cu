@@ -34,8 +34,7 @@ __device__ float radius_above(float stored, float log_threshold) {
 
 // In the image of any eye.
 template <bool kLod, int kEyes>
-__device__ bool project_may_reach(const SplatFrame& f, uint32_t place) {
-  const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
+__device__ bool project_may_reach(const SplatFrame& f, const DrawItem& item) {
   if (item.gaussian == kNoNode) return false;
   Hull hull = hull_at(f.gaussians, item.gaussian);
   if (kLod && item.t != 1.0f) {
@@ -50,11 +49,36 @@ __device__ bool project_may_reach(const SplatFrame& f, uint32_t place) {
   return radius > 0.0f && reaches;
 }
 
-// The order of the candidates depends on scheduling; nothing that is made of them does.
+// Lists the places of a block's threads that have a bit in their warp's `lanes`, in order within
+// each warp, from *next on. `found` and `first` are the block's.
+template <unsigned kItems, class Put>
+__device__ void append_places(const uint32_t (&lanes)[kItems], uint32_t* next, uint32_t& found,
+                              uint32_t& first, const Put& put) {
+  const uint32_t lane = threadIdx.x % 32;
+  __syncthreads();  // the last call's have been read
+  if (threadIdx.x == 0) found = 0;
+  __syncthreads();
+  uint32_t before[kItems];
+#pragma unroll
+  for (unsigned k = 0; k < kItems; ++k)
+    if (lane == 0) before[k] = atomicAdd(&found, static_cast<uint32_t>(__popc(lanes[k])));
+  __syncthreads();
+  if (threadIdx.x == 0) first = atomicAdd(next, found);
+  __syncthreads();
+#pragma unroll
+  for (unsigned k = 0; k < kItems; ++k) {
+    const uint32_t at = first + __shfl_sync(kAll, before[k], 0);
+    if (lanes[k] >> lane & 1) put(at + __popc(lanes[k] & ((1u << lane) - 1)), k);
+  }
+}
+
+// The order of the candidates depends on scheduling; nothing that is made of them does. Those that
+// blend with their parents are apart: restoring two Gaussians takes twice as long, and a warp takes
+// as long as its slowest.
 template <bool kLod, int kEyes>
 __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
   __shared__ uint32_t found, first;
-  const uint32_t places = *f.draws.list.size, lane = threadIdx.x % 32;
+  const uint32_t places = *f.draws.list.size;
   InstanceCounters* const counters = f.splats.counters->instances + f.instance;
   const uint32_t first_place = counters->first_place;
   if (blockIdx.x == 0 && threadIdx.x == 0)
@@ -62,29 +86,47 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
   const uint32_t end = min(places, f.splats.places - min(first_place, f.splats.places));
   constexpr uint32_t kChunk = kCullThreads * kCullItems;
   for (uint32_t base = blockIdx.x * kChunk; base < end; base += gridDim.x * kChunk) {
-    if (threadIdx.x == 0) found = 0;
-    __syncthreads();
-    uint32_t lanes[kCullItems], before[kCullItems];
+    uint32_t whole[kCullItems], blended[kCullItems];
 #pragma unroll
     for (unsigned k = 0; k < kCullItems; ++k) {
       const uint32_t place = base + k * kCullThreads + threadIdx.x;
-      lanes[k] = __ballot_sync(kAll, place < end && project_may_reach<kLod, kEyes>(f, place));
+      bool reaches = false, blends = false;
+      if (place < end) {
+        const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
+        reaches = project_may_reach<kLod, kEyes>(f, item);
+        blends = kLod && item.t != 1.0f;
+      }
+      whole[k] = __ballot_sync(kAll, reaches && !blends);
+      blended[k] = kLod ? __ballot_sync(kAll, reaches && blends) : 0;
     }
-#pragma unroll
-    for (unsigned k = 0; k < kCullItems; ++k)
-      if (lane == 0) before[k] = atomicAdd(&found, static_cast<uint32_t>(__popc(lanes[k])));
-    __syncthreads();
-    if (threadIdx.x == 0) first = atomicAdd(&counters->candidates, found);
-    __syncthreads();
-#pragma unroll
-    for (unsigned k = 0; k < kCullItems; ++k) {
-      const uint32_t at = first + __shfl_sync(kAll, before[k], 0);
-      if (lanes[k] >> lane & 1)
-        f.splats.candidates[at + __popc(lanes[k] & ((1u << lane) - 1))] =
-            base + k * kCullThreads + threadIdx.x;
-    }
+    const auto place_of = [&](unsigned k) { return base + k * kCullThreads + threadIdx.x; };
+    append_places(whole, &counters->whole, found, first,
+                  [&](uint32_t at, unsigned k) { f.splats.candidates[at] = place_of(k); });
+    if (kLod)
+      append_places(blended, &counters->blended, found, first, [&](uint32_t at, unsigned k) {
+        f.splats.candidates[f.splats.places - 1 - at] = place_of(k);
+      });
   }
 }
+
+// Of the candidates, in whole warps of either kind; kNoNode for none.
+struct Candidates {
+  const uint32_t* places;
+  uint32_t whole, blended, room;
+
+  __device__ Candidates(const SplatFrame& f, const InstanceCounters& counters)
+      : places(f.splats.candidates),
+        whole(counters.whole),
+        blended(counters.blended),
+        room(f.splats.places) {}
+  __device__ uint32_t whole_warps() const { return (whole + 31) & ~31u; }
+  __device__ uint32_t end() const { return whole_warps() + blended; }
+  __device__ uint32_t operator()(uint32_t at) const {
+    if (at < whole) return places[at];
+    const uint32_t of_blended = at - whole_warps();
+    return at >= whole_warps() && of_blended < blended ? places[room - 1 - of_blended] : kNoNode;
+  }
+};
 
 __device__ SplatRecord record_of(const Splat& s, float log_scale) {
   return {s.x,     s.y, s.conic.p_x, s.conic.q_y, s.conic.skew, s.log_opacity * log_scale,
@@ -96,19 +138,19 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
     project_splats(SplatFrame f, bool boxes) {
   const DeviceArrays<Sh> arrays{f.gaussians};
   const InstanceCounters& counters = f.splats.counters->instances[f.instance];
-  const uint32_t count = counters.candidates, first_place = counters.first_place;
+  const uint32_t first_place = counters.first_place;
+  const Candidates candidates(f, counters);
   uint32_t visible = 0;
   unsigned long long boxed = 0;
   const uint32_t first = blockIdx.x * kProjectThreads + threadIdx.x / 32 * 32;
   __shared__ WarpExtents extents[kProjectThreads / 32];
   // Whole warps together: they share the strips of their splats.
-  for (uint32_t base = first; base < count; base += gridDim.x * kProjectThreads) {
-    const uint32_t at = base + threadIdx.x % 32;
+  for (uint32_t base = first; base < candidates.end(); base += gridDim.x * kProjectThreads) {
+    const uint32_t place = candidates(base + threadIdx.x % 32);
     TileExtent extent[kEyes] = {};
     float depth[kEyes] = {};
     uint32_t rank = 0;  // among the places of all instances
-    if (at < count) {
-      const uint32_t place = f.splats.candidates[at];
+    if (place != kNoNode) {
       const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
       rank = first_place + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
       DrawnGaussian drawn;
@@ -154,17 +196,7 @@ void launch_for(const SplatFrame& f, bool boxes) {
   static const unsigned resident = resident_blocks(cull, kCullThreads, 1);
   cull<<<f.multiprocessors * resident, kCullThreads, 0, f.stream>>>(f);
   check(cudaGetLastError(), "project_cull");
-  if (!f.gaussians.half_sh) return launch<FloatSh, kLod, kEyes>(f, boxes);
-  switch (f.gaussians.sh_degree) {
-    case 0:
-      return launch<HalfSh<0>, kLod, kEyes>(f, boxes);
-    case 1:
-      return launch<HalfSh<1>, kLod, kEyes>(f, boxes);
-    case 2:
-      return launch<HalfSh<2>, kLod, kEyes>(f, boxes);
-    default:
-      return launch<HalfSh<3>, kLod, kEyes>(f, boxes);
-  }
+  with_sh(f.gaussians, [&]<class Sh>() { launch<Sh, kLod, kEyes>(f, boxes); });
 }
 
 template <int kEyes>

@@ -41,7 +41,9 @@ struct alignas(128) StripRegion {
 
 struct InstanceCounters {
   uint32_t first_place;
-  uint32_t candidates;  // of its places, that may reach the image
+  // Of its places, that may reach the image: those that are drawn untouched, and those that blend
+  // with their parents.
+  uint32_t whole, blended;
 };
 
 // Of one frame.
@@ -90,10 +92,12 @@ struct FrameTiles {
 // As kernels take it.
 struct SplatView {
   SplatRecord* records;  // by slot: a place's for all eyes one behind the other
-  uint32_t* candidates;  // places, of the instance that is being projected
-  uint32_t places;       // room
-  TileStrip* strips;     // kStripRegions regions of equal room
-  uint32_t strip_room;   // of all
+  // Places of the instance that is being projected: whole ones from the beginning, blended ones
+  // from the end.
+  uint32_t* candidates;
+  uint32_t places;      // room
+  TileStrip* strips;    // kStripRegions regions of equal room
+  uint32_t strip_room;  // of all
   DepthKey* keys;
   DepthKey* merge_keys;  // as many
   uint32_t pairs;        // room

@@ -6,6 +6,7 @@
 #include "runtime/base/open_source.h"
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/frame_search.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/sanitise.h"
 

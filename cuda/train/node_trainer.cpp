@@ -97,7 +97,7 @@ class CudaTrainer final : public NodeTrainer {
     view_.shapes = shapes_.data();
     view_.coefficients = coefficients_.data();
     view_.sh_degree = scene_->sh_degree;
-    view_.half_sh = false;
+    view_.sh_form = ShForm::single;
     view_.doubles = false;
     view_.footprints = footprints_differ(*scene_);
     view_.node_codes = node_codes_.data();

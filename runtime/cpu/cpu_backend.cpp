@@ -13,6 +13,7 @@
 #include "runtime/frame/host_pipeline.h"
 #include "runtime/frame/project_params.h"
 #include "runtime/frame/resolve.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/math/alpha_lut.h"
 
 namespace voyager {
@@ -113,7 +114,14 @@ void CpuPipeline::project_instance(const HostInstance& instance) {
     for (size_t i = begin; i < end; ++i) {
       const DrawItem item = drawn_item(items[i], arrays.doubles);
       const Vec3f mean = interpolated_mean(arrays, item);
-      const auto sees = [&](const ProjectParams& eye) { return before_near_plane(eye, mean); };
+      // Restoring codes is most of what one outside the image would cost.
+      const bool bounds = arrays.coded() && item.t == 1.0f;
+      const float scale = bounds ? arrays.largest_scale(item.gaussian) : 0.0f;
+      const float radius =
+          bounds ? support_bound(arrays.log_opacity(item.gaussian), params[0].log_threshold) : 0.0f;
+      const auto sees = [&](const ProjectParams& eye) {
+        return bounds ? may_reach(eye, mean, scale, radius) : before_near_plane(eye, mean);
+      };
       DrawnGaussian drawn;
       if (std::none_of(params, params + kEyes, sees) ||
           !read_gaussian(params[0], arrays, item, drawn))

@@ -2,6 +2,7 @@
 // One chunk in memory: contiguous subtrees with the records of their nodes, and the
 // words of the Gaussians of the nodes that they own (compact storage: dequantised to
 // the same words). A repeated node has a record, but its Gaussian is with its owner.
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,11 +21,14 @@ struct Chunk {
 
   // Of the owned nodes, in the order of their records.
   std::vector<uint32_t> node;
-  std::vector<uint32_t> record;        // its index in records
-  std::vector<uint32_t> first_child;   // meaningless for a leaf
-  std::vector<GaussianWords> words;    // scene-local means; leaf opacity is a logit, merged linear
-  std::vector<float> sh;               // coefficients * 3 a node, [k][rgb]
-  ShScales sh_scale{};                 // of compact storage: that it was restored with
+  std::vector<uint32_t> record;       // its index in records
+  std::vector<uint32_t> first_child;  // meaningless for a leaf
+  std::vector<GaussianWords> words;   // scene-local means; leaf opacity is a logit, merged linear
+  std::vector<float> sh;              // coefficients * 3 a node, [k][rgb]
+  // Of compact storage, what was restored: scales of sh, and what the file has of rotations
+  // (runtime/math/shape_code.h), since restored ones may be told in two ways. Lossless: none.
+  ShScales sh_scale{};
+  std::vector<std::array<uint16_t, 3>> rotation_code;
   std::vector<uint8_t> node_code;      // runtime/math/node_code.h
   std::vector<uint32_t> source_index;  // leaf: its index in the input; interior: kNoNode
   // Lossless storage: the input's own position words of leaves (world = cloud

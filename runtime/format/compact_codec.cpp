@@ -152,11 +152,12 @@ void take_geometry(GaussianPlanes& planes, const ChunkHeader& header, Chunk& chu
     planes.take(2, [&](size_t i, uint32_t q) {
       chunk.words[i].log_scale[axis] = restore_log_scale(static_cast<uint16_t>(q));
     });
-  std::vector<std::array<uint16_t, 3>> rotations(chunk.words.size());
+  auto& codes = chunk.rotation_code;
+  codes.resize(chunk.words.size());
   for (size_t k = 0; k < 3; ++k)
-    planes.take(2, [&](size_t i, uint32_t q) { rotations[i][k] = static_cast<uint16_t>(q); });
-  for (size_t i = 0; i < rotations.size(); ++i)
-    chunk.words[i].rotation = restore_rotation(rotations[i]);
+    planes.take(2, [&](size_t i, uint32_t q) { codes[i][k] = static_cast<uint16_t>(q); });
+  for (size_t i = 0; i < codes.size(); ++i)
+    chunk.words[i].rotation = restore_rotation(codes[i].data());
   planes.take(2, [&](size_t i, uint32_t q) {
     const auto word = static_cast<uint16_t>(q);
     chunk.words[i].opacity = chunk.is_leaf(i) ? restore_leaf_opacity(word) : half_to_float(word);

@@ -11,6 +11,7 @@
 #include "runtime/math/gaussian.h"
 #include "runtime/math/half.h"
 #include "runtime/math/sh_code.h"
+#include "runtime/math/shape_code.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager {
@@ -36,16 +37,8 @@ inline uint16_t quantise_log_scale(float log_scale) {
   return static_cast<uint16_t>(
       std::clamp(std::nearbyint((log_scale + 21.0) * 512.0), 0.0, 65535.0));
 }
-inline float restore_log_scale(uint16_t q) {
-  return static_cast<float>(q / 512.0 - 21.0);
-}
 
-// Rotation: the three smaller components of the unit quaternion whose largest
-// is positive, 15 bits each in order (w, x, y, z) without the largest; the top
-// bits of the first two words name it. Error: an angle of 1.6e-4 rad.
-inline constexpr double kRotationSteps = 16383.0;
-inline constexpr double kRotationRange = 0.70710678118654752;  // a smaller component's bound
-
+// Rotation (shape_code.h). Error: an angle of 1.6e-4 rad.
 inline std::array<uint16_t, 3> quantise_rotation(const Quatf& rotation) {
   const Quatd q = normalise(Quatd{rotation.w, rotation.x, rotation.y, rotation.z});
   const double component[4] = {q.w, q.x, q.y, q.z};
@@ -57,26 +50,12 @@ inline std::array<uint16_t, 3> quantise_rotation(const Quatf& rotation) {
   for (int i = 0, k = 0; i < 4; ++i) {
     if (i == largest) continue;
     const double step = std::nearbyint(sign * component[i] / kRotationRange * kRotationSteps);
-    out[static_cast<size_t>(k++)] =
-        static_cast<uint16_t>(std::clamp(step, -kRotationSteps, kRotationSteps) + kRotationSteps);
+    out[static_cast<size_t>(k++)] = static_cast<uint16_t>(
+        std::clamp<double>(step, -kRotationSteps, kRotationSteps) + kRotationSteps);
   }
   out[0] = static_cast<uint16_t>(out[0] | (largest & 1) << 15);
   out[1] = static_cast<uint16_t>(out[1] | (largest >> 1) << 15);
   return out;
-}
-
-inline Quatf restore_rotation(const std::array<uint16_t, 3>& words) {
-  const int largest = (words[0] >> 15) | (words[1] >> 15) << 1;
-  double component[4], squares = 0;
-  for (int i = 0, k = 0; i < 4; ++i) {
-    if (i == largest) continue;
-    component[i] = ((words[static_cast<size_t>(k++)] & 0x7fff) - kRotationSteps) / kRotationSteps *
-                   kRotationRange;
-    squares += component[i] * component[i];
-  }
-  component[largest] = std::sqrt(std::max(0.0, 1.0 - squares));
-  return {static_cast<float>(component[0]), static_cast<float>(component[1]),
-          static_cast<float>(component[2]), static_cast<float>(component[3])};
 }
 
 // A leaf's opacity: 65535 steps of its sigmoid. Error: half a step (7.7e-6) of
@@ -85,10 +64,4 @@ inline uint16_t quantise_leaf_opacity(float logit_word) {
   const double opacity = 1.0 / (1.0 + std::exp(-static_cast<double>(logit_word)));
   return static_cast<uint16_t>(std::nearbyint(opacity * 65535.0));
 }
-inline float restore_leaf_opacity(uint16_t q) {
-  if (q == 0) return -kMaxLogit;
-  if (q == 65535) return kMaxLogit;
-  return static_cast<float>(std::log(q / (65535.0 - q)));
-}
-
 }  // namespace voyager

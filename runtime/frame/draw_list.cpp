@@ -4,18 +4,9 @@
 
 #include "runtime/base/error.h"
 #include "runtime/frame/frame_search.h"
+#include "runtime/frame/scene_gaussians.h"
 
 namespace voyager {
-
-GaussianArrays gaussian_arrays(const Scene& scene) {
-  return {scene.gaussians.data(),
-          scene.sh.data(),
-          scene.node_code.data(),
-          scene.sh_degree,
-          scene.doubles,
-          footprints_differ(scene),
-          {scene.sh_rows.data(), scene.sh_scales.data()}};
-}
 
 DrawList::DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
                    std::pmr::memory_resource* memory, Workers& workers)
@@ -29,7 +20,7 @@ DrawList::DrawList(std::shared_ptr<const Scene> scene, Lod lod, Search search,
 
 void DrawList::list_leaves() {
   if (scene_->flat()) {
-    const auto count = static_cast<uint32_t>(scene_->gaussians.size());
+    const auto count = static_cast<uint32_t>(gaussian_count(*scene_));
     leaves_.reserve(count);
     for (uint32_t i = 0; i < count; ++i) leaves_.push_back({i, kNoNode, 1.0f, 1.0f});
     return;

@@ -40,6 +40,4 @@ class DrawList {
   bool leaves_missing_ = false;
 };
 
-GaussianArrays gaussian_arrays(const Scene& scene);
-
 }  // namespace voyager

@@ -3,14 +3,10 @@
 #include <algorithm>
 
 #include "runtime/frame/load.h"
-#include "runtime/frame/scene_sh.h"
+#include "runtime/frame/scene_gaussians.h"
 
 namespace voyager {
 namespace {
-
-size_t floats_of(const Scene& scene) {
-  return static_cast<size_t>(scene.coefficients()) * 3;
-}
 
 class HostPool final : public ChunkPool {
  public:
@@ -29,19 +25,16 @@ class HostPool final : public ChunkPool {
 
   void fill(uint32_t slot, const StagedChunk& staged) override {
     const Chunk& chunk = staged.content;
-    const size_t base = size_t{slot} * shape_.nodes, floats = floats_of(scene_);
+    const size_t base = size_t{slot} * shape_.nodes;
+    if (is_coded(scene_)) scene_.sh_scales[slot] = chunk.sh_scale;
     for (size_t i = 0; i < chunk.node.size(); ++i) {
       const size_t at = base + i;
-      set_gaussian(scene_, at, chunk.words[i], chunk.is_leaf(i));
+      set_gaussian(chunk, i, at, scene_);
       scene_.tree.records[at] = chunk.record_of(i);
       scene_.tree.parent[at] =
           staged.parent[i] == kNoNode ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
-      scene_.node_code[at] = chunk.node_code[i];
       scene_.node_ids[at] = chunk.node[i];
     }
-    set_sh_scales(slot, chunk.sh_scale, scene_);
-    for (size_t i = 0; i < chunk.node.size(); ++i)
-      set_sh(base + i, slot, chunk.sh.data() + i * floats, scene_);
     std::copy(
         staged.records.begin(), staged.records.end(),
         scene_.search.records.begin() + static_cast<std::ptrdiff_t>(size_t{slot} * shape_.records));
@@ -65,16 +58,15 @@ class HostPool final : public ChunkPool {
  private:
   // The old arrays go first, so that a budget holds at every moment.
   void make_room(uint32_t slots) {
+    scene_.slot_nodes = shape_.nodes;
     const size_t nodes = size_t{slots} * shape_.nodes, records = size_t{slots} * shape_.records;
     for (const bool room : {false, true}) {
       const auto fit = [room](auto& array, size_t size) {
         std::decay_t<decltype(array)>(room ? size : 0, array.get_allocator()).swap(array);
       };
-      fit(scene_.gaussians, nodes);
-      make_sh_room(room ? nodes : 0, room ? slots : 0, scene_);
+      make_gaussian_room(room ? nodes : 0, room ? slots : 0, scene_);
       fit(scene_.tree.records, nodes);
       fit(scene_.tree.parent, nodes);
-      fit(scene_.node_code, nodes);
       fit(scene_.node_ids, nodes);
       fit(scene_.search.records, records);
       fit(scene_.search.opens, records);
@@ -88,11 +80,11 @@ class HostPool final : public ChunkPool {
 }  // namespace
 
 PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
-  const uint64_t node = sizeof(Gaussian) + sh_bytes(scene) + sizeof(NodeRecord) +
-                        2 * sizeof(uint32_t) + sizeof(uint8_t);
+  const uint64_t node =
+      gaussian_bytes(scene.storage, scene.sh_degree) + sizeof(NodeRecord) + 2 * sizeof(uint32_t);
   const uint64_t record = sizeof(SearchRecord) + sizeof(SubtreeSpan);
   const SearchTree& search = scene.search;
-  const uint64_t scales = packs_sh(scene) ? sizeof(ShScales) : 0;
+  const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
   return {shape.nodes * node + shape.records * record + scales,
           search.subtree_count() * sizeof(SearchSubtree) +
               search.chunks.size() * sizeof(SearchChunk) +

@@ -16,12 +16,6 @@ void set_info(const SceneFileInfo& info, Scene& scene);
 // Fills a Scene from a flat file that import_gaussians() reads.
 void load_flat(const ByteSource& source, Workers& workers, Scene& scene);
 
-// The one place where stored words become what is drawn, so that a baked
-// scene's leaves equal the flat scene to the bit.
-inline void set_gaussian(Scene& scene, size_t index, const GaussianWords& words, bool leaf) {
-  scene.gaussians[index] = activate(words, leaf);
-}
-
 // Notes for every counter of scene.import that is not zero, and for the SH
 // bands that the input lacks.
 void add_notes(Scene& scene);

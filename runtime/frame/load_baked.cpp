@@ -6,7 +6,8 @@
 
 #include "runtime/base/error.h"
 #include "runtime/frame/load.h"
-#include "runtime/frame/scene_sh.h"
+#include "runtime/frame/scene_gaussians.h"
+#include "runtime/frame/sh_runs.h"
 #include "runtime/lod/nesting.h"
 #include "runtime/scene/sh_bands.h"
 
@@ -45,12 +46,10 @@ namespace {
 
 void make_room(const SceneFileInfo& info, Scene& scene) {
   const size_t nodes = info.node_count;
-  scene.gaussians.resize(nodes);
-  make_sh_room(nodes, info.chunk_count, scene);
+  make_gaussian_room(nodes, 0, scene);
   scene.tree.records.resize(nodes);
   scene.tree.first_child.resize(nodes);
   scene.tree.parent.resize(nodes, kNoNode);
-  scene.node_code.resize(nodes);
   scene.leaves.resize(info.leaf_count, kNoNode);
 }
 
@@ -129,16 +128,12 @@ void store_subtrees(const Chunk& chunk, Scene& scene, ChunkFindings& findings) {
   }
 }
 
-void store_nodes(const Chunk& chunk, size_t index, Scene& scene) {
-  set_sh_scales(index, chunk.sh_scale, scene);
-  const size_t floats = static_cast<size_t>(scene.coefficients()) * 3;
+void store_nodes(const Chunk& chunk, Scene& scene) {
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const uint32_t node = chunk.node[i];
     scene.tree.records[node] = chunk.record_of(i);
-    scene.node_code[node] = chunk.node_code[i];
-    set_gaussian(scene, node, chunk.words[i], chunk.is_leaf(i));
+    set_gaussian(chunk, i, node, scene);
     if (!chunk.is_leaf(i)) scene.tree.first_child[node] = chunk.first_child[i];
-    set_sh(node, index, chunk.sh.data() + i * floats, scene);
   }
 }
 
@@ -152,8 +147,7 @@ bool store_leaves(const Chunk& chunk, Scene& scene) {
 // Gaussians that draw nothing, should anything draw them.
 void store_damaged(const std::vector<NodeRange>& ranges, Scene& scene) {
   for (const NodeRange& range : ranges)
-    for (uint32_t i = 0; i < range.count; ++i)
-      set_gaussian(scene, range.first + i, {{0, 0, 0}, {0, 0, 0}, {1, 0, 0, 0}, 0.0f}, false);
+    for (uint32_t i = 0; i < range.count; ++i) set_nothing(range.first + i, scene);
 }
 
 void report_damage(const SceneFile& file, const std::vector<ChunkFindings>& findings,
@@ -183,11 +177,14 @@ float largest_magnitude(const std::vector<float>& values) {
 std::vector<ChunkFindings> read_chunks(const SceneFile& file, Workers& workers, Scene& scene) {
   std::vector<ChunkFindings> findings(file.chunks().size());
   std::atomic<bool> leaves_once{true};
+  if (is_coded(scene)) find_sh_runs(file, scene);
   workers.for_blocks(findings.size(), 8, [&](size_t begin, size_t end) {
     for (size_t index = begin; index < end; ++index) {
       try {
         const Chunk chunk = file.read_chunk(static_cast<uint32_t>(index));
-        store_nodes(chunk, index, scene);
+        if (is_coded(scene))
+          set_sh_scales(file, static_cast<uint32_t>(index), chunk.sh_scale, scene);
+        store_nodes(chunk, scene);
         findings[index].sh_degree = used_sh_degree(chunk.sh, scene.sh_degree);
         findings[index].largest_sh = largest_magnitude(chunk.sh);
         store_subtrees(chunk, scene, findings[index]);

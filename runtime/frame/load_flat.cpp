@@ -45,7 +45,7 @@ void load_flat(const ByteSource& source, Workers& workers, Scene& scene) {
     for (size_t i = begin; i < end; ++i) {
       GaussianWords words = cloud.words(i);
       words.mean = local_mean(cloud, i, origin);
-      set_gaussian(scene, i, words, true);
+      scene.gaussians[i] = activate(words, true);
     }
   });
   set_bounds(scene);

@@ -1,5 +1,5 @@
 #include "runtime/frame/load.h"
-#include "runtime/frame/scene_sh.h"
+#include "runtime/frame/scene_gaussians.h"
 
 namespace voyager {
 namespace {
@@ -10,8 +10,8 @@ constexpr uint32_t kLeastCoefficientBytes = 2;  // a device's binary16
 void add_sh_note(Scene& scene, int kept, int stored, const char* why) {
   if (kept >= stored) return;
   const auto missing = static_cast<uint64_t>(sh_coefficients(stored) - sh_coefficients(kept));
-  const uint64_t gaussians = std::max<uint64_t>(scene.gaussians.size(), scene.node_count);
-  const uint64_t each = sh_bytes(scene.storage, stored) - sh_bytes(scene.storage, kept);
+  const uint64_t gaussians = std::max<uint64_t>(gaussian_count(scene), scene.node_count);
+  const uint64_t each = gaussian_bytes(scene.storage, stored) - gaussian_bytes(scene.storage, kept);
   scene.notes.push_back({SceneNote::Kind::omitted, 0, gaussians * each,
                          "SH bands above degree " + std::to_string(kept), why,
                          static_cast<uint32_t>(missing) * 3 * kLeastCoefficientBytes});

@@ -12,6 +12,7 @@
 #include "runtime/frame/scene_profile.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/math/sh_code.h"
+#include "runtime/math/shape_code.h"
 #include "runtime/scene/gaussian_cloud.h"
 #include "runtime/scene/native_scale.h"
 #include "runtime/select/search_tree.h"
@@ -56,11 +57,14 @@ struct Scene {
   explicit Scene(std::pmr::memory_resource* memory)
       : gaussians(memory),
         sh(memory),
+        node_code(memory),
+        means(memory),
+        shapes(memory),
         sh_rows(memory),
         sh_scales(memory),
+        sh_blocks(memory),
         tree(memory),
         search(memory),
-        node_code(memory),
         leaves(memory),
         partition(memory),
         node_ids(memory) {}
@@ -83,17 +87,22 @@ struct Scene {
   ImportReport import;
   SceneProfile profile;
 
-  std::pmr::vector<Gaussian> gaussians;  // by node id; a flat scene's by index
-  // Of those coefficients() * 3 floats each, or rows (scene_sh.h): the other arrays are empty.
-  std::pmr::vector<float> sh;
-  std::pmr::vector<uint8_t> sh_rows;
-  std::pmr::vector<ShScales> sh_scales;
-  LodTree tree;                         // empty for a flat scene
-  SearchTree search;                    // of the tree; empty for a flat scene
-  std::pmr::vector<uint8_t> node_code;  // by node id (runtime/math/node_code.h)
-  std::pmr::vector<uint32_t> leaves;    // node ids of the leaves in the input's order; flat: empty
-  Partition partition;                  // of the tree; empty for a flat scene
-  std::vector<DamagedNodes> damaged;    // by first, disjoint
+  // By node id; a flat scene's by index. Of a compact scene as the file stores them, of the others
+  // in binary32 (scene_gaussians.h): the arrays of the one or of the other are empty.
+  std::pmr::vector<Gaussian> gaussians;
+  std::pmr::vector<float> sh;           // coefficients() * 3 each
+  std::pmr::vector<uint8_t> node_code;  // of a lossless tree (runtime/math/node_code.h)
+  std::pmr::vector<Vec3f> means;
+  std::pmr::vector<ShapeCode> shapes;
+  std::pmr::vector<uint8_t> sh_rows;         // sh_row_bytes() each
+  std::pmr::vector<ShScales> sh_scales;      // by group
+  std::pmr::vector<ShGroupBlock> sh_blocks;  // empty where a slot is a group
+  uint32_t slot_nodes = 0;                   // of a pool on the host
+  LodTree tree;                              // empty for a flat scene
+  SearchTree search;                         // of the tree; empty for a flat scene
+  std::pmr::vector<uint32_t> leaves;  // node ids of the leaves in the input's order; flat: empty
+  Partition partition;                // of the tree; empty for a flat scene
+  std::vector<DamagedNodes> damaged;  // by first, disjoint
   std::vector<DamagedChunk> damaged_chunks;  // by chunk
   std::vector<SceneNote> notes;
 

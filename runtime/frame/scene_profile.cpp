@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <mutex>
 
-#include "runtime/frame/scene.h"
+#include "runtime/frame/scene_gaussians.h"
 
 namespace voyager {
 namespace {
@@ -54,9 +54,11 @@ struct Shapes {
 void complete_profile(Scene& scene, Workers& workers) {
   Shapes all;
   std::mutex joining;
-  workers.for_blocks(scene.gaussians.size(), kGrain, [&](size_t begin, size_t end) {
+  const GaussianArrays arrays = gaussian_arrays(scene);
+  workers.for_blocks(gaussian_count(scene), kGrain, [&](size_t begin, size_t end) {
     Shapes own;
-    each_sound(scene.damaged, begin, end, [&](size_t i) { own.add(scene.gaussians[i]); });
+    each_sound(scene.damaged, begin, end,
+               [&](size_t i) { own.add(arrays.gaussian(static_cast<uint32_t>(i))); });
     const std::lock_guard lock(joining);
     all.add(own);
   });

@@ -79,6 +79,10 @@ VOYAGER_HD Rounded sqrt(Rounded a) {
   return sqrt_rn(a.value);
 }
 
+VOYAGER_HD Rounded fabs(Rounded a) {
+  return std::fabs(a.value);
+}
+
 // Within 2⁻²³ of the root, relatively; on a device cheaper than the rounded one.
 VOYAGER_HD float sqrt_near(float a) {
 #if defined(__CUDA_ARCH__)

@@ -23,6 +23,7 @@ struct GaussianWords {
   float opacity;    // leaf: logit; merged: linear
 };
 
+inline constexpr float kMaxLogit = 88.0f;  // sigmoid is 1 to the last bit, and exp(88) is finite
 VOYAGER_HD float sigmoid(float x) {
   return 1.0f / (1.0f + std::exp(-x));
 }

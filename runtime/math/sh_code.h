@@ -1,8 +1,10 @@
 #pragma once
 // SH coefficients as compact storage has them (docs/voy-format.md): the constant in binary16, the
-// others as signed steps of the largest of their band in the chunk. In memory they are rows of
-// bytes, one a Gaussian: the number of the chunk's scales, the constant, the steps.
+// others as signed steps of the largest of their band in the chunk. In memory they are rows, one a
+// Gaussian; Gaussians of one chunk are a group, which has its scales in common.
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -27,53 +29,114 @@ inline float restore_sh(int8_t q, float scale, int steps) {
 
 using ShScales = std::array<float, 3>;  // of bands 1 to 3
 
-// restore_sh() of a byte, less the scale: a division takes longer than all the rest of a row.
-constexpr std::array<double, 256> sh_shares(int steps) {
-  std::array<double, 256> shares{};
-  for (int byte = 0; byte < 256; ++byte)
-    shares[static_cast<size_t>(byte)] = static_cast<double>(byte < 128 ? byte : byte - 256) / steps;
+// What a step of each band stands for, as a sum of two binary32 numbers: fma(step, high, step *
+// low) is restore_sh() to the bit, for scales from 1e-30 on. No such product lies in the middle
+// between two binary32 numbers, since twice a step times a scale is no odd multiple of 31 or 127 of
+// them. Padded, so that a device reads it at once.
+struct alignas(16) ShStepSizes {
+  float high[3], low[3];
+  float unused[2];
+};
+inline ShStepSizes step_sizes(const ShScales& scales) {
+  ShStepSizes sizes{};
+  for (size_t band = 0; band < scales.size(); ++band) {
+    // The remainder of a division is exact. (The same in binary64 is compiled wrongly by GCC 12.)
+    const auto steps = static_cast<float>(kShSteps[band]);
+    sizes.high[band] = scales[band] / steps;
+    sizes.low[band] = std::fma(-sizes.high[band], steps, scales[band]) / steps;
+  }
+  return sizes;
+}
+
+// A row: the constant, 3 * 2 bytes; band 1, 9 bytes; one that is 0; then the other bands, words of
+// five steps of 6 bits, each above -32. What is left over is 0. So a row of a lower degree is the
+// beginning of one of a higher, and of degrees above 0 it is whole words of 16 bytes.
+inline constexpr int kShBandOneAt = 6, kShSixBitsAt = 16, kShOfWord = 5, kShOffset = 32;
+static_assert(kShSteps[1] == 31 && kShSteps[2] == 31);
+
+VOYAGER_HD constexpr uint32_t sh_row_bytes(int degree) {
+  return degree == 0 ? 8 : 16 * static_cast<uint32_t>(degree);
+}
+
+// The i-th step of bands 2 and 3, [k][rgb], from the words that hold them.
+VOYAGER_HD constexpr int sh_six_bits(uint32_t word, int i) {
+  return static_cast<int>(word >> (6 * (i % kShOfWord)) & 63u) - kShOffset;
+}
+
+// restore_sh() of a step, less the scale: a division takes longer than all the rest of a row.
+template <size_t kCount>
+constexpr std::array<double, kCount> sh_shares(int steps) {
+  std::array<double, kCount> shares{};
+  for (size_t i = 0; i < kCount; ++i)
+    shares[i] = (static_cast<double>(i) - static_cast<double>(kCount / 2)) / steps;
   return shares;
 }
-inline constexpr std::array<std::array<double, 256>, 3> kShShares = {
-    sh_shares(kShSteps[0]), sh_shares(kShSteps[1]), sh_shares(kShSteps[2])};
-
-// Bytes of a row, a multiple of 4.
-constexpr size_t sh_row_bytes(int degree) {
-  return (sizeof(uint32_t) + 3 * sizeof(uint16_t) +
-          3 * static_cast<size_t>(sh_coefficients(degree) - 1) + 3) /
-         4 * 4;
-}
+inline constexpr auto kShBandOneShares = sh_shares<256>(kShSteps[0]);
+inline constexpr auto kShSixBitShares = sh_shares<64>(kShSteps[1]);
 
 // sh: [k][rgb], restored with these scales before. They come back to the bit.
-inline void pack_sh(const float* sh, int degree, uint32_t scales, const ShScales& scale,
-                    uint8_t* row) {
-  std::memcpy(row, &scales, sizeof scales);
-  row += sizeof scales;
+inline void pack_sh(const float* sh, int degree, const ShScales& scale, uint8_t* row) {
+  std::memset(row, 0, sh_row_bytes(degree));
   for (int c = 0; c < 3; ++c) {
     const uint16_t constant = float_to_half(sh[c]);
     std::memcpy(row + 2 * c, &constant, sizeof constant);
   }
-  row += 3 * sizeof(uint16_t) - 3;  // steps begin with coefficient 1
-  for (size_t band = 0; band < 3 && static_cast<int>(band) < degree; ++band)
-    for (int k = 3 * kShBandStart[band]; k < 3 * kShBandStart[band + 1]; ++k)
-      row[k] = static_cast<uint8_t>(quantise_sh(sh[k], scale[band], kShSteps[band]));
+  if (degree == 0) return;
+  for (int i = 0; i < 9; ++i)
+    row[kShBandOneAt + i] = static_cast<uint8_t>(quantise_sh(sh[3 + i], scale[0], kShSteps[0]));
+  const int first = 3 * kShBandStart[1], count = 3 * sh_coefficients(degree) - first;
+  uint32_t word = 0;
+  for (int i = 0; i < count; ++i) {
+    const float of = first + i < 3 * kShBandStart[2] ? scale[1] : scale[2];
+    const int step = quantise_sh(sh[first + i], of, kShSteps[1]) + kShOffset;
+    word |= static_cast<uint32_t>(step) << (6 * (i % kShOfWord));
+    if (i % kShOfWord != kShOfWord - 1 && i + 1 != count) continue;
+    std::memcpy(row + kShSixBitsAt + 4 * (i / kShOfWord), &word, sizeof word);
+    word = 0;
+  }
 }
 
-inline void unpack_sh(const uint8_t* __restrict row, int degree, const ShScales* __restrict scales,
+inline void unpack_sh(const uint8_t* __restrict row, int degree, const ShScales& scale,
                       float* __restrict sh) {
-  uint32_t of;
-  std::memcpy(&of, row, sizeof of);
-  const ShScales scale = scales[of];
-  row += sizeof of;
   for (int c = 0; c < 3; ++c) {
     uint16_t constant;
     std::memcpy(&constant, row + 2 * c, sizeof constant);
     sh[c] = half_to_float(constant);
   }
-  row += 3 * sizeof(uint16_t) - 3;
-  for (size_t band = 0; band < 3 && static_cast<int>(band) < degree; ++band)
-    for (int k = 3 * kShBandStart[band]; k < 3 * kShBandStart[band + 1]; ++k)
-      sh[k] = static_cast<float>(kShShares[band][row[k]] * scale[band]);
+  if (degree == 0) return;
+  for (int i = 0; i < 9; ++i)
+    sh[3 + i] = static_cast<float>(kShBandOneShares[row[kShBandOneAt + i] ^ 128u] * scale[0]);
+  const int first = 3 * kShBandStart[1], count = 3 * sh_coefficients(degree) - first;
+  for (int at = 0; at < count; at += kShOfWord) {
+    uint32_t word;
+    std::memcpy(&word, row + kShSixBitsAt + 4 * (at / kShOfWord), sizeof word);
+    for (int i = at; i < std::min(count, at + kShOfWord); ++i, word >>= 6) {
+      const float of = first + i < 3 * kShBandStart[2] ? scale[1] : scale[2];
+      sh[first + i] = static_cast<float>(kShSixBitShares[word & 63u] * of);
+    }
+  }
 }
+
+// Which group a Gaussian is of. In the order of node ids a chunk's come in several runs, each of
+// which is a group; in a pool a slot is one.
+struct ShGroupBlock {
+  uint32_t first;   // the group of the first of 32 Gaussians
+  uint32_t starts;  // a bit for each of the others that begins the next group
+};
+struct ShGroups {
+  const ShGroupBlock* blocks;  // by Gaussian / 32; null in a pool
+  uint32_t slot_nodes;         // of a pool
+
+  VOYAGER_HD uint32_t operator()(uint32_t gaussian) const {
+    if (blocks == nullptr) return gaussian / slot_nodes;
+    const ShGroupBlock block = blocks[gaussian / 32];
+    const uint32_t up_to = (2u << gaussian % 32) - 1u;
+#if defined(__CUDA_ARCH__)
+    return block.first + static_cast<uint32_t>(__popc(block.starts & up_to));
+#else
+    return block.first + static_cast<uint32_t>(std::popcount(block.starts & up_to));
+#endif
+  }
+};
 
 }  // namespace voyager

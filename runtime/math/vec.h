@@ -61,13 +61,14 @@ using Quatd = Quat<double>;
 // A zero or non-finite quaternion gives the identity.
 template <class T>
 VOYAGER_HD Quat<T> normalise(const Quat<T>& q) {
-  T largest = std::fabs(q.w);
-  largest = std::fabs(q.x) > largest ? std::fabs(q.x) : largest;
-  largest = std::fabs(q.y) > largest ? std::fabs(q.y) : largest;
-  largest = std::fabs(q.z) > largest ? std::fabs(q.z) : largest;
-  if (!(largest > T(0)) || !(largest <= T(3.0e38))) return {T(1), T(0), T(0), T(0)};
+  using std::fabs, std::sqrt;
+  T largest = fabs(q.w);
+  largest = fabs(q.x) > largest ? fabs(q.x) : largest;
+  largest = fabs(q.y) > largest ? fabs(q.y) : largest;
+  largest = fabs(q.z) > largest ? fabs(q.z) : largest;
+  if (!(largest > T(0)) || !(T(3.0e38f) > largest)) return {T(1), T(0), T(0), T(0)};
   const T w = q.w / largest, x = q.x / largest, y = q.y / largest, z = q.z / largest;
-  const T length = std::sqrt(((w * w + x * x) + y * y) + z * z);
+  const T length = sqrt(((w * w + x * x) + y * y) + z * z);
   return {w / length, x / length, y / length, z / length};
 }
 

@@ -16,6 +16,20 @@ constexpr double kTolerated = 0.5;  // dB, below every leaf
 
 }  // namespace
 
+double psnr_with_share(std::span<const HeldOut> looked, size_t view, double share) {
+  double finer_share = 1, finer = looked.front().views[view].leaves;
+  for (const HeldOut& cut : looked) {
+    const HeldOut::View& at = cut.views[view];
+    if (at.share <= share && at.share < finer_share) {
+      const double t = std::log(share / at.share) / std::log(finer_share / at.share);
+      return at.cut + std::min(t, 1.0) * (finer - at.cut);
+    }
+    finer_share = at.share;
+    finer = at.cut;
+  }
+  return finer;
+}
+
 TrainingView HeldOutViews::view(uint32_t i, double tau) const {
   TrainingView view = views_(first_ + i);
   view.tau = tau;
@@ -32,15 +46,16 @@ std::vector<HeldOut> HeldOutViews::look(NodeTrainer& trainer) const {
   for (const double tau : kTaus) all.push_back({tau, 0, 0, 0, {}});
   for (uint32_t i = 0; i < count_; ++i) {
     const TrainingView whole = view(i, 0);
-    const double leaves = psnr_of(whole, trainer.error_of_leaves(whole)) / count_;
+    const double leaves = psnr_of(whole, trainer.error_of_leaves(whole));
     for (HeldOut& found : all) {
       const TrainingView at = view(i, found.tau);
       const TrainingError error = trainer.error(at);
-      found.of_view.push_back(psnr_of(at, error));
-      found.cut += found.of_view.back() / count_;
-      found.leaves += leaves;
-      found.share +=
-          static_cast<double>(error.cut - around_) / static_cast<double>(looked_at_) / count_;
+      const HeldOut::View& looked = found.views.emplace_back(HeldOut::View{
+          psnr_of(at, error), leaves,
+          static_cast<double>(error.cut - around_) / static_cast<double>(looked_at_)});
+      found.cut += looked.cut / count_;
+      found.leaves += looked.leaves / count_;
+      found.share += looked.share / count_;
     }
   }
   return all;

@@ -1,11 +1,17 @@
 #pragma once
 // How near cuts are to the truth in views that nothing was learned from.
+#include <span>
 #include <vector>
 
 #include "runtime/optimize/optimize.h"
 #include "runtime/optimize/training_views.h"
 
 namespace voyager {
+
+// Of a view that was looked at with these τ, the least first: its PSNR with a cut of that share of
+// the leaves. Between two cuts by the logarithm of their shares; beyond the coarsest as it; of
+// all leaves with all of them.
+double psnr_with_share(std::span<const HeldOut> looked, size_t view, double share);
 
 class HeldOutViews {
  public:

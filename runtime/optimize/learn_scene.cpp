@@ -128,11 +128,11 @@ class Learning {
   std::string gained_so_far(const std::vector<HeldOut>& before) const {
     const HeldOut now = few_.look(*trainer_)[kToldTau];
     double gained = 0;
-    for (size_t view = 0; view < now.of_view.size(); ++view)
-      gained += now.of_view[view] - before[kToldTau].of_view[view];
+    for (size_t view = 0; view < now.views.size(); ++view)
+      gained += now.views[view].cut - psnr_with_share(before, view, now.views[view].share);
     char text[64];
     std::snprintf(text, sizeof text, "%+.1f dB at tau %g",
-                  gained / static_cast<double>(std::max<size_t>(now.of_view.size(), 1)), now.tau);
+                  gained / static_cast<double>(std::max<size_t>(now.views.size(), 1)), now.tau);
     return text;
   }
 

@@ -6,6 +6,7 @@
 #include "runtime/base/error.h"
 #include "runtime/lod/align.h"
 #include "runtime/optimize/checkpoint.h"
+#include "runtime/optimize/held_out.h"
 #include "runtime/optimize/learn_scene.h"
 #include "runtime/optimize/part.h"
 #include "runtime/refine/extents.h"
@@ -65,7 +66,7 @@ void add_means(std::vector<HeldOut>& sums, const std::vector<HeldOut>& of, doubl
     sums[i].cut += share * of[i].cut;
     sums[i].leaves += share * of[i].leaves;
     sums[i].share += share * of[i].share;
-    sums[i].of_view.insert(sums[i].of_view.end(), of[i].of_view.begin(), of[i].of_view.end());
+    sums[i].views.insert(sums[i].views.end(), of[i].views.begin(), of[i].views.end());
   }
 }
 
@@ -156,8 +157,10 @@ class InParts {
 
 double OptimizeSummary::least_gain(size_t of) const {
   double least = std::numeric_limits<double>::infinity();
-  for (size_t view = 0; view < after[of].of_view.size(); ++view)
-    least = std::min(least, after[of].of_view[view] - before[of].of_view[view]);
+  for (size_t view = 0; view < after[of].views.size(); ++view) {
+    const HeldOut::View& now = after[of].views[view];
+    least = std::min(least, now.cut - psnr_with_share(before, view, now.share));
+  }
   return least;
 }
 

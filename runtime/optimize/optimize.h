@@ -25,17 +25,21 @@ struct OptimizeGoal {
 enum class OptimizeQuality { draft, good, best };
 uint32_t pictures_of(OptimizeQuality quality, uint64_t merged_nodes);
 
-// Means over held-out views at a τ: PSNR to the truth, dB.
+// Held-out views at a τ: PSNR to the truth, dB, and nodes of the cut, in leaves.
 struct HeldOut {
+  struct View {
+    double cut, leaves, share;
+  };
   double tau = 0;
-  double cut = 0, leaves = 0;   // every leaf drawn
-  double share = 0;             // nodes of the cut, in leaves
-  std::vector<double> of_view;  // the cut's, each
+  double cut = 0, leaves = 0;  // means; leaves: every one is drawn
+  double share = 0;            // mean
+  std::vector<View> views;
 };
 struct OptimizeSummary {
   uint32_t pictures = 0;
   std::vector<HeldOut> before, after;  // at the same τ; of parts, the mean by their leaves
-  // Of the view that gained least at that τ, dB; below 0 where it lost.
+  // Of the view that gained least at that τ, dB; below 0 where it lost. Against as many nodes
+  // before: between the cuts that were looked at, by the logarithm of their shares.
   double least_gain(size_t of) const;
 };
 

@@ -4,6 +4,7 @@
 
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/project_params.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/math/alpha.h"
 #include "runtime/math/sort_key.h"
 

@@ -5,7 +5,6 @@
 
 namespace voyager {
 
-inline constexpr float kMaxLogit = 88.0f;  // sigmoid is 1 to the last bit, and exp(88) is finite
 inline constexpr float kMinLogScale = -20.7232658f;  // ln 1e-9 m
 inline constexpr float kMaxLogScale = 13.8155106f;   // ln 1e6 m
 

@@ -5,6 +5,7 @@
 #include "runtime/math/node_code.h"
 #include "runtime/math/sh.h"
 #include "runtime/math/sh_code.h"
+#include "runtime/math/shape_code.h"
 
 namespace voyager {
 
@@ -37,7 +38,7 @@ VOYAGER_HD DrawItem weigh(const WeightParams& params, uint32_t node) {
 class ShOf {
  public:
   explicit ShOf(const float* floats) : floats_(floats) {}
-  ShOf(const uint8_t* row, int degree, const ShScales* scales) : floats_(nullptr) {
+  ShOf(const uint8_t* row, int degree, const ShScales& scales) : floats_(nullptr) {
     unpack_sh(row, degree, scales, unpacked_);
   }
   float operator()(int k, int channel) const {
@@ -49,34 +50,52 @@ class ShOf {
   float unpacked_[3 * sh_coefficients(kMaxShDegree)];
 };
 
-// Rows of sh_code.h; none where coefficients are floats.
 struct PackedSh {
   const uint8_t* rows = nullptr;
   const ShScales* scales = nullptr;
+  ShGroups groups{};
 };
 
 // What a stage reads of the scene, on the host. A device has a layout of its own with
 // the same members, which is why the functors below take any.
 struct GaussianArrays {
   const Gaussian* gaussians;
-  const float* coefficients;  // [k][rgb] a Gaussian; where there are no rows
+  const float* coefficients;  // [k][rgb] a Gaussian
   const uint8_t* node_codes;  // of a tree; a flat scene has none
   int degree;
   bool doubles;     // nodes of one child are doubles, as files of version 4 have them
   bool footprints;  // that differ between nodes
+  // In place of gaussians, coefficients and node codes, of a compact scene; else null.
+  const Vec3f* means = nullptr;
+  const ShapeCode* shapes = nullptr;
+  ShapeTables tables{};
   PackedSh packed{};
 
   int sh_degree() const { return degree; }
-  const Vec3f& mean(uint32_t i) const { return gaussians[i].mean; }
-  const Gaussian& gaussian(uint32_t i) const { return gaussians[i]; }
-  float opacity(uint32_t i) const { return gaussians[i].opacity; }
-  int node_code(uint32_t i) const { return node_codes[i]; }
+  bool coded() const { return shapes != nullptr; }
+  Vec3f mean(uint32_t i) const { return coded() ? means[i] : gaussians[i].mean; }
+  Gaussian gaussian(uint32_t i) const {
+    if (!coded()) return gaussians[i];
+    Gaussian g = restored_shape(shapes[i], tables);
+    g.mean = means[i];
+    return g;
+  }
+  // Of a coded scene: what bounds its support, for less than gaussian() takes.
+  float largest_scale(uint32_t i) const {
+    const uint16_t* codes = shapes[i].scale;
+    return tables.scale[std::max({codes[0], codes[1], codes[2]})];
+  }
+  float log_opacity(uint32_t i) const { return restored_log_opacity(shapes[i], tables); }
+  float opacity(uint32_t i) const {
+    return coded() ? restored_opacity(shapes[i], tables) : gaussians[i].opacity;
+  }
+  int node_code(uint32_t i) const { return coded() ? shapes[i].node_code : node_codes[i]; }
   bool footprints_differ() const { return footprints; }
   // sh(i)(k, channel)
   ShOf sh(uint32_t i) const {
-    if (packed.rows != nullptr)
-      return {packed.rows + i * sh_row_bytes(degree), degree, packed.scales};
-    return ShOf(coefficients + i * 3 * static_cast<size_t>(sh_coefficients(degree)));
+    if (!coded()) return ShOf(coefficients + i * 3 * static_cast<size_t>(sh_coefficients(degree)));
+    return {packed.rows + size_t{i} * sh_row_bytes(degree), degree,
+            packed.scales[packed.groups(i)]};
   }
 };
 

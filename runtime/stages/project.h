@@ -116,6 +116,12 @@ VOYAGER_HD float image_y(const ProjectParams& params, const Vec3f& view) {
 
 }  // namespace detail
 
+// The radius of the support, in standard deviations, where nothing is lost to the low-pass.
+VOYAGER_HD float support_bound(float log_opacity, float log_threshold) {
+  const float rho = rho_min(log_opacity, log_threshold);
+  return std::sqrt(2.0f * std::fmax(kRhoMargin - rho, 0.0f));
+}
+
 // Whether a Gaussian may reach the image, from its mean and bounds on its stored largest scale
 // and on the radius of its support (standard deviations): what fails here, project()
 // drops too.

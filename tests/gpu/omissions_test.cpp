@@ -93,7 +93,8 @@ TEST_F(SplatOmissions, BandsThatAreZeroEverywhereAreNeitherThereNorRead) {
   GaussianCloud padded = bare;
   change_sh_degree(padded.sh, 0, 3);
   padded.sh_degree = 3;
-  const size_t saved = cuda::coefficient_bytes(3, true) - cuda::coefficient_bytes(0, true);
+  const size_t saved = cuda::coefficient_bytes(3, cuda::ShForm::half) -
+                       cuda::coefficient_bytes(0, cuda::ShForm::half);
   const auto without = flat_scene(bare), with = flat_scene(padded);
   EXPECT_EQ(bytes_of(with, {}) - bytes_of(without, {}), saved * bare.size());
   const auto tree = baked_scene(padded);  // which leaves them out as it loads

@@ -129,9 +129,10 @@ TEST_F(SplatExtreme, EarthCentredTreesWithMillimetreSteps) {
 
 TEST_F(SplatExtreme, WhatBinary16CannotHoldIsKeptInBinary32) {
   auto scene = flat_scene(random_cloud(100, 9, 2));
-  EXPECT_TRUE(cuda::DeviceScene(*scene, workers).view().half_sh);
+  const auto form = [&] { return cuda::DeviceScene(*device(), *scene, workers).view().sh_form; };
+  EXPECT_EQ(form(), cuda::ShForm::half);
   scene->sh.back() = std::nextafter(-cuda::kMaxHalfCoefficient, -9.0f);
-  EXPECT_FALSE(cuda::DeviceScene(*scene, workers).view().half_sh);
+  EXPECT_EQ(form(), cuda::ShForm::single);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // contribution tests fall to the other side for it.
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/project_params.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/reference/project.h"
 #include "tests/numerics/footprints.h"
 #include "tests/numerics/measured.h"

@@ -9,6 +9,7 @@
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/project_params.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/math/alpha_lut.h"
 #include "tests/support/render_scene.h"
 

@@ -4,6 +4,7 @@
 
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/open_streamed.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "tests/support/counting_memory.h"
 #include "tests/support/depth_limits.h"
 #include "tests/support/render_scene.h"
@@ -157,7 +158,8 @@ TEST_F(Omissions, TheProfileSaysWhatTheGaussiansAre) {
   EXPECT_LE(profile.least_anisotropy, 2.0f * 1.001f);
   EXPECT_GE(profile.greatest_anisotropy, 3.0f * 0.999f);
   uint64_t above_one = 0;
-  for (const Gaussian& g : scene->gaussians) above_one += g.opacity > 1;
+  const GaussianArrays arrays = gaussian_arrays(*scene);
+  for (uint32_t i = 0; i < gaussian_count(*scene); ++i) above_one += arrays.opacity(i) > 1;
   EXPECT_EQ(profile.opacities_above_one, above_one);
   EXPECT_FALSE(baked_scene(random_cloud(1, 72, 0))->profile.merged);
 }

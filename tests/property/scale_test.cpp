@@ -2,6 +2,7 @@
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/project_params.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/scene/append.h"
 #include "tests/support/render_scene.h"
 #include "tools/synth/city.h"

@@ -8,6 +8,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/frame/scene.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/support/tree_rules.h"
 
@@ -58,10 +59,11 @@ struct Middle {
 };
 
 inline Middle middle_of(const Scene& scene) {
+  const GaussianArrays arrays = gaussian_arrays(scene);
   Vec3d low, high;
   for (int k = 0; k < 3; ++k) {
     std::vector<float> values;
-    for (const Gaussian& g : scene.gaussians) values.push_back(g.mean[k]);
+    for (uint32_t i = 0; i < gaussian_count(scene); ++i) values.push_back(arrays.mean(i)[k]);
     std::sort(values.begin(), values.end());
     low[k] = double{values[values.size() / 10]} + scene.origin[k];
     high[k] = double{values[values.size() * 9 / 10]} + scene.origin[k];

@@ -53,7 +53,8 @@ void print_learned(const OptimizeSummary& learned) {
     const HeldOut &before = learned.before[i], &after = learned.after[i];
     say(fmt::format(
         "tau {}: {:.1f} dB with {:.1f} % of the Gaussians, before {:.1f} dB with "
-        "{:.1f} %, {:+.1f} dB in the view that gained least; every Gaussian {:.1f} dB\n",
+        "{:.1f} %; with as many, {:+.1f} dB in the view that gained least; every Gaussian {:.1f} "
+        "dB\n",
         after.tau, after.cut, 100 * after.share, before.cut, 100 * before.share,
         learned.least_gain(i), after.leaves));
   }

@@ -3,7 +3,7 @@
 #include "runtime/base/open_source.h"
 #include "runtime/format/export_ply.h"
 #include "runtime/format/writer.h"
-#include "runtime/frame/scene_sh.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/lod/build.h"
 #include "runtime/scene/import/importer.h"
 #include "tools/report/kept_files.h"
@@ -60,8 +60,9 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
     native = file.info().native;
     input = folder_ / kSceneLeaves;
     export_ply(file, input.string(), progress_);
+    const GaussianArrays arrays = gaussian_arrays(*own_);
     for (const uint32_t leaf : own_->leaves)
-      levels.push_back(static_cast<uint8_t>(footprint_level_of(own_->node_code[leaf])));
+      levels.push_back(static_cast<uint8_t>(footprint_level_of(arrays.node_code(leaf))));
   }
   const auto source = open_source(input.string());
   ImportOptions options;

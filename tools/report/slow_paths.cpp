@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/frame/scene_gaussians.h"
+
 namespace voyager::tools {
 namespace {
 
@@ -17,11 +19,12 @@ bool is_in_picture(const voyager::Camera& camera, const Vec3d& p) {
 // Depth; 0: nothing is in the picture.
 double median_depth(const Scene& scene, const voyager::Camera& camera) {
   std::vector<double> depths;
-  const size_t leaves = scene.flat() ? scene.gaussians.size() : scene.leaves.size();
+  const GaussianArrays arrays = gaussian_arrays(scene);
+  const size_t leaves = scene.flat() ? gaussian_count(scene) : scene.leaves.size();
   for (size_t i = 0; i < leaves; ++i) {
     const size_t leaf = scene.flat() ? i : scene.leaves[i];
     if (leaf == kNoNode) continue;  // in a damaged chunk
-    const Vec3f& mean = scene.gaussians[leaf].mean;
+    const Vec3f mean = arrays.mean(static_cast<uint32_t>(leaf));
     const Vec3d local{double{mean.x}, double{mean.y}, double{mean.z}};
     const Vec3d p = camera.world_to_view * (scene.origin + local - camera.eye);
     if (is_in_picture(camera, p)) depths.push_back(p.z);

@@ -43,7 +43,7 @@ TEST(Quantise, RotationWithinItsAngle) {
     if (i % 5 == 0) q.x = q.w;  // ties of the largest component
     if (i % 7 == 0) q = {q.w, 0, 0, 0};
     const Quatd a = normalise(Quatd{q.w, q.x, q.y, q.z});
-    const Quatf r = restore_rotation(quantise_rotation(q));
+    const Quatf r = restore_rotation(quantise_rotation(q).data());
     const Quatd b = normalise(Quatd{r.w, r.x, r.y, r.z});
     const double s = (a.w * b.w + a.x * b.x) + (a.y * b.y + a.z * b.z) < 0 ? -1 : 1;
     const double chord = std::hypot(std::hypot(a.w - s * b.w, a.x - s * b.x),

@@ -5,7 +5,7 @@
 
 #include "runtime/base/checksum.h"
 #include "runtime/frame/scene.h"
-#include "runtime/frame/scene_sh.h"
+#include "runtime/frame/scene_gaussians.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
@@ -60,13 +60,15 @@ TEST(LoadScene, LeavesOfALosslessBakeEqualTheFlatScene) {
 }
 
 // A compact scene keeps what the file stores, and draws what the file restores.
-TEST(LoadScene, CoefficientsOfACompactSceneAreTheFilesToTheBit) {
+TEST(LoadScene, GaussiansOfACompactSceneAreTheFilesToTheBit) {
   for (const int degree : {0, 1, 2, 3}) {
-    const auto bytes =
-        test::scene_bytes(test::bake(test::random_cloud(3000, 43, degree)), Quality::compact);
+    const auto bytes = test::scene_bytes(test::bake(test::random_cloud(3000, 43, degree)),
+                                         Quality::compact, 0, kMinChunkBytes);
     const auto scene = load(bytes);
     const size_t floats = static_cast<size_t>(scene->coefficients()) * 3;
-    EXPECT_EQ(scene->sh.empty(), degree > 0);
+    EXPECT_TRUE(scene->sh.empty());
+    EXPECT_TRUE(scene->gaussians.empty());
+    const GaussianArrays arrays = gaussian_arrays(*scene);
     const SceneFile file(test::source_of(bytes));
     for (uint32_t i = 0; i < file.info().chunk_count; ++i) {
       const Chunk chunk = file.read_chunk(i);
@@ -75,6 +77,10 @@ TEST(LoadScene, CoefficientsOfACompactSceneAreTheFilesToTheBit) {
             chunk.sh.begin() + static_cast<std::ptrdiff_t>(n * floats),
             chunk.sh.begin() + static_cast<std::ptrdiff_t>((n + 1) * floats));
         ASSERT_EQ(sh_of(*scene, chunk.node[n]), stored) << degree;
+        const Gaussian found = arrays.gaussian(chunk.node[n]),
+                       expected = activate(chunk.words[n], chunk.is_leaf(n));
+        ASSERT_EQ(std::memcmp(&found, &expected, sizeof found), 0) << chunk.node[n];
+        ASSERT_EQ(arrays.node_code(chunk.node[n]), chunk.node_code[n]);
       }
     }
   }
@@ -86,7 +92,9 @@ TEST(LoadScene, BringsTheTreeBack) {
     const auto scene = load(test::scene_bytes(baked, quality));
     ASSERT_EQ(scene->tree.size(), baked.tree.size());
     EXPECT_EQ(scene->tree.parent, baked.tree.parent);
-    EXPECT_EQ(scene->node_code, baked.node_code);
+    const GaussianArrays arrays = gaussian_arrays(*scene);
+    for (uint32_t n = 0; n < baked.tree.size(); ++n)
+      ASSERT_EQ(arrays.node_code(n), baked.node_code[n]);
     for (uint32_t n = 0; n < baked.tree.size(); ++n) {
       if (baked.tree.is_leaf(n)) {
         ASSERT_EQ(scene->leaves[baked.gaussian[n]], n);

@@ -29,14 +29,14 @@ TEST(ShCode, ARowGivesBackWhatWasRestored) {
   const ShScales scales[] = {
       {0.7f, 0.31f, 1.9f}, {3e-38f, 1e-45f, 0.0f}, {1e30f, 2.5e-7f, 65504.0f}};
   for (int degree = 0; degree <= kMaxShDegree; ++degree) {
-    EXPECT_EQ(sh_row_bytes(degree) % 4, 0u);
+    EXPECT_EQ(sh_row_bytes(degree) % 8, 0u);
     for (uint32_t of = 0; of < 3; ++of)
       for (int i = 0; i < 200; ++i) {
         const std::vector<float> sh = restored(degree, scales[of], random);
         std::vector<uint8_t> row(sh_row_bytes(degree));
-        pack_sh(sh.data(), degree, of, scales[of], row.data());
+        pack_sh(sh.data(), degree, scales[of], row.data());
         std::vector<float> back(sh.size());
-        unpack_sh(row.data(), degree, scales, back.data());
+        unpack_sh(row.data(), degree, scales[of], back.data());
         ASSERT_EQ(back, sh) << degree << " " << of;
       }
   }
@@ -48,14 +48,34 @@ TEST(ShCode, ALowerDegreeIsTheBeginningOfARow) {
   const ShScales scale = {0.5f, 0.4f, 0.3f};
   const std::vector<float> sh = restored(3, scale, random);
   std::vector<uint8_t> row(sh_row_bytes(3));
-  pack_sh(sh.data(), 3, 0, scale, row.data());
+  pack_sh(sh.data(), 3, scale, row.data());
   for (int degree = 0; degree < 3; ++degree) {
     const std::vector<uint8_t> shorter(
         row.begin(), row.begin() + static_cast<std::ptrdiff_t>(sh_row_bytes(degree)));
     std::vector<float> lower(3 * static_cast<size_t>(sh_coefficients(degree)));
-    unpack_sh(shorter.data(), degree, &scale, lower.data());
+    unpack_sh(shorter.data(), degree, scale, lower.data());
     for (size_t k = 0; k < lower.size(); ++k) EXPECT_EQ(lower[k], sh[k]) << degree << " " << k;
   }
+}
+
+TEST(ShCode, GroupsBeginWhereTheirBitsAre) {
+  std::mt19937 random(7);
+  std::vector<ShGroupBlock> blocks(40);
+  std::vector<uint32_t> expected;
+  uint32_t group = 0;
+  for (size_t b = 0; b < blocks.size(); ++b)
+    for (uint32_t i = 0; i < 32; ++i) {
+      const bool starts = b + i != 0 && random() % (b % 3 == 0 ? 2 : 90) == 0;
+      group += starts;
+      if (i == 0) blocks[b].first = group;
+      if (i != 0 && starts) blocks[b].starts |= 1u << i;
+      expected.push_back(group);
+    }
+  const ShGroups groups{blocks.data(), 0};
+  for (uint32_t i = 0; i < expected.size(); ++i) ASSERT_EQ(groups(i), expected[i]) << i;
+  const ShGroups of_slots{nullptr, 107};
+  EXPECT_EQ(of_slots(106), 0u);
+  EXPECT_EQ(of_slots(107 * 9), 9u);
 }
 
 }  // namespace
