@@ -12,6 +12,7 @@
 #include "cuda/shared_by_scene.h"
 #include "cuda/train/node_trainer.h"
 #include "runtime/base/error.h"
+#include "runtime/frame/whole_tree.h"
 
 namespace voyager::cuda {
 namespace {
@@ -78,7 +79,7 @@ class CudaBackend final : public Backend {
 
   Search search_for(const Scene& scene, Search asked) const override {
     const bool wanted =
-        asked == Search::sweep || (asked == Search::fastest && scene.tree.size() <= kMostSwept);
+        asked == Search::sweep || (asked == Search::fastest && scene.node_count <= kMostSwept);
     const bool can =
         !scene.streamed() && scene.damaged_chunks.empty() && !scene.search.leaves_have_extent;
     return wanted && can ? Search::sweep : without_sweep(asked);
@@ -116,13 +117,14 @@ class CudaBackend final : public Backend {
     if (desc.lod != Lod::cut) return search_of_baseline(scene, desc, workers);
     if (!scene->damaged_chunks.empty()) return create_host_cut_search(scene, desc.kind, workers);
     if (desc.kind == Search::exhaustive)
-      return create_exhaustive_search(device_, *scene, scene->tree, desc.weights);
+      return create_exhaustive_search(device_, *scene, *whole_tree(*scene), desc.weights);
     const Search kind = search_for(*scene, desc.kind);
     if (kind == Search::sweep)
       return create_sweep_search(
           device_,
-          sweep_trees_.of(scene,
-                          [](const Scene& s) { return std::make_shared<const SweepTree>(s.tree); }),
+          sweep_trees_.of(
+              scene,
+              [](const Scene& s) { return std::make_shared<const SweepTree>(*whole_tree(s)); }),
           *scene, desc.weights);
     const auto tree = trees_.of(scene, [&](const Scene& s) {
       return s.streamed() ? std::make_shared<const DeviceTree>(pool_of(s, *device_))
@@ -134,8 +136,8 @@ class CudaBackend final : public Backend {
   // Its tree is this view's alone.
   std::unique_ptr<CutSearch> search_of_baseline(const std::shared_ptr<const Scene>& scene,
                                                 const SearchDesc& desc, Workers& workers) {
-    const DetailTree detail = make_detail_tree(scene->tree, scene->partition, desc.lod, workers,
-                                               std::pmr::get_default_resource());
+    const DetailTree detail = make_detail_tree(*whole_tree(*scene), scene->partition, desc.lod,
+                                               workers, std::pmr::get_default_resource());
     if (desc.kind == Search::exhaustive)
       return create_exhaustive_search(device_, *scene, detail.tree, desc.weights);
     return create_partitioned_search(device_,

@@ -11,8 +11,9 @@ DeviceParents::DeviceParents(const Scene& scene)
       node_codes_(footprints_differ(scene) ? Buffer<uint8_t>()
                                            : upload(std::span<const uint8_t>(scene.node_code))),
       parents_(upload(std::span<const uint32_t>(scene.tree.parent))),
-      child_counts_(upload_made<uint32_t>(
-          scene.tree.size(), [&](size_t i) { return scene.tree.records[i].child_count; })) {}
+      child_counts_(upload_made<uint32_t>(scene.tree.parent.size(), [&](size_t i) {
+        return scene.child_count.empty() ? scene.tree.records[i].child_count : scene.child_count[i];
+      })) {}
 
 void DeviceParents::add_to(GaussianView& gaussians) const {
   gaussians.opacities = opacities_.data();

@@ -10,8 +10,8 @@ class HostCutSearch final : public CutSearch {
   HostCutSearch(const std::shared_ptr<const Scene>& scene, Search kind, Workers& workers)
       : workers_(workers),
         search_(scene, {kind, true}, std::pmr::get_default_resource(), workers),
-        nodes_(scene->tree.size()),
-        weights_(scene->tree.size()),
+        nodes_(scene->node_count),
+        weights_(scene->node_count),
         size_(1) {}
 
   void find(const CutQuery& query, cudaStream_t stream) override {

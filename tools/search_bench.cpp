@@ -93,7 +93,7 @@ nlohmann::ordered_json time_search(Backend& backend, const std::shared_ptr<const
       run_path(*weighted, path, [&](size_t i) { frame_done(path.size() + i); });
 
   const auto frames = static_cast<double>(path.size());
-  const auto nodes = static_cast<double>(scene->tree.size());
+  const auto nodes = static_cast<double>(scene->node_count);
   return {{"ms", summary(totals.milliseconds)},
           {"ms_with_weights", summary(with_weights.milliseconds)},
           {"nodes_tested", totals.tested / frames},

@@ -30,7 +30,8 @@ class HostPool final : public ChunkPool {
     for (size_t i = 0; i < chunk.node.size(); ++i) {
       const size_t at = base + i;
       set_gaussian(chunk, i, at, scene_);
-      scene_.tree.records[at] = chunk.record_of(i);
+      if (scene_.search.leaves_have_extent) scene_.tree.records[at] = chunk.record_of(i);
+      scene_.child_count[at] = chunk.record_of(i).child_count;
       scene_.tree.parent[at] =
           staged.parent[i] == kNoNode ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
       scene_.node_ids[at] = chunk.node[i];
@@ -65,7 +66,8 @@ class HostPool final : public ChunkPool {
         std::decay_t<decltype(array)>(room ? size : 0, array.get_allocator()).swap(array);
       };
       make_gaussian_room(room ? nodes : 0, room ? slots : 0, scene_);
-      fit(scene_.tree.records, nodes);
+      fit(scene_.tree.records, scene_.search.leaves_have_extent ? nodes : 0);
+      fit(scene_.child_count, nodes);
       fit(scene_.tree.parent, nodes);
       fit(scene_.node_ids, nodes);
       fit(scene_.search.records, records);
@@ -80,8 +82,8 @@ class HostPool final : public ChunkPool {
 }  // namespace
 
 PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
-  const uint64_t node =
-      gaussian_bytes(scene.storage, scene.sh_degree) + sizeof(NodeRecord) + 2 * sizeof(uint32_t);
+  const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) + 3 * sizeof(uint32_t) +
+                        (scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0);
   const uint64_t record = sizeof(SearchRecord) + sizeof(SubtreeSpan);
   const SearchTree& search = scene.search;
   const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;

@@ -5,6 +5,7 @@
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
 #include "runtime/frame/weigh_cut.h"
+#include "runtime/frame/whole_tree.h"
 
 namespace voyager {
 
@@ -17,12 +18,15 @@ HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& des
     throw Error(ErrorCode::unsupported,
                 "search: found exhaustive for a streamed scene, expected streaming or temporal");
   if (desc.lod != Lod::cut)
-    detail_.emplace(make_detail_tree(scene_->tree, scene_->partition, desc.lod, workers, memory));
+    detail_.emplace(
+        make_detail_tree(*whole_tree(*scene_), scene_->partition, desc.lod, workers, memory));
   if (desc.kind != Search::exhaustive) {
     partitioned_.emplace(search_tree(), memory);
     return;
   }
   exhaustive_.emplace(memory);
+  whole_ = detail_ ? std::shared_ptr<const LodTree>(std::shared_ptr<void>(), &detail_->tree)
+                   : whole_tree(*scene_);
   for (const DamagedNodes& d : scene_->damaged) missing_.push_back({d.first, d.count});
 }
 
@@ -43,7 +47,7 @@ void HostSearch::find(const CutQuery& query, Workers& workers) {
   if (partitioned_)
     partitioned_->run(query, desc_.kind, workers);
   else
-    exhaustive_->run(tree(), missing_, query, workers);
+    exhaustive_->run(*whole_, missing_, query, workers);
   if ((partitioned_ ? partitioned_->needed_missing() : exhaustive_->needed_missing()) != kNoNode)
     refuse_damaged();
 }
@@ -64,12 +68,19 @@ void HostSearch::read_cut(std::pmr::vector<uint32_t>& nodes) const {
 
 void HostSearch::weigh(const CutQuery& query, Workers& workers) {
   items_.resize(cut().size());
-  if (partitioned_) return weigh_cut(tree(), search_tree(), *partitioned_, query, items_, workers);
-  const WeightParams weights{tree().records.data(), tree().parent.data(),
-                             exhaustive_->sizes().data(), query.target_size, tree().blend_share};
+  if (partitioned_) return weigh_cut(links(), search_tree(), *partitioned_, query, items_, workers);
+  const WeightParams weights{whole_->records.data(), whole_->parent.data(),
+                             exhaustive_->sizes().data(), query.target_size, whole_->blend_share};
   workers.for_blocks(items_.size(), 16384, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) items_[i] = voyager::weigh(weights, cut()[i]);
   });
+}
+
+NodeLinks HostSearch::links() const {
+  if (detail_) return links_of(detail_->tree);
+  NodeLinks links = links_of(scene_->tree);
+  if (!scene_->child_count.empty()) links.child_count = scene_->child_count.data();
+  return links;
 }
 
 void HostSearch::refuse_damaged() const {

@@ -7,6 +7,7 @@
 
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
+#include "runtime/frame/weigh_cut.h"
 #include "runtime/select/partitioned.h"
 #include "runtime/stages/interpolate.h"
 
@@ -43,13 +44,14 @@ class HostSearch {
   void find(const CutQuery& query, Workers& workers);
   void weigh(const CutQuery& query, Workers& workers);
   [[noreturn]] void refuse_damaged() const;
-  const LodTree& tree() const { return detail_ ? detail_->tree : scene_->tree; }
+  NodeLinks links() const;
   const SearchTree& search_tree() const { return detail_ ? detail_->search : scene_->search; }
 
   std::shared_ptr<const Scene> scene_;
   SearchDesc desc_;
   std::vector<MissingNodes> missing_;
-  std::optional<DetailTree> detail_;  // of a baseline, in the place of the scene's own
+  std::optional<DetailTree> detail_;      // of a baseline, in the place of the scene's own
+  std::shared_ptr<const LodTree> whole_;  // what an exhaustive search reads
   std::optional<ExhaustiveSearch> exhaustive_;
   std::optional<PartitionedSearch> partitioned_;
   std::pmr::vector<DrawItem> items_;

@@ -8,6 +8,7 @@
 #include "runtime/frame/load.h"
 #include "runtime/frame/scene_gaussians.h"
 #include "runtime/frame/sh_runs.h"
+#include "runtime/frame/whole_tree.h"
 #include "runtime/lod/nesting.h"
 #include "runtime/scene/sh_bands.h"
 
@@ -337,6 +338,7 @@ void load_baked(const SceneFile& file, Workers& workers, Scene& scene) {
     check_claims(file.info(), scene, findings);
   }
   add_search(scene, workers);
+  leave_out_records(scene);
   int used = 0;
   for (const ChunkFindings& f : findings) used = std::max(used, f.sh_degree);
   lower_sh_degree(used, scene);

@@ -64,6 +64,7 @@ struct Scene {
         sh_scales(memory),
         sh_blocks(memory),
         tree(memory),
+        child_count(memory),
         search(memory),
         leaves(memory),
         partition(memory),
@@ -98,8 +99,11 @@ struct Scene {
   std::pmr::vector<ShScales> sh_scales;      // by group
   std::pmr::vector<ShGroupBlock> sh_blocks;  // empty where a slot is a group
   uint32_t slot_nodes = 0;                   // of a pool on the host
-  LodTree tree;                              // empty for a flat scene
-  SearchTree search;                         // of the tree; empty for a flat scene
+  // Empty for a flat scene. Where child_count is not empty, records and first_child are, and
+  // whole_tree() makes them (whole_tree.h).
+  LodTree tree;
+  std::pmr::vector<uint32_t> child_count;  // by node id
+  SearchTree search;                       // of the tree; empty for a flat scene
   std::pmr::vector<uint32_t> leaves;  // node ids of the leaves in the input's order; flat: empty
   Partition partition;                // of the tree; empty for a flat scene
   std::vector<DamagedNodes> damaged;  // by first, disjoint

@@ -19,8 +19,8 @@ struct Family {
 
 class BlockWeights {
  public:
-  BlockWeights(const LodTree& tree, const SearchTree& search_tree, const CutQuery& query)
-      : tree_(tree), search_tree_(search_tree), query_(query) {}
+  BlockWeights(const NodeLinks& links, const SearchTree& search_tree, const CutQuery& query)
+      : links_(links), search_tree_(search_tree), query_(query) {}
 
   void weigh(const PartitionedSearch& search, const PartitionedSearch::Block& block,
              DrawItem* items) {
@@ -65,7 +65,7 @@ class BlockWeights {
     // The roots of neighbours often hang from one parent.
     if (subtree.entry != entry_) {
       entry_ = subtree.entry;
-      entry_family_ = family(entry_, tree_.parent[subtree.root], true);
+      entry_family_ = family(entry_, links_.parent[subtree.root], true);
     }
     return weigh_slots(subtree, entry_family_, 1, out);
   }
@@ -81,9 +81,9 @@ class BlockWeights {
   Family family(uint32_t record, uint32_t parent, bool split) const {
     const SearchRecord& r = search_tree_.records[record];
     const float size = size_of(r), target = query_.target_size;
-    if (is_drawn_whole(size, target, tree_.blend_share)) return {parent, size, true, 1.0f, 1.0f};
-    const uint32_t children = split ? tree_.records[parent].child_count : count_bits(r.children);
-    return {parent, size, false, interpolation_weight(true, size, 0.0f, target, tree_.blend_share),
+    if (is_drawn_whole(size, target, links_.blend_share)) return {parent, size, true, 1.0f, 1.0f};
+    const uint32_t children = split ? links_.children(parent) : count_bits(r.children);
+    return {parent, size, false, interpolation_weight(true, size, 0.0f, target, links_.blend_share),
             1.0f / static_cast<float>(children)};
   }
 
@@ -94,7 +94,7 @@ class BlockWeights {
   }
 
   float own_size(const SearchSubtree& subtree, uint32_t slot) const {
-    if ((subtree.interior >> slot & 1) == 0) return leaf_size(tree_.records[subtree.node(slot)]);
+    if ((subtree.interior >> slot & 1) == 0) return leaf_size(links_.records[subtree.node(slot)]);
     const uint32_t below = subtree.interior & ((1u << slot) - 1);
     return size_of(search_tree_.records[subtree.first_record + count_bits(below)]);
   }
@@ -123,7 +123,7 @@ class BlockWeights {
     for (; own != 0; own &= own - 1) {
       const auto slot = static_cast<uint32_t>(std::countr_zero(own));
       const float t = interpolation_weight(true, f.size, own_size(subtree, slot),
-                                           query_.target_size, tree_.blend_share);
+                                           query_.target_size, links_.blend_share);
       const uint32_t node = subtree.node(slot);
       items[count_bits(slots & ((1u << slot) - 1))] =
           t == 1.0f ? whole(node) : DrawItem{node, f.parent, t, f.inverse_k};
@@ -132,7 +132,7 @@ class BlockWeights {
 
   static DrawItem whole(uint32_t node) { return {node, kNoNode, 1.0f, 1.0f}; }
 
-  const LodTree& tree_;
+  const NodeLinks links_;
   const SearchTree& search_tree_;
   const CutQuery query_;
   const DrawItem* end_ = nullptr;  // of the piece in progress
@@ -142,11 +142,12 @@ class BlockWeights {
 
 }  // namespace
 
-void weigh_cut(const LodTree& tree, const SearchTree& search_tree, const PartitionedSearch& search,
-               const CutQuery& query, std::span<DrawItem> items, Workers& workers) {
+void weigh_cut(const NodeLinks& links, const SearchTree& search_tree,
+               const PartitionedSearch& search, const CutQuery& query, std::span<DrawItem> items,
+               Workers& workers) {
   const auto blocks = search.blocks();
   workers.for_blocks(blocks.size(), kBlocksTask, [&](size_t begin, size_t end) {
-    BlockWeights weights(tree, search_tree, query);
+    BlockWeights weights(links, search_tree, query);
     for (size_t b = begin; b < end; ++b) weights.weigh(search, blocks[b], items.data());
   });
 }

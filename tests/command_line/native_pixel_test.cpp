@@ -88,9 +88,9 @@ TEST_F(NativePixelCommand, AntialiasedPicturesAreNearerToTheTruth) {
   std::ofstream(file("far.json"))
       << R"([{"id": 0, "img_name": "far", "width": 64, "height": 48, "position": [0, -400, -400],)"
          R"( "rotation": [[1, 0, 0], [0, 0.6, 0.8], [0, -0.8, 0.6]], "fx": 60, "fy": 60}])";
-  const auto drawn = [&](const std::string& with) {
+  const auto drawn = [&](const std::string& with, const std::string& lod = " --lod off") {
     const Outcome found = run("voyager render " + file("o.voy") + " --cameras " + file("far.json") +
-                              " --camera 0 --lod off --backend cpu -o " + file("o.pfm") + with);
+                              " --camera 0 --backend cpu" + lod + " -o " + file("o.pfm") + with);
     EXPECT_EQ(found.exit_code, 0) << found.output;
     const std::string bytes = file_bytes(file("o.pfm"));
     std::vector<float> values(64 * 48 * 3);
@@ -100,6 +100,7 @@ TEST_F(NativePixelCommand, AntialiasedPicturesAreNearerToTheTruth) {
     return values;
   };
   const std::vector<float> truth = drawn(" --supersample 8");
+  EXPECT_EQ(drawn(" --supersample 8", ""), truth);
   const auto squares = [&](const std::vector<float>& values) {
     double sum = 0;
     for (size_t i = 0; i < values.size(); ++i) {

@@ -5,6 +5,7 @@
 #include "cuda/device_parents.h"
 #include "cuda/draws.h"
 #include "cuda/stream.h"
+#include "runtime/frame/whole_tree.h"
 #include "runtime/scene/sh_bands.h"
 #include "tests/gpu/splat_test.h"
 #include "tests/support/depth_limits.h"
@@ -84,8 +85,9 @@ TEST_F(SplatOmissions, AViewOfEveryLeafLaunchesNoSearch) {
   EXPECT_EQ(launched(flat, Lod::cut, nullptr), 0u);
   EXPECT_EQ(launched(scene, Lod::all_leaves, nullptr), 0u);
   // The cut and the weights of its nodes.
-  EXPECT_GE(
-      launched(scene, Lod::cut, cuda::create_exhaustive_search(on, *scene, scene->tree, true)), 2u);
+  EXPECT_GE(launched(scene, Lod::cut,
+                     cuda::create_exhaustive_search(on, *scene, *whole_tree(*scene), true)),
+            2u);
 }
 
 TEST_F(SplatOmissions, BandsThatAreZeroEverywhereAreNeitherThereNorRead) {

@@ -4,6 +4,7 @@
 
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/frame_search.h"
+#include "runtime/frame/whole_tree.h"
 #include "runtime/lod/merge.h"
 #include "tests/gpu/agreement.h"
 #include "tests/gpu/splat_test.h"
@@ -68,7 +69,7 @@ class SplatSibling : public SplatTest {
   // With τ* at `share` of the root's size on screen: t of its children is 2·(1 - share).
   static FrameInput at_share(const Scene& scene, double share) {
     FrameInput input = frame_input(look(kEye, {0, 0, 0}, 200, 160));
-    const double size = scene.tree.screen_size(0, cut_centre(kEye, scene.origin));
+    const double size = whole_tree(scene)->screen_size(0, cut_centre(kEye, scene.origin));
     input.tau = (share * size * input.eyes[0].camera.fx - 1) / 2;
     return input;
   }

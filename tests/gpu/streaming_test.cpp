@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "runtime/base/error.h"
+#include "runtime/frame/whole_tree.h"
 #include "tests/gpu/splat_test.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/stream_rig.h"
@@ -139,6 +140,7 @@ TEST_F(Streaming, InstancesOfOneSceneShareItsPool) {
 TEST_F(Streaming, EveryFrameDrawsACut) {
   const Bytes bytes = cloud_bytes(20000, 9, 1);
   const auto whole = resident(bytes);
+  const auto tree = whole_tree(*whole);
   for (const double share : {0.02, 0.1, 0.4})
     for (const size_t steps : {0u, 2u, 20u}) {
       SCOPED_TRACE(std::to_string(share) + ", steps " + std::to_string(steps));
@@ -147,13 +149,13 @@ TEST_F(Streaming, EveryFrameDrawsACut) {
       size_t missing = 0;
       for (const FrameInput& input : walk(60, 4, 4)) {
         const Frame frame = render(*part, input);
-        ASSERT_TRUE(is_cut(whole->tree, frame.cut));
+        ASSERT_TRUE(is_cut(*whole_tree(*whole), frame.cut));
         expect_no_nan(frame);
         EXPECT_EQ(frame.stats.cut_size, frame.cut.size());
         const uint64_t stand_ins = static_cast<uint64_t>(
             std::count_if(frame.cut.begin(), frame.cut.end(), [&](uint32_t n) {
-              return !whole->tree.is_leaf(n) &&
-                     whole->tree.screen_size(n, frame.stats.cut_centre) >= frame.stats.tau_star;
+              return !tree->is_leaf(n) &&
+                     tree->screen_size(n, frame.stats.cut_centre) >= frame.stats.tau_star;
             }));
         ASSERT_EQ(frame.stats.missing, stand_ins);
         missing += stand_ins;
@@ -197,7 +199,7 @@ TEST_F(Streaming, RoomForWhatIsSeenIsRoomForTheResidentImage) {
       try {
         const Frame frame = render(*part, input);
         expect_same_bits(frame, expected);
-        ASSERT_TRUE(is_cut(whole->tree, frame.cut));
+        ASSERT_TRUE(is_cut(*whole_tree(*whole), frame.cut));
         coarse += frame.stats.missing != 0;
       } catch (const Error& error) {
         ASSERT_EQ(error.code(), ErrorCode::over_budget) << error.what();
@@ -223,7 +225,7 @@ TEST_F(Streaming, ViewsOnTwoThreadsDrawWhatTheyFindWhileChunksGo) {
         const Frame expected = render(all, input);
         for (int i = 0; i < 3; ++i) {
           const Frame frame = render(part, input);
-          EXPECT_TRUE(is_cut(whole->tree, frame.cut));
+          EXPECT_TRUE(is_cut(*whole_tree(*whole), frame.cut));
           if (frame.cut != expected.cut) continue;
           expect_same_bits(frame, expected);
           ++same;
@@ -391,7 +393,7 @@ TEST_F(Streaming, AnotherBudgetHoldsFromThenOn) {
     if (i % 10 == 9)
       resize_streamed(*streamed, budget_of(*cuda, bytes, shares[i / 10 % 4]), *cuda, workers);
     const Frame frame = render(*part, path[i]);
-    ASSERT_TRUE(is_cut(whole->tree, frame.cut));
+    ASSERT_TRUE(is_cut(*whole_tree(*whole), frame.cut));
     EXPECT_EQ(frame.stats.cut_size, frame.cut.size());
     while (streamed->stream->step()) continue;
   }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "runtime/frame/open_streamed.h"
+#include "runtime/frame/whole_tree.h"
 #include "tests/command_line/program.h"
 #include "tests/http/http_test.h"
 #include "tests/http/nginx.h"
@@ -81,7 +82,7 @@ TEST_F(HttpStreaming, AServerThatComesBackIsGoneOnWith) {
   std::optional<Near> near;
   const auto draw = [&] {
     const Frame frame = test::render(near->part, near->input);
-    EXPECT_TRUE(is_cut(near->resident->tree, frame.cut));
+    EXPECT_TRUE(is_cut(*whole_tree(*near->resident), frame.cut));
     std::this_thread::sleep_for(10ms);
     return frame.stats.missing;
   };

@@ -2,6 +2,7 @@
 // records that are wrong under checksums that are right. Streamed or whole, the scene is refused or
 // draws a cut without what was damaged.
 #include "runtime/frame/open_streamed.h"
+#include "runtime/frame/whole_tree.h"
 #include "tests/support/is_cut.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/render_scene.h"
@@ -86,7 +87,7 @@ class Damaged {
   }
 
   void expect_cut(const Frame& frame, std::initializer_list<Wrong> wrong) {
-    EXPECT_TRUE(test::is_cut(whole_->tree, frame.cut));
+    EXPECT_TRUE(test::is_cut(*whole_tree(*whole_), frame.cut));
     test::expect_no_nan(frame);
     for (const Wrong& w : wrong) {
       if (w.damage == Damage::grown)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "runtime/frame/draw_list.h"
+#include "runtime/frame/whole_tree.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/tree_rules.h"
 
@@ -46,14 +47,14 @@ size_t count_interpolated(const Scene& scene, const FrameInput& input) {
   size_t count = 0;
   const float target = target_size(input.tau, input.eyes[0].camera.fx);
   const Vec3f c = cut_centre(input.eyes[0].camera.eye, scene.origin);
+  const auto whole = whole_tree(scene);
   ExhaustiveSearch search;
-  search.run(scene.tree, {}, {c, target}, workers);
+  search.run(*whole, {}, {c, target}, workers);
   for (const uint32_t n : search.cut()) {
-    const uint32_t parent = scene.tree.parent[n];
+    const uint32_t parent = whole->parent[n];
     if (parent != kNoNode)
-      count +=
-          interpolation_weight(true, scene.tree.screen_size(parent, c),
-                               scene.tree.screen_size(n, c), target, scene.tree.blend_share) < 1;
+      count += interpolation_weight(true, whole->screen_size(parent, c), whole->screen_size(n, c),
+                                    target, whole->blend_share) < 1;
   }
   return count;
 }

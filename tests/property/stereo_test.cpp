@@ -1,6 +1,7 @@
 // Two eyes of one view: each sees what it would see alone, by one cut that is fine enough for both.
 #include "tests/support/stereo.h"
 #include "runtime/frame/frame_search.h"
+#include "runtime/frame/whole_tree.h"
 #include "tests/support/depth_limits.h"
 
 namespace voyager::stereo_test {
@@ -66,7 +67,7 @@ TEST(Stereo, TheCutIsThatOfThePointAmidTheEyesAtTheSmallestTauStar) {
     const CutQuery expected{cut_centre(0.5 * (left.eye + right.eye), scene->origin),
                             target_size(pair.tau, std::max(left.fx, right.fx))};
     ExhaustiveSearch search;
-    search.run(scene->tree, {}, expected, workers);
+    search.run(*whole_tree(*scene), {}, expected, workers);
     const EyeFrames found = render_stereo(*backend, scene, {}, pair);
     EXPECT_TRUE(std::equal(search.cut().begin(), search.cut().end(), found[0].cut.begin(),
                            found[0].cut.end()));

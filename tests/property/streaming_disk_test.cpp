@@ -5,6 +5,7 @@
 #include <random>
 #include <thread>
 
+#include "runtime/frame/whole_tree.h"
 #include "runtime/math/screen_size.h"
 #include "tests/support/simulated_disk.h"
 #include "tests/support/stream_rig.h"
@@ -72,7 +73,7 @@ class Flight {
   // The frame, and what the disk does until the next one.
   Frame draw(const FrameInput& input) {
     Frame frame = render(view_, input);
-    EXPECT_TRUE(is_cut(rig_.resident->tree, frame.cut));
+    EXPECT_TRUE(is_cut(*whole_tree(*rig_.resident), frame.cut));
     EXPECT_LE(counters().resident, counters().slots);
     rig_.time += kFrame;
     disk_->idle_until(rig_.time - kFrame);
@@ -266,7 +267,7 @@ TEST(StreamingDisk, ASceneOpensThoughWhatIsAroundItsStartIsDamaged) {
   EXPECT_EQ(scene->stream->counters().resident, scene->stream->pinned());
   EXPECT_GT(scene->stream->counters().failures, 1u);
   View view(scene, *flight.rig().backend, {}, flight.rig().memory(), flight.rig().workers);
-  EXPECT_TRUE(is_cut(flight.rig().resident->tree, render(view, ahead(eye, kForward)).cut));
+  EXPECT_TRUE(is_cut(*whole_tree(*flight.rig().resident), render(view, ahead(eye, kForward)).cut));
 }
 
 // A frame that waits fails where a damaged chunk is seen, and does not where it is stood in for,

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "runtime/frame/whole_tree.h"
 #include "tests/support/stream_rig.h"
 
 namespace {
@@ -62,7 +63,7 @@ TEST(StreamingMemory, RefusedAtAnyMomentIsOvercome) {
     reached = refused_after == 0;
     refused_after = 0;
     const test::Frame next = test::render(rig.part, input);
-    ASSERT_TRUE(test::is_cut(rig.resident->tree, next.cut)) << at;
+    ASSERT_TRUE(test::is_cut(*whole_tree(*rig.resident), next.cut)) << at;
     rig.time += 20;
     input.wait_resident = true;
     const test::Frame waited = test::render(rig.part, input);

@@ -1,5 +1,6 @@
 // Streaming on a made-up city, and on the captured district: frames that wait are those of the
 // scene loaded whole, and the first one that does not wait is close to it.
+#include "runtime/frame/whole_tree.h"
 #include "runtime/scene/append.h"
 #include "tests/support/real_scenes.h"
 #include "tests/support/stream_rig.h"
@@ -40,7 +41,7 @@ void expect_resident_frames(StreamRig& rig, const std::vector<FrameInput>& path)
   for (FrameInput input : path) {
     const Frame whole = test::render(rig.whole, input);
     const Frame coarse = test::render(rig.part, input);
-    ASSERT_TRUE(test::is_cut(rig.resident->tree, coarse.cut));
+    ASSERT_TRUE(test::is_cut(*whole_tree(*rig.resident), coarse.cut));
     input.wait_resident = true;
     const Frame part = test::render(rig.part, input);
     ASSERT_EQ(part.cut, whole.cut);
@@ -81,7 +82,7 @@ double share_within_a_tenth(StreamRig& rig, const FrameInput& input, uint64_t fi
       rig.open(test::source_of(rig.bytes), 1.0, first_bytes, input.eyes[0].camera.eye);
   View view(scene, *rig.backend, {}, rig.memory(), rig.workers);
   const Frame first = test::render(view, input);
-  EXPECT_TRUE(test::is_cut(rig.resident->tree, first.cut));
+  EXPECT_TRUE(test::is_cut(*whole_tree(*rig.resident), first.cut));
   size_t within = 0;
   for (size_t i = 3; i < whole.rgba.size(); i += 4)
     within += std::fabs(whole.rgba[i] - first.rgba[i]) <= 0.1f;

@@ -3,6 +3,7 @@
 #include <map>
 #include <random>
 
+#include "runtime/frame/whole_tree.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/stream_rig.h"
 #include "tests/support/tree_clouds.h"
@@ -70,7 +71,7 @@ TEST(Streaming, TreesOfAnyShapeStream) {
     for (const uint32_t nodes : {1u, 40u, 1000u}) {
       SCOPED_TRACE(test::name_of(shape) + " " + std::to_string(nodes));
       StreamRig rig(test::baked_of(test::random_tree(shape, nodes, 5)), 1.0);
-      std::vector<Vec3f> places = test::random_places(rig.resident->tree, random);
+      std::vector<Vec3f> places = test::random_places(*whole_tree(*rig.resident), random);
       std::shuffle(places.begin(), places.end(), random);
       places.resize(std::min<size_t>(places.size(), 30));
       for (const Vec3f& place : places) {
@@ -78,7 +79,7 @@ TEST(Streaming, TreesOfAnyShapeStream) {
         for (const double tau : {0.5, 8.0}) {
           FrameInput input = frame_input(look(eye, eye + Vec3d{0, 0.1, 1}, 16, 16), tau);
           const Frame before = render(rig.part, input);
-          ASSERT_TRUE(is_cut(rig.resident->tree, before.cut));
+          ASSERT_TRUE(is_cut(*whole_tree(*rig.resident), before.cut));
           const Frame whole = render(rig.whole, input);
           input.wait_resident = true;
           const Frame part = render(rig.part, input);
@@ -98,7 +99,7 @@ TEST(Streaming, EveryFrameDrawsACut) {
       StreamRig rig(random_scene(4000, 3), share);
       for (const FrameInput& input : walk(60, 2, 4)) {
         const Frame frame = render(rig.part, input);
-        ASSERT_TRUE(is_cut(rig.resident->tree, frame.cut));
+        ASSERT_TRUE(is_cut(*whole_tree(*rig.resident), frame.cut));
         ASSERT_LE(rig.stream().counters().resident, rig.stream().counters().slots);
         rig.work(steps);
       }
@@ -189,7 +190,7 @@ TEST_P(StreamingOfTree, RoomForWhatIsSeenIsRoomForTheResidentImage) {
         rig.give_room(room);
         const Frame part = render(rig.part, input);
         expect_same_bits(part, whole);
-        ASSERT_TRUE(is_cut(rig.resident->tree, part.cut));
+        ASSERT_TRUE(is_cut(*whole_tree(*rig.resident), part.cut));
         coarse += part.stats.missing != 0;
       }
       rig.give_room(seen);
@@ -218,7 +219,7 @@ TEST_P(StreamingOfTree, WhatIsLargeFromTheStartIsThereInTheFirstFrame) {
       const auto scene = other.open(test::source_of(rig.bytes), 0.5, first_bytes, start);
       View view(scene, *other.backend, {}, other.memory(), other.workers);
       const Frame frame = render(view, input);
-      EXPECT_TRUE(is_cut(rig.resident->tree, frame.cut));
+      EXPECT_TRUE(is_cut(*whole_tree(*rig.resident), frame.cut));
       const auto& chunks = scene->stream->file().chunks();
       const uint64_t top = chunks[scene->stream->pinned()].offset - chunks[0].offset;
       EXPECT_LE(scene->stream->counters().bytes_read, top + first_bytes + (1 << 19));
@@ -237,7 +238,7 @@ TEST(Streaming, TooLittleRoomIsCoarseAndStill) {
   StreamRig rig(random_scene(20000, 6), 0.05);
   const FrameInput input = frame_input(look({0, -2, -12}, {0, 0, 0}, 61, 45), 1);
   const Frame frame = rig.settle(input);
-  ASSERT_TRUE(is_cut(rig.resident->tree, frame.cut));
+  ASSERT_TRUE(is_cut(*whole_tree(*rig.resident), frame.cut));
   EXPECT_GT(frame.stats.missing, 0u);
   const uint64_t read = rig.stream().counters().bytes_read;
   for (int i = 0; i < 5; ++i) {

@@ -4,6 +4,7 @@
 
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/frame_search.h"
+#include "runtime/frame/whole_tree.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_rules.h"
@@ -34,7 +35,8 @@ double exact_size(const NodeRecord& r, const Vec3d& c) {
 // Returns how many nodes lie between themselves and their parents.
 size_t check_weights(const TreeRule& rule) {
   const auto scene = test::baked_scene(test::random_cloud(5000, 1, 0), Quality::lossless, rule);
-  const LodTree& tree = scene->tree;
+  const auto whole = whole_tree(*scene);
+  const LodTree& tree = *whole;
   Workers workers(2);
   DrawList draws(scene, Lod::cut, Search::temporal, std::pmr::get_default_resource(), workers);
   size_t between = 0;
@@ -134,7 +136,7 @@ TEST(Weights, DamageStopsOnlyTheFramesThatNeedIt) {
     ASSERT_EQ(damaged->damaged_chunks.size(), 1u);
     for (const FrameInput& input : inputs) {
       const test::Frame expected = test::render(*cpu, whole, {}, input);
-      if (needs(whole->tree, expected.cut, file.nodes_of(index))) {
+      if (needs(*whole_tree(*whole), expected.cut, file.nodes_of(index))) {
         ++stopped;
         EXPECT_EQ(test::error_code([&] { test::render(*cpu, damaged, {}, input); }),
                   ErrorCode::damaged_chunk);

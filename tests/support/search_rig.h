@@ -71,7 +71,7 @@ class SearchRig {
   bool same_weights(const PartitionedSearch& search, const char* name, const CutQuery& query,
                     const std::vector<float>& weights) {
     items_.resize(search.cut().size());
-    weigh_cut(tree, search_tree, search, query, items_, workers);
+    weigh_cut(links_of(tree), search_tree, search, query, items_, workers);
     for (size_t i = 0; i < items_.size(); ++i) {
       const DrawItem& item = items_[i];
       const bool whole = item.t == 1.0f;

@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "runtime/frame/whole_tree.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/stream_rig.h"
 
@@ -110,7 +111,7 @@ inline void fly_streamed(Backend& backend, const std::function<double()>& megaby
     View view(scene, backend, {}, memory, workers);
     while (flown() < 1 && !testing::Test::HasFailure()) {
       const Frame frame = render(view, flight.next());
-      EXPECT_TRUE(is_cut(resident->tree, frame.cut));
+      EXPECT_TRUE(is_cut(*whole_tree(*resident), frame.cut));
       ++frames;
     }
   };

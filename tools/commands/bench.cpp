@@ -70,7 +70,7 @@ void bench(BenchArguments& arguments) {
   Workers workers;
   const auto scene = load(arguments.scene, workers);
   const bool search = arguments.stages == BenchStages::search;
-  if (search && scene->tree.size() == 0)
+  if (search && scene->node_count == 0)
     throw Error(ErrorCode::refused_input,
                 scene->name + ": found a scene without a tree, expected a .voy that is not empty");
   if (scene->flat()) arguments.lod.refuse_without_tree(scene->name);

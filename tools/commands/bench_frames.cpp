@@ -165,7 +165,7 @@ Json bench_frames(const BenchArguments& arguments, const BenchSubject& subject) 
           {"frames", path.frames.size()},
           {"repeats", path.repeats},
           {"leaves", subject.scene->leaf_count},
-          {"nodes", subject.scene->tree.size()},
+          {"nodes", subject.scene->node_count},
           {"sh_degree", subject.scene->sh_degree},
           {"rates",
            {{"bytes_per_second", rates.bytes},

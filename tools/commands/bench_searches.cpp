@@ -70,7 +70,7 @@ Json time_searches(const BenchArguments& arguments, const BenchSubject& subject)
 Json bench_searches(const BenchArguments& arguments, const BenchSubject& subject) {
   const Scene& scene = *subject.scene;
   Json report = {{"leaves", scene.leaf_count},
-                 {"nodes", scene.tree.size()},
+                 {"nodes", scene.node_count},
                  {"subtrees", scene.search.subtrees.size()},
                  {"chunks", scene.search.chunk_count()},
                  {"search_bytes", scene.search.bytes()}};

@@ -86,7 +86,7 @@ Json bench_stereo(const BenchArguments& arguments, const BenchSubject& subject) 
           {"frames", subject.cameras.size() / 2},
           {"repeats", repeats},
           {"leaves", subject.scene->leaf_count},
-          {"nodes", subject.scene->tree.size()},
+          {"nodes", subject.scene->node_count},
           {"rows", rows}};
 }
 

@@ -81,9 +81,11 @@ void settle_streaming(RenderArguments& arguments) {
   choices.wait_resident = arguments.wait_resident.value_or(choices.keep_going);
 }
 
-// METHOD §12: every leaf, antialiased, with the truth's α threshold.
+// METHOD §12: every leaf, unless something else is asked for, antialiased, with the truth's α
+// threshold.
 void settle_truth(RenderArguments& arguments) {
   RenderChoices& choices = arguments.choices;
+  if (!arguments.lod.given()) choices.lod = VOY_LOD_ALL_LEAVES;
   if (choices.lod != VOY_LOD_ALL_LEAVES)
     bad_usage("--supersample: found it with a cut, expected --lod off: the truth has every leaf");
   if (choices.antialias != VOY_ANTIALIAS_ON)
@@ -122,11 +124,11 @@ void render(RenderArguments& arguments) {
   arguments.choices.lod = public_lod(arguments.lod.value());
   settle_outputs(arguments);
   settle_streaming(arguments);
+  if (arguments.choices.supersample > 1) settle_truth(arguments);
   if (arguments.choices.time_budget > 0 && arguments.choices.lod == VOY_LOD_ALL_LEAVES)
     bad_usage(
         "--time-budget: found it with --lod off or --select flat, expected a cut: tau is what it "
         "changes");
-  if (arguments.choices.supersample > 1) settle_truth(arguments);
   FrameFiles files(arguments.outputs, {arguments.scene, arguments.cameras});
   const Progress progress = progress_bar();
   const std::vector<Camera> cameras = choose_cameras(arguments, progress);

@@ -143,7 +143,7 @@ void add_splatting(CLI::App& command, RenderChoices& choices) {
                            "swells");
   add_whole_option(command, "--supersample", {1, 16}, choices.supersample,
                    "Draw so many samples a pixel along each axis and average them: the truth that "
-                   "pictures are judged by (docs/method.md). With --lod off")
+                   "pictures are judged by (docs/method.md), of every leaf")
       ->type_name("S");
   add_whole_option(command, "--lut-size", {1, 4096}, choices.lut_size,
                    "Intervals of the table of --exp lut")

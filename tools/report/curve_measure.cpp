@@ -5,6 +5,7 @@
 
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/view.h"
+#include "runtime/frame/whole_tree.h"
 #include "tools/metrics/popping.h"
 #include "tools/report/compare_images.h"
 #include "tools/report/cut_counts.h"
@@ -39,7 +40,8 @@ std::vector<CurveRow> CurveMeasurement::run(const std::string& tree,
                                             const std::shared_ptr<const Scene>& scene,
                                             const std::function<void()>& done) {
   View view(scene, backend_, desc_, std::pmr::get_default_resource(), workers_);
-  CutCounts counts(scene->tree, workers_);
+  const std::shared_ptr<const LodTree> whole = whole_tree(*scene);
+  CutCounts counts(*whole, workers_);
   CurveRow named;
   named.tree = tree;
   std::vector<CurveRow> rows;

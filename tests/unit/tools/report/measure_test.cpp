@@ -177,7 +177,7 @@ TEST(ReportScenes, OtherStorageIsOfTheSameTree) {
                static_cast<std::streamsize>(bytes.size()));
     std::filesystem::remove(folder.file("compact.voy"));
     ReportScenes scenes(path, folder.file(""), workers, {});
-    return scenes.get(storage, scenes.own()->sh_degree)->tree.size();
+    return scenes.get(storage, scenes.own()->sh_degree)->node_count;
   };
   for (const TreeRule& rule : {TreeRule{}, test::kHierarchicalGs})
     EXPECT_EQ(nodes(Storage::compact, rule), nodes(Storage::lossless, rule));
