@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "runtime/format/check_chunk.h"
 #include "runtime/format/compact_records.h"
@@ -164,7 +165,15 @@ void take_geometry(GaussianPlanes& planes, const ChunkHeader& header, Chunk& chu
   });
 }
 
-void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficients, Chunk& chunk) {
+// In memory a step has as many bits as its range takes (runtime/math/sh_code.h).
+void check_step(int8_t step, int most, const ChunkLocation& location) {
+  if (std::abs(step) > most)
+    location.damaged("an SH step of " + std::to_string(step),
+                     std::to_string(-most) + " to " + std::to_string(most));
+}
+
+void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficients,
+             const ChunkLocation& location, Chunk& chunk) {
   const size_t stride = 3 * coefficients;
   float* sh = chunk.sh.data();
   for (size_t c = 0; c < 3; ++c)
@@ -174,8 +183,9 @@ void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficie
   for (size_t band = 0; band_start(band) < coefficients; ++band)
     for (size_t k = 3 * band_start(band); k < 3 * band_start(band + 1); ++k)
       planes.take(1, [&](size_t i, uint32_t q) {
-        sh[i * stride + k] =
-            restore_sh(static_cast<int8_t>(q), header.sh_scale[band], kShSteps[band]);
+        const auto step = static_cast<int8_t>(q);
+        check_step(step, kShSteps[band], location);
+        sh[i * stride + k] = restore_sh(step, header.sh_scale[band], kShSteps[band]);
       });
 }
 
@@ -234,7 +244,7 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
   take_geometry(planes, header, chunk);
   std::copy_n(header.sh_scale, 3, chunk.sh_scale.begin());
   chunk.sh.resize(nodes * coefficients * 3);
-  take_sh(planes, header, coefficients, chunk);
+  take_sh(planes, header, coefficients, location, chunk);
   chunk.source_index.resize(nodes);
   planes.take(4, [&](size_t i, uint32_t v) { chunk.source_index[i] = v; });
   chunk.node_code.resize(nodes);

@@ -51,7 +51,7 @@ void load_flat(const ByteSource& source, Workers& workers, Scene& scene) {
   set_bounds(scene);
   complete_profile(scene, workers);
   // What a node costs beside its Gaussian; a tree has at least one a leaf.
-  constexpr uint64_t kNodeBytes = sizeof(NodeRecord) + 2 * sizeof(uint32_t) + sizeof(uint8_t);
+  constexpr uint64_t kNodeBytes = 2 * sizeof(uint32_t) + sizeof(uint8_t);
   scene.notes.push_back(
       {SceneNote::Kind::omitted, 0, scene.gaussians.size() * kNodeBytes, "tree and search",
        "a flat scene draws every Gaussian; bytes are the least that a tree would take"});

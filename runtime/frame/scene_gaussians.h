@@ -27,7 +27,7 @@ void make_gaussian_room(size_t gaussians, size_t groups, Scene& scene);
 
 // Of the i-th Gaussian of a compact chunk, to the bit.
 ShapeCode shape_code(const Chunk& chunk, size_t i);
-// The i-th Gaussian of a chunk. A compact one's after the scales of its group.
+// The i-th Gaussian of a chunk, but for the scales of its group.
 void set_gaussian(const Chunk& chunk, size_t i, size_t index, Scene& scene);
 // One that draws nothing.
 void set_nothing(size_t index, Scene& scene);

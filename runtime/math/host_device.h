@@ -9,3 +9,10 @@
 #else
 #define VOYAGER_HD inline
 #endif
+
+// Before a loop whose arrays a device is to have in registers.
+#if defined(__CUDA_ARCH__)
+#define VOYAGER_UNROLL _Pragma("unroll")
+#else
+#define VOYAGER_UNROLL
+#endif

@@ -49,8 +49,11 @@ VOYAGER_HD Vec3<T> sh_colour(int degree, const Vec3<T>& direction, const Coeffic
   sh_basis(degree, direction, basis);
   Vec3<T> c{T(0), T(0), T(0)};
   const int count = sh_coefficients(degree);
-  for (int k = 0; k < count; ++k)
+  VOYAGER_UNROLL
+  for (int k = 0; k < count; ++k) {
+    VOYAGER_UNROLL
     for (int channel = 0; channel < 3; ++channel) c[channel] += basis[k] * coefficient(k, channel);
+  }
   for (int channel = 0; channel < 3; ++channel) {
     c[channel] += T(0.5);
     c[channel] = c[channel] > T(0) ? c[channel] : T(0);

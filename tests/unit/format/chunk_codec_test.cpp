@@ -1,5 +1,7 @@
 #include "runtime/format/chunk_codec.h"
 
+#include <zstd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -251,6 +253,42 @@ TEST(ChunkCodec, AChunkOutOfPlaceIsRefused) {
   expect_damaged(sound, {{1, 3, 4, 4}, 2, 0}, context);
   expect_damaged(sound, kEnd, context_of(Quality::lossless));
   expect_damaged(sound, kEnd, context_of(Quality::compact, 0));
+}
+
+// Scenes keep steps in as many bits as their range takes, so that one beyond it would spoil others.
+TEST(ChunkCodec, AStepOfShBeyondItsRangeIsRefused) {
+  ChunkContext context = context_of(Quality::compact, 3);
+  context.largest_sh = 2;
+  const EncodedChunk sound = encode_chunk(family(16), context);
+  ChunkHeader header;
+  std::memcpy(&header, sound.bytes.data(), sizeof header);
+  const std::byte* const frame = sound.bytes.data() + sizeof header;
+  std::vector<std::byte> raw(ZSTD_getFrameContentSize(frame, header.payload_bytes));
+  ASSERT_EQ(ZSTD_decompress(raw.data(), raw.size(), frame, header.payload_bytes), raw.size());
+  // Bands 2 and 3 of a family, all of which have one step.
+  constexpr size_t kSteps = 36 * 4;
+  const auto begin = std::search_n(raw.begin(), raw.end(), kSteps, std::byte{31});
+  ASSERT_NE(begin, raw.end());
+  for (const int step : {31, -31, 32, -32, 100, -128})
+    for (const std::ptrdiff_t at : {std::ptrdiff_t{0}, std::ptrdiff_t{kSteps - 1}}) {
+      std::vector<std::byte> planes = raw;
+      planes[static_cast<size_t>(begin - raw.begin() + at)] = static_cast<std::byte>(step);
+      Bytes bytes(sizeof header + ZSTD_compressBound(planes.size()));
+      header.payload_bytes = static_cast<uint32_t>(ZSTD_compress(bytes.data() + sizeof header,
+                                                                 bytes.size() - sizeof header,
+                                                                 planes.data(), planes.size(), 1));
+      std::memcpy(bytes.data(), &header, sizeof header);
+      bytes.resize(sizeof header + header.payload_bytes);
+      bytes.resize((bytes.size() + 63) / 64 * 64);
+      const std::string file = "test.voy";
+      ChunkEntry entry = entry_of(sound);
+      entry.checksum = checksum(bytes);
+      const auto decode = [&] { decode_chunk(bytes, {file, 0, entry, kEnd}, context); };
+      if (std::abs(step) <= 31)
+        EXPECT_NO_THROW(decode()) << step;
+      else
+        EXPECT_EQ(test::error_code(decode), ErrorCode::damaged_chunk) << step;
+    }
 }
 
 // What a device relies on without reading the whole file.
