@@ -66,9 +66,10 @@ VOYAGER_HD constexpr int sh_six_bits(uint32_t word, int i) {
 // restore_sh() of a step, less the scale: a division takes longer than all the rest of a row.
 template <size_t kCount>
 constexpr std::array<double, kCount> sh_shares(int steps) {
+  constexpr size_t kZero = kCount / 2;
   std::array<double, kCount> shares{};
   for (size_t i = 0; i < kCount; ++i)
-    shares[i] = (static_cast<double>(i) - static_cast<double>(kCount / 2)) / steps;
+    shares[i] = (static_cast<double>(i) - static_cast<double>(kZero)) / steps;
   return shares;
 }
 inline constexpr auto kShBandOneShares = sh_shares<256>(kShSteps[0]);
