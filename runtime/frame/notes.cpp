@@ -9,12 +9,13 @@ constexpr uint32_t kLeastCoefficientBytes = 2;  // a device's binary16
 // Of the bands above `kept` up to `stored`.
 void add_sh_note(Scene& scene, int kept, int stored, const char* why) {
   if (kept >= stored) return;
-  const auto missing = static_cast<uint64_t>(sh_coefficients(stored) - sh_coefficients(kept));
+  const auto missing = static_cast<uint32_t>(sh_coefficients(stored) - sh_coefficients(kept));
+  const uint32_t of_splat = is_coded(scene) ? sh_row_bytes(stored) - sh_row_bytes(kept)
+                                            : missing * 3 * kLeastCoefficientBytes;
   const uint64_t gaussians = std::max<uint64_t>(gaussian_count(scene), scene.node_count);
   const uint64_t each = gaussian_bytes(scene.storage, stored) - gaussian_bytes(scene.storage, kept);
   scene.notes.push_back({SceneNote::Kind::omitted, 0, gaussians * each,
-                         "SH bands above degree " + std::to_string(kept), why,
-                         static_cast<uint32_t>(missing) * 3 * kLeastCoefficientBytes});
+                         "SH bands above degree " + std::to_string(kept), why, of_splat});
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ double psnr_with_share(std::span<const HeldOut> looked, size_t view, double shar
   double finer_share = 1, finer = looked.front().views[view].leaves;
   for (const HeldOut& cut : looked) {
     const HeldOut::View& at = cut.views[view];
+    if (!(at.share > 0)) return finer;  // a view of nothing that learns
     if (at.share <= share && at.share < finer_share) {
       const double t = std::log(share / at.share) / std::log(finer_share / at.share);
       return at.cut + std::min(t, 1.0) * (finer - at.cut);
