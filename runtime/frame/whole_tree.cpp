@@ -20,12 +20,8 @@ void fill_interior(const SearchTree& search, LodTree& tree) {
 
 }  // namespace
 
-bool keeps_records(const Scene& scene) {
-  return scene.search.leaves_have_extent || !scene.damaged_chunks.empty();
-}
-
 void leave_out_records(Scene& scene) {
-  if (keeps_records(scene)) return;
+  if (scene.search.leaves_have_extent || !scene.damaged_chunks.empty()) return;
   const auto drop = [](auto& array) {
     std::decay_t<decltype(array)>(array.get_allocator()).swap(array);
   };

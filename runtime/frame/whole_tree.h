@@ -7,9 +7,8 @@
 
 namespace voyager {
 
-// Whether a scene keeps them: where leaves have extents, or a chunk is damaged.
-bool keeps_records(const Scene& scene);
-// Of a resident scene whose search is made; the counts of children stay.
+// Of a resident scene whose search is made. The counts of children stay, and so do the records
+// where leaves have extents or a chunk is damaged.
 void leave_out_records(Scene& scene);
 // The tree with a record for each node: the scene's, or made from the search's. A leaf then has its
 // parent's box, in which it lies, and an extent of 0: no search tells that from its own. The scene
