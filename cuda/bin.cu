@@ -6,6 +6,7 @@
 #include <cub/block/block_scan.cuh>
 
 #include "cuda/bin_order.cuh"
+#include "cuda/grid.h"
 #include "cuda/splat_launch.h"
 
 namespace voyager::cuda {
@@ -13,8 +14,8 @@ namespace {
 
 // Two blocks are all that a multiprocessor of Orin holds.
 constexpr unsigned kBinThreads = 768;
-constexpr uint32_t kNarrow = 4;         // tiles of a strip that a lane places by itself
-constexpr uint32_t kBandTiles = 12288;  // of which a block counts in shared memory at a time
+constexpr unsigned kBinBlocks = 2;  // of a multiprocessor
+constexpr uint32_t kNarrow = 4;     // tiles of a strip that a lane places by itself
 
 // The strips of a block, and the tiles that it sees to: a band of those of its region's eye.
 struct Share {
@@ -23,16 +24,16 @@ struct Share {
   uint32_t first_tile, tiles;
 };
 
-__device__ Share bin_share(const SplatView& splats) {
+__device__ Share bin_share(const SplatView& splats, uint32_t band) {
   const uint32_t region = blockIdx.x % kStripRegions, room = splats.strip_room / kStripRegions;
   const uint32_t part = blockIdx.x / kStripRegions, parts = gridDim.x / kStripRegions;
   const uint32_t count = min(*strip_count(splats, region), room);
   const uint32_t each = (count + parts - 1) / parts, first = min(part * each, count);
   const FrameTiles& frame = splats.frame;
   const uint32_t eye = region / (kStripRegions / frame.eyes);
-  const uint32_t tile = min(frame.first[eye] + blockIdx.y * kBandTiles, frame.first[eye + 1]);
+  const uint32_t tile = min(frame.first[eye] + blockIdx.y * band, frame.first[eye + 1]);
   return {splats.strips + region * room + first, min(each, count - first), tile,
-          min(kBandTiles, frame.first[eye + 1] - tile)};
+          min(band, frame.first[eye + 1] - tile)};
 }
 
 // The part of a strip that lies in the band, from the band's first tile on.
@@ -49,9 +50,11 @@ __device__ uint32_t* bin_offsets(const SplatView& splats, const Share& share) {
   return splats.tile_offsets + size_t{blockIdx.x} * splats.frame.count() + share.first_tile;
 }
 
-__global__ void __launch_bounds__(kBinThreads, 2) bin_count(SplatView splats) {
-  __shared__ uint32_t counts[kBandTiles];
-  const Share share = bin_share(splats);
+// band: tiles of an eye that a block counts in shared memory at a time.
+__global__ void __launch_bounds__(kBinThreads, kBinBlocks)
+    bin_count(SplatView splats, uint32_t band) {
+  extern __shared__ uint32_t counts[];
+  const Share share = bin_share(splats, band);
   for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) counts[i] = 0;
   __syncthreads();
   for (uint32_t i = threadIdx.x; i < share.count; i += kBinThreads) {
@@ -153,9 +156,10 @@ __device__ void bin_strip(const SplatView& splats, uint32_t* cursors, const Tile
   }
 }
 
-__global__ void __launch_bounds__(kBinThreads, 2) bin_scatter(SplatView splats) {
-  __shared__ uint32_t cursors[kBandTiles];
-  const Share share = bin_share(splats);
+__global__ void __launch_bounds__(kBinThreads, kBinBlocks)
+    bin_scatter(SplatView splats, uint32_t band) {
+  extern __shared__ uint32_t cursors[];
+  const Share share = bin_share(splats, band);
   const uint32_t* offsets = bin_offsets(splats, share);
   for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads)
     cursors[i] = splats.tiles[share.first_tile + i].first + offsets[i];
@@ -169,23 +173,34 @@ __global__ void __launch_bounds__(kBinThreads, 2) bin_scatter(SplatView splats) 
   }
 }
 
+// What a block may count at once, so that kBinBlocks still fit a multiprocessor: 20,000 tiles on
+// Orin, where an eye of 2064x2208 pixels has 17,802.
+uint32_t most_band_tiles() {
+  return static_cast<uint32_t>(shared_bytes_of_block(kBinBlocks) / sizeof(uint32_t));
+}
+
 }  // namespace
 
 // As many as are resident, or the last would run alone.
 unsigned bin_blocks(unsigned multiprocessors) {
-  return std::max(2 * multiprocessors / kStripRegions, 1u) * kStripRegions;
+  return std::max(kBinBlocks * multiprocessors / kStripRegions, 1u) * kStripRegions;
 }
 
 void launch_bin(const SplatFrame& f) {
   uint32_t most = 0;  // tiles of an eye
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
     most = std::max(most, f.splats.frame.first[eye + 1] - f.splats.frame.first[eye]);
-  const dim3 blocks(bin_blocks(f.multiprocessors), (most + kBandTiles - 1) / kBandTiles);
-  bin_count<<<blocks, kBinThreads, 0, f.stream>>>(f.splats);
+  const uint32_t bands = (most + most_band_tiles() - 1) / most_band_tiles();
+  const uint32_t band = (most + bands - 1) / bands;
+  const auto bytes = static_cast<int>(band * sizeof(uint32_t));
+  const dim3 blocks(bin_blocks(f.multiprocessors), bands);
+  allow_shared_bytes(bin_count, bytes, "bin_count");
+  bin_count<<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
   check(cudaGetLastError(), "bin_count");
   bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats);
   check(cudaGetLastError(), "bin_place");
-  bin_scatter<<<blocks, kBinThreads, 0, f.stream>>>(f.splats);
+  allow_shared_bytes(bin_scatter, bytes, "bin_scatter");
+  bin_scatter<<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
   check(cudaGetLastError(), "bin_scatter");
 }
 

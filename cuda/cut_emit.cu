@@ -12,6 +12,10 @@ namespace {
 constexpr unsigned kEmitThreads = 1024;
 constexpr unsigned kItems = kBlockSubtrees / kEmitThreads;
 constexpr unsigned kEmitGroups = kEmitThreads / kGroupLanes;
+// Thread blocks that share a block's subtrees where so many would have nothing to do. Each counts
+// all of them, so that it does not pay where all have enough.
+constexpr uint32_t kShares = 4;
+static_assert(kBlockSubtrees / kShares % kEmitGroups == 0);
 using LevelScan = cub::BlockScan<uint64_t, kEmitThreads, cub::BLOCK_SCAN_WARP_SCANS>;
 
 // Counts of the three levels in one word: at most 1024 · 31 each.
@@ -115,14 +119,17 @@ template <bool kOrigin>
 __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, StateView state) {
   __shared__ EmitShared shared;
   const uint32_t dirty = state.work[1].dirty_count;
-  for (uint32_t i = blockIdx.x; i < dirty; i += gridDim.x) {
-    const Block block = state.blocks[state.dirty[i]];
+  const uint32_t shares = kShares * dirty <= gridDim.x ? kShares : 1;
+  for (uint32_t i = blockIdx.x; i < shares * dirty; i += gridDim.x) {
+    const Block block = state.blocks[state.dirty[i / shares]];
+    const uint32_t begin = i % shares * (kBlockSubtrees / shares);
+    const uint32_t end = min(begin + kBlockSubtrees / shares, block.last - block.first);
     __syncthreads();
     count_block(tree, state, block, shared);
     uint32_t first[kLevels];
     for (unsigned level = 0; level < kLevels; ++level)
       first[level] = state.segments[block.first_segment + level * block.stride].first;
-    for (uint32_t base = 0; base < block.last - block.first; base += kEmitGroups) {
+    for (uint32_t base = begin; base < end; base += kEmitGroups) {
       const uint32_t k = base + threadIdx.x / kGroupLanes;
       const uint32_t cut = shared.cut[k];
       if (!__any_sync(kAllLanes, cut != 0)) continue;
@@ -134,7 +141,7 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
       const SearchSubtree s = load_subtree(tree, min(block.first + k, block.last - 1));
       emit_subtree<kOrigin>(tree, state, s, cut, places);
     }
-    clear_rest(state, block);
+    if (begin == 0) clear_rest(state, block);
   }
 }
 
@@ -142,8 +149,8 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
 
 void launch_emit(const SearchFrame& f, bool weights) {
   const auto kernel = weights ? search_emit<true> : search_emit<false>;
-  static const unsigned resident = resident_blocks(search_emit<true>, kEmitThreads, 1);
-  kernel<<<std::min(f.state.block_count, f.multiprocessors * resident), kEmitThreads, 0,
+  const unsigned resident = resident_blocks<search_emit<true>>(kEmitThreads);
+  kernel<<<std::min(kShares * f.state.block_count, f.multiprocessors * resident), kEmitThreads, 0,
            f.stream>>>(f.tree, f.state);
   check(cudaGetLastError(), "search_emit");
 }

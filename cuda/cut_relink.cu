@@ -68,7 +68,7 @@ __global__ void __launch_bounds__(kThreads) search_forget(uint32_t subtrees, Sta
 }  // namespace
 
 void launch_relink(const SearchFrame& f, const Relinked& relinked) {
-  static const unsigned resident = resident_blocks(search_relink, kThreads, 1);
+  const unsigned resident = resident_blocks<search_relink>(kThreads);
   const uint32_t threads = std::max(relinked.unlinked_count * kGroupLanes, relinked.changed_count);
   if (threads == 0) return;
   search_relink<<<std::min((threads + kThreads - 1) / kThreads, f.multiprocessors * resident),
@@ -77,7 +77,7 @@ void launch_relink(const SearchFrame& f, const Relinked& relinked) {
 }
 
 void launch_forget(const SearchFrame& f) {
-  static const unsigned resident = resident_blocks(search_forget, kThreads, 1);
+  const unsigned resident = resident_blocks<search_forget>(kThreads);
   search_forget<<<f.multiprocessors * resident, kThreads, 0, f.stream>>>(f.tree.subtree_count,
                                                                          f.state);
   check(cudaGetLastError(), "search_forget");

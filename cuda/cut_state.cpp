@@ -53,6 +53,7 @@ CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
   origin_ = Buffer<CutOrigin>(weights ? places : 0);
   weights_ = Buffer<float>(weights ? places : 0);
   ids_ = Buffer<uint32_t>(tree.chunks_come_and_go ? places : 0);
+  bounds_ = Buffer<MeanBounds>(places / kRowPlaces + 1);
   for (const Buffer<uint32_t>* zero : {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_,
                                        &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);
@@ -85,7 +86,8 @@ StateView CutState::view() const {
           nodes_.data(),
           origin_.data(),
           weights_.data(),
-          ids_.data()};
+          ids_.data(),
+          bounds_.data()};
 }
 
 }  // namespace voyager::cuda

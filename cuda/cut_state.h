@@ -3,18 +3,20 @@
 // subtree, so that no result depends on the order in which warps come by.
 #include "cuda/buffer.h"
 #include "cuda/device_tree.h"
+#include "cuda/search.h"
 #include "runtime/lod/subtrees.h"
 #include "runtime/select/visit.h"
 #include "runtime/select/watch.h"
+#include "runtime/stages/reach.h"
 
 namespace voyager::cuda {
 
 inline constexpr uint32_t kBlockSubtrees = 1024;
 inline constexpr uint32_t kLevels = 3;  // of a tier
 
-// Places for a segment of so many nodes: one in eight to spare.
+// Places for a segment of so many nodes, in whole rows: one in eight to spare.
 VOYAGER_HD uint32_t segment_room(uint32_t size) {
-  constexpr uint32_t kAlign = 32;
+  constexpr uint32_t kAlign = kRowPlaces;
   return size == 0 ? 0 : (size + size / 8 + 2 * kAlign - 1) / kAlign * kAlign;
 }
 
@@ -75,10 +77,11 @@ struct StateView {
   uint32_t* due;          // subtrees to visit
   uint32_t* signals;      // to open or close a subtree; kNoSignal where not written yet
   FrameCounters* work;
-  uint32_t* nodes;    // the cut list: ascending, with kNoNode in between
-  CutOrigin* origin;  // of each place
-  float* weights;     // of each place
-  uint32_t* ids;      // of each place, where nodes are addresses: the file's
+  uint32_t* nodes;     // the cut list: ascending, with kNoNode in between
+  CutOrigin* origin;   // of each place
+  float* weights;      // of each place
+  uint32_t* ids;       // of each place, where nodes are addresses: the file's
+  MeanBounds* bounds;  // of each row
 };
 
 inline constexpr uint32_t kNoSignal = 0xffffffffu;
@@ -105,6 +108,7 @@ class CutState {
   Buffer<CutOrigin> origin_;
   Buffer<float> weights_;
   Buffer<uint32_t> ids_;
+  Buffer<MeanBounds> bounds_;
 };
 
 }  // namespace voyager::cuda

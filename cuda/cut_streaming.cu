@@ -18,7 +18,7 @@ __global__ void __launch_bounds__(kThreads)
 }  // namespace
 
 void launch_streaming(const SearchFrame& f) {
-  static const unsigned resident = resident_blocks(search_streaming, kThreads, 1);
+  const unsigned resident = resident_blocks<search_streaming>(kThreads);
   search_streaming<<<f.multiprocessors * resident, kThreads, 0, f.stream>>>(f.tree, f.state,
                                                                             f.sight, f.reference);
   check(cudaGetLastError(), "search_streaming");

@@ -199,9 +199,9 @@ __global__ void __launch_bounds__(kThreads)
 
 template <bool kAll>
 void launch_stages(const SearchFrame& f, const Travels& travels, uint32_t max_due) {
-  static const unsigned check_blocks = resident_blocks(search_check<kAll>, kThreads, 1);
-  static const unsigned visit_blocks = resident_blocks(search_visit, kThreads, 1);
-  static const unsigned descend_blocks = resident_blocks(search_descend, kThreads, 1);
+  const unsigned check_blocks = resident_blocks<search_check<kAll>>(kThreads);
+  const unsigned visit_blocks = resident_blocks<search_visit>(kThreads);
+  const unsigned descend_blocks = resident_blocks<search_descend>(kThreads);
   search_check<kAll>
       <<<std::min(f.state.block_count, f.multiprocessors * check_blocks), kThreads, 0, f.stream>>>(
           f.state, travels, f.reference);

@@ -13,9 +13,13 @@ class CutDraws final : public Draws {
  public:
   CutDraws(std::unique_ptr<CutSearch> search, Lod lod) : search_(std::move(search)), lod_(lod) {}
 
-  void update(const CutQuery& query, cudaStream_t stream) override {
+  void update(const CutQuery& query, const GaussianView& gaussians, cudaStream_t stream) override {
     search_->find(query, stream);
-    search_->weigh(weights_query(lod_, query), stream);
+    search_->bound(gaussians, stream);
+    query_ = query;
+  }
+  void weigh(const RowList& rows, cudaStream_t stream) override {
+    search_->weigh(weights_query(lod_, query_), rows, stream);
   }
   DrawView view() const override { return {search_->list(), nullptr}; }
   void end_frame(cudaStream_t stream) noexcept override { search_->end_frame(stream); }
@@ -38,6 +42,7 @@ class CutDraws final : public Draws {
  private:
   std::unique_ptr<CutSearch> search_;
   Lod lod_;
+  CutQuery query_{};  // the last frame's
 };
 
 // A tree's leaves go in the order of their nodes, neighbours together; the contract's
@@ -63,7 +68,7 @@ class LeafDraws final : public Draws {
     ids_ = upload(std::span<const uint32_t>(order));
   }
 
-  void update(const CutQuery&, cudaStream_t) override {
+  void update(const CutQuery&, const GaussianView&, cudaStream_t) override {
     if (!damage_.empty()) throw Error(ErrorCode::damaged_chunk, damage_);
   }
   DrawView view() const override {

@@ -11,10 +11,13 @@ namespace voyager::cuda {
 class Draws {
  public:
   virtual ~Draws() = default;
-  // Launches the search and the weights, where there are any. Throws Error(damaged_chunk)
-  // where the frame needs a node that is not there.
-  virtual void update(const CutQuery& query, cudaStream_t stream) = 0;
+  // Launches the search. gaussians: the instance's. Throws Error(damaged_chunk) where the frame
+  // needs a node that is not there.
+  virtual void update(const CutQuery& query, const GaussianView& gaussians,
+                      cudaStream_t stream) = 0;
   virtual DrawView view() const = 0;
+  // Launches the weights of those rows, where there are any weights.
+  virtual void weigh(const RowList&, cudaStream_t) {}
   // As CutSearch has it.
   virtual void end_frame(cudaStream_t) noexcept {}
   // What collect() needs of the last frame: report_bytes() in pinned memory, copied on the

@@ -2,11 +2,22 @@
 
 namespace voyager::cuda {
 
+namespace {
+
+size_t pixels_of(const FrameEye& eye) {
+  return size_t{eye.camera.width} * eye.camera.height;
+}
+
+}  // namespace
+
+bool FrameLimits::fits(const FrameEye& eye) const {
+  return eye.limits.values == nullptr || values_.size() >= pixels_of(eye);
+}
+
 void FrameLimits::fit(const FrameEye& eye) {
-  const size_t pixels = size_t{eye.camera.width} * eye.camera.height;
-  if (eye.limits.values == nullptr || values_.size() >= pixels) return;
+  if (fits(eye)) return;
   values_ = {};
-  values_ = Buffer<float>(pixels);
+  values_ = Buffer<float>(pixels_of(eye));
 }
 
 DepthLimits FrameLimits::upload(const FrameEye& eye, cudaStream_t stream) const {

@@ -9,7 +9,9 @@ namespace voyager::cuda {
 
 class FrameLimits {
  public:
-  // Makes room for them, if there are any. May allocate.
+  // Whether there is room for them, if there are any.
+  bool fits(const FrameEye& eye) const;
+  // Makes room for them. Nothing on the device uses the buffer. Throws Error.
   void fit(const FrameEye& eye);
   // Whether some frame had them.
   bool any() const { return values_.size() != 0; }

@@ -35,7 +35,8 @@ class FrameReport {
  private:
   static_assert(sizeof(SplatCounters) % alignof(std::max_align_t) == 0);
   PinnedMemory memory_;
-  Event copied_{cudaEventDisableTiming};
+  // A host that waits for a frame sleeps meanwhile: a headset has no core to spin on.
+  Event copied_{cudaEventDisableTiming | cudaEventBlockingSync};
 };
 
 }  // namespace voyager::cuda

@@ -36,7 +36,7 @@ DeviceInstances::DeviceInstances(std::vector<DeviceInstance> all, uint32_t eyes)
 
 void DeviceInstances::update(const FrameInput& frame, cudaStream_t stream) {
   for (size_t i = 0; i < all_.size(); ++i)
-    all_[i].draws->update(cut_query(frame, i, all_[i].scene->origin), stream);
+    all_[i].draws->update(cut_query(frame, i, all_[i].scene->origin), all_[i].view(), stream);
 }
 
 bool DeviceInstances::siblings() const {

@@ -41,7 +41,8 @@ class PartitionedSearch final : public CutSearch {
   ~PartitionedSearch() override { device_->use_quietly(); }
 
   void find(const CutQuery& query, cudaStream_t stream) override;
-  void weigh(const CutQuery& query, cudaStream_t stream) override;
+  void bound(const GaussianView& gaussians, cudaStream_t stream) override;
+  void weigh(const CutQuery& query, const RowList& rows, cudaStream_t stream) override;
   CutList list() const override;
   void end_frame(cudaStream_t stream) noexcept override {
     if (streamed_) streamed_->reader.end(stream);
@@ -137,15 +138,20 @@ void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
   started_ = true;
 }
 
-void PartitionedSearch::weigh(const CutQuery& query, cudaStream_t stream) {
+void PartitionedSearch::bound(const GaussianView& gaussians, cudaStream_t stream) {
+  if (tree_->view().subtree_count != 0)
+    launch_bound(state_->view(), gaussians, weights_, device_->multiprocessors(), stream);
+}
+
+void PartitionedSearch::weigh(const CutQuery& query, const RowList& rows, cudaStream_t stream) {
   const SearchFrame now = frame(query, stream);
-  if (now.tree.subtree_count != 0) launch_weigh(now);
+  if (now.tree.subtree_count != 0) launch_weigh(now, rows);
 }
 
 CutList PartitionedSearch::list() const {
   const StateView state = state_->view();
   return {state.nodes, weights_ ? state.weights : nullptr, &state.work[1].list_size,
-          state_->list_room()};
+          state_->list_room(), state.bounds};
 }
 
 FrameCounters PartitionedSearch::counters() const {

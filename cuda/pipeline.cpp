@@ -9,6 +9,7 @@
 #include "cuda/frame_image.h"
 #include "cuda/frame_limits.h"
 #include "cuda/frame_report.h"
+#include "cuda/range.h"
 #include "cuda/splat_state.h"
 #include "runtime/base/error.h"
 #include "runtime/frame/choice_omission.h"
@@ -24,6 +25,13 @@ Buffer<float> upload_lut(const PipelineDesc& desc) {
   std::vector<float> lut(desc.lut_size + 1);
   fill_alpha_lut(desc.lut_size, lut.data());
   return upload(std::span<const float>(lut));
+}
+
+template <class Work>
+void run_stage(Stage stage, FrameReport& report, const Work& work) {
+  const Range range(kStageNames[stage]);
+  work();
+  report.timer.end(stage);
 }
 
 class SplatPipeline final : public Pipeline {
@@ -65,6 +73,7 @@ class SplatPipeline final : public Pipeline {
   using Eyes = std::array<RasterEye, kMaxEyes>;
 
   Report begin_frame(const FrameInput& frame);
+  void fit(const FrameInput& frame, const FrameTiles& tiles);
   void launch_search(const FrameInput& frame, FrameReport& report);
   SplatFrame work(const FrameTiles& tiles) const;
   void launch_lists(const FrameInput& frame, FrameReport& report);
@@ -77,6 +86,7 @@ class SplatPipeline final : public Pipeline {
   }
   void make_room();
   void collect(const FrameReport& report, FrameStats& stats) const;
+  uint64_t culling_bytes(const SplatCounters& counted) const;
   void count_bytes(const FrameReport& report, FrameStats& stats) const;
 
   std::shared_ptr<const Device> device_;
@@ -101,6 +111,8 @@ void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work
     for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
       work.params[eye] =
           project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i), desc_);
+    work.rows = launch_rows(work);
+    instance.draws->weigh(work.rows, stream_.get());
     if (launch_project(work, desc_.alpha_filter)) ++work.instance;
   }
 }
@@ -118,12 +130,9 @@ void SplatPipeline::launch_lists(const FrameInput& frame, FrameReport& report) {
   report.room = splats_.room();
   SplatFrame lists = work(report.tiles);
   splats_.begin_frame(report.tiles, stream_.get());
-  launch_projections(frame, lists);
-  report.timer.end(kProject);
-  launch_bin(lists);
-  report.timer.end(kBin);
-  launch_sort(lists);
-  report.timer.end(kSort);
+  run_stage(kProject, report, [&] { launch_projections(frame, lists); });
+  run_stage(kBin, report, [&] { launch_bin(lists); });
+  run_stage(kSort, report, [&] { launch_sort(lists); });
 }
 
 // Lists that found too little room are made again with more.
@@ -138,12 +147,15 @@ void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& r
 }
 
 void SplatPipeline::launch_image(const Eyes& eyes, FrameReport& report) {
-  launch_rasterize(
-      work(report.tiles),
-      {desc_.exponential, desc_.alpha_filter, desc_.count_pixels, instances_.siblings(),
-       lut_.data(), desc_.lut_size, log_threshold(desc_.antialias)},
-      eyes.data());
-  report.timer.end(kRasterize);
+  const RasterChoices choices{desc_.exponential,
+                              desc_.alpha_filter,
+                              desc_.count_pixels,
+                              instances_.siblings(),
+                              lut_.data(),
+                              desc_.lut_size,
+                              log_threshold(desc_.antialias)};
+  run_stage(kRasterize, report,
+            [&] { launch_rasterize(work(report.tiles), choices, eyes.data()); });
 }
 
 SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
@@ -165,15 +177,24 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
   for (const FrameEye& eye : frame.eyes)
     report->target_bytes +=
         uint64_t{eye.image.width} * eye.image.height * pixel_bytes(eye.image.format);
-  splats_.fit(report->tiles);
-  for (size_t eye = 0; eye < limits_.size(); ++eye) limits_[eye].fit(frame.eyes[eye]);
+  fit(frame, report->tiles);
   return report;
+}
+
+// To the frame's size. What is too small is replaced, and frames in flight still use it.
+void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
+  bool fits = splats_.fits(tiles);
+  for (size_t eye = 0; eye < limits_.size(); ++eye)
+    fits = fits && limits_[eye].fits(frame.eyes[eye]);
+  if (fits) return;
+  stream_.wait();
+  splats_.fit(tiles);
+  for (size_t eye = 0; eye < limits_.size(); ++eye) limits_[eye].fit(frame.eyes[eye]);
 }
 
 void SplatPipeline::launch_search(const FrameInput& frame, FrameReport& report) {
   report.timer.begin();
-  instances_.update(frame, stream_.get());
-  report.timer.end(kSearch);
+  run_stage(kSearch, report, [&] { instances_.update(frame, stream_.get()); });
 }
 
 // Frames that are left under way cannot be drawn again: they get room before they need it.
@@ -294,6 +315,22 @@ void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const 
   report.timer.collect(stats);
 }
 
+// Bytes that culling reads: of the rows of a list, and of the places of those that it keeps.
+uint64_t SplatPipeline::culling_bytes(const SplatCounters& counted) const {
+  uint64_t bytes = 0;
+  const InstanceCounters* of = counted.instances;
+  for (const DeviceInstance& instance : instances_.all()) {
+    const CutList list = instance.draws->view().list;
+    if (list.room == 0) continue;
+    const uint64_t all = of[1].first_place - of[0].first_place;
+    const bool bounded = list.bounds != nullptr;
+    bytes += (bounded ? uint64_t{of->rows} * kRowPlaces : all) * instances_.bytes_a_place();
+    if (bounded) bytes += all / kRowPlaces * sizeof(MeanBounds);
+    ++of;
+  }
+  return bytes;
+}
+
 // What each stage reads and writes of its own arrays; what siblings share of their parents
 // is left out, and a Gaussian is read once for all eyes, which see about the same ones.
 void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) const {
@@ -307,8 +344,7 @@ void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) co
     candidates += instance.whole + instance.blended;
   constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
   stats.gaussian_bytes = instances_.bytes_a_gaussian();
-  stats.bytes[kProject] = uint64_t{counted.places} * instances_.bytes_a_place() +
-                          2 * sizeof(uint32_t) * candidates +
+  stats.bytes[kProject] = culling_bytes(counted) + 2 * sizeof(uint32_t) * candidates +
                           counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) +
                           counted.strips * sizeof(TileStrip);
   stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;

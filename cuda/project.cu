@@ -1,7 +1,9 @@
-// METHOD §5–7, §12: the Gaussians of a frame to splats. project_cull reads their hulls and lists
+// METHOD §5–7, §12: the Gaussians of a frame to splats. project_cull reads the hulls of the rows
+// that may reach the image, where the search keeps bounds of them, and lists
 // those that may reach the image; project_splats reads the rest of these.
 #include "cuda/device_arrays.cuh"
 #include "cuda/draw_item.cuh"
+#include "cuda/gaussian_hull.cuh"
 #include "cuda/grid.h"
 #include "cuda/splat_launch.h"
 #include "cuda/tile_strips.cuh"
@@ -16,29 +18,13 @@ constexpr unsigned kProjectThreads = 128;
 // registers, which costs more than the few that it then spills.
 constexpr unsigned kPairBlocks = 6;
 
-struct Hull {
-  Vec3f mean;
-  float max_scale, radius;
-};
-
-__device__ Hull hull_at(const GaussianView& gaussians, uint32_t i) {
-  const float4 h = __ldg(gaussians.hulls + i);
-  const uint32_t bounds = __float_as_uint(h.w);
-  return {{h.x, h.y, h.z}, __uint_as_float(bounds & 0xffff0000u), __uint_as_float(bounds << 16)};
-}
-
-// The radius of the support above α*, from the stored one.
-__device__ float radius_above(float stored, float log_threshold) {
-  return sqrtf(fmaxf(stored * stored - 2.0f * (log_threshold - kLogTruthThreshold), 0.0f));
-}
-
 // In the image of any eye.
 template <bool kLod, int kEyes>
 __device__ bool project_may_reach(const SplatFrame& f, const DrawItem& item) {
   if (item.gaussian == kNoNode) return false;
-  Hull hull = hull_at(f.gaussians, item.gaussian);
+  GaussianHull hull = hull_at(f.gaussians, item.gaussian);
   if (kLod && item.t != 1.0f) {
-    const Hull parent = hull_at(f.gaussians, item.parent);
+    const GaussianHull parent = hull_at(f.gaussians, item.parent);
     hull = {lerp_rn(parent.mean, hull.mean, item.t), fmaxf(parent.max_scale, hull.max_scale),
             fmaxf(parent.radius, hull.radius)};
   }
@@ -84,14 +70,18 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
   if (blockIdx.x == 0 && threadIdx.x == 0)
     f.splats.counters->places = counters[1].first_place = first_place + places;
   const uint32_t end = min(places, f.splats.places - min(first_place, f.splats.places));
-  constexpr uint32_t kChunk = kCullThreads * kCullItems;
-  for (uint32_t base = blockIdx.x * kChunk; base < end; base += gridDim.x * kChunk) {
-    uint32_t whole[kCullItems], blended[kCullItems];
+  const bool all = f.rows.rows == nullptr;
+  const uint32_t rows = all ? (end + kRowPlaces - 1) / kRowPlaces : *f.rows.count;
+  constexpr uint32_t kWarps = kCullThreads / 32, kRows = kWarps * kCullItems;
+  for (uint32_t base = blockIdx.x * kRows; base < rows; base += gridDim.x * kRows) {
+    uint32_t places_of[kCullItems], whole[kCullItems], blended[kCullItems];
 #pragma unroll
     for (unsigned k = 0; k < kCullItems; ++k) {
-      const uint32_t place = base + k * kCullThreads + threadIdx.x;
+      const uint32_t at = base + k * kWarps + threadIdx.x / 32;
+      const uint32_t row = all || at >= rows ? at : __ldg(f.rows.rows + at);
+      const uint32_t place = places_of[k] = row * kRowPlaces + threadIdx.x % 32;
       bool reaches = false, blends = false;
-      if (place < end) {
+      if (at < rows && place < end) {
         const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
         reaches = project_may_reach<kLod, kEyes>(f, item);
         blends = kLod && item.t != 1.0f;
@@ -99,12 +89,11 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
       whole[k] = __ballot_sync(kAll, reaches && !blends);
       blended[k] = kLod ? __ballot_sync(kAll, reaches && blends) : 0;
     }
-    const auto place_of = [&](unsigned k) { return base + k * kCullThreads + threadIdx.x; };
     append_places(whole, &counters->whole, found, first,
-                  [&](uint32_t at, unsigned k) { f.splats.candidates[at] = place_of(k); });
+                  [&](uint32_t at, unsigned k) { f.splats.candidates[at] = places_of[k]; });
     if (kLod)
       append_places(blended, &counters->blended, found, first, [&](uint32_t at, unsigned k) {
-        f.splats.candidates[f.splats.places - 1 - at] = place_of(k);
+        f.splats.candidates[f.splats.places - 1 - at] = places_of[k];
       });
   }
 }
@@ -185,15 +174,15 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
 
 template <class Sh, bool kLod, int kEyes>
 void launch(const SplatFrame& f, bool boxes) {
-  const auto kernel = project_splats<Sh, kLod, kEyes>;
-  static const unsigned resident = resident_blocks(kernel, kProjectThreads, 1);
+  constexpr auto kernel = project_splats<Sh, kLod, kEyes>;
+  const unsigned resident = resident_blocks<kernel>(kProjectThreads);
   kernel<<<f.multiprocessors * resident, kProjectThreads, 0, f.stream>>>(f, boxes);
 }
 
 template <bool kLod, int kEyes>
 void launch_for(const SplatFrame& f, bool boxes) {
-  const auto cull = project_cull<kLod, kEyes>;
-  static const unsigned resident = resident_blocks(cull, kCullThreads, 1);
+  constexpr auto cull = project_cull<kLod, kEyes>;
+  const unsigned resident = resident_blocks<cull>(kCullThreads);
   cull<<<f.multiprocessors * resident, kCullThreads, 0, f.stream>>>(f);
   check(cudaGetLastError(), "project_cull");
   with_sh(f.gaussians, [&]<class Sh>() { launch<Sh, kLod, kEyes>(f, boxes); });

@@ -6,11 +6,16 @@
 
 #include "cuda/device.h"
 #include "cuda/device_tree.h"
+#include "cuda/gaussian_view.h"
 #include "cuda/sweep_tree.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
+#include "runtime/stages/reach.h"
 
 namespace voyager::cuda {
+
+// Places of a list that are left out, bounded and weighed together.
+inline constexpr uint32_t kRowPlaces = 32;
 
 // A cut on the device. Places that hold kNoNode are none.
 struct CutList {
@@ -18,6 +23,14 @@ struct CutList {
   const float* weights;   // t by place; null where the search finds none
   const uint32_t* size;   // places in use; on the device, as the arrays are
   uint32_t room;          // no list has more places
+  // By row: of its nodes and of their parents. Null where the search keeps none.
+  const MeanBounds* bounds = nullptr;
+};
+
+// Some rows of a list, in any order; on the device. Null: all of them.
+struct RowList {
+  const uint32_t* rows = nullptr;
+  const uint32_t* count = nullptr;
 };
 
 struct CutFound {
@@ -30,8 +43,10 @@ class CutSearch {
  public:
   virtual ~CutSearch() = default;
   virtual void find(const CutQuery& query, cudaStream_t stream) = 0;
-  // t of the cut just found; only of a search that was made for weights.
-  virtual void weigh(const CutQuery& query, cudaStream_t stream) = 0;
+  // The bounds of the rows that the last find() wrote, where the search keeps them.
+  virtual void bound(const GaussianView&, cudaStream_t) {}
+  // t of the cut just found, in those rows at least; only of a search that was made for weights.
+  virtual void weigh(const CutQuery& query, const RowList& rows, cudaStream_t stream) = 0;
   virtual CutList list() const = 0;
   // What reads the scene's arrays in this frame has been launched, or has failed to be.
   virtual void end_frame(cudaStream_t) noexcept {}
@@ -49,7 +64,7 @@ class CutSearch {
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // kind: any but exhaustive; temporal in place of a sweep. Device memory besides the scene's arrays:
-// 24 bytes a subtree and, for the list, 4.5 bytes a leaf, with weights 18; of a streamed scene
+// 24 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 19; of a streamed scene
 // 28 a subtree, and 4.5 more for each node that there are places for in its pool. Such a scene's
 // search runs under SceneStream::hold(), and ends each run with end_frame().
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,

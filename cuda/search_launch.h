@@ -3,6 +3,7 @@
 #include <cuda_runtime_api.h>
 
 #include "cuda/cut_state.h"
+#include "cuda/gaussian_view.h"
 #include "cuda/sweep_tree.h"
 #include "runtime/select/cut.h"
 
@@ -44,8 +45,11 @@ void launch_streaming(const SearchFrame& frame);
 // cut_place.cu, cut_emit.cu: the cut list, ascending, and for weights what they depend on.
 void launch_place(const SearchFrame& frame);
 void launch_emit(const SearchFrame& frame, bool weights);
+// cut_bounds.cu: of the rows that launch_emit() wrote.
+void launch_bound(const StateView& state, const GaussianView& gaussians, bool weights,
+                  unsigned multiprocessors, cudaStream_t stream);
 // weights.cu
-void launch_weigh(const SearchFrame& frame);
+void launch_weigh(const SearchFrame& frame, const RowList& rows);
 
 // cut_exhaustive.cu. Into nodes[] (room for every node) and *count; scratch as
 // exhaustive_scratch_bytes() says.

@@ -170,13 +170,10 @@ __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) 
 
 void launch_sort(const SplatFrame& f) {
   constexpr size_t kBytes = sizeof(LargeLists::Storage);
-  // Of the context, of which a process may have several.
-  check(cudaFuncSetAttribute(sort_large, cudaFuncAttributeMaxDynamicSharedMemorySize,
-                             static_cast<int>(kBytes)),
-        "shared memory of sort_large");
+  allow_shared_bytes(sort_large, static_cast<int>(kBytes), "sort_large");
   sort_large<<<2 * f.multiprocessors, kLargeThreads, kBytes, f.stream>>>(f.splats);
   check(cudaGetLastError(), "sort_large");
-  static const unsigned resident = resident_blocks(sort_tiles, kSortThreads, 1);
+  const unsigned resident = resident_blocks<sort_tiles>(kSortThreads);
   sort_tiles<<<f.multiprocessors * resident, kSortThreads, 0, f.stream>>>(f.splats);
   check(cudaGetLastError(), "sort_tiles");
 }

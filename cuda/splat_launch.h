@@ -17,18 +17,22 @@ struct DrawView {
                         // once. Null: the places themselves.
 };
 
-// What a frame's kernels share. The first four are an instance's, and projection's alone;
+// What a frame's kernels share. The first five are an instance's, and projection's alone;
 // params are of each eye.
 struct SplatFrame {
   uint32_t instance;  // those projected before it in this frame
   GaussianView gaussians;
   DrawView draws;
   ProjectParams params[kMaxEyes];
+  RowList rows;  // of its list, those that are looked at
   SplatView splats;
   unsigned multiprocessors;
   cudaStream_t stream;
 };
 
+// project_rows.cu. Of an instance's list, the rows of which a Gaussian may reach the image of an
+// eye; all, where the list has no bounds. Those behind the splats' room are left out.
+RowList launch_rows(const SplatFrame& frame);
 // project.cu. An instance's splats into slots behind those of the instances before it, and
 // into strips of tiles (METHOD §7b): with the α-filter those that its ellipse touches, without
 // it its box's. False where the instance has nothing to draw, and so takes no number.

@@ -12,6 +12,10 @@ constexpr size_t kFirstStrips = size_t{1} << 19, kFirstPairs = size_t{1} << 20;
 // Indices of 32 bits, and sums of two of them.
 constexpr size_t kMostIndices = size_t{1} << 31;
 
+size_t rows_for(size_t places) {
+  return (places + kRowPlaces - 1) / kRowPlaces;
+}
+
 // Allocates with some to spare, else as much as is wanted, else what there was. False
 // where that did not help. Throws where not even that is left.
 template <class Allocate>
@@ -58,13 +62,14 @@ SplatState::SplatState(unsigned bin_blocks, uint32_t eyes)
       eyes_(eyes),
       records_(kFirstPlaces * eyes),
       candidates_(kFirstPlaces),
+      rows_(rows_for(kFirstPlaces)),
       keys_(kFirstPairs),
       merge_keys_(kFirstPairs),
       strips_(kFirstStrips) {}
 
 void SplatState::fit(const FrameTiles& of) {
+  if (fits(of)) return;
   const size_t tiles = of.count();
-  if (tiles <= tiles_.size()) return;
   counters_ = Buffer<unsigned char>(sizeof(SplatCounters) + tiles * sizeof(uint32_t));
   tile_offsets_ = Buffer<uint32_t>(tiles * bin_blocks_);
   tile_order_ = Buffer<uint32_t>(tiles);
@@ -74,9 +79,10 @@ void SplatState::fit(const FrameTiles& of) {
 // The old buffers go first: nothing in them outlives a frame.
 bool SplatState::grow_places(size_t wanted) {
   return grow_to(wanted, room().places, [&](size_t places) {
-    records_ = {}, candidates_ = {};
+    records_ = {}, candidates_ = {}, rows_ = {};
     records_ = Buffer<SplatRecord>(places * eyes_);
     candidates_ = Buffer<uint32_t>(places);
+    rows_ = Buffer<uint32_t>(rows_for(places));
   });
 }
 
@@ -105,6 +111,7 @@ bool SplatState::grow(const SplatRoom& wanted) {
 SplatView SplatState::view(const FrameTiles& tiles) const {
   return {records_.data(),
           candidates_.data(),
+          rows_.data(),
           static_cast<uint32_t>(room().places),
           strips_.data(),
           static_cast<uint32_t>(strips_.size()),

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cuda/buffer.h"
+#include "cuda/search.h"
 #include "cuda/splats.h"
 
 namespace voyager::cuda {
@@ -28,12 +29,15 @@ class SplatState {
   // bin_blocks: of bin.cu.
   SplatState(unsigned bin_blocks, uint32_t eyes);
 
-  // Makes room for the tiles; what is there already stays. Throws Error.
+  // Whether there is room for the tiles.
+  bool fits(const FrameTiles& tiles) const { return tiles.count() <= tiles_.size(); }
+  // Makes room for the tiles; what is there already stays. Nothing on the device uses the buffers.
+  // Throws Error.
   void fit(const FrameTiles& tiles);
   // Buffers that belong together may differ after an allocation that failed.
   SplatRoom room() const {
-    return {std::min(records_.size() / eyes_, candidates_.size()), strips_.size(),
-            std::min(keys_.size(), merge_keys_.size())};
+    return {std::min({records_.size() / eyes_, candidates_.size(), rows_.size() * kRowPlaces}),
+            strips_.size(), std::min(keys_.size(), merge_keys_.size())};
   }
   // Makes so much room, with some to spare. False where there is nothing to do, or no
   // memory for it: the frame is then what it can be. Nothing on the device uses them.
@@ -54,7 +58,7 @@ class SplatState {
   unsigned bin_blocks_;
   uint32_t eyes_;
   Buffer<SplatRecord> records_;
-  Buffer<uint32_t> candidates_;
+  Buffer<uint32_t> candidates_, rows_;
   Buffer<DepthKey> keys_, merge_keys_;
   Buffer<unsigned char> counters_;  // SplatCounters, then a count a tile
   Buffer<TileStrip> strips_;

@@ -44,6 +44,7 @@ struct InstanceCounters {
   // Of its places, that may reach the image: those that are drawn untouched, and those that blend
   // with their parents.
   uint32_t whole, blended;
+  uint32_t rows;  // of its list that may reach the image, where the list has bounds
 };
 
 // Of one frame.
@@ -95,6 +96,7 @@ struct SplatView {
   // Places of the instance that is being projected: whole ones from the beginning, blended ones
   // from the end.
   uint32_t* candidates;
+  uint32_t* rows;       // of that instance's list
   uint32_t places;      // room
   TileStrip* strips;    // kStripRegions regions of equal room
   uint32_t strip_room;  // of all

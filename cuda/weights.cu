@@ -22,12 +22,16 @@ __device__ float own_size(const TreeView& tree, uint32_t record, uint32_t node,
 
 constexpr unsigned kWeightThreads = 256;
 
-// A place a thread: siblings are neighbours, and share their parent's record.
+// A row a warp: siblings are neighbours, and share their parent's record.
 __global__ void __launch_bounds__(kWeightThreads)
-    search_weigh(TreeView tree, StateView state, Sight sight) {
-  const uint32_t places = state.work[1].list_size;
-  const uint32_t threads = gridDim.x * kWeightThreads;
-  for (uint32_t i = blockIdx.x * kWeightThreads + threadIdx.x; i < places; i += threads) {
+    search_weigh(TreeView tree, StateView state, Sight sight, RowList rows) {
+  static_assert(kRowPlaces == 32);
+  const uint32_t all = state.work[1].list_size / kRowPlaces;
+  const uint32_t count = rows.rows == nullptr ? all : *rows.count;
+  const uint32_t warps = gridDim.x * kWeightThreads / 32;
+  for (uint32_t k = (blockIdx.x * kWeightThreads + threadIdx.x) / 32; k < count; k += warps) {
+    const uint32_t row = rows.rows == nullptr ? k : rows.rows[k];
+    const uint32_t i = row * kRowPlaces + threadIdx.x % 32;
     const uint32_t node = state.nodes[i];
     if (node == kNoNode) continue;
     const CutOrigin origin = state.origin[i];
@@ -41,10 +45,10 @@ __global__ void __launch_bounds__(kWeightThreads)
 
 }  // namespace
 
-void launch_weigh(const SearchFrame& f) {
-  static const unsigned resident = resident_blocks(search_weigh, kWeightThreads, 1);
+void launch_weigh(const SearchFrame& f, const RowList& rows) {
+  const unsigned resident = resident_blocks<search_weigh>(kWeightThreads);
   search_weigh<<<f.multiprocessors * resident, kWeightThreads, 0, f.stream>>>(f.tree, f.state,
-                                                                              f.sight);
+                                                                              f.sight, rows);
   check(cudaGetLastError(), "search_weigh");
 }
 

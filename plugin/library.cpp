@@ -4,6 +4,7 @@
 #include "plugin/call.h"
 #include "plugin/frustum.h"
 #include "plugin/structs.h"
+#include "runtime/frame/backend.h"
 
 using namespace voyager;
 
@@ -71,22 +72,11 @@ const char* VOY_CALL voyGetLastErrorMessage(void) {
 }
 
 const char* VOY_CALL voyStageName(VoyStage stage) {
-  switch (number(stage)) {
-    case VOY_STAGE_SEARCH:
-      return "search";
-    case VOY_STAGE_PROJECT:
-      return "project";
-    case VOY_STAGE_SORT:
-      return "sort";
-    case VOY_STAGE_BIN:
-      return "bin";
-    case VOY_STAGE_RASTERIZE:
-      return "rasterize";
-    case VOY_STAGE_RESOLVE:
-      return "resolve";
-    default:
-      return nullptr;
-  }
+  static_assert(int{VOY_STAGE_SEARCH} == kSearch && int{VOY_STAGE_PROJECT} == kProject &&
+                int{VOY_STAGE_SORT} == kSort && int{VOY_STAGE_BIN} == kBin &&
+                int{VOY_STAGE_RASTERIZE} == kRasterize && int{VOY_STAGE_RESOLVE} == kResolve);
+  const auto index = static_cast<uint32_t>(number(stage));
+  return index < kStageCount ? kStageNames[index] : nullptr;
 }
 
 VoyResult VOY_CALL voyFovFromAngles(double left, double right, double up, double down,

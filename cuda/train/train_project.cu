@@ -80,7 +80,7 @@ __global__ void __launch_bounds__(kThreads)
 }  // namespace
 
 void launch_train_project(const SplatFrame& f, const FixedSum* sums, float* gradients) {
-  static const unsigned resident = resident_blocks(train_project, kThreads, 1);
+  const unsigned resident = resident_blocks<train_project>(kThreads);
   train_project<<<f.multiprocessors * resident, kThreads, 0, f.stream>>>(f, sums, gradients);
   check(cudaGetLastError(), "train_project");
 }

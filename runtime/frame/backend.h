@@ -86,6 +86,8 @@ struct FrameInput {
 };
 
 enum Stage { kSearch, kProject, kSort, kBin, kRasterize, kResolve, kStageCount };
+inline constexpr const char* kStageNames[kStageCount] = {"search", "project",   "sort",
+                                                         "bin",    "rasterize", "resolve"};
 
 struct FrameStats {
   uint64_t frame_index = 0;

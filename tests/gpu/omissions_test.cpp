@@ -76,7 +76,10 @@ TEST_F(SplatOmissions, AViewOfEveryLeafLaunchesNoSearch) {
   const auto launched = [&](const std::shared_ptr<const Scene>& of, Lod lod,
                             std::unique_ptr<cuda::CutSearch> search) {
     const auto draws = cuda::create_draws(*of, lod, std::move(search));
-    const auto update = [&](cudaStream_t stream) { draws->update({{3, -6, -24}, 0.05f}, stream); };
+    const auto update = [&](cudaStream_t stream) {
+      draws->update({{3, -6, -24}, 0.05f}, {}, stream);
+      draws->weigh({}, stream);
+    };
     const cuda::Stream first;  // which loads the kernels
     update(first.get());
     first.wait();

@@ -30,7 +30,7 @@ CurveMeasurement::CurveMeasurement(Backend& backend, const std::shared_ptr<const
                                    const ReportPlan& plan, Workers& workers)
     : backend_(backend), plan_(plan), workers_(workers) {
   // What a host gets that chooses nothing, as in the other report.
-  if (backend.rates().bytes > 0) desc_.exponential = Exponential::ex2;
+  if (backend.memory_bytes() > 0) desc_.exponential = Exponential::ex2;
   desc_.search = Search::fastest;
   for (const size_t i : plan.compared)
     truth_.push_back(truth_image({backend, scene, workers}, plan.path[i]));

@@ -85,7 +85,7 @@ class Report {
     subject.flat = scenes_.own()->flat();
     subject.sh_degree = scenes_.own()->sh_degree;
     subject.storages = scenes_.storages();
-    const bool cuda = backend_.rates().bytes > 0;
+    const bool cuda = backend_.memory_bytes() > 0;
     subject.exponentials = {Exponential::exact, Exponential::ex2, Exponential::lut};
     if (cuda) subject.exponentials.push_back(Exponential::half2);
     subject.baseline = cuda;
