@@ -29,6 +29,10 @@ unsigned resident_blocks(int threads) {
   return static_cast<unsigned>(blocks);
 }
 
+// Shared memory that a block may have on every device that is supported: what those of compute
+// capability 8.6 and 8.9 give, the least.
+inline constexpr size_t kLeastSharedBytes = size_t{99} << 10;
+
 // Shared memory that a block may have where so many are to be resident on a multiprocessor of the
 // current device.
 inline size_t shared_bytes_of_block(unsigned blocks) {

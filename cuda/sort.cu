@@ -170,6 +170,7 @@ __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) 
 
 void launch_sort(const SplatFrame& f) {
   constexpr size_t kBytes = sizeof(LargeLists::Storage);
+  static_assert(kBytes <= kLeastSharedBytes);
   allow_shared_bytes(sort_large, static_cast<int>(kBytes), "sort_large");
   sort_large<<<2 * f.multiprocessors, kLargeThreads, kBytes, f.stream>>>(f.splats);
   check(cudaGetLastError(), "sort_large");
