@@ -9,6 +9,7 @@
 #include "runtime/scene/import/ply_header.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/sanitise.h"
+#include "runtime/scene/transform.h"
 
 namespace voyager {
 namespace {
@@ -228,9 +229,7 @@ class PlyReader final : public BlockReader {
       }
       if (!std::all_of(world, world + 3, [](double v) { return std::fabs(v) < kMaxCoordinate; }))
         continue;
-      for (size_t axis = 0; axis < 3; ++axis)
-        if (std::fabs(world[axis]) > kOriginReach)
-          origin_[axis] = std::round(world[axis] / kOriginStep) * kOriginStep;
+      origin_ = origin_near({world[0], world[1], world[2]});
       break;
     }
   }
