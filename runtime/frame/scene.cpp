@@ -33,7 +33,7 @@ SceneFormat scene_format(const ByteSource& source) {
   if (is_importable(first)) return SceneFormat::flat;
   throw Error(ErrorCode::refused_input, source.name() + ": offset 0: found " +
                                             hex(first.first(std::min<size_t>(8, first.size()))) +
-                                            ", expected a .voy, .ply or .spz file");
+                                            ", expected a .voy, .ply, .spz, .glb or .gltf file");
 }
 
 std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "runtime/base/error.h"
+#include "tests/support/gltf_files.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/transforms.h"
 
@@ -57,6 +58,32 @@ TEST(Transform, ASimilarSceneIsTheSamePictureForASimilarCamera) {
                 40);
     }
   }
+}
+
+// A node of a glTF file, turned, scaled and mirrored; its axes are half a turn about z from
+// INRIA's.
+TEST(Transform, ANodeIsTheSamePictureForASimilarCamera) {
+  const auto cpu = create_cpu_backend();
+  const Camera camera = test::look({3, -6, -24}, {0, 0, 0}, 160, 100);
+  GaussianCloud cloud = cloud_of(3);
+  cloud.native = {};
+  const auto draw = [&](const GaussianCloud& of, const Camera& from) {
+    auto scene = test::flat_scene(of);
+    scene->native = {NativeSource::given, 0, kPixelVariance};
+    return test::render(*cpu, scene, {}, test::frame_input(from, 3, false));
+  };
+  const GaussianCloud placed =
+      test::import_source(test::gltf_of(cloud, {{"translation", {1, 2, 3}},
+                                                {"rotation", {0.1, 0.7, -0.1, 0.7}},
+                                                {"scale", {1.5, -1.5, 1.5}}})
+                              .glb());
+  const Mat3d half = test::diagonal(-1, -1, 1);
+  const Mat3d linear =
+      half * test::turn(0.7, 0.1, 0.7, -0.1) * test::diagonal(1.5, -1.5, 1.5) * half;
+  const double psnr =
+      test::compare(draw(placed, moved(camera, {linear, {-1, -2, 3}})), draw(cloud, camera)).psnr;
+  std::printf("mirrored node: %.1f dB\n", psnr);
+  EXPECT_GE(psnr, 60);
 }
 
 Mat3d covariance(const GaussianWords& words) {

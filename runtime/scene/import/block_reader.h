@@ -11,10 +11,13 @@
 
 namespace voyager {
 
+class BlockReader;
+
 // Some Gaussians as the input has them.
 struct RawBlock {
   std::vector<std::byte> bytes;
-  size_t count = 0;  // Gaussians; 0 after the last block
+  size_t count = 0;                         // Gaussians; 0 after the last block
+  std::shared_ptr<const BlockReader> part;  // of an input with several (merged_blocks.h): this one
 };
 
 class BlockReader {
@@ -35,14 +38,15 @@ class BlockReader {
   virtual GaussianCloud decode(const RawBlock& block) const = 0;
 };
 
-// Reads the header. A .ply from any stream; a .spz, whose attributes are apart from
-// one another, only from a source, of which each attribute is read at a place of its
-// own. Throws Error(refused_input) naming place, found and expected.
+// Reads the header. A .ply from any stream; the others, whose parts are apart from one another,
+// only from a source, of which each part is read at a place of its own. Throws Error(refused_input)
+// naming place, found and expected, and where a file refers to others what open_beside() throws.
 std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader);
 std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> source);
 
 // The formats; the reader stands at the format's first byte.
 std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader);
 std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source);
+std::unique_ptr<BlockReader> open_gltf_blocks(std::shared_ptr<const ByteSource> source);
 
 }  // namespace voyager

@@ -1,0 +1,27 @@
+// Any bytes of a .glb, a .gltf or a tileset: in blocks of any size the same words to the bit, or a
+// refusal; and as a whole a sound cloud.
+#include <cstdint>
+
+#include "tests/fuzz/read_blocks.h"
+
+namespace voyager::fuzz {
+namespace {
+
+void read_all_ways(std::span<const std::byte> bytes) {
+  const MemoryLimit limit(bytes.size());
+  const auto source = std::make_shared<MemorySource>("fuzz", bytes);
+  const auto open = [&] { return open_gltf_blocks(source); };
+  const auto whole = unless_refused([&] { return read_blocks(*open(), 5000); });
+  if (whole && whole->size() > 1000) return;
+  expect_same(whole, unless_refused([&] { return read_blocks(*open(), 3); }));
+  const auto sound = unless_refused([&] { return import_blocks(*open()); });
+  if (sound.has_value() != whole.has_value() || (sound && !is_complete(*sound))) std::abort();
+}
+
+}  // namespace
+}  // namespace voyager::fuzz
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  voyager::fuzz::read_all_ways(std::as_bytes(std::span(data, size)));
+  return 0;
+}
