@@ -11,8 +11,8 @@ namespace {
 
 class MergedReader final : public BlockReader {
  public:
-  MergedReader(std::string name, std::vector<BlockPart> parts)
-      : name_(std::move(name)), parts_(std::move(parts)) {
+  MergedReader(std::string name, std::vector<BlockPart> parts, const std::array<double, 3>& origin)
+      : name_(std::move(name)), parts_(std::move(parts)), origin_(origin) {
     const std::array<double, 3> any{};
     for (const BlockPart& part : parts_) {
       if (__builtin_add_overflow(count_, part.count, &count_))
@@ -28,6 +28,7 @@ class MergedReader final : public BlockReader {
   NativeScale native() const override {
     return parts_.empty() ? NativeScale{} : parts_.front().native;
   }
+  std::array<double, 3> origin() const override { return origin_; }
 
   RawBlock next(size_t most) override {
     for (;;) {
@@ -53,6 +54,7 @@ class MergedReader final : public BlockReader {
  private:
   std::string name_;
   std::vector<BlockPart> parts_;
+  std::array<double, 3> origin_;
   uint64_t count_ = 0;
   int sh_degree_ = 0;
   size_t next_ = 0;
@@ -61,8 +63,9 @@ class MergedReader final : public BlockReader {
 
 }  // namespace
 
-std::unique_ptr<BlockReader> merge_blocks(std::string name, std::vector<BlockPart> parts) {
-  return std::make_unique<MergedReader>(std::move(name), std::move(parts));
+std::unique_ptr<BlockReader> merge_blocks(std::string name, std::vector<BlockPart> parts,
+                                          const std::array<double, 3>& origin) {
+  return std::make_unique<MergedReader>(std::move(name), std::move(parts), origin);
 }
 
 }  // namespace voyager

@@ -15,6 +15,7 @@ class PlacedReader final : public BlockReader {
   uint64_t count() const override { return reader_->count(); }
   int sh_degree() const override { return reader_->sh_degree(); }
   NativeScale native() const override { return transform_.of(reader_->native()); }
+  std::array<double, 3> origin() const override { return origin_; }
   RawBlock next(size_t most) override { return reader_->next(most); }
 
   GaussianCloud decode(const RawBlock& block) const override {

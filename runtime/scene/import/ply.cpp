@@ -87,6 +87,7 @@ class PlyReader final : public BlockReader {
   uint64_t count() const override { return vertex().count; }
   int sh_degree() const override { return sh_degree_; }
   NativeScale native() const override { return header_.native; }
+  std::array<double, 3> origin() const override { return origin_; }
 
   RawBlock next(size_t most) override {
     RawBlock block;

@@ -15,6 +15,7 @@ class SceneReader final : public BlockReader {
   uint64_t count() const override { return reader_->count(); }
   int sh_degree() const override { return reader_->sh_degree(); }
   NativeScale native() const override { return reader_->native(); }
+  std::array<double, 3> origin() const override { return reader_->origin(); }
   RawBlock next(size_t most) override { return reader_->next(most); }
   GaussianCloud decode(const RawBlock& block) const override { return reader_->decode(block); }
 
