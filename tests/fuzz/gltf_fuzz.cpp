@@ -10,7 +10,8 @@ namespace {
 void read_all_ways(std::span<const std::byte> bytes) {
   const MemoryLimit limit(bytes.size());
   const auto source = std::make_shared<MemorySource>("fuzz", bytes);
-  const auto open = [&] { return open_gltf_blocks(source); };
+  const bool binary = !bytes.empty() && bytes[0] == std::byte{'g'};
+  const auto open = [&] { return binary ? open_glb_blocks(source) : open_json_blocks(source); };
   const auto whole = unless_refused([&] { return read_blocks(*open(), 5000); });
   if (whole && whole->size() > 1000) return;
   expect_same(whole, unless_refused([&] { return read_blocks(*open(), 3); }));

@@ -28,12 +28,12 @@ constexpr Format kFormats[] = {
     {"ply\r", import_ply, open_ply_blocks, nullptr},
     {"\x1f\x8b", import_spz, nullptr, open_spz_blocks},
     {"NGSP", import_spz, nullptr, open_spz_blocks},
-    {"glTF", nullptr, nullptr, open_gltf_blocks},
-    {"{", nullptr, nullptr, open_gltf_blocks},
+    {"glTF", nullptr, nullptr, open_glb_blocks},
+    {"{", nullptr, nullptr, open_json_blocks},
 };
 constexpr const char* kKnown =
-    "the first bytes of INRIA .ply (\"ply\"), .spz (gzip 1f 8b, or \"NGSP\"), .glb (\"glTF\") or "
-    ".gltf (\"{\")";
+    "the first bytes of INRIA .ply (\"ply\"), .spz (gzip 1f 8b, or \"NGSP\"), .glb (\"glTF\"), "
+    ".gltf or a tileset.json (\"{\")";
 
 // JSON may begin with white space.
 std::span<const std::byte> without_space(std::span<const std::byte> bytes) {

@@ -88,22 +88,27 @@ std::string shown(const std::string& uri) {
 
 }  // namespace
 
-std::shared_ptr<const ByteSource> open_uri(const ByteSource& source, const std::string& place,
-                                           const std::string& uri) {
-  if (uri.rfind("data:", 0) == 0) {
-    const size_t comma = std::min(uri.find(','), uri.size());
-    const std::string_view head = std::string_view(uri).substr(0, comma);
-    std::vector<std::byte> bytes;
-    if (comma == uri.size() || !head.ends_with(";base64") ||
-        !decode_base64(std::string_view(uri).substr(comma + 1), bytes))
-      refuse(source.name(), 0, place, shown(uri), "data:TYPE;base64,... in whole digits");
-    return std::make_shared<OwnedBytes>(source.name() + ": " + place, std::move(bytes));
-  }
+bool is_data_uri(const std::string& uri) {
+  return uri.rfind("data:", 0) == 0;
+}
+
+std::string path_of_uri(const std::string& file, const std::string& place, const std::string& uri) {
   const std::string path = decode_percent(uri);
   if (path.empty() || has_scheme(uri))
-    refuse(source.name(), 0, place, shown(uri),
-           "a data: URI, or a file in the same folder or below");
-  return source.open_beside(path);
+    refuse(file, 0, place, shown(uri), "a data: URI, or a file in the same folder or below");
+  return path;
+}
+
+std::shared_ptr<const ByteSource> open_uri(const ByteSource& source, const std::string& place,
+                                           const std::string& uri) {
+  if (!is_data_uri(uri)) return source.open_beside(path_of_uri(source.name(), place, uri));
+  const size_t comma = std::min(uri.find(','), uri.size());
+  const std::string_view head = std::string_view(uri).substr(0, comma);
+  std::vector<std::byte> bytes;
+  if (comma == uri.size() || !head.ends_with(";base64") ||
+      !decode_base64(std::string_view(uri).substr(comma + 1), bytes))
+    refuse(source.name(), 0, place, shown(uri), "data:TYPE;base64,... in whole digits");
+  return std::make_shared<OwnedBytes>(source.name() + ": " + place, std::move(bytes));
 }
 
 }  // namespace voyager

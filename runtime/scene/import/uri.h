@@ -13,4 +13,8 @@ namespace voyager {
 std::shared_ptr<const ByteSource> open_uri(const ByteSource& source, const std::string& place,
                                            const std::string& uri);
 
+bool is_data_uri(const std::string& uri);
+// The relative path that any other URI is. Throws as above.
+std::string path_of_uri(const std::string& file, const std::string& place, const std::string& uri);
+
 }  // namespace voyager

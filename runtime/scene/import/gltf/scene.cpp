@@ -36,6 +36,7 @@ class EncodedReader final : public BlockReader {
   uint64_t count() const override { return reader_->count(); }
   int sh_degree() const override { return reader_->sh_degree(); }
   NativeScale native() const override { return reader_->native(); }
+  std::array<double, 3> origin() const override { return reader_->origin(); }
   RawBlock next(size_t most) override { return reader_->next(most); }
   GaussianCloud decode(const RawBlock& block) const override {
     GaussianCloud cloud = reader_->decode(block);
@@ -57,7 +58,8 @@ Scene::Scene(File file) : name_(file.name()) {
   read_instances(file);
   if (instances_.empty())
     json.refuse("no node of the scene with a primitive of KHR_gaussian_splatting", "one");
-  check_count(file.bytes());
+  bytes_ = file.bytes();
+  check_count();
   const bool log_scales = have_log_scales(primitives_);
   for (Primitive& primitive : primitives_) primitive.log_scales = log_scales;
 }
@@ -84,17 +86,17 @@ void Scene::read_instances(File& file) {
 }
 
 // Nodes may share a primitive, and accessors bytes, or have none.
-void Scene::check_count(uint64_t bytes) const {
+void Scene::check_count() const {
   int sh_degree = 0;
   uint64_t count = 0;
   for (const Instance& instance : instances_) {
     sh_degree = std::max(sh_degree, primitive(instance).sh_degree);
     if (__builtin_add_overflow(count, primitive(instance).count, &count)) count = UINT64_MAX;
   }
-  const uint64_t most = most_gaussians(bytes, sh_degree);
+  const uint64_t most = most_gaussians(bytes_, sh_degree);
   if (count > most)
     refuse(name_, 0, "Gaussians", std::to_string(count),
-           "at most " + std::to_string(most) + " in " + std::to_string(bytes) + " bytes");
+           "at most " + std::to_string(most) + " in " + std::to_string(bytes_) + " bytes");
 }
 
 std::unique_ptr<BlockReader> Scene::open(const Instance& instance) const {

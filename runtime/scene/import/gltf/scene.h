@@ -21,14 +21,17 @@ class Scene {
   const Primitive& primitive(const Instance& instance) const {
     return primitives_[instance.primitive];
   }
+  // Of the file and those beside it.
+  uint64_t bytes() const { return bytes_; }
   // The instance's own Gaussians, before it is placed.
   std::unique_ptr<BlockReader> open(const Instance& instance) const;
 
  private:
   void read_instances(File& file);
-  void check_count(uint64_t bytes) const;
+  void check_count() const;
 
   std::string name_;
+  uint64_t bytes_ = 0;
   std::vector<Primitive> primitives_;
   std::vector<Instance> instances_;
 };
