@@ -1,5 +1,6 @@
 #pragma once
 // glTF files for tests, from clouds in INRIA axes.
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/sample_files.h"
@@ -153,6 +154,49 @@ inline GltfFile gltf_of(const GaussianCloud& cloud, Json node = Json::object()) 
   node["mesh"] = file.add_mesh(Json::array({file.primitive_of(cloud)}));
   file.add_node(node);
   return file;
+}
+
+// Calls `visit` with each place of the document, as a JSON pointer.
+inline void for_places(const Json& json, const Json::json_pointer& at,
+                       const std::function<void(const Json::json_pointer&)>& visit) {
+  if (json.is_object())
+    for (const auto& [key, value] : json.items()) for_places(value, at / key, visit);
+  if (json.is_array())
+    for (size_t i = 0; i < json.size(); ++i) for_places(json[i], at / i, visit);
+  visit(at);
+}
+
+// The document without each of its fields, and with absurd values in its place.
+inline void for_bad_fields(const Json& good,
+                           const std::function<void(const Json&, const std::string&)>& visit) {
+  const std::vector<Json> absurd = {nullptr,
+                                    true,
+                                    -1,
+                                    0,
+                                    1,
+                                    3.5,
+                                    1e300,
+                                    4294967295u,
+                                    UINT64_MAX,
+                                    "x",
+                                    Json::array(),
+                                    Json::object(),
+                                    Json::array({0, 0, 0, 0})};
+  for_places(good, Json::json_pointer(""), [&](const Json::json_pointer& at) {
+    if (at.empty()) return;
+    Json without = good;
+    Json& parent = without[at.parent_pointer()];
+    if (parent.is_object())
+      parent.erase(at.back());
+    else
+      parent.erase(std::stoul(at.back()));
+    visit(without, at.to_string());
+    for (const Json& value : absurd) {
+      Json changed = good;
+      changed[at] = value;
+      visit(changed, at.to_string() + " " + value.dump());
+    }
+  });
 }
 
 inline GaussianCloud import_source(const Bytes& bytes) {

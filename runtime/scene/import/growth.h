@@ -34,4 +34,11 @@ inline uint64_t most_gaussians(uint64_t file_bytes, int sh_degree) {
   return (kFreeBytes + std::min(file_bytes, uint64_t{1} << 40) * kBytesOfAByte) / gaussian;
 }
 
+// The parts that a file of so many bytes may place: each of its nodes places each primitive of a
+// mesh.
+inline uint64_t most_parts(uint64_t file_bytes) {
+  constexpr uint64_t kFreeParts = 1 << 16, kBytesOfAPart = 16;
+  return kFreeParts + file_bytes / kBytesOfAPart;
+}
+
 }  // namespace voyager

@@ -93,7 +93,7 @@ bool is_data_uri(const std::string& uri) {
 }
 
 std::string path_of_uri(const std::string& file, const std::string& place, const std::string& uri) {
-  const std::string path = decode_percent(uri);
+  std::string path = decode_percent(uri);
   if (path.empty() || has_scheme(uri))
     refuse(file, 0, place, shown(uri), "a data: URI, or a file in the same folder or below");
   return path;

@@ -378,7 +378,7 @@ TEST(LoadScene, AHeaderThatContradictsTheTreeIsRefused) {
 }
 
 TEST(LoadScene, UnknownBytesAreRefusedByName) {
-  for (const char* text : {"", "glTF and more", "x"}) {
+  for (const char* text : {"", "GLTF and more", "x"}) {
     const std::string words = text;
     const auto span = std::as_bytes(std::span(words));
     const Bytes bytes(span.begin(), span.end());

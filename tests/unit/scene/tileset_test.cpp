@@ -155,6 +155,21 @@ TEST_F(Tileset, ManyTilesOfOneFileAreBounded) {
   EXPECT_NE(refusal(root).find("Gaussians: found 15000000, expected at most"), std::string::npos);
 }
 
+TEST_F(Tileset, EveryFieldMissingOrAbsurd) {
+  const std::string uri = "data:;base64," + test::base64(test::gltf_of(one).glb());
+  Json root = leaf(uri);
+  root["refine"] = "ADD";
+  root["transform"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1};
+  root["children"] = {leaf(uri), {{"contents", {{{"uri", uri}}}}}};
+  test::for_bad_fields(tiles(root), [](const Json& bad, const std::string& what) {
+    try {
+      EXPECT_LE(test::import_source(test::bytes_of(bad.dump())).size(), 60u) << what;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::refused_input) << what << ": " << error.what();
+    }
+  });
+}
+
 TEST_F(Tileset, EveryTruncationIsRefused) {
   write("a.glb", test::gltf_of(one).glb());
   const Bytes whole = test::bytes_of(tiles(leaf("a.glb")).dump());

@@ -7,7 +7,7 @@ namespace {
 
 std::unique_ptr<BlockReader> open_file(gltf::File file) {
   const std::string name = file.name();
-  const auto scene = std::make_shared<const gltf::Scene>(std::move(file));
+  auto scene = std::make_shared<const gltf::Scene>(std::move(file));
   const auto origin = origin_near(scene->instances().front().place.offset);
   return merge_blocks(name,
                       gltf::parts_of(

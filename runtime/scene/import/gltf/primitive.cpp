@@ -71,11 +71,11 @@ std::string sh_name(int degree, int n) {
 
 void add_sh(Attributes& attributes, Primitive& primitive) {
   if (!attributes.has(sh_name(0, 0))) return attributes.add_colour(Parameter::colour, 3);
+  size_t k = 0;
   for (int degree = 0; degree <= kMaxShDegree && attributes.has(sh_name(degree, 0)); ++degree) {
     primitive.sh_degree = degree;
-    for (int n = 0; n <= 2 * degree; ++n)
-      attributes.add(Parameter::sh, sh_name(degree, n), 3, {Component::f32},
-                     static_cast<size_t>(degree * degree + n));
+    for (int n = 0; n <= 2 * degree; ++n, ++k)
+      attributes.add(Parameter::sh, sh_name(degree, n), 3, {Component::f32}, k);
   }
 }
 
@@ -133,7 +133,9 @@ void look_at(const Accessor& scales, Signs& signs) {
   for (size_t i = 0; i < looked_at; ++i)
     for (size_t axis = 0; axis < 3; ++axis) {
       const double scale = scales.number(bytes.data() + i * scales.stride, axis);
-      signs.negative |= scale<0, signs.zero |= scale == 0, signs.positive |= scale> 0;
+      if (scale < 0) signs.negative = true;
+      if (scale == 0) signs.zero = true;
+      if (scale > 0) signs.positive = true;
     }
 }
 

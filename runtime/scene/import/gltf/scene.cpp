@@ -80,6 +80,10 @@ void Scene::read_instances(File& file) {
     const JsonValue owner = json["nodes"][node.node];
     if (owner.has("extensions") && owner["extensions"].has(kInstancing))
       owner["extensions"].refuse(kInstancing, "none: splats are drawn once for each node");
+    const uint64_t placed = instances_.size() + mesh->second.size();
+    if (placed > most_parts(file.bytes()))
+      owner.refuse(std::to_string(placed) + " placed primitives",
+                   "at most " + std::to_string(most_parts(file.bytes())));
     for (const size_t primitive : mesh->second)
       instances_.push_back({primitive, in_inria_axes(node.place)});
   }

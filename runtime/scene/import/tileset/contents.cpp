@@ -56,8 +56,8 @@ class Walk {
  public:
   explicit Walk(const ByteSource& first) : first_(first) {}
 
-  std::vector<Content> run(const nlohmann::json& json) {
-    files_.push_back({json, first_.name(), "", {}, 0});
+  std::vector<Content> run(nlohmann::json json) {
+    files_.push_back({std::move(json), first_.name(), "", {}, 0});
     seen_.insert(std::filesystem::path(first_.name()).filename().string());
     while (!files_.empty()) {
       const Tiles file = std::move(files_.front());
@@ -164,8 +164,8 @@ std::shared_ptr<const ByteSource> open_content(const ByteSource& first, const Co
   return first.open_beside(content.uri);
 }
 
-std::vector<Content> list_contents(const ByteSource& first, const nlohmann::json& json) {
-  return Walk(first).run(json);
+std::vector<Content> list_contents(const ByteSource& first, nlohmann::json json) {
+  return Walk(first).run(std::move(json));
 }
 
 }  // namespace voyager::tileset

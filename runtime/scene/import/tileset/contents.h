@@ -22,6 +22,6 @@ struct Content {
 std::shared_ptr<const ByteSource> open_content(const ByteSource& first, const Content& content);
 
 // In the order of the tiles. Throws as open() does (tileset.h).
-std::vector<Content> list_contents(const ByteSource& first, const nlohmann::json& json);
+std::vector<Content> list_contents(const ByteSource& first, nlohmann::json json);
 
 }  // namespace voyager::tileset

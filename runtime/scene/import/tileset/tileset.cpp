@@ -71,6 +71,9 @@ class Parts {
       sh_degree_ = std::max(sh_degree_, part.sh_degree);
       parts_.push_back(std::move(part));
     }
+    if (parts_.size() > most_parts(bytes_))
+      refuse(first_->name(), 0, "placed primitives", std::to_string(parts_.size()),
+             "at most " + std::to_string(most_parts(bytes_)));
   }
 
   std::shared_ptr<const ByteSource> first_;
@@ -88,7 +91,7 @@ bool is_tileset(const nlohmann::json& json) {
 }
 
 std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source, nlohmann::json json) {
-  std::vector<Content> contents = list_contents(*source, json);
+  std::vector<Content> contents = list_contents(*source, std::move(json));
   return Parts(std::move(source)).read(std::move(contents));
 }
 
