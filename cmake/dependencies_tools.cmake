@@ -1,10 +1,8 @@
 find_package(PNG QUIET)
 find_package(fmt QUIET)
-find_package(nlohmann_json QUIET)
 find_package(CLI11 QUIET)
 voyager_needs("the tools" libpng-dev PNG_FOUND)
 voyager_needs("the tools" libfmt-dev fmt_FOUND)
-voyager_needs("the tools" nlohmann-json3-dev nlohmann_json_FOUND)
 voyager_needs("the tools" libcli11-dev CLI11_FOUND)
 
 if(NOT CMAKE_CROSSCOMPILING)

@@ -25,7 +25,7 @@ expected $2"
 }
 
 others="benchmark GTest glfw3 TinyGLTF glm OpenXR Vulkan"
-tools="CLI11 fmt nlohmann_json PNG PkgConfig"
+tools="CLI11 fmt PNG PkgConfig"
 hide="$others $tools CURL Python Python3"
 multiarch=lib/$(uname -m)-linux-gnu
 configure library -DCMAKE_INSTALL_LIBDIR="$multiarch" -DVOYAGER_CUDA=OFF || fail "$(cat "$work/library.said")"

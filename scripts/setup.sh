@@ -12,9 +12,9 @@ cd "$(dirname "$0")/.."
 declare -A packages
 packages[main]="
   g++ cmake ninja-build
-  libtbb-dev zlib1g-dev libzstd-dev libxxhash-dev libeigen3-dev
+  libtbb-dev zlib1g-dev libzstd-dev libxxhash-dev libeigen3-dev nlohmann-json3-dev
   libcurl4-openssl-dev
-  libpng-dev libfmt-dev nlohmann-json3-dev libcli11-dev
+  libpng-dev libfmt-dev libcli11-dev
   libvulkan-dev glslang-tools"
 packages[samples]="libtinygltf-dev libglm-dev libglfw3-dev libimgui-dev libopenxr-dev libopenxr-loader1"
 packages[report]="libcairo2-dev pkg-config fonts-dejavu-core"

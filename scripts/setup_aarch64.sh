@@ -10,8 +10,8 @@ scripts/install_packages.sh g++-aarch64-linux-gnu qemu-user
 packages=(
   libc6-dev libstdc++6                                   # the compiler brings libstdc++'s headers
   libtbb-dev zlib1g-dev libzstd-dev libxxhash-dev        # runtime
-  libeigen3-dev
-  libpng-dev libfmt-dev nlohmann-json3-dev libcli11-dev  # tools
+  libeigen3-dev nlohmann-json3-dev
+  libpng-dev libfmt-dev libcli11-dev                     # tools
   libvulkan-dev                                          # Vulkan's headers
   libgtest-dev                                           # tests
 )

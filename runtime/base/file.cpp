@@ -63,6 +63,12 @@ class StdinReader final : public ByteReader {
 
 }  // namespace
 
+std::unique_ptr<ByteSource> ByteSource::open_beside(const std::string& path) const {
+  throw Error(ErrorCode::refused_input,
+              name() + ": found a reference to the file " + path +
+                  ", expected all data inside: only a local file has a folder to look in");
+}
+
 void check_range(const ByteSource& source, uint64_t offset, size_t count) {
   const uint64_t size = source.size();
   if (offset <= size && count <= size - offset) return;

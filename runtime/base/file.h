@@ -38,6 +38,11 @@ class ByteSource {
   // those under way end at once with Error(io), as do all later ones. Callable from any thread,
   // during reads; for good. The others are not affected.
   virtual void cancel() const noexcept {}
+  // Another file that this one refers to, in its folder or below: a relative path, its folders
+  // parted by /. Only a local file has a folder. Throws Error(refused_input) naming both for any
+  // other source and for a path that leads elsewhere, also through links; else what
+  // open_file_source() throws.
+  virtual std::unique_ptr<ByteSource> open_beside(const std::string& path) const;
 };
 
 // Throws Error(refused_input) unless [offset, offset + count) is within the source.

@@ -14,6 +14,7 @@
 #include "runtime/base/file_data.h"
 #include "runtime/base/file_descriptor.h"
 #include "runtime/base/file_kind.h"
+#include "runtime/base/path_beside.h"
 
 namespace voyager {
 namespace {
@@ -31,6 +32,7 @@ class FileSource final : public ByteSource {
   uint64_t size() const override { return size_; }
   void read(uint64_t offset, std::span<std::byte> into) const override;
   void expect(Access access) const noexcept override;
+  std::unique_ptr<ByteSource> open_beside(const std::string& path) const override;
 
  private:
   void read_cached(uint64_t offset, std::span<std::byte> into) const;
@@ -86,6 +88,10 @@ void FileSource::expect(Access access) const noexcept {
   direct_ = set_direct(access == Access::uncached) && access == Access::uncached;
   ::posix_fadvise(fd_.get(), 0, 0,
                   access == Access::forward ? POSIX_FADV_NORMAL : POSIX_FADV_RANDOM);
+}
+
+std::unique_ptr<ByteSource> FileSource::open_beside(const std::string& path) const {
+  return open_file_source(path_beside(name_, path));
 }
 
 void FileSource::read(uint64_t offset, std::span<std::byte> into) const {

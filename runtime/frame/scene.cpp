@@ -31,9 +31,10 @@ SceneFormat scene_format(const ByteSource& source) {
   source.read(0, first);
   if (SceneFile::is_scene_file(first)) return SceneFormat::baked;
   if (is_importable(first)) return SceneFormat::flat;
-  throw Error(ErrorCode::refused_input, source.name() + ": offset 0: found " +
-                                            hex(first.first(std::min<size_t>(8, first.size()))) +
-                                            ", expected a .voy, .ply or .spz file");
+  throw Error(ErrorCode::refused_input,
+              source.name() + ": offset 0: found " +
+                  hex(first.first(std::min<size_t>(8, first.size()))) +
+                  ", expected a .voy, .ply, .spz, .glb, .gltf or tileset.json file");
 }
 
 std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,

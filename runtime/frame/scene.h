@@ -125,7 +125,7 @@ inline bool footprints_differ(const Scene& scene) {
 enum class SceneFormat { baked, flat };
 SceneFormat scene_format(const ByteSource& source);
 
-// Opens .voy, .ply or .spz, told by its bytes. Throws Error; std::bad_alloc
+// Opens a .voy or a flat scene of any format, told by its bytes. Throws Error; std::bad_alloc
 // where `memory` refuses.
 std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
                                   std::pmr::memory_resource* memory, Workers& workers);

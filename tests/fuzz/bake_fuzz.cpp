@@ -170,6 +170,7 @@ class CloudReader final : public BlockReader {
   uint64_t count() const override { return cloud_.size(); }
   int sh_degree() const override { return cloud_.sh_degree; }
   NativeScale native() const override { return cloud_.native; }
+  std::array<double, 3> origin() const override { return cloud_.origin; }
 
   RawBlock next(size_t most) override {
     RawBlock block;

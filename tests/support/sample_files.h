@@ -62,8 +62,7 @@ inline GaussianCloud import_piped(const Bytes& bytes, const ImportOptions& optio
 }
 
 inline GaussianCloud import_file(const std::string& path) {
-  const auto source = open_file_source(path);
-  return import_gaussians(*read_source(*source));
+  return import_gaussians(*open_file_source(path));
 }
 
 // The message of the refusal, or "" where `work` succeeded or failed otherwise.

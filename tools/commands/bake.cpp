@@ -24,16 +24,14 @@
 #include "runtime/refine/measured.h"
 #include "runtime/refine/refine.h"
 #include "runtime/scene/append.h"
-#include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/importer.h"
-#include "runtime/scene/sanitise.h"
-#include "runtime/scene/sh_bands.h"
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/optimize_options.h"
 #include "tools/console.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
+#include "tools/placement.h"
 #include "tools/progress_bar.h"
 #include "tools/training_cameras.h"
 
@@ -52,6 +50,7 @@ struct Part {
 
 struct BakeArguments {
   std::vector<std::string> inputs;
+  Placement placement;
   std::string output;
   Quality quality = Quality::compact;
   uint32_t chunk_bytes = kDefaultChunkBytes;
@@ -100,51 +99,21 @@ uint64_t bytes_in_memory(const Announced& inputs, const BakeArguments& arguments
                                       : 0);
 }
 
-// So that many appends copy little.
-void make_room(GaussianCloud& cloud, uint64_t gaussians, uint64_t announced) {
-  reserve_for(cloud.position, gaussians, announced, 3);
-  reserve_for(cloud.log_scale, gaussians, announced, 3);
-  reserve_for(cloud.rotation, gaussians, announced, 4);
-  reserve_for(cloud.opacity, gaussians, announced, 1);
-  reserve_for(cloud.sh, gaussians, announced, static_cast<size_t>(cloud.coefficients()) * 3);
-}
-
-// What is in a stream whose header was read.
-GaussianCloud read_stream(BlockReader& reader, const Progress& progress) {
-  constexpr size_t kAtOnce = 1 << 14;
-  GaussianCloud cloud;
-  cloud.sh_degree = reader.sh_degree();
-  for (uint64_t done = 0;;) {
-    const RawBlock block = reader.next(kAtOnce);
-    if (block.count == 0) break;
-    GaussianCloud more = reader.decode(block);
-    if (done == 0) {
-      cloud.origin = more.origin;
-      cloud.native = more.native;
-    }
-    make_room(cloud, done + block.count, reader.count());
-    append(cloud, std::move(more), reader.name());
-    done += block.count;
-    report(progress, "reading", done, reader.count());
-  }
-  sanitise(cloud);
-  leave_out_zero_bands(cloud);
-  return cloud;
-}
-
-GaussianCloud read_one(const std::string& path, BlockReader& reader, const Progress& progress) {
+// An input that is moved is read through its reader, and so is one that cannot be opened again.
+GaussianCloud read_one(const BakeArguments& arguments, size_t i, BlockReader& reader,
+                       const Progress& progress) {
   ImportOptions options;
   options.progress = progress;
-  if (path == "-") return read_stream(reader, progress);
-  const auto source = open_source(path);
-  return import_gaussians(*read_source(*source), options);
+  const std::string& path = arguments.inputs[i];
+  if (path == "-" || arguments.placement.given()) return import_blocks(reader, options);
+  return import_gaussians(*open_source(path), options);
 }
 
-GaussianCloud read_all(const std::vector<std::string>& paths, const Readers& readers,
+GaussianCloud read_all(const BakeArguments& arguments, const Readers& readers,
                        const Progress& progress) {
-  GaussianCloud cloud = read_one(paths.front(), *readers.front(), progress);
-  for (size_t i = 1; i < paths.size(); ++i)
-    append(cloud, read_one(paths[i], *readers[i], progress), shown_path(paths[i]));
+  GaussianCloud cloud = read_one(arguments, 0, *readers.front(), progress);
+  for (size_t i = 1; i < arguments.inputs.size(); ++i)
+    append(cloud, read_one(arguments, i, *readers[i], progress), shown_path(arguments.inputs[i]));
   return cloud;
 }
 
@@ -232,13 +201,19 @@ Readers open_inputs(const BakeArguments& arguments, const NativeChoice& native) 
                   reader->name() +
                       ": found a scene that was trained with a compensated filter, expected none "
                       "with --native-pixel and --training-cameras: it has no footprint");
-  return readers;
+  if (!arguments.placement.given()) return readers;
+  const std::vector<Affine> places = arguments.placement.of(readers.size());
+  if (!chosen && differ_in_scale(places))
+    note(
+        "--transform: the inputs are scaled differently, and get one native pixel, which is "
+        "estimated over all: --native-pixel or --training-cameras says what it is");
+  return placed(std::move(readers), places);
 }
 
 BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& native,
                            const Readers& readers, const Progress& progress) {
   Workers workers;
-  GaussianCloud cloud = read_all(arguments.inputs, readers, progress);
+  GaussianCloud cloud = read_all(arguments, readers, progress);
   const FoundScale found = native_scale(native, cloud);
   cloud.native = found.scale;
   if (found.by_cameras) describe(*found.by_cameras);
@@ -300,7 +275,8 @@ BakeSummary bake_from_folder(const BakeArguments& arguments, const NativeChoice&
                 "--memory and no --work, or leave it out");
   BakeInParts bake;
   bake.request =
-      bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes, {}, native);
+      bake_request(arguments.inputs, arguments.quality, arguments.chunk_bytes, {}, native) +
+      request_lines(arguments.placement.of(arguments.inputs.size()));
   bake.native = native;
   bake.output = arguments.output;
   // One that nobody named goes when the bake fails, too; a kill leaves it.
@@ -352,6 +328,7 @@ void bake(const BakeArguments& arguments) {
                 "--part: found it without --step cells or encode, expected one of them");
   if (arguments.step != BakeStep::all && arguments.work.empty())
     throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
+  arguments.placement.of(arguments.inputs.size());
   for (const std::string& output : outputs_of(arguments)) require_writable(output);
   if (arguments.refine != 0) check_kept(refine_file(arguments));
   if (arguments.optimize.wanted()) check_checkpoints(optimize_file(arguments));
@@ -446,9 +423,10 @@ void add_bake(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("bake", "Build the level-of-detail tree of a scene, and write a .voy");
   command
-      ->add_option("input", arguments->inputs,
-                   "Scenes to bake into one tree, .ply or .spz, or their URLs. - is a .ply "
-                   "on standard input")
+      ->add_option(
+          "input", arguments->inputs,
+          "Scenes to bake into one tree, .ply, .spz, .glb, .gltf or tileset.json, or their "
+          "URLs. - is a .ply on standard input")
       ->required();
   command->add_option("-o", arguments->output, "File to write, a .voy")
       ->type_name("FILE")
@@ -477,6 +455,7 @@ void add_bake(CLI::App& app) {
       ->default_str(std::to_string(arguments->chunk_bytes));
   name_group(*command, "The tree");
   add_optimize_options(*command, arguments->optimize);
+  add_placement_options(*command, arguments->placement);
   add_native_options(*command, *arguments);
   add_work_options(*command, *arguments);
   command->footer("Example: voyager bake city.ply -o city.voy --quality lossless --verify");

@@ -67,7 +67,7 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
   const auto source = open_source(input.string());
   ImportOptions options;
   options.progress = progress_;
-  GaussianCloud cloud = import_gaussians(*read_source(*source), options);
+  GaussianCloud cloud = import_gaussians(*source, options);
   if (native.source != NativeSource::unknown) cloud.native = native;
   const BakedScene baked =
       build_tree(std::move(cloud), workers_, progress_, rule, {.known = levels});

@@ -334,7 +334,8 @@ typedef struct VoySceneStreaming {
   { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, NULL, 0, 0 }
 
 /* Set exactly one of path and source. The library recognises the format by the bytes. A .voy file
- * has a level-of-detail tree. A .ply or .spz file is a flat scene: every Gaussian is drawn. */
+ * has a level-of-detail tree. Others (.ply, .spz, .glb, .gltf, tileset.json) are flat scenes: every
+ * Gaussian is drawn. A .gltf and a tileset refer to files beside them, which takes a path. */
 typedef struct VoySceneDesc {
   VoyStructureType type;       /* VOY_STRUCTURE_TYPE_SCENE_DESC */
   const void* next;            /* NULL or a VoySceneStreaming */

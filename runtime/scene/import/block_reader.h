@@ -1,6 +1,7 @@
 #pragma once
 // A flat scene in blocks, for what is larger than memory: bytes come off the input
 // one block after the other, and blocks are decoded by as many threads as there are.
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,10 +12,13 @@
 
 namespace voyager {
 
+class BlockReader;
+
 // Some Gaussians as the input has them.
 struct RawBlock {
   std::vector<std::byte> bytes;
-  size_t count = 0;  // Gaussians; 0 after the last block
+  size_t count = 0;                         // Gaussians; 0 after the last block
+  std::shared_ptr<const BlockReader> part;  // of an input with several (merged_blocks.h): this one
 };
 
 class BlockReader {
@@ -25,6 +29,8 @@ class BlockReader {
   virtual uint64_t count() const = 0;
   virtual int sh_degree() const = 0;
   virtual NativeScale native() const = 0;
+  // That all blocks have (GaussianCloud::origin).
+  virtual std::array<double, 3> origin() const { return {}; }
 
   // The next Gaussians, at most `most`, which is at least 1, and of few bytes (16 MiB) unless one
   // alone has more. From one thread at a time. Throws Error(refused_input) as the importer of the
@@ -35,14 +41,17 @@ class BlockReader {
   virtual GaussianCloud decode(const RawBlock& block) const = 0;
 };
 
-// Reads the header. A .ply from any stream; a .spz, whose attributes are apart from
-// one another, only from a source, of which each attribute is read at a place of its
-// own. Throws Error(refused_input) naming place, found and expected.
+// Reads the header. A .ply from any stream; the others, whose parts are apart from one another,
+// only from a source, of which each part is read at a place of its own. Throws Error(refused_input)
+// naming place, found and expected, and where a file refers to others what open_beside() throws.
 std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader);
 std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> source);
 
 // The formats; the reader stands at the format's first byte.
 std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader);
 std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source);
+std::unique_ptr<BlockReader> open_glb_blocks(std::shared_ptr<const ByteSource> source);
+// A .gltf, or the tileset.json of 3D Tiles.
+std::unique_ptr<BlockReader> open_json_blocks(std::shared_ptr<const ByteSource> source);
 
 }  // namespace voyager

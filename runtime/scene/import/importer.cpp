@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <string_view>
 
+#include "runtime/scene/append.h"
 #include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/peek_reader.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/sanitise.h"
@@ -16,7 +18,8 @@ namespace {
 struct Format {
   std::string_view first_bytes;
   GaussianCloud (*import)(ByteReader&, const ImportOptions&);
-  // One of them: in blocks from any stream, or from a source alone.
+  // One of them: in blocks from any stream, or from a source alone. Without `import` a file is
+  // only read from a source.
   std::unique_ptr<BlockReader> (*open_stream)(std::unique_ptr<ByteReader>);
   std::unique_ptr<BlockReader> (*open_source)(std::shared_ptr<const ByteSource>);
 };
@@ -25,14 +28,28 @@ constexpr Format kFormats[] = {
     {"ply\r", import_ply, open_ply_blocks, nullptr},
     {"\x1f\x8b", import_spz, nullptr, open_spz_blocks},
     {"NGSP", import_spz, nullptr, open_spz_blocks},
+    {"glTF", nullptr, nullptr, open_glb_blocks},
+    {"{", nullptr, nullptr, open_json_blocks},
 };
 constexpr const char* kKnown =
-    "the first bytes of INRIA .ply (\"ply\") or .spz (gzip 1f 8b, or \"NGSP\")";
+    "the first bytes of INRIA .ply (\"ply\"), .spz (gzip 1f 8b, or \"NGSP\"), .glb (\"glTF\"), "
+    ".gltf or a tileset.json (\"{\")";
+
+// JSON may begin with white space.
+std::span<const std::byte> without_space(std::span<const std::byte> bytes) {
+  const auto is_space = [](std::byte b) {
+    return b == std::byte{' '} || b == std::byte{'\t'} || b == std::byte{'\n'} ||
+           b == std::byte{'\r'};
+  };
+  const auto rest = std::find_if_not(bytes.begin(), bytes.end(), is_space);
+  return bytes.subspan(static_cast<size_t>(rest - bytes.begin()));
+}
 
 const Format* format_of(std::span<const std::byte> bytes) {
   const auto begins = [&](const Format& format) {
-    return bytes.size() >= format.first_bytes.size() &&
-           std::equal(format.first_bytes.begin(), format.first_bytes.end(), bytes.begin(),
+    const auto first = format.first_bytes == "{" ? without_space(bytes) : bytes;
+    return first.size() >= format.first_bytes.size() &&
+           std::equal(format.first_bytes.begin(), format.first_bytes.end(), first.begin(),
                       [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
   };
   const Format* found = std::find_if(std::begin(kFormats), std::end(kFormats), begins);
@@ -82,6 +99,28 @@ class SharedReader final : public ByteReader {
   std::unique_ptr<ByteReader> reader_;
 };
 
+std::span<const std::byte> first_bytes(const ByteSource& source, std::span<std::byte> into) {
+  const auto first =
+      into.first(static_cast<size_t>(std::min<uint64_t>(into.size(), source.size())));
+  source.read(0, first);
+  return first;
+}
+
+GaussianCloud finished(GaussianCloud cloud) {
+  sanitise(cloud);
+  leave_out_zero_bands(cloud);
+  return cloud;
+}
+
+// So that many appends copy little.
+void make_room(GaussianCloud& cloud, uint64_t gaussians, uint64_t announced) {
+  reserve_for(cloud.position, gaussians, announced, 3);
+  reserve_for(cloud.log_scale, gaussians, announced, 3);
+  reserve_for(cloud.rotation, gaussians, announced, 4);
+  reserve_for(cloud.opacity, gaussians, announced, 1);
+  reserve_for(cloud.sh, gaussians, announced, static_cast<size_t>(cloud.coefficients()) * 3);
+}
+
 }  // namespace
 
 std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader) {
@@ -96,9 +135,7 @@ std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader) {
 
 std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> source) {
   std::byte bytes[kFormatBytes];
-  const auto first =
-      std::span(bytes).first(static_cast<size_t>(std::min<uint64_t>(sizeof bytes, source->size())));
-  source->read(0, first);
+  const auto first = first_bytes(*source, bytes);
   const Format* format = format_of(first);
   if (!format) refuse(source->name(), 0, "format", in_hex(first), kKnown);
   if (format->open_source) return format->open_source(std::move(source));
@@ -114,10 +151,37 @@ GaussianCloud import_gaussians(ByteReader& reader, const ImportOptions& options)
   const std::span<const std::byte> first = input.peek(kFormatBytes);
   const Format* format = format_of(first);
   if (!format) refuse(input.name(), input.offset(), "format", in_hex(first), kKnown);
-  GaussianCloud cloud = format->import(input, options);
-  sanitise(cloud);
-  leave_out_zero_bands(cloud);
-  return cloud;
+  if (!format->import)
+    refuse(input.name(), input.offset(), "format", "a file whose parts are apart from one another",
+           "a .ply or a .spz: no other format can be read from a stream");
+  return finished(format->import(input, options));
+}
+
+GaussianCloud import_gaussians(const ByteSource& source, const ImportOptions& options) {
+  std::byte bytes[kFormatBytes];
+  const Format* format = format_of(first_bytes(source, bytes));
+  if (!format || format->import) return import_gaussians(*read_source(source), options);
+  // The readers are gone before this returns.
+  const std::shared_ptr<const ByteSource> borrowed(std::shared_ptr<void>(), &source);
+  return import_blocks(*open_blocks(borrowed), options);
+}
+
+GaussianCloud import_blocks(BlockReader& reader, const ImportOptions& options) {
+  constexpr size_t kAtOnce = 1 << 14;
+  GaussianCloud cloud(options.memory);
+  cloud.sh_degree = reader.sh_degree();
+  cloud.native = reader.native();
+  for (uint64_t done = 0;;) {
+    const RawBlock block = reader.next(kAtOnce);
+    if (block.count == 0) break;
+    GaussianCloud more = reader.decode(block);
+    if (done == 0) cloud.origin = more.origin;
+    make_room(cloud, done + block.count, reader.count());
+    append(cloud, std::move(more), reader.name());
+    done += block.count;
+    report(options.progress, "reading", done, reader.count());
+  }
+  return finished(std::move(cloud));
 }
 
 }  // namespace voyager

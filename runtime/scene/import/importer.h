@@ -22,13 +22,19 @@ struct ImportOptions {
 // offset or field, what was found and what was expected; allocates only as
 // bytes arrive. SH bands that are zero everywhere are left out.
 GaussianCloud import_gaussians(ByteReader& reader, const ImportOptions& options = {});
+// The same of a source, in any format: those whose parts are apart from one another are refused in
+// a stream. Also throws what ByteSource::open_beside() does, where a file refers to others.
+GaussianCloud import_gaussians(const ByteSource& source, const ImportOptions& options = {});
+// The same of what is left of an input that was opened in blocks.
+class BlockReader;
+GaussianCloud import_blocks(BlockReader& reader, const ImportOptions& options = {});
 
 // True if the first bytes (kFormatBytes of them, or all that there are) are
 // those of a format that import_gaussians reads.
 inline constexpr size_t kFormatBytes = 4;
 bool is_importable(std::span<const std::byte> first_bytes);
 
-// The formats; `reader` stands at the format's first byte. Both deliver words
+// The formats that may be streams; `reader` stands at the format's first byte. Both deliver words
 // as the file has them, not yet sanitised. A file must end where its header
 // says: bytes after that mean that header and body disagree, and are refused.
 //

@@ -9,6 +9,7 @@
 #include "runtime/scene/import/ply_header.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/sanitise.h"
+#include "runtime/scene/transform.h"
 
 namespace voyager {
 namespace {
@@ -86,6 +87,7 @@ class PlyReader final : public BlockReader {
   uint64_t count() const override { return vertex().count; }
   int sh_degree() const override { return sh_degree_; }
   NativeScale native() const override { return header_.native; }
+  std::array<double, 3> origin() const override { return origin_; }
 
   RawBlock next(size_t most) override {
     RawBlock block;
@@ -228,9 +230,7 @@ class PlyReader final : public BlockReader {
       }
       if (!std::all_of(world, world + 3, [](double v) { return std::fabs(v) < kMaxCoordinate; }))
         continue;
-      for (size_t axis = 0; axis < 3; ++axis)
-        if (std::fabs(world[axis]) > kOriginReach)
-          origin_[axis] = std::round(world[axis] / kOriginStep) * kOriginStep;
+      origin_ = origin_near({world[0], world[1], world[2]});
       break;
     }
   }

@@ -24,7 +24,7 @@ constexpr TypeName kTypes[] = {
     {"float", "float32", Type::f32, 4}, {"double", "float64", Type::f64, 8},
 };
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string out = "\"";
   for (const char c : text.substr(0, 80)) out += (c >= 32 && c < 127) ? c : '?';
   return out + "\"";
@@ -57,7 +57,7 @@ class Parser {
 
  private:
   [[noreturn]] void refuse_line(const std::string& field, const std::string& expected) const {
-    refuse(input_.name(), line_start_, field, quoted(line_), expected);
+    refuse(input_.name(), line_start_, field, in_quotes(line_), expected);
   }
 
   // What trainers write of their filter; other comments are free text.

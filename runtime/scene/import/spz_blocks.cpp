@@ -92,6 +92,7 @@ class SpzReader final : public BlockReader {
     block.count = std::min<size_t>(most, header_.count - taken_);
     if (block.count == 0) {
       for (const auto& stream : streams_) stream->finish(stream == streams_.back());
+      streams_.clear();
       return block;
     }
     block.bytes.resize(bytes_before(header_.attributes(), block.count));

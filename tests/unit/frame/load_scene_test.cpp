@@ -378,7 +378,7 @@ TEST(LoadScene, AHeaderThatContradictsTheTreeIsRefused) {
 }
 
 TEST(LoadScene, UnknownBytesAreRefusedByName) {
-  for (const char* text : {"", "glTF and more", "x"}) {
+  for (const char* text : {"", "GLTF and more", "x"}) {
     const std::string words = text;
     const auto span = std::as_bytes(std::span(words));
     const Bytes bytes(span.begin(), span.end());
@@ -387,7 +387,7 @@ TEST(LoadScene, UnknownBytesAreRefusedByName) {
       FAIL() << text;
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::refused_input);
-      EXPECT_NE(std::string(error.what()).find(".voy, .ply or .spz"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find(".voy, .ply, .spz"), std::string::npos);
     }
   }
 }

@@ -13,6 +13,10 @@ TEST(Importer, TellsFormatsByTheirFirstBytes) {
   EXPECT_TRUE(is_importable(test::bytes_of("ply\r")));
   EXPECT_TRUE(is_importable(test::bytes_of("NGSP")));
   EXPECT_TRUE(is_importable(test::bytes_of("\x1f\x8b")));
+  EXPECT_TRUE(is_importable(test::bytes_of("glTF")));
+  EXPECT_TRUE(is_importable(test::bytes_of("{\"as")));
+  EXPECT_TRUE(is_importable(test::bytes_of(" \n\t{")));
+  EXPECT_FALSE(is_importable(test::bytes_of("    ")));
   EXPECT_FALSE(is_importable(test::bytes_of("plyx")));
   EXPECT_FALSE(is_importable(test::bytes_of("NGS")));
   EXPECT_FALSE(is_importable({}));
@@ -20,7 +24,7 @@ TEST(Importer, TellsFormatsByTheirFirstBytes) {
 
 TEST(Importer, RefusesWhatItDoesNotKnowAndListsWhatItDoes) {
   test::expect_refused({}, "an empty input", "empty");
-  test::expect_refused(test::bytes_of("glTF...."), "67 6c 54 46", "glb");
+  test::expect_refused(test::bytes_of("GLTF...."), "47 4c 54 46", "no .glb");
   test::expect_refused(test::bytes_of("p"), ".spz", "one byte");
 }
 

@@ -57,6 +57,62 @@ TEST(SceneFormats, TheBlockIsTheSameInPlyAndSpz) {
   }
 }
 
+// What exp and sigmoid leave of a binary32 word is all that differs; opacities of 1 are logits
+// beyond 16 in the .ply.
+TEST(SceneFormats, TheBlockIsTheSameInPlyAndGlb) {
+  VOYAGER_NEEDS_SCENES(folder);
+  const GaussianCloud ply = test::import_file(folder + "/formats/block.ply");
+  const GaussianCloud glb = test::import_file(folder + "/formats/block.glb");
+  ASSERT_EQ(glb.size(), ply.size());
+  EXPECT_EQ(glb.position, ply.position);
+  EXPECT_EQ(glb.sh, ply.sh);
+  Difference most;
+  for (size_t i = 0; i < ply.rotation.size(); ++i)
+    most.rotation = std::max(most.rotation, std::fabs(double{glb.rotation[i]} - ply.rotation[i]));
+  for (size_t i = 0; i < ply.log_scale.size(); ++i)
+    most.log_scale =
+        std::max(most.log_scale, std::fabs(double{glb.log_scale[i]} - ply.log_scale[i]));
+  for (size_t i = 0; i < ply.size(); ++i)
+    most.opacity = std::max(most.opacity,
+                            std::fabs(double{sigmoid(glb.opacity[i])} - sigmoid(ply.opacity[i])));
+  std::printf("block.glb: position 0, SH 0, log scale %.3g, rotation %.3g, opacity %.3g\n",
+              most.log_scale, most.rotation, most.opacity);
+  EXPECT_LE(most.rotation, 2e-7);
+  EXPECT_LE(most.log_scale, 1e-6);
+  EXPECT_LE(most.opacity, 2e-7);
+}
+
+// Each node has the same Gaussian in another encoding. The file is of a draft of the extension:
+// scales are logarithms.
+TEST(SceneFormats, TheConformanceFilesOfGltf) {
+  VOYAGER_NEEDS_SCENES(folder);
+  const GaussianCloud glb = test::import_file(folder + "/formats/khr_conformance_matrix.glb");
+  const GaussianCloud gltf = test::import_file(folder + "/formats/khr_conformance_matrix.gltf");
+  ASSERT_EQ(glb.size(), 15u);
+  EXPECT_EQ(glb.sh_degree, 3);
+  EXPECT_EQ(glb.position, gltf.position);
+  EXPECT_EQ(glb.sh, gltf.sh);
+  for (size_t i = 0; i < glb.size(); ++i) {
+    EXPECT_EQ(glb.words(i).mean, (Vec3f{-1, -2, 3})) << i;
+    EXPECT_EQ(std::fabs(glb.words(i).rotation.y) + std::fabs(glb.words(i).rotation.z), 1.0f) << i;
+  }
+  EXPECT_EQ(glb.words(4).log_scale, (Vec3f{1, -2, 3}));
+  EXPECT_EQ(glb.words(7).log_scale, (Vec3f{1, 0, -1}));
+  EXPECT_NEAR(sigmoid(glb.opacity[8]), 0.75, 1e-6);
+  EXPECT_NEAR(sigmoid(glb.opacity[9]), 64 / 255.0, 1e-6);
+  EXPECT_NEAR(sigmoid(glb.opacity[10]), 16384 / 65535.0, 1e-6);
+  // An unknown kernel and colour space fall back to the known ones, missing SH to COLOR_0.
+  const GaussianCloud fallback =
+      test::import_file(folder + "/formats/khr_extensible_fallback.gltf");
+  ASSERT_EQ(fallback.size(), 1u);
+  EXPECT_EQ(fallback.opacity[0], 0.0f);
+  EXPECT_EQ(fallback.words(0).log_scale, (Vec3f{0, 0, 0}));
+  // Its node turns z up into y up.
+  const GaussianCloud spz = test::import_file(folder + "/formats/spz_2_cesium.glb");
+  ASSERT_EQ(spz.size(), 1u);
+  EXPECT_EQ(spz.words(0).mean, (Vec3f{1, 3, -2}));
+}
+
 TEST(SceneFormats, ThreePointsAreTheSameInPlyAndSpz) {
   VOYAGER_NEEDS_SCENES(folder);
   const std::string base = folder + "/formats/train-3points/test-splat.3-points-from-train.";

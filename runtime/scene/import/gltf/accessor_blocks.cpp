@@ -1,0 +1,133 @@
+#include "runtime/scene/import/gltf/accessor_blocks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/scene/import/gltf/axes.h"
+#include "runtime/scene/sanitise.h"
+
+namespace voyager::gltf {
+namespace {
+
+constexpr size_t kMostBytes = 16 << 20;  // of a block
+
+// Without a minus before a zero.
+float minus(double value) {
+  return static_cast<float>(0.0 - value);
+}
+
+// An opacity of 0 or 1 is beyond what a logit can say; a flat disc has a scale of 0.
+float logit_of(double opacity) {
+  if (std::isnan(opacity)) return NAN;
+  const double logit = std::log(opacity / (1 - opacity));
+  if (opacity <= 0) return -kMaxLogit;
+  return opacity >= 1 ? kMaxLogit : std::clamp(static_cast<float>(logit), -kMaxLogit, kMaxLogit);
+}
+
+float log_of(double scale) {
+  return scale == 0 ? kMinLogScale : static_cast<float>(std::log(scale));
+}
+
+class AccessorReader final : public BlockReader {
+ public:
+  AccessorReader(std::string name, Primitive primitive)
+      : name_(std::move(name)), primitive_(std::move(primitive)) {
+    for (const Attribute& attribute : primitive_.attributes) stride_ += attribute.accessor.stride;
+  }
+
+  const std::string& name() const override { return name_; }
+  uint64_t count() const override { return primitive_.count; }
+  int sh_degree() const override { return primitive_.sh_degree; }
+  NativeScale native() const override { return {}; }
+
+  RawBlock next(size_t most) override {
+    RawBlock block;
+    const uint64_t left = primitive_.count - taken_;
+    block.count = static_cast<size_t>(
+        std::min<uint64_t>({most, left, std::max<size_t>(1, kMostBytes / stride_)}));
+    if (block.count == 0) return block;
+    size_t bytes = 0;
+    for (const Attribute& attribute : primitive_.attributes)
+      bytes += attribute.accessor.span_of(block.count);
+    block.bytes.resize(bytes);
+    std::span<std::byte> rest(block.bytes);
+    for (const Attribute& attribute : primitive_.attributes) {
+      const size_t span = attribute.accessor.span_of(block.count);
+      attribute.accessor.read(taken_, rest.first(span));
+      rest = rest.subspan(span);
+    }
+    taken_ += block.count;
+    return block;
+  }
+
+  GaussianCloud decode(const RawBlock& block) const override {
+    GaussianCloud cloud;
+    cloud.sh_degree = primitive_.sh_degree;
+    cloud.position.resize(3 * block.count);
+    cloud.log_scale.resize(3 * block.count);
+    cloud.rotation.resize(4 * block.count);
+    cloud.opacity.resize(block.count);
+    cloud.sh.resize(block.count * static_cast<size_t>(cloud.coefficients()) * 3);
+    const std::byte* from = block.bytes.data();
+    for (const Attribute& attribute : primitive_.attributes) {
+      const Accessor& accessor = attribute.accessor;
+      for (size_t i = 0; i < block.count; ++i) {
+        double numbers[4] = {};
+        for (size_t k = 0; k < accessor.width; ++k)
+          numbers[k] = accessor.number(from + i * accessor.stride, k);
+        store(attribute, numbers, i, cloud);
+      }
+      from += accessor.span_of(block.count);
+    }
+    return cloud;
+  }
+
+ private:
+  void store(const Attribute& attribute, const double* v, size_t i, GaussianCloud& cloud) const {
+    const size_t coefficients = static_cast<size_t>(cloud.coefficients());
+    float* sh = cloud.sh.data() + (i * coefficients + attribute.k) * 3;
+    switch (attribute.parameter) {
+      case Parameter::position:
+        cloud.position[3 * i] = minus(v[0]), cloud.position[3 * i + 1] = minus(v[1]);
+        cloud.position[3 * i + 2] = static_cast<float>(v[2]);
+        return;
+      case Parameter::rotation:
+        return store_rotation(v, &cloud.rotation[4 * i]);
+      case Parameter::scale:
+        for (size_t k = 0; k < 3; ++k)
+          cloud.log_scale[3 * i + k] =
+              primitive_.log_scales ? static_cast<float>(v[k]) : log_of(v[k]);
+        return;
+      case Parameter::opacity:
+        cloud.opacity[i] = logit_of(v[0]);
+        return;
+      case Parameter::colour_opacity:
+        cloud.opacity[i] = logit_of(v[3]);
+        return;
+      case Parameter::colour:
+        for (size_t k = 0; k < 3; ++k) sh[k] = static_cast<float>((v[k] - 0.5) / kSh0);
+        return;
+      case Parameter::sh:
+        for (size_t k = 0; k < 3; ++k) sh[k] = static_cast<float>(kShSign[attribute.k] * v[k]);
+    }
+  }
+
+  // The half turn before x, y, z, w.
+  static void store_rotation(const double* v, float* wxyz) {
+    wxyz[0] = static_cast<float>(v[2]), wxyz[1] = static_cast<float>(v[1]);
+    wxyz[2] = minus(v[0]), wxyz[3] = minus(v[3]);
+  }
+
+  std::string name_;
+  Primitive primitive_;
+  size_t stride_ = 0;   // bytes of a Gaussian
+  uint64_t taken_ = 0;  // Gaussians
+};
+
+}  // namespace
+
+std::unique_ptr<BlockReader> read_accessors(std::string name, Primitive primitive) {
+  return std::make_unique<AccessorReader>(std::move(name), std::move(primitive));
+}
+
+}  // namespace voyager::gltf

@@ -1,0 +1,157 @@
+#include "runtime/scene/import/gltf/file.h"
+
+#include <algorithm>
+#include <array>
+
+#include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/uri.h"
+
+namespace voyager::gltf {
+namespace {
+
+constexpr uint32_t kMagic = 0x46546c67, kJson = 0x4e4f534a, kBinary = 0x004e4942;
+constexpr uint64_t kHeaderBytes = 12, kChunkBytes = 8;
+
+uint32_t word(const std::byte* at) {
+  uint32_t value = 0;
+  for (int i = 3; i >= 0; --i) value = value << 8 | std::to_integer<uint32_t>(at[i]);
+  return value;
+}
+
+struct Chunk {
+  uint32_t type;
+  uint64_t offset, size;
+};
+
+Chunk chunk_at(const ByteSource& source, uint64_t offset) {
+  std::array<std::byte, kChunkBytes> head;
+  if (source.size() - offset < head.size())
+    refuse(source.name(), offset, "chunk header", std::to_string(source.size() - offset) + " bytes",
+           std::to_string(head.size()));
+  source.read(offset, head);
+  const Chunk chunk{word(&head[4]), offset + head.size(), word(&head[0])};
+  if (chunk.size > source.size() - chunk.offset)
+    refuse(source.name(), offset, "chunk length", std::to_string(chunk.size),
+           "at most " + std::to_string(source.size() - chunk.offset) + ", to the end of the file");
+  return chunk;
+}
+
+// A range of a file as a file of its own.
+class SliceSource final : public ByteSource {
+ public:
+  SliceSource(Slice slice, std::string name) : slice_(std::move(slice)), name_(std::move(name)) {}
+  const std::string& name() const override { return name_; }
+  uint64_t size() const override { return slice_.size; }
+  void read(uint64_t offset, std::span<std::byte> into) const override {
+    check_range(*this, offset, into.size());
+    slice_.source->read(slice_.offset + offset, into);
+  }
+
+ private:
+  Slice slice_;
+  std::string name_;
+};
+
+nlohmann::json json_of(const ByteSource& source, uint64_t offset, uint64_t size) {
+  if (size > kMostJsonBytes)
+    refuse(source.name(), offset, "JSON", std::to_string(size) + " bytes",
+           "at most " + std::to_string(kMostJsonBytes));
+  std::string text(static_cast<size_t>(size), '\0');
+  source.read(offset, std::as_writable_bytes(std::span(text)));
+  return parse_json(source.name(), offset, text);
+}
+
+}  // namespace
+
+std::shared_ptr<const ByteSource> source_of(const Slice& slice, std::string name) {
+  return std::make_shared<SliceSource>(slice, std::move(name));
+}
+
+bool is_binary(const ByteSource& source) {
+  std::array<std::byte, 4> magic;
+  if (source.size() < magic.size()) return false;
+  source.read(0, magic);
+  return word(magic.data()) == kMagic;
+}
+
+nlohmann::json read_json(const ByteSource& source) {
+  return json_of(source, 0, source.size());
+}
+
+File::File(std::shared_ptr<const ByteSource> source) : source_(std::move(source)) {
+  bytes_ = source_->size();
+  if (is_binary(*source_))
+    read_chunks();
+  else
+    json_ = read_json(*source_);
+  if (json().has("buffers")) buffers_.resize(json()["buffers"].size());
+}
+
+File::File(std::shared_ptr<const ByteSource> source, nlohmann::json json)
+    : source_(std::move(source)), json_(std::move(json)), bytes_(source_->size()) {
+  if (this->json().has("buffers")) buffers_.resize(this->json()["buffers"].size());
+}
+
+void File::read_chunks() {
+  std::array<std::byte, kHeaderBytes> head;
+  if (source_->size() < head.size())
+    refuse(name(), 0, "header", std::to_string(source_->size()) + " bytes",
+           std::to_string(head.size()));
+  source_->read(0, head);
+  if (word(&head[4]) != 2) refuse(name(), 4, "version", std::to_string(word(&head[4])), "2");
+  if (word(&head[8]) != source_->size())
+    refuse(name(), 8, "length", std::to_string(word(&head[8])),
+           std::to_string(source_->size()) + ", the bytes of the file");
+  const Chunk text = chunk_at(*source_, kHeaderBytes);
+  if (text.type != kJson)
+    refuse(name(), kHeaderBytes + 4, "type of the first chunk", std::to_string(text.type),
+           std::to_string(kJson) + " (JSON)");
+  json_offset_ = text.offset;
+  json_ = json_of(*source_, text.offset, text.size);
+  // Chunks of other types may follow, and are not for us.
+  for (uint64_t at = text.offset + text.size; at < source_->size();) {
+    const Chunk chunk = chunk_at(*source_, at);
+    if (chunk.type == kBinary && !binary_.source) binary_ = {source_, chunk.offset, chunk.size};
+    at = chunk.offset + chunk.size;
+  }
+}
+
+Slice File::view(const JsonValue& index) {
+  const JsonValue description = json()["bufferViews"][index.whole(kMostIndex)];
+  const Slice all = buffer(description["buffer"]);
+  const uint64_t offset = description.whole_or("byteOffset", 0, UINT64_MAX);
+  const uint64_t size = description["byteLength"].whole(UINT64_MAX);
+  if (offset > all.size || size > all.size - offset)
+    description.refuse(std::to_string(size) + " bytes from " + std::to_string(offset),
+                       "a range of the buffer's " + std::to_string(all.size));
+  return {all.source, all.offset + offset, size};
+}
+
+Slice File::buffer(const JsonValue& index) {
+  const uint64_t number = index.whole(kMostIndex);
+  const JsonValue description = json()["buffers"][number];
+  Slice& known = buffers_[number];
+  if (!known.source) known = open_buffer(description, number);
+  return known;
+}
+
+Slice File::open_buffer(const JsonValue& description, uint64_t index) {
+  const JsonValue length = description["byteLength"];
+  Slice all;
+  if (description.has("uri")) {
+    const JsonValue uri = description["uri"];
+    all.source = open_uri(*source_, uri.place(), uri.text());
+    all.size = all.source->size();
+    bytes_ += all.size;
+  } else if (index == 0 && binary_.source) {
+    all = binary_;
+  } else {
+    description.refuse("no uri", "one, or the first buffer of a .glb with a BIN chunk");
+  }
+  all.size = std::min(all.size, length.whole(UINT64_MAX));
+  if (all.size != length.whole(UINT64_MAX))
+    length.refuse("at most " + std::to_string(all.size) + ", the bytes that are there");
+  return all;
+}
+
+}  // namespace voyager::gltf

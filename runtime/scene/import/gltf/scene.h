@@ -1,0 +1,39 @@
+#pragma once
+// The splats of a glTF file: its primitives, and the nodes that place them.
+#include "runtime/math/affine.h"
+#include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/gltf/primitive.h"
+
+namespace voyager::gltf {
+
+struct Instance {
+  size_t primitive;
+  Affine place;  // INRIA axes
+};
+
+class Scene {
+ public:
+  // Throws Error(refused_input) for a required extension that is not known, a file without splats,
+  // and more Gaussians than a file of its length is worth, each named.
+  explicit Scene(File file);
+
+  const std::vector<Instance>& instances() const { return instances_; }
+  const Primitive& primitive(const Instance& instance) const {
+    return primitives_[instance.primitive];
+  }
+  // Of the file and those beside it.
+  uint64_t bytes() const { return bytes_; }
+  // The instance's own Gaussians, before it is placed.
+  std::unique_ptr<BlockReader> open(const Instance& instance) const;
+
+ private:
+  void read_instances(File& file);
+  void check_count() const;
+
+  std::string name_;
+  uint64_t bytes_ = 0;
+  std::vector<Primitive> primitives_;
+  std::vector<Instance> instances_;
+};
+
+}  // namespace voyager::gltf

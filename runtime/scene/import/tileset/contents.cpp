@@ -1,0 +1,171 @@
+#include "runtime/scene/import/tileset/contents.h"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <filesystem>
+
+#include "runtime/scene/import/gltf/file.h"
+#include "runtime/scene/import/gltf/nodes.h"
+#include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/tileset/tileset.h"
+#include "runtime/scene/import/uri.h"
+
+namespace voyager::tileset {
+namespace {
+
+struct Tile {
+  JsonValue json;
+  Affine parent;
+  bool added;  // as its parent says: children are drawn beside their parent, not in its place
+};
+
+// One file of tiles.
+struct Tiles {
+  nlohmann::json json;
+  std::string name, folder;  // the folder from the first one's
+  Affine transform;
+  int depth;
+};
+
+enum class Kind { glb, gltf, tileset, other };
+
+Kind kind_of(const ByteSource& source, nlohmann::json& json) {
+  if (gltf::is_binary(source)) return Kind::glb;
+  std::array<std::byte, 1> first{};
+  if (source.size() > 0) source.read(0, first);
+  const auto c = std::to_integer<char>(first[0]);
+  if (c != '{' && c != ' ' && c != '\t' && c != '\r' && c != '\n') return Kind::other;
+  json = gltf::read_json(source);
+  return is_tileset(json) ? Kind::tileset : Kind::gltf;
+}
+
+std::string first_letters(const ByteSource& source) {
+  std::array<std::byte, 4> first{};
+  const auto some = std::span(first).first(std::min<uint64_t>(first.size(), source.size()));
+  source.read(0, some);
+  std::string text;
+  for (const std::byte b : some) {
+    const int c = std::to_integer<int>(b);
+    text += c >= 32 && c < 127 ? static_cast<char>(c) : '?';
+  }
+  return text;
+}
+
+class Walk {
+ public:
+  explicit Walk(const ByteSource& first) : first_(first) {}
+
+  std::vector<Content> run(nlohmann::json json) {
+    files_.push_back({std::move(json), first_.name(), "", {}, 0});
+    seen_.insert(std::filesystem::path(first_.name()).filename().string());
+    while (!files_.empty()) {
+      const Tiles file = std::move(files_.front());
+      files_.pop_front();
+      visit_file(file);
+    }
+    return std::move(contents_);
+  }
+
+ private:
+  void visit_file(const Tiles& file) {
+    const JsonValue json(file.name, 0, file.json);
+    require_readable(json);
+    std::vector<Tile> tiles = {{json["root"], file.transform, false}};
+    while (!tiles.empty()) {
+      const Tile tile = tiles.back();
+      tiles.pop_back();
+      visit(tile, file, tiles);
+    }
+  }
+
+  static void require_readable(const JsonValue& json) {
+    const JsonValue asset = json["asset"];
+    const std::string& version = asset["version"].text();
+    if (version != "1.0" && version != "1.1") asset["version"].refuse("\"1.0\" or \"1.1\"");
+    if (asset.has("gltfUpAxis") && asset["gltfUpAxis"].text() != "Y")
+      asset["gltfUpAxis"].refuse("\"Y\"");
+    if (!json.has("extensionsRequired")) return;
+    const JsonValue required = json["extensionsRequired"];
+    for (size_t i = 0; i < required.size(); ++i)
+      if (required[i].text() != "3DTILES_content_gltf")
+        required[i].refuse("3DTILES_content_gltf: no other extension is read");
+  }
+
+  void visit(const Tile& tile, const Tiles& file, std::vector<Tile>& tiles) {
+    const JsonValue& json = tile.json;
+    if (json.has("implicitTiling"))
+      json["implicitTiling"].refuse("implicit tiles", "explicit ones: no others are read");
+    const Affine transform =
+        json.has("transform") ? tile.parent * gltf::matrix_of(json["transform"]) : tile.parent;
+    const bool adds = json.has("refine") ? refines_by_adding(json["refine"]) : tile.added;
+    const size_t children = json.has("children") ? json["children"].size() : 0;
+    if (children == 0 || adds) add_contents(json, file, transform);
+    for (size_t i = children; i-- > 0;) tiles.push_back({json["children"][i], transform, adds});
+  }
+
+  static bool refines_by_adding(const JsonValue& refine) {
+    if (refine.text() == "ADD" || refine.text() == "add") return true;
+    if (refine.text() != "REPLACE" && refine.text() != "replace") refine.refuse("ADD or REPLACE");
+    return false;
+  }
+
+  void add_contents(const JsonValue& tile, const Tiles& file, const Affine& transform) {
+    if (tile.has("content")) add(tile["content"], file, transform);
+    if (!tile.has("contents")) return;
+    const JsonValue contents = tile["contents"];
+    for (size_t i = 0; i < contents.size(); ++i) add(contents[i], file, transform);
+  }
+
+  void add(const JsonValue& json, const Tiles& file, const Affine& transform) {
+    const JsonValue uri = json.has("url") && !json.has("uri") ? json["url"] : json["uri"];
+    Content content{file.name + ": " + uri.place(), uri.text(), is_data_uri(uri.text()), transform};
+    if (!content.is_data)
+      content.uri =
+          (std::filesystem::path(file.folder) / path_of_uri(file.name, uri.place(), uri.text()))
+              .lexically_normal()
+              .string();
+    nlohmann::json found;
+    const auto source = open_content(first_, content);
+    switch (kind_of(*source, found)) {
+      case Kind::glb:
+      case Kind::gltf:
+        contents_.push_back(std::move(content));
+        return;
+      case Kind::tileset:
+        return add_file(uri, content, source->name(), std::move(found), file.depth + 1);
+      case Kind::other:
+        uri.refuse("a file that begins with " + first_letters(*source),
+                   "a .glb, a .gltf or a tileset.json: no other content is read");
+    }
+  }
+
+  void add_file(const JsonValue& uri, const Content& content, const std::string& name,
+                nlohmann::json json, int depth) {
+    if (!content.is_data && !seen_.insert(content.uri).second)
+      uri.refuse(content.uri + " once more", "each tileset in one place");
+    if (depth > kMostDepth)
+      uri.refuse("more than " + std::to_string(kMostDepth) + " tilesets in one another", "fewer");
+    const std::string folder =
+        content.is_data ? "" : std::filesystem::path(content.uri).parent_path().string();
+    files_.push_back({std::move(json), name, folder, content.transform, depth});
+  }
+
+  const ByteSource& first_;
+  std::deque<Tiles> files_;
+  std::set<std::string> seen_;  // tilesets, by their paths from the first one's folder
+  std::vector<Content> contents_;
+};
+
+}  // namespace
+
+std::shared_ptr<const ByteSource> open_content(const ByteSource& first, const Content& content) {
+  if (content.is_data) return open_uri(first, content.place, content.uri);
+  return first.open_beside(content.uri);
+}
+
+std::vector<Content> list_contents(const ByteSource& first, nlohmann::json json) {
+  return Walk(first).run(std::move(json));
+}
+
+}  // namespace voyager::tileset

@@ -1,0 +1,98 @@
+#include "runtime/scene/import/tileset/tileset.h"
+
+#include <algorithm>
+#include <set>
+
+#include "runtime/scene/import/gltf/parts.h"
+#include "runtime/scene/import/growth.h"
+#include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/tileset/contents.h"
+#include "runtime/scene/transform.h"
+
+namespace voyager::tileset {
+namespace {
+
+// Tiles have z up, and their glTF files, with y up, are turned to it: (x, y, z) becomes
+// (x, -z, y). From z up to INRIA's axes so that a tile that is not moved is its glTF file alone.
+constexpr Mat3d kToInria{{{-1, 0, 0}, {0, 0, -1}, {0, -1, 0}}};
+
+Affine in_inria_axes(const Affine& transform) {
+  // Its own inverse.
+  return {kToInria * transform.linear * kToInria, kToInria * transform.offset};
+}
+
+// The file of a content, opened where nobody has it open.
+class Shared {
+ public:
+  Shared(std::shared_ptr<const ByteSource> first, Content content)
+      : first_(std::move(first)), content_(std::move(content)) {}
+
+  std::shared_ptr<const gltf::Scene> open() {
+    if (auto scene = open_.lock()) return scene;
+    gltf::File file(open_content(*first_, content_));
+    auto scene = std::make_shared<const gltf::Scene>(std::move(file));
+    open_ = scene;
+    return scene;
+  }
+
+ private:
+  std::shared_ptr<const ByteSource> first_;
+  Content content_;
+  std::weak_ptr<const gltf::Scene> open_;
+};
+
+class Parts {
+ public:
+  explicit Parts(std::shared_ptr<const ByteSource> first)
+      : first_(std::move(first)), bytes_(first_->size()) {}
+
+  std::unique_ptr<BlockReader> read(std::vector<Content> contents) {
+    if (contents.empty())
+      refuse(first_->name(), 0, "root", "no content of a leaf", "at least one glTF file");
+    origin_ = origin_near(in_inria_axes(contents.front().transform).offset);
+    for (Content& content : contents) add(std::move(content));
+    const uint64_t most = most_gaussians(bytes_, sh_degree_);
+    if (count_ > most)
+      refuse(first_->name(), 0, "Gaussians", std::to_string(count_),
+             "at most " + std::to_string(most) + " in " + std::to_string(bytes_) + " bytes");
+    return merge_blocks(first_->name(), std::move(parts_), origin_);
+  }
+
+ private:
+  void add(Content content) {
+    const Affine place = in_inria_axes(content.transform);
+    const std::string name = content.place, uri = content.uri;
+    const auto shared = std::make_shared<Shared>(first_, std::move(content));
+    const auto scene = shared->open();
+    if (seen_.insert(uri).second) bytes_ += scene->bytes();
+    for (BlockPart& part : gltf::parts_of(
+             *scene, [shared] { return shared->open(); }, place, origin_, name)) {
+      if (__builtin_add_overflow(count_, part.count, &count_)) count_ = UINT64_MAX;
+      sh_degree_ = std::max(sh_degree_, part.sh_degree);
+      parts_.push_back(std::move(part));
+    }
+    if (parts_.size() > most_parts(bytes_))
+      refuse(first_->name(), 0, "placed primitives", std::to_string(parts_.size()),
+             "at most " + std::to_string(most_parts(bytes_)));
+  }
+
+  std::shared_ptr<const ByteSource> first_;
+  std::vector<BlockPart> parts_;
+  std::set<std::string> seen_;
+  std::array<double, 3> origin_{};
+  uint64_t count_ = 0, bytes_;
+  int sh_degree_ = 0;
+};
+
+}  // namespace
+
+bool is_tileset(const nlohmann::json& json) {
+  return json.is_object() && json.contains("root");
+}
+
+std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source, nlohmann::json json) {
+  std::vector<Content> contents = list_contents(*source, std::move(json));
+  return Parts(std::move(source)).read(std::move(contents));
+}
+
+}  // namespace voyager::tileset
