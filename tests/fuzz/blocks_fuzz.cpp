@@ -75,7 +75,7 @@ void expect_same(const std::optional<GaussianCloud>& a, const std::optional<Gaus
 void read_all_ways(Input bytes) {
   const auto source = std::make_shared<MemorySource>("fuzz", bytes);
   const auto first = bytes.first(std::min(bytes.size(), kFormatBytes));
-  const bool known = is_importable(first), is_ply = known && first[0] == std::byte{'p'};
+  const bool known = is_importable(first, ""), is_ply = known && first[0] == std::byte{'p'};
   const auto whole = unless_refused([&] {
     const MemoryLimit limit(bytes.size());
     const auto reader = read_source(*source);

@@ -24,10 +24,7 @@
 #include "runtime/refine/measured.h"
 #include "runtime/refine/refine.h"
 #include "runtime/scene/append.h"
-#include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/importer.h"
-#include "runtime/scene/sanitise.h"
-#include "runtime/scene/sh_bands.h"
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/optimize_options.h"
@@ -100,44 +97,11 @@ uint64_t bytes_in_memory(const Announced& inputs, const BakeArguments& arguments
                                       : 0);
 }
 
-// So that many appends copy little.
-void make_room(GaussianCloud& cloud, uint64_t gaussians, uint64_t announced) {
-  reserve_for(cloud.position, gaussians, announced, 3);
-  reserve_for(cloud.log_scale, gaussians, announced, 3);
-  reserve_for(cloud.rotation, gaussians, announced, 4);
-  reserve_for(cloud.opacity, gaussians, announced, 1);
-  reserve_for(cloud.sh, gaussians, announced, static_cast<size_t>(cloud.coefficients()) * 3);
-}
-
-// What is in a stream whose header was read.
-GaussianCloud read_stream(BlockReader& reader, const Progress& progress) {
-  constexpr size_t kAtOnce = 1 << 14;
-  GaussianCloud cloud;
-  cloud.sh_degree = reader.sh_degree();
-  for (uint64_t done = 0;;) {
-    const RawBlock block = reader.next(kAtOnce);
-    if (block.count == 0) break;
-    GaussianCloud more = reader.decode(block);
-    if (done == 0) {
-      cloud.origin = more.origin;
-      cloud.native = more.native;
-    }
-    make_room(cloud, done + block.count, reader.count());
-    append(cloud, std::move(more), reader.name());
-    done += block.count;
-    report(progress, "reading", done, reader.count());
-  }
-  sanitise(cloud);
-  leave_out_zero_bands(cloud);
-  return cloud;
-}
-
 GaussianCloud read_one(const std::string& path, BlockReader& reader, const Progress& progress) {
   ImportOptions options;
   options.progress = progress;
-  if (path == "-") return read_stream(reader, progress);
-  const auto source = open_source(path);
-  return import_gaussians(*read_source(*source), options);
+  return path == "-" ? import_gaussians(reader, options)
+                     : import_gaussians(open_source(path), options);
 }
 
 GaussianCloud read_all(const std::vector<std::string>& paths, const Readers& readers,

@@ -35,7 +35,7 @@ class BlockReader {
   virtual GaussianCloud decode(const RawBlock& block) const = 0;
 };
 
-// Reads the header. A .ply from any stream; a .spz, whose attributes are apart from
+// Reads the header. A .ply or .splat from any stream; a .spz, whose attributes are apart from
 // one another, only from a source, of which each attribute is read at a place of its
 // own. Throws Error(refused_input) naming place, found and expected.
 std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader);
@@ -43,6 +43,9 @@ std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> sourc
 
 // The formats; the reader stands at the format's first byte.
 std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader);
+std::unique_ptr<BlockReader> open_ply_blocks(std::shared_ptr<const ByteSource> source);
+// Needs a reader that knows its length.
+std::unique_ptr<BlockReader> open_splat_blocks(std::unique_ptr<ByteReader> reader);
 std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source);
 
 }  // namespace voyager
