@@ -63,6 +63,23 @@ class StdinReader final : public ByteReader {
 
 }  // namespace
 
+bool stays_in_folder(std::string_view path) {
+  if (path.empty() || path.front() == '/' || path.find('\\') != path.npos ||
+      path.find('\0') != path.npos)
+    return false;
+  for (size_t at = 0; at <= path.size();) {
+    const size_t end = std::min(path.find('/', at), path.size());
+    if (path.substr(at, end - at) == "..") return false;
+    at = end + 1;
+  }
+  return true;
+}
+
+std::unique_ptr<ByteSource> ByteSource::beside(const std::string&) const {
+  throw Error(ErrorCode::refused_input,
+              name() + ": found a file that names others beside it, expected a local file");
+}
+
 void check_range(const ByteSource& source, uint64_t offset, size_t count) {
   const uint64_t size = source.size();
   if (offset <= size && count <= size - offset) return;

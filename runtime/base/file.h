@@ -32,6 +32,10 @@ class ByteSource {
   // range beyond size(). `into` then holds anything. Blocks; safe to call from several threads
   // at once.
   virtual void read(uint64_t offset, std::span<std::byte> into) const = 0;
+  // Another file, of a path from this one's folder that does not leave it, with / between names.
+  // Throws Error(refused_input) for any other path and where nothing is beside the source (memory,
+  // a host's bytes, a URL); else as opening the file does.
+  virtual std::unique_ptr<ByteSource> beside(const std::string& path) const;
   // A wish, granted where the source has something to choose. Before reads of other threads.
   virtual void expect(Access) const noexcept {}
   // Nobody wants the bytes any more: where reads can be slow for want of an answer (HTTP),
@@ -39,6 +43,9 @@ class ByteSource {
   // during reads; for good. The others are not affected.
   virtual void cancel() const noexcept {}
 };
+
+// Is it a relative path that stays in its folder: no "..", no root, no backslash?
+bool stays_in_folder(std::string_view path);
 
 // Throws Error(refused_input) unless [offset, offset + count) is within the source.
 void check_range(const ByteSource& source, uint64_t offset, size_t count);

@@ -30,6 +30,7 @@ class FileSource final : public ByteSource {
   const std::string& name() const override { return name_; }
   uint64_t size() const override { return size_; }
   void read(uint64_t offset, std::span<std::byte> into) const override;
+  std::unique_ptr<ByteSource> beside(const std::string& path) const override;
   void expect(Access access) const noexcept override;
 
  private:
@@ -74,6 +75,13 @@ FileSource::FileSource(const std::string& path) : name_(path), fd_(open_regular(
   require_regular(path, info.st_mode);
   size_ = static_cast<uint64_t>(info.st_size);
   require_data(fd_.get(), path);
+}
+
+std::unique_ptr<ByteSource> FileSource::beside(const std::string& path) const {
+  if (!stays_in_folder(path))
+    throw Error(ErrorCode::refused_input,
+                name_ + ": found the file name \"" + path + "\", expected one inside the folder");
+  return open_file_source(name_.substr(0, name_.rfind('/') + 1) + path);
 }
 
 bool FileSource::set_direct(bool on) const noexcept {

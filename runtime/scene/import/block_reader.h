@@ -46,6 +46,12 @@ std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader)
 std::unique_ptr<BlockReader> open_ply_blocks(std::shared_ptr<const ByteSource> source);
 // Needs a reader that knows its length.
 std::unique_ptr<BlockReader> open_splat_blocks(std::unique_ptr<ByteReader> reader);
+std::unique_ptr<BlockReader> open_ksplat_blocks(std::unique_ptr<ByteReader> reader);
+// SOG: a .sog or the meta.json of a folder; and the finest level of a streamed scene's
+// lod-meta.json. Their images are decoded before the first block, those of a streamed scene file by
+// file. A build may leave them out: then they refuse every source, saying so.
+std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source);
+std::unique_ptr<BlockReader> open_streamed_sog_blocks(std::shared_ptr<const ByteSource> source);
 std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source);
 
 }  // namespace voyager

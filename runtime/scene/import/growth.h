@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/base/file.h"
+#include "runtime/math/sh.h"
 
 namespace voyager {
 
@@ -24,6 +25,19 @@ inline void reserve_for(std::pmr::vector<float>& values, uint64_t gaussians, uin
                         size_t width) {
   if (values.capacity() / width >= gaussians) return;
   values.reserve(static_cast<size_t>(room_for(gaussians, announced)) * width);
+}
+
+// Gaussians that a compressed file of that many bytes may become, where one takes `gaussian` bytes
+// of memory: 32 MiB of them in any file, and 256 bytes for each byte of the file. That is several
+// times what scenes of one colour are compressed by, and a fraction of what zeros are.
+inline uint64_t most_gaussians(uint64_t length, uint64_t gaussian) {
+  constexpr uint64_t kFreeBytes = 32 << 20, kBytesOfAByte = 256;
+  return (kFreeBytes + std::min(length, uint64_t{1} << 40) * kBytesOfAByte) / gaussian;
+}
+
+// Bytes of a Gaussian in a GaussianCloud.
+inline uint64_t bytes_of_gaussian(int sh_degree) {
+  return (11 + 3 * static_cast<uint64_t>(sh_coefficients(sh_degree))) * sizeof(float);
 }
 
 // The next `count` bytes, fewer at the end of the stream.

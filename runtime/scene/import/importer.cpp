@@ -29,14 +29,18 @@ struct Format {
 };
 constexpr Format kFormats[] = {
     {".splat", "", nullptr, open_splat_blocks, nullptr},
+    {".ksplat", "", nullptr, open_ksplat_blocks, nullptr},
+    {"lod-meta.json", "", nullptr, nullptr, open_streamed_sog_blocks},
+    {"meta.json", "", nullptr, nullptr, open_sog_blocks},
     {"", "ply\n", import_ply, open_ply_blocks, open_ply_blocks},
     {"", "ply\r", import_ply, open_ply_blocks, open_ply_blocks},
     {"", "\x1f\x8b", import_spz, nullptr, open_spz_blocks},
     {"", "NGSP", import_spz, nullptr, open_spz_blocks},
+    {"", "PK\x03\x04", nullptr, nullptr, open_sog_blocks},
 };
 constexpr const char* kKnown =
-    "a .ply or .compressed.ply (first bytes \"ply\"), a .spz (gzip 1f 8b, or \"NGSP\") or a .splat "
-    "(by its name)";
+    "a .ply or .compressed.ply (first bytes \"ply\"), a .spz (gzip 1f 8b, or \"NGSP\"), a .sog "
+    "(a zip), or by its name a .splat, .ksplat, or the meta.json or lod-meta.json of a SOG folder";
 
 // Formats that are known and not read.
 struct Unread {
@@ -49,11 +53,14 @@ constexpr Unread kUnread[] = {
     {"", "RAD0", "Spark's .rad is not read; other programs convert it to .ply"},
 };
 
+// An ending without a dot is a whole name.
 bool ends_with(std::string_view name, std::string_view ending) {
+  if (name.size() < ending.size()) return false;
   const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
-  return name.size() >= ending.size() &&
-         std::equal(ending.begin(), ending.end(), name.end() - static_cast<long>(ending.size()),
-                    [&](char b, char a) { return same(a, b); });
+  const size_t begin = name.size() - ending.size();
+  return std::equal(ending.begin(), ending.end(), name.begin() + static_cast<long>(begin),
+                    [&](char b, char a) { return same(a, b); }) &&
+         (ending.front() == '.' || begin == 0 || name[begin - 1] == '/');
 }
 
 bool begins_with(FirstBytes bytes, std::string_view first) {

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
 
 namespace voyager::spz {
 namespace {
 
 constexpr int kMaxFractionalBits = 24;
-
-// Bytes of a cloud that any file may become, and more for each of its bytes: several times what
-// scenes of one colour are compressed by, and a fraction of what zeros are.
-constexpr uint64_t kFreeBytes = 32 << 20, kBytesOfAByte = 256;
 
 template <size_t count>
 std::array<std::byte, count> read_bytes(ByteReader& reader, const char* what) {
@@ -74,10 +71,7 @@ void check_count(const PeekReader& input, const Header& header) {
   const std::optional<uint64_t> left = input.remaining();
   if (!left) return;
   const uint64_t length = input.offset() + *left;
-  const auto coefficients = static_cast<uint64_t>(sh_coefficients(header.sh_degree));
-  const uint64_t gaussian = (11 + 3 * coefficients) * sizeof(float);
-  const uint64_t most =
-      (kFreeBytes + std::min(length, uint64_t{1} << 40) * kBytesOfAByte) / gaussian;
+  const uint64_t most = most_gaussians(length, bytes_of_gaussian(header.sh_degree));
   if (header.count > most)
     refuse(
         input.name(), input.offset(), "Gaussians", std::to_string(header.count),

@@ -142,5 +142,19 @@ TEST(PackedFormats, TheMinimalSplatIsTheMinimalSpz) {
   EXPECT_LE(d.colour, 1.0 / 255 / 0.15);
 }
 
+TEST(PackedFormats, TheMinimalKsplatIsTheMinimalSplat) {
+  VOYAGER_NEEDS_SCENES(folder);
+  const GaussianCloud splat = test::import_file(folder + "/formats/minimal.splat");
+  const GaussianCloud ksplat = test::import_file(folder + "/formats/minimal.ksplat");
+  ASSERT_EQ(ksplat.size(), splat.size());
+  Difference d;
+  for (size_t i = 0; i < splat.size(); ++i) see(d, splat, i, ksplat, i, {});
+  EXPECT_EQ(d.position, 0);
+  EXPECT_LE(d.log_scale, 1e-6);
+  EXPECT_EQ(d.opacity, 0);
+  EXPECT_LE(d.rotation, 5e-5);
+  EXPECT_EQ(d.colour, 0);
+}
+
 }  // namespace
 }  // namespace voyager::packed_formats_test
