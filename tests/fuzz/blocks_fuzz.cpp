@@ -76,6 +76,7 @@ void read_all_ways(Input bytes) {
   const auto source = std::make_shared<MemorySource>("fuzz", bytes);
   const auto first = bytes.first(std::min(bytes.size(), kFormatBytes));
   const bool known = is_importable(first, ""), is_ply = known && first[0] == std::byte{'p'};
+  if (known && first[0] == std::byte{'P'}) return;  // a .sog: it has a target of its own
   const auto whole = unless_refused([&] {
     const MemoryLimit limit(bytes.size());
     const auto reader = read_source(*source);

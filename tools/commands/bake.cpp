@@ -410,9 +410,10 @@ void add_bake(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("bake", "Build the level-of-detail tree of a scene, and write a .voy");
   command
-      ->add_option("input", arguments->inputs,
-                   "Scenes to bake into one tree, .ply or .spz, or their URLs. - is a .ply "
-                   "on standard input")
+      ->add_option(
+          "input", arguments->inputs,
+          "Scenes to bake into one tree, .ply, .spz, .sog, .splat, .ksplat or the meta.json or "
+          "lod-meta.json of a SOG folder, or their URLs. - is a .ply on standard input")
       ->required();
   command->add_option("-o", arguments->output, "File to write, a .voy")
       ->type_name("FILE")

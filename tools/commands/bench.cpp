@@ -150,7 +150,8 @@ void add_bench(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "Time the stages of frames along a camera path");
   command
       ->add_option("scene", arguments->scene,
-                   "Scene to draw, a .voy or its URL; for whole frames also a .ply or .spz")
+                   "Scene to draw, a .voy or its URL; for whole frames also a .ply, .spz, .sog, "
+                   ".splat or .ksplat")
       ->required();
   command
       ->add_option("--cameras", arguments->cameras,

@@ -153,7 +153,10 @@ void add_info(CLI::App& app) {
   auto json = std::make_shared<bool>(false);
   CLI::App* command =
       app.add_subcommand("info", "Show what a scene holds, what was repaired and what is left out");
-  command->add_option("file", *path, "Scene to read, a .voy, .ply or .spz, or its URL")->required();
+  command
+      ->add_option("file", *path,
+                   "Scene to read, a .voy, .ply, .spz, .sog, .splat or .ksplat, or its URL")
+      ->required();
   command->add_flag("--json", *json, "Print JSON, for programs; sizes are in bytes");
   name_group(*command, kCommonOptions);
   command->footer("Example: voyager info city.voy");

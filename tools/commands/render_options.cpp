@@ -154,7 +154,9 @@ void add_splatting(CLI::App& command, RenderChoices& choices) {
 }  // namespace
 
 void add_render_options(CLI::App& command, RenderArguments& arguments) {
-  command.add_option("scene", arguments.scene, "Scene to draw, a .voy, .ply or .spz, or its URL")
+  command
+      .add_option("scene", arguments.scene,
+                  "Scene to draw, a .voy, .ply, .spz, .sog, .splat or .ksplat, or its URL")
       ->required();
   add_common(command, arguments);
   add_outputs(command, arguments);

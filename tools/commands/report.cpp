@@ -52,7 +52,7 @@ void add_report(CLI::App& app) {
       "report", "Measure image error against run time on this machine, and recommend options");
   command
       ->add_option("scene", arguments->request.scene,
-                   "Scene to measure, a .voy, .ply or .spz, or its URL")
+                   "Scene to measure, a .voy, .ply, .spz, .sog, .splat or .ksplat, or its URL")
       ->required();
   command
       ->add_option("--cameras", arguments->request.cameras,

@@ -126,7 +126,8 @@ class CompressedReader final : public BlockReader {
   void find_elements() const {
     const auto& elements = header_.elements;
     std::string found;
-    for (const Element& element : elements) found += element.name + " ";
+    for (const Element& element : elements)
+      found += element.name + (element.has_list ? ", with a list, " : " ");
     if (found != "chunk vertex " && found != "chunk vertex sh ")
       refuse_header("elements", found, "chunk, vertex and perhaps sh, in this order");
     const uint64_t chunks = count() / kChunkGaussians + (count() % kChunkGaussians == 0 ? 0 : 1);

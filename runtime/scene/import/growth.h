@@ -55,4 +55,9 @@ inline std::vector<std::byte> read_as_they_come(ByteReader& reader, uint64_t cou
   return bytes;
 }
 
+// All of a source, whose size may be a server's claim.
+inline std::vector<std::byte> read_all(const ByteSource& source) {
+  return read_as_they_come(*read_source(source), source.size());
+}
+
 }  // namespace voyager

@@ -172,6 +172,7 @@ TEST(CompressedPlyImport, RefusesElementsThatDoNotFitTogether) {
       {{.sh_degree = 1, .sh_rows = "2"}, "element sh"},
       {{.vertex_type = "int"}, "another type of packed_position"},
       {{.extra = "element face 0\n"}, "elements"},
+      {{.sh_degree = 1, .extra = "property list uchar int l\n"}, "with a list"},
       {{.sh_degree = 1, .extra = "property uchar f_rest_9\n"}, "10 properties"},
       {{.extra = "element sh 1\nproperty uchar f_rest_0\n"}, "1 properties"},
   };

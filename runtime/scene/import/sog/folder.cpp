@@ -1,5 +1,6 @@
 #include <array>
 
+#include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/sog/files.h"
 
@@ -16,7 +17,7 @@ class FolderFiles final : public Files {
     if (meta_->size() > kMostMeta)
       refuse(name(), 0, "meta.json", std::to_string(meta_->size()) + " bytes",
              "at most " + std::to_string(kMostMeta) + " bytes");
-    return all_of(*meta_);
+    return read_all(*meta_);
   }
 
   uint64_t length(std::span<const std::string> files) const override {
@@ -26,16 +27,10 @@ class FolderFiles final : public Files {
   }
 
   std::vector<std::byte> read(const std::string& file) const override {
-    return all_of(*meta_->beside(file));
+    return read_all(*meta_->beside(file));
   }
 
  private:
-  static std::vector<std::byte> all_of(const ByteSource& source) {
-    std::vector<std::byte> bytes(static_cast<size_t>(source.size()));
-    source.read(0, bytes);
-    return bytes;
-  }
-
   std::shared_ptr<const ByteSource> meta_;
 };
 

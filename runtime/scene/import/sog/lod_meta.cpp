@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <unordered_set>
 
+#include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/json_fields.h"
 #include "runtime/scene/import/refuse.h"
 
@@ -59,9 +60,7 @@ nlohmann::json read(const ByteSource& source) {
   if (source.size() > kMostLodBytes)
     refuse(source.name(), 0, "lod-meta.json", std::to_string(source.size()) + " bytes",
            "at most " + std::to_string(kMostLodBytes) + " bytes");
-  std::vector<std::byte> text(static_cast<size_t>(source.size()));
-  source.read(0, text);
-  return parse_json(source.name(), text, kLodLevels);
+  return parse_json(source.name(), read_all(source), kLodLevels);
 }
 
 std::vector<std::string> file_names(const JsonField& names) {

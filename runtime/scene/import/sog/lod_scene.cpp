@@ -93,7 +93,7 @@ class LodScene final : public BlockReader {
       if (!scene_) {
         if (part_ == parts_.size()) return {};
         const Part& part = parts_[part_++];
-        scene_ = open_scene(*files_of(part), part.first, part.count);
+        scene_ = open_scene(files_of(part), part.first, part.count);
       }
       RawBlock codes = scene_->next(most);
       if (codes.count > 0) return codes;

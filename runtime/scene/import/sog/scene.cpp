@@ -46,16 +46,12 @@ void decode_rotation(const std::byte* code, float* wxyz) {
 
 class Scene final : public BlockReader {
  public:
-  Scene(const Files& files, uint64_t first, uint64_t count)
-      : name_(files.name()), meta_(read_meta(files)) {
-    check_count(files.length(meta_.named_files()));
-    if (meta_.has_sh) read_centroids(files);
+  Scene(std::unique_ptr<Files> files, uint64_t first, uint64_t count)
+      : files_(std::move(files)), name_(files_->name()), meta_(read_meta(*files_)) {
+    check_count(files_->length(meta_.named_files()));
+    if (meta_.has_sh) read_centroids();
     first_ = std::min(first, meta_.count);
     count_ = std::min(count, meta_.count - first_);
-    rows_.resize(static_cast<size_t>(count_) * kRow);
-    for (const File file : {kMeansLow, kMeansHigh, kScales, kQuats, kColours, kLabels})
-      if (!meta_.files[file].empty()) read_image(files, file);
-    check_labels();
   }
 
   const std::string& name() const override { return name_; }
@@ -66,6 +62,7 @@ class Scene final : public BlockReader {
   }
 
   RawBlock next(size_t most) override {
+    if (files_) read_images();
     RawBlock block;
     block.count = static_cast<size_t>(std::min<uint64_t>({most, kMostRows, count_ - taken_}));
     const auto rows =
@@ -101,20 +98,28 @@ class Scene final : public BlockReader {
           "at most " + std::to_string(most) + " in files of " + std::to_string(length) + " bytes");
   }
 
-  void read_image(const Files& files, File file) {
+  void read_images() {
+    rows_.resize(static_cast<size_t>(count_) * kRow);
+    for (const File file : {kMeansLow, kMeansHigh, kScales, kQuats, kColours, kLabels})
+      if (!meta_.files[file].empty()) read_image(file);
+    check_labels();
+    files_ = nullptr;
+  }
+
+  void read_image(File file) {
     const std::string& name = meta_.files[file];
     const PixelRange range{meta_.count, 2 * meta_.count + (1 << 16)};
-    const Image image = decode_webp(name_, name, files.read(name), range);
+    const Image image = decode_webp(name_, name, files_->read(name), range);
     const auto [at, channels] = kPlaces[file];
     for (uint64_t i = 0; i < count_; ++i)
       std::copy_n(image.pixel(first_ + i), channels,
                   reinterpret_cast<uint8_t*>(rows_.data() + i * kRow + at));
   }
 
-  void read_centroids(const Files& files) {
+  void read_centroids() {
     const std::string& name = meta_.files[kCentroids];
     const uint64_t most = kMostCentroidRows * kCentroidsARow * 15;
-    const Image image = decode_webp(name_, name, files.read(name), {1, most});
+    const Image image = decode_webp(name_, name, files_->read(name), {1, most});
     sh_degree_ = meta_.sh_degree.value_or(degree_of_width(image.width));
     const auto each = static_cast<uint32_t>(sh_coefficients(sh_degree_) - 1);
     const uint64_t found = uint64_t{image.height} * kCentroidsARow;
@@ -168,6 +173,7 @@ class Scene final : public BlockReader {
     if (rest > 0) std::copy_n(&centroids_[label_of(row) * rest], rest, sh + 3);
   }
 
+  std::unique_ptr<Files> files_;  // until the images are read
   std::string name_;
   Meta meta_;
   int sh_degree_ = 0;
@@ -179,8 +185,9 @@ class Scene final : public BlockReader {
 
 }  // namespace
 
-std::unique_ptr<BlockReader> open_scene(const Files& files, uint64_t first, uint64_t count) {
-  return std::make_unique<Scene>(files, first, count);
+std::unique_ptr<BlockReader> open_scene(std::unique_ptr<Files> files, uint64_t first,
+                                        uint64_t count) {
+  return std::make_unique<Scene>(std::move(files), first, count);
 }
 
 }  // namespace voyager::sog
@@ -188,7 +195,7 @@ std::unique_ptr<BlockReader> open_scene(const Files& files, uint64_t first, uint
 namespace voyager {
 
 std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source) {
-  return sog::open_scene(*sog::open_files(std::move(source)));
+  return sog::open_scene(sog::open_files(std::move(source)));
 }
 
 }  // namespace voyager

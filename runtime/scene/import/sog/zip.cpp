@@ -1,5 +1,6 @@
 #include <zip.h>
 
+#include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/sog/files.h"
 
@@ -13,9 +14,7 @@ struct Discard {
 
 class ZipFiles final : public Files {
  public:
-  explicit ZipFiles(const ByteSource& source) : name_(source.name()) {
-    bytes_.resize(static_cast<size_t>(source.size()));
-    source.read(0, bytes_);
+  explicit ZipFiles(const ByteSource& source) : name_(source.name()), bytes_(read_all(source)) {
     zip_error_t error;
     zip_error_init(&error);
     zip_source_t* opened = zip_source_buffer_create(bytes_.data(), bytes_.size(), 0, &error);
@@ -49,13 +48,13 @@ class ZipFiles final : public Files {
     if (entry) bytes.resize(static_cast<size_t>(about.size));
     // One byte more, at which the checksum is looked at.
     std::byte beyond;
-    if (!entry || !read_all(*entry, bytes) || zip_fread(entry.get(), &beyond, 1) != 0)
+    if (!entry || !fill(*entry, bytes) || zip_fread(entry.get(), &beyond, 1) != 0)
       refuse(name_, 0, file, entry ? zip_file_strerror(entry.get()) : zip_strerror(zip_.get()),
              std::to_string(about.size) + " bytes that fit their checksum");
     return bytes;
   }
 
-  static bool read_all(zip_file_t& entry, std::span<std::byte> into) {
+  static bool fill(zip_file_t& entry, std::span<std::byte> into) {
     while (!into.empty()) {
       const zip_int64_t got = zip_fread(&entry, into.data(), into.size());
       if (got <= 0) return false;
