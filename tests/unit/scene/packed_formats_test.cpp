@@ -51,9 +51,12 @@ std::vector<size_t> origins(const GaussianCloud& a, const GaussianCloud& b, floa
   std::iota(by_x.begin(), by_x.end(), size_t{0});
   const auto x = [&](size_t i) { return a.position[3 * i]; };
   std::sort(by_x.begin(), by_x.end(), [&](size_t i, size_t j) { return x(i) < x(j); });
+  const auto of_a = static_cast<size_t>(a.coefficients()) * 3;
+  const auto of_b = static_cast<size_t>(b.coefficients()) * 3;
   const auto unlike = [&](size_t i, size_t j) {
     return distance(&a.position[3 * i], &b.position[3 * j], 3) / static_cast<double>(reach) +
            distance(&a.log_scale[3 * i], &b.log_scale[3 * j], 3) +
+           distance(&a.sh[of_a * i], &b.sh[of_b * j], 3) +
            std::fabs(static_cast<double>(sigmoid(a.opacity[i]) - sigmoid(b.opacity[j])));
   };
   std::vector<size_t> found;
