@@ -11,19 +11,20 @@ namespace {
 
 using Path = std::filesystem::path;
 
-bool stays_below(const std::string& reference) {
-  if (reference.empty() || reference.find('\0') != std::string::npos) return false;
-  const Path path(reference);
-  return path.is_relative() &&
-         std::none_of(path.begin(), path.end(), [](const Path& part) { return part == ".."; });
-}
-
 }  // namespace
+
+bool stays_in_folder(std::string_view path) {
+  constexpr std::string_view kNever("\\\0", 2);
+  if (path.empty() || path.find_first_of(kNever) != path.npos) return false;
+  const Path parts(path);
+  return parts.is_relative() &&
+         std::none_of(parts.begin(), parts.end(), [](const Path& part) { return part == ".."; });
+}
 
 std::string path_beside(const std::string& file, const std::string& reference) {
   const Path folder = Path(file).parent_path();
   const Path path = (folder.empty() ? Path(".") : folder) / reference;
-  bool inside = stays_below(reference);
+  bool inside = stays_in_folder(reference);
   if (inside) {
     std::error_code failed;
     const Path real_folder =

@@ -23,12 +23,12 @@ void set_bounds(Scene& scene) {
 
 }  // namespace
 
-void load_flat(const ByteSource& source, Workers& workers, Scene& scene) {
+void load_flat(std::shared_ptr<const ByteSource> source, Workers& workers, Scene& scene) {
   ImportOptions options;
   options.memory = scene.gaussians.get_allocator().resource();
   GaussianCloud cloud = import_gaussians(source, options);
   if (cloud.size() >= kNoNode)
-    throw Error(ErrorCode::unsupported, source.name() + ": found " + std::to_string(cloud.size()) +
+    throw Error(ErrorCode::unsupported, source->name() + ": found " + std::to_string(cloud.size()) +
                                             " Gaussians, expected fewer than 2^32 - 1");
   scene.storage = Storage::flat;
   scene.sh_degree = cloud.sh_degree;

@@ -30,11 +30,11 @@ SceneFormat scene_format(const ByteSource& source) {
       std::span(buffer).first(std::min<uint64_t>(buffer.size(), source.size()));
   source.read(0, first);
   if (SceneFile::is_scene_file(first)) return SceneFormat::baked;
-  if (is_importable(first)) return SceneFormat::flat;
-  throw Error(ErrorCode::refused_input,
-              source.name() + ": offset 0: found " +
-                  hex(first.first(std::min<size_t>(8, first.size()))) +
-                  ", expected a .voy, .ply, .spz, .glb, .gltf or tileset.json file");
+  if (is_importable(first, source.name())) return SceneFormat::flat;
+  throw Error(ErrorCode::refused_input, source.name() + ": offset 0: found " +
+                                            hex(first.first(std::min<size_t>(8, first.size()))) +
+                                            ", expected a .voy, or " +
+                                            expected_format(first, source.name()));
 }
 
 std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
@@ -44,7 +44,7 @@ std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& sourc
   if (scene_format(*source) == SceneFormat::baked)
     load_baked(SceneFile(source), workers, *scene);
   else
-    load_flat(*source, workers, *scene);
+    load_flat(source, workers, *scene);
   return scene;
 }
 

@@ -120,12 +120,12 @@ inline bool footprints_differ(const Scene& scene) {
   return !scene.flat() && scene.native.levels > 1;
 }
 
-// Told by the first bytes: a baked .voy, or a flat scene. Throws Error(refused_input) for
-// anything else.
+// Told by the first bytes, of some formats by the name: a baked .voy, or a flat scene. Throws
+// Error(refused_input) for anything else.
 enum class SceneFormat { baked, flat };
 SceneFormat scene_format(const ByteSource& source);
 
-// Opens a .voy or a flat scene of any format, told by its bytes. Throws Error; std::bad_alloc
+// Opens a .voy, or whatever import_gaussians() reads. Throws Error; std::bad_alloc
 // where `memory` refuses.
 std::shared_ptr<Scene> load_scene(const std::shared_ptr<const ByteSource>& source,
                                   std::pmr::memory_resource* memory, Workers& workers);

@@ -31,7 +31,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   Options o;
   CLI::App app{"A Gaussian city on an OpenXR headset"};
   app.name("openxr_headset");
-  app.add_option("SCENE", o.scene, ".voy, .ply, .spz or .glb")->required();
+  app.add_option("SCENE", o.scene, ".voy, or a flat scene of any format")->required();
   app.add_option("--frames", o.frames, "Leave after so many were shown")
       ->check(CLI::Validator(positive, "N"));
   app.add_option("--camera-file", o.camera_file, "cameras.json: the start is its first camera")

@@ -105,7 +105,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   CLI::App app{
       "A small engine-like Vulkan host: glTF meshes with depth, and Voyager's splats among them"};
   app.name("vulkan_host");
-  app.add_option("SCENE", o.scene, ".voy, .ply, .spz or .glb")->required();
+  app.add_option("SCENE", o.scene, ".voy, or a flat scene of any format")->required();
   app.add_flag("--offscreen", o.offscreen, "No window: a PNG a frame, 0000.png and so on");
   app.add_option("--frames", o.frames, "How many; the cameras are repeated from the start")
       ->type_name("N");

@@ -28,7 +28,8 @@ class Pipe final : public ByteReader {
 void read_all_ways(Input bytes) {
   const auto source = std::make_shared<MemorySource>("fuzz", bytes);
   const auto first = bytes.first(std::min(bytes.size(), kFormatBytes));
-  const bool known = is_importable(first), is_ply = known && first[0] == std::byte{'p'};
+  const bool known = is_importable(first, ""), is_ply = known && first[0] == std::byte{'p'};
+  // Of the rest .spz alone: the others have targets of their own.
   if (known && !is_ply && first[0] != std::byte{0x1f} && first[0] != std::byte{'N'}) return;
   const auto whole = unless_refused([&] {
     const MemoryLimit limit(bytes.size());

@@ -28,7 +28,7 @@ void read_all_ways(std::span<const std::byte> bytes) {
   if (announced(open) > kMost) return;
   const auto whole = unless_refused([&] { return read_blocks(*open(), 5000); });
   expect_same(whole, unless_refused([&] { return read_blocks(*open(), 3); }));
-  const auto sound = unless_refused([&] { return import_blocks(*open()); });
+  const auto sound = unless_refused([&] { return import_gaussians(*open()); });
   if (sound.has_value() != whole.has_value() || (sound && !is_complete(*sound))) std::abort();
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "runtime/base/error.h"
+#include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sanitise.h"
 #include "tests/fuzz/memory_limit.h"
@@ -38,6 +39,29 @@ inline void import_bytes(GaussianCloud (*import)(ByteReader&, const ImportOption
   if (!is_complete(*cloud)) std::abort();
   sanitise(*cloud);
   if (!is_complete(*cloud)) std::abort();
+}
+
+// What is read in small blocks is complete, and as many as were announced.
+inline void read_small_blocks(BlockReader& reader) {
+  uint64_t read = 0;
+  for (RawBlock block = reader.next(3); block.count > 0; block = reader.next(3)) {
+    const GaussianCloud cloud = reader.decode(block);
+    if (block.count > 3 || cloud.size() != block.count || !is_complete(cloud)) std::abort();
+    read += block.count;
+  }
+  if (read != reader.count()) std::abort();
+}
+
+// The same of a format that is told by its name, as a whole and in blocks.
+inline void import_named(const char* name, std::span<const std::byte> bytes) {
+  const MemoryLimit limit(bytes.size());
+  const auto source = std::make_shared<MemorySource>(name, bytes);
+  const auto whole = unless_refused([&] { return import_gaussians(source); });
+  if (whole && !is_complete(*whole)) std::abort();
+  unless_refused([&] {
+    read_small_blocks(*open_blocks(source));
+    return GaussianCloud();
+  });
 }
 
 }  // namespace voyager::fuzz

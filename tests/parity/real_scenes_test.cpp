@@ -1,5 +1,6 @@
 // Real Gaussians: both backends, and one scene in several formats.
 #include <cstdio>
+#include <tuple>
 
 #include "tests/support/real_scenes.h"
 #include "tests/support/render_scene.h"
@@ -75,6 +76,29 @@ TEST(RealScenes, SpzIsWithinItsQuantisationOfThePly) {
         compare(render(*cpu, load(folder + "/formats/" + name), {}, input), expected);
     EXPECT_GE(d.psnr, 30) << name;
     std::printf("%s against block.ply: %.1f dB, largest %.0f/255\n", name, d.psnr, 255 * d.largest);
+  }
+}
+
+TEST(RealScenes, PackedFormatsAreWithinTheirQuantisationOfThePly) {
+  VOYAGER_NEEDS_SCENES(folder);
+  const std::string block = folder + "/formats/block";
+  const auto scene = [](const std::string& path, int sh_degree) {
+    Workers workers;
+    const auto loaded =
+        load_scene(open_file_source(path), std::pmr::get_default_resource(), workers);
+    lower_sh_degree(sh_degree, *loaded);
+    return std::shared_ptr<const Scene>(loaded);
+  };
+  const auto cpu = create_cpu_backend();
+  const FrameInput input = frame_input(overview(*load(block + ".ply"), 480, 320), 3);
+  for (const auto& [ending, sh_degree, least] :
+       {std::tuple(".compressed.ply", 3, 35.0), std::tuple(".splat", 0, 40.0)}) {
+    const Frame expected = render(*cpu, scene(block + ".ply", sh_degree), {}, input);
+    const test::Difference d =
+        compare(render(*cpu, scene(block + ending, sh_degree), {}, input), expected);
+    EXPECT_GE(d.psnr, least) << ending;
+    std::printf("block%s against block.ply, SH degree %d: %.1f dB, largest %.0f/255\n", ending,
+                sh_degree, d.psnr, 255 * d.largest);
   }
 }
 

@@ -15,8 +15,7 @@
 namespace voyager::test {
 
 inline GaussianCloud import_file(const std::string& path) {
-  const auto source = open_file_source(path);
-  return import_gaussians(*read_source(*source));
+  return import_gaussians(open_file_source(path));
 }
 
 // The Gaussians nearest to a place of the world, in their order: as dense as the whole.

@@ -62,7 +62,7 @@ inline GaussianCloud import_piped(const Bytes& bytes, const ImportOptions& optio
 }
 
 inline GaussianCloud import_file(const std::string& path) {
-  return import_gaussians(*open_file_source(path));
+  return import_gaussians(open_file_source(path));
 }
 
 // The message of the refusal, or "" where `work` succeeded or failed otherwise.
@@ -86,6 +86,22 @@ inline void expect_refused(const Bytes& bytes, const std::string& field, const s
       EXPECT_NE(message.find(part), std::string::npos)
           << what << ": " << part << " in: " << message;
   EXPECT_EQ(known.rfind("sample.bin", 0), 0u) << known;
+}
+
+// Expects of a file with any one byte changed a cloud, or a refusal.
+inline void expect_flips_are_harmless(const Bytes& whole,
+                                      const std::function<GaussianCloud(const Bytes&)>& import) {
+  const size_t most = import(whole).size() + 1;
+  for (size_t at = 0; at < whole.size(); ++at)
+    for (const int flip : {1, 0x20, 0x80, 0xff}) {
+      Bytes bytes = whole;
+      bytes[at] ^= static_cast<std::byte>(flip);
+      try {
+        EXPECT_LE(import(bytes).size(), most);
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::refused_input) << error.what();
+      }
+    }
 }
 
 inline Bytes gzip(const Bytes& plain) {

@@ -105,8 +105,8 @@ GaussianCloud read_one(const BakeArguments& arguments, size_t i, BlockReader& re
   ImportOptions options;
   options.progress = progress;
   const std::string& path = arguments.inputs[i];
-  if (path == "-" || arguments.placement.given()) return import_blocks(reader, options);
-  return import_gaussians(*open_source(path), options);
+  if (path == "-" || arguments.placement.given()) return import_gaussians(reader, options);
+  return import_gaussians(open_source(path), options);
 }
 
 GaussianCloud read_all(const BakeArguments& arguments, const Readers& readers,
@@ -425,7 +425,7 @@ void add_bake(CLI::App& app) {
   command
       ->add_option(
           "input", arguments->inputs,
-          "Scenes to bake into one tree, .ply, .spz, .glb, .gltf or tileset.json, or their "
+          "Scenes to bake into one tree, of any format that is read (docs/formats.md), or their "
           "URLs. - is a .ply on standard input")
       ->required();
   command->add_option("-o", arguments->output, "File to write, a .voy")

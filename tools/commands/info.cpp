@@ -154,8 +154,7 @@ void add_info(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("info", "Show what a scene holds, what was repaired and what is left out");
   command
-      ->add_option("file", *path,
-                   "Scene to read, a .voy, .ply, .spz, .glb, .gltf or tileset.json, or its URL")
+      ->add_option("file", *path, "Scene to read, a .voy or a flat one of any format, or its URL")
       ->required();
   command->add_flag("--json", *json, "Print JSON, for programs; sizes are in bytes");
   name_group(*command, kCommonOptions);

@@ -156,7 +156,7 @@ void add_splatting(CLI::App& command, RenderChoices& choices) {
 void add_render_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option("scene", arguments.scene,
-                  "Scene to draw, a .voy, .ply, .spz, .glb, .gltf or tileset.json, or its URL")
+                  "Scene to draw, a .voy or a flat one of any format, or its URL")
       ->required();
   add_common(command, arguments);
   add_outputs(command, arguments);

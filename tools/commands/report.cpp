@@ -52,7 +52,7 @@ void add_report(CLI::App& app) {
       "report", "Measure image error against run time on this machine, and recommend options");
   command
       ->add_option("scene", arguments->request.scene,
-                   "Scene to measure, a .voy, .ply, .spz, .glb, .gltf or tileset.json, or its URL")
+                   "Scene to measure, a .voy or a flat one of any format, or its URL")
       ->required();
   command
       ->add_option("--cameras", arguments->request.cameras,

@@ -31,7 +31,7 @@ uint32_t leaf_count(const std::string& path) {
   const std::span<std::byte> first =
       std::span(buffer).first(std::min<uint64_t>(buffer.size(), source->size()));
   source->read(0, first);
-  if (is_importable(first))
+  if (is_importable(first, source->name()))
     throw Error(ErrorCode::invalid_argument,
                 "--curve: found the flat scene " + source->name() + ", expected a .voy: its tree");
   return SceneFile(source).info().leaf_count;

@@ -64,10 +64,9 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
     for (const uint32_t leaf : own_->leaves)
       levels.push_back(static_cast<uint8_t>(footprint_level_of(arrays.node_code(leaf))));
   }
-  const auto source = open_source(input.string());
   ImportOptions options;
   options.progress = progress_;
-  GaussianCloud cloud = import_gaussians(*source, options);
+  GaussianCloud cloud = import_gaussians(open_source(input.string()), options);
   if (native.source != NativeSource::unknown) cloud.native = native;
   const BakedScene baked =
       build_tree(std::move(cloud), workers_, progress_, rule, {.known = levels});

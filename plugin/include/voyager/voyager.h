@@ -333,9 +333,10 @@ typedef struct VoySceneStreaming {
 #define VOY_SCENE_STREAMING_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, NULL, 0, 0 }
 
-/* Set exactly one of path and source. The library recognises the format by the bytes. A .voy file
- * has a level-of-detail tree. Others (.ply, .spz, .glb, .gltf, tileset.json) are flat scenes: every
- * Gaussian is drawn. A .gltf and a tileset refer to files beside them, which takes a path. */
+/* Set exactly one of path and source. The library recognises the format by the bytes, and .splat,
+ * .ksplat and the meta.json of a SOG folder by the name. A .voy file has a level-of-detail tree.
+ * Any other file (.ply, .compressed.ply, .spz, .sog, .splat, .ksplat, .glb, .gltf, tileset.json) is
+ * a flat scene: every Gaussian is drawn. What refers to files beside it takes a path. */
 typedef struct VoySceneDesc {
   VoyStructureType type;       /* VOY_STRUCTURE_TYPE_SCENE_DESC */
   const void* next;            /* NULL or a VoySceneStreaming */

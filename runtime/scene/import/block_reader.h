@@ -41,14 +41,24 @@ class BlockReader {
   virtual GaussianCloud decode(const RawBlock& block) const = 0;
 };
 
-// Reads the header. A .ply from any stream; the others, whose parts are apart from one another,
-// only from a source, of which each part is read at a place of its own. Throws Error(refused_input)
-// naming place, found and expected, and where a file refers to others what open_beside() throws.
+// Reads the header. A .ply, a .splat or a .ksplat from any stream; the others, whose parts are
+// apart from one another, only from a source, of which each part is read at a place of its own.
+// Throws Error(refused_input) naming place, found and expected, and where a file refers to others
+// what open_beside() throws.
 std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader);
 std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> source);
 
 // The formats; the reader stands at the format's first byte.
 std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader);
+std::unique_ptr<BlockReader> open_ply_blocks(std::shared_ptr<const ByteSource> source);
+// Needs a reader that knows its length.
+std::unique_ptr<BlockReader> open_splat_blocks(std::unique_ptr<ByteReader> reader);
+std::unique_ptr<BlockReader> open_ksplat_blocks(std::unique_ptr<ByteReader> reader);
+// SOG: a .sog or the meta.json of a folder; and the finest level of a streamed scene's
+// lod-meta.json. Their images are decoded before the first block, those of a streamed scene file by
+// file. A build may leave them out: then they refuse every source, saying so.
+std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source);
+std::unique_ptr<BlockReader> open_streamed_sog_blocks(std::shared_ptr<const ByteSource> source);
 std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source);
 std::unique_ptr<BlockReader> open_glb_blocks(std::shared_ptr<const ByteSource> source);
 // A .gltf, or the tileset.json of 3D Tiles.

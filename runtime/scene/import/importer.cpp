@@ -6,34 +6,56 @@
 
 #include "runtime/scene/append.h"
 #include "runtime/scene/import/block_reader.h"
-#include "runtime/scene/import/growth.h"
+#include "runtime/scene/import/import_blocks.h"
 #include "runtime/scene/import/peek_reader.h"
 #include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/shared_reader.h"
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/sh_bands.h"
 
 namespace voyager {
 namespace {
 
+using FirstBytes = std::span<const std::byte>;
+
+// A format is told by the end of the file's name, where nothing in the file tells it, or else by
+// its first bytes. The name comes first: any bytes may begin a file without a mark.
 struct Format {
-  std::string_view first_bytes;
+  std::string_view ending, first_bytes;  // one of them
+  // From a stream at once, where that takes less memory than block by block.
   GaussianCloud (*import)(ByteReader&, const ImportOptions&);
-  // One of them: in blocks from any stream, or from a source alone. Without `import` a file is
-  // only read from a source.
+  // One of them at least: in blocks from any stream, or from a source.
   std::unique_ptr<BlockReader> (*open_stream)(std::unique_ptr<ByteReader>);
   std::unique_ptr<BlockReader> (*open_source)(std::shared_ptr<const ByteSource>);
 };
 constexpr Format kFormats[] = {
-    {"ply\n", import_ply, open_ply_blocks, nullptr},
-    {"ply\r", import_ply, open_ply_blocks, nullptr},
-    {"\x1f\x8b", import_spz, nullptr, open_spz_blocks},
-    {"NGSP", import_spz, nullptr, open_spz_blocks},
-    {"glTF", nullptr, nullptr, open_glb_blocks},
-    {"{", nullptr, nullptr, open_json_blocks},
+    {".splat", "", nullptr, open_splat_blocks, nullptr},
+    {".ksplat", "", nullptr, open_ksplat_blocks, nullptr},
+    {"lod-meta.json", "", nullptr, nullptr, open_streamed_sog_blocks},
+    {"meta.json", "", nullptr, nullptr, open_sog_blocks},
+    {"", "ply\n", import_ply, open_ply_blocks, open_ply_blocks},
+    {"", "ply\r", import_ply, open_ply_blocks, open_ply_blocks},
+    {"", "\x1f\x8b", import_spz, nullptr, open_spz_blocks},
+    {"", "NGSP", import_spz, nullptr, open_spz_blocks},
+    {"", "PK\x03\x04", nullptr, nullptr, open_sog_blocks},
+    {"", "glTF", nullptr, nullptr, open_glb_blocks},
+    {"", "{", nullptr, nullptr, open_json_blocks},
 };
 constexpr const char* kKnown =
-    "the first bytes of INRIA .ply (\"ply\"), .spz (gzip 1f 8b, or \"NGSP\"), .glb (\"glTF\"), "
-    ".gltf or a tileset.json (\"{\")";
+    "a .ply or .compressed.ply (first bytes \"ply\"), a .spz (gzip 1f 8b, or \"NGSP\"), a .sog "
+    "(a zip), a .glb (\"glTF\"), a .gltf or tileset.json (\"{\"), or by its name a .splat, a "
+    ".ksplat, or the meta.json or lod-meta.json of a SOG folder";
+
+// Formats that are known and not read.
+struct Unread {
+  std::string_view ending, first_bytes;
+  const char* why;
+};
+constexpr Unread kUnread[] = {
+    {".lcc", "", "LCC is not read; other programs convert it to .ply"},
+    {".lcc2", "", "LCC is not read; other programs convert it to .ply"},
+    {"", "RAD0", "Spark's .rad is not read; other programs convert it to .ply"},
+};
 
 // JSON may begin with white space.
 std::span<const std::byte> without_space(std::span<const std::byte> bytes) {
@@ -45,18 +67,32 @@ std::span<const std::byte> without_space(std::span<const std::byte> bytes) {
   return bytes.subspan(static_cast<size_t>(rest - bytes.begin()));
 }
 
-const Format* format_of(std::span<const std::byte> bytes) {
-  const auto begins = [&](const Format& format) {
-    const auto first = format.first_bytes == "{" ? without_space(bytes) : bytes;
-    return first.size() >= format.first_bytes.size() &&
-           std::equal(format.first_bytes.begin(), format.first_bytes.end(), first.begin(),
-                      [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
-  };
-  const Format* found = std::find_if(std::begin(kFormats), std::end(kFormats), begins);
-  return found == std::end(kFormats) ? nullptr : found;
+// An ending without a dot is a whole name.
+bool ends_with(std::string_view name, std::string_view ending) {
+  if (name.size() < ending.size()) return false;
+  const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
+  const size_t begin = name.size() - ending.size();
+  return std::equal(ending.begin(), ending.end(), name.begin() + static_cast<long>(begin),
+                    [&](char b, char a) { return same(a, b); }) &&
+         (ending.front() == '.' || begin == 0 || name[begin - 1] == '/');
 }
 
-std::string in_hex(std::span<const std::byte> bytes) {
+bool begins_with(FirstBytes bytes, std::string_view first) {
+  return bytes.size() >= first.size() &&
+         std::equal(first.begin(), first.end(), bytes.begin(),
+                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
+}
+
+template <class Row, size_t count>
+const Row* find(const Row (&rows)[count], FirstBytes first, std::string_view name) {
+  const Row* found = std::find_if(rows, rows + count, [&](const Row& row) {
+    if (!row.ending.empty()) return ends_with(name, row.ending);
+    return begins_with(row.first_bytes == "{" ? without_space(first) : first, row.first_bytes);
+  });
+  return found == rows + count ? nullptr : found;
+}
+
+std::string in_hex(FirstBytes bytes) {
   if (bytes.empty()) return "an empty input";
   std::string text = "the bytes";
   for (const std::byte b : bytes) {
@@ -65,6 +101,20 @@ std::string in_hex(std::span<const std::byte> bytes) {
     text += digits;
   }
   return text;
+}
+
+const Format& format_of(FirstBytes first, const std::string& name, uint64_t offset) {
+  const Format* format = find(kFormats, first, name);
+  if (!format) refuse(name, offset, "format", in_hex(first), expected_format(first, name));
+  return *format;
+}
+
+const Format& format_of(const ByteSource& source) {
+  std::byte bytes[kFormatBytes];
+  const auto first =
+      std::span(bytes).first(static_cast<size_t>(std::min<uint64_t>(sizeof bytes, source.size())));
+  source.read(0, first);
+  return format_of(first, source.name(), 0);
 }
 
 // A stream from its first byte on, and what of it was looked at.
@@ -76,34 +126,29 @@ class OwnedPeek final : public ByteReader {
   uint64_t skip(uint64_t count) override { return peek_.skip(count); }
   std::optional<uint64_t> remaining() const override { return peek_.remaining(); }
   uint64_t offset() const override { return peek_.offset(); }
-  std::span<const std::byte> peek(size_t count) { return peek_.peek(count); }
+  FirstBytes peek(size_t count) { return peek_.peek(count); }
 
  private:
   std::unique_ptr<ByteReader> inner_;
   PeekReader peek_{*inner_};
 };
 
-// A source's bytes as a stream that keeps it alive.
-class SharedReader final : public ByteReader {
+// Another's stream, for what wants one of its own.
+class BorrowedReader final : public ByteReader {
  public:
-  explicit SharedReader(std::shared_ptr<const ByteSource> source)
-      : source_(std::move(source)), reader_(read_source(*source_)) {}
-  const std::string& name() const override { return reader_->name(); }
-  size_t read(std::span<std::byte> into) override { return reader_->read(into); }
-  uint64_t skip(uint64_t count) override { return reader_->skip(count); }
-  std::optional<uint64_t> remaining() const override { return reader_->remaining(); }
-  uint64_t offset() const override { return reader_->offset(); }
+  explicit BorrowedReader(ByteReader& inner) : inner_(inner) {}
+  const std::string& name() const override { return inner_.name(); }
+  size_t read(std::span<std::byte> into) override { return inner_.read(into); }
+  uint64_t skip(uint64_t count) override { return inner_.skip(count); }
+  std::optional<uint64_t> remaining() const override { return inner_.remaining(); }
+  uint64_t offset() const override { return inner_.offset(); }
 
  private:
-  std::shared_ptr<const ByteSource> source_;
-  std::unique_ptr<ByteReader> reader_;
+  ByteReader& inner_;
 };
 
-std::span<const std::byte> first_bytes(const ByteSource& source, std::span<std::byte> into) {
-  const auto first =
-      into.first(static_cast<size_t>(std::min<uint64_t>(into.size(), source.size())));
-  source.read(0, first);
-  return first;
+[[noreturn]] void refuse_stream(const ByteReader& input, FirstBytes first, const char* expected) {
+  refuse(input.name(), input.offset(), "format", in_hex(first), expected);
 }
 
 GaussianCloud finished(GaussianCloud cloud) {
@@ -112,76 +157,53 @@ GaussianCloud finished(GaussianCloud cloud) {
   return cloud;
 }
 
-// So that many appends copy little.
-void make_room(GaussianCloud& cloud, uint64_t gaussians, uint64_t announced) {
-  reserve_for(cloud.position, gaussians, announced, 3);
-  reserve_for(cloud.log_scale, gaussians, announced, 3);
-  reserve_for(cloud.rotation, gaussians, announced, 4);
-  reserve_for(cloud.opacity, gaussians, announced, 1);
-  reserve_for(cloud.sh, gaussians, announced, static_cast<size_t>(cloud.coefficients()) * 3);
-}
-
 }  // namespace
 
 std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader) {
   auto input = std::make_unique<OwnedPeek>(std::move(reader));
-  const std::span<const std::byte> first = input->peek(kFormatBytes);
-  const Format* format = format_of(first);
+  const FirstBytes first = input->peek(kFormatBytes);
+  const Format* format = find(kFormats, first, input->name());
   if (!format || !format->open_stream)
-    refuse(input->name(), input->offset(), "format", in_hex(first),
-           "the first bytes of INRIA .ply (\"ply\"): no other format can be read from a stream");
+    refuse_stream(*input, first,
+                  "the first bytes of a .ply (\"ply\"): no other format can be read from a stream");
   return format->open_stream(std::move(input));
 }
 
 std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> source) {
-  std::byte bytes[kFormatBytes];
-  const auto first = first_bytes(*source, bytes);
-  const Format* format = format_of(first);
-  if (!format) refuse(source->name(), 0, "format", in_hex(first), kKnown);
-  if (format->open_source) return format->open_source(std::move(source));
-  return format->open_stream(std::make_unique<SharedReader>(std::move(source)));
+  const Format& format = format_of(*source);
+  if (format.open_source) return format.open_source(std::move(source));
+  return format.open_stream(std::make_unique<SharedReader>(std::move(source)));
 }
 
-bool is_importable(std::span<const std::byte> first_bytes) {
-  return format_of(first_bytes) != nullptr;
+bool is_importable(FirstBytes first_bytes, std::string_view name) {
+  return find(kFormats, first_bytes, name) != nullptr;
+}
+
+std::string expected_format(FirstBytes first_bytes, std::string_view name) {
+  const Unread* unread = find(kUnread, first_bytes, name);
+  return unread ? std::string(kKnown) + ": " + unread->why : kKnown;
 }
 
 GaussianCloud import_gaussians(ByteReader& reader, const ImportOptions& options) {
   PeekReader input(reader);
-  const std::span<const std::byte> first = input.peek(kFormatBytes);
-  const Format* format = format_of(first);
-  if (!format) refuse(input.name(), input.offset(), "format", in_hex(first), kKnown);
-  if (!format->import)
-    refuse(input.name(), input.offset(), "format", "a file whose parts are apart from one another",
-           "a .ply or a .spz: no other format can be read from a stream");
-  return finished(format->import(input, options));
+  const FirstBytes first = input.peek(kFormatBytes);
+  const Format& format = format_of(first, input.name(), input.offset());
+  if (format.import) return finished(format.import(input, options));
+  if (!format.open_stream)
+    refuse_stream(input, first, "a file: the format cannot be read from a stream");
+  return finished(
+      import_blocks(*format.open_stream(std::make_unique<BorrowedReader>(input)), options));
 }
 
-GaussianCloud import_gaussians(const ByteSource& source, const ImportOptions& options) {
-  std::byte bytes[kFormatBytes];
-  const Format* format = format_of(first_bytes(source, bytes));
-  if (!format || format->import) return import_gaussians(*read_source(source), options);
-  // The readers are gone before this returns.
-  const std::shared_ptr<const ByteSource> borrowed(std::shared_ptr<void>(), &source);
-  return import_blocks(*open_blocks(borrowed), options);
+GaussianCloud import_gaussians(std::shared_ptr<const ByteSource> source,
+                               const ImportOptions& options) {
+  const Format& format = format_of(*source);
+  if (format.import) return finished(format.import(*read_source(*source), options));
+  return finished(import_blocks(*open_blocks(std::move(source)), options));
 }
 
-GaussianCloud import_blocks(BlockReader& reader, const ImportOptions& options) {
-  constexpr size_t kAtOnce = 1 << 14;
-  GaussianCloud cloud(options.memory);
-  cloud.sh_degree = reader.sh_degree();
-  cloud.native = reader.native();
-  for (uint64_t done = 0;;) {
-    const RawBlock block = reader.next(kAtOnce);
-    if (block.count == 0) break;
-    GaussianCloud more = reader.decode(block);
-    if (done == 0) cloud.origin = more.origin;
-    make_room(cloud, done + block.count, reader.count());
-    append(cloud, std::move(more), reader.name());
-    done += block.count;
-    report(options.progress, "reading", done, reader.count());
-  }
-  return finished(std::move(cloud));
+GaussianCloud import_gaussians(BlockReader& reader, const ImportOptions& options) {
+  return finished(import_blocks(reader, options));
 }
 
 }  // namespace voyager

@@ -5,6 +5,7 @@
 #include <memory_resource>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "runtime/base/file.h"
 #include "runtime/base/progress.h"
@@ -17,22 +18,26 @@ struct ImportOptions {
   Progress progress;  // stage "reading"
 };
 
-// Reads a flat scene from the stream, in whichever known format its first
-// bytes say it is, and sanitises it. Throws Error(refused_input) naming file,
-// offset or field, what was found and what was expected; allocates only as
-// bytes arrive. SH bands that are zero everywhere are left out.
-GaussianCloud import_gaussians(ByteReader& reader, const ImportOptions& options = {});
-// The same of a source, in any format: those whose parts are apart from one another are refused in
-// a stream. Also throws what ByteSource::open_beside() does, where a file refers to others.
-GaussianCloud import_gaussians(const ByteSource& source, const ImportOptions& options = {});
-// The same of what is left of an input that was opened in blocks.
 class BlockReader;
-GaussianCloud import_blocks(BlockReader& reader, const ImportOptions& options = {});
 
-// True if the first bytes (kFormatBytes of them, or all that there are) are
-// those of a format that import_gaussians reads.
+// Reads a flat scene, in whichever known format the end of its name or its first bytes say it is,
+// and sanitises it. Throws Error(refused_input) naming file, offset or field, what was found and
+// what was expected; allocates only as bytes arrive. SH bands that are zero everywhere are left
+// out. A source has every format; a stream those that are read from their start to their end. From
+// blocks: what the reader has from where it stands.
+GaussianCloud import_gaussians(ByteReader& reader, const ImportOptions& options = {});
+GaussianCloud import_gaussians(std::shared_ptr<const ByteSource> source,
+                               const ImportOptions& options = {});
+GaussianCloud import_gaussians(BlockReader& reader, const ImportOptions& options = {});
+
+// True if a file of that name with those first bytes (kFormatBytes of them, or all that there are)
+// is of a format that import_gaussians reads.
 inline constexpr size_t kFormatBytes = 4;
-bool is_importable(std::span<const std::byte> first_bytes);
+bool is_importable(std::span<const std::byte> first_bytes, std::string_view name);
+
+// For the message that refuses a file: the formats and how each is told, and, where it is one that
+// is known and not read, why.
+std::string expected_format(std::span<const std::byte> first_bytes, std::string_view name);
 
 // The formats that may be streams; `reader` stands at the format's first byte. Both deliver words
 // as the file has them, not yet sanitised. A file must end where its header
@@ -41,8 +46,8 @@ bool is_importable(std::span<const std::byte> first_bytes);
 // .ply: any property order and scalar type, little- or big-endian; other
 // elements are skipped. With double x, y, z the first finite vertex chooses the
 // cloud's origin: per axis 0 within 16 km, else the nearest multiple of 1024 m. A list property in
-// or before the vertex element, the ASCII encoding, and a count of f_rest_* other than 0, 9, 24 or
-// 45 are refused.
+// or before the vertex element, the ASCII encoding, a count of f_rest_* other than 0, 9, 24 or 45
+// and 2DGS are refused. PlayCanvas's .compressed.ply is told by its properties.
 GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options);
 // .spz versions 1 to 4, gzipped or (a raw v1-v3) not; SH degree 0 to 3.
 // Extensions are skipped; unknown flags, which may change the layout, and

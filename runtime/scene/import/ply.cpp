@@ -1,13 +1,14 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/compressed_ply.h"
 #include "runtime/scene/import/growth.h"
+#include "runtime/scene/import/import_blocks.h"
 #include "runtime/scene/import/importer.h"
-#include "runtime/scene/import/ply_header.h"
+#include "runtime/scene/import/ply_elements.h"
 #include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/shared_reader.h"
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/transform.h"
 
@@ -27,17 +28,6 @@ struct Column {
   std::pmr::vector<float> GaussianCloud::*into;
   size_t width, at;  // word `at` of every `width`
 };
-
-template <class T>
-T load(const std::byte* from, bool big_endian) {
-  std::byte bytes[sizeof(T)];
-  std::memcpy(bytes, from, sizeof(T));
-  if (big_endian != (std::endian::native == std::endian::big))
-    std::reverse(bytes, bytes + sizeof(T));
-  T value;
-  std::memcpy(&value, bytes, sizeof(T));
-  return value;
-}
 
 template <class Take>
 void with_type(Type type, const Take& take) {
@@ -61,26 +51,14 @@ void with_type(Type type, const Take& take) {
   }
 }
 
-// Bytes of an element; refuses a count whose product with the stride overflows.
-uint64_t bytes_of(const PeekReader& input, const Element& element) {
-  uint64_t bytes = 0;
-  if (__builtin_mul_overflow(element.count, uint64_t{element.stride}, &bytes) || bytes > INT64_MAX)
-    refuse(input.name(), input.offset(), "element " + element.name,
-           std::to_string(element.count) + " rows of " + std::to_string(element.stride) + " bytes",
-           "less than 2^63 bytes in all");
-  return bytes;
-}
-
 class PlyReader final : public BlockReader {
  public:
-  explicit PlyReader(ByteReader& reader) : input_(reader), header_(ply::read_header(input_)) {
+  explicit PlyReader(std::unique_ptr<ply::Input> opened)
+      : opened_(std::move(opened)), input_(opened_->bytes), header_(opened_->header) {
     find_columns();
-    check_length();
-    for (size_t i = 0; i < header_.vertex; ++i) skip(header_.elements[i]);
+    ply::check_length(input_, header_);
+    for (size_t i = 0; i < header_.vertex; ++i) ply::skip(input_, header_.elements[i]);
     choose_origin();
-  }
-  explicit PlyReader(std::unique_ptr<ByteReader> reader) : PlyReader(*reader) {
-    owned_ = std::move(reader);
   }
 
   const std::string& name() const override { return input_.name(); }
@@ -100,7 +78,7 @@ class PlyReader final : public BlockReader {
     const size_t stride = vertex().stride;
     const uint64_t rows = std::min<uint64_t>(most, std::max<size_t>(1, kMostBytes / stride));
     block.count = static_cast<size_t>(std::min(rows, count() - taken_));
-    if (block.count == 0) return skip_the_rest();
+    if (block.count == 0) return ply::skip_the_rest(input_, header_, header_.vertex + 1);
     block.bytes.resize(block.count * stride);
     const size_t got = input_.read(block.bytes);
     if (got != block.bytes.size())
@@ -154,7 +132,16 @@ class PlyReader final : public BlockReader {
     columns_.push_back({property, into, width, at});
   }
 
+  // 2DGS trains flat ellipses: their files lack the third scale alone.
+  void refuse_2dgs() const {
+    if (vertex().find("scale_0") && vertex().find("scale_1") && !vertex().find("scale_2"))
+      refuse(input_.name(), input_.offset(), "element vertex",
+             "scale_0 and scale_1 without scale_2: a file of 2DGS, which is not supported",
+             "one of 3DGS, with scale_2");
+  }
+
   void find_columns() {
+    refuse_2dgs();
     const auto is_rest = [](const Property& p) { return p.name.rfind("f_rest_", 0) == 0; };
     const auto rest =
         std::count_if(vertex().properties.begin(), vertex().properties.end(), is_rest);
@@ -178,41 +165,6 @@ class PlyReader final : public BlockReader {
     }
   }
 
-  // Where the length of the stream is known, the header is held to it before anything is read.
-  void check_length() {
-    uint64_t expected = 0;
-    bool open_ended = false;
-    for (const Element& element : header_.elements) {
-      open_ended = open_ended || element.has_list;
-      if (open_ended) continue;
-      if (__builtin_add_overflow(expected, bytes_of(input_, element), &expected))
-        refuse(input_.name(), input_.offset(), "elements", "more than 2^64 bytes", "less");
-    }
-    const std::optional<uint64_t> found = input_.remaining();
-    if (!found) return;
-    if (*found < expected || (*found > expected && !open_ended))
-      refuse(input_.name(), input_.offset(), "elements", std::to_string(*found) + " bytes",
-             std::to_string(expected) + " bytes (vertex: " + std::to_string(vertex().count) +
-                 " rows of " + std::to_string(vertex().stride) + ")");
-  }
-
-  void skip(const Element& element) {
-    const uint64_t expected = bytes_of(input_, element), found = input_.skip(expected);
-    if (found != expected)
-      refuse(input_.name(), input_.offset(), "element " + element.name,
-             std::to_string(found) + " bytes", std::to_string(expected) + " bytes");
-  }
-
-  void skip_the_rest() {
-    for (size_t i = header_.vertex + 1; i < header_.elements.size(); ++i) {
-      if (header_.elements[i].has_list) return;
-      skip(header_.elements[i]);
-    }
-    if (!input_.peek(1).empty())
-      refuse(input_.name(), input_.offset(), "elements", "more bytes",
-             "the end of the file after the last element");
-  }
-
   // Only doubles can say where on a planet the scene lies to better than a
   // millimetre; words of 32 bits are kept as they are. The same rows are looked at whatever the
   // size of blocks will be.
@@ -225,8 +177,8 @@ class PlyReader final : public BlockReader {
       for (size_t axis = 0; axis < 3; ++axis) {
         const Property& p = *columns_[axis].property;
         if (p.type == Type::f64)
-          world[axis] =
-              load<double>(block.data() + row * vertex().stride + p.offset, header_.big_endian);
+          world[axis] = ply::load<double>(block.data() + row * vertex().stride + p.offset,
+                                          header_.big_endian);
       }
       if (!std::all_of(world, world + 3, [](double v) { return std::fabs(v) < kMaxCoordinate; }))
         continue;
@@ -242,7 +194,7 @@ class PlyReader final : public BlockReader {
     float* into = (cloud.*column.into).data() + first * column.width + column.at;
     with_type(column.property->type, [&]<class T>(T) {
       for (size_t row = 0; row < rows; ++row) {
-        const T value = load<T>(from + row * vertex().stride, header_.big_endian);
+        const T value = ply::load<T>(from + row * vertex().stride, header_.big_endian);
         if constexpr (std::is_same_v<T, double>)
           into[row * column.width] = static_cast<float>(value - minus);
         else
@@ -251,9 +203,9 @@ class PlyReader final : public BlockReader {
     });
   }
 
-  std::unique_ptr<ByteReader> owned_;
-  PeekReader input_;
-  ply::Header header_;
+  std::unique_ptr<ply::Input> opened_;
+  PeekReader& input_;
+  const ply::Header& header_;
   int sh_degree_ = 0;
   std::array<double, 3> origin_{0, 0, 0};
   std::vector<Column> columns_;  // x, y, z first
@@ -263,7 +215,10 @@ class PlyReader final : public BlockReader {
 }  // namespace
 
 GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options) {
-  PlyReader rows(reader);
+  auto input = std::make_unique<ply::Input>(reader);
+  if (ply::is_compressed(input->header))
+    return import_blocks(*ply::open_compressed(std::move(input), nullptr), options);
+  PlyReader rows(std::move(input));
   GaussianCloud cloud(options.memory);
   cloud.sh_degree = rows.sh_degree();
   cloud.native = rows.native();
@@ -280,7 +235,16 @@ GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options) {
 }
 
 std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader) {
-  return std::make_unique<PlyReader>(std::move(reader));
+  auto input = std::make_unique<ply::Input>(std::move(reader));
+  if (ply::is_compressed(input->header)) return ply::open_compressed(std::move(input), nullptr);
+  return std::make_unique<PlyReader>(std::move(input));
+}
+
+std::unique_ptr<BlockReader> open_ply_blocks(std::shared_ptr<const ByteSource> source) {
+  auto input = std::make_unique<ply::Input>(std::make_unique<SharedReader>(source));
+  if (ply::is_compressed(input->header))
+    return ply::open_compressed(std::move(input), std::make_unique<SharedReader>(source));
+  return std::make_unique<PlyReader>(std::move(input));
 }
 
 }  // namespace voyager

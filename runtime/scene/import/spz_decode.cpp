@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/math/byte_code.h"
 #include "runtime/math/half.h"
-#include "runtime/scene/sanitise.h"
 
 namespace voyager::spz {
 namespace {
@@ -25,13 +25,6 @@ void decode_position(const Header& header, const std::byte* code, float* positio
           std::ldexp(static_cast<float>(axis == 0 ? fixed : -fixed), -header.fractional_bits);
     }
   }
-}
-
-// 0 and 255 stand for logits beyond what a byte can say, not for infinity.
-float decode_alpha(int code) {
-  if (code == 0) return -kMaxLogit;
-  if (code == 255) return kMaxLogit;
-  return static_cast<float>(std::log(code / (255.0 - code)));
 }
 
 // x, y, z in bytes; w is what is left of a unit quaternion.
@@ -71,7 +64,7 @@ void decode_gaussian(const Header& header, Attribute attribute, const std::byte*
     case kPositions:
       return decode_position(header, code, &cloud.position[3 * i]);
     case kAlphas:
-      cloud.opacity[i] = decode_alpha(byte(code));
+      cloud.opacity[i] = logit_of_byte(byte(code));
       return;
     case kColours:
       for (size_t k = 0; k < 3; ++k)

@@ -71,7 +71,7 @@ void check_count(const PeekReader& input, const Header& header) {
   const std::optional<uint64_t> left = input.remaining();
   if (!left) return;
   const uint64_t length = input.offset() + *left;
-  const uint64_t most = most_gaussians(length, header.sh_degree);
+  const uint64_t most = most_gaussians(length, bytes_of_gaussian(header.sh_degree));
   if (header.count > most)
     refuse(
         input.name(), input.offset(), "Gaussians", std::to_string(header.count),

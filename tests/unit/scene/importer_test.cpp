@@ -9,23 +9,33 @@ namespace {
 using test::Bytes;
 
 TEST(Importer, TellsFormatsByTheirFirstBytes) {
-  EXPECT_TRUE(is_importable(test::bytes_of("ply\nformat")));
-  EXPECT_TRUE(is_importable(test::bytes_of("ply\r")));
-  EXPECT_TRUE(is_importable(test::bytes_of("NGSP")));
-  EXPECT_TRUE(is_importable(test::bytes_of("\x1f\x8b")));
-  EXPECT_TRUE(is_importable(test::bytes_of("glTF")));
-  EXPECT_TRUE(is_importable(test::bytes_of("{\"as")));
-  EXPECT_TRUE(is_importable(test::bytes_of(" \n\t{")));
-  EXPECT_FALSE(is_importable(test::bytes_of("    ")));
-  EXPECT_FALSE(is_importable(test::bytes_of("plyx")));
-  EXPECT_FALSE(is_importable(test::bytes_of("NGS")));
-  EXPECT_FALSE(is_importable({}));
+  EXPECT_TRUE(is_importable(test::bytes_of("ply\nformat"), ""));
+  EXPECT_TRUE(is_importable(test::bytes_of("ply\r"), ""));
+  EXPECT_TRUE(is_importable(test::bytes_of("NGSP"), ""));
+  EXPECT_TRUE(is_importable(test::bytes_of("\x1f\x8b"), ""));
+  EXPECT_TRUE(is_importable(test::bytes_of("glTF"), ""));
+  EXPECT_TRUE(is_importable(test::bytes_of("{\"as"), ""));
+  EXPECT_TRUE(is_importable(test::bytes_of(" \n\t{"), ""));
+  EXPECT_FALSE(is_importable(test::bytes_of("    "), ""));
+  EXPECT_FALSE(is_importable(test::bytes_of("plyx"), ""));
+  EXPECT_FALSE(is_importable(test::bytes_of("NGS"), ""));
+  EXPECT_FALSE(is_importable({}, ""));
 }
 
 TEST(Importer, RefusesWhatItDoesNotKnowAndListsWhatItDoes) {
   test::expect_refused({}, "an empty input", "empty");
   test::expect_refused(test::bytes_of("GLTF...."), "47 4c 54 46", "no .glb");
   test::expect_refused(test::bytes_of("p"), ".spz", "one byte");
+}
+
+TEST(Importer, SaysWhichFormatIsKnownAndNotRead) {
+  const auto refusal = [](const std::string& name, const std::string& text) {
+    const Bytes bytes = test::bytes_of(text);
+    return test::refusal_of([&] { import_gaussians(std::make_shared<MemorySource>(name, bytes)); });
+  };
+  EXPECT_NE(refusal("a.rad", "RAD0....").find("Spark's .rad is not read"), std::string::npos);
+  EXPECT_NE(refusal("meta.lcc", "{}").find("LCC is not read"), std::string::npos);
+  EXPECT_EQ(refusal("meta.lcd", "{}").find("is not read"), std::string::npos);
 }
 
 // What the first bytes are told by must not be lost on a stream that cannot go back.

@@ -179,8 +179,17 @@ TEST(PlyImport, NamesEachMissingProperty) {
   for (const std::string& missing : kRequired) {
     std::vector<std::string> names = kRequired;
     names.erase(std::find(names.begin(), names.end(), missing));
-    test::expect_refused(with_row(header(vertex("1", names))), "no property " + missing, missing);
+    test::expect_refused(with_row(header(vertex("1", names))),
+                         missing == "scale_2" ? "2DGS" : "no property " + missing, missing);
   }
+}
+
+// 2DGS's ellipses have two scales.
+TEST(PlyImport, Refuses2dgsByName) {
+  std::vector<std::string> names = kRequired;
+  names.erase(std::find(names.begin(), names.end(), "scale_2"));
+  test::expect_refused(with_row(header(vertex("1", names))), "2DGS, which is not supported",
+                       "2DGS");
 }
 
 TEST(PlyImport, RefusesOtherCountsOfShCoefficients) {

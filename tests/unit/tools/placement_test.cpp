@@ -67,7 +67,7 @@ TEST(Placement, InputsAreRelativeToOneOrigin) {
   readers.push_back(open_blocks(std::make_shared<MemorySource>("second", second)));
   readers = tools::placed(std::move(readers), {parse_transform("translate -1024000 0 0"), {}});
   for (const auto& reader : readers) {
-    const GaussianCloud cloud = import_blocks(*reader);
+    const GaussianCloud cloud = import_gaussians(*reader);
     EXPECT_EQ(cloud.origin, (std::array<double, 3>{0, 0, 0}));
     for (const float p : cloud.position) EXPECT_LT(std::fabs(p), 11.0f);
   }

@@ -97,7 +97,7 @@ void Scene::check_count() const {
     sh_degree = std::max(sh_degree, primitive(instance).sh_degree);
     if (__builtin_add_overflow(count, primitive(instance).count, &count)) count = UINT64_MAX;
   }
-  const uint64_t most = most_gaussians(bytes_, sh_degree);
+  const uint64_t most = most_gaussians(bytes_, bytes_of_gaussian(sh_degree));
   if (count > most)
     refuse(name_, 0, "Gaussians", std::to_string(count),
            "at most " + std::to_string(most) + " in " + std::to_string(bytes_) + " bytes");

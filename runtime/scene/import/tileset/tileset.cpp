@@ -51,7 +51,7 @@ class Parts {
       refuse(first_->name(), 0, "root", "no content of a leaf", "at least one glTF file");
     origin_ = origin_near(in_inria_axes(contents.front().transform).offset);
     for (Content& content : contents) add(std::move(content));
-    const uint64_t most = most_gaussians(bytes_, sh_degree_);
+    const uint64_t most = most_gaussians(bytes_, bytes_of_gaussian(sh_degree_));
     if (count_ > most)
       refuse(first_->name(), 0, "Gaussians", std::to_string(count_),
              "at most " + std::to_string(most) + " in " + std::to_string(bytes_) + " bytes");

@@ -1,0 +1,44 @@
+#pragma once
+// What formats of a byte or a few bits a value have in common (scene/import).
+#include <cmath>
+#include <cstdint>
+
+#include "runtime/math/gaussian.h"
+#include "runtime/math/sh.h"
+
+namespace voyager {
+
+// The logit of an opacity of code / 255, code from 0 to 255. 0 and 255 stand for logits beyond
+// what a byte can say, not for infinity.
+inline float logit_of_byte(int code) {
+  if (code <= 0) return -kMaxLogit;
+  if (code >= 255) return kMaxLogit;
+  return static_cast<float>(std::log(code / (255.0 - code)));
+}
+
+// What a code stands for that runs from 0 (low) to most (high); exact at both ends.
+inline float between(float low, float high, uint32_t code, uint32_t most) {
+  const double t = static_cast<double>(code) / most;
+  return static_cast<float>((1.0 - t) * static_cast<double>(low) + t * static_cast<double>(high));
+}
+
+// The SH coefficient of the constant band that shows a colour, 0 to 1.
+inline float sh_of_colour(double colour) {
+  return static_cast<float>((colour - 0.5) / kSh0);
+}
+
+// Natural logarithm of a linear scale in metres. 0, which is what a small scale was rounded to, is
+// a scale below any that a Gaussian may have (scene/sanitise.h); a negative one is NaN.
+inline float log_of_scale(float scale) {
+  return scale == 0.0f ? -100.0f : std::log(scale);
+}
+
+// Of a unit quaternion's components all but one, which is at `largest` and not negative.
+inline void complete_unit(float* q, int largest) {
+  float squared = 0.0f;
+  for (int i = 0; i < 4; ++i)
+    if (i != largest) squared += q[i] * q[i];
+  q[largest] = squared < 1.0f ? std::sqrt(1.0f - squared) : 0.0f;
+}
+
+}  // namespace voyager

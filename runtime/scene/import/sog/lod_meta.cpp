@@ -1,0 +1,115 @@
+#include "runtime/scene/import/sog/lod_meta.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <unordered_set>
+
+#include "runtime/scene/import/growth.h"
+#include "runtime/scene/import/json_fields.h"
+#include "runtime/scene/import/refuse.h"
+
+namespace voyager::sog {
+namespace {
+
+constexpr int kLodLevels = 128;  // of JSON: a level of the tree takes two
+constexpr uint64_t kMostLodBytes = 1 << 30;
+constexpr uint64_t kMostGaussians = uint64_t{1} << 40;
+
+struct Range {
+  uint64_t file, first, count;
+};
+
+class Tree {
+ public:
+  Tree(const JsonField& root, uint64_t files) : files_(files) { visit(root); }
+  const std::vector<Range>& ranges() const { return ranges_; }
+
+ private:
+  void visit(const JsonField& node) {
+    if (node.has("children"))
+      for (const JsonField& child : node.at("children").items()) visit(child);
+    if (node.has("lods")) take_finest(node.at("lods"));
+  }
+
+  // Level 0 is the finest. A leaf may lack it.
+  void take_finest(const JsonField& levels) {
+    if (!levels.value().is_object()) levels.refuse_value("an object of levels");
+    const std::string* finest = nullptr;
+    uint64_t least = UINT64_MAX;
+    for (const auto& entry : levels.value().items()) {
+      uint64_t level = 0;
+      const std::string& key = entry.key();
+      const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), level);
+      if (problem != std::errc() || end != key.data() + key.size())
+        levels.refuse_value("levels whose names are numbers");
+      if (level < least) finest = &entry.key(), least = level;
+    }
+    if (!finest) return;
+    const JsonField level = levels.at(finest->c_str());
+    ranges_.push_back({level.at("file").whole(0, files_ - 1),
+                       level.at("offset").whole(0, kMostGaussians),
+                       level.at("count").whole(0, kMostGaussians)});
+  }
+
+  uint64_t files_;
+  std::vector<Range> ranges_;
+};
+
+nlohmann::json read(const ByteSource& source) {
+  if (source.size() > kMostLodBytes)
+    refuse(source.name(), 0, "lod-meta.json", std::to_string(source.size()) + " bytes",
+           "at most " + std::to_string(kMostLodBytes) + " bytes");
+  return parse_json(source.name(), read_all(source), kLodLevels);
+}
+
+std::vector<std::string> file_names(const JsonField& names) {
+  std::vector<std::string> files;
+  std::unordered_set<std::string> seen;
+  for (const JsonField& name : names.items()) {
+    files.push_back(name.text());
+    if (!seen.insert(std::filesystem::path(files.back()).lexically_normal().string()).second)
+      name.refuse_value("each file once");
+  }
+  if (files.empty()) names.refuse_value("at least one file");
+  return files;
+}
+
+// Joins those that follow one another; refuses those that share a Gaussian.
+std::vector<Part> joined(const std::string& name, std::vector<Range> ranges,
+                         const std::vector<std::string>& files) {
+  std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) {
+    return std::pair(a.file, a.first) < std::pair(b.file, b.first);
+  });
+  std::vector<Part> parts;
+  uint64_t last_file = UINT64_MAX;
+  for (const Range& range : ranges) {
+    if (range.count == 0) continue;
+    const bool same = range.file == last_file;
+    const uint64_t end = same ? parts.back().first + parts.back().count : 0;
+    if (same && range.first < end)
+      refuse(name, 0, "tree",
+             "Gaussian " + std::to_string(range.first) + " of " + files[range.file] + " twice",
+             "each once");
+    if (same && range.first == end)
+      parts.back().count += range.count;
+    else
+      parts.push_back({files[range.file], range.first, range.count});
+    last_file = range.file;
+  }
+  return parts;
+}
+
+}  // namespace
+
+std::vector<Part> finest_level(const ByteSource& lod_meta) {
+  const nlohmann::json parsed = read(lod_meta);
+  const JsonField json(lod_meta.name(), parsed);
+  const std::vector<std::string> files = file_names(json.at("filenames"));
+  std::vector<Part> parts =
+      joined(lod_meta.name(), Tree(json.at("tree"), files.size()).ranges(), files);
+  if (json.has("environment")) parts.push_back({json.at("environment").text(), 0, UINT64_MAX});
+  return parts;
+}
+
+}  // namespace voyager::sog

@@ -1,0 +1,121 @@
+// The finest level of a streamed SOG scene: one file after the other, of which only the one that
+// is read is held.
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include "runtime/scene/import/growth.h"
+#include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/sog/lod_meta.h"
+#include "runtime/scene/import/sog/scene.h"
+#include "runtime/scene/sh_bands.h"
+
+namespace voyager::sog {
+namespace {
+
+constexpr uint64_t kBlockBytes = 16 << 20;  // of a block
+
+class LodScene final : public BlockReader {
+ public:
+  explicit LodScene(std::shared_ptr<const ByteSource> source)
+      : source_(std::move(source)), parts_(finest_level(*source_)) {
+    for (Part& part : parts_) check(part);
+  }
+
+  const std::string& name() const override { return source_->name(); }
+  uint64_t count() const override { return count_; }
+  int sh_degree() const override { return sh_degree_; }
+  NativeScale native() const override {
+    return antialiased_.value_or(false) ? compensated_scale(kLowPass) : NativeScale{};
+  }
+
+  // A block is decoded already: its file may be closed when decode() is called.
+  RawBlock next(size_t most) override {
+    const uint64_t rows = kBlockBytes / bytes_of_gaussian(sh_degree_);
+    const RawBlock codes = next_codes(static_cast<size_t>(std::min<uint64_t>(rows, most)));
+    RawBlock block;
+    block.count = codes.count;
+    if (block.count == 0) return block;
+    GaussianCloud cloud = scene_->decode(codes);
+    change_sh_degree(cloud.sh, cloud.sh_degree, sh_degree_);
+    for (const auto array : kArrays) append(cloud.*array, block.bytes);
+    return block;
+  }
+
+  GaussianCloud decode(const RawBlock& block) const override {
+    GaussianCloud cloud;
+    cloud.sh_degree = sh_degree_;
+    cloud.native = native();
+    const size_t widths[] = {3, 3, 4, 1, static_cast<size_t>(cloud.coefficients()) * 3};
+    const std::byte* from = block.bytes.data();
+    for (size_t i = 0; i < std::size(kArrays); ++i) {
+      auto& values = cloud.*kArrays[i];
+      values.resize(block.count * widths[i]);
+      std::memcpy(values.data(), from, values.size() * sizeof(float));
+      from += values.size() * sizeof(float);
+    }
+    return cloud;
+  }
+
+ private:
+  static constexpr std::pmr::vector<float> GaussianCloud::*kArrays[] = {
+      &GaussianCloud::position, &GaussianCloud::log_scale, &GaussianCloud::rotation,
+      &GaussianCloud::opacity, &GaussianCloud::sh};
+
+  static void append(const std::pmr::vector<float>& values, std::vector<std::byte>& bytes) {
+    const auto more = std::as_bytes(std::span(values));
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  }
+
+  std::unique_ptr<Files> files_of(const Part& part) const {
+    return open_files(source_->open_beside(part.file));
+  }
+
+  // What is asked of a file's meta.json before any image is read.
+  void check(Part& part) {
+    const Meta meta = read_meta(*files_of(part));
+    if (meta.has_sh && !meta.sh_degree)
+      refuse(name(), 0, part.file, "version 1", "version 2 in a streamed scene");
+    if (part.count == UINT64_MAX) part.count = meta.count;
+    if (part.first > meta.count || part.count > meta.count - part.first)
+      refuse(name(), 0, part.file, "Gaussians up to " + std::to_string(part.first + part.count),
+             "at most the " + std::to_string(meta.count) + " that it has");
+    if (antialiased_.value_or(meta.antialiased) != meta.antialiased)
+      refuse(name(), 0, part.file, "another value of antialias", "that of the other files");
+    antialiased_ = meta.antialiased;
+    sh_degree_ = std::max(sh_degree_, meta.sh_degree.value_or(0));
+    count_ += part.count;
+  }
+
+  // Of the file that is open, or else of the next that has any.
+  RawBlock next_codes(size_t most) {
+    for (;; scene_ = nullptr) {
+      if (!scene_) {
+        if (part_ == parts_.size()) return {};
+        const Part& part = parts_[part_++];
+        scene_ = open_scene(files_of(part), part.first, part.count);
+      }
+      RawBlock codes = scene_->next(most);
+      if (codes.count > 0) return codes;
+    }
+  }
+
+  std::shared_ptr<const ByteSource> source_;
+  std::vector<Part> parts_;
+  uint64_t count_ = 0;
+  int sh_degree_ = 0;
+  std::optional<bool> antialiased_;
+  size_t part_ = 0;  // the next to open
+  std::unique_ptr<BlockReader> scene_;
+};
+
+}  // namespace
+}  // namespace voyager::sog
+
+namespace voyager {
+
+std::unique_ptr<BlockReader> open_streamed_sog_blocks(std::shared_ptr<const ByteSource> source) {
+  return std::make_unique<sog::LodScene>(std::move(source));
+}
+
+}  // namespace voyager

@@ -1,0 +1,112 @@
+#include "runtime/scene/import/sog/meta.h"
+
+#include <algorithm>
+
+#include "runtime/base/path_beside.h"
+#include "runtime/math/byte_code.h"
+#include "runtime/scene/import/json_fields.h"
+
+namespace voyager::sog {
+namespace {
+
+constexpr int kMetaLevels = 16;           // of JSON; scenes take 3
+constexpr uint64_t kMostCount = 1 << 28;  // pixels of the largest WebP image, 16383 squared
+constexpr uint64_t kMostCentroids = 1 << 16;
+
+Table steps(double least, double most) {
+  Table table{};
+  for (uint32_t i = 0; i < table.size(); ++i)
+    table[i] = between(static_cast<float>(least), static_cast<float>(most), i, 255);
+  return table;
+}
+
+Table codebook(const JsonField& field) {
+  const std::vector<double> values = field.at("codebook").numbers(256);
+  Table table{};
+  std::transform(values.begin(), values.end(), table.begin(),
+                 [](double value) { return static_cast<float>(value); });
+  return table;
+}
+
+std::array<double, 3> three(const JsonField& field) {
+  const std::vector<double> values = field.numbers(3);
+  return {values[0], values[1], values[2]};
+}
+
+void read_files(const JsonField& json, Meta& meta) {
+  const auto take = [&](const char* key, std::initializer_list<File> into) {
+    const std::vector<std::string> names = json.at(key).at("files").texts(into.size());
+    size_t i = 0;
+    for (const File file : into) {
+      if (!stays_in_folder(names[i]))
+        json.at(key).at("files").items()[i].refuse_value("the name of a file in the same folder");
+      meta.files[file] = names[i++];
+    }
+  };
+  take("means", {kMeansLow, kMeansHigh});
+  take("scales", {kScales});
+  take("quats", {kQuats});
+  take("sh0", {kColours});
+  meta.has_sh = json.has("shN");
+  if (meta.has_sh) take("shN", {kCentroids, kLabels});
+}
+
+void read_version_2(const JsonField& json, Meta& meta) {
+  meta.count = json.at("count").whole(0, kMostCount);
+  meta.antialiased = json.has("antialias") && json.at("antialias").boolean();
+  meta.scales.fill(codebook(json.at("scales")));
+  meta.colours.fill(codebook(json.at("sh0")));
+  for (int code = 0; code < 256; ++code)
+    meta.opacities[static_cast<size_t>(code)] = logit_of_byte(code);
+  if (!meta.has_sh) return;
+  const JsonField sh = json.at("shN");
+  meta.sh_degree = static_cast<int>(sh.at("bands").whole(1, kMaxShDegree));
+  meta.centroids = sh.at("count").whole(1, kMostCentroids);
+  meta.sh = codebook(sh);
+}
+
+// Steps between a least and a most value in place of code books.
+void read_version_1(const JsonField& json, Meta& meta) {
+  const std::vector<JsonField> shape = json.at("means").at("shape").items();
+  if (shape.empty()) json.at("means").at("shape").refuse_value("the number of Gaussians first");
+  meta.count = shape[0].whole(0, kMostCount);
+  const auto bounds = [&](const char* key, size_t count) {
+    return std::pair(json.at(key).at("mins").numbers(count),
+                     json.at(key).at("maxs").numbers(count));
+  };
+  const auto [scale_least, scale_most] = bounds("scales", 3);
+  const auto [colour_least, colour_most] = bounds("sh0", 4);
+  for (size_t k = 0; k < 3; ++k) {
+    meta.scales[k] = steps(scale_least[k], scale_most[k]);
+    meta.colours[k] = steps(colour_least[k], colour_most[k]);
+  }
+  meta.opacities = steps(colour_least[3], colour_most[3]);
+  if (meta.has_sh)
+    meta.sh = steps(json.at("shN").at("mins").number(), json.at("shN").at("maxs").number());
+}
+
+}  // namespace
+
+std::vector<std::string> Meta::named_files() const {
+  std::vector<std::string> names;
+  std::copy_if(files.begin(), files.end(), std::back_inserter(names),
+               [](const std::string& name) { return !name.empty(); });
+  return names;
+}
+
+Meta read_meta(const Files& files) {
+  const nlohmann::json parsed = parse_json(files.name(), files.meta(), kMetaLevels);
+  const JsonField json(files.name(), parsed);
+  Meta meta;
+  const uint64_t version = json.has("version") ? json.at("version").whole(2, 2) : 1;
+  read_files(json, meta);
+  meta.means_least = three(json.at("means").at("mins"));
+  meta.means_most = three(json.at("means").at("maxs"));
+  if (version == 2)
+    read_version_2(json, meta);
+  else
+    read_version_1(json, meta);
+  return meta;
+}
+
+}  // namespace voyager::sog

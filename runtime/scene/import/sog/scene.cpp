@@ -1,0 +1,201 @@
+#include "runtime/scene/import/sog/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/math/byte_code.h"
+#include "runtime/scene/import/growth.h"
+#include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/sog/image.h"
+
+namespace voyager::sog {
+namespace {
+
+// Where each image's channels are in the bytes of a Gaussian.
+struct Place {
+  size_t at, channels;
+};
+constexpr std::array<Place, kFiles> kPlaces = {
+    {{0, 3}, {3, 3}, {6, 3}, {9, 4}, {13, 4}, {0, 0}, {17, 2}}};
+constexpr size_t kRow = 19;
+constexpr size_t kMostRows = (16 << 20) / kRow;  // of a block
+constexpr uint32_t kCentroidsARow = 64;          // of their image
+constexpr uint64_t kMostCentroidRows = 1024;
+
+int integer(const std::byte* code) {
+  return std::to_integer<int>(*code);
+}
+
+// Sign and logarithm keep the precision near the origin: v = sign(x) ln(|x| + 1).
+float position_of(const std::byte* low, const std::byte* high, double least, double most) {
+  const double share = (integer(low) + 256 * integer(high)) / 65535.0;
+  const double v = (1.0 - share) * least + share * most;
+  return static_cast<float>(std::copysign(std::expm1(std::fabs(v)), v));
+}
+
+// The last byte says which component is the largest; the others follow in the order w, x, y, z.
+// Any other byte there leaves a rotation of zero, which sanitise() mends and counts.
+void decode_rotation(const std::byte* code, float* wxyz) {
+  const int largest = integer(code + 3) - 252;
+  if (largest < 0) return;
+  const float reach = std::sqrt(0.5f);
+  for (int i = 0; i < 4; ++i)
+    if (i != largest) wxyz[i] = between(-reach, reach, static_cast<uint32_t>(integer(code++)), 255);
+  complete_unit(wxyz, largest);
+}
+
+class Scene final : public BlockReader {
+ public:
+  Scene(std::unique_ptr<Files> files, uint64_t first, uint64_t count)
+      : files_(std::move(files)), name_(files_->name()), meta_(read_meta(*files_)) {
+    check_count(files_->length(meta_.named_files()));
+    if (meta_.has_sh) read_centroids();
+    first_ = std::min(first, meta_.count);
+    count_ = std::min(count, meta_.count - first_);
+  }
+
+  const std::string& name() const override { return name_; }
+  uint64_t count() const override { return count_; }
+  int sh_degree() const override { return sh_degree_; }
+  NativeScale native() const override {
+    return meta_.antialiased ? compensated_scale(kLowPass) : NativeScale{};
+  }
+
+  RawBlock next(size_t most) override {
+    if (files_) read_images();
+    RawBlock block;
+    block.count = static_cast<size_t>(std::min<uint64_t>({most, kMostRows, count_ - taken_}));
+    const auto rows =
+        std::span(rows_).subspan(static_cast<size_t>(taken_) * kRow, block.count * kRow);
+    block.bytes.assign(rows.begin(), rows.end());
+    taken_ += block.count;
+    return block;
+  }
+
+  GaussianCloud decode(const RawBlock& block) const override {
+    GaussianCloud cloud;
+    cloud.sh_degree = sh_degree_;
+    cloud.native = native();
+    cloud.position.resize(3 * block.count);
+    cloud.log_scale.resize(3 * block.count);
+    cloud.rotation.resize(4 * block.count);
+    cloud.opacity.resize(block.count);
+    cloud.sh.resize(block.count * width());
+    for (size_t i = 0; i < block.count; ++i) decode_row(block.bytes.data() + i * kRow, i, cloud);
+    return cloud;
+  }
+
+ private:
+  size_t width() const { return static_cast<size_t>(sh_coefficients(sh_degree_)) * 3; }
+
+  // An image of one colour takes some thirty bytes, whatever its size.
+  void check_count(uint64_t length) const {
+    const int degree = meta_.has_sh ? kMaxShDegree : 0;
+    const uint64_t most = most_gaussians(length, bytes_of_gaussian(degree) + kRow + 16);
+    if (meta_.count > most)
+      refuse(
+          name_, 0, "count", std::to_string(meta_.count) + " Gaussians",
+          "at most " + std::to_string(most) + " in files of " + std::to_string(length) + " bytes");
+  }
+
+  void read_images() {
+    rows_.resize(static_cast<size_t>(count_) * kRow);
+    for (const File file : {kMeansLow, kMeansHigh, kScales, kQuats, kColours, kLabels})
+      if (!meta_.files[file].empty()) read_image(file);
+    check_labels();
+    files_ = nullptr;
+  }
+
+  void read_image(File file) {
+    const std::string& name = meta_.files[file];
+    const PixelRange range{meta_.count, 2 * meta_.count + (1 << 16)};
+    const Image image = decode_webp(name_, name, files_->read(name), range);
+    const auto [at, channels] = kPlaces[file];
+    for (uint64_t i = 0; i < count_; ++i)
+      std::copy_n(image.pixel(first_ + i), channels,
+                  reinterpret_cast<uint8_t*>(rows_.data() + i * kRow + at));
+  }
+
+  void read_centroids() {
+    const std::string& name = meta_.files[kCentroids];
+    const uint64_t most = kMostCentroidRows * kCentroidsARow * 15;
+    const Image image = decode_webp(name_, name, files_->read(name), {1, most});
+    sh_degree_ = meta_.sh_degree.value_or(degree_of_width(image.width));
+    const auto each = static_cast<uint32_t>(sh_coefficients(sh_degree_) - 1);
+    const uint64_t found = uint64_t{image.height} * kCentroidsARow;
+    if (image.width != kCentroidsARow * each || meta_.centroids.value_or(1) > found)
+      refuse(name_, 0, name,
+             std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels",
+             "64 centroids a row, each of 3, 8 or 15 pixels as the SH degree says, and a row for "
+             "each 64 of shN.count");
+    centroid_count_ = meta_.centroids.value_or(found);
+    centroids_.resize(static_cast<size_t>(centroid_count_) * 3 * each);
+    for (size_t i = 0; i < centroids_.size(); ++i)
+      centroids_[i] = meta_.sh[image.pixel(i / 3)[i % 3]];
+  }
+
+  static int degree_of_width(uint32_t width) {
+    int degree = 1;
+    while (degree < kMaxShDegree &&
+           width > kCentroidsARow * static_cast<uint32_t>(sh_coefficients(degree) - 1))
+      ++degree;
+    return degree;
+  }
+
+  uint64_t label_of(const std::byte* row) const {
+    const std::byte* code = row + kPlaces[kLabels].at;
+    return static_cast<uint64_t>(integer(code) + 256 * integer(code + 1));
+  }
+
+  void check_labels() const {
+    for (uint64_t i = 0; sh_degree_ > 0 && i < count_; ++i)
+      if (const uint64_t label = label_of(rows_.data() + i * kRow); label >= centroid_count_)
+        refuse(name_, 0, meta_.files[kLabels],
+               "label " + std::to_string(label) + " of Gaussian " + std::to_string(first_ + i),
+               "less than the " + std::to_string(centroid_count_) + " centroids");
+  }
+
+  void decode_row(const std::byte* row, size_t i, GaussianCloud& cloud) const {
+    const auto code = [&](File file, size_t channel) { return row + kPlaces[file].at + channel; };
+    const auto index = [&](File file, size_t channel) {
+      return std::to_integer<size_t>(*code(file, channel));
+    };
+    float* sh = &cloud.sh[i * width()];
+    for (size_t k = 0; k < 3; ++k) {
+      cloud.position[3 * i + k] = position_of(code(kMeansLow, k), code(kMeansHigh, k),
+                                              meta_.means_least[k], meta_.means_most[k]);
+      cloud.log_scale[3 * i + k] = meta_.scales[k][index(kScales, k)];
+      sh[k] = meta_.colours[k][index(kColours, k)];
+    }
+    decode_rotation(code(kQuats, 0), &cloud.rotation[4 * i]);
+    cloud.opacity[i] = meta_.opacities[index(kColours, 3)];
+    const size_t rest = width() - 3;
+    if (rest > 0) std::copy_n(&centroids_[label_of(row) * rest], rest, sh + 3);
+  }
+
+  std::unique_ptr<Files> files_;  // until the images are read
+  std::string name_;
+  Meta meta_;
+  int sh_degree_ = 0;
+  uint64_t first_ = 0, count_ = 0, taken_ = 0;  // Gaussians
+  uint64_t centroid_count_ = 0;
+  std::vector<float> centroids_;  // of each: [k - 1][rgb]
+  std::vector<std::byte> rows_;   // kRow bytes a Gaussian
+};
+
+}  // namespace
+
+std::unique_ptr<BlockReader> open_scene(std::unique_ptr<Files> files, uint64_t first,
+                                        uint64_t count) {
+  return std::make_unique<Scene>(std::move(files), first, count);
+}
+
+}  // namespace voyager::sog
+
+namespace voyager {
+
+std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source) {
+  return sog::open_scene(sog::open_files(std::move(source)));
+}
+
+}  // namespace voyager
