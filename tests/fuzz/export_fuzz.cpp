@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "runtime/base/error.h"
+#include "runtime/format/export_flat.h"
 #include "runtime/format/export_hier.h"
-#include "runtime/format/export_ply.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/fuzz/memory_limit.h"
 #include "tests/fuzz/scratch_folder.h"
@@ -51,7 +51,7 @@ void export_all(const Bytes& bytes) {
     if (written(hier, [&] { export_hier(scene, hier); }) &&
         std::filesystem::file_size(hier) != hier_bytes(scene.info().node_count))
       std::abort();
-    if (written(ply, [&] { export_ply(scene, ply); })) check_ply(ply, scene);
+    if (written(ply, [&] { export_leaves(scene, ply); })) check_ply(ply, scene);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::refused_input) std::abort();
   }

@@ -5,13 +5,14 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
+#include "runtime/format/export_flat.h"
 #include "runtime/format/export_hier.h"
-#include "runtime/format/export_ply.h"
 #include "runtime/format/reader.h"
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
 #include "tools/console.h"
 #include "tools/cut_export.h"
+#include "tools/flat_output.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
@@ -42,10 +43,15 @@ void export_scene(const ExportArguments& arguments) {
     progress("exporting", 0, 0);
     export_cut(arguments.scene, camera, arguments.tau, arguments.output);
   } else {
-    require_extension("-o", arguments.output, {".hier", ".ply"});
+    std::vector<std::string> endings = flat_format_endings();
+    endings.insert(endings.begin(), ".hier");
+    require_extension("-o", arguments.output, endings);
     const SceneFile scene(open_source(arguments.scene));
-    const bool tree = std::filesystem::path(arguments.output).extension() == ".hier";
-    (tree ? export_hier : export_ply)(scene, arguments.output, progress_bar());
+    if (flat_format_of(arguments.output)) {
+      describe_flat_file(arguments.output, export_leaves(scene, arguments.output, progress_bar()));
+      return;
+    }
+    export_hier(scene, arguments.output, progress_bar());
   }
   say(fmt::format("{}: {}\n", arguments.output,
                   size_text(std::filesystem::file_size(arguments.output))));
@@ -60,8 +66,9 @@ void add_export(CLI::App& app) {
   command->add_option("scene", arguments->scene, "Scene to read, a .voy or its URL")->required();
   command
       ->add_option("-o", arguments->output,
-                   "File to write. A .hier: the tree, in the layout of HierarchicalGS. A .ply: the "
-                   "leaves, in the order of the input")
+                   "File to write. A .hier: the tree, in the layout of HierarchicalGS. Else the "
+                   "leaves, in the order of the input; the end of the name says in which format: " +
+                       CLI::detail::join(flat_format_endings(), ", "))
       ->type_name("FILE")
       ->required();
   name_group(*command, kCommonOptions);

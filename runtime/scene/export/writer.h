@@ -28,8 +28,14 @@ class ByteSink {
   virtual ~ByteSink() = default;
   virtual void write(std::span<const std::byte> bytes) = 0;
 };
+// One that can also be written at any place, for formats whose arrays grow side by side.
+class PlacedSink : public ByteSink {
+ public:
+  // From `offset` on, also beyond what is there; write() goes on where it was.
+  virtual void write_at(uint64_t offset, std::span<const std::byte> bytes) = 0;
+};
 // The file must outlive the sink, and the sink its writer.
-std::unique_ptr<ByteSink> sink_to(AtomicFile& file);
+std::unique_ptr<PlacedSink> sink_to(AtomicFile& file);
 std::unique_ptr<ByteSink> sink_to_stdout();
 
 // Binary little-endian .ply in INRIA's property order: x y z nx ny nz f_dc_* f_rest_* opacity

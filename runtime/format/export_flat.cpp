@@ -1,13 +1,11 @@
-#include "runtime/format/export_ply.h"
+#include "runtime/format/export_flat.h"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 
 #include "runtime/base/error.h"
-#include "runtime/base/output_path.h"
 #include "runtime/format/tree_check.h"
-#include "runtime/scene/export/writer.h"
 #include "runtime/scene/sh_bands.h"
 
 namespace voyager {
@@ -84,20 +82,22 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
   return cloud;
 }
 
-void export_ply(const SceneFile& scene, const std::string& path, const Progress& progress) {
-  AtomicFile file(path);
+FlatContents export_leaves(const SceneFile& scene, const std::string& path,
+                           const Progress& progress) {
   const SceneFileInfo& info = scene.info();
-  require_room(path, ply_bytes(info.leaf_count, info.sh_degree + info.left_out_bands));
+  FlatContents contents;
+  contents.count = info.leaf_count;
+  contents.sh_degree = info.sh_degree + info.left_out_bands;
+  require_flat_file(path, contents);
   GaussianCloud cloud = read_leaves(scene, progress);
   put_back_zero_bands(cloud);
-  const bool moved = cloud.origin != std::array<double, 3>{0, 0, 0};
-  const std::unique_ptr<ByteSink> sink = sink_to(file);
-  const std::unique_ptr<GaussianWriter> writer =
-      write_ply(*sink, cloud.size(), cloud.sh_degree, moved, cloud.native);
-  writer->append(cloud);
-  writer->finish();
-  file.commit();
+  contents = {};
+  contents.sh_degree = cloud.sh_degree;
+  contents.native = cloud.native;
+  contents.add(cloud);
+  write_flat_file(path, contents, [&](GaussianWriter& writer) { writer.append(cloud); });
   report(progress, "exporting", cloud.size(), cloud.size());
+  return contents;
 }
 
 }  // namespace voyager

@@ -3,6 +3,7 @@
 
 #include "runtime/base/progress.h"
 #include "runtime/format/reader.h"
+#include "runtime/scene/export/flat_file.h"
 
 namespace voyager {
 
@@ -14,8 +15,9 @@ namespace voyager {
 // not go on with the tree (tree_check.h).
 GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress = {});
 
-// read_leaves() as an INRIA .ply; positions are doubles in world coordinates
-// where their origin is not zero. Throws also Error(io).
-void export_ply(const SceneFile& scene, const std::string& path, const Progress& progress = {});
+// read_leaves() as a flat file of the format that the path asks for (flat_file.h). Returns what was
+// written. Throws also as write_flat_file() does.
+FlatContents export_leaves(const SceneFile& scene, const std::string& path,
+                           const Progress& progress = {});
 
 }  // namespace voyager
