@@ -59,7 +59,7 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
     rule.kind = file.info().tree;
     native = file.info().native;
     input = folder_ / kSceneLeaves;
-    export_leaves(file, input.string(), progress_);
+    export_leaves(file, input.string(), {}, progress_);
     const GaussianArrays arrays = gaussian_arrays(*own_);
     for (const uint32_t leaf : own_->leaves)
       levels.push_back(static_cast<uint8_t>(footprint_level_of(arrays.node_code(leaf))));

@@ -54,8 +54,8 @@ void for_each_batch(BlockReader& reader, Workers& workers, const TakeBatch& take
 
 }  // namespace
 
-FlatContents convert(const OpenBlocks& open, const std::string& path, Workers& workers,
-                     const Progress& progress) {
+FlatContents convert(const OpenBlocks& open, const std::string& path, const FlatOptions& options,
+                     Workers& workers, const Progress& progress) {
   FlatContents contents;
   const std::unique_ptr<BlockReader> first = open();
   contents.sh_degree = first->sh_degree();
@@ -67,7 +67,7 @@ FlatContents convert(const OpenBlocks& open, const std::string& path, Workers& w
     contents.add(batch);
     report(progress, "reading", contents.report.read, first->count());
   });
-  write_flat_file(path, contents, [&](GaussianWriter& writer) {
+  write_flat_file(path, options, contents, [&](GaussianWriter& writer) {
     const std::unique_ptr<BlockReader> second = open();
     uint64_t written = 0;
     for_each_batch(*second, workers, [&](const GaussianCloud& batch) {

@@ -17,7 +17,7 @@ using OpenBlocks = std::function<std::unique_ptr<BlockReader>()>;
 
 // Gaussians are sanitised as importers do, and keep their order where the format does. Returns what
 // was written. Throws as the reader and the writer do. Progress stages "reading", "writing".
-FlatContents convert(const OpenBlocks& open, const std::string& path, Workers& workers,
-                     const Progress& progress);
+FlatContents convert(const OpenBlocks& open, const std::string& path, const FlatOptions& options,
+                     Workers& workers, const Progress& progress);
 
 }  // namespace voyager

@@ -12,7 +12,11 @@
 
 namespace voyager {
 
-enum class FlatFormat { ply, spz };
+enum class FlatFormat { ply, compressed_ply, spz, splat, glb };
+
+struct FlatOptions {
+  int spz_version = 4;  // 3 or 4, of a .spz
+};
 
 // By the end of the name; none for a name that is no format's.
 std::optional<FlatFormat> flat_format_of(const std::string& path);
@@ -40,7 +44,8 @@ void require_flat_file(const std::string& path, const FlatContents& contents);
 
 // `fill` appends batches, contents.count Gaussians in all. Nothing is at `path` before all of them
 // are written. Throws as require_flat_file() and the format's writer do.
-void write_flat_file(const std::string& path, const FlatContents& contents,
+void write_flat_file(const std::string& path, const FlatOptions& options,
+                     const FlatContents& contents,
                      const std::function<void(GaussianWriter&)>& fill);
 
 }  // namespace voyager

@@ -14,7 +14,7 @@ namespace {
 FlatContents convert_bytes(const test::Bytes& bytes, const std::string& path) {
   Workers workers;
   const auto source = std::make_shared<MemorySource>("sample.bin", bytes);
-  return convert([&] { return open_blocks(source); }, path, workers, {});
+  return convert([&] { return open_blocks(source); }, path, {}, workers, {});
 }
 
 void expect_same_words(const GaussianCloud& a, const GaussianCloud& b) {
