@@ -16,8 +16,13 @@ namespace voyager {
 GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress = {});
 
 // read_leaves() as a flat file of the format that the path asks for (flat_file.h). Returns what was
-// written. Throws also as write_flat_file() does.
+// written, and an empty report: what the bake mended is not news. Throws also as write_flat_file()
+// does.
 FlatContents export_leaves(const SceneFile& scene, const std::string& path,
-                           const Progress& progress = {});
+                           const FlatOptions& options = {}, const Progress& progress = {});
+
+// The same of read_extent_cut(), of at most `most` Gaussians.
+FlatContents export_extent_cut(const SceneFile& scene, uint64_t most, const std::string& path,
+                               const FlatOptions& options = {}, const Progress& progress = {});
 
 }  // namespace voyager

@@ -4,7 +4,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
-#include "runtime/format/export_flat.h"
+#include "runtime/format/reader.h"
 #include "runtime/frame/scene.h"
 #include "tools/commands/commands.h"
 #include "tools/flat_output.h"
@@ -17,14 +17,20 @@ namespace {
 
 struct ConvertArguments {
   std::string input, output;
+  FlatArguments flat;
 };
 
-FlatContents convert_file(const ConvertArguments& arguments) {
-  const std::shared_ptr<const ByteSource> source = open_source(arguments.input);
-  if (scene_format(*source) == SceneFormat::baked)
-    return export_leaves(SceneFile(source), arguments.output, progress_bar());
+void convert_flat(const std::shared_ptr<const ByteSource>& source,
+                  const ConvertArguments& arguments) {
+  if (arguments.flat.keep)
+    throw Error(ErrorCode::invalid_argument,
+                "--keep: found " + source->name() +
+                    ", which has no level-of-detail tree, expected a .voy: bake it first");
   Workers workers;
-  return convert([&] { return open_blocks(source); }, arguments.output, workers, progress_bar());
+  describe_flat_file(
+      arguments.output,
+      convert([&] { return open_blocks(source); }, arguments.output,
+              flat_options(arguments.flat, arguments.output), workers, progress_bar()));
 }
 
 void run(const ConvertArguments& arguments) {
@@ -33,7 +39,11 @@ void run(const ConvertArguments& arguments) {
   if (arguments.input == "-")
     throw Error(ErrorCode::invalid_argument,
                 "input: found standard input, expected a file or a URL: it is read twice");
-  describe_flat_file(arguments.output, convert_file(arguments));
+  const std::shared_ptr<const ByteSource> source = open_source(arguments.input);
+  if (scene_format(*source) == SceneFormat::baked)
+    export_flat(SceneFile(source), arguments.flat, arguments.output);
+  else
+    convert_flat(source, arguments);
 }
 
 }  // namespace
@@ -54,6 +64,7 @@ void add_convert(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   name_group(*command, kCommonOptions);
+  add_flat_options(*command, arguments->flat);
   command->footer("Example: voyager convert scene.ply -o scene.spz");
   command->callback([arguments] { run(*arguments); });
 }

@@ -5,7 +5,6 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
-#include "runtime/format/export_flat.h"
 #include "runtime/format/export_hier.h"
 #include "runtime/format/reader.h"
 #include "tools/byte_size.h"
@@ -25,6 +24,7 @@ struct ExportArguments {
   int64_t camera = 0;
   ImageSize size;
   double tau = 3;
+  FlatArguments flat;
 };
 
 Camera choose_camera(const ExportArguments& arguments) {
@@ -34,27 +34,33 @@ Camera choose_camera(const ExportArguments& arguments) {
                                    : camera.resized(arguments.size.width, arguments.size.height);
 }
 
+void require_flat(const FlatArguments& flat, const std::string& output) {
+  if (flat.keep)
+    throw Error(ErrorCode::invalid_argument,
+                "--keep: found -o " + output + ", expected a flat file without --cut-camera");
+}
+
 void export_scene(const ExportArguments& arguments) {
-  require_distinct({arguments.output}, {arguments.scene, arguments.cameras});
+  const std::string& output = arguments.output;
+  require_distinct({output}, {arguments.scene, arguments.cameras});
+  flat_options(arguments.flat, output);
   if (!arguments.cameras.empty()) {
-    require_extension("-o with --cut-camera", arguments.output, {".ply"});
+    require_extension("-o with --cut-camera", output, {".ply"});
+    require_flat(arguments.flat, output);
     const Camera camera = choose_camera(arguments);
     const Progress progress = progress_bar();
     progress("exporting", 0, 0);
-    export_cut(arguments.scene, camera, arguments.tau, arguments.output);
+    export_cut(arguments.scene, camera, arguments.tau, output);
   } else {
     std::vector<std::string> endings = flat_format_endings();
     endings.insert(endings.begin(), ".hier");
-    require_extension("-o", arguments.output, endings);
+    require_extension("-o", output, endings);
     const SceneFile scene(open_source(arguments.scene));
-    if (flat_format_of(arguments.output)) {
-      describe_flat_file(arguments.output, export_leaves(scene, arguments.output, progress_bar()));
-      return;
-    }
-    export_hier(scene, arguments.output, progress_bar());
+    if (flat_format_of(output)) return export_flat(scene, arguments.flat, output);
+    require_flat(arguments.flat, output);
+    export_hier(scene, output, progress_bar());
   }
-  say(fmt::format("{}: {}\n", arguments.output,
-                  size_text(std::filesystem::file_size(arguments.output))));
+  say(fmt::format("{}: {}\n", output, size_text(std::filesystem::file_size(output))));
 }
 
 }  // namespace
@@ -72,6 +78,7 @@ void add_export(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   name_group(*command, kCommonOptions);
+  add_flat_options(*command, arguments->flat);
   CLI::Option* cameras =
       command
           ->add_option("--cut-camera", arguments->cameras,
