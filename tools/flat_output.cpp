@@ -78,7 +78,7 @@ void export_flat(const SceneFile& scene, const FlatArguments& arguments,
 
 void describe_flat_file(const std::string& path, const FlatContents& contents) {
   const FlatFormat format = flat_format_of(path).value();
-  for (const std::string& lost : losses(format, contents)) note(path + ": " + lost);
+  for (const std::string& lost : losses(format, contents)) note(fmt::format("{}: {}", path, lost));
   say(fmt::format("{}: {} Gaussians of SH degree {}, {}\n", path, contents.count,
                   format == FlatFormat::splat ? 0 : contents.sh_degree,
                   size_text(std::filesystem::file_size(path))));

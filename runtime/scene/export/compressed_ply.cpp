@@ -24,7 +24,7 @@ static_assert(std::endian::native == std::endian::little,
 constexpr size_t kOrderedTogether = size_t{1} << 18;
 static_assert(kOrderedTogether % kChunkGaussians == 0);
 
-uint64_t chunk_count(uint64_t gaussians) {
+uint64_t chunks_of(uint64_t gaussians) {
   return gaussians / kChunkGaussians + (gaussians % kChunkGaussians != 0 ? 1 : 0);
 }
 
@@ -32,7 +32,7 @@ size_t sh_bytes(int sh_degree) {
   return static_cast<size_t>(sh_coefficients(sh_degree) - 1) * 3;
 }
 
-std::string header(uint64_t count, int sh_degree, const NativeScale& native) {
+std::string compressed_header(uint64_t count, int sh_degree, const NativeScale& native) {
   std::string text = std::string("ply\nformat binary_little_endian 1.0\n") + filter_comment(native);
   const auto element = [&](const std::string& name, uint64_t rows) {
     text += "element " + name + " " + std::to_string(rows) + "\n";
@@ -40,7 +40,7 @@ std::string header(uint64_t count, int sh_degree, const NativeScale& native) {
   const auto property = [&](const std::string& type, const std::string& name) {
     text += "property " + type + " " + name + "\n";
   };
-  element("chunk", chunk_count(count));
+  element("chunk", chunks_of(count));
   for (const char* kind : {"", "scale_"})
     for (const char* end : {"min_", "max_"})
       for (const char* axis : {"x", "y", "z"}) property("float", std::string(end) + kind + axis);
@@ -62,10 +62,10 @@ class CompressedPlyWriter final : public GaussianWriter {
   CompressedPlyWriter(PlacedSink& sink, uint64_t count, int sh_degree, const NativeScale& native)
       : sink_(sink), check_(count, sh_degree) {
     check_sh_degree(sh_degree);
-    const std::string text = header(count, sh_degree, native);
+    const std::string text = compressed_header(count, sh_degree, native);
     sink_.write(std::as_bytes(std::span(text)));
     chunks_at_ = text.size();
-    vertices_at_ = chunks_at_ + chunk_count(count) * sizeof(Bounds);
+    vertices_at_ = chunks_at_ + chunks_of(count) * sizeof(Bounds);
     sh_at_ = vertices_at_ + count * sizeof(Vertex);
     held_.sh_degree = sh_degree;
   }
@@ -143,7 +143,7 @@ class CompressedPlyWriter final : public GaussianWriter {
 }  // namespace
 
 uint64_t compressed_ply_bytes(uint64_t count, int sh_degree) {
-  return chunk_count(count) * sizeof(Bounds) + count * (sizeof(Vertex) + sh_bytes(sh_degree));
+  return chunks_of(count) * sizeof(Bounds) + count * (sizeof(Vertex) + sh_bytes(sh_degree));
 }
 
 std::unique_ptr<GaussianWriter> write_compressed_ply(PlacedSink& sink, uint64_t count,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "runtime/base/error.h"
@@ -34,14 +33,10 @@ FlatFormat required_format(const std::string& path) {
               "output: found " + path + ", expected a name that ends in " + known);
 }
 
-bool is_moved(const FlatContents& contents) {
-  return contents.origin != std::array<double, 3>{0, 0, 0};
-}
-
 uint64_t least_bytes(FlatFormat format, const FlatContents& contents) {
   switch (format) {
     case FlatFormat::ply:
-      return ply_bytes(contents.count, contents.sh_degree, is_moved(contents));
+      return ply_bytes(contents.count, contents.sh_degree, contents.is_moved());
     case FlatFormat::compressed_ply:
       return compressed_ply_bytes(contents.count, contents.sh_degree);
     case FlatFormat::splat:
@@ -54,14 +49,6 @@ uint64_t least_bytes(FlatFormat format, const FlatContents& contents) {
   return 0;
 }
 
-// Never below the coordinate.
-float rounded_up(double coordinate) {
-  const auto nearest = static_cast<float>(coordinate);
-  return static_cast<double>(nearest) < coordinate
-             ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
-             : nearest;
-}
-
 std::unique_ptr<GaussianWriter> write_flat(PlacedSink& sink, FlatFormat format,
                                            const FlatOptions& options,
                                            const FlatContents& contents) {
@@ -69,7 +56,7 @@ std::unique_ptr<GaussianWriter> write_flat(PlacedSink& sink, FlatFormat format,
   const int degree = contents.sh_degree;
   switch (format) {
     case FlatFormat::ply:
-      return write_ply(sink, count, degree, is_moved(contents), contents.native);
+      return write_ply(sink, count, degree, contents.is_moved(), contents.native);
     case FlatFormat::compressed_ply:
       return write_compressed_ply(sink, count, degree, contents.native);
     case FlatFormat::splat:
@@ -79,45 +66,7 @@ std::unique_ptr<GaussianWriter> write_flat(PlacedSink& sink, FlatFormat format,
     case FlatFormat::spz:
       break;
   }
-  return write_spz(sink, count, degree, rounded_up(contents.largest_coordinate),
-                   options.spz_version);
-}
-
-std::string metres(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", value);
-  return text;
-}
-
-// Of a coordinate in binary32.
-double step_at(double coordinate) {
-  const float at = rounded_up(coordinate);
-  return double{std::nextafter(at, std::numeric_limits<float>::infinity())} - double{at};
-}
-
-// Positions of the world, where the scene is far from the world's origin.
-std::string coarse_positions(FlatFormat format, const FlatContents& contents) {
-  const double coordinate = contents.largest_coordinate;
-  const bool in_binary32 = format == FlatFormat::splat || format == FlatFormat::compressed_ply;
-  if (in_binary32 && is_moved(contents))
-    return "positions are in steps of " + metres(step_at(coordinate)) + ": they are " +
-           metres(coordinate) + " from the world's origin";
-  const int bits = spz_fractional_bits(rounded_up(coordinate));
-  if (format == FlatFormat::spz && bits < spz_fractional_bits(0))
-    return "positions are in steps of " + metres(std::ldexp(1.0, -bits)) + ": one is " +
-           metres(coordinate) + " from the world's origin";
-  return "";
-}
-
-std::string lost_filter(FlatFormat format, const NativeScale& native) {
-  if (!native.antialiased()) return "";
-  if (format == FlatFormat::splat || format == FlatFormat::glb)
-    return "the format cannot say that the scene was trained with a compensated (antialiasing) "
-           "filter: left out";
-  if (format == FlatFormat::spz && native.low_pass == kMipSplattingLowPass)
-    return "the format cannot say that the filter of the training is Mip-Splatting's: it is read "
-           "as 3DGS's";
-  return "";
+  return write_spz(sink, count, degree, contents.reach(), options.spz_version);
 }
 
 }  // namespace
@@ -144,14 +93,11 @@ void FlatContents::add(const GaussianCloud& batch) {
                  std::fabs(batch.origin[i % 3] + static_cast<double>(batch.position[i])));
 }
 
-std::vector<std::string> losses(FlatFormat format, const FlatContents& contents) {
-  std::vector<std::string> lost;
-  if (format == FlatFormat::splat && contents.sh_degree > 0)
-    lost.push_back("the format has no spherical harmonics of degree 1 and more: left out");
-  for (const std::string& text :
-       {lost_filter(format, contents.native), coarse_positions(format, contents)})
-    if (!text.empty()) lost.push_back(text);
-  return lost;
+float FlatContents::reach() const {
+  const auto nearest = static_cast<float>(largest_coordinate);
+  return static_cast<double>(nearest) < largest_coordinate
+             ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+             : nearest;
 }
 
 void require_flat_file(const std::string& path, const FlatContents& contents) {

@@ -33,6 +33,9 @@ struct FlatContents {
   ImportReport report;
 
   void add(const GaussianCloud& batch);
+  bool is_moved() const { return origin != std::array<double, 3>{0, 0, 0}; }
+  // largest_coordinate in binary32, rounded up.
+  float reach() const;
 };
 
 // What the format has no place for, a sentence each.

@@ -19,17 +19,17 @@ using namespace glb;
 static_assert(std::endian::native == std::endian::little,
               "words are written as they lie in memory");
 
-constexpr uint32_t kMagic = 0x46546c67, kVersion = 2;                   // "glTF"
+constexpr uint32_t kGlbMagic = 0x46546c67, kGlbVersion = 2;             // "glTF"
 constexpr uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;  // "JSON", "BIN"
-constexpr uint64_t kHeaderBytes = 12, kChunkHeaderBytes = 8;
+constexpr uint64_t kGlbHeaderBytes = 12, kChunkHeaderBytes = 8;
 
-uint64_t gaussian_bytes(int sh_degree) {
+uint64_t glb_gaussian_bytes(int sh_degree) {
   return (3 + 4 + 3 + 1 + 3 * static_cast<uint64_t>(sh_coefficients(sh_degree))) * sizeof(float);
 }
 
 // Half a turn about z, without -0.
 template <class T>
-std::array<T, 3> turned(T x, T y, T z) {
+std::array<T, 3> to_gltf(T x, T y, T z) {
   return {T(0) - x, T(0) - y, z};
 }
 
@@ -64,11 +64,12 @@ class GlbWriter final : public GaussianWriter {
   void finish() override {
     check_.finish();
     const auto& origin = check_.origin();
-    document_.translation = turned(origin[0], origin[1], origin[2]);
+    document_.translation = to_gltf(origin[0], origin[1], origin[2]);
     std::string text = json(document_);
     text.resize(json_bytes_, ' ');
     const auto u32 = [](uint64_t value) { return static_cast<uint32_t>(value); };
-    const uint32_t begin[] = {kMagic, kVersion, u32(total_bytes()), u32(json_bytes_), kJsonChunk};
+    const uint32_t begin[] = {kGlbMagic, kGlbVersion, u32(total_bytes()), u32(json_bytes_),
+                              kJsonChunk};
     const uint32_t binary[] = {u32(binary_bytes()), kBinaryChunk};
     sink_.write(std::as_bytes(std::span(begin)));
     sink_.write(std::as_bytes(std::span(text)));
@@ -76,14 +77,16 @@ class GlbWriter final : public GaussianWriter {
   }
 
  private:
-  uint64_t binary_bytes() const { return document_.count * gaussian_bytes(document_.sh_degree); }
-  uint64_t binary_at() const { return kHeaderBytes + 2 * kChunkHeaderBytes + json_bytes_; }
+  uint64_t binary_bytes() const {
+    return document_.count * glb_gaussian_bytes(document_.sh_degree);
+  }
+  uint64_t binary_at() const { return kGlbHeaderBytes + 2 * kChunkHeaderBytes + json_bytes_; }
   uint64_t total_bytes() const { return binary_at() + binary_bytes(); }
 
   // glTF counts bytes in 32 bits, and has no array of no elements.
   void check_size() const {
     constexpr uint64_t kMostBytes = std::numeric_limits<uint32_t>::max();
-    const uint64_t most = (kMostBytes - binary_at()) / gaussian_bytes(document_.sh_degree);
+    const uint64_t most = (kMostBytes - binary_at()) / glb_gaussian_bytes(document_.sh_degree);
     if (document_.count == 0 || document_.count > most)
       throw Error(ErrorCode::unsupported, ".glb: found " + std::to_string(document_.count) +
                                               " Gaussians of SH degree " +
@@ -94,7 +97,7 @@ class GlbWriter final : public GaussianWriter {
   void widen_bounds(const GaussianCloud& batch) {
     for (size_t i = 0; i < batch.size(); ++i) {
       const float* p = &batch.position[3 * i];
-      const auto at = turned(p[0], p[1], p[2]);
+      const auto at = to_gltf(p[0], p[1], p[2]);
       for (size_t k = 0; k < 3; ++k) {
         document_.least[k] = std::min(document_.least[k], at[k]);
         document_.most[k] = std::max(document_.most[k], at[k]);
@@ -144,7 +147,7 @@ class GlbWriter final : public GaussianWriter {
 }  // namespace
 
 uint64_t glb_bytes(uint64_t count, int sh_degree) {
-  return count * gaussian_bytes(sh_degree);
+  return count * glb_gaussian_bytes(sh_degree);
 }
 
 std::unique_ptr<GaussianWriter> write_glb(PlacedSink& sink, uint64_t count, int sh_degree) {

@@ -17,22 +17,22 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "words are written as they lie in memory");
 
-constexpr size_t kBlockGaussians = 1 << 15;
+constexpr size_t kRowsInBlock = 1 << 15;
 
-struct Row {
+struct SplatRow {
   float position[3], scale[3];
   uint8_t colour[4], rotation[4];
 };
-static_assert(sizeof(Row) == kSplatBytes);
+static_assert(sizeof(SplatRow) == kSplatBytes);
 
 // Of a component of a unit quaternion, in steps of 1/128 about 128: 1 is one step beyond the last.
-uint8_t rotation_code(float component) {
+uint8_t rotation_byte(float component) {
   return static_cast<uint8_t>(std::fmin(std::fmax(component * 128.0f + 128.5f, 0.0f), 255.0f));
 }
 
-Row row_of(const GaussianCloud& cloud, size_t i) {
+SplatRow splat_row(const GaussianCloud& cloud, size_t i) {
   const Gaussian g = activate(cloud.words(i), true);
-  Row row;
+  SplatRow row;
   for (int k = 0; k < 3; ++k) {
     const auto axis = static_cast<size_t>(k);
     row.position[k] =
@@ -43,7 +43,7 @@ Row row_of(const GaussianCloud& cloud, size_t i) {
   }
   row.colour[3] = static_cast<uint8_t>(unit_code(g.opacity, 8));
   const float q[4] = {g.rotation.w, g.rotation.x, g.rotation.y, g.rotation.z};
-  std::transform(q, q + 4, row.rotation, rotation_code);
+  std::transform(q, q + 4, row.rotation, rotation_byte);
   return row;
 }
 
@@ -57,8 +57,8 @@ class SplatWriter final : public GaussianWriter {
   void append(const GaussianCloud& batch) override {
     check_.accept(batch);
     for (size_t i = 0; i < batch.size(); ++i) {
-      rows_.push_back(row_of(batch, i));
-      if (rows_.size() == kBlockGaussians) flush();
+      rows_.push_back(splat_row(batch, i));
+      if (rows_.size() == kRowsInBlock) flush();
     }
   }
 
@@ -75,7 +75,7 @@ class SplatWriter final : public GaussianWriter {
 
   ByteSink& sink_;
   BatchCheck check_;
-  std::vector<Row> rows_;
+  std::vector<SplatRow> rows_;
 };
 
 }  // namespace
