@@ -1,6 +1,5 @@
 #include "tools/cut_export.h"
 
-#include <algorithm>
 
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
@@ -8,7 +7,6 @@
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/scene_gaussians.h"
 #include "runtime/scene/export/writer.h"
-#include "runtime/scene/sanitise.h"
 
 namespace voyager::tools {
 namespace {
@@ -21,8 +19,7 @@ void append(GaussianCloud& cloud, const GaussianArrays& arrays, const DrawItem& 
   for (int i = 0; i < 3; ++i) cloud.log_scale.push_back(std::log(shape.scale[i]));
   for (const float q : {shape.rotation.w, shape.rotation.x, shape.rotation.y, shape.rotation.z})
     cloud.rotation.push_back(q);
-  cloud.opacity.push_back(
-      std::clamp(logit(std::min(shape.opacity, 1.0f - 0x1p-24f)), -kMaxLogit, kMaxLogit));
+  cloud.opacity.push_back(flat_logit(shape.opacity));
   const auto own = arrays.sh(item.gaussian);
   const auto parent = arrays.sh(item.t == 1.0f ? item.gaussian : item.parent);
   for (int k = 0; k < sh_coefficients(arrays.sh_degree()); ++k)

@@ -80,6 +80,7 @@ int main(int argc, char** argv) try {
       "voyager COMMAND --help explains the options of a command.");
   voyager::tools::add_synth(app);
   voyager::tools::add_bake(app);
+  voyager::tools::add_convert(app);
   voyager::tools::add_export(app);
   voyager::tools::add_info(app);
   voyager::tools::add_render(app);

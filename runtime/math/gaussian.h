@@ -31,6 +31,14 @@ VOYAGER_HD float logit(float p) {
   return std::log(p / (1.0f - p));
 }
 
+// Of a Gaussian in a flat scene. A merged one's opacity may exceed 1: it becomes the largest logit
+// whose opacity binary32 tells from 1.
+VOYAGER_HD float flat_logit(float opacity) {
+  const float most = 1.0f - 0x1p-24f;
+  const float x = logit(opacity < most ? opacity : most);
+  return x < -kMaxLogit ? -kMaxLogit : x;
+}
+
 VOYAGER_HD Gaussian activate(const GaussianWords& words, bool leaf) {
   Gaussian g;
   g.mean = words.mean;

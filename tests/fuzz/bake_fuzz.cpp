@@ -10,7 +10,7 @@
 #include "runtime/bake/bake.h"
 #include "runtime/base/error.h"
 #include "runtime/cpu/cpu_backend.h"
-#include "runtime/format/export_ply.h"
+#include "runtime/format/export_flat.h"
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
 #include "runtime/lod/validate.h"

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "runtime/base/error.h"
+#include "runtime/format/export_flat.h"
 #include "runtime/format/export_hier.h"
-#include "runtime/format/export_ply.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/fuzz/memory_limit.h"
 #include "tests/fuzz/scratch_folder.h"
@@ -37,10 +37,9 @@ constexpr uint64_t hier_bytes(uint64_t nodes) {
   return 8 + nodes * (4 * (11 + 48) + 28 + 32);
 }
 
-void check_ply(const std::string& path, const SceneFile& scene) {
+size_t gaussians_in(const std::string& path) {
   const auto source = open_file_source(path);
-  const GaussianCloud cloud = import_ply(*read_source(*source), {});
-  if (cloud.size() != scene.info().leaf_count) std::abort();
+  return import_ply(*read_source(*source), {}).size();
 }
 
 void export_all(const Bytes& bytes) {
@@ -51,7 +50,12 @@ void export_all(const Bytes& bytes) {
     if (written(hier, [&] { export_hier(scene, hier); }) &&
         std::filesystem::file_size(hier) != hier_bytes(scene.info().node_count))
       std::abort();
-    if (written(ply, [&] { export_ply(scene, ply); })) check_ply(ply, scene);
+    if (written(ply, [&] { export_leaves(scene, ply); }) &&
+        gaussians_in(ply) != scene.info().leaf_count)
+      std::abort();
+    constexpr uint64_t kMost = 20;
+    if (written(ply, [&] { export_extent_cut(scene, kMost, ply); }) && gaussians_in(ply) > kMost)
+      std::abort();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::refused_input) std::abort();
   }

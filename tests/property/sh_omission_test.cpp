@@ -2,7 +2,7 @@
 // is the same to the bit as with them.
 #include <cstring>
 
-#include "runtime/format/export_ply.h"
+#include "runtime/format/export_flat.h"
 #include "runtime/frame/scene_gaussians.h"
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/sh_bands.h"
@@ -137,7 +137,7 @@ TEST(ShOmission, AnExportPutsTheBandsBack) {
   const TempFolder folder;
   const GaussianCloud cloud = import(ply_bytes(padded_cloud(700, 64, 1)));
   const Bytes baked = scene_bytes(bake(cloud), Quality::lossless);
-  export_ply(SceneFile(source_of(baked)), folder.file("out.ply"));
+  export_leaves(SceneFile(source_of(baked)), folder.file("out.ply"));
   GaussianCloud expected = cloud;
   put_back_zero_bands(expected);
   EXPECT_EQ(expected.sh_degree, 3);

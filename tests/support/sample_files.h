@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <string>
@@ -34,6 +35,22 @@ class BytesSink final : public ByteSink {
     bytes.insert(bytes.end(), more.begin(), more.end());
   }
   Bytes bytes;
+};
+
+class PlacedBytesSink final : public PlacedSink {
+ public:
+  void write(std::span<const std::byte> more) override {
+    write_at(end_, more);
+    end_ += more.size();
+  }
+  void write_at(uint64_t offset, std::span<const std::byte> more) override {
+    bytes.resize(std::max<size_t>(bytes.size(), offset + more.size()));
+    std::copy(more.begin(), more.end(), bytes.begin() + static_cast<std::ptrdiff_t>(offset));
+  }
+  Bytes bytes;
+
+ private:
+  uint64_t end_ = 0;
 };
 
 // A stream that cannot say how long it is.

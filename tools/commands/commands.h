@@ -7,6 +7,7 @@ namespace voyager::tools {
 
 void add_synth(CLI::App& app);
 void add_bake(CLI::App& app);
+void add_convert(CLI::App& app);
 void add_export(CLI::App& app);
 void add_info(CLI::App& app);
 void add_render(CLI::App& app);

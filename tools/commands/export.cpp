@@ -6,12 +6,12 @@
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
 #include "runtime/format/export_hier.h"
-#include "runtime/format/export_ply.h"
 #include "runtime/format/reader.h"
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
 #include "tools/console.h"
 #include "tools/cut_export.h"
+#include "tools/flat_output.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
@@ -24,6 +24,7 @@ struct ExportArguments {
   int64_t camera = 0;
   ImageSize size;
   double tau = 3;
+  FlatArguments flat;
 };
 
 Camera choose_camera(const ExportArguments& arguments) {
@@ -33,22 +34,33 @@ Camera choose_camera(const ExportArguments& arguments) {
                                    : camera.resized(arguments.size.width, arguments.size.height);
 }
 
+void require_flat(const FlatArguments& flat, const std::string& output) {
+  if (flat.keep)
+    throw Error(ErrorCode::invalid_argument,
+                "--keep: found -o " + output + ", expected a flat file without --cut-camera");
+}
+
 void export_scene(const ExportArguments& arguments) {
-  require_distinct({arguments.output}, {arguments.scene, arguments.cameras});
+  const std::string& output = arguments.output;
+  require_distinct({output}, {arguments.scene, arguments.cameras});
+  flat_options(arguments.flat, output);
   if (!arguments.cameras.empty()) {
-    require_extension("-o with --cut-camera", arguments.output, {".ply"});
+    require_extension("-o with --cut-camera", output, {".ply"});
+    require_flat(arguments.flat, output);
     const Camera camera = choose_camera(arguments);
     const Progress progress = progress_bar();
     progress("exporting", 0, 0);
-    export_cut(arguments.scene, camera, arguments.tau, arguments.output);
+    export_cut(arguments.scene, camera, arguments.tau, output);
   } else {
-    require_extension("-o", arguments.output, {".hier", ".ply"});
+    std::vector<std::string> endings = flat_format_endings();
+    endings.insert(endings.begin(), ".hier");
+    require_extension("-o", output, endings);
     const SceneFile scene(open_source(arguments.scene));
-    const bool tree = std::filesystem::path(arguments.output).extension() == ".hier";
-    (tree ? export_hier : export_ply)(scene, arguments.output, progress_bar());
+    if (flat_format_of(output)) return export_flat(scene, arguments.flat, output);
+    require_flat(arguments.flat, output);
+    export_hier(scene, output, progress_bar());
   }
-  say(fmt::format("{}: {}\n", arguments.output,
-                  size_text(std::filesystem::file_size(arguments.output))));
+  say(fmt::format("{}: {}\n", output, size_text(std::filesystem::file_size(output))));
 }
 
 }  // namespace
@@ -60,11 +72,13 @@ void add_export(CLI::App& app) {
   command->add_option("scene", arguments->scene, "Scene to read, a .voy or its URL")->required();
   command
       ->add_option("-o", arguments->output,
-                   "File to write. A .hier: the tree, in the layout of HierarchicalGS. A .ply: the "
-                   "leaves, in the order of the input")
+                   "File to write. A .hier: the tree, in the layout of HierarchicalGS. Else the "
+                   "leaves, in the order of the input; the end of the name says in which format: " +
+                       CLI::detail::join(flat_format_endings(), ", "))
       ->type_name("FILE")
       ->required();
   name_group(*command, kCommonOptions);
+  add_flat_options(*command, arguments->flat);
   CLI::Option* cameras =
       command
           ->add_option("--cut-camera", arguments->cameras,

@@ -1,7 +1,7 @@
 #include "tools/report/report_scenes.h"
 
 #include "runtime/base/open_source.h"
-#include "runtime/format/export_ply.h"
+#include "runtime/format/export_flat.h"
 #include "runtime/format/writer.h"
 #include "runtime/frame/scene_gaussians.h"
 #include "runtime/lod/build.h"
@@ -59,7 +59,7 @@ void ReportScenes::bake(Storage storage, const std::filesystem::path& output) {
     rule.kind = file.info().tree;
     native = file.info().native;
     input = folder_ / kSceneLeaves;
-    export_ply(file, input.string(), progress_);
+    export_leaves(file, input.string(), {}, progress_);
     const GaussianArrays arrays = gaussian_arrays(*own_);
     for (const uint32_t leaf : own_->leaves)
       levels.push_back(static_cast<uint8_t>(footprint_level_of(arrays.node_code(leaf))));

@@ -1,5 +1,6 @@
 #pragma once
 // What every writer checks of its batches before it writes a byte of them.
+#include <array>
 #include <string>
 
 #include "runtime/base/error.h"
@@ -25,10 +26,20 @@ class BatchCheck {
     if (batch.size() > count_ - written_) fail(written_ + batch.size());
     written_ += batch.size();
   }
+  // For formats whose positions have one place that they are relative to.
+  void accept_of_one_origin(const GaussianCloud& batch) {
+    if (written_ > 0 && batch.size() > 0 && batch.origin != origin_)
+      throw Error(ErrorCode::invalid_argument,
+                  "origin of a batch: found another than the first batch's, expected the same");
+    accept(batch);
+    if (written_ == batch.size()) origin_ = batch.origin;
+  }
   void finish() const {
     if (written_ != count_) fail(written_);
   }
   uint64_t written() const { return written_; }
+  // Of accept_of_one_origin().
+  const std::array<double, 3>& origin() const { return origin_; }
 
  private:
   [[noreturn]] void fail(uint64_t found) const {
@@ -39,6 +50,7 @@ class BatchCheck {
 
   uint64_t count_, written_ = 0;
   int sh_degree_;
+  std::array<double, 3> origin_{0, 0, 0};
 };
 
 }  // namespace voyager

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/scene/export/batch_check.h"
+#include "runtime/scene/export/ply_comment.h"
 #include "runtime/scene/export/writer.h"
 
 namespace voyager {
@@ -13,13 +14,6 @@ static_assert(std::endian::native == std::endian::little,
               "words are written as they lie in memory");
 
 constexpr size_t kBlockBytes = 1 << 20;
-
-// As their trainers write it: Brush and Mip-Splatting's filter, or 3DGS's.
-const char* filter_comment(const NativeScale& native) {
-  if (!native.antialiased()) return "";
-  return native.low_pass == kMipSplattingLowPass ? "comment SplatRenderMode: mip\n"
-                                                 : "comment antialiased 1\n";
-}
 
 std::string header(uint64_t count, int sh_degree, bool double_positions,
                    const NativeScale& native) {

@@ -9,10 +9,13 @@
 namespace voyager {
 namespace {
 
-class FileSink final : public ByteSink {
+class FileSink final : public PlacedSink {
  public:
   explicit FileSink(AtomicFile& file) : file_(file) {}
   void write(std::span<const std::byte> bytes) override { file_.write(bytes); }
+  void write_at(uint64_t offset, std::span<const std::byte> bytes) override {
+    file_.write_at(offset, bytes);
+  }
 
  private:
   AtomicFile& file_;
@@ -33,7 +36,7 @@ class StdoutSink final : public ByteSink {
 
 }  // namespace
 
-std::unique_ptr<ByteSink> sink_to(AtomicFile& file) {
+std::unique_ptr<PlacedSink> sink_to(AtomicFile& file) {
   return std::make_unique<FileSink>(file);
 }
 std::unique_ptr<ByteSink> sink_to_stdout() {

@@ -19,6 +19,27 @@ void check_zstd(size_t code) {
     throw Error(ErrorCode::internal, std::string("zstd: ") + ZSTD_getErrorName(code));
 }
 
+class DecompressingSink final : public ByteSink {
+ public:
+  DecompressingSink(ZSTD_DCtx& context, ByteSink& inner)
+      : context_(context), inner_(inner), block_(ZSTD_DStreamOutSize()) {}
+
+  void write(std::span<const std::byte> bytes) override {
+    ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+    ZSTD_outBuffer out{};
+    do {
+      out = {block_.data(), block_.size(), 0};
+      check_zstd(ZSTD_decompressStream(&context_, &out, &in));
+      inner_.write(std::span(block_).first(out.pos));
+    } while (in.pos < in.size || out.pos == out.size);
+  }
+
+ private:
+  ZSTD_DCtx& context_;
+  ByteSink& inner_;
+  std::vector<std::byte> block_;
+};
+
 }  // namespace
 
 Spool::Spool(uint64_t uncompressed_size)
@@ -56,6 +77,13 @@ void Spool::copy_to(ByteSink& sink) {
     sink.write(std::span(block_).first(got));
     left -= got;
   }
+}
+
+void Spool::copy_decompressed_to(ByteSink& sink) {
+  const std::unique_ptr<ZSTD_DCtx, Free> context(ZSTD_createDCtx());
+  if (!context) throw std::bad_alloc();
+  DecompressingSink decompressing(*context, sink);
+  copy_to(decompressing);
 }
 
 }  // namespace voyager

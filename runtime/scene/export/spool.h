@@ -21,10 +21,13 @@ class Spool {
   void close();
   uint64_t compressed_size() const { return compressed_; }
   void copy_to(ByteSink& sink);
+  // What was written, as it was.
+  void copy_decompressed_to(ByteSink& sink);
 
  private:
   struct Free {
     void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+    void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   void compress(std::span<const std::byte> bytes, ZSTD_EndDirective end);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "runtime/scene/export/batch_check.h"
+#include "runtime/scene/export/gzip_sink.h"
 #include "runtime/scene/export/spool.h"
 #include "runtime/scene/export/spz_quantise.h"
 #include "runtime/scene/export/writer.h"
@@ -16,26 +17,24 @@ constexpr double kMostSteps = (1 << 23) - 1;
 constexpr size_t kBlockGaussians = 4096;
 using Bytes = std::vector<std::byte>;
 
-int fractional_bits(float largest_coordinate) {
-  int bits = kMostFractionalBits;
-  while (bits > 0 && static_cast<double>(largest_coordinate) * (1 << bits) > kMostSteps) --bits;
-  return bits;
-}
-
 void put(Bytes& bytes, uint64_t value, int count) {
   for (int i = 0; i < count; ++i) bytes.push_back(static_cast<std::byte>(value >> (8 * i)));
 }
 
 class SpzWriter final : public GaussianWriter {
  public:
-  SpzWriter(ByteSink& sink, uint64_t count, int sh_degree, float largest_coordinate)
+  SpzWriter(ByteSink& sink, uint64_t count, int sh_degree, float largest_coordinate, int version)
       : sink_(sink),
         check_(count, sh_degree),
         count_(count),
         sh_degree_(sh_degree),
-        bits_(fractional_bits(largest_coordinate)),
+        version_(version),
+        bits_(spz_fractional_bits(largest_coordinate)),
         streams_(sh_degree > 0 ? spz::kAttributes : spz::kSh) {
     check_sh_degree(sh_degree);
+    if (version != 3 && version != 4)
+      throw Error(ErrorCode::invalid_argument,
+                  ".spz: found version " + std::to_string(version) + ", expected 3 or 4");
     if (count > std::numeric_limits<uint32_t>::max())
       throw Error(ErrorCode::invalid_argument, ".spz: found " + std::to_string(count) +
                                                    " Gaussians, expected at most 4294967295");
@@ -59,8 +58,7 @@ class SpzWriter final : public GaussianWriter {
   void finish() override {
     check_.finish();
     for (Spool& spool : spools_) spool.close();
-    sink_.write(header());
-    for (Spool& spool : spools_) spool.copy_to(sink_);
+    version_ == 4 ? write_streams() : write_planar();
   }
 
  private:
@@ -94,28 +92,42 @@ class SpzWriter final : public GaussianWriter {
     put(blocks_[spz::kPositions], static_cast<uint64_t>(static_cast<int64_t>(steps)), 3);
   }
 
-  Bytes header() const {
-    Bytes bytes;
-    put(bytes, spz::kMagic, 4);
-    put(bytes, 4, 4);
-    put(bytes, count_, 4);
-    put(bytes, static_cast<uint64_t>(sh_degree_), 1);
-    put(bytes, static_cast<uint64_t>(bits_), 1);
-    put(bytes, antialiased_ ? spz::kFlagAntialiased : 0, 1);
-    put(bytes, static_cast<uint64_t>(streams_), 1);
+  void write_planar() {
+    GzipSink gzip(sink_);
+    gzip.write(header(0));
+    for (Spool& spool : spools_) spool.copy_decompressed_to(gzip);
+    gzip.close();
+  }
+
+  void write_streams() {
+    Bytes bytes = header(streams_);
     put(bytes, spz::kStreamsHeaderBytes, 4);
     bytes.resize(spz::kStreamsHeaderBytes);
     for (int i = 0; i < streams_; ++i) {
       put(bytes, spools_[static_cast<size_t>(i)].compressed_size(), 8);
       put(bytes, uncompressed_size(i), 8);
     }
+    sink_.write(bytes);
+    for (Spool& spool : spools_) spool.copy_to(sink_);
+  }
+
+  // What all versions begin with; `last` is their own byte.
+  Bytes header(int last) const {
+    Bytes bytes;
+    put(bytes, spz::kMagic, 4);
+    put(bytes, static_cast<uint64_t>(version_), 4);
+    put(bytes, count_, 4);
+    put(bytes, static_cast<uint64_t>(sh_degree_), 1);
+    put(bytes, static_cast<uint64_t>(bits_), 1);
+    put(bytes, antialiased_ ? spz::kFlagAntialiased : 0, 1);
+    put(bytes, static_cast<uint64_t>(last), 1);
     return bytes;
   }
 
   ByteSink& sink_;
   BatchCheck check_;
   uint64_t count_;
-  int sh_degree_, bits_, streams_;
+  int sh_degree_, version_, bits_, streams_;
   bool antialiased_ = false;
   std::vector<Spool> spools_;
   Bytes blocks_[spz::kAttributes];
@@ -123,9 +135,15 @@ class SpzWriter final : public GaussianWriter {
 
 }  // namespace
 
+int spz_fractional_bits(float largest_coordinate) {
+  int bits = kMostFractionalBits;
+  while (bits > 0 && static_cast<double>(largest_coordinate) * (1 << bits) > kMostSteps) --bits;
+  return bits;
+}
+
 std::unique_ptr<GaussianWriter> write_spz(ByteSink& sink, uint64_t count, int sh_degree,
-                                          float largest_coordinate) {
-  return std::make_unique<SpzWriter>(sink, count, sh_degree, largest_coordinate);
+                                          float largest_coordinate, int version) {
+  return std::make_unique<SpzWriter>(sink, count, sh_degree, largest_coordinate, version);
 }
 
 }  // namespace voyager

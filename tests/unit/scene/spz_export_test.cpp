@@ -99,6 +99,27 @@ TEST(SpzExport, BatchesMakeTheSameBytesAsOne) {
             test::import_bytes(test::spz_v4(cloud)).position);
 }
 
+// Readers of 2025 and before know the one, and both hold the same codes.
+TEST(SpzExport, Version3HoldsWhatVersion4Does) {
+  for (const int degree : {0, 3}) {
+    GaussianCloud cloud = test::random_cloud(5000, 36, degree);
+    cloud.native = compensated_scale(kLowPass);
+    test::BytesSink sink;
+    const auto writer = write_spz(sink, cloud.size(), degree, 2047.0f, 3);
+    writer->append(cloud);
+    writer->finish();
+    ASSERT_EQ(sink.bytes[0], std::byte{0x1f});
+    const GaussianCloud a = test::import_bytes(sink.bytes),
+                        b = test::import_bytes(test::spz_v4(cloud));
+    EXPECT_EQ(a.native, b.native);
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.log_scale, b.log_scale);
+    EXPECT_EQ(a.rotation, b.rotation);
+    EXPECT_EQ(a.opacity, b.opacity);
+    EXPECT_EQ(a.sh, b.sh);
+  }
+}
+
 TEST(SpzExport, HoldsItsCallerToTheAnnouncement) {
   test::BytesSink sink;
   const GaussianCloud cloud = test::random_cloud(3, 3, 1);
@@ -106,6 +127,7 @@ TEST(SpzExport, HoldsItsCallerToTheAnnouncement) {
   EXPECT_THROW(write_spz(sink, 3, 2)->append(cloud), Error);
   EXPECT_THROW(write_spz(sink, 3, -1), Error);
   EXPECT_THROW(write_spz(sink, 1ull << 32, 0), Error);
+  for (const int version : {2, 5}) EXPECT_THROW(write_spz(sink, 3, 1, 2047.0f, version), Error);
   EXPECT_THROW(write_spz(sink, 4, 1)->finish(), Error);
   EXPECT_TRUE(sink.bytes.empty()) << "nothing may be written before everything is known to fit";
 }

@@ -1,13 +1,12 @@
-#include "runtime/format/export_ply.h"
+#include "runtime/format/export_flat.h"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
 
 #include "runtime/base/error.h"
-#include "runtime/base/output_path.h"
+#include "runtime/format/extent_cut.h"
 #include "runtime/format/tree_check.h"
-#include "runtime/scene/export/writer.h"
 #include "runtime/scene/sh_bands.h"
 
 namespace voyager {
@@ -52,6 +51,26 @@ NativeScale median_scale(const std::array<uint64_t, kFootprintLevels>& leaves,
   return {native.source, native.pixel_of(level), native.low_pass};
 }
 
+FlatContents announced(const SceneFile& scene, uint64_t count) {
+  FlatContents contents;
+  contents.count = count;
+  contents.sh_degree = scene.info().sh_degree + scene.info().left_out_bands;
+  return contents;
+}
+
+FlatContents write_cloud(GaussianCloud cloud, const std::string& path, const FlatOptions& options,
+                         const Progress& progress) {
+  put_back_zero_bands(cloud);
+  cloud.report = {};
+  FlatContents contents;
+  contents.sh_degree = cloud.sh_degree;
+  contents.native = cloud.native;
+  contents.add(cloud);
+  write_flat_file(path, options, contents, [&](GaussianWriter& writer) { writer.append(cloud); });
+  report(progress, "exporting", cloud.size(), cloud.size());
+  return contents;
+}
+
 }  // namespace
 
 GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
@@ -84,20 +103,16 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
   return cloud;
 }
 
-void export_ply(const SceneFile& scene, const std::string& path, const Progress& progress) {
-  AtomicFile file(path);
-  const SceneFileInfo& info = scene.info();
-  require_room(path, ply_bytes(info.leaf_count, info.sh_degree + info.left_out_bands));
-  GaussianCloud cloud = read_leaves(scene, progress);
-  put_back_zero_bands(cloud);
-  const bool moved = cloud.origin != std::array<double, 3>{0, 0, 0};
-  const std::unique_ptr<ByteSink> sink = sink_to(file);
-  const std::unique_ptr<GaussianWriter> writer =
-      write_ply(*sink, cloud.size(), cloud.sh_degree, moved, cloud.native);
-  writer->append(cloud);
-  writer->finish();
-  file.commit();
-  report(progress, "exporting", cloud.size(), cloud.size());
+FlatContents export_leaves(const SceneFile& scene, const std::string& path,
+                           const FlatOptions& options, const Progress& progress) {
+  require_flat_file(path, announced(scene, scene.info().leaf_count));
+  return write_cloud(read_leaves(scene, progress), path, options, progress);
+}
+
+FlatContents export_extent_cut(const SceneFile& scene, uint64_t most, const std::string& path,
+                               const FlatOptions& options, const Progress& progress) {
+  require_flat_file(path, announced(scene, std::min<uint64_t>(1, scene.info().leaf_count)));
+  return write_cloud(read_extent_cut(scene, most, progress), path, options, progress);
 }
 
 }  // namespace voyager

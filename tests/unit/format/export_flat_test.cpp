@@ -1,4 +1,4 @@
-#include "runtime/format/export_ply.h"
+#include "runtime/format/export_flat.h"
 
 #include "runtime/format/export_hier.h"
 
@@ -8,7 +8,7 @@
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
-namespace voyager::export_ply_test {
+namespace voyager::export_flat_test {
 namespace {
 
 GaussianCloud import_file(const std::string& path) {
@@ -34,11 +34,11 @@ void expect_same_words(const GaussianCloud& a, const GaussianCloud& b) {
 GaussianCloud there_and_back(const GaussianCloud& cloud) {
   const test::TempFolder folder;
   const test::Bytes bytes = test::scene_bytes(test::bake(cloud), Quality::lossless);
-  export_ply(SceneFile(test::source_of(bytes)), folder.file("out.ply"));
+  export_leaves(SceneFile(test::source_of(bytes)), folder.file("out.ply"));
   return import_file(folder.file("out.ply"));
 }
 
-TEST(ExportPly, LosslessGivesBackTheInput) {
+TEST(ExportLeaves, LosslessGivesBackTheInput) {
   for (const int degree : {0, 1, 2, 3}) {
     GaussianCloud cloud = test::random_cloud(2500, 20, degree);
     cloud.position[5] = -0.0f;
@@ -46,43 +46,43 @@ TEST(ExportPly, LosslessGivesBackTheInput) {
   }
 }
 
-TEST(ExportPly, LosslessGivesBackTheInputBeyondTheReachOfAZeroOrigin) {
+TEST(ExportLeaves, LosslessGivesBackTheInputBeyondTheReachOfAZeroOrigin) {
   GaussianCloud cloud = test::random_cloud(1200, 21, 1);
   for (size_t i = 0; i < cloud.size(); ++i) cloud.position[3 * i] += 1.0e6f;
   ASSERT_NE(test::bake(cloud).origin[0], 0);
   expect_same_words(there_and_back(cloud), cloud);
 }
 
-TEST(ExportPly, LeavesOfAMovedInputKeepTheirWordsAndOrigin) {
+TEST(ExportLeaves, LeavesOfAMovedInputKeepTheirWordsAndOrigin) {
   GaussianCloud cloud = test::random_cloud(1200, 22, 0);
   cloud.origin = {4.1e6, 2.5, -6.0e5};
   const test::Bytes bytes = test::scene_bytes(test::bake(cloud), Quality::lossless);
   expect_same_words(read_leaves(SceneFile(test::source_of(bytes))), cloud);
 }
 
-TEST(ExportPly, ARealBlockComesBackToTheBit) {
+TEST(ExportLeaves, ARealBlockComesBackToTheBit) {
   VOYAGER_NEEDS_SCENES(folder);
   const GaussianCloud cloud = import_file(folder + "/formats/block.ply");
   expect_same_words(there_and_back(cloud), cloud);
 }
 
-TEST(ExportPly, AnEmptySceneGivesAnEmptyFile) {
+TEST(ExportLeaves, AnEmptySceneGivesAnEmptyFile) {
   EXPECT_EQ(there_and_back(test::random_cloud(0, 1)).size(), 0u);
 }
 
-TEST(ExportPly, ADamagedChunkLeavesNoFileBehind) {
+TEST(ExportLeaves, ADamagedChunkLeavesNoFileBehind) {
   const test::TempFolder folder;
   const test::Bytes bytes =
       test::scene_bytes(test::bake(test::random_cloud(100, 23)), Quality::compact);
   const SceneFile file(
       std::make_shared<test::FlippedSource>(bytes, bytes.size() - 1, std::byte{4}));
-  EXPECT_EQ(test::error_code([&] { export_ply(file, folder.file("out.ply")); }),
+  EXPECT_EQ(test::error_code([&] { export_leaves(file, folder.file("out.ply")); }),
             ErrorCode::damaged_chunk);
   EXPECT_FALSE(std::filesystem::exists(folder.file("out.ply")));
 }
 
 // Chunks that are whole, of a tree that is not.
-TEST(ExportPly, ATreeThatIsNotSoundIsRefusedByChunk) {
+TEST(ExportLeaves, ATreeThatIsNotSoundIsRefusedByChunk) {
   for (const auto shape : {test::TreeShape::star, test::TreeShape::star_of_stars,
                            test::TreeShape::recursive, test::TreeShape::eight_way}) {
     const test::TempFolder folder;
@@ -90,7 +90,7 @@ TEST(ExportPly, ATreeThatIsNotSoundIsRefusedByChunk) {
     const test::Bytes bytes = test::scene_bytes(test::baked_of(test::random_tree(shape, 320, 5)),
                                                 Quality::lossless, 1, kMinChunkBytes);
     const SceneFile sound(test::source_of(bytes));
-    EXPECT_NO_THROW(export_ply(sound, ply));
+    EXPECT_NO_THROW(export_leaves(sound, ply));
     EXPECT_NO_THROW(export_hier(sound, hier));
     for (const std::string& path : {ply, hier}) std::filesystem::remove(path);
     for (uint32_t chunk = 1; chunk < sound.chunks().size(); ++chunk) {
@@ -105,7 +105,10 @@ TEST(ExportPly, ATreeThatIsNotSoundIsRefusedByChunk) {
       const SceneFile scene(test::source_of(file));
       for (const std::string& path : {ply, hier}) {
         try {
-          (path == ply ? export_ply : export_hier)(scene, path, {});
+          if (path == ply)
+            export_leaves(scene, path);
+          else
+            export_hier(scene, path);
           ADD_FAILURE() << path << " " << chunk;
         } catch (const Error& error) {
           EXPECT_EQ(error.code(), ErrorCode::refused_input);
@@ -119,4 +122,4 @@ TEST(ExportPly, ATreeThatIsNotSoundIsRefusedByChunk) {
 }
 
 }  // namespace
-}  // namespace voyager::export_ply_test
+}  // namespace voyager::export_flat_test

@@ -1,0 +1,122 @@
+#include "runtime/scene/export/flat_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runtime/base/error.h"
+#include "runtime/base/output_path.h"
+#include "runtime/scene/append.h"
+
+namespace voyager {
+namespace {
+
+struct Ending {
+  const char* text;
+  FlatFormat format;
+};
+// The first that fits counts.
+constexpr Ending kEndings[] = {
+    {".compressed.ply", FlatFormat::compressed_ply},
+    {".ply", FlatFormat::ply},
+    {".spz", FlatFormat::spz},
+    {".splat", FlatFormat::splat},
+    {".glb", FlatFormat::glb},
+};
+
+FlatFormat required_format(const std::string& path) {
+  if (const auto format = flat_format_of(path)) return *format;
+  std::string known;
+  for (const Ending& ending : kEndings)
+    known += std::string(known.empty() ? "" : " or ") + ending.text;
+  throw Error(ErrorCode::invalid_argument,
+              "output: found " + path + ", expected a name that ends in " + known);
+}
+
+uint64_t least_bytes(FlatFormat format, const FlatContents& contents) {
+  switch (format) {
+    case FlatFormat::ply:
+      return ply_bytes(contents.count, contents.sh_degree, contents.is_moved());
+    case FlatFormat::compressed_ply:
+      return compressed_ply_bytes(contents.count, contents.sh_degree);
+    case FlatFormat::splat:
+      return contents.count * kSplatBytes;
+    case FlatFormat::glb:
+      return glb_bytes(contents.count, contents.sh_degree);
+    case FlatFormat::spz:
+      break;
+  }
+  return 0;
+}
+
+std::unique_ptr<GaussianWriter> write_flat(PlacedSink& sink, FlatFormat format,
+                                           const FlatOptions& options,
+                                           const FlatContents& contents) {
+  const uint64_t count = contents.count;
+  const int degree = contents.sh_degree;
+  switch (format) {
+    case FlatFormat::ply:
+      return write_ply(sink, count, degree, contents.is_moved(), contents.native);
+    case FlatFormat::compressed_ply:
+      return write_compressed_ply(sink, count, degree, contents.native);
+    case FlatFormat::splat:
+      return write_splat(sink, count, degree);
+    case FlatFormat::glb:
+      return write_glb(sink, count, degree);
+    case FlatFormat::spz:
+      break;
+  }
+  return write_spz(sink, count, degree, contents.reach(), options.spz_version);
+}
+
+}  // namespace
+
+std::optional<FlatFormat> flat_format_of(const std::string& path) {
+  for (const Ending& ending : kEndings)
+    if (path.ends_with(ending.text)) return ending.format;
+  return std::nullopt;
+}
+
+std::vector<std::string> flat_format_endings() {
+  std::vector<std::string> endings;
+  for (const Ending& ending : kEndings) endings.push_back(ending.text);
+  return endings;
+}
+
+void FlatContents::add(const GaussianCloud& batch) {
+  voyager::add(report, batch.report);
+  if (count == 0) origin = batch.origin;
+  count += batch.size();
+  for (size_t i = 0; i < batch.position.size(); ++i)
+    largest_coordinate =
+        std::max(largest_coordinate,
+                 std::fabs(batch.origin[i % 3] + static_cast<double>(batch.position[i])));
+}
+
+float FlatContents::reach() const {
+  const auto nearest = static_cast<float>(largest_coordinate);
+  return static_cast<double>(nearest) < largest_coordinate
+             ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+             : nearest;
+}
+
+void require_flat_file(const std::string& path, const FlatContents& contents) {
+  const FlatFormat format = required_format(path);
+  const AtomicFile nothing(path);
+  require_room(path, least_bytes(format, contents));
+}
+
+void write_flat_file(const std::string& path, const FlatOptions& options,
+                     const FlatContents& contents,
+                     const std::function<void(GaussianWriter&)>& fill) {
+  const FlatFormat format = required_format(path);
+  AtomicFile file(path);
+  require_room(path, least_bytes(format, contents));
+  const std::unique_ptr<PlacedSink> sink = sink_to(file);
+  const std::unique_ptr<GaussianWriter> writer = write_flat(*sink, format, options, contents);
+  fill(*writer);
+  writer->finish();
+  file.commit();
+}
+
+}  // namespace voyager

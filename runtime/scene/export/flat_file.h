@@ -1,0 +1,54 @@
+#pragma once
+// A flat scene as a file, in the format that the file's name asks for.
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/scene/export/writer.h"
+
+namespace voyager {
+
+enum class FlatFormat { ply, compressed_ply, spz, splat, glb };
+
+struct FlatOptions {
+  int spz_version = 4;  // 3 or 4, of a .spz
+};
+
+// By the end of the name; none for a name that is no format's.
+std::optional<FlatFormat> flat_format_of(const std::string& path);
+// The ends of names, each with its dot.
+std::vector<std::string> flat_format_endings();
+
+// What a writer has to know before the first Gaussian.
+struct FlatContents {
+  uint64_t count = 0;
+  int sh_degree = 0;
+  NativeScale native;
+  std::array<double, 3> origin{0, 0, 0};  // that all batches have
+  double largest_coordinate = 0;          // metres, of the world, on any axis
+  ImportReport report;
+
+  void add(const GaussianCloud& batch);
+  bool is_moved() const { return origin != std::array<double, 3>{0, 0, 0}; }
+  // largest_coordinate in binary32, rounded up.
+  float reach() const;
+};
+
+// What the format has no place for, a sentence each.
+std::vector<std::string> losses(FlatFormat format, const FlatContents& contents);
+
+// Before the work: throws Error(invalid_argument) for a path that is no format's, Error(io) where
+// the file could not be written, or where there is no room for what it takes at least.
+void require_flat_file(const std::string& path, const FlatContents& contents);
+
+// `fill` appends batches, contents.count Gaussians in all. Nothing is at `path` before all of them
+// are written. Throws as require_flat_file() and the format's writer do.
+void write_flat_file(const std::string& path, const FlatOptions& options,
+                     const FlatContents& contents,
+                     const std::function<void(GaussianWriter&)>& fill);
+
+}  // namespace voyager

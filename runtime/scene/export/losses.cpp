@@ -1,0 +1,59 @@
+// What formats have no place for, in words.
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "runtime/scene/export/flat_file.h"
+
+namespace voyager {
+namespace {
+
+std::string metres(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g m", value);
+  return text;
+}
+
+// Of a coordinate in binary32.
+double step_at(float at) {
+  return double{std::nextafter(at, std::numeric_limits<float>::infinity())} - double{at};
+}
+
+// Positions of the world, where the scene is far from the world's origin.
+std::string coarse_positions(FlatFormat format, const FlatContents& contents) {
+  const double coordinate = contents.largest_coordinate;
+  const bool in_binary32 = format == FlatFormat::splat || format == FlatFormat::compressed_ply;
+  if (in_binary32 && contents.is_moved())
+    return "positions are in steps of " + metres(step_at(contents.reach())) + ": they are " +
+           metres(coordinate) + " from the world's origin";
+  const int bits = spz_fractional_bits(contents.reach());
+  if (format == FlatFormat::spz && bits < spz_fractional_bits(0))
+    return "positions are in steps of " + metres(std::ldexp(1.0, -bits)) + ": one is " +
+           metres(coordinate) + " from the world's origin";
+  return "";
+}
+
+std::string lost_filter(FlatFormat format, const NativeScale& native) {
+  if (!native.antialiased()) return "";
+  if (format == FlatFormat::splat || format == FlatFormat::glb)
+    return "the format cannot say that the scene was trained with a compensated (antialiasing) "
+           "filter: left out";
+  if (format == FlatFormat::spz && native.low_pass == kMipSplattingLowPass)
+    return "the format cannot say that the filter of the training is Mip-Splatting's: it is read "
+           "as 3DGS's";
+  return "";
+}
+
+}  // namespace
+
+std::vector<std::string> losses(FlatFormat format, const FlatContents& contents) {
+  std::vector<std::string> lost;
+  if (format == FlatFormat::splat && contents.sh_degree > 0)
+    lost.push_back("the format has no spherical harmonics of degree 1 and more: left out");
+  for (const std::string& text :
+       {lost_filter(format, contents.native), coarse_positions(format, contents)})
+    if (!text.empty()) lost.push_back(text);
+  return lost;
+}
+
+}  // namespace voyager

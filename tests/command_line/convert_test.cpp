@@ -1,0 +1,109 @@
+// From one format to another, and a share of a tree as a flat file.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/command_line/program.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::convert_command_test {
+namespace {
+
+using namespace voyager::test;
+namespace fs = std::filesystem;
+
+class ConvertCommand : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    failure_ = failure_of({"voyager synth city --gaussians 10000 --sh-degree 1 -o " + file("c.ply"),
+                           "voyager bake " + file("c.ply") + " -o " + file("c.voy")});
+    fs::create_symlink("/dev/full", file("full.glb"));
+  }
+  static void TearDownTestSuite() { delete folder_; }
+  void SetUp() override { ASSERT_EQ(failure_, ""); }
+  static std::string file(const std::string& name) { return folder_->file(name); }
+
+  static inline TempFolder* folder_ = nullptr;
+  static inline std::string failure_;
+};
+
+const std::string kEndings[] = {".compressed.ply", ".ply", ".spz", ".splat", ".glb"};
+
+TEST_F(ConvertCommand, WritesEveryFormatFromFlatAndBakedScenes) {
+  for (const std::string& ending : kEndings)
+    for (const std::string& command :
+         {"convert " + file("c.ply"), "convert " + file("c.voy"), "export " + file("c.voy")}) {
+      const std::string out = file("out" + ending);
+      fs::remove(out);
+      const Outcome done = run("voyager " + command + " -o " + out);
+      EXPECT_EQ(done.exit_code, 0) << done.output;
+      EXPECT_NE(done.output.find(out + ": 10000 Gaussians of SH degree "), std::string::npos)
+          << done.output;
+      EXPECT_TRUE(fs::exists(out));
+      EXPECT_EQ(done.output.find("spherical harmonics") != std::string::npos, ending == ".splat")
+          << done.output;
+    }
+}
+
+TEST_F(ConvertCommand, APlyComesBackToTheBit) {
+  ASSERT_EQ(run("voyager convert " + file("c.ply") + " -o " + file("same.ply")).exit_code, 0);
+  EXPECT_EQ(file_bytes(file("same.ply")), file_bytes(file("c.ply")));
+}
+
+TEST_F(ConvertCommand, AnSpzHasTheVersionThatIsAskedFor) {
+  const std::string convert = "voyager convert " + file("c.ply") + " -o " + file("v.spz");
+  ASSERT_EQ(run(convert + " --spz-version 3").exit_code, 0);
+  EXPECT_EQ(file_bytes(file("v.spz")).substr(0, 2), "\x1f\x8b");
+  ASSERT_EQ(run(convert).exit_code, 0);
+  EXPECT_EQ(file_bytes(file("v.spz")).substr(0, 4), "NGSP");
+}
+
+TEST_F(ConvertCommand, KeepTakesAShareOrACount) {
+  for (const std::string& keep : {std::string("25%"), std::string("2500")})
+    for (const char* command : {"convert", "export"}) {
+      const Outcome done = run(std::string("voyager ") + command + " " + file("c.voy") + " -o " +
+                               file("kept.spz") + " --keep " + keep);
+      ASSERT_EQ(done.exit_code, 0) << done.output;
+      const size_t at = done.output.find("kept.spz: ") + 10;
+      const int kept = std::stoi(done.output.substr(at));
+      EXPECT_LE(kept, 2500);
+      EXPECT_GT(kept, 2400) << done.output;
+    }
+}
+
+TEST_F(ConvertCommand, RefusesWhatItCannotDoAndSaysWhatItExpects) {
+  const std::string flat = "convert " + file("c.ply"), baked = "export " + file("c.voy");
+  const struct {
+    std::string command;
+    int code;
+    std::string says;
+  } table[] = {
+      {flat + " -o " + file("c.foo"), 1, "-o: found " + file("c.foo") + ", expected a name that"},
+      {flat + " -o " + file("c.ply"), 1, "as an output and as an input"},
+      {flat + " -o " + file("c.hier"), 1, "expected a name that ends in .compressed.ply or .ply"},
+      {flat + " -o " + file("full.glb"), 4, "found a terminal"},
+      {flat + " -o " + file("no/such.spz"), 4, file("no/such.spz")},
+      {flat + " -o " + file("k.ply") + " --keep 25%", 1, "--keep: found " + file("c.ply")},
+      {flat + " -o " + file("k.ply") + " --spz-version 3", 1, "--spz-version: found -o "},
+      {flat + " -o " + file("k.spz") + " --spz-version 5", 1, "--spz-version: found 5"},
+      {"convert " + file("absent.ply") + " -o " + file("k.ply"), 2, "absent.ply"},
+      {"convert " + file("c.cameras.json") + " -o " + file("k.ply"), 2, "expected a .voy, .ply"},
+      {"convert - -o " + file("k.ply"), 1, "found standard input"},
+      {baked + " -o " + file("k.hier") + " --keep 25%", 1, "--keep: found -o "},
+      {baked + " -o " + file("k.ply") + " --keep 0%", 1, "--keep: found 0%, expected a share"},
+      {baked + " -o " + file("k.ply") + " --keep 101%", 1, "--keep: found 101%"},
+      {baked + " -o " + file("k.ply") + " --keep 2.5", 1, "--keep: found 2.5"},
+  };
+  for (const auto& [command, code, says] : table) {
+    const Outcome refused = run("voyager " + command);
+    EXPECT_EQ(refused.exit_code, code) << command << "\n" << refused.output;
+    EXPECT_NE(refused.output.find(says), std::string::npos) << says << "\n" << refused.output;
+    EXPECT_EQ(std::count(refused.output.begin(), refused.output.end(), '\n'), 1) << refused.output;
+  }
+  EXPECT_FALSE(fs::exists(file("k.ply")));
+}
+
+}  // namespace
+}  // namespace voyager::convert_command_test

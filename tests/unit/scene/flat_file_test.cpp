@@ -1,0 +1,62 @@
+#include "runtime/scene/export/flat_file.h"
+
+#include "tests/support/sample_files.h"
+#include "tests/support/test_support.h"
+
+namespace voyager::flat_file_test {
+namespace {
+
+TEST(FlatFile, TheEndOfTheNameSaysTheFormat) {
+  EXPECT_EQ(flat_format_of("a/b.ply"), FlatFormat::ply);
+  EXPECT_EQ(flat_format_of("a/b.compressed.ply"), FlatFormat::compressed_ply);
+  EXPECT_EQ(flat_format_of("b.spz"), FlatFormat::spz);
+  EXPECT_EQ(flat_format_of("b.splat"), FlatFormat::splat);
+  EXPECT_EQ(flat_format_of("b.glb"), FlatFormat::glb);
+  for (const char* name : {"", "ply", "b.voy", "b.ply.png", "b.PLY"})
+    EXPECT_EQ(flat_format_of(name), std::nullopt) << name;
+}
+
+TEST(FlatFile, SaysWhatTheFormatHasNoPlaceFor) {
+  FlatContents contents;
+  contents.sh_degree = 1;
+  contents.native = compensated_scale(kMipSplattingLowPass);
+  contents.origin = {4404.0 * 1024, 0, 0};
+  contents.largest_coordinate = 4.5e6;
+  const auto lost = [&](FlatFormat format) { return losses(format, contents).size(); };
+  EXPECT_EQ(lost(FlatFormat::ply), 0u);
+  EXPECT_EQ(lost(FlatFormat::compressed_ply), 1u) << "positions";
+  EXPECT_EQ(lost(FlatFormat::spz), 2u) << "positions, the filter";
+  EXPECT_EQ(lost(FlatFormat::splat), 3u) << "positions, the filter, SH";
+  EXPECT_EQ(lost(FlatFormat::glb), 1u) << "the filter";
+  contents = {};
+  for (const FlatFormat format : {FlatFormat::ply, FlatFormat::compressed_ply, FlatFormat::spz,
+                                  FlatFormat::splat, FlatFormat::glb})
+    EXPECT_EQ(lost(format), 0u);
+}
+
+TEST(FlatFile, EveryFormatIsWrittenUnderItsName) {
+  const test::TempFolder folder;
+  const GaussianCloud cloud = test::random_cloud(300, 4, 1);
+  FlatContents contents;
+  contents.sh_degree = 1;
+  contents.add(cloud);
+  for (const std::string& ending : flat_format_endings()) {
+    write_flat_file(folder.file("out" + ending), {}, contents,
+                    [&](GaussianWriter& writer) { writer.append(cloud); });
+    EXPECT_GE(std::filesystem::file_size(folder.file("out" + ending)), 300 * 22u) << ending;
+  }
+}
+
+TEST(FlatFile, AnUnfinishedFileIsNotThere) {
+  const test::TempFolder folder;
+  FlatContents contents;
+  contents.count = 3;
+  for (const std::string& ending : flat_format_endings()) {
+    EXPECT_THROW(write_flat_file(folder.file("out" + ending), {}, contents, [](GaussianWriter&) {}),
+                 Error);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("out" + ending))) << ending;
+  }
+}
+
+}  // namespace
+}  // namespace voyager::flat_file_test

@@ -1,0 +1,90 @@
+#include "tools/flat_output.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "runtime/base/error.h"
+#include "runtime/format/export_flat.h"
+#include "tools/byte_size.h"
+#include "tools/console.h"
+#include "tools/options.h"
+#include "tools/progress_bar.h"
+
+namespace voyager::tools {
+namespace {
+
+std::optional<Keep> parse_keep(const std::string& text) {
+  if (!text.ends_with('%')) {
+    const std::optional<uint64_t> count = parse_whole(text);
+    return count && *count > 0 ? std::optional(Keep{0, *count}) : std::nullopt;
+  }
+  const std::optional<double> percent = parse_number(text.substr(0, text.size() - 1));
+  return percent && *percent > 0 && *percent <= 100 ? std::optional(Keep{*percent / 100, 0})
+                                                    : std::nullopt;
+}
+
+uint64_t most_kept(const Keep& keep, uint64_t leaves) {
+  if (keep.count > 0) return keep.count;
+  return std::max<uint64_t>(1, static_cast<uint64_t>(static_cast<double>(leaves) * keep.share));
+}
+
+}  // namespace
+
+void add_flat_options(CLI::App& command, FlatArguments& arguments) {
+  command
+      .add_option_function<std::string>(
+          "--keep",
+          [&arguments](const std::string& found) {
+            arguments.keep = parse_keep(found);
+            if (!arguments.keep)
+              throw CLI::ValidationError("--keep", "found " + found +
+                                                       ", expected a share of up to 100% "
+                                                       "or a number of Gaussians, 1 or more");
+          },
+          "Of a .voy, fewer Gaussians: a share of the leaves (25%) or how many. The tree's merged "
+          "Gaussians take the place of what is left out where that is seen least")
+      ->type_name("P%|N");
+  add_whole_option(command, "--spz-version", {3, 4}, arguments.spz_version,
+                   "Version of a .spz: 4, or 3, which more programs read (default: 4)");
+}
+
+FlatOptions flat_options(const FlatArguments& arguments, const std::string& output) {
+  if (arguments.spz_version && flat_format_of(output) != FlatFormat::spz)
+    throw Error(ErrorCode::invalid_argument,
+                "--spz-version: found -o " + output + ", expected a name that ends in .spz");
+  FlatOptions options;
+  options.spz_version = arguments.spz_version.value_or(options.spz_version);
+  return options;
+}
+
+void export_flat(const SceneFile& scene, const FlatArguments& arguments,
+                 const std::string& output) {
+  const FlatOptions options = flat_options(arguments, output);
+  const uint64_t leaves = scene.info().leaf_count;
+  if (!arguments.keep) {
+    describe_flat_file(output, export_leaves(scene, output, options, progress_bar()));
+    return;
+  }
+  const FlatContents contents =
+      export_extent_cut(scene, most_kept(*arguments.keep, leaves), output, options, progress_bar());
+  describe_flat_file(output, contents);
+  if (leaves > 0)
+    say(fmt::format("{:.2f} % of {} leaves\n",
+                    100 * static_cast<double>(contents.count) / static_cast<double>(leaves),
+                    leaves));
+}
+
+void describe_flat_file(const std::string& path, const FlatContents& contents) {
+  const FlatFormat format = flat_format_of(path).value();
+  for (const std::string& lost : losses(format, contents)) note(fmt::format("{}: {}", path, lost));
+  say(fmt::format("{}: {} Gaussians of SH degree {}, {}\n", path, contents.count,
+                  format == FlatFormat::splat ? 0 : contents.sh_degree,
+                  size_text(std::filesystem::file_size(path))));
+  const ImportReport& report = contents.report;
+  if (report.dropped() + report.repaired() > 0)
+    say(fmt::format("{} Gaussians dropped, {} repaired\n", report.dropped(), report.repaired()));
+}
+
+}  // namespace voyager::tools
