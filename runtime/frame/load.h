@@ -14,7 +14,7 @@ void load_baked(const SceneFile& file, Workers& workers, Scene& scene);
 void set_info(const SceneFileInfo& info, Scene& scene);
 
 // Fills a Scene from a flat file that import_gaussians() reads.
-void load_flat(std::shared_ptr<const ByteSource> source, Workers& workers, Scene& scene);
+void load_flat(const std::shared_ptr<const ByteSource>& source, Workers& workers, Scene& scene);
 
 // Notes for every counter of scene.import that is not zero, and for the SH
 // bands that the input lacks.

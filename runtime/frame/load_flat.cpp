@@ -23,7 +23,7 @@ void set_bounds(Scene& scene) {
 
 }  // namespace
 
-void load_flat(std::shared_ptr<const ByteSource> source, Workers& workers, Scene& scene) {
+void load_flat(const std::shared_ptr<const ByteSource>& source, Workers& workers, Scene& scene) {
   ImportOptions options;
   options.memory = scene.gaussians.get_allocator().resource();
   GaussianCloud cloud = import_gaussians(source, options);

@@ -179,7 +179,7 @@ class Reader final : public BlockReader {
     float* sh = &cloud.sh[i * sh_width()];
     for (size_t k = 0; k < 3; ++k) sh[k] = sh_of_colour(byte(colour + k) / 255.0);
     cloud.opacity[i] = logit_of_byte(byte(colour + 3));
-    const auto rest = static_cast<size_t>(3 * (sh_coefficients(section.sh_degree) - 1));
+    const size_t rest = 3 * (static_cast<size_t>(sh_coefficients(section.sh_degree)) - 1);
     for (size_t k = 0; k < rest; ++k) sh[3 + place_of(k)] = coefficient(colour + 4, k);
   }
 

@@ -98,7 +98,7 @@ void check_length(const ByteReader& input, const Header& header) {
 }  // namespace
 
 size_t Header::row_bytes(const Section& section) const {
-  const auto rest = static_cast<size_t>(3 * (sh_coefficients(section.sh_degree) - 1));
+  const size_t rest = 3 * (static_cast<size_t>(sh_coefficients(section.sh_degree)) - 1);
   if (level == Level::floats) return 44 + 4 * rest;
   return 24 + (level == Level::halves ? 2 : 1) * rest;
 }

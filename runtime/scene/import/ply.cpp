@@ -243,7 +243,8 @@ std::unique_ptr<BlockReader> open_ply_blocks(std::unique_ptr<ByteReader> reader)
 std::unique_ptr<BlockReader> open_ply_blocks(std::shared_ptr<const ByteSource> source) {
   auto input = std::make_unique<ply::Input>(std::make_unique<SharedReader>(source));
   if (ply::is_compressed(input->header))
-    return ply::open_compressed(std::move(input), std::make_unique<SharedReader>(source));
+    return ply::open_compressed(std::move(input),
+                                std::make_unique<SharedReader>(std::move(source)));
   return std::make_unique<PlyReader>(std::move(input));
 }
 

@@ -144,7 +144,7 @@ class Scene final : public BlockReader {
 
   uint64_t label_of(const std::byte* row) const {
     const std::byte* code = row + kPlaces[kLabels].at;
-    return static_cast<uint64_t>(integer(code) + 256 * integer(code + 1));
+    return static_cast<uint64_t>(integer(code)) + 256 * static_cast<uint64_t>(integer(code + 1));
   }
 
   void check_labels() const {
