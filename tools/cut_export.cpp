@@ -1,12 +1,9 @@
 #include "tools/cut_export.h"
 
-
-#include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
 #include "runtime/frame/draw_list.h"
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/scene_gaussians.h"
-#include "runtime/scene/export/writer.h"
 
 namespace voyager::tools {
 namespace {
@@ -30,9 +27,9 @@ void append(GaussianCloud& cloud, const GaussianArrays& arrays, const DrawItem& 
 
 }  // namespace
 
-void export_cut(const std::string& scene_path, const Camera& camera, double tau,
-                const std::string& ply_path) {
-  AtomicFile file(ply_path);
+FlatContents export_cut(const std::string& scene_path, const Camera& camera, double tau,
+                        const std::string& path, const FlatOptions& options) {
+  require_flat_file(path, {});
   Workers workers;
   const auto scene = load_scene(open_source(scene_path), std::pmr::get_default_resource(), workers);
   voyager::Camera seen;
@@ -48,12 +45,14 @@ void export_cut(const std::string& scene_path, const Camera& camera, double tau,
   const GaussianArrays arrays = gaussian_arrays(*scene);
   for (const DrawItem& item : draws.items()) append(cloud, arrays, item);
 
-  const auto sink = sink_to(file);
-  const bool far = scene->origin.x != 0 || scene->origin.y != 0 || scene->origin.z != 0;
-  const auto writer = write_ply(*sink, cloud.size(), cloud.sh_degree, far, scene->native);
-  writer->append(cloud);
-  writer->finish();
-  file.commit();
+  cloud.native = scene->native;
+
+  FlatContents contents;
+  contents.sh_degree = cloud.sh_degree;
+  contents.native = cloud.native;
+  contents.add(cloud);
+  write_flat_file(path, options, contents, [&](GaussianWriter& writer) { writer.append(cloud); });
+  return contents;
 }
 
 }  // namespace voyager::tools

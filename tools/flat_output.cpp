@@ -48,6 +48,7 @@ void add_flat_options(CLI::App& command, FlatArguments& arguments) {
       ->type_name("P%|N");
   add_whole_option(command, "--spz-version", {3, 4}, arguments.spz_version,
                    "Version of a .spz: 4, or 3, which more programs read (default: 4)");
+  name_group(command, "Flat files");
 }
 
 FlatOptions flat_options(const FlatArguments& arguments, const std::string& output) {

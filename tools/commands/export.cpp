@@ -34,7 +34,7 @@ Camera choose_camera(const ExportArguments& arguments) {
                                    : camera.resized(arguments.size.width, arguments.size.height);
 }
 
-void require_flat(const FlatArguments& flat, const std::string& output) {
+void refuse_keep(const FlatArguments& flat, const std::string& output) {
   if (flat.keep)
     throw Error(ErrorCode::invalid_argument,
                 "--keep: found -o " + output + ", expected a flat file without --cut-camera");
@@ -43,23 +43,23 @@ void require_flat(const FlatArguments& flat, const std::string& output) {
 void export_scene(const ExportArguments& arguments) {
   const std::string& output = arguments.output;
   require_distinct({output}, {arguments.scene, arguments.cameras});
-  flat_options(arguments.flat, output);
+  const FlatOptions options = flat_options(arguments.flat, output);
   if (!arguments.cameras.empty()) {
-    require_extension("-o with --cut-camera", output, {".ply"});
-    require_flat(arguments.flat, output);
+    require_extension("-o with --cut-camera", output, flat_format_endings());
+    refuse_keep(arguments.flat, output);
     const Camera camera = choose_camera(arguments);
     const Progress progress = progress_bar();
     progress("exporting", 0, 0);
-    export_cut(arguments.scene, camera, arguments.tau, output);
-  } else {
-    std::vector<std::string> endings = flat_format_endings();
-    endings.insert(endings.begin(), ".hier");
-    require_extension("-o", output, endings);
-    const SceneFile scene(open_source(arguments.scene));
-    if (flat_format_of(output)) return export_flat(scene, arguments.flat, output);
-    require_flat(arguments.flat, output);
-    export_hier(scene, output, progress_bar());
+    describe_flat_file(output, export_cut(arguments.scene, camera, arguments.tau, output, options));
+    return;
   }
+  std::vector<std::string> endings = flat_format_endings();
+  endings.insert(endings.begin(), ".hier");
+  require_extension("-o", output, endings);
+  const SceneFile scene(open_source(arguments.scene));
+  if (flat_format_of(output)) return export_flat(scene, arguments.flat, output);
+  refuse_keep(arguments.flat, output);
+  export_hier(scene, output, progress_bar());
   say(fmt::format("{}: {}\n", output, size_text(std::filesystem::file_size(output))));
 }
 
@@ -82,8 +82,7 @@ void add_export(CLI::App& app) {
   CLI::Option* cameras =
       command
           ->add_option("--cut-camera", arguments->cameras,
-                       "A cameras.json: write what one of its cameras draws, interpolated, to the "
-                       ".ply instead")
+                       "A cameras.json: write what one of its cameras draws, interpolated, instead")
           ->type_name("FILE");
   add_camera_option(*command, arguments->camera)->needs(cameras);
   add_size_option(*command, arguments->size)->needs(cameras);
