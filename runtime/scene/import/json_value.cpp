@@ -20,10 +20,10 @@ std::string found_text(const Json& json) {
 
 }  // namespace
 
-Json parse_json(const std::string& file, uint64_t offset, std::string_view text) {
+Json parse_json(const std::string& file, uint64_t offset, std::string_view text, int levels) {
   const auto limit_levels = [&](int level, Json::parse_event_t, const Json&) {
-    if (level > kMostJsonLevels)
-      refuse(file, offset, "JSON", "more than " + std::to_string(kMostJsonLevels) + " levels",
+    if (level > levels)
+      refuse(file, offset, "JSON", "more than " + std::to_string(levels) + " levels",
              "fewer in one another");
     return true;
   };
@@ -77,14 +77,16 @@ double JsonValue::number() const {
   return value;
 }
 
-uint64_t JsonValue::whole(uint64_t most) const {
-  const std::string expected = "a whole number from 0 to " + std::to_string(most);
-  if (json_->is_number_unsigned() && json_->get<uint64_t>() <= most) return json_->get<uint64_t>();
+uint64_t JsonValue::whole(uint64_t most, uint64_t least) const {
+  const std::string expected =
+      "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+  const auto inside = [&](uint64_t value) { return value >= least && value <= most; };
+  if (json_->is_number_unsigned() && inside(json_->get<uint64_t>())) return json_->get<uint64_t>();
   // Writers of numbers with one kind only write 3.0.
   constexpr double kExact = 9007199254740992;  // 2^53
   const double value = json_->is_number_float() ? json_->get<double>() : -1;
   if (!(value >= 0 && value <= kExact && value == std::floor(value)) ||
-      static_cast<uint64_t>(value) > most)
+      !inside(static_cast<uint64_t>(value)))
     refuse(expected);
   return static_cast<uint64_t>(value);
 }

@@ -13,7 +13,8 @@ namespace voyager {
 inline constexpr int kMostJsonLevels = 256;
 
 // Throws Error(refused_input) naming `file` and the byte, which counts from `offset`.
-nlohmann::json parse_json(const std::string& file, uint64_t offset, std::string_view text);
+nlohmann::json parse_json(const std::string& file, uint64_t offset, std::string_view text,
+                          int levels = kMostJsonLevels);
 
 class JsonValue {
  public:
@@ -29,8 +30,8 @@ class JsonValue {
   size_t size() const;
   JsonValue operator[](size_t index) const;
 
-  double number() const;                // finite
-  uint64_t whole(uint64_t most) const;  // from 0
+  double number() const;  // finite
+  uint64_t whole(uint64_t most, uint64_t least = 0) const;
   const std::string& text() const;
   bool flag() const;
   void numbers(std::span<double> into) const;  // an array of as many
@@ -39,6 +40,7 @@ class JsonValue {
   uint64_t whole_or(const std::string& name, uint64_t missing, uint64_t most) const;
 
   const std::string& place() const { return place_; }
+  const nlohmann::json& json() const { return *json_; }
   [[noreturn]] void refuse(const std::string& expected) const;
   // What was found instead of a field, or beside the right ones.
   [[noreturn]] void refuse(const std::string& found, const std::string& expected) const;

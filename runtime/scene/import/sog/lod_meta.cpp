@@ -6,7 +6,7 @@
 #include <unordered_set>
 
 #include "runtime/scene/import/growth.h"
-#include "runtime/scene/import/json_fields.h"
+#include "runtime/scene/import/json_value.h"
 #include "runtime/scene/import/refuse.h"
 
 namespace voyager::sog {
@@ -22,34 +22,35 @@ struct Range {
 
 class Tree {
  public:
-  Tree(const JsonField& root, uint64_t files) : files_(files) { visit(root); }
+  Tree(const JsonValue& root, uint64_t files) : files_(files) { visit(root); }
   const std::vector<Range>& ranges() const { return ranges_; }
 
  private:
-  void visit(const JsonField& node) {
-    if (node.has("children"))
-      for (const JsonField& child : node.at("children").items()) visit(child);
-    if (node.has("lods")) take_finest(node.at("lods"));
+  void visit(const JsonValue& node) {
+    if (node.has("children")) {
+      const JsonValue children = node["children"];
+      for (size_t i = 0; i < children.size(); ++i) visit(children[i]);
+    }
+    if (node.has("lods")) take_finest(node["lods"]);
   }
 
   // Level 0 is the finest. A leaf may lack it.
-  void take_finest(const JsonField& levels) {
-    if (!levels.value().is_object()) levels.refuse_value("an object of levels");
+  void take_finest(const JsonValue& levels) {
+    if (!levels.json().is_object()) levels.refuse("an object of levels");
     const std::string* finest = nullptr;
     uint64_t least = UINT64_MAX;
-    for (const auto& entry : levels.value().items()) {
+    for (const auto& entry : levels.json().items()) {
       uint64_t level = 0;
       const std::string& key = entry.key();
       const auto [end, problem] = std::from_chars(key.data(), key.data() + key.size(), level);
       if (problem != std::errc() || end != key.data() + key.size())
-        levels.refuse_value("levels whose names are numbers");
+        levels.refuse("levels whose names are numbers");
       if (level < least) finest = &entry.key(), least = level;
     }
     if (!finest) return;
-    const JsonField level = levels.at(finest->c_str());
-    ranges_.push_back({level.at("file").whole(0, files_ - 1),
-                       level.at("offset").whole(0, kMostGaussians),
-                       level.at("count").whole(0, kMostGaussians)});
+    const JsonValue level = levels[*finest];
+    ranges_.push_back({level["file"].whole(files_ - 1), level["offset"].whole(kMostGaussians),
+                       level["count"].whole(kMostGaussians)});
   }
 
   uint64_t files_;
@@ -60,18 +61,21 @@ nlohmann::json read(const ByteSource& source) {
   if (source.size() > kMostLodBytes)
     refuse(source.name(), 0, "lod-meta.json", std::to_string(source.size()) + " bytes",
            "at most " + std::to_string(kMostLodBytes) + " bytes");
-  return parse_json(source.name(), read_all(source), kLodLevels);
+  const std::vector<std::byte> bytes = read_all(source);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return parse_json(source.name(), 0, text, kLodLevels);
 }
 
-std::vector<std::string> file_names(const JsonField& names) {
+std::vector<std::string> file_names(const JsonValue& names) {
   std::vector<std::string> files;
   std::unordered_set<std::string> seen;
-  for (const JsonField& name : names.items()) {
+  for (size_t i = 0; i < names.size(); ++i) {
+    const JsonValue name = names[i];
     files.push_back(name.text());
     if (!seen.insert(std::filesystem::path(files.back()).lexically_normal().string()).second)
-      name.refuse_value("each file once");
+      name.refuse("each file once");
   }
-  if (files.empty()) names.refuse_value("at least one file");
+  if (files.empty()) names.refuse("at least one file");
   return files;
 }
 
@@ -104,11 +108,11 @@ std::vector<Part> joined(const std::string& name, std::vector<Range> ranges,
 
 std::vector<Part> finest_level(const ByteSource& lod_meta) {
   const nlohmann::json parsed = read(lod_meta);
-  const JsonField json(lod_meta.name(), parsed);
-  const std::vector<std::string> files = file_names(json.at("filenames"));
+  const JsonValue json(lod_meta.name(), 0, parsed);
+  const std::vector<std::string> files = file_names(json["filenames"]);
   std::vector<Part> parts =
-      joined(lod_meta.name(), Tree(json.at("tree"), files.size()).ranges(), files);
-  if (json.has("environment")) parts.push_back({json.at("environment").text(), 0, UINT64_MAX});
+      joined(lod_meta.name(), Tree(json["tree"], files.size()).ranges(), files);
+  if (json.has("environment")) parts.push_back({json["environment"].text(), 0, UINT64_MAX});
   return parts;
 }
 

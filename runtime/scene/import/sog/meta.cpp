@@ -4,7 +4,7 @@
 
 #include "runtime/base/path_beside.h"
 #include "runtime/math/byte_code.h"
-#include "runtime/scene/import/json_fields.h"
+#include "runtime/scene/import/json_value.h"
 
 namespace voyager::sog {
 namespace {
@@ -20,27 +20,34 @@ Table steps(double least, double most) {
   return table;
 }
 
-Table codebook(const JsonField& field) {
-  const std::vector<double> values = field.at("codebook").numbers(256);
+std::vector<double> numbers(const JsonValue& field, size_t count) {
+  std::vector<double> values(count);
+  field.numbers(values);
+  return values;
+}
+
+Table codebook(const JsonValue& field) {
+  const std::vector<double> values = numbers(field["codebook"], 256);
   Table table{};
   std::transform(values.begin(), values.end(), table.begin(),
                  [](double value) { return static_cast<float>(value); });
   return table;
 }
 
-std::array<double, 3> three(const JsonField& field) {
-  const std::vector<double> values = field.numbers(3);
+std::array<double, 3> three(const JsonValue& field) {
+  const std::vector<double> values = numbers(field, 3);
   return {values[0], values[1], values[2]};
 }
 
-void read_files(const JsonField& json, Meta& meta) {
+void read_files(const JsonValue& json, Meta& meta) {
   const auto take = [&](const char* key, std::initializer_list<File> into) {
-    const std::vector<std::string> names = json.at(key).at("files").texts(into.size());
+    const JsonValue names = json[key]["files"];
+    if (names.size() != into.size()) names.refuse("the names of " + std::to_string(into.size()));
     size_t i = 0;
     for (const File file : into) {
-      if (!stays_in_folder(names[i]))
-        json.at(key).at("files").items()[i].refuse_value("the name of a file in the same folder");
-      meta.files[file] = names[i++];
+      const JsonValue name = names[i++];
+      if (!stays_in_folder(name.text())) name.refuse("the name of a file in the same folder");
+      meta.files[file] = name.text();
     }
   };
   take("means", {kMeansLow, kMeansHigh});
@@ -51,28 +58,25 @@ void read_files(const JsonField& json, Meta& meta) {
   if (meta.has_sh) take("shN", {kCentroids, kLabels});
 }
 
-void read_version_2(const JsonField& json, Meta& meta) {
-  meta.count = json.at("count").whole(0, kMostCount);
-  meta.antialiased = json.has("antialias") && json.at("antialias").boolean();
-  meta.scales.fill(codebook(json.at("scales")));
-  meta.colours.fill(codebook(json.at("sh0")));
+void read_version_2(const JsonValue& json, Meta& meta) {
+  meta.count = json["count"].whole(kMostCount);
+  meta.antialiased = json.has("antialias") && json["antialias"].flag();
+  meta.scales.fill(codebook(json["scales"]));
+  meta.colours.fill(codebook(json["sh0"]));
   for (int code = 0; code < 256; ++code)
     meta.opacities[static_cast<size_t>(code)] = logit_of_byte(code);
   if (!meta.has_sh) return;
-  const JsonField sh = json.at("shN");
-  meta.sh_degree = static_cast<int>(sh.at("bands").whole(1, kMaxShDegree));
-  meta.centroids = sh.at("count").whole(1, kMostCentroids);
+  const JsonValue sh = json["shN"];
+  meta.sh_degree = static_cast<int>(sh["bands"].whole(kMaxShDegree, 1));
+  meta.centroids = sh["count"].whole(kMostCentroids, 1);
   meta.sh = codebook(sh);
 }
 
 // Steps between a least and a most value in place of code books.
-void read_version_1(const JsonField& json, Meta& meta) {
-  const std::vector<JsonField> shape = json.at("means").at("shape").items();
-  if (shape.empty()) json.at("means").at("shape").refuse_value("the number of Gaussians first");
-  meta.count = shape[0].whole(0, kMostCount);
+void read_version_1(const JsonValue& json, Meta& meta) {
+  meta.count = json["means"]["shape"][0].whole(kMostCount);
   const auto bounds = [&](const char* key, size_t count) {
-    return std::pair(json.at(key).at("mins").numbers(count),
-                     json.at(key).at("maxs").numbers(count));
+    return std::pair(numbers(json[key]["mins"], count), numbers(json[key]["maxs"], count));
   };
   const auto [scale_least, scale_most] = bounds("scales", 3);
   const auto [colour_least, colour_most] = bounds("sh0", 4);
@@ -81,8 +85,7 @@ void read_version_1(const JsonField& json, Meta& meta) {
     meta.colours[k] = steps(colour_least[k], colour_most[k]);
   }
   meta.opacities = steps(colour_least[3], colour_most[3]);
-  if (meta.has_sh)
-    meta.sh = steps(json.at("shN").at("mins").number(), json.at("shN").at("maxs").number());
+  if (meta.has_sh) meta.sh = steps(json["shN"]["mins"].number(), json["shN"]["maxs"].number());
 }
 
 }  // namespace
@@ -95,13 +98,15 @@ std::vector<std::string> Meta::named_files() const {
 }
 
 Meta read_meta(const Files& files) {
-  const nlohmann::json parsed = parse_json(files.name(), files.meta(), kMetaLevels);
-  const JsonField json(files.name(), parsed);
+  const std::vector<std::byte> bytes = files.meta();
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const nlohmann::json parsed = parse_json(files.name(), 0, text, kMetaLevels);
+  const JsonValue json(files.name(), 0, parsed);
   Meta meta;
-  const uint64_t version = json.has("version") ? json.at("version").whole(2, 2) : 1;
+  const uint64_t version = json.has("version") ? json["version"].whole(2, 2) : 1;
   read_files(json, meta);
-  meta.means_least = three(json.at("means").at("mins"));
-  meta.means_most = three(json.at("means").at("maxs"));
+  meta.means_least = three(json["means"]["mins"]);
+  meta.means_most = three(json["means"]["maxs"]);
   if (version == 2)
     read_version_2(json, meta);
   else
