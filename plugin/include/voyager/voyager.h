@@ -334,8 +334,9 @@ typedef struct VoySceneStreaming {
   { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, NULL, 0, 0 }
 
 /* Set exactly one of path and source. The library recognises the format by the bytes, and .splat,
- * .ksplat and the meta.json of a SOG folder by the name. A .voy file has a level-of-detail tree. Any
- * other file (.ply, .compressed.ply, .spz, .sog, ...) is a flat scene: every Gaussian is drawn. */
+ * .ksplat and the meta.json of a SOG folder by the name. A .voy file has a level-of-detail tree.
+ * Any other file (.ply, .compressed.ply, .spz, .sog, ...) is a flat scene: every Gaussian is drawn.
+ */
 typedef struct VoySceneDesc {
   VoyStructureType type;       /* VOY_STRUCTURE_TYPE_SCENE_DESC */
   const void* next;            /* NULL or a VoySceneStreaming */
