@@ -26,7 +26,7 @@ void put(Bytes& bytes, size_t value) {
 }
 
 struct Parts {
-  Json json;
+  Json json = Json::object();
   Bytes binary;
   bool is_binary = false;
 

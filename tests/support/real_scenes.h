@@ -6,17 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/base/file.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_gaussians.h"
-#include "runtime/scene/import/importer.h"
+#include "tests/support/import_file.h"
 #include "tests/support/tree_rules.h"
 
 namespace voyager::test {
-
-inline GaussianCloud import_file(const std::string& path) {
-  return import_gaussians(open_file_source(path));
-}
 
 // The Gaussians nearest to a place of the world, in their order: as dense as the whole.
 inline GaussianCloud nearest(const GaussianCloud& cloud, const Vec3d& place, size_t most) {

@@ -12,6 +12,7 @@
 #include "runtime/base/error.h"
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/import/importer.h"
+#include "tests/support/import_file.h"
 
 namespace voyager::test {
 
@@ -76,10 +77,6 @@ inline GaussianCloud import_bytes(const Bytes& bytes, const ImportOptions& optio
 inline GaussianCloud import_piped(const Bytes& bytes, const ImportOptions& options = {}) {
   PipeReader reader(bytes);
   return import_gaussians(reader, options);
-}
-
-inline GaussianCloud import_file(const std::string& path) {
-  return import_gaussians(open_file_source(path));
 }
 
 // The message of the refusal, or "" where `work` succeeded or failed otherwise.
