@@ -200,7 +200,7 @@ inline void for_bad_fields(const Json& good,
 }
 
 inline GaussianCloud import_source(const Bytes& bytes) {
-  return import_gaussians(MemorySource("sample.glb", bytes));
+  return import_gaussians(std::make_shared<MemorySource>("sample.glb", bytes));
 }
 
 }  // namespace voyager::test
