@@ -92,6 +92,11 @@ const Row* find(const Row (&rows)[count], FirstBytes first, std::string_view nam
   return found == rows + count ? nullptr : found;
 }
 
+// An unread one may begin as another does: LCC's is JSON.
+const Format* known_format(FirstBytes first, std::string_view name) {
+  return find(kUnread, first, name) ? nullptr : find(kFormats, first, name);
+}
+
 std::string in_hex(FirstBytes bytes) {
   if (bytes.empty()) return "an empty input";
   std::string text = "the bytes";
@@ -104,7 +109,7 @@ std::string in_hex(FirstBytes bytes) {
 }
 
 const Format& format_of(FirstBytes first, const std::string& name, uint64_t offset) {
-  const Format* format = find(kFormats, first, name);
+  const Format* format = known_format(first, name);
   if (!format) refuse(name, offset, "format", in_hex(first), expected_format(first, name));
   return *format;
 }
@@ -162,7 +167,7 @@ GaussianCloud finished(GaussianCloud cloud) {
 std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader) {
   auto input = std::make_unique<OwnedPeek>(std::move(reader));
   const FirstBytes first = input->peek(kFormatBytes);
-  const Format* format = find(kFormats, first, input->name());
+  const Format* format = known_format(first, input->name());
   if (!format || !format->open_stream)
     refuse_stream(*input, first,
                   "the first bytes of a .ply (\"ply\"): no other format can be read from a stream");
@@ -176,7 +181,7 @@ std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> sourc
 }
 
 bool is_importable(FirstBytes first_bytes, std::string_view name) {
-  return find(kFormats, first_bytes, name) != nullptr;
+  return known_format(first_bytes, name) != nullptr;
 }
 
 std::string expected_format(FirstBytes first_bytes, std::string_view name) {
