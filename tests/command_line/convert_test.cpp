@@ -89,7 +89,7 @@ TEST_F(ConvertCommand, RefusesWhatItCannotDoAndSaysWhatItExpects) {
       {flat + " -o " + file("k.ply") + " --spz-version 3", 1, "--spz-version: found -o "},
       {flat + " -o " + file("k.spz") + " --spz-version 5", 1, "--spz-version: found 5"},
       {"convert " + file("absent.ply") + " -o " + file("k.ply"), 2, "absent.ply"},
-      {"convert " + file("c.cameras.json") + " -o " + file("k.ply"), 2, "expected a .voy, .ply"},
+      {"convert " + file("c.cameras.json") + " -o " + file("k.ply"), 2, "expected a .voy, or a .ply"},
       {"convert - -o " + file("k.ply"), 1, "found standard input"},
       {baked + " -o " + file("k.hier") + " --keep 25%", 1, "--keep: found -o "},
       {baked + " -o " + file("k.ply") + " --keep 0%", 1, "--keep: found 0%, expected a share"},
