@@ -47,6 +47,15 @@ TEST_F(ConvertCommand, WritesEveryFormatFromFlatAndBakedScenes) {
     }
 }
 
+TEST_F(ConvertCommand, WritesASogOrSaysThatTheBuildLeavesItOut) {
+  const std::string out = file("out.sog");
+  const Outcome done = run("voyager convert " + file("c.ply") + " -o " + out);
+  EXPECT_EQ(done.exit_code == 0, VOYAGER_SOG == 1) << done.output;
+  EXPECT_EQ(fs::exists(out), VOYAGER_SOG == 1);
+  const std::string says = VOYAGER_SOG ? out + ": 10000 Gaussians" : "a build with VOYAGER_SOG=ON";
+  EXPECT_NE(done.output.find(says), std::string::npos) << done.output;
+}
+
 TEST_F(ConvertCommand, APlyComesBackToTheBit) {
   ASSERT_EQ(run("voyager convert " + file("c.ply") + " -o " + file("same.ply")).exit_code, 0);
   EXPECT_EQ(file_bytes(file("same.ply")), file_bytes(file("c.ply")));
@@ -105,7 +114,8 @@ TEST_F(ConvertCommand, RefusesWhatItCannotDoAndSaysWhatItExpects) {
       {flat + " -o " + file("k.ply") + " --spz-version 3", 1, "--spz-version: found -o "},
       {flat + " -o " + file("k.spz") + " --spz-version 5", 1, "--spz-version: found 5"},
       {"convert " + file("absent.ply") + " -o " + file("k.ply"), 2, "absent.ply"},
-      {"convert " + file("c.cameras.json") + " -o " + file("k.ply"), 2, "expected a .voy, or a .ply"},
+      {"convert " + file("c.cameras.json") + " -o " + file("k.ply"), 2,
+       "expected a .voy, or a .ply"},
       {"convert - -o " + file("k.ply"), 1, "found standard input"},
       {flat + " - -o " + file("k.ply"), 1, "found standard input"},
       {flat + " " + file("c.voy") + " -o " + file("k.ply"), 1, "c.voy and other inputs, expected"},
