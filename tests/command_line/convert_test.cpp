@@ -47,9 +47,34 @@ TEST_F(ConvertCommand, WritesEveryFormatFromFlatAndBakedScenes) {
     }
 }
 
+TEST_F(ConvertCommand, WritesASogOrSaysThatTheBuildLeavesItOut) {
+  const std::string out = file("out.sog");
+  const Outcome done = run("voyager convert " + file("c.ply") + " -o " + out);
+  EXPECT_EQ(done.exit_code == 0, VOYAGER_SOG == 1) << done.output;
+  EXPECT_EQ(fs::exists(out), VOYAGER_SOG == 1);
+  const std::string says = VOYAGER_SOG ? out + ": 10000 Gaussians" : "a build with VOYAGER_SOG=ON";
+  EXPECT_NE(done.output.find(says), std::string::npos) << done.output;
+}
+
 TEST_F(ConvertCommand, APlyComesBackToTheBit) {
   ASSERT_EQ(run("voyager convert " + file("c.ply") + " -o " + file("same.ply")).exit_code, 0);
   EXPECT_EQ(file_bytes(file("same.ply")), file_bytes(file("c.ply")));
+}
+
+// The second input is the first, moved before.
+TEST_F(ConvertCommand, JoinsInputsEachInItsPlace) {
+  const std::string convert = "voyager convert " + file("c.ply");
+  ASSERT_EQ(run(convert + " -o " + file("moved.ply") +
+                " --up z --transform 'scale 2, rotate 0 1 0 90, translate 5 0 -7'")
+                .exit_code,
+            0);
+  ASSERT_EQ(run(convert + " " + file("moved.ply") + " -o " + file("by_hand.ply")).exit_code, 0);
+  const Outcome joined = run(convert + " " + file("c.ply") + " -o " + file("joined.ply") +
+                             " --up -y --up z --transform 'translate 0 0 0' --transform "
+                             "'scale 2, rotate 0 1 0 90, translate 5 0 -7'");
+  ASSERT_EQ(joined.exit_code, 0) << joined.output;
+  EXPECT_NE(joined.output.find("20000 Gaussians"), std::string::npos) << joined.output;
+  EXPECT_EQ(file_bytes(file("joined.ply")), file_bytes(file("by_hand.ply")));
 }
 
 TEST_F(ConvertCommand, AnSpzHasTheVersionThatIsAskedFor) {
@@ -89,8 +114,17 @@ TEST_F(ConvertCommand, RefusesWhatItCannotDoAndSaysWhatItExpects) {
       {flat + " -o " + file("k.ply") + " --spz-version 3", 1, "--spz-version: found -o "},
       {flat + " -o " + file("k.spz") + " --spz-version 5", 1, "--spz-version: found 5"},
       {"convert " + file("absent.ply") + " -o " + file("k.ply"), 2, "absent.ply"},
-      {"convert " + file("c.cameras.json") + " -o " + file("k.ply"), 2, "expected a .voy, or a .ply"},
+      {"convert " + file("c.cameras.json") + " -o " + file("k.ply"), 2,
+       "expected a .voy, or a .ply"},
       {"convert - -o " + file("k.ply"), 1, "found standard input"},
+      {flat + " - -o " + file("k.ply"), 1, "found standard input"},
+      {flat + " " + file("c.voy") + " -o " + file("k.ply"), 1, "c.voy and other inputs, expected"},
+      {"convert " + file("c.voy") + " -o " + file("k.ply") + " --up z", 1, "--up, --transform: f"},
+      {flat + " " + file("c.spz") + " -o " + file("c.spz"), 1, "as an output and as an input"},
+      {flat + " -o " + file("k.ply") + " --up z --up y", 1, "--up: found 2 of them, expected one"},
+      {flat + " " + file("c.ply") + " " + file("c.ply") + " -o " + file("k.ply") +
+           " --transform 'scale 2' --transform 'scale 3'",
+       1, "one for each of the 3 inputs"},
       {baked + " -o " + file("k.hier") + " --keep 25%", 1, "--keep: found -o "},
       {baked + " -o " + file("k.ply") + " --keep 0%", 1, "--keep: found 0%, expected a share"},
       {baked + " -o " + file("k.ply") + " --keep 101%", 1, "--keep: found 101%"},

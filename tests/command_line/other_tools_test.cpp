@@ -77,6 +77,13 @@ TEST_F(OtherTools, ReadASplatWithinHalfAStep) {
   EXPECT_LE(largest_opacity_difference(city, back), 0.501f / 255);
 }
 
+std::vector<float> sorted_coordinates(const GaussianCloud& cloud, size_t axis) {
+  std::vector<float> coordinates;
+  for (size_t i = axis; i < cloud.position.size(); i += 3) coordinates.push_back(cloud.position[i]);
+  std::sort(coordinates.begin(), coordinates.end());
+  return coordinates;
+}
+
 // Reordered, so that sorted coordinates are compared: those differ by no more
 // than the coordinates.
 TEST_F(OtherTools, ReadACompressedPly) {
@@ -85,16 +92,24 @@ TEST_F(OtherTools, ReadACompressedPly) {
   ASSERT_EQ(back.size(), city.size());
   EXPECT_EQ(back.sh_degree, 1);
   for (const size_t axis : {0, 1, 2}) {
-    std::vector<float> a, b;
-    for (size_t i = 0; i < city.size(); ++i) {
-      a.push_back(city.position[3 * i + axis]);
-      b.push_back(back.position[3 * i + axis]);
-    }
-    std::sort(a.begin(), a.end());
-    std::sort(b.begin(), b.end());
+    const std::vector<float> a = sorted_coordinates(city, axis), b = sorted_coordinates(back, axis);
     const float width = a.back() - a.front();
     for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], width / 2046) << axis;
   }
+}
+
+// The same words as our own reader's, which holds its steps (tests/unit/scene/sog_export_test.cpp).
+TEST_F(OtherTools, ReadASogAsWeDo) {
+  if (!VOYAGER_SOG) GTEST_SKIP() << "this build leaves SOG out";
+  const GaussianCloud theirs = there_and_back(".sog");
+  const GaussianCloud ours = import_file(file("out.sog"));
+  ASSERT_EQ(theirs.size(), 10000u);
+  EXPECT_EQ(theirs.sh_degree, 1);
+  EXPECT_LE(largest_difference(theirs.log_scale, ours.log_scale), 1e-5f);
+  EXPECT_LE(largest_opacity_difference(theirs, ours), 1e-5f);
+  EXPECT_LE(largest_difference(theirs.sh, ours.sh), 1e-5f);
+  for (size_t i = 0; i < ours.position.size(); ++i)
+    ASSERT_NEAR(theirs.position[i], ours.position[i], 1e-5 * (1 + std::fabs(ours.position[i])));
 }
 
 }  // namespace

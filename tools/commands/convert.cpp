@@ -1,6 +1,9 @@
 #include "runtime/scene/export/convert.h"
 
+#include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
@@ -8,42 +11,64 @@
 #include "runtime/frame/scene.h"
 #include "tools/commands/commands.h"
 #include "tools/flat_output.h"
+#include "tools/joined_inputs.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
+#include "tools/placement.h"
 #include "tools/progress_bar.h"
 
 namespace voyager::tools {
 namespace {
 
+using Sources = std::vector<std::shared_ptr<const ByteSource>>;
+
 struct ConvertArguments {
-  std::string input, output;
+  std::vector<std::string> inputs;
+  Placement placement;
+  std::string output;
   FlatArguments flat;
 };
 
-void convert_flat(const std::shared_ptr<const ByteSource>& source,
-                  const ConvertArguments& arguments) {
+void convert_flat(const Sources& sources, const ConvertArguments& arguments) {
   if (arguments.flat.keep)
     throw Error(ErrorCode::invalid_argument,
-                "--keep: found " + source->name() +
+                "--keep: found " + sources.front()->name() +
                     ", which has no level-of-detail tree, expected a .voy: bake it first");
   Workers workers;
   describe_flat_file(
       arguments.output,
-      convert([&] { return open_blocks(source); }, arguments.output,
+      convert([&] { return open_joined(sources, arguments.placement); }, arguments.output,
               flat_options(arguments.flat, arguments.output), workers, progress_bar()));
+}
+
+void convert_baked(const std::shared_ptr<const ByteSource>& source,
+                   const ConvertArguments& arguments) {
+  if (arguments.inputs.size() > 1)
+    throw Error(ErrorCode::invalid_argument,
+                "input: found " + source->name() +
+                    " and other inputs, expected a .voy alone: convert it first");
+  if (arguments.placement.given())
+    throw Error(ErrorCode::invalid_argument,
+                "--up, --transform: found " + source->name() +
+                    ", expected inputs without a level-of-detail tree: convert it first");
+  export_flat(SceneFile(source), arguments.flat, arguments.output);
 }
 
 void run(const ConvertArguments& arguments) {
   require_extension("-o", arguments.output, flat_format_endings());
-  require_distinct({arguments.output}, {arguments.input});
-  if (arguments.input == "-")
+  require_distinct({arguments.output}, arguments.inputs);
+  arguments.placement.of(arguments.inputs.size());
+  if (std::ranges::count(arguments.inputs, "-") > 0)
     throw Error(ErrorCode::invalid_argument,
                 "input: found standard input, expected a file or a URL: it is read twice");
-  const std::shared_ptr<const ByteSource> source = open_source(arguments.input);
-  if (scene_format(*source) == SceneFormat::baked)
-    export_flat(SceneFile(source), arguments.flat, arguments.output);
+  Sources sources;
+  for (const std::string& input : arguments.inputs) sources.push_back(open_source(input));
+  const auto baked = std::ranges::find_if(
+      sources, [](const auto& source) { return scene_format(*source) == SceneFormat::baked; });
+  if (baked != sources.end())
+    convert_baked(*baked, arguments);
   else
-    convert_flat(source, arguments);
+    convert_flat(sources, arguments);
 }
 
 }  // namespace
@@ -51,11 +76,11 @@ void run(const ConvertArguments& arguments) {
 void add_convert(CLI::App& app) {
   auto arguments = std::make_shared<ConvertArguments>();
   CLI::App* command = app.add_subcommand(
-      "convert", "Write a scene in another format, without a level-of-detail tree");
+      "convert", "Write scenes in another format, without a level-of-detail tree");
   command
-      ->add_option("input", arguments->input,
-                   "Scene to read, a .ply, a .spz or a .voy, or its URL. Of a .voy the leaves are "
-                   "written, in the order of its input")
+      ->add_option("input", arguments->inputs,
+                   "Scenes to write as one, of any format that is read (docs/formats.md), or their "
+                   "URLs; or one .voy, whose leaves are written, in the order of its input")
       ->required();
   command
       ->add_option("-o", arguments->output,
@@ -64,6 +89,7 @@ void add_convert(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   name_group(*command, kCommonOptions);
+  add_placement_options(*command, arguments->placement);
   add_flat_options(*command, arguments->flat);
   command->footer("Example: voyager convert scene.ply -o scene.spz");
   command->callback([arguments] { run(*arguments); });

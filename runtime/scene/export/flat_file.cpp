@@ -22,6 +22,7 @@ constexpr Ending kEndings[] = {
     {".spz", FlatFormat::spz},
     {".splat", FlatFormat::splat},
     {".glb", FlatFormat::glb},
+    {".sog", FlatFormat::sog},
 };
 
 FlatFormat required_format(const std::string& path) {
@@ -33,6 +34,7 @@ FlatFormat required_format(const std::string& path) {
               "output: found " + path + ", expected a name that ends in " + known);
 }
 
+// 0 where nobody knows. Throws as require_sog().
 uint64_t least_bytes(FlatFormat format, const FlatContents& contents) {
   switch (format) {
     case FlatFormat::ply:
@@ -43,6 +45,9 @@ uint64_t least_bytes(FlatFormat format, const FlatContents& contents) {
       return contents.count * kSplatBytes;
     case FlatFormat::glb:
       return glb_bytes(contents.count, contents.sh_degree);
+    case FlatFormat::sog:
+      require_sog();
+      break;
     case FlatFormat::spz:
       break;
   }
@@ -63,6 +68,8 @@ std::unique_ptr<GaussianWriter> write_flat(PlacedSink& sink, FlatFormat format,
       return write_splat(sink, count, degree);
     case FlatFormat::glb:
       return write_glb(sink, count, degree);
+    case FlatFormat::sog:
+      return write_sog(sink, count, degree, contents.native);
     case FlatFormat::spz:
       break;
   }

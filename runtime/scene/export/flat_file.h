@@ -12,7 +12,7 @@
 
 namespace voyager {
 
-enum class FlatFormat { ply, compressed_ply, spz, splat, glb };
+enum class FlatFormat { ply, compressed_ply, spz, splat, glb, sog };
 
 struct FlatOptions {
   int spz_version = 4;  // 3 or 4, of a .spz

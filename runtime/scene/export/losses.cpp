@@ -19,12 +19,22 @@ double step_at(float at) {
   return double{std::nextafter(at, std::numeric_limits<float>::infinity())} - double{at};
 }
 
+// Of a .sog, the largest there may be: 16 bits from -ln(|x| + 1) to ln(|x| + 1).
+double sog_step(double largest_coordinate) {
+  return 2 * std::log1p(largest_coordinate) / 65535 * (1 + largest_coordinate);
+}
+constexpr double kCoarse = 0.01;  // metres
+
 // Positions of the world, where the scene is far from the world's origin.
 std::string coarse_positions(FlatFormat format, const FlatContents& contents) {
   const double coordinate = contents.largest_coordinate;
-  const bool in_binary32 = format == FlatFormat::splat || format == FlatFormat::compressed_ply;
+  const bool in_binary32 = format == FlatFormat::splat || format == FlatFormat::compressed_ply ||
+                           format == FlatFormat::sog;
   if (in_binary32 && contents.is_moved())
     return "positions are in steps of " + metres(step_at(contents.reach())) + ": they are " +
+           metres(coordinate) + " from the world's origin";
+  if (format == FlatFormat::sog && sog_step(coordinate) > kCoarse)
+    return "positions are in steps of up to " + metres(sog_step(coordinate)) + " where they are " +
            metres(coordinate) + " from the world's origin";
   const int bits = spz_fractional_bits(contents.reach());
   if (format == FlatFormat::spz && bits < spz_fractional_bits(0))
@@ -38,7 +48,8 @@ std::string lost_filter(FlatFormat format, const NativeScale& native) {
   if (format == FlatFormat::splat || format == FlatFormat::glb)
     return "the format cannot say that the scene was trained with a compensated (antialiasing) "
            "filter: left out";
-  if (format == FlatFormat::spz && native.low_pass == kMipSplattingLowPass)
+  if ((format == FlatFormat::spz || format == FlatFormat::sog) &&
+      native.low_pass == kMipSplattingLowPass)
     return "the format cannot say that the filter of the training is Mip-Splatting's: it is read "
            "as 3DGS's";
   return "";

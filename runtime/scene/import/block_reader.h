@@ -17,8 +17,10 @@ class BlockReader;
 // Some Gaussians as the input has them.
 struct RawBlock {
   std::vector<std::byte> bytes;
-  size_t count = 0;                         // Gaussians; 0 after the last block
-  std::shared_ptr<const BlockReader> part;  // of an input with several (merged_blocks.h): this one
+  size_t count = 0;  // Gaussians; 0 after the last block
+  // Of several inputs in one (merged_blocks.h), in place of bytes: which of them, and its block.
+  std::shared_ptr<const BlockReader> part;
+  std::shared_ptr<const RawBlock> of_part;
 };
 
 class BlockReader {

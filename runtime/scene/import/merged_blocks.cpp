@@ -34,8 +34,9 @@ class MergedReader final : public BlockReader {
     for (;;) {
       if (current_) {
         RawBlock block = current_->next(most);
-        block.part = current_;
-        if (block.count != 0) return block;
+        const size_t count = block.count;
+        if (count != 0)
+          return {{}, count, current_, std::make_shared<const RawBlock>(std::move(block))};
       }
       if (next_ == parts_.size()) break;
       current_ = parts_[next_++].open();
@@ -45,7 +46,7 @@ class MergedReader final : public BlockReader {
   }
 
   GaussianCloud decode(const RawBlock& block) const override {
-    GaussianCloud cloud = block.part->decode(block);
+    GaussianCloud cloud = block.part->decode(*block.of_part);
     change_sh_degree(cloud.sh, cloud.sh_degree, sh_degree_);
     cloud.sh_degree = sh_degree_;
     return cloud;

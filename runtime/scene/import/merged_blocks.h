@@ -15,8 +15,9 @@ struct BlockPart {
 };
 
 // One after the other: each is opened when its turn comes, and closed when its last block is
-// decoded. The lower SH degree is padded with zeros. Parts have the origin that is given. Throws
-// Error(refused_input) where their counts add up to 2^64, or filters of the training differ.
+// decoded. A part may itself be merged. The lower SH degree is padded with zeros. Parts have the
+// origin that is given. Throws Error(refused_input) where their counts add up to 2^64, or filters
+// of the training differ.
 std::unique_ptr<BlockReader> merge_blocks(std::string name, std::vector<BlockPart> parts,
                                           const std::array<double, 3>& origin);
 
