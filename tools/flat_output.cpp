@@ -64,12 +64,12 @@ void export_flat(const SceneFile& scene, const FlatArguments& arguments,
                  const std::string& output) {
   const FlatOptions options = flat_options(arguments, output);
   const uint64_t leaves = scene.info().leaf_count;
-  if (!arguments.keep) {
+  const uint64_t most = arguments.keep ? most_kept(*arguments.keep, leaves) : leaves;
+  if (most >= leaves) {  // in the input's own words and order
     describe_flat_file(output, export_leaves(scene, output, options, progress_bar()));
     return;
   }
-  const FlatContents contents =
-      export_extent_cut(scene, most_kept(*arguments.keep, leaves), output, options, progress_bar());
+  const FlatContents contents = export_extent_cut(scene, most, output, options, progress_bar());
   describe_flat_file(output, contents);
   if (leaves > 0)
     say(fmt::format("{:.2f} % of {} leaves\n",

@@ -43,6 +43,12 @@ void encode_channel(const std::array<Sample, kSphereSamples>& samples, int count
   for (int k = 0; k < count; ++k) sh[3 * k] = static_cast<float>(encoded[static_cast<size_t>(k)]);
 }
 
+bool is_finite(const float* sh, int count) {
+  for (int k = 0; k < count; ++k)
+    if (!std::isfinite(sh[3 * k])) return false;
+  return true;
+}
+
 }  // namespace
 
 void encode_colours(GaussianCloud& cloud) {
@@ -51,6 +57,7 @@ void encode_colours(GaussianCloud& cloud) {
   for (size_t i = 0; i < cloud.size(); ++i)
     for (size_t channel = 0; channel < 3; ++channel) {
       float* sh = cloud.sh.data() + i * static_cast<size_t>(count) * 3 + channel;
+      if (!is_finite(sh, count)) continue;  // sanitise() mends and counts it
       if (count == 1)
         encode_constant(*sh);
       else

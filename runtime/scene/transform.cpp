@@ -44,6 +44,15 @@ void require_usable(const Affine& affine, const std::string& what) {
                     "and a translation below 1e18");
 }
 
+// What sanitise() makes of it, which comes too late for a rotation that is turned.
+void mend_rotation(float* q, ImportReport& report) {
+  double squared = 0;
+  for (int i = 0; i < 4; ++i) squared += double{q[i]} * double{q[i]};
+  if (squared > 0 && std::isfinite(squared)) return;
+  q[0] = 1, q[1] = q[2] = q[3] = 0;
+  ++report.repaired_rotation;
+}
+
 // Seen from itself a Gaussian has no handedness: a mirror is a rotation and a reflection through
 // the mean.
 Mat3d without_mirror(const Mat3d& m) {
@@ -86,6 +95,7 @@ void CloudTransform::turn(GaussianCloud& cloud) const {
   for (float& log_scale : cloud.log_scale) log_scale += grown;
   for (size_t i = 0; i < cloud.rotation.size(); i += 4) {
     float* q = &cloud.rotation[i];
+    mend_rotation(q, cloud.report);
     const Quatd turned = rotation_ * Quatd{q[0], q[1], q[2], q[3]};
     q[0] = static_cast<float>(turned.w);
     q[1] = static_cast<float>(turned.x);
@@ -101,8 +111,8 @@ void CloudTransform::reshape(GaussianCloud& cloud) const {
   for (size_t i = 0; i < cloud.size(); ++i) {
     float* log_scale = &cloud.log_scale[3 * i];
     float* q = &cloud.rotation[4 * i];
+    mend_rotation(q, cloud.report);
     if (!std::all_of(log_scale, log_scale + 3, [](float s) { return std::isfinite(s); })) continue;
-    if (!std::all_of(q, q + 4, [](float v) { return std::isfinite(v); })) continue;
     Matrix shape = linear * to_eigen(rotation(normalise(Quatd{q[0], q[1], q[2], q[3]})));
     for (int axis = 0; axis < 3; ++axis)
       shape.col(axis) *= std::exp(std::clamp(double{log_scale[axis]}, -100.0, 100.0));

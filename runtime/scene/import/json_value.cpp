@@ -1,5 +1,6 @@
 #include "runtime/scene/import/json_value.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/scene/import/refuse.h"
@@ -18,17 +19,42 @@ std::string found_text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+// How many arrays and objects are in one another, at most; counts no further than past `most`.
+int levels_of(std::string_view text, int most) {
+  int level = 0, deepest = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size() && deepest <= most; ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      in_string = c != '"';
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++level);
+    } else if (c == ']' || c == '}') {
+      --level;
+    }
+  }
+  return deepest;
+}
+
+// As much of a place as a message has room for: a value far down would own as much as all above it.
+std::string shortened(std::string place) {
+  constexpr size_t kMost = 120;
+  if (place.size() <= kMost) return place;
+  return "..." + place.substr(place.size() - kMost);
+}
+
 }  // namespace
 
+// The parser's own callback would count levels, too, but looks at all siblings of each value.
 Json parse_json(const std::string& file, uint64_t offset, std::string_view text, int levels) {
-  const auto limit_levels = [&](int level, Json::parse_event_t, const Json&) {
-    if (level > levels)
-      refuse(file, offset, "JSON", "more than " + std::to_string(levels) + " levels",
-             "fewer in one another");
-    return true;
-  };
+  if (levels_of(text, levels) > levels)
+    refuse(file, offset, "JSON", "more than " + std::to_string(levels) + " levels",
+           "fewer in one another");
   try {
-    return Json::parse(text, limit_levels);
+    return Json::parse(text);
   } catch (const Json::parse_error& error) {
     refuse(file, offset + error.byte, "JSON", "none there", "JSON in UTF-8");
   } catch (const Json::exception& error) {
@@ -46,7 +72,7 @@ void JsonValue::refuse(const std::string& found, const std::string& expected) co
 
 JsonValue JsonValue::at(const Json& json, std::string place) const {
   JsonValue value(*file_, offset_, json);
-  value.place_ = std::move(place);
+  value.place_ = shortened(std::move(place));
   return value;
 }
 

@@ -28,9 +28,9 @@ void decode_row(const std::byte* row, size_t i, GaussianCloud& cloud) {
     cloud.sh[3 * i + k] = sh_of_colour(byte(row + kColour + k) / 255.0);
   }
   cloud.opacity[i] = logit_of_byte(byte(row + kColour + 3));
-  // Writers cut fractions off, so that the middle of a step is nearest to what was meant.
+  // As the format's author reads them, and writers mean them; many writers cut fractions off.
   for (size_t k = 0; k < 4; ++k)
-    cloud.rotation[4 * i + k] = static_cast<float>(2 * byte(row + kRotation + k) - 255) / 255.0f;
+    cloud.rotation[4 * i + k] = static_cast<float>(byte(row + kRotation + k) - 128) / 128.0f;
 }
 
 class Reader final : public BlockReader {

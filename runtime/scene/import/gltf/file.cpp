@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/uri.h"
@@ -61,7 +62,18 @@ nlohmann::json json_of(const ByteSource& source, uint64_t offset, uint64_t size)
   return parse_json(source.name(), offset, text);
 }
 
+// As File::bytes() knows a source.
+std::string path_of(const ByteSource& source) {
+  return std::filesystem::path(source.name()).lexically_normal().string();
+}
+
 }  // namespace
+
+uint64_t sum_of(const std::map<std::string, uint64_t>& bytes) {
+  uint64_t sum = 0;
+  for (const auto& [path, size] : bytes) sum += size;
+  return sum;
+}
 
 std::shared_ptr<const ByteSource> source_of(const Slice& slice, std::string name) {
   return std::make_shared<SliceSource>(slice, std::move(name));
@@ -79,7 +91,7 @@ nlohmann::json read_json(const ByteSource& source) {
 }
 
 File::File(std::shared_ptr<const ByteSource> source) : source_(std::move(source)) {
-  bytes_ = source_->size();
+  bytes_[path_of(*source_)] = source_->size();
   if (is_binary(*source_))
     read_chunks();
   else
@@ -88,7 +100,8 @@ File::File(std::shared_ptr<const ByteSource> source) : source_(std::move(source)
 }
 
 File::File(std::shared_ptr<const ByteSource> source, nlohmann::json json)
-    : source_(std::move(source)), json_(std::move(json)), bytes_(source_->size()) {
+    : source_(std::move(source)), json_(std::move(json)) {
+  bytes_[path_of(*source_)] = source_->size();
   if (this->json().has("buffers")) buffers_.resize(this->json()["buffers"].size());
 }
 
@@ -135,14 +148,26 @@ Slice File::buffer(const JsonValue& index) {
   return known;
 }
 
+// Many buffers may be one file, which takes one descriptor.
+std::shared_ptr<const ByteSource> File::open_once(const JsonValue& uri) {
+  if (is_data_uri(uri.text())) return open_uri(*source_, uri.place(), uri.text());
+  std::shared_ptr<const ByteSource>& known = beside_[uri.text()];
+  if (!known) known = open_uri(*source_, uri.place(), uri.text());
+  return known;
+}
+
 Slice File::open_buffer(const JsonValue& description, uint64_t index) {
   const JsonValue length = description["byteLength"];
   Slice all;
   if (description.has("uri")) {
     const JsonValue uri = description["uri"];
-    all.source = open_uri(*source_, uri.place(), uri.text());
+    all.source = open_once(uri);
     all.size = all.source->size();
-    bytes_ += all.size;
+    // What is in a URI is bytes of the file itself.
+    if (!is_data_uri(uri.text())) {
+      uint64_t& used = bytes_[path_of(*all.source)];
+      used = std::max(used, std::min(all.size, length.whole(UINT64_MAX)));
+    }
   } else if (index == 0 && binary_.source) {
     all = binary_;
   } else {

@@ -1,5 +1,6 @@
 #pragma once
 // A .glb or .gltf: its JSON, and the buffers that the JSON describes.
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ bool is_binary(const ByteSource& source);
 // The JSON of a file that is JSON alone, at most kMostJsonBytes of it.
 nlohmann::json read_json(const ByteSource& source);
 
+// Of a map as File::bytes().
+uint64_t sum_of(const std::map<std::string, uint64_t>& bytes);
+
 class File {
  public:
   // Reads header and JSON. Throws Error(refused_input) naming place, found and expected.
@@ -38,17 +42,21 @@ class File {
   JsonValue json() const { return JsonValue(source_->name(), json_offset_, json_); }
   // Opens the view's buffer when it is asked for first. `index`: a JSON number.
   Slice view(const JsonValue& index);
-  // Of the file and all buffers that were opened beside it or decoded.
-  uint64_t bytes() const { return bytes_; }
+  // Of the file and of all buffers that were opened beside it, by their paths: as many as
+  // it uses of each, which counts once however many buffers it is.
+  const std::map<std::string, uint64_t>& bytes() const { return bytes_; }
 
  private:
   void read_chunks();
   Slice buffer(const JsonValue& index);
   Slice open_buffer(const JsonValue& description, uint64_t index);
+  std::shared_ptr<const ByteSource> open_once(const JsonValue& uri);
 
   std::shared_ptr<const ByteSource> source_;
   nlohmann::json json_;
-  uint64_t json_offset_ = 0, bytes_ = 0;
+  uint64_t json_offset_ = 0;
+  std::map<std::string, uint64_t> bytes_;
+  std::map<std::string, std::shared_ptr<const ByteSource>> beside_;  // open files, by their URIs
   Slice binary_;  // of a .glb; else without a source
   std::vector<Slice> buffers_;
 };

@@ -33,6 +33,7 @@ std::vector<BlockPart> parts_of(const Scene& scene, const OpenScene& open, const
     const Instance& instance = scene.instances()[i];
     const Primitive& primitive = scene.primitive(instance);
     const Affine there = place * instance.place;
+    if (there.linear == Mat3d{}) continue;  // a scale of zero is how a node is hidden
     const std::string what = name + ": the node of " + primitive.place;
     const NativeScale native = CloudTransform(there, what).of(primitive.native);
     parts.push_back({primitive.count, primitive.sh_degree, native, [open, i, there, origin, what] {

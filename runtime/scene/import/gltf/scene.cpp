@@ -81,9 +81,9 @@ void Scene::read_instances(File& file) {
     if (owner.has("extensions") && owner["extensions"].has(kInstancing))
       owner["extensions"].refuse(kInstancing, "none: splats are drawn once for each node");
     const uint64_t placed = instances_.size() + mesh->second.size();
-    if (placed > most_parts(file.bytes()))
+    if (placed > most_parts(sum_of(file.bytes())))
       owner.refuse(std::to_string(placed) + " placed primitives",
-                   "at most " + std::to_string(most_parts(file.bytes())));
+                   "at most " + std::to_string(most_parts(sum_of(file.bytes()))));
     for (const size_t primitive : mesh->second)
       instances_.push_back({primitive, in_inria_axes(node.place)});
   }
@@ -97,10 +97,11 @@ void Scene::check_count() const {
     sh_degree = std::max(sh_degree, primitive(instance).sh_degree);
     if (__builtin_add_overflow(count, primitive(instance).count, &count)) count = UINT64_MAX;
   }
-  const uint64_t most = most_gaussians(bytes_, bytes_of_gaussian(sh_degree));
+  const uint64_t bytes = sum_of(bytes_);
+  const uint64_t most = most_gaussians(bytes, bytes_of_gaussian(sh_degree));
   if (count > most)
     refuse(name_, 0, "Gaussians", std::to_string(count),
-           "at most " + std::to_string(most) + " in " + std::to_string(bytes_) + " bytes");
+           "at most " + std::to_string(most) + " in " + std::to_string(bytes) + " bytes");
 }
 
 std::unique_ptr<BlockReader> Scene::open(const Instance& instance) const {

@@ -21,8 +21,8 @@ class Scene {
   const Primitive& primitive(const Instance& instance) const {
     return primitives_[instance.primitive];
   }
-  // Of the file and those beside it.
-  uint64_t bytes() const { return bytes_; }
+  // As File::bytes().
+  const std::map<std::string, uint64_t>& bytes() const { return bytes_; }
   // The instance's own Gaussians, before it is placed.
   std::unique_ptr<BlockReader> open(const Instance& instance) const;
 
@@ -31,7 +31,7 @@ class Scene {
   void check_count() const;
 
   std::string name_;
-  uint64_t bytes_ = 0;
+  std::map<std::string, uint64_t> bytes_;
   std::vector<Primitive> primitives_;
   std::vector<Instance> instances_;
 };

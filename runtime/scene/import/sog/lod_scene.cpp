@@ -36,7 +36,7 @@ class LodScene final : public BlockReader {
     RawBlock block;
     block.count = codes.count;
     if (block.count == 0) return block;
-    GaussianCloud cloud = scene_->decode(codes);
+    GaussianCloud cloud = (scene_ ? scene_ : done_)->decode(codes);
     change_sh_degree(cloud.sh, cloud.sh_degree, sh_degree_);
     for (const auto array : kArrays) append(cloud.*array, block.bytes);
     return block;
@@ -73,7 +73,9 @@ class LodScene final : public BlockReader {
 
   // What is asked of a file's meta.json before any image is read.
   void check(Part& part) {
-    const Meta meta = read_meta(*files_of(part));
+    const bool again = &part != parts_.data() && (&part)[-1].file == part.file;
+    if (!again) checked_ = read_meta(*files_of(part));
+    const Meta& meta = checked_;
     if (meta.has_sh && !meta.sh_degree)
       refuse(name(), 0, part.file, "version 1", "version 2 in a streamed scene");
     if (part.count == UINT64_MAX) part.count = meta.count;
@@ -87,17 +89,35 @@ class LodScene final : public BlockReader {
     count_ += part.count;
   }
 
-  // Of the file that is open, or else of the next that has any.
+  // Parts of one file that follow one another in it are read in one pass: its images are decoded
+  // once.
+  void open_next() {
+    last_ = part_;
+    while (last_ + 1 < parts_.size() && parts_[last_ + 1].file == parts_[part_].file &&
+           parts_[last_ + 1].first >= end_of(parts_[last_]))
+      ++last_;
+    at_ = parts_[part_].first;
+    scene_ = open_scene(files_of(parts_[part_]), at_, end_of(parts_[last_]) - at_);
+  }
+
+  static uint64_t end_of(const Part& part) { return part.first + part.count; }
+
+  // Of the part that is being read, or else of the next that has any.
   RawBlock next_codes(size_t most) {
-    for (;; scene_ = nullptr) {
-      if (!scene_) {
-        if (part_ == parts_.size()) return {};
-        const Part& part = parts_[part_++];
-        scene_ = open_scene(files_of(part), part.first, part.count);
-      }
-      RawBlock codes = scene_->next(most);
+    while (part_ < parts_.size()) {
+      if (!scene_) open_next();
+      const Part& part = parts_[part_];
+      while (at_ < part.first) at_ += rows_of(part.first - at_, most).count;  // nobody wants these
+      RawBlock codes = rows_of(end_of(part) - at_, most);
+      at_ += codes.count;
+      if (at_ == end_of(part) && part_++ == last_) done_ = std::move(scene_);
       if (codes.count > 0) return codes;
     }
+    return {};
+  }
+
+  RawBlock rows_of(uint64_t count, size_t most) {
+    return scene_->next(static_cast<size_t>(std::min<uint64_t>(count, most)));
   }
 
   std::shared_ptr<const ByteSource> source_;
@@ -105,8 +125,11 @@ class LodScene final : public BlockReader {
   uint64_t count_ = 0;
   int sh_degree_ = 0;
   std::optional<bool> antialiased_;
-  size_t part_ = 0;  // the next to open
-  std::unique_ptr<BlockReader> scene_;
+  Meta checked_;                               // the file's of the part that was checked last
+  size_t part_ = 0;                            // that is read
+  size_t last_ = 0;                            // of those that the open file is read for
+  uint64_t at_ = 0;                            // Gaussian of that file
+  std::unique_ptr<BlockReader> scene_, done_;  // whose last block may still be decoded
 };
 
 }  // namespace

@@ -14,10 +14,13 @@
 namespace voyager::tileset {
 namespace {
 
-struct Tile {
-  JsonValue json;
+// The children of a tile that are still to be visited: a tile at a time, so that memory follows the
+// depth and not the number of tiles.
+struct Children {
+  JsonValue json;  // an array
+  size_t next, count;
   Affine parent;
-  bool added;  // as its parent says: children are drawn beside their parent, not in its place
+  bool added;  // as the parent says: children are drawn beside their parent, not in its place
 };
 
 // One file of tiles.
@@ -71,11 +74,18 @@ class Walk {
   void visit_file(const Tiles& file) {
     const JsonValue json(file.name, 0, file.json);
     require_readable(json);
-    std::vector<Tile> tiles = {{json["root"], file.transform, false}};
-    while (!tiles.empty()) {
-      const Tile tile = tiles.back();
-      tiles.pop_back();
-      visit(tile, file, tiles);
+    std::vector<Children> open;
+    visit(json["root"], file, file.transform, false, open);
+    while (!open.empty()) {
+      Children& siblings = open.back();
+      if (siblings.next == siblings.count) {
+        open.pop_back();
+        continue;
+      }
+      const JsonValue tile = siblings.json[siblings.next++];
+      const Affine parent = siblings.parent;
+      const bool added = siblings.added;
+      visit(tile, file, parent, added, open);
     }
   }
 
@@ -92,16 +102,16 @@ class Walk {
         required[i].refuse("3DTILES_content_gltf: no other extension is read");
   }
 
-  void visit(const Tile& tile, const Tiles& file, std::vector<Tile>& tiles) {
-    const JsonValue& json = tile.json;
+  void visit(const JsonValue& json, const Tiles& file, const Affine& parent, bool added,
+             std::vector<Children>& open) {
     if (json.has("implicitTiling"))
       json["implicitTiling"].refuse("implicit tiles", "explicit ones: no others are read");
     const Affine transform =
-        json.has("transform") ? tile.parent * gltf::matrix_of(json["transform"]) : tile.parent;
-    const bool adds = json.has("refine") ? refines_by_adding(json["refine"]) : tile.added;
+        json.has("transform") ? parent * gltf::matrix_of(json["transform"]) : parent;
+    const bool adds = json.has("refine") ? refines_by_adding(json["refine"]) : added;
     const size_t children = json.has("children") ? json["children"].size() : 0;
     if (children == 0 || adds) add_contents(json, file, transform);
-    for (size_t i = children; i-- > 0;) tiles.push_back({json["children"][i], transform, adds});
+    if (children > 0) open.push_back({json["children"], 0, children, transform, adds});
   }
 
   static bool refines_by_adding(const JsonValue& refine) {
@@ -125,11 +135,16 @@ class Walk {
           (std::filesystem::path(file.folder) / path_of_uri(file.name, uri.place(), uri.text()))
               .lexically_normal()
               .string();
+    if (scenes_.count(content.uri) != 0) {
+      contents_.push_back(std::move(content));
+      return;
+    }
     nlohmann::json found;
     const auto source = open_content(first_, content);
     switch (kind_of(*source, found)) {
       case Kind::glb:
       case Kind::gltf:
+        scenes_.insert(content.uri);
         contents_.push_back(std::move(content));
         return;
       case Kind::tileset:
@@ -153,7 +168,8 @@ class Walk {
 
   const ByteSource& first_;
   std::deque<Tiles> files_;
-  std::set<std::string> seen_;  // tilesets, by their paths from the first one's folder
+  std::set<std::string> seen_;    // tilesets, by their paths from the first one's folder
+  std::set<std::string> scenes_;  // glTF files, by their URIs: read once to tell what they are
   std::vector<Content> contents_;
 };
 

@@ -1,7 +1,7 @@
 #include "runtime/scene/import/tileset/tileset.h"
 
 #include <algorithm>
-#include <set>
+#include <map>
 
 #include "runtime/scene/import/gltf/parts.h"
 #include "runtime/scene/import/growth.h"
@@ -43,44 +43,54 @@ class Shared {
 
 class Parts {
  public:
-  explicit Parts(std::shared_ptr<const ByteSource> first)
-      : first_(std::move(first)), bytes_(first_->size()) {}
+  explicit Parts(std::shared_ptr<const ByteSource> first) : first_(std::move(first)) {
+    bytes_[first_->name()] = first_->size();
+  }
 
   std::unique_ptr<BlockReader> read(std::vector<Content> contents) {
     if (contents.empty())
       refuse(first_->name(), 0, "root", "no content of a leaf", "at least one glTF file");
     origin_ = origin_near(in_inria_axes(contents.front().transform).offset);
     for (Content& content : contents) add(std::move(content));
-    const uint64_t most = most_gaussians(bytes_, bytes_of_gaussian(sh_degree_));
+    const uint64_t bytes = gltf::sum_of(bytes_);
+    const uint64_t most = most_gaussians(bytes, bytes_of_gaussian(sh_degree_));
     if (count_ > most)
       refuse(first_->name(), 0, "Gaussians", std::to_string(count_),
-             "at most " + std::to_string(most) + " in " + std::to_string(bytes_) + " bytes");
+             "at most " + std::to_string(most) + " in " + std::to_string(bytes) + " bytes");
     return merge_blocks(first_->name(), std::move(parts_), origin_);
   }
 
  private:
   void add(Content content) {
     const Affine place = in_inria_axes(content.transform);
-    const std::string name = content.place, uri = content.uri;
-    const auto shared = std::make_shared<Shared>(first_, std::move(content));
-    const auto scene = shared->open();
-    if (seen_.insert(uri).second) bytes_ += scene->bytes();
+    const std::string name = content.place;
+    std::shared_ptr<Shared>& known = shared_[content.uri];
+    if (!known) known = std::make_shared<Shared>(first_, std::move(content));
+    const std::shared_ptr<Shared> shared = known;
+    const auto scene = last_ = shared->open();
+    for (const auto& [path, size] : scene->bytes()) {
+      uint64_t& used = bytes_[path];
+      used = std::max(used, size);
+    }
     for (BlockPart& part : gltf::parts_of(
              *scene, [shared] { return shared->open(); }, place, origin_, name)) {
       if (__builtin_add_overflow(count_, part.count, &count_)) count_ = UINT64_MAX;
       sh_degree_ = std::max(sh_degree_, part.sh_degree);
       parts_.push_back(std::move(part));
     }
-    if (parts_.size() > most_parts(bytes_))
+    const uint64_t most = most_parts(gltf::sum_of(bytes_));
+    if (parts_.size() > most)
       refuse(first_->name(), 0, "placed primitives", std::to_string(parts_.size()),
-             "at most " + std::to_string(most_parts(bytes_)));
+             "at most " + std::to_string(most));
   }
 
   std::shared_ptr<const ByteSource> first_;
   std::vector<BlockPart> parts_;
-  std::set<std::string> seen_;
+  std::map<std::string, std::shared_ptr<Shared>> shared_;  // by URI
+  std::shared_ptr<const gltf::Scene> last_;                // open, for tiles that repeat it
+  std::map<std::string, uint64_t> bytes_;                  // as gltf::File::bytes()
   std::array<double, 3> origin_{};
-  uint64_t count_ = 0, bytes_;
+  uint64_t count_ = 0;
   int sh_degree_ = 0;
 };
 
