@@ -49,6 +49,6 @@ else()
     set(VOYAGER_SOG ON)
   else()
     voyager_leave_out(VOYAGER_SOG "SOG scenes"
-      "not both of libwebp and libzip, which libwebp-dev and libzip-dev bring: .sog files are refused")
+      "not both of libwebp and libzip, which libwebp-dev and libzip-dev bring: .sog files are refused, as input and output")
   endif()
 endif()

@@ -93,11 +93,14 @@ std::vector<std::string> flat_format_endings() {
 void FlatContents::add(const GaussianCloud& batch) {
   voyager::add(report, batch.report);
   if (count == 0) origin = batch.origin;
+  for (size_t i = 0; i < batch.position.size(); ++i) {
+    const double coordinate = batch.origin[i % 3] + static_cast<double>(batch.position[i]);
+    const bool first = count == 0 && i < 3;
+    least[i % 3] = first ? coordinate : std::min(least[i % 3], coordinate);
+    most[i % 3] = first ? coordinate : std::max(most[i % 3], coordinate);
+    largest_coordinate = std::max(largest_coordinate, std::fabs(coordinate));
+  }
   count += batch.size();
-  for (size_t i = 0; i < batch.position.size(); ++i)
-    largest_coordinate =
-        std::max(largest_coordinate,
-                 std::fabs(batch.origin[i % 3] + static_cast<double>(batch.position[i])));
 }
 
 float FlatContents::reach() const {

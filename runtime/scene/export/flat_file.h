@@ -30,6 +30,7 @@ struct FlatContents {
   NativeScale native;
   std::array<double, 3> origin{0, 0, 0};  // that all batches have
   double largest_coordinate = 0;          // metres, of the world, on any axis
+  std::array<double, 3> least{}, most{};  // metres, of the world; 0 where count is
   ImportReport report;
 
   void add(const GaussianCloud& batch);

@@ -1,4 +1,5 @@
 // What formats have no place for, in words.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -19,9 +20,16 @@ double step_at(float at) {
   return double{std::nextafter(at, std::numeric_limits<float>::infinity())} - double{at};
 }
 
-// Of a .sog, the largest there may be: 16 bits from -ln(|x| + 1) to ln(|x| + 1).
-double sog_step(double largest_coordinate) {
-  return 2 * std::log1p(largest_coordinate) / 65535 * (1 + largest_coordinate);
+// Of a .sog the largest: 16 bits of sign(x) ln(|x| + 1) between the bounds.
+double sog_step(const FlatContents& contents) {
+  const auto mapped = [](double x) { return std::copysign(std::log1p(std::fabs(x)), x); };
+  double largest = 0;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    const double least = contents.least[axis], most = contents.most[axis];
+    largest = std::max(largest, (mapped(most) - mapped(least)) / 65535 *
+                                    (1 + std::max(std::fabs(least), std::fabs(most))));
+  }
+  return largest;
 }
 constexpr double kCoarse = 0.01;  // metres
 
@@ -33,9 +41,9 @@ std::string coarse_positions(FlatFormat format, const FlatContents& contents) {
   if (in_binary32 && contents.is_moved())
     return "positions are in steps of " + metres(step_at(contents.reach())) + ": they are " +
            metres(coordinate) + " from the world's origin";
-  if (format == FlatFormat::sog && sog_step(coordinate) > kCoarse)
-    return "positions are in steps of up to " + metres(sog_step(coordinate)) + " where they are " +
-           metres(coordinate) + " from the world's origin";
+  if (format == FlatFormat::sog && sog_step(contents) > kCoarse)
+    return "positions are in steps of up to " + metres(sog_step(contents)) +
+           " where they are farthest from the world's origin";
   const int bits = spz_fractional_bits(contents.reach());
   if (format == FlatFormat::spz && bits < spz_fractional_bits(0))
     return "positions are in steps of " + metres(std::ldexp(1.0, -bits)) + ": one is " +

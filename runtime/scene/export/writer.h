@@ -94,7 +94,7 @@ uint64_t glb_bytes(uint64_t count, int sh_degree);
 // bits between the bounds of sign(x) ln(|x| + 1), of the world; rotations three of 8 bits,
 // opacities 8; log scales and f_dc the nearest of 256 values each, SH of degree 1 to 3 one of up to
 // 65,536 sets (sog/sh_sets.h) of 256 values. Gaussians are reordered along a Morton curve. All are
-// held, some 270 bytes each at SH degree 3, until finish(), which does the work. All batches have
+// held, some 400 bytes each at SH degree 3, until finish(), which does the work. All batches have
 // one origin. INRIA's axes. The flag says that a scene was trained with a compensated filter, not
 // which: it is read as 3DGS's. Throws Error(unsupported) for no Gaussians and for more than 268
 // million, and where require_sog() does.
