@@ -115,6 +115,23 @@ TEST(Transform, AnyTransformMapsTheCovariance) {
 }
 
 // A flat disc stays one, however thin: its axes are not taken from the square of their ratio.
+// Without a length a rotation is the identity, which turns with the scene.
+TEST(Transform, ARotationWithoutLengthTurns) {
+  const Affine turned{{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}, {0, 0, 0}};
+  for (const double stretch : {1.0, 2.0}) {
+    Affine affine = turned;
+    affine.linear.row[2].z = stretch;
+    GaussianCloud with = test::random_cloud(1, 3, 0), without = with;
+    std::fill(with.rotation.begin(), with.rotation.end(), 0.0f);
+    with.rotation[0] = 1;
+    std::fill(without.rotation.begin(), without.rotation.end(), 0.0f);
+    for (GaussianCloud* cloud : {&with, &without})
+      CloudTransform(affine, "x").apply(*cloud, kOrigin);
+    EXPECT_EQ(with.rotation, without.rotation);
+    EXPECT_EQ(without.report.repaired_rotation, 1u);
+  }
+}
+
 TEST(Transform, ThinDiscsKeepTheirThickness) {
   GaussianCloud cloud = test::random_cloud(50, 5, 0);
   for (size_t i = 0; i < cloud.size(); ++i) cloud.log_scale[3 * i] = std::log(1e-8f);

@@ -169,8 +169,10 @@ std::unique_ptr<BlockReader> open_blocks(std::unique_ptr<ByteReader> reader) {
   const FirstBytes first = input->peek(kFormatBytes);
   const Format* format = known_format(first, input->name());
   if (!format || !format->open_stream)
-    refuse_stream(*input, first,
-                  "the first bytes of a .ply (\"ply\"): no other format can be read from a stream");
+    refuse_stream(
+        *input, first,
+        "the first bytes of a .ply (\"ply\"), or a .splat or .ksplat by its name: no other "
+        "format can be read from a stream");
   return format->open_stream(std::move(input));
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 [[noreturn]] void refuse_sog(const ByteSource& source) {
   refuse(source.name(), 0, "format", "SOG, which this build leaves out",
-         "a build with VOYAGER_SOG=ON, which libwebp, libzip and nlohmann-json bring");
+         "a build with VOYAGER_SOG=ON, which libwebp and libzip bring");
 }
 
 }  // namespace

@@ -139,6 +139,13 @@ TEST(GltfRefusal, MoreGaussiansThanTheFileIsWorth) {
             std::string::npos);
 }
 
+// Siblings without end are no reason to look at all of them again for each.
+TEST(GltfRefusal, ManySiblingsAreReadAtOnce) {
+  std::string many = "{\"asset\":{\"version\":\"2.0\"},\"extras\":[{}";
+  for (int i = 0; i < 300000; ++i) many += ",{}";
+  EXPECT_NE(refusal(test::bytes_of(many + "]}")).find("no node of the scene"), std::string::npos);
+}
+
 // A thousand nodes with a thousand primitives are a million parts, of no Gaussians each.
 TEST(GltfRefusal, MorePartsThanTheFileIsWorth) {
   GltfFile file = test::gltf_of(GaussianCloud());

@@ -37,10 +37,10 @@ TEST(SplatImport, DecodesEachField) {
   EXPECT_NEAR(cloud.sh[1], -0.5 / kSh0, 1e-6);
   EXPECT_NEAR(cloud.sh[2], -0.3 / kSh0, 1e-6);
   EXPECT_NEAR(cloud.opacity[0], std::log(4.0), 1e-5);
-  EXPECT_EQ(cloud.rotation[0], 1.0f);
+  EXPECT_EQ(cloud.rotation[0], 127 / 128.0f);
   EXPECT_EQ(cloud.rotation[1], -1.0f);
-  EXPECT_NEAR(cloud.rotation[2], 1 / 255.0, 1e-6);
-  EXPECT_NEAR(cloud.rotation[3], -1 / 255.0, 1e-6);
+  EXPECT_EQ(cloud.rotation[2], 0.0f);
+  EXPECT_EQ(cloud.rotation[3], -1 / 128.0f);
 }
 
 TEST(SplatImport, ExtremeAlphasAreNotRepairsAndAScaleOfZeroIs) {
