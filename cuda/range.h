@@ -21,7 +21,9 @@ class Range {
     attributes.message.ascii = name;
     nvtxDomainRangePushEx(domain(), &attributes);
   }
-  ~Range() { nvtxDomainRangePop(domain()); }
+  ~Range() {
+    nvtxDomainRangePop(domain());
+  }
 #else
   explicit Range(const char*) {}
 #endif

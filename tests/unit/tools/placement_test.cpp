@@ -31,8 +31,8 @@ TEST(Placement, AMatrixIsRows) {
 
 TEST(Placement, RefusesWhatIsNeither) {
   for (const char* text :
-       {"", ",", "scale", "scale 1 2", "scale x", "turn 1 2 3 4", "rotate 1 2 3",
-        "rotate 0 0 0 90", "translate 1 2", "1 2 3 4", "1 2 3 4, 5 6 7 8", "1 2 3, 4 5 6, 7 8 9",
+       {"", ",", "scale", "scale 1 2", "scale x", "turn 1 2 3 4", "rotate 1 2 3", "rotate 0 0 0 90",
+        "translate 1 2", "1 2 3 4", "1 2 3 4, 5 6 7 8", "1 2 3, 4 5 6, 7 8 9",
         "1 0 0 0, 0 1 0 0, 0 0 1 0, 0 0 0 2", "1 0 0 nan, 0 1 0 0, 0 0 1 0", "1 0 0 0, 0 1 0 0, a"})
     EXPECT_THROW(parse_transform(text), CLI::ValidationError) << text;
 }
