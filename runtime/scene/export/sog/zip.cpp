@@ -25,7 +25,7 @@ void add(zip_t& zip, const std::string& name, std::span<const std::byte> bytes) 
   require(source != nullptr);
   const zip_int64_t index = zip_file_add(&zip, name.c_str(), source.get(), ZIP_FL_ENC_UTF_8);
   require(index >= 0);
-  source.release();  // the zip's now
+  static_cast<void>(source.release());  // the zip's now
   const auto at = static_cast<zip_uint64_t>(index);
   require(zip_set_file_compression(&zip, at, ZIP_CM_STORE, 0) == 0);
   require(zip_file_set_dostime(&zip, at, 0, kFirstDate, 0) == 0);
@@ -54,7 +54,7 @@ std::vector<std::byte> zip_of(const NamedFiles& files) {
   zip_source_keep(source.get());  // the zip gives one up
   for (const auto& [name, bytes] : files) add(*zip, name, bytes);
   require(zip_close(zip.get()) == 0);
-  zip.release();
+  static_cast<void>(zip.release());
   return read(*source);
 }
 
