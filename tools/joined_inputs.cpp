@@ -33,7 +33,10 @@ std::unique_ptr<BlockReader> open_joined(
     const std::vector<std::shared_ptr<const ByteSource>>& sources, const Placement& placement) {
   Readers readers;
   for (const auto& source : sources) readers.push_back(open_blocks(source));
-  if (placement.given()) readers = placed(std::move(readers), placement.of(readers.size()));
+  if (placement.given()) {
+    const std::vector<Affine> places = placement.of(readers.size());
+    readers = placed(std::move(readers), places);
+  }
   require_all_alike(readers);
   if (readers.size() == 1) return std::move(readers.front());
   const std::string name = readers.front()->name();
