@@ -24,6 +24,7 @@ struct File {
     EXPECT_EQ(bytes.size() - begin, chunks * 72 + gaussians * (16 + sh_each));
     const std::byte* at = bytes.data() + begin;
     const auto take = [&](auto& into) {
+      if (into.empty()) return;  // memcpy takes no null
       std::memcpy(into.data(), at, into.size() * sizeof(into[0]));
       at += into.size() * sizeof(into[0]);
     };
