@@ -7,6 +7,7 @@
 
 #include "cuda/bin_order.cuh"
 #include "cuda/grid.h"
+#include "cuda/occlusion.cuh"
 #include "cuda/splat_launch.h"
 
 namespace voyager::cuda {
@@ -50,16 +51,27 @@ __device__ uint32_t* bin_offsets(const SplatView& splats, const Share& share) {
   return splats.tile_offsets + size_t{blockIdx.x} * splats.frame.count() + share.first_tile;
 }
 
+// Whether a pair is in its tile's list. depth: of its key.
+template <bool kLimited>
+__device__ bool bin_takes(const SplatView& splats, uint32_t tile, uint32_t depth) {
+  return !kLimited || depth <= __ldg(splats.limits.bits + tile);
+}
+
 // band: tiles of an eye that a block counts in shared memory at a time.
+template <bool kLimited>
 __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
     bin_count(SplatView splats, uint32_t band) {
+  if (!has_work(splats)) return;
   extern __shared__ uint32_t counts[];
   const Share share = bin_share(splats, band);
   for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) counts[i] = 0;
   __syncthreads();
   for (uint32_t i = threadIdx.x; i < share.count; i += kBinThreads) {
-    const TileRange range = bin_band(share.strips[i], share);
-    for (int32_t tile = range.begin; tile < range.end; ++tile) atomicAdd(counts + tile, 1u);
+    const TileStrip strip = share.strips[i];
+    const TileRange range = bin_band(strip, share);
+    for (int32_t tile = range.begin; tile < range.end; ++tile)
+      if (bin_takes<kLimited>(splats, share.first_tile + tile, strip.depth))
+        atomicAdd(counts + tile, 1u);
   }
   __syncthreads();
   uint32_t* offsets = bin_offsets(splats, share);
@@ -93,6 +105,7 @@ using PlaceScan = cub::BlockScan<unsigned long long, kPlaceThreads, cub::BLOCK_S
 // One block: where each tile's list begins and ends, and the order in which lists are worked
 // on. What is beyond the room is cut off.
 __global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats) {
+  if (!has_work(splats)) return;
   __shared__ PlaceScan::TempStorage storage;
   __shared__ uint32_t counts[kChunk];
   __shared__ uint32_t firsts[kChunk + 1];
@@ -135,14 +148,19 @@ __device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) 
 }
 
 // A strip a lane; the rest of a wide one is the whole warp's.
-__device__ void bin_strip(const SplatView& splats, uint32_t* cursors, const TileRange& range,
-                          DepthKey key) {
+template <bool kLimited>
+__device__ void bin_strip(const SplatView& splats, const Share& share, uint32_t* cursors,
+                          const TileRange& range, DepthKey key) {
   const auto begin = static_cast<uint32_t>(range.begin), lane = threadIdx.x % 32;
   const auto tiles = static_cast<uint32_t>(range.end - range.begin);
+  const auto take = [&](uint32_t tile, DepthKey of) {
+    return bin_takes<kLimited>(splats, share.first_tile + tile, static_cast<uint32_t>(of >> 32))
+               ? atomicAdd(cursors + tile, 1u)
+               : splats.pairs;
+  };
   uint32_t place[kNarrow];
 #pragma unroll
-  for (uint32_t k = 0; k < kNarrow; ++k)
-    place[k] = k < tiles ? atomicAdd(cursors + begin + k, 1u) : splats.pairs;
+  for (uint32_t k = 0; k < kNarrow; ++k) place[k] = k < tiles ? take(begin + k, key) : splats.pairs;
 #pragma unroll
   for (uint32_t k = 0; k < kNarrow; ++k) bin_pair(splats, place[k], key);
   unsigned wide = __ballot_sync(0xffffffffu, tiles > kNarrow);
@@ -152,12 +170,14 @@ __device__ void bin_strip(const SplatView& splats, uint32_t* cursors, const Tile
     const uint32_t first = __shfl_sync(0xffffffffu, begin, owner);
     const uint32_t count = __shfl_sync(0xffffffffu, tiles, owner);
     for (uint32_t k = kNarrow + lane; k < count; k += 32)
-      bin_pair(splats, atomicAdd(cursors + first + k, 1u), shared_key);
+      bin_pair(splats, take(first + k, shared_key), shared_key);
   }
 }
 
+template <bool kLimited>
 __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
     bin_scatter(SplatView splats, uint32_t band) {
+  if (!has_work(splats)) return;
   extern __shared__ uint32_t cursors[];
   const Share share = bin_share(splats, band);
   const uint32_t* offsets = bin_offsets(splats, share);
@@ -169,7 +189,7 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
     TileStrip strip{};
     if (i < share.count) strip = share.strips[i];
     const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
-    bin_strip(splats, cursors, bin_band(strip, share), key);
+    bin_strip<kLimited>(splats, share, cursors, bin_band(strip, share), key);
   }
 }
 
@@ -177,6 +197,19 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
 // Orin, where an eye of 2064x2208 pixels has 17,802.
 uint32_t most_band_tiles() {
   return static_cast<uint32_t>(shared_bytes_of_block(kBinBlocks) / sizeof(uint32_t));
+}
+
+template <bool kLimited>
+void launch(const SplatFrame& f, const dim3& blocks, uint32_t band) {
+  const auto bytes = static_cast<int>(band * sizeof(uint32_t));
+  allow_shared_bytes(bin_count<kLimited>, bytes, "bin_count");
+  bin_count<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
+  check(cudaGetLastError(), "bin_count");
+  bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats);
+  check(cudaGetLastError(), "bin_place");
+  allow_shared_bytes(bin_scatter<kLimited>, bytes, "bin_scatter");
+  bin_scatter<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
+  check(cudaGetLastError(), "bin_scatter");
 }
 
 }  // namespace
@@ -192,16 +225,11 @@ void launch_bin(const SplatFrame& f) {
     most = std::max(most, f.splats.frame.first[eye + 1] - f.splats.frame.first[eye]);
   const uint32_t bands = (most + most_band_tiles() - 1) / most_band_tiles();
   const uint32_t band = (most + bands - 1) / bands;
-  const auto bytes = static_cast<int>(band * sizeof(uint32_t));
   const dim3 blocks(bin_blocks(f.multiprocessors), bands);
-  allow_shared_bytes(bin_count, bytes, "bin_count");
-  bin_count<<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
-  check(cudaGetLastError(), "bin_count");
-  bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats);
-  check(cudaGetLastError(), "bin_place");
-  allow_shared_bytes(bin_scatter, bytes, "bin_scatter");
-  bin_scatter<<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
-  check(cudaGetLastError(), "bin_scatter");
+  if (f.splats.limits.bits == nullptr)
+    launch<false>(f, blocks, band);
+  else
+    launch<true>(f, blocks, band);
 }
 
 }  // namespace voyager::cuda

@@ -10,13 +10,19 @@ namespace {
 
 constexpr unsigned kAll = 0xffffffffu, kThreads = 256;
 
+// Numbers, not NaN, as integers that ascend with them: a warp finds the least of these at once.
+__device__ uint32_t ascending(float v) {
+  const uint32_t bits = __float_as_uint(v);
+  return bits ^ (static_cast<uint32_t>(static_cast<int32_t>(bits) >> 31) | 0x80000000u);
+}
+__device__ float number_of(uint32_t ascending) {
+  return __uint_as_float((ascending & 0x80000000u) != 0 ? ascending ^ 0x80000000u : ~ascending);
+}
 __device__ float warp_min(float v) {
-  for (int step = 16; step != 0; step /= 2) v = fminf(v, __shfl_xor_sync(kAll, v, step));
-  return v;
+  return number_of(__reduce_min_sync(kAll, ascending(v)));
 }
 __device__ float warp_max(float v) {
-  for (int step = 16; step != 0; step /= 2) v = fmaxf(v, __shfl_xor_sync(kAll, v, step));
-  return v;
+  return number_of(__reduce_max_sync(kAll, ascending(v)));
 }
 
 __device__ void add(MeanBounds& bounds, const GaussianHull& hull) {
@@ -46,22 +52,23 @@ __device__ MeanBounds joined(const MeanBounds& own) {
           warp_max(own.radius)};
 }
 
-// Thread blocks that share a block of subtrees: few blocks change in most frames, and one alone
-// would wait for memory row after row.
+// Thread blocks that share a block of subtrees where few have changed: one alone would wait for
+// memory row after row. After a jump all have, and each has enough to do.
 constexpr uint32_t kShares = 8;
 
 // A row a warp.
 __global__ void __launch_bounds__(kThreads)
     search_bound(StateView state, GaussianView gaussians, bool parents) {
   constexpr uint32_t kWarps = kThreads / 32;
-  const uint32_t shares = kShares * state.work[1].dirty_count, lane = threadIdx.x % 32;
-  for (uint32_t i = blockIdx.x; i < shares; i += gridDim.x) {
-    const Block block = state.blocks[state.dirty[i / kShares]];
-    const uint32_t first = i % kShares * kWarps + threadIdx.x / 32;
+  const uint32_t dirty = state.work[1].dirty_count, lane = threadIdx.x % 32;
+  const uint32_t shares = kShares * dirty <= gridDim.x ? kShares : 1;
+  for (uint32_t i = blockIdx.x; i < shares * dirty; i += gridDim.x) {
+    const Block block = state.blocks[state.dirty[i / shares]];
+    const uint32_t first = i % shares * kWarps + threadIdx.x / 32;
     for (uint32_t level = 0; level < kLevels; ++level) {
       const Segment segment = state.segments[block.first_segment + level * block.stride];
       const uint32_t end = (segment.first + segment.room) / kRowPlaces;
-      for (uint32_t row = segment.first / kRowPlaces + first; row < end; row += kShares * kWarps) {
+      for (uint32_t row = segment.first / kRowPlaces + first; row < end; row += shares * kWarps) {
         const MeanBounds bounds =
             joined(bounds_of(gaussians, state.nodes[row * kRowPlaces + lane], parents));
         if (lane == 0) state.bounds[row] = bounds;

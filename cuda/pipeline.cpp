@@ -9,6 +9,7 @@
 #include "cuda/frame_image.h"
 #include "cuda/frame_limits.h"
 #include "cuda/frame_report.h"
+#include "cuda/occlusion.h"
 #include "cuda/range.h"
 #include "cuda/splat_state.h"
 #include "runtime/base/error.h"
@@ -44,7 +45,8 @@ class SplatPipeline final : public Pipeline {
         lut_(upload_lut(desc)),
         splats_(bin_blocks(device_->multiprocessors()), desc.eyes),
         images_(desc.eyes),
-        limits_(desc.eyes) {}
+        limits_(desc.eyes),
+        occlusion_choice_(desc.count_pixels ? Occlusion::off : desc.occlusion) {}
 
   // What it frees belongs to the device's context, and to frames that may be under way.
   ~SplatPipeline() override {
@@ -75,18 +77,21 @@ class SplatPipeline final : public Pipeline {
   Report begin_frame(const FrameInput& frame);
   void fit(const FrameInput& frame, const FrameTiles& tiles);
   void launch_search(const FrameInput& frame, FrameReport& report);
-  SplatFrame work(const FrameTiles& tiles) const;
+  SplatFrame work(const FrameTiles& tiles, int pass) const;
   void launch_lists(const FrameInput& frame, FrameReport& report);
   void launch_checked_lists(const FrameInput& frame, FrameReport& report);
   void launch_projections(const FrameInput& frame, SplatFrame& work);
   static Eyes external_eyes(const FrameInput& frame);
-  void launch_image(const Eyes& eyes, FrameReport& report);
+  void launch_image(const FrameInput& frame, const Eyes& eyes, FrameReport& report);
+  void launch_second_pass(const FrameInput& frame, const RasterChoices& choices, const Eyes& eyes,
+                          FrameReport& report);
   void copy(FrameReport& report) const {
     report.copy(splats_.counters(), instances_, stream_.get());
   }
   void make_room();
   void collect(const FrameReport& report, FrameStats& stats) const;
   uint64_t culling_bytes(const SplatCounters& counted) const;
+  void learn(const FrameReport& report);
   void count_bytes(const FrameReport& report, FrameStats& stats) const;
 
   std::shared_ptr<const Device> device_;
@@ -96,6 +101,8 @@ class SplatPipeline final : public Pipeline {
   SplatState splats_;
   std::vector<FrameImage> images_;  // of each eye, as limits
   std::vector<FrameLimits> limits_;
+  OcclusionState occlusion_;
+  OcclusionChoice occlusion_choice_;
   Stream stream_;
   std::vector<Report> free_;      // made as many as were under way at once
   std::deque<Report> under_way_;  // the oldest first
@@ -112,14 +119,17 @@ void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work
       work.params[eye] =
           project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i), desc_);
     work.rows = launch_rows(work);
-    instance.draws->weigh(work.rows, stream_.get());
+    // Where no rows are told apart, the first pass has weighed all.
+    if (work.splats.open_parts == nullptr || work.rows.rows != nullptr)
+      instance.draws->weigh(work.rows, stream_.get());
     if (launch_project(work, desc_.alpha_filter)) ++work.instance;
   }
 }
 
-SplatFrame SplatPipeline::work(const FrameTiles& tiles) const {
+SplatFrame SplatPipeline::work(const FrameTiles& tiles, int pass) const {
   SplatFrame work{};
-  work.splats = splats_.view(tiles);
+  work.splats = splats_.view(tiles, pass);
+  if (pass == 0) work.splats.limits = occlusion_.first();
   work.multiprocessors = device_->multiprocessors();
   work.stream = stream_.get();
   return work;
@@ -128,7 +138,7 @@ SplatFrame SplatPipeline::work(const FrameTiles& tiles) const {
 // Up to the tiles' lists.
 void SplatPipeline::launch_lists(const FrameInput& frame, FrameReport& report) {
   report.room = splats_.room();
-  SplatFrame lists = work(report.tiles);
+  SplatFrame lists = work(report.tiles, 0);
   splats_.begin_frame(report.tiles, stream_.get());
   run_stage(kProject, report, [&] { launch_projections(frame, lists); });
   run_stage(kBin, report, [&] { launch_bin(lists); });
@@ -146,7 +156,7 @@ void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& r
   }
 }
 
-void SplatPipeline::launch_image(const Eyes& eyes, FrameReport& report) {
+void SplatPipeline::launch_image(const FrameInput& frame, const Eyes& eyes, FrameReport& report) {
   const RasterChoices choices{desc_.exponential,
                               desc_.alpha_filter,
                               desc_.count_pixels,
@@ -154,8 +164,23 @@ void SplatPipeline::launch_image(const Eyes& eyes, FrameReport& report) {
                               lut_.data(),
                               desc_.lut_size,
                               log_threshold(desc_.antialias)};
-  run_stage(kRasterize, report,
-            [&] { launch_rasterize(work(report.tiles), choices, eyes.data()); });
+  run_stage(kRasterize, report, [&] {
+    launch_rasterize(work(report.tiles, 0), choices, eyes.data());
+    if (occlusion_.limited()) launch_second_pass(frame, choices, eyes, report);
+  });
+}
+
+// All stages, for the tiles that the first pass left open. Without any, each kernel ends at once.
+void SplatPipeline::launch_second_pass(const FrameInput& frame, const RasterChoices& choices,
+                                       const Eyes& eyes, FrameReport& report) {
+  const Range range("second pass");
+  SplatFrame rest = work(report.tiles, 1);
+  rest.splats.limits =
+      occlusion_.second(report.tiles, rest.splats.ends, rest.splats.open_parts, stream_.get());
+  launch_projections(frame, rest);
+  launch_bin(rest);
+  launch_sort(rest);
+  launch_rasterize(rest, choices, eyes.data());
 }
 
 SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
@@ -178,17 +203,22 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
     report->target_bytes +=
         uint64_t{eye.image.width} * eye.image.height * pixel_bytes(eye.image.format);
   fit(frame, report->tiles);
+  occlusion_.begin(occlusion_choice_.next(), frame, report->tiles,
+                   splats_.view(report->tiles, 0).ends, stream_.get());
+  report->limited = occlusion_.limited();
   return report;
 }
 
 // To the frame's size. What is too small is replaced, and frames in flight still use it.
 void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
-  bool fits = splats_.fits(tiles);
+  bool fits = splats_.fits(tiles) && (!occlusion_choice_.possible() || occlusion_.fits(tiles));
   for (size_t eye = 0; eye < limits_.size(); ++eye)
     fits = fits && limits_[eye].fits(frame.eyes[eye]);
   if (fits) return;
   stream_.wait();
   splats_.fit(tiles);
+  if (occlusion_choice_.possible()) occlusion_.fit(tiles);
+  occlusion_.forget();
   for (size_t eye = 0; eye < limits_.size(); ++eye) limits_[eye].fit(frame.eyes[eye]);
 }
 
@@ -217,13 +247,14 @@ void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
     launch_lists(frame, *report);
     for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
       eyes[eye].limits = limits_[eye].upload(frame.eyes[eye], stream_.get());
-    launch_image(eyes, *report);
+    launch_image(frame, eyes, *report);
     copy(*report);
     report->wait();
     if (!splats_.grow(room_for(report->counters()))) break;
     report->timer.go_back_to(kSearch);
   }
   collect(*report, stats);
+  learn(*report);
   free_.push_back(std::move(report));
 }
 
@@ -272,7 +303,7 @@ void SplatPipeline::submit(const FrameInput& frame, bool checked) {
       checked ? launch_checked_lists(frame, report) : launch_lists(frame, report);
     }
     if (checked) each_ring(frame, wait);
-    launch_image(external_eyes(frame), report);
+    launch_image(frame, external_eyes(frame), report);
     each_ring(frame, [&](const ExternalTarget& target) { signal_rendered(target, stream); });
     copy(report);  // the host that waits for the image does not wait for this
     each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
@@ -290,6 +321,7 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   if (wait) oldest.wait();
   if (!oldest.passed()) return false;
   collect(oldest, stats);
+  learn(oldest);
   const SplatRoom used = room_for(oldest.counters());
   const auto ahead = [](size_t& wanted, size_t needed) {
     wanted = std::max(wanted, needed + needed / 8);
@@ -302,17 +334,23 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
 }
 
 void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const {
-  const SplatCounters& counted = report.counters();
   instances_.collect(report.instances(), stats);
-  stats.splats = counted.splats;
-  stats.pairs_before = counted.pairs_boxed;
-  stats.pairs_after = counted.pairs;
-  stats.pairs_dropped = dropped(counted, report.room);
-  stats.pixels_evaluated = counted.evaluated;
-  stats.pixels_blended = counted.blended;
-
+  for (const SplatCounters& counted : report.counters()) {
+    stats.splats += counted.splats;
+    stats.pairs_before += counted.pairs_boxed;
+    stats.pairs_after += counted.pairs;
+    stats.pixels_evaluated += counted.evaluated;
+    stats.pixels_blended += counted.blended;
+  }
+  stats.pairs_dropped = dropped(report.counters(), report.room);
   count_bytes(report, stats);
   report.timer.collect(stats);
+}
+
+void SplatPipeline::learn(const FrameReport& report) {
+  uint64_t pairs = 0;
+  for (const SplatCounters& counted : report.counters()) pairs += counted.pairs;
+  occlusion_choice_.learn(report.limited, pairs);
 }
 
 // Bytes that culling reads: of the rows of a list, and of the places of those that it keeps.
@@ -332,24 +370,28 @@ uint64_t SplatPipeline::culling_bytes(const SplatCounters& counted) const {
 }
 
 // What each stage reads and writes of its own arrays; what siblings share of their parents
-// is left out, and a Gaussian is read once for all eyes, which see about the same ones.
+// is left out, and a Gaussian is read once for all eyes, which see about the same ones. All of a
+// second pass counts as the stages' own, though its time is rasterize's.
 void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) const {
-  const SplatCounters& counted = report.counters();
   // A block of bin has one eye's.
   const uint64_t offsets = uint64_t{report.tiles.count()} * bin_blocks(device_->multiprocessors()) *
                            sizeof(uint32_t) / desc_.eyes;
-  const uint64_t pairs = counted.pairs;
-  uint64_t candidates = 0;
-  for (const InstanceCounters& instance : counted.instances)
-    candidates += instance.whole + instance.blended;
   constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
   stats.gaussian_bytes = instances_.bytes_a_gaussian();
-  stats.bytes[kProject] = culling_bytes(counted) + 2 * sizeof(uint32_t) * candidates +
-                          counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) +
-                          counted.strips * sizeof(TileStrip);
-  stats.bytes[kBin] = 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
-  stats.bytes[kSort] = 2 * pairs * kKey;
-  stats.bytes[kRasterize] = pairs * (kKey + kRecord) + report.target_bytes;
+  for (const SplatCounters& counted : report.counters()) {
+    if (counted.places == 0) continue;
+    const uint64_t pairs = counted.pairs;
+    uint64_t candidates = 0;
+    for (const InstanceCounters& instance : counted.instances)
+      candidates += instance.whole + instance.blended;
+    stats.bytes[kProject] += culling_bytes(counted) + 2 * sizeof(uint32_t) * candidates +
+                             counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) +
+                             counted.strips * sizeof(TileStrip);
+    stats.bytes[kBin] += 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
+    stats.bytes[kSort] += 2 * pairs * kKey;
+    stats.bytes[kRasterize] += pairs * (kKey + kRecord);
+  }
+  stats.bytes[kRasterize] += report.target_bytes;
 }
 
 std::vector<Omission> SplatPipeline::omissions() const {

@@ -5,6 +5,7 @@
 #include "cuda/draw_item.cuh"
 #include "cuda/gaussian_hull.cuh"
 #include "cuda/grid.h"
+#include "cuda/occlusion.cuh"
 #include "cuda/splat_launch.h"
 #include "cuda/tile_strips.cuh"
 
@@ -18,9 +19,9 @@ constexpr unsigned kProjectThreads = 128;
 // registers, which costs more than the few that it then spills.
 constexpr unsigned kPairBlocks = 6;
 
-// In the image of any eye.
+// In the image of any eye, before what hides it.
 template <bool kLod, int kEyes>
-__device__ bool project_may_reach(const SplatFrame& f, const DrawItem& item) {
+__device__ bool project_may_show(const SplatFrame& f, const DrawItem& item) {
   if (item.gaussian == kNoNode) return false;
   GaussianHull hull = hull_at(f.gaussians, item.gaussian);
   if (kLod && item.t != 1.0f) {
@@ -32,7 +33,8 @@ __device__ bool project_may_reach(const SplatFrame& f, const DrawItem& item) {
   bool reaches = false;
   for (int eye = 0; eye < kEyes; ++eye)
     reaches = reaches || may_reach(f.params[eye], hull.mean, hull.max_scale, radius);
-  return radius > 0.0f && reaches;
+  return radius > 0.0f && reaches &&
+         !hidden_in_all(f.splats, f.params, {hull.mean, hull.max_scale, hull.mean, radius});
 }
 
 // Lists the places of a block's threads that have a bit in their warp's `lanes`, in order within
@@ -63,6 +65,7 @@ __device__ void append_places(const uint32_t (&lanes)[kItems], uint32_t* next, u
 // as long as its slowest.
 template <bool kLod, int kEyes>
 __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
+  if (!has_work(f.splats)) return;
   __shared__ uint32_t found, first;
   const uint32_t places = *f.draws.list.size;
   InstanceCounters* const counters = f.splats.counters->instances + f.instance;
@@ -83,7 +86,7 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
       bool reaches = false, blends = false;
       if (at < rows && place < end) {
         const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
-        reaches = project_may_reach<kLod, kEyes>(f, item);
+        reaches = project_may_show<kLod, kEyes>(f, item);
         blends = kLod && item.t != 1.0f;
       }
       whole[k] = __ballot_sync(kAll, reaches && !blends);
@@ -125,6 +128,7 @@ __device__ SplatRecord record_of(const Splat& s, float log_scale) {
 template <class Sh, bool kLod, int kEyes>
 __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
     project_splats(SplatFrame f, bool boxes) {
+  if (!has_work(f.splats)) return;
   const DeviceArrays<Sh> arrays{f.gaussians};
   const InstanceCounters& counters = f.splats.counters->instances[f.instance];
   const uint32_t first_place = counters.first_place;

@@ -1,6 +1,8 @@
-// METHOD §5, §7a for whole rows of a cut list: those of which a Gaussian may reach the image.
+// METHOD §5, §7a for whole rows of a cut list: those of which a Gaussian may reach the image,
+// and is not hidden.
 #include "cuda/gaussian_hull.cuh"
 #include "cuda/grid.h"
+#include "cuda/occlusion.cuh"
 #include "cuda/splat_launch.h"
 
 namespace voyager::cuda {
@@ -14,11 +16,12 @@ __device__ bool row_may_reach(const SplatFrame& f, uint32_t row) {
   bool reaches = false;
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
     reaches = reaches || may_reach(f.params[eye], bounds);
-  return reaches;
+  return reaches && !hidden_in_all(f.splats, f.params, bounds);
 }
 
 // A row a lane. Their order depends on scheduling; nothing that is made of them does.
 __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
+  if (!has_work(f.splats)) return;
   InstanceCounters* const counters = f.splats.counters->instances + f.instance;
   const uint32_t first_place = min(counters->first_place, f.splats.places);
   const uint32_t places = min(*f.draws.list.size, f.splats.places - first_place);

@@ -4,6 +4,8 @@
 // nobody.
 #include <algorithm>
 
+#include "cuda/grid.h"
+#include "cuda/occlusion.cuh"
 #include "cuda/raster_lane.cuh"
 #include "cuda/raster_output.cuh"
 #include "cuda/raster_part.cuh"
@@ -112,11 +114,13 @@ __device__ void blend_mixed(const WarpSplats& chosen, int count, unsigned siblin
   }
 }
 
+// The depth (bits) behind which the part is full; kDrawAll where the list comes to its end before.
 template <class M, class Lane>
-__device__ void rasterize_list(const SplatView& splats, const TileList& list, const Part& part,
-                               float log_threshold, const Lut& lut, WarpSplats& chosen, Lane& lane,
-                               Counts& counts) {
+__device__ uint32_t rasterize_list(const SplatView& splats, const TileList& list, const Part& part,
+                                   float log_threshold, const Lut& lut, WarpSplats& chosen,
+                                   Lane& lane, Counts& counts) {
   const uint32_t self = threadIdx.x % 32;
+  if (all_ended(lane)) return kDrawNothing;  // none of its pixels is in the image
   Reader reader(splats, list, self);
   float farthest = kInfinity;
   if constexpr (M::kLimits) farthest = farthest_of(lane);
@@ -147,14 +151,18 @@ __device__ void rasterize_list(const SplatView& splats, const TileList& list, co
     } else {
       blend_chosen<Siblings::none>(chosen, 0, count, lut, lane, counts);
     }
+    bool ended;
     if constexpr (M::kLimits) {
       // Splats come front to back: behind one that is too far all are.
       farthest = farthest_of(lane);
-      if (__any_sync(kAll, valid && splat.middle.z > farthest)) return;
+      ended = __any_sync(kAll, valid && splat.middle.z > farthest);
     } else {
-      if (all_ended(lane)) return;
+      ended = all_ended(lane);
     }
+    // From the key: the splat's registers are others' by now.
+    if (ended) return static_cast<uint32_t>(splats.keys[min(first + 32, list.last) - 1] >> 32);
   }
+  return kDrawAll;
 }
 
 // Where one eye has limits and another has none.
@@ -162,17 +170,17 @@ __device__ float limit_at(const DepthLimits& limits, uint32_t x, uint32_t y) {
   return limits.values == nullptr ? kInfinity : limits.at(x, y);
 }
 
+// What a part of a tile tells of where it ended.
+__device__ void note_end(const SplatView& splats, uint32_t tile, uint32_t end) {
+  if (threadIdx.x % 32 != 0) return;
+  atomicMax(splats.ends + tile, end);
+  if (end == kDrawAll && splats.limits.bits != nullptr && splats.limits.bits[tile] != kDrawAll)
+    atomicAdd(&splats.counters->open_parts, 1u);
+}
+
 template <class M>
-__global__ void __launch_bounds__(kThreads, 8)
-    rasterize_tiles(const __grid_constant__ RasterParams params) {
-  __shared__ WarpSplats chosen[kWarps];
-  extern __shared__ float lut_entries[];
-  if constexpr (M::kExponential == Exponential::lut) {
-    for (uint32_t i = threadIdx.x; i <= params.lut_size; i += kThreads)
-      lut_entries[i] = params.lut[i];
-    __syncthreads();
-  }
-  const uint32_t list = params.splats.tile_order[blockIdx.x];
+__device__ void rasterize_tile(const RasterParams& params, uint32_t list, WarpSplats& chosen,
+                               const float* lut_entries) {
   const uint32_t index = params.splats.frame.eye(list);
   const RasterEye& eye = params.eyes[index];
   const uint32_t tile = list - params.splats.frame.first[index];
@@ -197,8 +205,9 @@ __global__ void __launch_bounds__(kThreads, 8)
                         inside(row) ? limit_at(eye.limits, x, y + row * kLaneRows) : -kInfinity);
   Counts counts;
   const Lut lut{lut_entries, static_cast<float>(params.lut_size) / kLutRange};
-  rasterize_list<M>(params.splats, params.splats.tiles[list], part, params.log_threshold, lut,
-                    chosen[warp], lane, counts);
+  const uint32_t end = rasterize_list<M>(params.splats, params.splats.tiles[list], part,
+                                         params.log_threshold, lut, chosen, lane, counts);
+  note_end(params.splats, list, end);
 #pragma unroll
   for (int row = 0; row < kRows; ++row)
     if (inside(row)) write_pixel(eye.target, x, y + row * kLaneRows, lane.pixel(row));
@@ -209,15 +218,66 @@ __global__ void __launch_bounds__(kThreads, 8)
   }
 }
 
+// Their entries, in shared memory, where the mode has a table.
+template <class M>
+__device__ const float* read_lut(const RasterParams& params) {
+  extern __shared__ float lut_entries[];
+  if constexpr (M::kExponential == Exponential::lut) {
+    for (uint32_t i = threadIdx.x; i <= params.lut_size; i += kThreads)
+      lut_entries[i] = params.lut[i];
+    __syncthreads();
+  }
+  return lut_entries;
+}
+
+// A block a tile.
+template <class M>
+__global__ void __launch_bounds__(kThreads, 8)
+    rasterize_tiles(const __grid_constant__ RasterParams params) {
+  __shared__ WarpSplats chosen[kWarps];
+  const float* lut_entries = read_lut<M>(params);
+  rasterize_tile<M>(params, params.splats.tile_order[blockIdx.x], chosen[threadIdx.x / 32],
+                    lut_entries);
+}
+
+// Of a second pass, which most often has no tile: those that it has come first. A kernel of its
+// own, because a loop over tiles takes registers that the loop over splats needs.
+template <class M>
+__global__ void __launch_bounds__(kThreads)
+    rasterize_open_tiles(const __grid_constant__ RasterParams params) {
+  if (!has_work(params.splats)) return;
+  __shared__ WarpSplats chosen[kWarps];
+  const float* lut_entries = read_lut<M>(params);
+  for (uint32_t at = blockIdx.x; at < params.splats.frame.count(); at += gridDim.x) {
+    const uint32_t tile = params.splats.tile_order[at];
+    if (params.splats.limits.bits[tile] == kDrawNothing) return;
+    rasterize_tile<M>(params, tile, chosen[threadIdx.x / 32], lut_entries);
+    __syncwarp();
+  }
+}
+
+template <class M>
+size_t lut_bytes(const RasterParams& params) {
+  return M::kExponential == Exponential::lut ? (params.lut_size + 1) * sizeof(float) : 0;
+}
+
 template <class M>
 void launch(const SplatFrame& f, const RasterParams& params) {
-  const bool lut = M::kExponential == Exponential::lut;
-  const size_t lut_bytes = lut ? (params.lut_size + 1) * sizeof(float) : 0;
-  rasterize_tiles<M><<<f.splats.frame.count(), kThreads, lut_bytes, f.stream>>>(params);
+  rasterize_tiles<M><<<f.splats.frame.count(), kThreads, lut_bytes<M>(params), f.stream>>>(params);
+}
+
+template <class M>
+void launch_open(const SplatFrame& f, const RasterParams& params) {
+  const unsigned resident = resident_blocks<rasterize_open_tiles<M>>(kThreads);
+  rasterize_open_tiles<M>
+      <<<f.multiprocessors * resident, kThreads, lut_bytes<M>(params), f.stream>>>(params);
 }
 
 template <Exponential E, bool kFilter>
 void launch_for(const SplatFrame& f, bool siblings, const RasterParams& params) {
+  // What its kernel can do beyond what the frame asks for changes nothing of it.
+  if (f.splats.open_parts != nullptr)
+    return launch_open<Mode<E, kFilter, true, true, false, true>>(f, params);
   bool depth = false, limits = false;
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye) {
     depth = depth || params.eyes[eye].target.has_depth();

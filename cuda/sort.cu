@@ -5,6 +5,7 @@
 #include <cub/warp/warp_merge_sort.cuh>
 
 #include "cuda/grid.h"
+#include "cuda/occlusion.cuh"
 #include "cuda/splat_launch.h"
 
 namespace voyager::cuda {
@@ -130,6 +131,7 @@ __device__ void sort_in_parts(LargeLists::Storage& storage, DepthKey* keys, Dept
 }
 
 __global__ void __launch_bounds__(kLargeThreads) sort_large(SplatView splats) {
+  if (!has_work(splats)) return;
   extern __shared__ __align__(16) unsigned char memory[];  // more than a kernel declares itself
   auto& storage = *reinterpret_cast<LargeLists::Storage*>(memory);
   const uint32_t lists = splats.counters->large_lists;
@@ -148,6 +150,7 @@ union Storage {
 
 // Nine blocks: with fewer registers a thread the sorts spill, with more too few run at once.
 __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) {
+  if (!has_work(splats)) return;
   __shared__ Storage storage;
   const uint32_t tiles = splats.frame.count(), long_lists = splats.counters->long_lists;
   for (uint32_t i = splats.counters->large_lists + blockIdx.x; i < long_lists; i += gridDim.x) {

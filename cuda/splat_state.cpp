@@ -12,6 +12,10 @@ constexpr size_t kFirstStrips = size_t{1} << 19, kFirstPairs = size_t{1} << 20;
 // Indices of 32 bits, and sums of two of them.
 constexpr size_t kMostIndices = size_t{1} << 31;
 
+size_t counter_bytes(size_t tiles) {
+  return sizeof(PassCounters) + (kPasses + 1) * tiles * sizeof(uint32_t);
+}
+
 size_t rows_for(size_t places) {
   return (places + kRowPlaces - 1) / kRowPlaces;
 }
@@ -49,12 +53,25 @@ FrameTiles frame_tiles(const FrameInput& frame) {
   return tiles;
 }
 
-uint64_t dropped(const SplatCounters& counters, const SplatRoom& room) {
+SplatRoom room_for(const PassCounters& passes) {
+  SplatRoom room;
+  for (const SplatCounters& counters : passes) {
+    room.places = std::max<size_t>(room.places, counters.places);
+    room.strips = std::max<size_t>(room.strips, counters.strip_room);
+    room.pairs = std::max<size_t>(room.pairs, counters.pairs);
+  }
+  return room;
+}
+
+uint64_t dropped(const PassCounters& passes, const SplatRoom& room) {
   const auto beyond = [](uint64_t counted, size_t there) {
     return counted > there ? counted - there : 0;
   };
-  return beyond(counters.places, room.places) + counters.strips_dropped +
-         beyond(counters.pairs, room.pairs);
+  uint64_t sum = 0;
+  for (const SplatCounters& counters : passes)
+    sum += beyond(counters.places, room.places) + counters.strips_dropped +
+           beyond(counters.pairs, room.pairs);
+  return sum;
 }
 
 SplatState::SplatState(unsigned bin_blocks, uint32_t eyes)
@@ -70,7 +87,7 @@ SplatState::SplatState(unsigned bin_blocks, uint32_t eyes)
 void SplatState::fit(const FrameTiles& of) {
   if (fits(of)) return;
   const size_t tiles = of.count();
-  counters_ = Buffer<unsigned char>(sizeof(SplatCounters) + tiles * sizeof(uint32_t));
+  counters_ = Buffer<unsigned char>(counter_bytes(tiles));
   tile_offsets_ = Buffer<uint32_t>(tiles * bin_blocks_);
   tile_order_ = Buffer<uint32_t>(tiles);
   tiles_ = Buffer<TileList>(tiles);
@@ -108,27 +125,32 @@ bool SplatState::grow(const SplatRoom& wanted) {
   return places || strips || pairs;
 }
 
-SplatView SplatState::view(const FrameTiles& tiles) const {
-  return {records_.data(),
-          candidates_.data(),
-          rows_.data(),
-          static_cast<uint32_t>(room().places),
-          strips_.data(),
-          static_cast<uint32_t>(strips_.size()),
-          keys_.data(),
-          merge_keys_.data(),
-          static_cast<uint32_t>(room().pairs),
-          reinterpret_cast<SplatCounters*>(counters_.data()),
-          reinterpret_cast<uint32_t*>(counters_.data() + sizeof(SplatCounters)),
-          tile_offsets_.data(),
-          tiles_.data(),
-          tile_order_.data(),
-          tiles};
+SplatView SplatState::view(const FrameTiles& tiles, int pass) const {
+  auto* const passes = reinterpret_cast<SplatCounters*>(counters_.data());
+  auto* const counts = reinterpret_cast<uint32_t*>(passes + kPasses);
+  SplatView view{};
+  view.records = records_.data();
+  view.candidates = candidates_.data();
+  view.rows = rows_.data();
+  view.places = static_cast<uint32_t>(room().places);
+  view.strips = strips_.data();
+  view.strip_room = static_cast<uint32_t>(strips_.size());
+  view.keys = keys_.data();
+  view.merge_keys = merge_keys_.data();
+  view.pairs = static_cast<uint32_t>(room().pairs);
+  view.counters = passes + pass;
+  view.tile_counts = counts + static_cast<size_t>(pass) * tiles.count();
+  view.tile_offsets = tile_offsets_.data();
+  view.tiles = tiles_.data();
+  view.tile_order = tile_order_.data();
+  view.ends = counts + static_cast<size_t>(kPasses) * tiles.count();
+  view.open_parts = pass == 0 ? nullptr : &passes->open_parts;
+  view.frame = tiles;
+  return view;
 }
 
 void SplatState::begin_frame(const FrameTiles& tiles, cudaStream_t stream) const {
-  check(cudaMemsetAsync(counters_.data(), 0,
-                        sizeof(SplatCounters) + tiles.count() * sizeof(uint32_t), stream),
+  check(cudaMemsetAsync(counters_.data(), 0, counter_bytes(tiles.count()), stream),
         "a frame's counters");
 }
 

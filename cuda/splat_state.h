@@ -1,6 +1,7 @@
 #pragma once
 // The buffers of the stages from projection on. They grow between frames, never in one.
 #include <algorithm>
+#include <array>
 
 #include "cuda/buffer.h"
 #include "cuda/search.h"
@@ -13,16 +14,18 @@ struct SplatRoom {
   size_t places = 0, strips = 0, pairs = 0;
 };
 
+// A frame draws its tiles once, or once more those that their limits left open.
+inline constexpr int kPasses = 2;
+using PassCounters = std::array<SplatCounters, kPasses>;
+
 // What a frame's lists would have needed.
-inline SplatRoom room_for(const SplatCounters& counters) {
-  return {counters.places, counters.strip_room, counters.pairs};
-}
+SplatRoom room_for(const PassCounters& passes);
 
 // The eyes' tiles, one grid behind the other.
 FrameTiles frame_tiles(const FrameInput& frame);
 
 // Pairs, strips and places of a frame for which there was no room.
-uint64_t dropped(const SplatCounters& counters, const SplatRoom& room);
+uint64_t dropped(const PassCounters& passes, const SplatRoom& room);
 
 class SplatState {
  public:
@@ -43,11 +46,12 @@ class SplatState {
   // memory for it: the frame is then what it can be. Nothing on the device uses them.
   bool grow(const SplatRoom& wanted);
 
-  SplatView view(const FrameTiles& tiles) const;
-  // Clears what the kernels add to.
+  // pass: without limits.
+  SplatView view(const FrameTiles& tiles, int pass) const;
+  // Clears what the kernels add to, in both passes.
   void begin_frame(const FrameTiles& tiles, cudaStream_t stream) const;
-  const SplatCounters* counters() const {
-    return reinterpret_cast<const SplatCounters*>(counters_.data());
+  const PassCounters* counters() const {
+    return reinterpret_cast<const PassCounters*>(counters_.data());
   }
 
  private:
@@ -60,7 +64,7 @@ class SplatState {
   Buffer<SplatRecord> records_;
   Buffer<uint32_t> candidates_, rows_;
   Buffer<DepthKey> keys_, merge_keys_;
-  Buffer<unsigned char> counters_;  // SplatCounters, then a count a tile
+  Buffer<unsigned char> counters_;  // PassCounters, then a count a tile and pass, then the ends
   Buffer<TileStrip> strips_;
   Buffer<uint32_t> tile_offsets_, tile_order_;
   Buffer<TileList> tiles_;

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "runtime/frame/backend.h"
+#include "cuda/tile_limits.h"
 #include "runtime/stages/bin.h"
 
 namespace voyager::cuda {
@@ -59,6 +59,7 @@ struct SplatCounters {
   unsigned long long strip_room;                  // that they need in all regions
   unsigned long long strips_dropped;
   uint32_t long_lists, large_lists;  // the first tiles of tile_order
+  uint32_t open_parts;  // of tiles whose list was cut off before all of their pixels had ended
 };
 
 // At most so many keys are in lists behind the long ones, and behind the large ones: just
@@ -108,6 +109,10 @@ struct SplatView {
   uint32_t* tile_offsets;  // [block of bin_count][tile]
   TileList* tiles;
   uint32_t* tile_order;  // longest lists first
+  // By tile, the depth (bits) behind which it is full; kDrawAll where it is not. Of both passes.
+  uint32_t* ends;
+  TileLimits limits;
+  const uint32_t* open_parts;  // of the first pass; null there
   FrameTiles frame;
 };
 

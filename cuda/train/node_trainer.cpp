@@ -55,15 +55,15 @@ void grow(Buffer<T>& buffer, size_t count) {
 
 // What one picture is drawn with.
 struct Lists {
-  Lists(unsigned blocks) : splats(blocks, 1), counters(sizeof(SplatCounters)) {}
+  Lists(unsigned blocks) : splats(blocks, 1), counters(sizeof(PassCounters)) {}
 
   SplatState splats;
   PinnedMemory counters;
   FrameTiles tiles{};
   Buffer<float4> picture;
 
-  const SplatCounters& counted() const {
-    return *reinterpret_cast<const SplatCounters*>(counters.data());
+  const PassCounters& counted() const {
+    return *reinterpret_cast<const PassCounters*>(counters.data());
   }
 };
 
@@ -116,7 +116,7 @@ class CudaTrainer final : public NodeTrainer {
   TrainingError step(const TrainingView& view, const LearningRates& rates) override {
     device_->use();
     const TrainingError error = compare(view, false);
-    const uint32_t places = cut_.counted().places;
+    const uint32_t places = cut_.counted()[0].places;
     launch_sums(view, loss_weight(view, error.squares), places);
     grow(gradients_, size_t{places} * static_cast<size_t>(gradient_stride(scene_->sh_degree)));
     const SplatFrame frame = cut_frame(view);
@@ -141,7 +141,7 @@ class CudaTrainer final : public NodeTrainer {
   std::vector<NodeError> node_errors(const TrainingView& view) override {
     device_->use();
     compare(view, false);
-    const uint32_t places = cut_.counted().places;
+    const uint32_t places = cut_.counted()[0].places;
     launch_sums(view, 1, places);
     stream_.wait();
     std::vector<uint32_t> cut;
@@ -178,7 +178,7 @@ class CudaTrainer final : public NodeTrainer {
     frame.gaussians = view_;
     frame.draws = draws;
     frame.params[0] = project_params(*scene_, camera, desc_of(antialias));
-    frame.splats = lists.splats.view(lists.tiles);
+    frame.splats = lists.splats.view(lists.tiles, 0);
     frame.multiprocessors = device_->multiprocessors();
     frame.stream = stream_.get();
     return frame;
@@ -245,7 +245,7 @@ void CudaTrainer::launch_picture(Lists& lists, const DrawView& draws, const Came
                    {Exponential::ex2, true, false, draws.list.weights != nullptr, nullptr, 0,
                     log_threshold(antialias)},
                    &eye);
-  check(cudaMemcpyAsync(lists.counters.data(), lists.splats.counters(), sizeof(SplatCounters),
+  check(cudaMemcpyAsync(lists.counters.data(), lists.splats.counters(), sizeof(PassCounters),
                         cudaMemcpyDeviceToHost, stream),
         "counters");
 }
@@ -283,7 +283,7 @@ TrainingError CudaTrainer::compare(const TrainingView& view, bool leaves) {
     if (truth_fits && cut_fits) break;
   }
   const FixedSum squares = *reinterpret_cast<const FixedSum*>(found_.data());
-  return {static_cast<double>(squares) / double{kFixedOne}, cut_.counted().places};
+  return {static_cast<double>(squares) / double{kFixedOne}, cut_.counted()[0].places};
 }
 
 void CudaTrainer::launch_sums(const TrainingView& view, double weight, uint32_t places) {

@@ -117,6 +117,11 @@ void add_choices(CLI::App& command, BenchArguments& arguments) {
       command, "--splat", arguments.splatting,
       {{"ours", Splatting::ours}, {"3dgs", Splatting::baseline_3dgs}},
       "How Gaussians become pixels; 3dgs is the baseline, on CUDA only");
+  add_choice<Occlusion>(
+      command, "--occlusion", arguments.occlusion,
+      {{"auto", Occlusion::automatic}, {"on", Occlusion::on}, {"off", Occlusion::off}},
+      "Leave out what the frame before shows to be hidden, on CUDA. The same image; auto: where "
+      "that is less work");
   add_choice<Antialias>(command, "--antialias", arguments.antialias,
                         {{"on", Antialias::on}, {"off", Antialias::off}},
                         "off is the picture of 3DGS: say so in comparisons with it");

@@ -28,6 +28,7 @@ struct BenchArguments {
   std::optional<Splatting> splatting;
   std::optional<Exponential> exponential;
   Antialias antialias = Antialias::on;
+  Occlusion occlusion = Occlusion::automatic;
   std::optional<uint32_t> lut_size;
   std::optional<size_t> repeat;
   bool verify = false, stereo = false;

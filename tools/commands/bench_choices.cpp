@@ -40,6 +40,7 @@ PipelineDesc chosen_desc(const BenchArguments& arguments, const BenchSubject& su
   desc.alpha_filter = ours && arguments.filter.value_or(true);  // 3DGS has none
   desc.exponential = arguments.exponential.value_or(ours ? Exponential::ex2 : Exponential::exact);
   desc.antialias = arguments.antialias;
+  desc.occlusion = arguments.occlusion;
   desc.lut_size = arguments.lut_size.value_or(desc.lut_size);
   return desc;
 }

@@ -85,6 +85,61 @@ TEST(Reach, ABoxOfOnePointIsLeftOutLikeThePoint) {
   EXPECT_LT(apart, outside / 20);
 }
 
+// Of a Gaussian in the box, with the largest scale and support that it allows.
+TEST(Reach, TheBoundsInTheImageHoldEverySplatOfTheBox) {
+  Chance chance;
+  int bounded = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const ProjectParams params = random_camera(chance);
+    const MeanBounds bounds = random_bounds(chance);
+    ImageBounds image;
+    if (!image_bounds(params, bounds, image)) continue;
+    ++bounded;
+    for (int k = 0; k < 20; ++k) {
+      const Vec3f mean = point_in(bounds, chance);
+      const Vec3f view = detail::to_view(params, camera_relative(mean, params.origin, params.eye));
+      const ImageJacobian<float> j = image_jacobian(params.view, view);
+      const float variance = bounds.scale * bounds.scale + params.filter.footprint;
+      const auto reach = [&](const Vec3f& row) {
+        return bounds.radius * std::sqrt(variance * dot(row, row) + params.filter.low_pass);
+      };
+      const float x = detail::image_x(params, view), y = detail::image_y(params, view);
+      ASSERT_LE(image.nearest, view.z) << "box " << i;
+      ASSERT_LE(image.left, x - reach(j.x)) << "box " << i;
+      ASSERT_GE(image.right, x + reach(j.x)) << "box " << i;
+      ASSERT_LE(image.top, y - reach(j.y)) << "box " << i;
+      ASSERT_GE(image.bottom, y + reach(j.y)) << "box " << i;
+    }
+  }
+  EXPECT_GT(bounded, 2000);
+}
+
+// Not far larger than what they hold, or nothing would be found to be hidden.
+TEST(Reach, TheBoundsOfOnePointAreThoseOfItsSplat) {
+  Chance chance;
+  for (int i = 0; i < 20000; ++i) {
+    const ProjectParams params = random_camera(chance);
+    MeanBounds bounds = random_bounds(chance);
+    bounds.greatest = bounds.least;
+    ImageBounds image;
+    if (!image_bounds(params, bounds, image)) continue;
+    if (!may_reach(params, bounds.least, bounds.scale, bounds.radius)) continue;
+    const Vec3f view =
+        detail::to_view(params, camera_relative(bounds.least, params.origin, params.eye));
+    const float x = detail::image_x(params, view);
+    const float largest =
+        params.view.fx / view.z *
+        std::hypot(1.0f, detail::largest_slope(params.view.x_low, params.view.x_high));
+    const float reach =
+        bounds.radius * (std::hypot(bounds.scale, std::sqrt(params.filter.footprint)) * largest +
+                         std::sqrt(params.filter.low_pass));
+    const float slack = 2.0f + 0.02f * reach + 1e-3f * (std::fabs(x) + std::fabs(params.view.cx));
+    EXPECT_NEAR(image.nearest, view.z, 1e-5f * (std::fabs(view.z) + 1000.0f));
+    EXPECT_GT(image.left, x - reach - slack);
+    EXPECT_LT(image.right, x + reach + slack);
+  }
+}
+
 TEST(Reach, NothingReachesAndWhatOverflowsIsKept) {
   Chance chance;
   const ProjectParams params = random_camera(chance);

@@ -1,0 +1,24 @@
+#pragma once
+// How deep the tiles of a frame are drawn: behind what covered a tile in the frame before there is
+// most often nothing to be seen. That is a guess, and no more: a tile that it does not fill is
+// drawn once more, whole (occlusion.cu).
+#include <cstdint>
+
+#include "runtime/frame/backend.h"
+#include "runtime/math/float_bits.h"
+
+namespace voyager::cuda {
+
+// Bits of a depth z > 0, which ascend as z does.
+inline constexpr uint32_t kDrawNothing = 0, kDrawAll = 0xffffffffu;
+
+// The greatest limits of 4x4 and of 16x16 tiles, too, so that few of them tell for a large splat.
+inline constexpr int kLimitLevels = 3;
+inline constexpr int kLimitSide = 4;  // cells of a level that are one of the next, a side
+
+struct TileLimits {
+  const uint32_t* bits = nullptr;  // of the frame's tiles, then the coarser levels; null: all kDrawAll
+  uint32_t first[kLimitLevels][kMaxEyes];
+};
+
+}  // namespace voyager::cuda
