@@ -22,6 +22,13 @@ struct Connection::Answer {
   uint64_t body = 0;  // bytes to come, once the head is accepted
   std::exception_ptr failure{};
 
+  // Obsolete since RFC 7230, and libcurl up to 8.0 reads freed memory at the second of them.
+  [[noreturn]] void refuse_folded() const {
+    throw Error(ErrorCode::refused_input,
+                name +
+                    ": found a line of the head that begins with a space, expected the name of a "
+                    "header field");
+  }
   void take_head() {
     if (!head.is_final() || transfer.version) return;
     Accepted accepted = check_reply(name, head, transfer.range, transfer.known);
@@ -37,6 +44,8 @@ size_t Connection::on_head(const char* line, size_t, size_t count, void* user) {
   try {
     if (count == 0 || line[0] == '\r' || line[0] == '\n')
       answer.take_head();
+    else if (line[0] == ' ' || line[0] == '\t')
+      answer.refuse_folded();
     else
       answer.head.add_line({line, count});
     return count;

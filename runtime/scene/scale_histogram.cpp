@@ -44,7 +44,8 @@ NativeScale ScaleHistogram::estimate() const {
   size_t bin = 0;
   while (static_cast<double>(below += counts_[bin]) < kShare * static_cast<double>(all)) ++bin;
   const double middle = kLowest + (static_cast<double>(bin) + 0.5) / kSteps;
-  return {NativeSource::estimated, in_few_bits(std::exp(middle)), kPixelVariance};
+  return {NativeSource::estimated, std::min(in_few_bits(std::exp(middle)), kMaxNativePixel),
+          kPixelVariance};
 }
 
 NativeScale estimated_scale(const GaussianCloud& cloud) {

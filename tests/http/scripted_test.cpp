@@ -218,6 +218,19 @@ TEST(Scripted, GarbageIsRefused) {
   }
 }
 
+// libcurl itself reads freed memory at the second such line.
+TEST(Scripted, FoldedHeaderLinesAreRefused) {
+  ScriptedServer server(always([](const ScriptedRequest&) {
+    return ScriptedReply{
+        "HTTP/1.1 206 yes\r\nContent-Range: bytes\r\n  80000-\r\n\t129999/\r\n"
+        " 200000\r\nContent-Length: 50000\r\n\r\n",
+        true};
+  }));
+  const http::Source source(server.url(), quick());
+  expect_error(ErrorCode::refused_input, "begins with a space",
+               [&] { read(source, 80'000, 50'000); });
+}
+
 TEST(Scripted, HeadersWithoutEndMeetTheDeadline) {
   ScriptedServer server(always([](const ScriptedRequest&) {
     std::string head = "HTTP/1.1 206 Scripted\r\n";

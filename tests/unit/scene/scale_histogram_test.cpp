@@ -1,5 +1,6 @@
 #include "runtime/scene/scale_histogram.h"
 
+#include "runtime/scene/sanitise.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::scale_histogram_test {
@@ -49,6 +50,13 @@ TEST(ScaleHistogram, IsTheSameInAnyParts) {
   b.add(first);
   a.add(b);
   EXPECT_EQ(a.estimate(), estimated_scale(both));
+}
+
+// A file holds no larger pixel, and a scene of the largest Gaussians that there are is a scene.
+TEST(ScaleHistogram, EstimatesNoPixelThatAFileCannotHold) {
+  GaussianCloud cloud = trained(1.0, 100, 6);
+  for (float& log : cloud.log_scale) log = kMaxLogScale;
+  EXPECT_EQ(estimated_scale(cloud).pixel, kMaxNativePixel);
 }
 
 TEST(ScaleHistogram, KnowsNothingOfAnEmptyCloud) {
