@@ -122,6 +122,7 @@ class TilesetExport {
   GaussianCloud read_tile(const Tile& tile) const {
     const std::vector<uint32_t> nodes = nodes_of_tile(tree_, tile);
     std::vector<uint32_t> chunks;
+    chunks.reserve(nodes.size());
     for (const uint32_t node : nodes) chunks.push_back(chunk_of_[node]);
     std::sort(chunks.begin(), chunks.end());
     chunks.erase(std::unique(chunks.begin(), chunks.end()), chunks.end());
