@@ -263,7 +263,7 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
     goal.memory = std::max(arguments.memory * 1'000'000, taken + 1) - taken;
     print_learned(optimize_nodes(baked, goal, *backend, learned, workers, progress));
   }
-  const BakeSummary summary = write_baked(arguments, baked, workers, progress);
+  BakeSummary summary = write_baked(arguments, baked, workers, progress);
   if (arguments.refine != 0) ::unlink(written_path(kept).c_str());
   if (arguments.optimize.wanted())
     for (const std::string& file : kept_files(learned)) ::unlink(written_path(file).c_str());
