@@ -163,7 +163,7 @@ void DevicePool::pack_floats(const Chunk& chunk, unsigned char* into) const {
   const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
   const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
   for (size_t i = 0; i < chunk.node.size(); ++i) {
-    const Gaussian g = activate(chunk.words[i], chunk.is_leaf(i));
+    const Gaussian g = activate(chunk.words[i], chunk.has_logit(i));
     put(at(kHulls), i, device_hull(g));
     put(at(kShapes), 2 * i, device_shape(g, 0));
     put(at(kShapes), 2 * i + 1, device_shape(g, 1));

@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "runtime/scene/append.h"
+#include "runtime/scene/import/importer.h"
 #include "runtime/scene/import/merged_blocks.h"
+#include "tools/console.h"
 
 namespace voyager::tools {
 namespace {
@@ -44,6 +46,10 @@ std::unique_ptr<BlockReader> open_joined(
   std::vector<BlockPart> parts;
   for (auto& reader : readers) parts.push_back(part_of(std::move(reader)));
   return merge_blocks(name, std::move(parts), origin);
+}
+
+void note_left_out(const ByteSource& source) {
+  for (const std::string& what : left_out_of(source)) warn(source.name() + ": left out: " + what);
 }
 
 }  // namespace voyager::tools

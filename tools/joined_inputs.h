@@ -15,4 +15,7 @@ namespace voyager::tools {
 std::unique_ptr<BlockReader> open_joined(
     const std::vector<std::shared_ptr<const ByteSource>>& sources, const Placement& placement);
 
+// Says what of an input is not read (left_out_of()).
+void note_left_out(const ByteSource& source);
+
 }  // namespace voyager::tools

@@ -7,6 +7,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
+#include "runtime/base/name_ending.h"
 #include "runtime/base/output_path.h"
 #include "runtime/base/url.h"
 
@@ -79,7 +80,10 @@ void require_not_below(const std::string& output, const std::string& folder) {
 void require_extension(const std::string& option, const std::string& path,
                        const std::vector<std::string>& extensions) {
   const std::string extension = fs::path(path).extension().string();
-  if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) return;
+  const auto is_it = [&](const std::string& known) {
+    return extension.size() == known.size() && has_ending(extension, known);
+  };
+  if (std::any_of(extensions.begin(), extensions.end(), is_it)) return;
   std::string list;
   for (const std::string& known : extensions) list += (list.empty() ? "" : " or ") + known;
   throw Error(ErrorCode::invalid_argument,

@@ -17,7 +17,8 @@ void require_outside(const std::string& folder, const std::vector<std::string>& 
 // Error(invalid_argument).
 void require_not_below(const std::string& output, const std::string& folder);
 
-// Throws Error(invalid_argument) unless the name ends in one of the extensions (".png").
+// Throws Error(invalid_argument) unless the name ends in one of the extensions (".png"), in any
+// case of letters.
 void require_extension(const std::string& option, const std::string& path,
                        const std::vector<std::string>& extensions);
 

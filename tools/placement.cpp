@@ -152,9 +152,13 @@ void add_placement_options(CLI::App& command, Placement& placement) {
 
 std::vector<std::unique_ptr<BlockReader>> placed(std::vector<std::unique_ptr<BlockReader>> readers,
                                                  const std::vector<Affine>& places) {
-  const std::array<double, 3> first = readers.front()->origin();
-  const std::array<double, 3> origin =
-      origin_near(places.front() * Vec3d{first[0], first[1], first[2]});
+  Vec3d middle{};
+  for (size_t i = 0; i < readers.size(); ++i) {
+    const std::array<double, 3> own = readers[i]->origin();
+    middle = middle +
+             1 / static_cast<double>(readers.size()) * (places[i] * Vec3d{own[0], own[1], own[2]});
+  }
+  const std::array<double, 3> origin = origin_near(middle);
   for (size_t i = 0; i < readers.size(); ++i) {
     const std::string what = readers[i]->name() + ": --transform";
     readers[i] = place_blocks(std::move(readers[i]), places[i], origin, what);

@@ -28,7 +28,7 @@ struct Placement {
 
 void add_placement_options(CLI::App& command, Placement& placement);
 
-// The inputs where they belong, relative to one origin: that of the first one's place. Names are
+// The inputs where they belong, relative to one origin: near the middle of their places. Names are
 // what messages call them.
 std::vector<std::unique_ptr<BlockReader>> placed(std::vector<std::unique_ptr<BlockReader>> readers,
                                                  const std::vector<Affine>& places);

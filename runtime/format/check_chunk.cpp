@@ -60,7 +60,8 @@ const char* fault(const Chunk& chunk, size_t i, const ChunkContext& context) {
   if (!below(w.mean, kMaxCoordinate)) return "a mean that is not finite and below 1e18";
   if (!below(w.log_scale, kMaxLogScaleWord)) return "a log scale out of range";
   if (!finite(w.rotation)) return "a rotation that is not finite";
-  if (!std::isfinite(w.opacity) || (!leaf && w.opacity < 0)) return "an opacity out of range";
+  if (!std::isfinite(w.opacity) || (!chunk.has_logit(i) && w.opacity < 0))
+    return "an opacity out of range";
   const size_t floats = context.coefficients() * 3;
   if (!at_most(chunk.sh.data() + i * floats, floats, context.largest_sh))
     return "an SH coefficient that is not finite, or beyond the header's largest";

@@ -24,6 +24,7 @@ struct Chunk {
   std::vector<uint32_t> record;       // its index in records
   std::vector<uint32_t> first_child;  // meaningless for a leaf
   std::vector<GaussianWords> words;   // scene-local means; leaf opacity is a logit, merged linear
+  bool linear_leaves = false;         // of a .hier's tree: leaf opacities are linear, too
   std::vector<float> sh;              // coefficients * 3 a node, [k][rgb]
   // Of compact storage, what was restored: scales of sh, and what the file has of rotations
   // (runtime/math/shape_code.h), since restored ones may be told in two ways. Lossless: none.
@@ -38,6 +39,7 @@ struct Chunk {
   // i counts owned nodes.
   const NodeRecord& record_of(size_t i) const { return records[record[i]]; }
   bool is_leaf(size_t i) const { return record_of(i).child_count == 0; }
+  bool has_logit(size_t i) const { return is_leaf(i) && !linear_leaves; }
 };
 
 }  // namespace voyager

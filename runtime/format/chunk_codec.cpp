@@ -120,6 +120,7 @@ Chunk decode_chunk(std::span<const std::byte> bytes, const ChunkLocation& locati
   const ChunkContext own = context_of(header.sh_degree, context);
   Chunk chunk;
   chunk.first_subtree = header.first_subtree;
+  chunk.linear_leaves = context.linear_leaves;
   if (context.quality == Quality::compact)
     decode_compact(payload, header, location, own, chunk);
   else

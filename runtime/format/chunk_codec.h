@@ -24,6 +24,7 @@ struct ChunkContext {
   float largest_sh = 0;             // no |coefficient| is larger
   bool leaves_have_extent = false;  // else every leaf's extent is 0
   int footprint_levels = 1;         // no node's level is as high
+  bool linear_leaves = false;       // Chunk::linear_leaves
 
   size_t coefficients() const {
     const auto n = static_cast<size_t>(sh_degree) + 1;

@@ -111,7 +111,7 @@ class PlaneEncoder {
     end_group_(planes.position());
     for (size_t k = 0; k < 3; ++k)
       planes.put(2, [&](size_t i) { return uint32_t{quantise_rotation(words[i].rotation)[k]}; });
-    planes.put(2, [&](size_t i) { return opacity_word(words[i], chunk_.is_leaf(i)); });
+    planes.put(2, [&](size_t i) { return opacity_word(words[i], chunk_.has_logit(i)); });
   }
 
   void put_sh(GaussianPlanes& planes, size_t coefficients) const {
@@ -161,7 +161,7 @@ void take_geometry(GaussianPlanes& planes, const ChunkHeader& header, Chunk& chu
     chunk.words[i].rotation = restore_rotation(codes[i].data());
   planes.take(2, [&](size_t i, uint32_t q) {
     const auto word = static_cast<uint16_t>(q);
-    chunk.words[i].opacity = chunk.is_leaf(i) ? restore_leaf_opacity(word) : half_to_float(word);
+    chunk.words[i].opacity = chunk.has_logit(i) ? restore_leaf_opacity(word) : half_to_float(word);
   });
 }
 

@@ -36,7 +36,7 @@ void put_leaf(const Chunk& chunk, size_t node, GaussianCloud& cloud) {
   std::copy_n(position, 3, &cloud.position[3 * i]);
   std::copy_n(&w.log_scale.x, 3, &cloud.log_scale[3 * i]);
   std::copy_n(&w.rotation.w, 4, &cloud.rotation[4 * i]);
-  cloud.opacity[i] = w.opacity;
+  cloud.opacity[i] = chunk.has_logit(node) ? w.opacity : flat_logit(w.opacity);
   std::copy_n(&chunk.sh[node * floats], floats, &cloud.sh[i * floats]);
 }
 
@@ -58,8 +58,10 @@ FlatContents announced(const SceneFile& scene, uint64_t count) {
   return contents;
 }
 
-FlatContents write_cloud(GaussianCloud cloud, const std::string& path, const FlatOptions& options,
-                         const Progress& progress) {
+}  // namespace
+
+FlatContents export_cloud(GaussianCloud cloud, const std::string& path, const FlatOptions& options,
+                          const Progress& progress) {
   put_back_zero_bands(cloud);
   cloud.report = {};
   FlatContents contents;
@@ -70,8 +72,6 @@ FlatContents write_cloud(GaussianCloud cloud, const std::string& path, const Fla
   report(progress, "exporting", cloud.size(), cloud.size());
   return contents;
 }
-
-}  // namespace
 
 GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
   GaussianCloud cloud = room_for_leaves(scene.info());
@@ -105,14 +105,14 @@ GaussianCloud read_leaves(const SceneFile& scene, const Progress& progress) {
 
 FlatContents export_leaves(const SceneFile& scene, const std::string& path,
                            const FlatOptions& options, const Progress& progress) {
-  require_flat_file(path, announced(scene, scene.info().leaf_count));
-  return write_cloud(read_leaves(scene, progress), path, options, progress);
+  require_flat_file(path, announced(scene, scene.info().leaf_count), options);
+  return export_cloud(read_leaves(scene, progress), path, options, progress);
 }
 
 FlatContents export_extent_cut(const SceneFile& scene, uint64_t most, const std::string& path,
                                const FlatOptions& options, const Progress& progress) {
   require_flat_file(path, announced(scene, std::min<uint64_t>(1, scene.info().leaf_count)));
-  return write_cloud(read_extent_cut(scene, most, progress), path, options, progress);
+  return export_cloud(read_extent_cut(scene, most, progress), path, options, progress);
 }
 
 }  // namespace voyager

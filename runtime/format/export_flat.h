@@ -25,4 +25,8 @@ FlatContents export_leaves(const SceneFile& scene, const std::string& path,
 FlatContents export_extent_cut(const SceneFile& scene, uint64_t most, const std::string& path,
                                const FlatOptions& options = {}, const Progress& progress = {});
 
+// A cloud as such a file.
+FlatContents export_cloud(GaussianCloud cloud, const std::string& path, const FlatOptions& options,
+                          const Progress& progress);
+
 }  // namespace voyager

@@ -8,38 +8,10 @@
 #include "runtime/base/output_path.h"
 #include "runtime/format/tree_check.h"
 #include "runtime/math/node_code.h"
+#include "runtime/scene/hier_format.h"
 
 namespace voyager {
 namespace {
-
-constexpr size_t kShFloats = 48;  // [16][3]: always degree 3
-
-struct HierNode {
-  int32_t depth, parent, start, count_leafs, count_merged, start_children, count_children;
-};
-static_assert(sizeof(HierNode) == 28);
-
-struct HierBox {
-  Vec3f min;
-  float size;
-  Vec3f max;
-  float size_again;
-};
-static_assert(sizeof(HierBox) == 32);
-
-// Where each array starts, for a tree of `nodes`.
-struct Layout {
-  explicit Layout(uint64_t count)
-      : positions(4),
-        rotations(positions + 12 * count),
-        log_scales(rotations + 16 * count),
-        opacities(log_scales + 12 * count),
-        sh(opacities + 4 * count),
-        node_count(sh + 4 * kShFloats * count),
-        nodes(node_count + 4),
-        boxes(nodes + sizeof(HierNode) * count) {}
-  uint64_t positions, rotations, log_scales, opacities, sh, node_count, nodes, boxes;
-};
 
 template <class T>
 void write_values(AtomicFile& file, uint64_t start, uint64_t first, std::span<const T> values,
@@ -54,7 +26,7 @@ struct Nodes {
         log_scales(count),
         rotations(count),
         opacities(count),
-        sh(count * kShFloats, 0.0f),
+        sh(count * kHierShFloats, 0.0f),
         boxes(count) {}
   std::vector<Vec3f> positions, log_scales;
   std::vector<Quatf> rotations;
@@ -62,13 +34,17 @@ struct Nodes {
   std::vector<HierBox> boxes;
 };
 
-// Other tools interpolate component by component and know no axis codes.
-GaussianWords turned(const GaussianWords& words, int axis_code, bool leaf) {
+// Other tools interpolate component by component and know no axis codes. A .hier's own tree goes
+// out as it came.
+GaussianWords turned(const Chunk& chunk, size_t i) {
+  const GaussianWords& words = chunk.words[i];
   GaussianWords out = words;
+  if (chunk.linear_leaves) return out;
+  const int axis_code = axis_code_of(chunk.node_code[i]);
   out.log_scale = turn_scale(words.log_scale, axis_code);
   out.rotation = normalise(words.rotation);
   if (axis_code != 0) out.rotation = normalise(out.rotation * cube_rotation<float>(axis_code));
-  out.opacity = leaf ? sigmoid(words.opacity) : words.opacity;
+  out.opacity = chunk.has_logit(i) ? sigmoid(words.opacity) : words.opacity;
   return out;
 }
 
@@ -87,21 +63,20 @@ Nodes gather(const Chunk& chunk) {
   Nodes nodes(n);
   for (size_t to = 0; to < n; ++to) {
     const size_t i = order[to];
-    const GaussianWords g =
-        turned(chunk.words[i], axis_code_of(chunk.node_code[i]), chunk.is_leaf(i));
+    const GaussianWords g = turned(chunk, i);
     const NodeRecord& r = chunk.record_of(i);
     nodes.positions[to] = g.mean;
     nodes.log_scales[to] = g.log_scale;
     nodes.rotations[to] = g.rotation;
     nodes.opacities[to] = g.opacity;
-    std::copy_n(&chunk.sh[i * floats], floats, &nodes.sh[to * kShFloats]);
+    std::copy_n(&chunk.sh[i * floats], floats, &nodes.sh[to * kHierShFloats]);
     nodes.boxes[to] = {r.box_min, r.extent, r.box_max, r.extent};
   }
   return nodes;
 }
 
 // `ranges` are the ids of `nodes`.
-void write_chunk(AtomicFile& file, const Layout& layout, const std::vector<NodeRange>& ranges,
+void write_chunk(AtomicFile& file, const HierLayout& layout, const std::vector<NodeRange>& ranges,
                  const Nodes& nodes) {
   size_t from = 0;
   for (const NodeRange& range : ranges) {
@@ -114,7 +89,7 @@ void write_chunk(AtomicFile& file, const Layout& layout, const std::vector<NodeR
     write(layout.rotations, nodes.rotations, 1);
     write(layout.log_scales, nodes.log_scales, 1);
     write(layout.opacities, nodes.opacities, 1);
-    write(layout.sh, nodes.sh, kShFloats);
+    write(layout.sh, nodes.sh, kHierShFloats);
     write(layout.boxes, nodes.boxes, 1);
     from += range.count;
   }
@@ -133,7 +108,7 @@ void set_depths(Links& links) {
       links.depth[n] = std::max(links.depth[n], links.depth[links.first_child[n] + i] + 1);
 }
 
-void write_nodes(AtomicFile& file, const Layout& layout, const Links& links) {
+void write_nodes(AtomicFile& file, const HierLayout& layout, const Links& links) {
   constexpr size_t kBlock = 65536;
   size_t parent = 0;
   uint32_t siblings_left = 0;
@@ -161,9 +136,9 @@ void export_hier(const SceneFile& scene, const std::string& path, const Progress
   if (count > static_cast<uint32_t>(std::numeric_limits<int32_t>::max()))
     throw Error(ErrorCode::unsupported, path + ": found " + std::to_string(count) +
                                             " nodes, expected at most 2147483647 in a .hier file");
-  const Layout layout(count);
+  const HierLayout layout(count, count);
   AtomicFile file(path);
-  require_room(path, layout.boxes + sizeof(HierBox) * uint64_t{count});
+  require_room(path, layout.end);
   file.write_at(0, std::as_bytes(std::span(&count, 1)));
   file.write_at(layout.node_count, std::as_bytes(std::span(&count, 1)));
   Links links;

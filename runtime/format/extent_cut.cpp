@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/base/error.h"
+#include "runtime/format/append_flat.h"
 #include "runtime/format/tree_check.h"
 
 namespace voyager {
@@ -71,19 +72,6 @@ std::vector<bool> nodes_of_cut(const ExtentTree& tree, float threshold) {
   return cut;
 }
 
-void append(const Chunk& chunk, size_t i, GaussianCloud& cloud) {
-  const GaussianWords& w = chunk.words[i];
-  const auto floats = static_cast<size_t>(cloud.coefficients()) * 3;
-  const auto add = [](std::pmr::vector<float>& to, const float* from, size_t count) {
-    to.insert(to.end(), from, from + count);
-  };
-  add(cloud.position, &w.mean.x, 3);
-  add(cloud.log_scale, &w.log_scale.x, 3);
-  add(cloud.rotation, &w.rotation.w, 4);
-  cloud.opacity.push_back(chunk.is_leaf(i) ? w.opacity : flat_logit(w.opacity));
-  add(cloud.sh, &chunk.sh[i * floats], floats);
-}
-
 }  // namespace
 
 GaussianCloud read_extent_cut(const SceneFile& scene, uint64_t most, const Progress& progress) {
@@ -100,7 +88,30 @@ GaussianCloud read_extent_cut(const SceneFile& scene, uint64_t most, const Progr
     report(progress, "exporting", chunks + index, 2 * chunks);
     const Chunk chunk = scene.read_chunk(index);
     for (size_t i = 0; i < chunk.node.size(); ++i)
-      if (cut[chunk.node[i]]) append(chunk, i, cloud);
+      if (cut[chunk.node[i]]) append_flat(chunk, i, cloud);
+  }
+  return cloud;
+}
+
+GaussianCloud extent_cut(const BakedScene& baked, uint64_t most) {
+  ExtentTree tree(baked.tree.size());
+  for (size_t n = 0; n < baked.tree.size(); ++n) {
+    tree.extent[n] = baked.tree.records[n].extent;
+    tree.child_count[n] = baked.tree.records[n].child_count;
+  }
+  const std::vector<bool> cut = nodes_of_cut(tree, threshold_of(tree, most));
+  GaussianCloud cloud;
+  cloud.sh_degree = baked.leaves.sh_degree;
+  cloud.left_out_bands = baked.leaves.left_out_bands;
+  cloud.native = baked.leaves.native;
+  cloud.origin = baked.origin;
+  const auto floats = static_cast<size_t>(cloud.coefficients()) * 3;
+  for (uint32_t n = 0; n < cut.size(); ++n) {
+    if (!cut[n]) continue;
+    const size_t i = baked.gaussian[n];
+    const bool leaf = baked.tree.is_leaf(n);
+    append_flat(leaf ? leaf_words(baked, i) : baked.merged.words(i), baked.has_logit(n),
+                &(leaf ? baked.leaves : baked.merged).sh[i * floats], cloud);
   }
   return cloud;
 }

@@ -2,6 +2,7 @@
 // A cut of a given size, for no viewer in particular.
 #include "runtime/base/progress.h"
 #include "runtime/format/reader.h"
+#include "runtime/lod/baked_scene.h"
 
 namespace voyager {
 
@@ -16,5 +17,8 @@ namespace voyager {
 // Error(damaged_chunk); Error(refused_input) where the tree does not fit together. Progress stage
 // "exporting".
 GaussianCloud read_extent_cut(const SceneFile& scene, uint64_t most, const Progress& progress = {});
+
+// The same of a tree in memory, in the order of its node ids.
+GaussianCloud extent_cut(const BakedScene& baked, uint64_t most);
 
 }  // namespace voyager

@@ -23,6 +23,7 @@ Chunk gather_chunk(const BakedScene& baked, std::span<const Subtree> subtrees,
                    uint32_t first_subtree) {
   Chunk chunk;
   chunk.first_subtree = first_subtree;
+  chunk.linear_leaves = baked.kept;
   chunk.subtrees.assign(subtrees.begin(), subtrees.end());
   const size_t floats = static_cast<size_t>(baked.leaves.coefficients()) * 3;
   for (const Subtree& subtree : chunk.subtrees)

@@ -26,9 +26,11 @@ inline constexpr uint32_t kOldestSceneVersion = 4;  // that is read: without wha
 inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0
 inline constexpr uint32_t kFlagClustered = 4;    // the rule of the tree (tree_rule.h)
+inline constexpr uint32_t kFlagKeptTree = 8;     // a .hier's own: leaf opacities are linear
 // From version 5 on: footprint levels beyond the first (node_code.h).
 inline constexpr uint32_t kFootprintShift = 4, kFootprintMask = 0xfu << kFootprintShift;
-inline constexpr uint32_t kFlags = kFlagAntialiased | kFlagLeafExtents | kFlagClustered;
+inline constexpr uint32_t kFlags =
+    kFlagAntialiased | kFlagLeafExtents | kFlagClustered | kFlagKeptTree;
 inline constexpr uint32_t kChunkTag = 0x4b484356;  // "VCHK"
 
 enum class SectionKind : uint32_t { chunk_directory = 1, tiers = 2 };

@@ -20,6 +20,7 @@ SceneFileInfo to_info(const FileHeader& h) {
                    1 + static_cast<int>((h.flags & kFootprintMask) >> kFootprintShift)};
   info.tree = (h.flags & kFlagClustered) != 0 ? TreeKind::clustered : TreeKind::hierarchicalgs;
   info.blend_share = h.blend_share;
+  info.kept_tree = (h.flags & kFlagKeptTree) != 0;
   info.node_count = h.node_count;
   info.leaf_count = h.leaf_count;
   info.chunk_count = h.chunk_count;
@@ -99,7 +100,8 @@ Chunk SceneFile::decode(uint32_t index, std::span<const std::byte> stored) const
       extent_rule(info_.tree, info_.blend_share),
       info_.largest_sh,
       info_.leaves_have_extent,
-      info_.native.levels};
+      info_.native.levels,
+      info_.kept_tree};
   return decode_chunk(stored, {name(), index, entry, place_after(index)}, context);
 }
 

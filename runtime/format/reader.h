@@ -19,6 +19,7 @@ struct SceneFileInfo {
   NativeScale native;  // of a file of version 4 unknown, or compensated
   TreeKind tree;
   float blend_share;  // LodTree's
+  bool kept_tree;     // a .hier's own (runtime/lod/kept_tree.h)
   uint32_t node_count;
   uint32_t leaf_count;
   uint32_t chunk_count;

@@ -60,6 +60,7 @@ SceneTotals totals_of(const BakedScene& baked, const Partition& partition, Quali
   totals.import = baked.leaves.report;
   totals.tree = baked.kind;
   totals.blend_share = baked.tree.blend_share;
+  totals.kept_tree = baked.kept;
   return totals;
 }
 

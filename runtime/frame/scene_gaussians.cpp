@@ -28,7 +28,7 @@ void shorten_rows(size_t from, size_t to, std::pmr::vector<uint8_t>& rows) {
 ShapeCode shape_code(const Chunk& chunk, size_t i) {
   const GaussianWords& words = chunk.words[i];
   ShapeCode code{};
-  code.leaf = chunk.is_leaf(i) ? 1 : 0;
+  code.leaf = chunk.has_logit(i) ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis) code.scale[axis] = quantise_log_scale(words.log_scale[axis]);
   code.opacity =
       code.leaf != 0 ? quantise_leaf_opacity(words.opacity) : float_to_half(words.opacity);
@@ -78,7 +78,7 @@ void make_gaussian_room(size_t gaussians, size_t groups, Scene& scene) {
 void set_gaussian(const Chunk& chunk, size_t i, size_t index, Scene& scene) {
   const float* sh = chunk.sh.data() + i * sh_floats(scene);
   if (!is_coded(scene)) {
-    scene.gaussians[index] = activate(chunk.words[i], chunk.is_leaf(i));
+    scene.gaussians[index] = activate(chunk.words[i], chunk.has_logit(i));
     scene.node_code[index] = chunk.node_code[i];
     std::copy_n(sh, sh_floats(scene), scene.sh.data() + index * sh_floats(scene));
     return;

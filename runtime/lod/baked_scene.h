@@ -35,6 +35,12 @@ struct BakedScene {
   std::vector<Exposure> exposure;  // per node of a clustered tree; for building
   // Merged Gaussians have learned (runtime/optimize), and are not their children's moments.
   bool learned = false;
+  // The tree is a .hier's own (kept_tree.h): opacities of leaves are linear, too, and neither boxes
+  // of leaves nor merged Gaussians nor axes are what a build makes of them.
+  bool kept = false;
+
+  // The opacity of the node's Gaussian is a logit.
+  bool has_logit(uint32_t node) const { return tree.is_leaf(node) && !kept; }
 
   // METHOD §12's, metres².
   double footprint_of(uint32_t node) const {

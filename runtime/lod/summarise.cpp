@@ -95,7 +95,7 @@ MergeInput node_gaussian(uint32_t node, const BakedScene& baked) {
   const GaussianCloud& cloud = leaf ? baked.leaves : baked.merged;
   const GaussianWords words = leaf ? leaf_words(baked, i) : cloud.words(i);
   const size_t floats = size_t{3} * static_cast<size_t>(cloud.coefficients());
-  return {activate(words, leaf), cloud.sh.data() + i * floats};
+  return {activate(words, baked.has_logit(node)), cloud.sh.data() + i * floats};
 }
 
 MergeInput merge_input(uint32_t node, double footprint, const BakedScene& baked) {

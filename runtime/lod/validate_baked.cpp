@@ -125,8 +125,8 @@ void check_moments(uint32_t n, const BakedScene& baked, std::vector<MergeInput>&
   check_sh(n, baked, children, expected.weight, findings);
 }
 
-// What learned is anything that can be drawn and stored.
-void check_learned(uint32_t n, const BakedScene& baked, Findings& findings) {
+// What learned, or came with its tree, is anything that can be drawn and stored.
+void check_drawable(uint32_t n, const BakedScene& baked, Findings& findings) {
   const MergeInput node = node_gaussian(n, baked);
   const Gaussian& g = node.gaussian;
   for (int axis = 0; axis < 3; ++axis) {
@@ -193,10 +193,14 @@ std::vector<std::string> validate(const BakedScene& baked, size_t limit) {
   std::vector<MergeInput> children;
   for (uint32_t n = 0; n < baked.tree.size() && !findings.full(); ++n) {
     check_footprint(n, baked, findings);
+    if (baked.kept) {
+      check_drawable(n, baked, findings);
+      continue;
+    }
     if (baked.tree.is_leaf(n))
       check_leaf_box(baked, n, findings);
     else if (baked.learned)
-      check_learned(n, baked, findings);
+      check_drawable(n, baked, findings);
     else
       check_moments(n, baked, children, findings);
     check_axes(n, baked, findings);

@@ -98,6 +98,61 @@ TEST_F(ConvertCommand, KeepTakesAShareOrACount) {
     }
 }
 
+TEST_F(ConvertCommand, AGlbIsCompressedWithSpzInside) {
+  const Outcome done =
+      run("voyager convert " + file("c.ply") + " -o " + file("small.glb") + " --spz");
+  ASSERT_EQ(done.exit_code, 0) << done.output;
+  ASSERT_EQ(run("voyager convert " + file("c.ply") + " -o " + file("whole.glb")).exit_code, 0);
+  EXPECT_LT(file_bytes(file("small.glb")).size(), file_bytes(file("whole.glb")).size() / 3);
+  ASSERT_EQ(run("voyager convert " + file("small.glb") + " -o " + file("small.ply")).exit_code, 0);
+}
+
+// The tree of a .hier stays, through a lossless scene and back; another is built when asked for.
+TEST_F(ConvertCommand, AHierKeepsItsTree) {
+  const auto voyager = [](const std::string& command) { return run("voyager " + command); };
+  const std::string bake = "bake " + file("a.hier") + " -o " + file("a.voy");
+  ASSERT_EQ(voyager("export " + file("c.voy") + " -o " + file("a.hier")).exit_code, 0);
+  const Outcome baked = voyager(bake + " --quality lossless --verify");
+  ASSERT_EQ(baked.exit_code, 0) << baked.output;
+  ASSERT_EQ(voyager("export " + file("a.voy") + " -o " + file("b.hier")).exit_code, 0);
+  EXPECT_EQ(file_bytes(file("b.hier")), file_bytes(file("a.hier")));
+  const Outcome kept =
+      voyager("convert " + file("a.hier") + " -o " + file("kept.ply") + " --keep 25%");
+  ASSERT_EQ(kept.exit_code, 0) << kept.output;
+  EXPECT_NE(kept.output.find(" % of 10000 leaves"), std::string::npos) << kept.output;
+  EXPECT_EQ(voyager(bake + " --tree clustered").exit_code, 0);
+  const Outcome refused = voyager(bake + " --refine 4");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.output.find("--refine: found " + file("a.hier")), std::string::npos);
+}
+
+TEST_F(ConvertCommand, ATilesetOfATreeIsReadBack) {
+  fs::create_directory(file("tiles"));
+  ASSERT_EQ(run("voyager convert " + file("c.ply") + " -o " + file("tiles/mine.ply")).exit_code, 0);
+  for (const std::string options : {"", " --spz"}) {
+    const Outcome done =
+        run("voyager export " + file("c.voy") + " -o " + file("tiles/tileset.json") + options);
+    ASSERT_EQ(done.exit_code, 0) << done.output;
+    EXPECT_NE(done.output.find(" tiles, 10000 leaves as "), std::string::npos) << done.output;
+    const Outcome back =
+        run("voyager convert " + file("tiles/tileset.json") + " -o " + file("back.ply"));
+    EXPECT_NE(back.output.find("back.ply: 10000 Gaussians"), std::string::npos) << back.output;
+  }
+  EXPECT_TRUE(fs::exists(file("tiles/mine.ply")));
+  const Outcome refused =
+      run("voyager export " + file("c.voy") + " -o " + file("none/tileset.json") + " --keep 25%");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_FALSE(fs::exists(file("none")));
+}
+
+TEST_F(ConvertCommand, EndingsMayBeInCapitals) {
+  ASSERT_EQ(run("voyager convert " + file("c.ply") + " -o " + file("OUT.PLY")).exit_code, 0);
+  EXPECT_EQ(file_bytes(file("OUT.PLY")), file_bytes(file("c.ply")));
+  const Outcome done = run("voyager convert " + file("OUT.PLY") + " -o " + file("Out.Spz"));
+  EXPECT_EQ(done.exit_code, 0) << done.output;
+  EXPECT_EQ(file_bytes(file("Out.Spz")).substr(0, 4), "NGSP");
+}
+
 TEST_F(ConvertCommand, RefusesWhatItCannotDoAndSaysWhatItExpects) {
   const std::string flat = "convert " + file("c.ply"), baked = "export " + file("c.voy");
   const struct {
@@ -112,6 +167,8 @@ TEST_F(ConvertCommand, RefusesWhatItCannotDoAndSaysWhatItExpects) {
       {flat + " -o " + file("no/such.spz"), 4, file("no/such.spz")},
       {flat + " -o " + file("k.ply") + " --keep 25%", 1, "--keep: found " + file("c.ply")},
       {flat + " -o " + file("k.ply") + " --spz-version 3", 1, "--spz-version: found -o "},
+      {flat + " -o " + file("k.glb") + " --spz-version 3", 1, "--spz-version: found -o "},
+      {flat + " -o " + file("k.spz") + " --spz", 1, "--spz: found -o "},
       {flat + " -o " + file("k.spz") + " --spz-version 5", 1, "--spz-version: found 5"},
       {"convert " + file("absent.ply") + " -o " + file("k.ply"), 2, "absent.ply"},
       {"convert " + file("c.cameras.json") + " -o " + file("k.ply"), 2,

@@ -19,6 +19,7 @@
 #include "runtime/format/reader.h"
 #include "runtime/format/writer.h"
 #include "runtime/lod/build.h"
+#include "runtime/lod/kept_tree.h"
 #include "runtime/lod/validate.h"
 #include "runtime/optimize/checkpoint.h"
 #include "runtime/refine/measured.h"
@@ -29,6 +30,7 @@
 #include "tools/commands/commands.h"
 #include "tools/commands/optimize_options.h"
 #include "tools/console.h"
+#include "tools/joined_inputs.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
 #include "tools/placement.h"
@@ -55,6 +57,7 @@ struct BakeArguments {
   Quality quality = Quality::compact;
   uint32_t chunk_bytes = kDefaultChunkBytes;
   TreeKind tree = TreeKind::clustered;
+  bool tree_given = false;
   uint32_t refine = 0;  // views
   OptimizeOptions optimize;
   double native_pixel = -1;  // metres; below 0: not given
@@ -72,8 +75,15 @@ Readers open_all(const std::vector<std::string>& paths) {
   if (std::count(paths.begin(), paths.end(), "-") > 1)
     throw Error(ErrorCode::invalid_argument, "input: found - more than once, expected one stream");
   Readers readers;
-  for (const std::string& path : paths)
-    readers.push_back(path == "-" ? open_blocks(read_stdin()) : open_blocks(open_source(path)));
+  for (const std::string& path : paths) {
+    if (path == "-") {
+      readers.push_back(open_blocks(read_stdin()));
+      continue;
+    }
+    const std::shared_ptr<const ByteSource> source = open_source(path);
+    note_left_out(*source);
+    readers.push_back(open_blocks(source));
+  }
   return readers;
 }
 
@@ -210,6 +220,29 @@ Readers open_inputs(const BakeArguments& arguments, const NativeChoice& native) 
   return placed(std::move(readers), places);
 }
 
+BakeSummary write_baked(const BakeArguments& arguments, const BakedScene& baked, Workers& workers,
+                        const Progress& progress) {
+  if (arguments.verify) {
+    progress("verifying", 0, 0);
+    require_sound(arguments.output, validate(baked));
+  }
+  const Partition partition = partition_tree(baked.tree, arguments.chunk_bytes);
+  if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
+  write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
+  if (arguments.verify) {
+    progress("verifying", 0, 0);
+    verify_file(arguments.output, baked.tree, partition);
+    progress("verifying", 1, 1);
+  }
+  BakeSummary summary;
+  summary.gaussians = baked.leaves.size();
+  summary.nodes = baked.tree.size();
+  summary.subtrees = partition.subtrees.size();
+  summary.chunks = partition.chunk_count();
+  summary.import = baked.leaves.report;
+  return summary;
+}
+
 BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& native,
                            const Readers& readers, const Progress& progress) {
   Workers workers;
@@ -230,28 +263,30 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
     goal.memory = std::max(arguments.memory * 1'000'000, taken + 1) - taken;
     print_learned(optimize_nodes(baked, goal, *backend, learned, workers, progress));
   }
-  if (arguments.verify) {
-    progress("verifying", 0, 0);
-    require_sound(arguments.output, validate(baked));
-  }
-  const Partition partition = partition_tree(baked.tree, arguments.chunk_bytes);
-  if (arguments.verify) require_sound(arguments.output, validate(partition, baked.tree));
-  write_scene_file(baked, partition, arguments.output, arguments.quality, workers, progress);
+  BakeSummary summary = write_baked(arguments, baked, workers, progress);
   if (arguments.refine != 0) ::unlink(written_path(kept).c_str());
   if (arguments.optimize.wanted())
     for (const std::string& file : kept_files(learned)) ::unlink(written_path(file).c_str());
-  if (arguments.verify) {
-    progress("verifying", 0, 0);
-    verify_file(arguments.output, baked.tree, partition);
-    progress("verifying", 1, 1);
-  }
-  BakeSummary summary;
-  summary.gaussians = baked.leaves.size();
-  summary.nodes = baked.tree.size();
-  summary.subtrees = partition.subtrees.size();
-  summary.chunks = partition.chunk_count();
-  summary.import = baked.leaves.report;
   return summary;
+}
+
+// As of any cloud; what looks at Gaussians expects logits.
+void set_native_scale(const NativeChoice& native, BakedScene& baked) {
+  std::pmr::vector<float> linear = baked.leaves.opacity;
+  for (float& opacity : baked.leaves.opacity) opacity = flat_logit(opacity);
+  baked.leaves.native = baked.merged.native = native_scale(native, baked.leaves).scale;
+  baked.leaves.opacity = std::move(linear);
+}
+
+// The tree of a .hier as it is.
+BakeSummary bake_kept_tree(const BakeArguments& arguments, const NativeChoice& native,
+                           const Progress& progress) {
+  Workers workers;
+  KeptTree kept = read_kept_tree(open_source(arguments.inputs.front()), progress);
+  for (const std::string& text : notes_of(kept))
+    note(fmt::format("{}: {}", shown_path(arguments.inputs.front()), text));
+  set_native_scale(native, kept.scene);
+  return write_baked(arguments, kept.scene, workers, progress);
 }
 
 BakeSummary bake_from_folder(const BakeArguments& arguments, const NativeChoice& native,
@@ -300,6 +335,26 @@ BakeSummary bake_from_folder(const BakeArguments& arguments, const NativeChoice&
   return result;
 }
 
+// A .hier has a tree of its own, which stays unless another is asked for.
+bool keeps_tree(const BakeArguments& arguments) {
+  return arguments.inputs.size() == 1 && is_hier_name(shown_path(arguments.inputs.front())) &&
+         !arguments.tree_given && !arguments.placement.given();
+}
+
+void require_kept_alone(const BakeArguments& arguments) {
+  const auto refuse = [&](bool given, const char* option) {
+    if (given)
+      throw Error(ErrorCode::invalid_argument,
+                  fmt::format("{}: found {}, whose own tree is kept, expected --tree clustered "
+                              "beside it, which builds another",
+                              option, shown_path(arguments.inputs.front())));
+  };
+  refuse(arguments.refine != 0, "--refine");
+  refuse(arguments.optimize.wanted(), "--optimize");
+  refuse(!arguments.training_cameras.empty(), "--training-cameras");
+  refuse(!arguments.work.empty(), "--work");
+}
+
 bool writes_output(const BakeArguments& arguments) {
   return arguments.step == BakeStep::all || arguments.step == BakeStep::merge;
 }
@@ -329,6 +384,7 @@ void bake(const BakeArguments& arguments) {
   if (arguments.step != BakeStep::all && arguments.work.empty())
     throw Error(ErrorCode::invalid_argument, "--step: found no --work, expected its folder");
   arguments.placement.of(arguments.inputs.size());
+  if (keeps_tree(arguments)) require_kept_alone(arguments);
   for (const std::string& output : outputs_of(arguments)) require_writable(output);
   if (arguments.refine != 0) check_kept(refine_file(arguments));
   if (arguments.optimize.wanted()) check_checkpoints(optimize_file(arguments));
@@ -353,6 +409,16 @@ void bake(const BakeArguments& arguments) {
                 fmt::format("--memory: found {} MB, expected at least {} with --optimize, which "
                             "bakes in memory",
                             arguments.memory, bytes / 1'000'000 + 1));
+  if (keeps_tree(arguments)) {
+    readers.clear();
+    if (bytes > arguments.memory * 1'000'000)
+      throw Error(ErrorCode::over_budget,
+                  fmt::format("--memory: found {} MB, expected at least {} to keep the tree of {}; "
+                              "--tree clustered builds another in less",
+                              arguments.memory, bytes / 1'000'000 + 1,
+                              shown_path(arguments.inputs.front())));
+    return print_summary(arguments, bake_kept_tree(arguments, native, progress), watch);
+  }
   if (bytes <= arguments.memory * 1'000'000)
     return print_summary(arguments, bake_in_memory(arguments, native, readers, progress), watch);
   print_summary(arguments,
@@ -443,7 +509,9 @@ void add_bake(CLI::App& app) {
       *command, "--tree", arguments->tree,
       {{"clustered", TreeKind::clustered}, {"hierarchicalgs", TreeKind::hierarchicalgs}},
       "How the tree is built. clustered joins what looks alike. hierarchicalgs builds as "
-      "HierarchicalGS does, for comparison, in memory only");
+      "HierarchicalGS does, for comparison, in memory only. Without this the tree of a .hier that "
+      "is the only input, and not moved, is kept as it is")
+      ->each([arguments](const std::string&) { arguments->tree_given = true; });
   add_whole_option(*command, "--refine", {1, uint64_t{1} << 20}, arguments->refine,
                    "Also draw the scene from so many places, and measure where detail is seen "
                    "(docs/lod-tree.md). It takes about a second a place, and helps in some views: "

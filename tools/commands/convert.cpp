@@ -9,6 +9,7 @@
 #include "runtime/base/open_source.h"
 #include "runtime/format/reader.h"
 #include "runtime/frame/scene.h"
+#include "runtime/scene/import/importer.h"
 #include "tools/commands/commands.h"
 #include "tools/flat_output.h"
 #include "tools/joined_inputs.h"
@@ -30,15 +31,20 @@ struct ConvertArguments {
 };
 
 void convert_flat(const Sources& sources, const ConvertArguments& arguments) {
+  if (arguments.flat.keep && sources.size() == 1 && !arguments.placement.given() &&
+      is_hier_name(sources.front()->name()))
+    return export_kept_tree(sources.front(), arguments.flat, arguments.output);
   if (arguments.flat.keep)
-    throw Error(ErrorCode::invalid_argument,
-                "--keep: found " + sources.front()->name() +
-                    ", which has no level-of-detail tree, expected a .voy: bake it first");
+    throw Error(ErrorCode::invalid_argument, "--keep: found " + sources.front()->name() +
+                                                 ", which has no level-of-detail tree, expected a "
+                                                 ".voy, or a .hier alone: bake it first");
+  for (const auto& source : sources) note_left_out(*source);
   Workers workers;
-  describe_flat_file(
-      arguments.output,
-      convert([&] { return open_joined(sources, arguments.placement); }, arguments.output,
-              flat_options(arguments.flat, arguments.output), workers, progress_bar()));
+  const FlatOptions options = flat_options(arguments.flat, arguments.output);
+  describe_flat_file(arguments.output,
+                     convert([&] { return open_joined(sources, arguments.placement); },
+                             arguments.output, options, workers, progress_bar()),
+                     options);
 }
 
 void convert_baked(const std::shared_ptr<const ByteSource>& source,

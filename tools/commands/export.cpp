@@ -4,8 +4,10 @@
 #include <memory>
 
 #include "runtime/base/error.h"
+#include "runtime/base/name_ending.h"
 #include "runtime/base/open_source.h"
 #include "runtime/format/export_hier.h"
+#include "runtime/format/export_tileset.h"
 #include "runtime/format/reader.h"
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
@@ -13,6 +15,7 @@
 #include "tools/cut_export.h"
 #include "tools/flat_output.h"
 #include "tools/options.h"
+#include "tools/output_folder.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
 
@@ -40,6 +43,37 @@ void refuse_keep(const FlatArguments& flat, const std::string& output) {
                 "--keep: found -o " + output + ", expected a flat file without --cut-camera");
 }
 
+constexpr const char* kTileset = "tileset.json";
+
+bool is_tileset(const std::string& output) {
+  const std::string name = std::filesystem::path(output).filename().string();
+  return has_ending(name, kTileset) && name.size() == std::string_view(kTileset).size();
+}
+
+std::string folder_of(const std::string& output) {
+  const std::string folder = std::filesystem::path(output).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
+
+// The files of a tileset appear together, tileset.json last.
+void export_tiles(const ExportArguments& arguments, const FlatOptions& options) {
+  const std::string& output = arguments.output;
+  refuse_keep(arguments.flat, output);
+  const SceneFile scene(open_source(arguments.scene));
+  OutputFolder folder(folder_of(output), {arguments.scene});
+  folder.require_place(kTileset);
+  TilesetOptions tileset;
+  tileset.flat = options;
+  const TilesetSummary made = export_tileset(
+      scene, [&](const std::string& name) { return folder.place(name); }, tileset, progress_bar());
+  folder.commit();
+  for (const std::string& lost : losses(FlatFormat::glb, made.contents, options))
+    note(fmt::format("{}: {}", output, lost));
+  say(fmt::format("{}: {} tiles, {} leaves as {} Gaussians, {}, the largest tile {}\n", output,
+                  made.tiles, made.leaves, made.gaussians, size_text(made.bytes),
+                  size_text(made.largest)));
+}
+
 void export_scene(const ExportArguments& arguments) {
   const std::string& output = arguments.output;
   require_distinct({output}, {arguments.scene, arguments.cameras});
@@ -50,11 +84,13 @@ void export_scene(const ExportArguments& arguments) {
     const Camera camera = choose_camera(arguments);
     const Progress progress = progress_bar();
     progress("exporting", 0, 0);
-    describe_flat_file(output, export_cut(arguments.scene, camera, arguments.tau, output, options));
+    describe_flat_file(output, export_cut(arguments.scene, camera, arguments.tau, output, options),
+                       options);
     return;
   }
+  if (is_tileset(output)) return export_tiles(arguments, options);
   std::vector<std::string> endings = flat_format_endings();
-  endings.insert(endings.begin(), ".hier");
+  endings.insert(endings.begin(), {".hier", kTileset});
   require_extension("-o", output, endings);
   const SceneFile scene(open_source(arguments.scene));
   if (flat_format_of(output)) return export_flat(scene, arguments.flat, output);
@@ -72,7 +108,8 @@ void add_export(CLI::App& app) {
   command->add_option("scene", arguments->scene, "Scene to read, a .voy or its URL")->required();
   command
       ->add_option("-o", arguments->output,
-                   "File to write. A .hier: the tree, in the layout of HierarchicalGS. Else the "
+                   "File to write. A .hier: the tree, in the layout of HierarchicalGS. "
+                   "FOLDER/tileset.json: the tree as 3D Tiles, which clients stream. Else the "
                    "leaves, in the order of the input; the end of the name says in which format: " +
                        CLI::detail::join(flat_format_endings(), ", "))
       ->type_name("FILE")

@@ -32,7 +32,9 @@ TreeFacts tree_facts(const std::string& path, const VoySceneInfo& info) {
   if (info.storage == VOY_SCENE_STORAGE_FLAT) return {.least_pixel = info.nativePixel};
   const SceneFile file(open_source(path));
   const NativeScale& native = file.info().native;
-  return {file.info().tree == TreeKind::clustered ? "clustered" : "hierarchicalgs",
+  return {file.info().kept_tree                     ? "hier"
+          : file.info().tree == TreeKind::clustered ? "clustered"
+                                                    : "hierarchicalgs",
           file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes,
           native.pixel_of(native.levels - 1)};
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "runtime/base/error.h"
+#include "runtime/base/name_ending.h"
 #include "tools/commands/commands.h"
 #include "tools/commands/render_arguments.h"
 #include "tools/console.h"
@@ -39,8 +40,7 @@ std::vector<Camera> choose_cameras(const RenderArguments& arguments, const Progr
 }
 
 bool is_file_name(const std::string& path) {
-  const auto extension = std::filesystem::path(path).extension();
-  return extension == ".png" || extension == ".pfm" || extension == ".txt";
+  return has_ending(path, ".png") || has_ending(path, ".pfm") || has_ending(path, ".txt");
 }
 
 void refuse_file_name(const std::string& option, const std::string& path, bool all) {
@@ -68,7 +68,7 @@ void settle_outputs(RenderArguments& arguments) {
         floats ? "-o with --float" : "-o", outputs.image,
         floats ? std::vector<std::string>{".pfm"} : std::vector<std::string>{".png", ".pfm"});
     if (!outputs.depth.empty()) require_extension("--depth", outputs.depth, {".pfm"});
-    arguments.choices.floats = std::filesystem::path(outputs.image).extension() == ".pfm";
+    arguments.choices.floats = has_ending(outputs.image, ".pfm");
   }
   outputs.floats = arguments.choices.floats;
 }

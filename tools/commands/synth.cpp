@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "runtime/base/name_ending.h"
 #include "runtime/base/output_path.h"
 #include "runtime/scene/export/writer.h"
 #include "tools/byte_size.h"
@@ -39,7 +40,7 @@ void write_city(const SynthArguments& arguments) {
   const std::filesystem::path path(arguments.output);
   const std::string cameras_path =
       std::filesystem::path(path).replace_extension(".cameras.json").string();
-  const bool ply = path.extension() == ".ply";
+  const bool ply = has_ending(arguments.output, ".ply");
   require_distinct({arguments.output, cameras_path}, {});
   require_writable(cameras_path);
   AtomicFile file(arguments.output);
@@ -61,8 +62,7 @@ void write_city(const SynthArguments& arguments) {
 }
 
 std::string check_output(const std::string& path) {
-  const auto extension = std::filesystem::path(path).extension();
-  if (path == "-" || extension == ".ply" || extension == ".spz") return {};
+  if (path == "-" || has_ending(path, ".ply") || has_ending(path, ".spz")) return {};
   return "found " + path +
          ", expected a name that ends in .ply or .spz, or - for a .ply on standard output";
 }

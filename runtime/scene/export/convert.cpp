@@ -62,7 +62,7 @@ FlatContents convert(const OpenBlocks& open, const std::string& path, const Flat
   contents.native = first->native();
   FlatContents announced = contents;
   announced.count = first->count();
-  require_flat_file(path, announced);
+  require_flat_file(path, announced, options);
   for_each_batch(*first, workers, [&](const GaussianCloud& batch) {
     contents.add(batch);
     report(progress, "reading", contents.report.read, first->count());

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "runtime/base/error.h"
+#include "runtime/base/name_ending.h"
 #include "runtime/base/output_path.h"
 #include "runtime/scene/append.h"
 
@@ -35,7 +36,7 @@ FlatFormat required_format(const std::string& path) {
 }
 
 // 0 where nobody knows. Throws as require_sog().
-uint64_t least_bytes(FlatFormat format, const FlatContents& contents) {
+uint64_t least_bytes(FlatFormat format, const FlatOptions& options, const FlatContents& contents) {
   switch (format) {
     case FlatFormat::ply:
       return ply_bytes(contents.count, contents.sh_degree, contents.is_moved());
@@ -44,7 +45,7 @@ uint64_t least_bytes(FlatFormat format, const FlatContents& contents) {
     case FlatFormat::splat:
       return contents.count * kSplatBytes;
     case FlatFormat::glb:
-      return glb_bytes(contents.count, contents.sh_degree);
+      return options.spz_inside ? 0 : glb_bytes(contents.count, contents.sh_degree);
     case FlatFormat::sog:
       require_sog();
       break;
@@ -67,6 +68,9 @@ std::unique_ptr<GaussianWriter> write_flat(PlacedSink& sink, FlatFormat format,
     case FlatFormat::splat:
       return write_splat(sink, count, degree);
     case FlatFormat::glb:
+      if (options.spz_inside)
+        return write_spz_glb(sink, count, degree, contents.reach_from_origin(),
+                             options.spz_version);
       return write_glb(sink, count, degree);
     case FlatFormat::sog:
       return write_sog(sink, count, degree, contents.native);
@@ -76,11 +80,18 @@ std::unique_ptr<GaussianWriter> write_flat(PlacedSink& sink, FlatFormat format,
   return write_spz(sink, count, degree, contents.reach(), options.spz_version);
 }
 
+float rounded_up(double value) {
+  const auto nearest = static_cast<float>(value);
+  return static_cast<double>(nearest) < value
+             ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+             : nearest;
+}
+
 }  // namespace
 
 std::optional<FlatFormat> flat_format_of(const std::string& path) {
   for (const Ending& ending : kEndings)
-    if (path.ends_with(ending.text)) return ending.format;
+    if (has_ending(path, ending.text)) return ending.format;
   return std::nullopt;
 }
 
@@ -104,16 +115,21 @@ void FlatContents::add(const GaussianCloud& batch) {
 }
 
 float FlatContents::reach() const {
-  const auto nearest = static_cast<float>(largest_coordinate);
-  return static_cast<double>(nearest) < largest_coordinate
-             ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
-             : nearest;
+  return rounded_up(largest_coordinate);
 }
 
-void require_flat_file(const std::string& path, const FlatContents& contents) {
+float FlatContents::reach_from_origin() const {
+  double reach = 0;
+  for (size_t axis = 0; axis < 3; ++axis)
+    reach = std::max({reach, most[axis] - origin[axis], origin[axis] - least[axis]});
+  return rounded_up(reach);
+}
+
+void require_flat_file(const std::string& path, const FlatContents& contents,
+                       const FlatOptions& options) {
   const FlatFormat format = required_format(path);
   const AtomicFile nothing(path);
-  require_room(path, least_bytes(format, contents));
+  require_room(path, least_bytes(format, options, contents));
 }
 
 void write_flat_file(const std::string& path, const FlatOptions& options,
@@ -121,7 +137,7 @@ void write_flat_file(const std::string& path, const FlatOptions& options,
                      const std::function<void(GaussianWriter&)>& fill) {
   const FlatFormat format = required_format(path);
   AtomicFile file(path);
-  require_room(path, least_bytes(format, contents));
+  require_room(path, least_bytes(format, options, contents));
   const std::unique_ptr<PlacedSink> sink = sink_to(file);
   const std::unique_ptr<GaussianWriter> writer = write_flat(*sink, format, options, contents);
   fill(*writer);

@@ -15,10 +15,11 @@ namespace voyager {
 enum class FlatFormat { ply, compressed_ply, spz, splat, glb, sog };
 
 struct FlatOptions {
-  int spz_version = 4;  // 3 or 4, of a .spz
+  int spz_version = 4;      // 3 or 4, of a .spz, also inside of a .glb
+  bool spz_inside = false;  // of a .glb: compressed
 };
 
-// By the end of the name; none for a name that is no format's.
+// By the end of the name, in any case; none for a name that is no format's.
 std::optional<FlatFormat> flat_format_of(const std::string& path);
 // The ends of names, each with its dot.
 std::vector<std::string> flat_format_endings();
@@ -37,14 +38,18 @@ struct FlatContents {
   bool is_moved() const { return origin != std::array<double, 3>{0, 0, 0}; }
   // largest_coordinate in binary32, rounded up.
   float reach() const;
+  // The same from the origin.
+  float reach_from_origin() const;
 };
 
 // What the format has no place for, a sentence each.
-std::vector<std::string> losses(FlatFormat format, const FlatContents& contents);
+std::vector<std::string> losses(FlatFormat format, const FlatContents& contents,
+                                const FlatOptions& options = {});
 
 // Before the work: throws Error(invalid_argument) for a path that is no format's, Error(io) where
 // the file could not be written, or where there is no room for what it takes at least.
-void require_flat_file(const std::string& path, const FlatContents& contents);
+void require_flat_file(const std::string& path, const FlatContents& contents,
+                       const FlatOptions& options = {});
 
 // `fill` appends batches, contents.count Gaussians in all. Nothing is at `path` before all of them
 // are written. Throws as require_flat_file() and the format's writer do.

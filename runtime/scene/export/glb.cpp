@@ -7,6 +7,7 @@
 
 #include "runtime/math/gaussian.h"
 #include "runtime/scene/export/batch_check.h"
+#include "runtime/scene/export/glb_container.h"
 #include "runtime/scene/export/glb_document.h"
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/gltf_format.h"
@@ -18,10 +19,6 @@ using namespace glb;
 
 static_assert(std::endian::native == std::endian::little,
               "words are written as they lie in memory");
-
-constexpr uint32_t kGlbMagic = 0x46546c67, kGlbVersion = 2;             // "glTF"
-constexpr uint32_t kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;  // "JSON", "BIN"
-constexpr uint64_t kGlbHeaderBytes = 12, kChunkHeaderBytes = 8;
 
 uint64_t glb_gaussian_bytes(int sh_degree) {
   return (3 + 4 + 3 + 1 + 3 * static_cast<uint64_t>(sh_coefficients(sh_degree))) * sizeof(float);
@@ -50,7 +47,7 @@ class GlbWriter final : public GaussianWriter {
     const uint64_t first = check_.written();
     check_.accept_of_one_origin(batch);
     widen_bounds(batch);
-    uint64_t array_at = binary_at();
+    uint64_t array_at = binary_at(json_bytes_);
     for (size_t i = 0; i < arrays_.size(); ++i) {
       const size_t components = arrays_[i].components;
       values_.clear();
@@ -65,28 +62,19 @@ class GlbWriter final : public GaussianWriter {
     check_.finish();
     const auto& origin = check_.origin();
     document_.translation = to_gltf(origin[0], origin[1], origin[2]);
-    std::string text = json(document_);
-    text.resize(json_bytes_, ' ');
-    const auto u32 = [](uint64_t value) { return static_cast<uint32_t>(value); };
-    const uint32_t begin[] = {kGlbMagic, kGlbVersion, u32(total_bytes()), u32(json_bytes_),
-                              kJsonChunk};
-    const uint32_t binary[] = {u32(binary_bytes()), kBinaryChunk};
-    sink_.write(std::as_bytes(std::span(begin)));
-    sink_.write(std::as_bytes(std::span(text)));
-    sink_.write(std::as_bytes(std::span(binary)));
+    write_head(sink_, json(document_), json_bytes_, binary_bytes());
   }
 
  private:
   uint64_t binary_bytes() const {
     return document_.count * glb_gaussian_bytes(document_.sh_degree);
   }
-  uint64_t binary_at() const { return kGlbHeaderBytes + 2 * kChunkHeaderBytes + json_bytes_; }
-  uint64_t total_bytes() const { return binary_at() + binary_bytes(); }
 
   // glTF counts bytes in 32 bits, and has no array of no elements.
   void check_size() const {
     constexpr uint64_t kMostBytes = std::numeric_limits<uint32_t>::max();
-    const uint64_t most = (kMostBytes - binary_at()) / glb_gaussian_bytes(document_.sh_degree);
+    const uint64_t most =
+        (kMostBytes - binary_at(json_bytes_)) / glb_gaussian_bytes(document_.sh_degree);
     if (document_.count == 0 || document_.count > most)
       throw Error(ErrorCode::unsupported, ".glb: found " + std::to_string(document_.count) +
                                               " Gaussians of SH degree " +

@@ -7,7 +7,9 @@
 namespace voyager::glb {
 namespace {
 
-constexpr int kFloat = 5126, kArrayBuffer = 34962;  // numbers of glTF
+constexpr int kByte = 5121, kFloat = 5126, kArrayBuffer = 34962;  // numbers of glTF
+constexpr const char* kSpz = "KHR_gaussian_splatting_compression_spz_2";
+constexpr const char* kColour = "COLOR_0";
 
 // The shortest that is read as the same number, whatever the locale.
 template <class T>
@@ -33,7 +35,29 @@ const char* type_of(size_t components) {
   return components == 1 ? "SCALAR" : components == 3 ? "VEC3" : "VEC4";
 }
 
+// What the draft of compression by SPZ maps its numbers to.
+std::vector<Attribute> spz_attributes(int sh_degree) {
+  std::vector<Attribute> all = {{"POSITION", 3}, {kColour, 4}};
+  for (const Attribute& attribute : attributes(sh_degree))
+    if (attribute.semantic.find("ROTATION") != std::string::npos ||
+        attribute.semantic.find("SCALE") != std::string::npos ||
+        (attribute.semantic.find("SH_DEGREE_") != std::string::npos &&
+         attribute.semantic.find("SH_DEGREE_0") == std::string::npos))
+      all.push_back(attribute);
+  return all;
+}
+
+uint64_t binary_bytes(const Document& document, const std::vector<Attribute>& all) {
+  if (document.spz_bytes) return *document.spz_bytes;
+  uint64_t bytes = 0;
+  for (const Attribute& attribute : all)
+    bytes += document.count * attribute.components * sizeof(float);
+  return bytes;
+}
+
 std::string views(const Document& document, const std::vector<Attribute>& all) {
+  if (document.spz_bytes)
+    return R"({"buffer":0,"byteOffset":0,"byteLength":)" + number(*document.spz_bytes) + "}";
   uint64_t offset = 0;
   return list(all.size(), [&](size_t i) {
     const uint64_t bytes = document.count * all[i].components * sizeof(float);
@@ -45,9 +69,11 @@ std::string views(const Document& document, const std::vector<Attribute>& all) {
 
 std::string accessors(const Document& document, const std::vector<Attribute>& all) {
   return list(all.size(), [&](size_t i) {
-    std::string text = R"({"bufferView":)" + number(i) + R"(,"componentType":)" + number(kFloat) +
-                       R"(,"count":)" + number(document.count) + R"(,"type":")" +
-                       type_of(all[i].components) + "\"";
+    const bool colour = all[i].semantic == kColour;
+    std::string text = document.spz_bytes ? "{" : R"({"bufferView":)" + number(i) + ",";
+    text += R"("componentType":)" + number(colour ? kByte : kFloat) +
+            (colour ? R"(,"normalized":true)" : "") + R"(,"count":)" + number(document.count) +
+            R"(,"type":")" + type_of(all[i].components) + "\"";
     if (i == 0)
       text += R"(,"min":)" + numbers(document.least) + R"(,"max":)" + numbers(document.most);
     return text + "}";
@@ -69,20 +95,23 @@ std::vector<Attribute> attributes(int sh_degree) {
 }
 
 std::string json(const Document& document) {
-  const std::vector<Attribute> all = attributes(document.sh_degree);
-  uint64_t bytes = 0;
-  for (const Attribute& attribute : all)
-    bytes += document.count * attribute.components * sizeof(float);
+  const bool spz = document.spz_bytes.has_value();
+  const std::vector<Attribute> all =
+      spz ? spz_attributes(document.sh_degree) : attributes(document.sh_degree);
   const std::string semantics =
       list(all.size(), [&](size_t i) { return "\"" + all[i].semantic + "\":" + number(i); });
-  return R"({"asset":{"version":"2.0","generator":"Voyager"},)"
-         R"("extensionsUsed":["KHR_gaussian_splatting"],"scene":0,"scenes":[{"nodes":[0]}],)"
-         R"("nodes":[{"mesh":0,"translation":)" +
+  const std::string used = spz ? R"(["KHR_gaussian_splatting",")" + std::string(kSpz) + R"("])"
+                               : R"(["KHR_gaussian_splatting"])";
+  return R"({"asset":{"version":"2.0","generator":"Voyager"},"extensionsUsed":)" + used +
+         (spz ? R"(,"extensionsRequired":)" + used : "") +
+         R"(,"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":)" +
          numbers(document.translation) + R"(}],"meshes":[{"primitives":[{"mode":0,"attributes":{)" +
          semantics +
          R"(},"extensions":{"KHR_gaussian_splatting":{"kernel":"ellipse",)"
-         R"("colorSpace":"srgb_rec709_display"}}}]}],"buffers":[{"byteLength":)" +
-         number(bytes) + R"(}],"bufferViews":[)" + views(document, all) + R"(],"accessors":[)" +
+         R"("colorSpace":"srgb_rec709_display")" +
+         (spz ? R"(,"extensions":{")" + std::string(kSpz) + R"(":{"bufferView":0}})" : "") +
+         R"(}}}]}],"buffers":[{"byteLength":)" + number(binary_bytes(document, all)) +
+         R"(}],"bufferViews":[)" + views(document, all) + R"(],"accessors":[)" +
          accessors(document, all) + "]}";
 }
 

@@ -2,6 +2,7 @@
 // The JSON of a .glb with one primitive of KHR_gaussian_splatting.
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct Document {
   int sh_degree = 0;
   std::array<float, 3> least{}, most{};  // of positions
   std::array<double, 3> translation{};   // of the node
+  // Compressed: bytes of the .spz that is all of the binary chunk, in place of the arrays. Then
+  // accessors have no views, and the first attribute with alpha is COLOR_0.
+  std::optional<uint64_t> spz_bytes;
 };
 std::string json(const Document& document);
 

@@ -65,7 +65,14 @@ std::string lost_filter(FlatFormat format, const NativeScale& native) {
 
 }  // namespace
 
-std::vector<std::string> losses(FlatFormat format, const FlatContents& contents) {
+std::vector<std::string> losses(FlatFormat format, const FlatContents& contents,
+                                const FlatOptions& options) {
+  if (format == FlatFormat::glb && options.spz_inside) {
+    FlatContents inside = contents;  // its places are from the origin
+    inside.largest_coordinate = double{contents.reach_from_origin()};
+    inside.origin = {};
+    return losses(FlatFormat::spz, inside);
+  }
   std::vector<std::string> lost;
   if (format == FlatFormat::splat && contents.sh_degree > 0)
     lost.push_back("the format has no spherical harmonics of degree 1 and more: left out");

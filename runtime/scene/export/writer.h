@@ -87,6 +87,11 @@ uint64_t compressed_ply_bytes(uint64_t count, int sh_degree);
 // degree 3).
 std::unique_ptr<GaussianWriter> write_glb(PlacedSink& sink, uint64_t count, int sh_degree);
 
+// The same compressed, KHR_gaussian_splatting_compression_spz_2: a .spz as write_spz() writes it,
+// of Gaussians from the node's translation on; largest_coordinate is from there, too.
+std::unique_ptr<GaussianWriter> write_spz_glb(PlacedSink& sink, uint64_t count, int sh_degree,
+                                              float largest_coordinate, int version);
+
 // Bytes of its arrays: what it takes at least.
 uint64_t glb_bytes(uint64_t count, int sh_degree);
 

@@ -62,7 +62,13 @@ std::unique_ptr<BlockReader> open_ksplat_blocks(std::unique_ptr<ByteReader> read
 std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source);
 std::unique_ptr<BlockReader> open_streamed_sog_blocks(std::shared_ptr<const ByteSource> source);
 std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source);
+// What of a .spz is not read, for people: SH of degree 4, and extensions. Throws as its reader
+// does.
+std::vector<std::string> left_out_of_spz(const ByteSource& source);
 std::unique_ptr<BlockReader> open_glb_blocks(std::shared_ptr<const ByteSource> source);
+// HierarchicalGS's .hier: the leaves of its tree, in the order of the file's Gaussians. Holds the
+// links of the tree until it has read them, then 4 bytes a leaf.
+std::unique_ptr<BlockReader> open_hier_blocks(std::shared_ptr<const ByteSource> source);
 // A .gltf, or the tileset.json of 3D Tiles.
 std::unique_ptr<BlockReader> open_json_blocks(std::shared_ptr<const ByteSource> source);
 

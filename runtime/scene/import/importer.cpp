@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "runtime/base/name_ending.h"
 #include "runtime/scene/append.h"
 #include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/import/import_blocks.h"
@@ -31,6 +32,8 @@ struct Format {
 constexpr Format kFormats[] = {
     {".splat", "", nullptr, open_splat_blocks, nullptr},
     {".ksplat", "", nullptr, open_ksplat_blocks, nullptr},
+    {".hier", "", nullptr, nullptr, open_hier_blocks},
+    {".hier_opt", "", nullptr, nullptr, open_hier_blocks},
     {"lod-meta.json", "", nullptr, nullptr, open_streamed_sog_blocks},
     {"meta.json", "", nullptr, nullptr, open_sog_blocks},
     {"", "ply\n", import_ply, open_ply_blocks, open_ply_blocks},
@@ -44,7 +47,7 @@ constexpr Format kFormats[] = {
 constexpr const char* kKnown =
     "a .ply or .compressed.ply (first bytes \"ply\"), a .spz (gzip 1f 8b, or \"NGSP\"), a .sog "
     "(a zip), a .glb (\"glTF\"), a .gltf or tileset.json (\"{\"), or by its name a .splat, a "
-    ".ksplat, or the meta.json or lod-meta.json of a SOG folder";
+    ".ksplat, a .hier, or the meta.json or lod-meta.json of a SOG folder";
 
 // Formats that are known and not read.
 struct Unread {
@@ -69,12 +72,9 @@ std::span<const std::byte> without_space(std::span<const std::byte> bytes) {
 
 // An ending without a dot is a whole name.
 bool ends_with(std::string_view name, std::string_view ending) {
-  if (name.size() < ending.size()) return false;
-  const auto same = [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a - 'A' + 'a' : a) == b; };
+  if (!has_ending(name, ending)) return false;
   const size_t begin = name.size() - ending.size();
-  return std::equal(ending.begin(), ending.end(), name.begin() + static_cast<long>(begin),
-                    [&](char b, char a) { return same(a, b); }) &&
-         (ending.front() == '.' || begin == 0 || name[begin - 1] == '/');
+  return ending.front() == '.' || begin == 0 || name[begin - 1] == '/';
 }
 
 bool begins_with(FirstBytes bytes, std::string_view first) {
@@ -184,6 +184,16 @@ std::unique_ptr<BlockReader> open_blocks(std::shared_ptr<const ByteSource> sourc
 
 bool is_importable(FirstBytes first_bytes, std::string_view name) {
   return known_format(first_bytes, name) != nullptr;
+}
+
+std::vector<std::string> left_out_of(const ByteSource& source) {
+  const Format& format = format_of(source);
+  return format.open_source == open_spz_blocks ? left_out_of_spz(source)
+                                               : std::vector<std::string>{};
+}
+
+bool is_hier_name(std::string_view name) {
+  return ends_with(name, ".hier") || ends_with(name, ".hier_opt");
 }
 
 std::string expected_format(FirstBytes first_bytes, std::string_view name) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "runtime/base/file.h"
 #include "runtime/base/progress.h"
@@ -35,6 +36,14 @@ GaussianCloud import_gaussians(BlockReader& reader, const ImportOptions& options
 inline constexpr size_t kFormatBytes = 4;
 bool is_importable(std::span<const std::byte> first_bytes, std::string_view name);
 
+// What the format's reader leaves out of the file, for people, such as extensions of a .spz:
+// nothing for most. Throws Error(refused_input) as the reader does.
+std::vector<std::string> left_out_of(const ByteSource& source);
+
+// True for the names of HierarchicalGS's trees, whose first bytes say nothing: they end in .hier or
+// .hier_opt, in any case.
+bool is_hier_name(std::string_view name);
+
 // For the message that refuses a file: the formats and how each is told, and, where it is one that
 // is known and not read, why.
 std::string expected_format(std::span<const std::byte> first_bytes, std::string_view name);
@@ -49,9 +58,9 @@ std::string expected_format(std::span<const std::byte> first_bytes, std::string_
 // or before the vertex element, the ASCII encoding, a count of f_rest_* other than 0, 9, 24 or 45
 // and 2DGS are refused. PlayCanvas's .compressed.ply is told by its properties.
 GaussianCloud import_ply(ByteReader& reader, const ImportOptions& options);
-// .spz versions 1 to 4, gzipped or (a raw v1-v3) not; SH degree 0 to 3.
-// Extensions are skipped; unknown flags, which may change the layout, and
-// non-zero reserved bytes are refused.
+// .spz versions 1 to 4, gzipped or (a raw v1-v3) not; SH degree 0 to 4, of which 3 are read. Of the
+// extensions the coordinate system is read, others are skipped; unknown flags, which may change the
+// layout, and non-zero reserved bytes are refused.
 GaussianCloud import_spz(ByteReader& reader, const ImportOptions& options);
 
 }  // namespace voyager

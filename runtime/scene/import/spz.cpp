@@ -6,6 +6,7 @@
 #include "runtime/scene/import/importer.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/spz_decode.h"
+#include "runtime/scene/transform.h"
 
 namespace voyager {
 namespace {
@@ -49,18 +50,22 @@ class SpzImport {
   // v1-v3: one attribute after the other, then extensions if there are any.
   void read_planar(ByteReader& plain) {
     for (int i = 0; i < header_.attributes(); ++i) read(plain, static_cast<Attribute>(i));
-    std::vector<std::byte> unused(header_.has_extensions ? 4096 : 0);
-    while (!unused.empty() && plain.read(unused) == unused.size()) {
-    }
+    turn(spz::read_last_extensions(plain, header_));
+  }
+
+  void turn(const spz::Extensions& extensions) {
+    if (extensions.turns())
+      CloudTransform(extensions.axes, input_.name() + ": coordinate system").apply(cloud_, {});
   }
 
   void read_streams() {
-    const auto compressed_sizes = spz::read_stream_table(input_, header_);
+    const spz::StreamTable table = spz::read_stream_table(input_, header_);
     for (int i = 0; i < header_.attributes(); ++i) {
-      ZstdReader plain(input_, compressed_sizes[static_cast<size_t>(i)]);
+      ZstdReader plain(input_, table.compressed[static_cast<size_t>(i)]);
       read(plain, static_cast<Attribute>(i));
       plain.finish();
     }
+    turn(table.extensions);
   }
 
   void read(ByteReader& plain, Attribute attribute) {

@@ -4,6 +4,7 @@
 
 #include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/import/decompress.h"
+#include "runtime/scene/import/placed_blocks.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/spz_decode.h"
 
@@ -31,7 +32,7 @@ class AttributeStream {
       skip_to(attribute);
       return;
     }
-    const auto sizes = spz::read_stream_table(input_, header_);
+    const auto sizes = spz::read_stream_table(input_, header_).compressed;
     for (size_t i = 0; i < attribute; ++i) input_.skip(sizes[i]);
     plain_ = std::make_unique<ZstdReader>(input_, sizes[attribute]);
   }
@@ -50,9 +51,7 @@ class AttributeStream {
   void finish(bool last) {
     if (plain_ && header_.version == spz::kNewest) return plain_->finish();
     if (!last) return;
-    std::vector<std::byte> unused(header_.has_extensions ? 4096 : 0);
-    while (!unused.empty() && plain().read(unused) == unused.size()) {
-    }
+    spz::read_last_extensions(plain(), header_);
     if (plain_) plain_->finish();
     if (!input_.peek(1).empty())
       refuse(input_.name(), input_.offset(), "length", "more bytes", "the end of the file");
@@ -141,7 +140,20 @@ class SpzReader final : public BlockReader {
 }  // namespace
 
 std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source) {
-  return std::make_unique<SpzReader>(std::move(source));
+  const spz::Extensions extensions = spz::read_announcement(*source).extensions;
+  const std::string what = source->name() + ": coordinate system";
+  std::unique_ptr<BlockReader> reader = std::make_unique<SpzReader>(std::move(source));
+  return extensions.turns() ? place_blocks(std::move(reader), extensions.axes, {}, what)
+                            : std::move(reader);
+}
+
+std::vector<std::string> left_out_of_spz(const ByteSource& source) {
+  const spz::Announcement found = spz::read_announcement(source);
+  std::vector<std::string> unread = found.extensions.unread;
+  if (found.header.stored_sh_degree > found.header.sh_degree)
+    unread.insert(unread.begin(),
+                  "spherical harmonics of degree " + std::to_string(found.header.stored_sh_degree));
+  return unread;
 }
 
 }  // namespace voyager

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "runtime/scene/import/decompress.h"
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
 
@@ -57,7 +58,8 @@ Header read_header(ByteReader& plain, uint32_t newest_version) {
   header.version = static_cast<uint32_t>(
       in_range(file, at + 4, "version", integer(&bytes[4], 4), 1, newest_version));
   header.count = static_cast<uint32_t>(integer(&bytes[8], 4));
-  header.sh_degree = field("SH degree", 12, 0, kMaxShDegree);
+  header.stored_sh_degree = field("SH degree", 12, 0, kMostStoredShDegree);
+  header.sh_degree = std::min(header.stored_sh_degree, kMaxShDegree);
   header.fractional_bits = field("fractional bits", 13, 0, kMaxFractionalBits);
   const uint8_t flags = field("flags", 14, 0, kFlagAntialiased | kFlagExtensions);
   header.antialiased = (flags & kFlagAntialiased) != 0;
@@ -78,7 +80,7 @@ void check_count(const PeekReader& input, const Header& header) {
         "at most " + std::to_string(most) + " in a file of " + std::to_string(length) + " bytes");
 }
 
-std::array<uint64_t, kAttributes> read_stream_table(PeekReader& input, const Header& header) {
+StreamTable read_stream_table(PeekReader& input, const Header& header) {
   const std::string& file = input.name();
   const uint64_t at = input.offset(), start = at - kHeaderBytes;
   const uint64_t streams = static_cast<uint64_t>(header.attributes());
@@ -89,10 +91,13 @@ std::array<uint64_t, kAttributes> read_stream_table(PeekReader& input, const Hea
   in_range(file, at, "offset of the stream table", table, kStreamsHeaderBytes, furthest);
   for (size_t i = 4; i < rest.size(); ++i)
     in_range(file, at + i, "reserved byte", integer(&rest[i], 1), 0, 0);
-  const uint64_t gap = table - kStreamsHeaderBytes, skipped = input.skip(gap);
+  StreamTable found;
+  const uint64_t gap = table - kStreamsHeaderBytes, gap_at = input.offset();
+  std::vector<std::byte> records(std::min<uint64_t>(gap, kMostExtensionBytes));
+  const uint64_t got = input.read(records), skipped = got + input.skip(gap - got);
   in_range(file, input.offset(), "bytes before the stream table", skipped, gap, gap);
+  found.extensions = read_extensions(file, gap_at, records);
 
-  std::array<uint64_t, kAttributes> compressed = {};
   uint64_t expected_end = start + table + streams * kTableEntryBytes;
   for (size_t i = 0; i < streams; ++i) {
     const uint64_t entry_at = input.offset();
@@ -101,14 +106,47 @@ std::array<uint64_t, kAttributes> read_stream_table(PeekReader& input, const Hea
     const uint64_t size = header.count * uint64_t{header.bytes_of(static_cast<Attribute>(i))};
     in_range(file, entry_at + 8, (name + ": uncompressed size").c_str(), integer(&entry[8], 8),
              size, size);
-    compressed[i] = integer(&entry[0], 8);
-    if (__builtin_add_overflow(expected_end, compressed[i], &expected_end))
-      refuse(file, entry_at, name + ": compressed size", std::to_string(compressed[i]), "less");
+    const uint64_t compressed = found.compressed[i] = integer(&entry[0], 8);
+    if (__builtin_add_overflow(expected_end, compressed, &expected_end))
+      refuse(file, entry_at, name + ": compressed size", std::to_string(compressed), "less");
   }
   if (const auto left = input.remaining(); left && input.offset() + *left != expected_end)
     refuse(file, input.offset(), "streams", std::to_string(*left) + " bytes",
            std::to_string(expected_end - input.offset()) + " bytes, as the stream table says");
-  return compressed;
+  return found;
+}
+
+Extensions read_last_extensions(ByteReader& plain, const Header& header) {
+  if (!header.has_extensions) return {};
+  const uint64_t at = plain.offset();
+  std::vector<std::byte> records(kMostExtensionBytes);
+  records.resize(plain.read(records));
+  std::vector<std::byte> unused(4096);
+  while (plain.read(unused) == unused.size()) {
+  }
+  return read_extensions(plain.name(), at, records);
+}
+
+Announcement read_announcement(const ByteSource& source) {
+  const std::unique_ptr<ByteReader> reader = read_source(source);
+  PeekReader input(*reader);
+  Announcement found;
+  std::unique_ptr<GzipReader> gzip;
+  const std::span<const std::byte> first = input.peek(1);
+  if (!first.empty() && first[0] == std::byte{0x1f}) gzip = std::make_unique<GzipReader>(input);
+  ByteReader& plain = gzip ? static_cast<ByteReader&>(*gzip) : input;
+  found.header = read_header(plain, gzip ? kNewestPlanar : kNewest);
+  check_count(input, found.header);
+  if (!found.header.has_extensions) return found;
+  if (found.header.version == kNewest) {
+    found.extensions = read_stream_table(input, found.header).extensions;
+    return found;
+  }
+  PeekReader stepper(plain);
+  for (int i = 0; i < found.header.attributes(); ++i)
+    stepper.skip(uint64_t{found.header.count} * found.header.bytes_of(static_cast<Attribute>(i)));
+  found.extensions = read_last_extensions(stepper, found.header);
+  return found;
 }
 
 }  // namespace voyager::spz

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "runtime/scene/import/peek_reader.h"
+#include "runtime/scene/import/spz_extensions.h"
 #include "runtime/scene/native_scale.h"
 #include "runtime/scene/spz_format.h"
 
@@ -13,15 +14,18 @@ inline constexpr uint32_t kNewestPlanar = 3, kNewest = 4;
 
 struct Header {
   uint32_t version = 0, count = 0;
-  int sh_degree = 0, fractional_bits = 0;
+  int sh_degree = 0;         // that is read, at most kMaxShDegree
+  int stored_sh_degree = 0;  // that the file has: bands above are stepped over
+  int fractional_bits = 0;
   bool antialiased = false, has_extensions = false;
   uint8_t last = 0;  // v1-v3: reserved; v4: number of streams
 
   NativeScale native() const { return antialiased ? compensated_scale(kLowPass) : NativeScale{}; }
-  size_t bytes_of(Attribute attribute) const { return width(attribute, version, sh_degree); }
+  size_t bytes_of(Attribute attribute) const { return width(attribute, version, stored_sh_degree); }
   // The attributes that are present are the first so many.
-  int attributes() const { return sh_degree > 0 ? kAttributes : kSh; }
+  int attributes() const { return stored_sh_degree > 0 ? kAttributes : kSh; }
 };
+inline constexpr int kMostStoredShDegree = 4;
 
 // Reads the 16 bytes that all versions share, refusing what is out of range.
 Header read_header(ByteReader& plain, uint32_t newest_version);
@@ -30,8 +34,22 @@ Header read_header(ByteReader& plain, uint32_t newest_version);
 // is; nothing is said of a stream whose length is not known.
 void check_count(const PeekReader& input, const Header& header);
 
-// Compressed size of each stream of a version 4, whose header's first 16 bytes
-// were read; leaves `input` at the first stream.
-std::array<uint64_t, kAttributes> read_stream_table(PeekReader& input, const Header& header);
+// What a version 4 has before its streams.
+struct StreamTable {
+  std::array<uint64_t, kAttributes> compressed{};  // size of each
+  Extensions extensions;
+};
+// The header's first 16 bytes were read; leaves `input` at the first stream.
+StreamTable read_stream_table(PeekReader& input, const Header& header);
+
+// Of versions 1 to 3, after the last attribute: reads to the end.
+Extensions read_last_extensions(ByteReader& plain, const Header& header);
+
+// Of a whole file. What stands before extensions is decompressed for it.
+struct Announcement {
+  Header header;
+  Extensions extensions;
+};
+Announcement read_announcement(const ByteSource& source);
 
 }  // namespace voyager::spz

@@ -372,7 +372,7 @@ TEST(LoadScene, AHeaderThatContradictsTheTreeIsRefused) {
         changed([](FileHeader& h) { h.largest_sh = -1; }),
         changed([](FileHeader& h) { h.largest_sh = std::nanf(""); }),
         changed([](FileHeader& h) { h.left_out_bands = 4; }),
-        changed([](FileHeader& h) { h.flags |= kFlags + 1; }),
+        changed([](FileHeader& h) { h.flags |= (kFlags | kFootprintMask) + 1; }),
         changed([](FileHeader& h) { h.flags |= kFlagLeafExtents; })})
     EXPECT_EQ(test::error_code([&] { load(bytes); }), ErrorCode::refused_input);
 }

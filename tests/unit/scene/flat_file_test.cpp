@@ -13,7 +13,9 @@ TEST(FlatFile, TheEndOfTheNameSaysTheFormat) {
   EXPECT_EQ(flat_format_of("b.splat"), FlatFormat::splat);
   EXPECT_EQ(flat_format_of("b.glb"), FlatFormat::glb);
   EXPECT_EQ(flat_format_of("b.sog"), FlatFormat::sog);
-  for (const char* name : {"", "ply", "b.voy", "b.ply.png", "b.PLY"})
+  EXPECT_EQ(flat_format_of("B.PLY"), FlatFormat::ply);
+  EXPECT_EQ(flat_format_of("B.Compressed.Ply"), FlatFormat::compressed_ply);
+  for (const char* name : {"", "ply", "b.voy", "b.ply.png"})
     EXPECT_EQ(flat_format_of(name), std::nullopt) << name;
 }
 

@@ -142,6 +142,106 @@ TEST(SpzImport, FlagsAndExtensions) {
   EXPECT_EQ(read.sh, test::import_bytes(test::spz_v4(cloud)).sh);
 }
 
+void put_record(Bytes& bytes, uint32_t type, const Bytes& payload) {
+  test::put<uint32_t>(bytes, type);
+  test::put<uint32_t>(bytes, static_cast<uint32_t>(payload.size()));
+  bytes.insert(bytes.end(), payload.begin(), payload.end());
+}
+
+Bytes record_of_axes(uint32_t system) {
+  Bytes payload, record;
+  test::put<uint32_t>(payload, system);
+  put_record(record, 0xadbe0003, payload);
+  return record;
+}
+
+// Version 4 with extensions before its table.
+Bytes v4_with(const GaussianCloud& cloud, const Bytes& records) {
+  Bytes bytes = with<uint32_t>(with<uint8_t>(test::spz_v4(cloud), 14, 2), 16,
+                               32 + static_cast<uint32_t>(records.size()));
+  bytes.insert(bytes.begin() + 32, records.begin(), records.end());
+  return bytes;
+}
+
+std::shared_ptr<const ByteSource> source_of(const Bytes& bytes) {
+  return std::make_shared<MemorySource>("sample.spz", bytes);
+}
+
+TEST(SpzImport, ExtensionsThatAreNotReadAreNamed) {
+  Bytes records;
+  put_record(records, 0x4e410001, Bytes(5));
+  put_record(records, 0xadbe0002, Bytes(12));
+  const Bytes v4 = v4_with(test::random_cloud(3, 2, 1), records);
+  Bytes planar = test::planar_spz(3, 2, 1, 2);
+  planar.insert(planar.end(), records.begin(), records.end());
+  for (const Bytes& bytes : {v4, planar, test::gzip(planar)}) {
+    const std::vector<std::string> left = left_out_of(*source_of(bytes));
+    ASSERT_EQ(left.size(), 2u);
+    EXPECT_NE(left[0].find("0x4e410001 (5 bytes)"), std::string::npos) << left[0];
+    EXPECT_NE(left[1].find("SPZ_ADOBE_safe_orbit_camera"), std::string::npos) << left[1];
+    EXPECT_GT(test::import_bytes(bytes).size(), 1u);
+  }
+  EXPECT_TRUE(left_out_of(*source_of(test::planar_spz(3, 2, 3))).empty());
+}
+
+// What x, y and z of the file point to, against the usual right, up, back.
+TEST(SpzImport, ACoordinateSystemTurnsTheScene) {
+  const GaussianCloud usual = test::import_bytes(test::planar_spz(3, 4, 2));
+  const auto turned = [&](uint32_t system) {
+    Bytes planar = test::planar_spz(3, 4, 2, 2);
+    const Bytes record = record_of_axes(system);
+    planar.insert(planar.end(), record.begin(), record.end());
+    const GaussianCloud whole = test::import_bytes(planar);
+    const auto reader = open_blocks(source_of(planar));
+    const GaussianCloud block = reader->decode(reader->next(100));
+    EXPECT_EQ(whole.position, block.position);
+    EXPECT_EQ(whole.sh, block.sh);
+    return whole;
+  };
+  for (const uint32_t same : {0u, 4u}) {
+    EXPECT_EQ(turned(same).position, usual.position);
+    EXPECT_EQ(turned(same).sh, usual.sh);
+  }
+  const GaussianCloud ply = turned(6), left_front_up = turned(11);  // RDF, LFU
+  for (size_t i = 0; i < usual.size(); ++i) {
+    const float* stored = &usual.position[3 * i];
+    EXPECT_EQ(ply.position[3 * i], stored[0]);
+    EXPECT_EQ(ply.position[3 * i + 1], -stored[1]);
+    EXPECT_EQ(ply.position[3 * i + 2], -stored[2]);
+    EXPECT_EQ(left_front_up.position[3 * i], -stored[0]);
+    EXPECT_EQ(left_front_up.position[3 * i + 1], stored[2]);   // up
+    EXPECT_EQ(left_front_up.position[3 * i + 2], -stored[1]);  // front
+  }
+  for (const uint32_t unknown : {17u, 0xffffffffu}) {
+    Bytes planar = test::planar_spz(3, 4, 2, 2);
+    const Bytes record = record_of_axes(unknown);
+    planar.insert(planar.end(), record.begin(), record.end());
+    test::expect_refused(planar, "coordinate system", "unknown axes");
+  }
+  const GaussianCloud cloud = test::random_cloud(4, 2, 1);
+  EXPECT_EQ(test::import_bytes(v4_with(cloud, record_of_axes(6))).position[1],
+            -test::import_bytes(test::spz_v4(cloud)).position[1]);
+}
+
+// Each Gaussian has 24 coefficients of three channels: the last nine are stepped over.
+TEST(SpzImport, ShOfDegreeFourIsCut) {
+  const Bytes three = test::planar_spz(3, 3, 3);
+  Bytes four = with<uint8_t>(three, 12, 4);
+  for (size_t i = 3; i > 0; --i)
+    four.insert(four.begin() + static_cast<std::ptrdiff_t>(three.size() - 45 * (3 - i)), 27,
+                std::byte{200});
+  const GaussianCloud read = test::import_bytes(four), cut = test::import_bytes(three);
+  EXPECT_EQ(read.sh_degree, 3);
+  EXPECT_EQ(read.sh, cut.sh);
+  EXPECT_EQ(read.position, cut.position);
+  const auto reader = open_blocks(source_of(four));
+  EXPECT_EQ(reader->sh_degree(), 3);
+  EXPECT_EQ(reader->decode(reader->next(9)).sh, cut.sh);
+  EXPECT_EQ(left_out_of(*source_of(four)),
+            std::vector<std::string>{"spherical harmonics of degree 4"});
+  test::expect_refused(with<uint8_t>(three, 12, 5), "SH degree", "degree 5");
+}
+
 TEST(SpzImport, NoGaussiansIsAScene) {
   EXPECT_EQ(test::import_bytes(test::planar_spz(2, 0, 3)).size(), 0u);
   EXPECT_EQ(test::import_bytes(test::gzip(test::planar_spz(3, 0, 0))).size(), 0u);
@@ -207,7 +307,7 @@ TEST(SpzImport, RefusesEveryHeaderFieldOutOfRange) {
         {with<uint32_t>(good, 4, 0), "version"},     {with<uint32_t>(good, 4, 5), "version"},
         {with<uint32_t>(good, 4, ~0u), "version"},   {with<uint32_t>(good, 8, 1000u), "positions"},
         {with<uint32_t>(good, 8, 4), "bytes"},       {with<uint32_t>(good, 8, 2), "more bytes"},
-        {with<uint8_t>(good, 12, 4), "SH degree"},   {with<uint8_t>(good, 12, 255), "SH degree"},
+        {with<uint8_t>(good, 12, 5), "SH degree"},   {with<uint8_t>(good, 12, 255), "SH degree"},
         {with<uint8_t>(good, 12, 2), "sh"},          {with<uint8_t>(good, 12, 0), "more bytes"},
         {with<uint8_t>(good, 13, 25), "fractional"}, {with<uint8_t>(good, 14, 4), "flags"},
         {with<uint8_t>(good, 14, 0x80), "flags"},    {with<uint8_t>(good, 15, 1), "reserved"}};
@@ -226,7 +326,7 @@ TEST(SpzImport, RefusesEveryStreamTableFieldOutOfRange) {
   const std::vector<std::pair<Bytes, std::string>> bad = {
       {with<uint32_t>(good, 8, 1000u), "uncompressed size"},
       {with<uint32_t>(good, 8, 2), "uncompressed size"},
-      {with<uint8_t>(good, 12, 4), "SH degree"},
+      {with<uint8_t>(good, 12, 5), "SH degree"},
       {with<uint8_t>(good, 12, 2), "sh: uncompressed size"},
       {with<uint8_t>(good, 13, 60), "fractional bits"},
       {with<uint8_t>(good, 14, 0x44), "flags"},

@@ -73,5 +73,15 @@ TEST(Placement, InputsAreRelativeToOneOrigin) {
   }
 }
 
+TEST(Placement, TheOriginIsNearTheMiddleOfAllInputs) {
+  std::vector<std::unique_ptr<BlockReader>> readers;
+  const test::Bytes ply = test::ply_of(test::random_cloud(4, 2, 1));
+  for (int i = 0; i < 2; ++i)
+    readers.push_back(open_blocks(std::make_shared<MemorySource>("input", ply)));
+  readers = tools::placed(std::move(readers), {{}, parse_transform("translate 102400 0 2048")});
+  for (const auto& reader : readers)
+    EXPECT_EQ(reader->origin(), (std::array<double, 3>{51200, 0, 0}));
+}
+
 }  // namespace
 }  // namespace voyager::placement_test
