@@ -16,6 +16,9 @@ constexpr int kMaxWindowLog = 27;
 Decompressor::Decompressor(PeekReader& input)
     : input_(input), name_(input.name() + " (decompressed)") {}
 
+Decompressor::Decompressor(PeekReader& input, const Decompressor& other)
+    : input_(input), ended_(other.ended_), name_(other.name_), offset_(other.offset_) {}
+
 void Decompressor::refuse_stream(const std::string& found, const std::string& expected) const {
   refuse(input_.name(), input_.offset(), "compressed stream", found, expected);
 }
@@ -47,6 +50,11 @@ void Decompressor::finish() {
 
 GzipReader::GzipReader(PeekReader& input) : Decompressor(input) {
   if (inflateInit2(&stream_, 16 + MAX_WBITS) != Z_OK) throw std::bad_alloc();
+}
+
+GzipReader::GzipReader(PeekReader& input, const GzipReader& other) : Decompressor(input, other) {
+  // zlib's interface is not const-correct; it only reads from its source.
+  if (inflateCopy(&stream_, const_cast<z_stream*>(&other.stream_)) != Z_OK) throw std::bad_alloc();
 }
 
 GzipReader::~GzipReader() {

@@ -24,6 +24,9 @@ class Decompressor : public ByteReader {
   uint64_t offset() const override { return offset_; }
 
  protected:
+  // One that goes on where another stands.
+  Decompressor(PeekReader& input, const Decompressor& other);
+
   struct Step {
     size_t taken, made;
   };
@@ -48,6 +51,8 @@ class Decompressor : public ByteReader {
 class GzipReader final : public Decompressor {
  public:
   explicit GzipReader(PeekReader& input);
+  // Goes on where `other` stands. So must `input`, in the same bytes.
+  GzipReader(PeekReader& input, const GzipReader& other);
   ~GzipReader() override;
   GzipReader(const GzipReader&) = delete;
   GzipReader& operator=(const GzipReader&) = delete;

@@ -130,8 +130,7 @@ class Scene final : public BlockReader {
              "each 64 of shN.count");
     centroid_count_ = meta_.centroids.value_or(found);
     centroids_.resize(static_cast<size_t>(centroid_count_) * 3 * each);
-    for (size_t i = 0; i < centroids_.size(); ++i)
-      centroids_[i] = meta_.sh[image.pixel(i / 3)[i % 3]];
+    for (size_t i = 0; i < centroids_.size(); ++i) centroids_[i] = image.pixel(i / 3)[i % 3];
   }
 
   static int degree_of_width(uint32_t width) {
@@ -170,7 +169,9 @@ class Scene final : public BlockReader {
     decode_rotation(code(kQuats, 0), &cloud.rotation[4 * i]);
     cloud.opacity[i] = meta_.opacities[index(kColours, 3)];
     const size_t rest = width() - 3;
-    if (rest > 0) std::copy_n(&centroids_[label_of(row) * rest], rest, sh + 3);
+    if (rest == 0) return;
+    const uint8_t* codes = &centroids_[label_of(row) * rest];
+    for (size_t k = 0; k < rest; ++k) sh[3 + k] = meta_.sh[codes[k]];
   }
 
   std::unique_ptr<Files> files_;  // until the images are read
@@ -179,8 +180,8 @@ class Scene final : public BlockReader {
   int sh_degree_ = 0;
   uint64_t first_ = 0, count_ = 0, taken_ = 0;  // Gaussians
   uint64_t centroid_count_ = 0;
-  std::vector<float> centroids_;  // of each: [k - 1][rgb]
-  std::vector<std::byte> rows_;   // kRow bytes a Gaussian
+  std::vector<uint8_t> centroids_;  // of each the codes of [k - 1][rgb], which fit the cache
+  std::vector<std::byte> rows_;     // kRow bytes a Gaussian
 };
 
 }  // namespace
