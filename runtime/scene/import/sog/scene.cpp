@@ -109,7 +109,7 @@ class Scene final : public BlockReader {
   void read_image(File file) {
     const std::string& name = meta_.files[file];
     const PixelRange range{meta_.count, 2 * meta_.count + (1 << 16)};
-    const Image image = decode_webp(name_, name, files_->read(name), range);
+    const Image image = decode_webp(name_, name, files_->read(name, most_bytes(range)), range);
     const auto [at, channels] = kPlaces[file];
     for (uint64_t i = 0; i < count_; ++i)
       std::copy_n(image.pixel(first_ + i), channels,
@@ -119,7 +119,8 @@ class Scene final : public BlockReader {
   void read_centroids() {
     const std::string& name = meta_.files[kCentroids];
     const uint64_t most = kMostCentroidRows * kCentroidsARow * 15;
-    const Image image = decode_webp(name_, name, files_->read(name), {1, most});
+    const Image image =
+        decode_webp(name_, name, files_->read(name, most_bytes({1, most})), {1, most});
     sh_degree_ = meta_.sh_degree.value_or(degree_of_width(image.width));
     const auto each = static_cast<uint32_t>(sh_coefficients(sh_degree_) - 1);
     const uint64_t found = uint64_t{image.height} * kCentroidsARow;
@@ -191,12 +192,8 @@ std::unique_ptr<BlockReader> open_scene(std::unique_ptr<Files> files, uint64_t f
   return std::make_unique<Scene>(std::move(files), first, count);
 }
 
-}  // namespace voyager::sog
-
-namespace voyager {
-
-std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source) {
-  return sog::open_scene(sog::open_files(std::move(source)));
+std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source) {
+  return open_scene(open_files(std::move(source)));
 }
 
-}  // namespace voyager
+}  // namespace voyager::sog
