@@ -21,11 +21,13 @@ const SogModule& sog_module(const std::string& name) {
 }  // namespace
 
 std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source) {
-  return sog_module(source->name()).open(std::move(source));
+  const SogModule& module = sog_module(source->name());
+  return module.open(std::move(source));
 }
 
 std::unique_ptr<BlockReader> open_streamed_sog_blocks(std::shared_ptr<const ByteSource> source) {
-  return sog_module(source->name()).open_streamed(std::move(source));
+  const SogModule& module = sog_module(source->name());
+  return module.open_streamed(std::move(source));
 }
 
 void require_sog() {

@@ -100,8 +100,8 @@ TEST(ImportDirection, OnlyTheHttpModuleKnowsLibcurl) {
 TEST(ImportDirection, OnlyTheSogModuleKnowsLibwebpAndLibzip) {
   const std::vector<std::string> its_own = {"webp/", "zip.h", "runtime/scene/import/sog/",
                                             "runtime/scene/export/sog/"};
-  expect_no_include("sog", {"plugin/", "voyager/", "tools/", "samples/", "tests/", "bench/", "cuda",
-                            "http/"});
+  expect_no_include(
+      "sog", {"plugin/", "voyager/", "tools/", "samples/", "tests/", "bench/", "cuda", "http/"});
   for (const char* folder : {"runtime", "plugin", "tools", "samples", "cuda"})
     for (const Include& include : includes_below(folder)) {
       if (include.file.rfind("runtime/scene/import/sog/", 0) == 0 ||
