@@ -26,6 +26,7 @@ export VOYAGER_BENCH_SCENE=$scene VOYAGER_BENCH_CAMERAS=$cameras VOYAGER_BENCH_S
 run "$bin/frame_bench" --benchmark_min_time=0.01
 head -c 64000000 /dev/urandom >"$folder/file"
 run "$bin/source_bench" --benchmark_min_time=0.01
+run "$bin/read_bench" "$folder/city.ply" --benchmark_min_time=0.01
 run "$bin/search_scale" --gaussians 5000 --cameras "$cameras" --backend cpu --json "$folder/scale.json"
 run "$bin/stream_walk" "$scene" "$cameras" 4 60 64x36 3 1
 if [ -e /dev/nvidia0 ]; then

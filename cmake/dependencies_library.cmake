@@ -38,7 +38,7 @@ else()
 endif()
 
 if(VOYAGER_SOG STREQUAL "OFF")
-  voyager_leave_out(VOYAGER_SOG "SOG scenes" "VOYAGER_SOG is OFF")
+  voyager_leave_out(VOYAGER_SOG "SOG module" "VOYAGER_SOG is OFF")
 else()
   # libzip's own CMake package asks for its programs, which Debian has apart.
   find_path(WEBP_INCLUDE_DIR webp/decode.h)
@@ -48,7 +48,7 @@ else()
   if(WEBP_INCLUDE_DIR AND WEBP_LIBRARY AND ZIP_INCLUDE_DIR AND ZIP_LIBRARY)
     set(VOYAGER_SOG ON)
   else()
-    voyager_leave_out(VOYAGER_SOG "SOG scenes"
+    voyager_leave_out(VOYAGER_SOG "SOG module"
       "not both of libwebp and libzip, which libwebp-dev and libzip-dev bring: .sog files are refused, as input and output")
   endif()
 endif()

@@ -3,7 +3,7 @@ option(VOYAGER_BUILD_TOOLS "Build the command line, voyager" ON)
 option(VOYAGER_BUILD_SAMPLES "Build the sample hosts for Vulkan and OpenXR" ON)
 set(VOYAGER_CUDA AUTO CACHE STRING "Build the CUDA module: AUTO (where nvcc is found), ON or OFF")
 set(VOYAGER_HTTP AUTO CACHE STRING "Build the HTTP module: AUTO (where libcurl is found), ON or OFF")
-set(VOYAGER_SOG AUTO CACHE STRING "Read and write SOG scenes: AUTO (where libwebp and libzip are found), ON or OFF")
+set(VOYAGER_SOG AUTO CACHE STRING "Build the SOG module: AUTO (where libwebp and libzip are found), ON or OFF")
 
 # The tests run the tools and the samples, and the benchmarks use the tools' cameras and statistics.
 set(tests_default ${VOYAGER_BUILD_TOOLS})

@@ -28,8 +28,9 @@ voyager_package(runtime libvoyager${series} libs "the library")
 voyager_package(development libvoyager-dev libdevel "headers, CMake and pkg-config packages" runtime)
 voyager_package(tools voyager-tools graphics "the command line" runtime)
 voyager_package(http libvoyager-http libs "the module that reads http:// and https://" runtime)
+voyager_package(sog libvoyager-sog libs "the module that reads and writes SOG scenes" runtime)
 voyager_package(cuda libvoyager-cuda libs "the module that draws on NVIDIA GPUs" runtime)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS libvoyager-http)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "libvoyager-http, libvoyager-sog")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS libvoyager-cuda)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS libvulkan-dev)  # voyager_vulkan.h includes Vulkan's header
 

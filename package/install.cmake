@@ -1,4 +1,4 @@
-# What `cmake --install` puts where: the components runtime, development, tools, http and cuda.
+# What `cmake --install` puts where: the components runtime, development, tools, http, sog and cuda.
 # Nothing of it holds an absolute path, so that the folder may be moved.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -9,7 +9,7 @@ install(TARGETS voyager EXPORT voyager
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set_target_properties(voyager PROPERTIES INSTALL_RPATH "$ORIGIN")
-foreach(module http cuda)
+foreach(module http sog cuda)
   if(TARGET voyager_${module})
     install(TARGETS voyager_${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${module})
     set_target_properties(voyager_${module} PROPERTIES INSTALL_RPATH "$ORIGIN")

@@ -54,7 +54,8 @@ for insisted in HTTP=ON HTTP=MAYBE CUDA=MAYBE BUILD_TESTS=ON; do
 done
 
 cmake --build "$work/library"
-export BUILD=$PWD/$work/library VERSION LIB=$multiarch CUDA=OFF HTTP=OFF TOOLS=OFF CC=cc CXX=c++
+export BUILD=$PWD/$work/library VERSION LIB=$multiarch CUDA=OFF HTTP=OFF SOG=OFF TOOLS=OFF CC=cc CXX=c++
+if [ -e "$BUILD/lib/libvoyager_sog.so" ]; then SOG=ON; fi
 VERSION=$(cat VERSION)
 for test in install consumers deb; do
   WORK=$PWD/$work/$test "tests/package/${test}_test.sh"

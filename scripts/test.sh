@@ -15,7 +15,9 @@ step "test.sh: build"
 cmake --preset release -DVOYAGER_WERROR=ON \
   -DCMAKE_CUDA_ARCHITECTURES="$(scripts/cuda_architectures.sh)"
 cmake --build --preset release
-[ -e build/release/lib/libvoyager_http.so ] || { echo "test.sh: libvoyager_http.so: not built, expected because setup.sh brings libcurl" >&2; exit 1; }
+for module in http sog; do
+  [ -e build/release/lib/libvoyager_$module.so ] || { echo "test.sh: libvoyager_$module.so: not built, expected because setup.sh brings what it needs" >&2; exit 1; }
+done
 scripts/check_cuda_module.sh build/release
 
 step "test.sh: test"

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "runtime/base/checksum.h"
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
 #include "runtime/format/reader.h"
@@ -15,8 +16,8 @@ namespace voyager::tools {
 namespace {
 
 constexpr size_t kChunks = 64;             // of a .voy that are looked at
-constexpr size_t kBlock = 1 << 12;         // Gaussians, of which
-constexpr size_t kBlocksApart = 4;         // one in so many is looked at
+constexpr size_t kBlock = 1 << 14;         // Gaussians
+constexpr uint64_t kLookedAt = 1 << 22;    // of a flat file, about: all, if it has no more
 constexpr double kStrayShare = 0.02;       // of the positions, at either end of an axis
 constexpr double kBeside = 0.25;           // of the length that the others take, which still counts
 constexpr double kMargin = 1.08;           // for how far Gaussians reach beyond their means
@@ -49,17 +50,31 @@ std::vector<Vec3d> positions_of_tree(const SceneFile& file) {
   return positions;
 }
 
+// A part of all positions, which depends on nothing but them: not on their order.
+class Sample {
+ public:
+  explicit Sample(uint64_t of) : apart_(std::max<uint64_t>(1, of / kLookedAt)) {}
+  bool has(const float* position) const {
+    return apart_ == 1 || checksum(std::as_bytes(std::span(position, 3))) % apart_ == 0;
+  }
+
+ private:
+  uint64_t apart_;  // one in so many
+};
+
 std::vector<Vec3d> positions_of_flat(std::unique_ptr<ByteSource> source) {
   std::vector<Vec3d> positions;
   const auto reader = open_blocks(std::move(source));
-  for (size_t number = 0;; ++number) {
+  const Sample sample(reader->count());
+  for (;;) {
     const RawBlock block = reader->next(kBlock);
     if (block.count == 0) return positions;
-    if (number % kBlocksApart != 0) continue;
     const GaussianCloud cloud = reader->decode(block);
     for (size_t i = 0; i < cloud.size(); ++i) {
       const float* p = cloud.position.data() + 3 * i;
-      positions.push_back({cloud.origin[0] + p[0], cloud.origin[1] + p[1], cloud.origin[2] + p[2]});
+      if (sample.has(p))
+        positions.push_back(
+            {cloud.origin[0] + p[0], cloud.origin[1] + p[1], cloud.origin[2] + p[2]});
     }
   }
 }

@@ -52,8 +52,9 @@ BakeSummary bake_in_parts(const BakeInParts& bake, const OpenInputs& open, Worke
                           const Progress& progress);
 
 // The lines of a request. `inputs` are paths, URLs, or - for standard input, of which
-// nothing can be told; files count with size and time of change, URLs with size. Throws
-// Error(file_not_found), and for a URL what open_source() does.
+// nothing can be told; files count with size and time of change, and so do those that
+// they refer to (files_beside.h); URLs count with size. Throws Error(file_not_found), for a URL
+// what open_source() does, and for a file that may refer to others what open_blocks() does.
 std::string bake_request(const std::vector<std::string>& inputs, Quality quality,
                          uint32_t chunk_bytes, const TreeRule& rule = {},
                          const NativeChoice& native = {});

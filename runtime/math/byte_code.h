@@ -1,5 +1,6 @@
 #pragma once
 // What formats of a byte or a few bits a value have in common (scene/import).
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -8,12 +9,22 @@
 
 namespace voyager {
 
-// The logit of an opacity of code / 255, code from 0 to 255. 0 and 255 stand for logits beyond
-// what a byte can say, not for infinity.
+// The logit of a share of part / (part + rest). Shares of 0 and 1 stand for logits beyond what the
+// numbers can say, not for infinity; NaN stays.
+inline float logit_of_odds(double part, double rest) {
+  if (part <= 0) return -kMaxLogit;
+  if (rest <= 0) return kMaxLogit;
+  return std::clamp(static_cast<float>(std::log(part / rest)), -kMaxLogit, kMaxLogit);
+}
+
+// The logit of an opacity of code / 255, code from 0 to 255.
 inline float logit_of_byte(int code) {
-  if (code <= 0) return -kMaxLogit;
-  if (code >= 255) return kMaxLogit;
-  return static_cast<float>(std::log(code / (255.0 - code)));
+  return logit_of_odds(code, 255.0 - code);
+}
+
+// The logit of a linear opacity.
+inline float logit_of_opacity(double opacity) {
+  return logit_of_odds(opacity, 1 - opacity);
 }
 
 // What a code stands for that runs from 0 (low) to most (high); exact at both ends.
@@ -28,9 +39,10 @@ inline float sh_of_colour(double colour) {
 }
 
 // Natural logarithm of a linear scale in metres. 0, which is what a small scale was rounded to, is
-// a scale below any that a Gaussian may have (scene/sanitise.h); a negative one is NaN.
-inline float log_of_scale(float scale) {
-  return scale == 0.0f ? -100.0f : std::log(scale);
+// by default a scale below any that a Gaussian may have (scene/sanitise.h); a negative one is NaN.
+template <class Real>
+float log_of_scale(Real scale, float of_zero = -100.0f) {
+  return scale == 0 ? of_zero : static_cast<float>(std::log(scale));
 }
 
 // Of a unit quaternion's components all but one, which is at `largest` and not negative.

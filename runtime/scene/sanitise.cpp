@@ -1,7 +1,9 @@
 #include "runtime/scene/sanitise.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <span>
 
 namespace voyager {
@@ -13,8 +15,13 @@ Values row(std::pmr::vector<float>& values, size_t i, size_t width) {
   return Values(values).subspan(i * width, width);
 }
 
+// Without a branch for each, so that it is done on several at a time.
 bool all_finite(Values values) {
-  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+  constexpr uint32_t kExponent = 0x7f800000;
+  uint32_t infinite = 0;
+  for (const float v : values)
+    infinite |= uint32_t{(std::bit_cast<uint32_t>(v) & kExponent) == kExponent};
+  return infinite == 0;
 }
 
 bool keeps(GaussianCloud& cloud, size_t i) {

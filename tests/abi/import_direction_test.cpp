@@ -97,6 +97,21 @@ TEST(ImportDirection, OnlyTheHttpModuleKnowsLibcurl) {
     expect_no_include(folder, {"http/", "curl/"});
 }
 
+TEST(ImportDirection, OnlyTheSogModuleKnowsLibwebpAndLibzip) {
+  const std::vector<std::string> its_own = {"webp/", "zip.h", "runtime/scene/import/sog/",
+                                            "runtime/scene/export/sog/"};
+  expect_no_include(
+      "sog", {"plugin/", "voyager/", "tools/", "samples/", "tests/", "bench/", "cuda", "http/"});
+  for (const char* folder : {"runtime", "plugin", "tools", "samples", "cuda"})
+    for (const Include& include : includes_below(folder)) {
+      if (include.file.rfind("runtime/scene/import/sog/", 0) == 0 ||
+          include.file.rfind("runtime/scene/export/sog/", 0) == 0)
+        continue;
+      EXPECT_FALSE(starts_with_any(include.name, its_own))
+          << include.file << " includes " << include.name;
+    }
+}
+
 TEST(ImportDirection, OnlyTheModuleIncludesCuda) {
   for (const char* folder : {"tools", "samples"})
     expect_no_include(folder, {"cuda/", "cuda", "cub/"});

@@ -19,7 +19,7 @@ class InputFiles final : public sog::Files {
   const std::string& name() const override { return name_; }
   std::vector<std::byte> meta() const override { return meta_; }
   uint64_t length(std::span<const std::string>) const override { return input_.size(); }
-  std::vector<std::byte> read(const std::string&) const override { return next(); }
+  std::vector<std::byte> read(const std::string&, uint64_t) const override { return next(); }
 
  private:
   std::vector<std::byte> next() const {

@@ -1,5 +1,5 @@
 # What the tests of this folder share. ctest sets BUILD, WORK (a folder of the test's own), VERSION,
-# LIB (the libraries' folder in a prefix), CUDA, HTTP and TOOLS (ON or OFF), CC and CXX.
+# LIB (the libraries' folder in a prefix), CUDA, HTTP, SOG and TOOLS (ON or OFF), CC and CXX.
 set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 series=${VERSION%.*}
@@ -47,7 +47,8 @@ build_with_pkg_config() {  # build_with_pkg_config PREFIX NAME
 run_consumers() {  # run_consumers NAME
   quietly "$WORK/$1/frame" "$scene"
   quietly "$WORK/$1/scene" "$scene"
-  "$WORK/$1/backends" >"$WORK/$1.said" || fail "failed: $1/backends"
+  printf 'PK\3\4' >"$WORK/damaged.sog"
+  "$WORK/$1/backends" "$WORK/damaged.sog" >"$WORK/$1.said" || fail "failed: $1/backends"
 }
 
 expect_said() {  # expect_said NAME PATTERN
@@ -60,6 +61,7 @@ expected $2"
 # driver's reason, not that of a file that was not found.
 expect_modules() {  # expect_modules NAME
   if [ "$HTTP" = ON ]; then expect_said "$1" '^http: .*bad/illegal format'; fi
+  if [ "$SOG" = ON ]; then expect_said "$1" '^sog: .*zip of the .sog'; fi
   if [ "$CUDA" = ON ]; then
     expect_said "$1" '^cuda: '
     ! grep -q '^cuda: .*libvoyager_cuda.so' "$WORK/$1.said" || fail "$1/backends: found

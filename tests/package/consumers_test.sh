@@ -43,10 +43,11 @@ EOF
 quietly cmake -P "$WORK/version.cmake"
 
 # Without the modules everything draws on the CPU, and who asks for a module is told its name.
-for module in cuda http; do rm -f "$WORK/moved/$LIB/libvoyager_$module.so"; done
+for module in cuda http sog; do rm -f "$WORK/moved/$LIB/libvoyager_$module.so"; done
 run_consumers moved_cmake
 expect_said moved_cmake '^cuda: .*libvoyager_cuda.so: (not found in|cannot be loaded: .*cannot open shared object file)'
 expect_said moved_cmake '^http: .*libvoyager_http.so: (not found in|cannot be loaded: .*cannot open shared object file)'
+expect_said moved_cmake '^sog: .*libvoyager_sog.so: (not found in|cannot be loaded: .*cannot open shared object file)'
 
 # A module that is damaged, or lacks a library of its own, is refused with that reason.
 echo "no library" >"$WORK/moved/$LIB/libvoyager_cuda.so"

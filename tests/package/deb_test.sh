@@ -11,16 +11,18 @@ found=""
 names="libvoyager$series libvoyager-dev"
 if [ "$TOOLS" = ON ]; then names+=" voyager-tools"; fi
 if [ "$HTTP" = ON ]; then names+=" libvoyager-http"; fi
+if [ "$SOG" = ON ]; then names+=" libvoyager-sog"; fi
 if [ "$CUDA" = ON ]; then names+=" libvoyager-cuda"; fi
 for package in "$WORK"/packages/*.deb; do
   dpkg-deb -x "$package" "$WORK/root"
   depends=$(dpkg-deb -f "$package" Depends)
   found+=" $(dpkg-deb -f "$package" Package)"
   case $(dpkg-deb -f "$package" Package) in
-    "libvoyager$series") needs="libc6 libtbb12 libzstd1 zlib1g" never="libcurl|cuda|libvulkan|libpng" ;;
+    "libvoyager$series") needs="libc6 libtbb12 libzstd1 zlib1g" never="libcurl|cuda|libvulkan|libpng|libwebp|libzip" ;;
     libvoyager-http) needs="libvoyager$series.(=.$VERSION) libcurl" never="libpng|cuda" ;;
+    libvoyager-sog) needs="libvoyager$series.(=.$VERSION) libwebp libzip" never="libcurl|libpng|cuda" ;;
     libvoyager-cuda) needs="libvoyager$series.(=.$VERSION) libtbb12" never="cudart|libcuda|nvidia" ;;
-    voyager-tools) needs="libvoyager$series.(=.$VERSION) libpng libfmt" never="libcurl|libcuda" ;;
+    voyager-tools) needs="libvoyager$series.(=.$VERSION) libpng libfmt" never="libcurl|libcuda|libwebp|libzip" ;;
     libvoyager-dev) needs="libvoyager$series.(=.$VERSION)" never="lib(tbb|zstd|png)" ;;
   esac
   for need in $needs; do

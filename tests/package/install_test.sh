@@ -15,6 +15,7 @@ expect_files development "$LIB/libvoyager.so" "$LIB/pkgconfig/voyager.pc" "$LIB"
   $(cd "$source/plugin" && find include -name '*.h' -o -name '*.hpp')
 if [ "$TOOLS" = ON ]; then expect_files tools bin/voyager; fi
 if [ "$HTTP" = ON ]; then expect_files http "$LIB/libvoyager_http.so"; fi
+if [ "$SOG" = ON ]; then expect_files sog "$LIB/libvoyager_sog.so"; fi
 if [ "$CUDA" = ON ]; then expect_files cuda "$LIB/libvoyager_cuda.so"; fi
 
 # Whole, as a user installs it.

@@ -1,7 +1,8 @@
 #pragma once
 // What a machine may lack: VULKAN (a device, its validation layer), NGINX (with openssl), BROWSER,
-// CUDA (a device), SCENES (the real ones), SPLAT_TRANSFORM (the program). A test that lacks it
-// skips and says why; where the environment has VOYAGER_REQUIRE_VULKAN and so on, it fails.
+// CUDA (a device), SCENES (the real ones), SPLAT_TRANSFORM (the program), NODE_PACKAGES (of npm). A
+// test that lacks it skips and says why; where the environment has VOYAGER_REQUIRE_VULKAN and so
+// on, it fails.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

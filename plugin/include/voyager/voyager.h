@@ -350,8 +350,8 @@ typedef struct VoySceneDesc {
  * until that is done. A damaged chunk does not fail the call; frames that need the chunk fail.
  * Errors: FILE_NOT_FOUND, IO, REFUSED_INPUT (a malformed file), OUT_OF_HOST_MEMORY, OVER_BUDGET
  * (the message says how much is needed; of a streamed scene, the top of the tree must fit),
- * DAMAGED_CHUNK (the top of a streamed scene's tree), UNSUPPORTED (a URL, but libvoyager_http.so is
- * missing). */
+ * DAMAGED_CHUNK (the top of a streamed scene's tree), UNSUPPORTED (a URL or a SOG scene, but
+ * libvoyager_http.so or libvoyager_sog.so is missing). */
 VOY_API VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* desc,
                                         VoyScene* scene);
 

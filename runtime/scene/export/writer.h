@@ -106,7 +106,7 @@ uint64_t glb_bytes(uint64_t count, int sh_degree);
 std::unique_ptr<GaussianWriter> write_sog(ByteSink& sink, uint64_t count, int sh_degree,
                                           const NativeScale& native = {});
 
-// Throws Error(unsupported) in a build that leaves SOG out.
+// Throws Error(unsupported) where libvoyager_sog.so is missing.
 void require_sog();
 
 }  // namespace voyager

@@ -58,7 +58,7 @@ std::unique_ptr<BlockReader> open_splat_blocks(std::unique_ptr<ByteReader> reade
 std::unique_ptr<BlockReader> open_ksplat_blocks(std::unique_ptr<ByteReader> reader);
 // SOG: a .sog or the meta.json of a folder; and the finest level of a streamed scene's
 // lod-meta.json. Their images are decoded before the first block, those of a streamed scene file by
-// file. A build may leave them out: then they refuse every source, saying so.
+// file. Throw Error(unsupported) where libvoyager_sog.so is missing.
 std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source);
 std::unique_ptr<BlockReader> open_streamed_sog_blocks(std::shared_ptr<const ByteSource> source);
 std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source);

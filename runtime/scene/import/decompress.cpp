@@ -1,6 +1,7 @@
 #include "runtime/scene/import/decompress.h"
 
 #include <algorithm>
+#include <bit>
 #include <new>
 
 #include "runtime/scene/import/refuse.h"
@@ -10,11 +11,22 @@ namespace {
 
 constexpr size_t kCompressedBytes = 64 * 1024;
 constexpr int kMaxWindowLog = 27;
+// Of what encoders take by themselves up to level 19, whatever the stream's length.
+constexpr int kOrdinaryWindowLog = 23;
+
+// A window beyond the stream's end would only cost memory, which a small file may ask for.
+int window_log(uint64_t plain_size) {
+  return std::clamp(static_cast<int>(std::bit_width(plain_size)), kOrdinaryWindowLog,
+                    kMaxWindowLog);
+}
 
 }  // namespace
 
 Decompressor::Decompressor(PeekReader& input)
     : input_(input), name_(input.name() + " (decompressed)") {}
+
+Decompressor::Decompressor(PeekReader& input, const Decompressor& other)
+    : input_(input), ended_(other.ended_), name_(other.name_), offset_(other.offset_) {}
 
 void Decompressor::refuse_stream(const std::string& found, const std::string& expected) const {
   refuse(input_.name(), input_.offset(), "compressed stream", found, expected);
@@ -49,6 +61,11 @@ GzipReader::GzipReader(PeekReader& input) : Decompressor(input) {
   if (inflateInit2(&stream_, 16 + MAX_WBITS) != Z_OK) throw std::bad_alloc();
 }
 
+GzipReader::GzipReader(PeekReader& input, const GzipReader& other) : Decompressor(input, other) {
+  // zlib's interface is not const-correct; it only reads from its source.
+  if (inflateCopy(&stream_, const_cast<z_stream*>(&other.stream_)) != Z_OK) throw std::bad_alloc();
+}
+
 GzipReader::~GzipReader() {
   inflateEnd(&stream_);
 }
@@ -68,10 +85,10 @@ Decompressor::Step GzipReader::step(std::span<const std::byte> in, std::span<std
   return {in.size() - stream_.avail_in, room - stream_.avail_out};
 }
 
-ZstdReader::ZstdReader(PeekReader& input, uint64_t compressed_size)
+ZstdReader::ZstdReader(PeekReader& input, uint64_t compressed_size, uint64_t plain_size)
     : Decompressor(input), context_(ZSTD_createDCtx()), left_(compressed_size) {
   if (!context_) throw std::bad_alloc();
-  ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, kMaxWindowLog);
+  ZSTD_DCtx_setParameter(context_.get(), ZSTD_d_windowLogMax, window_log(plain_size));
 }
 
 Decompressor::Step ZstdReader::step(std::span<const std::byte> in, std::span<std::byte> out) {

@@ -2,7 +2,7 @@
 // Compressed streams as plain ones. name() and offset() are those of the plain
 // bytes; refusals of the compressed ones name the file and its own offset.
 // Memory is bounded whatever the input says: one block, and a window of at
-// most 32 KiB (gzip) or 128 MiB (zstd, only as large as the frame asks for).
+// most 32 KiB (gzip), or 8 MiB or what the stream holds, up to 128 MiB (zstd).
 #include <zlib.h>
 #include <zstd.h>
 
@@ -24,6 +24,9 @@ class Decompressor : public ByteReader {
   uint64_t offset() const override { return offset_; }
 
  protected:
+  // One that goes on where another stands.
+  Decompressor(PeekReader& input, const Decompressor& other);
+
   struct Step {
     size_t taken, made;
   };
@@ -48,6 +51,8 @@ class Decompressor : public ByteReader {
 class GzipReader final : public Decompressor {
  public:
   explicit GzipReader(PeekReader& input);
+  // Goes on where `other` stands. So must `input`, in the same bytes.
+  GzipReader(PeekReader& input, const GzipReader& other);
   ~GzipReader() override;
   GzipReader(const GzipReader&) = delete;
   GzipReader& operator=(const GzipReader&) = delete;
@@ -60,10 +65,10 @@ class GzipReader final : public Decompressor {
   z_stream stream_ = {};
 };
 
-// One zstd frame in `compressed_size` bytes.
+// One zstd frame in `compressed_size` bytes, which decompress to `plain_size`.
 class ZstdReader final : public Decompressor {
  public:
-  ZstdReader(PeekReader& input, uint64_t compressed_size);
+  ZstdReader(PeekReader& input, uint64_t compressed_size, uint64_t plain_size);
 
  private:
   Step step(std::span<const std::byte> in, std::span<std::byte> out) override;

@@ -6,6 +6,7 @@
 #include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/ksplat_format.h"
+#include "runtime/scene/import/load.h"
 #include "runtime/scene/import/peek_reader.h"
 #include "runtime/scene/import/refuse.h"
 
@@ -14,13 +15,6 @@ namespace {
 
 constexpr size_t kMostBytes = 16 << 20;  // of a block
 constexpr size_t kCentre = 3 * sizeof(float);
-
-template <class T>
-T load(const std::byte* from) {
-  T value;
-  std::memcpy(&value, from, sizeof value);
-  return value;
-}
 
 int byte(const std::byte* at) {
   return std::to_integer<int>(*at);

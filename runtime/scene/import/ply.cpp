@@ -177,8 +177,8 @@ class PlyReader final : public BlockReader {
       for (size_t axis = 0; axis < 3; ++axis) {
         const Property& p = *columns_[axis].property;
         if (p.type == Type::f64)
-          world[axis] = ply::load<double>(block.data() + row * vertex().stride + p.offset,
-                                          header_.big_endian);
+          world[axis] =
+              load<double>(block.data() + row * vertex().stride + p.offset, header_.big_endian);
       }
       if (!std::all_of(world, world + 3, [](double v) { return std::fabs(v) < kMaxCoordinate; }))
         continue;
@@ -194,7 +194,7 @@ class PlyReader final : public BlockReader {
     float* into = (cloud.*column.into).data() + first * column.width + column.at;
     with_type(column.property->type, [&]<class T>(T) {
       for (size_t row = 0; row < rows; ++row) {
-        const T value = ply::load<T>(from + row * vertex().stride, header_.big_endian);
+        const T value = load<T>(from + row * vertex().stride, header_.big_endian);
         if constexpr (std::is_same_v<T, double>)
           into[row * column.width] = static_cast<float>(value - minus);
         else

@@ -1,10 +1,8 @@
 #pragma once
 // The rows of a .ply's elements: how many bytes there are, and the words in them.
-#include <algorithm>
-#include <bit>
-#include <cstring>
 #include <memory>
 
+#include "runtime/scene/import/load.h"
 #include "runtime/scene/import/ply_header.h"
 
 namespace voyager::ply {
@@ -19,17 +17,6 @@ struct Input {
   PeekReader bytes;
   Header header;
 };
-
-template <class T>
-T load(const std::byte* from, bool big_endian) {
-  std::byte bytes[sizeof(T)];
-  std::memcpy(bytes, from, sizeof(T));
-  if (big_endian != (std::endian::native == std::endian::big))
-    std::reverse(bytes, bytes + sizeof(T));
-  T value;
-  std::memcpy(&value, bytes, sizeof(T));
-  return value;
-}
 
 // Bytes of an element; refuses a count whose product with the stride overflows.
 uint64_t bytes_of(const PeekReader& input, const Element& element);

@@ -61,7 +61,8 @@ class SpzImport {
   void read_streams() {
     const spz::StreamTable table = spz::read_stream_table(input_, header_);
     for (int i = 0; i < header_.attributes(); ++i) {
-      ZstdReader plain(input_, table.compressed[static_cast<size_t>(i)]);
+      ZstdReader plain(input_, table.compressed[static_cast<size_t>(i)],
+                       header_.bytes_of_all(static_cast<Attribute>(i)));
       read(plain, static_cast<Attribute>(i));
       plain.finish();
     }

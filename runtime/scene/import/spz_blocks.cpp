@@ -1,6 +1,7 @@
 // A .spz keeps each attribute apart, over all Gaussians: one place in the file for
 // each brings them together block by block.
 #include <algorithm>
+#include <array>
 
 #include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/import/decompress.h"
@@ -16,25 +17,45 @@ using spz::Attribute;
 // Plain bytes of one attribute, from the first Gaussian on.
 class AttributeStream {
  public:
-  AttributeStream(const ByteSource& source, Attribute attribute)
+  // Of the first attribute.
+  explicit AttributeStream(const ByteSource& source)
       : reader_(read_source(source)), input_(*reader_) {
     const std::span<const std::byte> first = input_.peek(1);
     if (!first.empty() && first[0] == std::byte{0x1f}) {
-      plain_ = std::make_unique<GzipReader>(input_);
+      auto gzip = std::make_unique<GzipReader>(input_);
+      gzip_ = gzip.get();
+      plain_ = std::move(gzip);
       header_ = spz::read_header(*plain_, spz::kNewestPlanar);
       spz::check_count(input_, header_);
-      skip_to(attribute);
       return;
     }
     header_ = spz::read_header(input_, spz::kNewest);
     spz::check_count(input_, header_);
-    if (header_.version != spz::kNewest) {
-      skip_to(attribute);
-      return;
+    if (header_.version != spz::kNewest) return;
+    sizes_ = spz::read_stream_table(input_, header_).compressed;
+    open_stream();
+  }
+
+  // Of the attribute after that of `before`, which has read nothing of its own yet.
+  AttributeStream(const ByteSource& source, const AttributeStream& before)
+      : reader_(read_source(source)),
+        input_(*reader_),
+        header_(before.header_),
+        sizes_(before.sizes_),
+        attribute_(before.attribute_) {
+    input_.skip(before.input_.offset());
+    if (before.gzip_) {
+      // What comes before it is decompressed once, and not once for each attribute.
+      auto gzip = std::make_unique<GzipReader>(input_, *before.gzip_);
+      gzip_ = gzip.get();
+      plain_ = std::move(gzip);
     }
-    const auto sizes = spz::read_stream_table(input_, header_).compressed;
-    for (size_t i = 0; i < attribute; ++i) input_.skip(sizes[i]);
-    plain_ = std::make_unique<ZstdReader>(input_, sizes[attribute]);
+    if (header_.version == spz::kNewest)
+      input_.skip(sizes_[attribute_]);
+    else
+      PeekReader(plain()).skip(header_.bytes_of_all(static_cast<Attribute>(attribute_)));
+    ++attribute_;
+    if (header_.version == spz::kNewest) open_stream();
   }
 
   const spz::Header& header() const { return header_; }
@@ -58,27 +79,28 @@ class AttributeStream {
   }
 
  private:
-  ByteReader& plain() { return plain_ ? static_cast<ByteReader&>(*plain_) : input_; }
-
-  void skip_to(Attribute attribute) {
-    PeekReader stepper(plain());
-    for (int i = 0; i < attribute; ++i)
-      stepper.skip(uint64_t{header_.count} * header_.bytes_of(static_cast<Attribute>(i)));
+  void open_stream() {
+    plain_ = std::make_unique<ZstdReader>(input_, sizes_[attribute_],
+                                          header_.bytes_of_all(static_cast<Attribute>(attribute_)));
   }
+  ByteReader& plain() { return plain_ ? static_cast<ByteReader&>(*plain_) : input_; }
 
   std::unique_ptr<ByteReader> reader_;
   PeekReader input_;
   std::unique_ptr<Decompressor> plain_;
+  const GzipReader* gzip_ = nullptr;  // plain_, where it is one
   spz::Header header_;
+  std::array<uint64_t, spz::kAttributes> sizes_{};  // of version 4's streams
+  size_t attribute_ = 0;
 };
 
 class SpzReader final : public BlockReader {
  public:
   explicit SpzReader(std::shared_ptr<const ByteSource> source) : source_(std::move(source)) {
-    streams_.push_back(std::make_unique<AttributeStream>(*source_, spz::kPositions));
+    streams_.push_back(std::make_unique<AttributeStream>(*source_));
     header_ = streams_.front()->header();
     for (int i = 1; i < header_.attributes(); ++i)
-      streams_.push_back(std::make_unique<AttributeStream>(*source_, static_cast<Attribute>(i)));
+      streams_.push_back(std::make_unique<AttributeStream>(*source_, *streams_.back()));
   }
 
   const std::string& name() const override { return source_->name(); }

@@ -14,6 +14,7 @@ int byte(const std::byte* at) {
 }
 
 void decode_position(const Header& header, const std::byte* code, float* position) {
+  const float step = std::ldexp(1.0f, -header.fractional_bits);  // products with it are exact
   for (int axis = 0; axis < 3; ++axis, code += header.version == 1 ? 2 : 3) {
     if (header.version == 1) {
       const float half = half_to_float(static_cast<uint16_t>(byte(code) | byte(code + 1) << 8));
@@ -21,8 +22,7 @@ void decode_position(const Header& header, const std::byte* code, float* positio
     } else {
       const int bits = byte(code) | byte(code + 1) << 8 | byte(code + 2) << 16;
       const int fixed = bits >= 1 << 23 ? bits - (1 << 24) : bits;
-      position[axis] =
-          std::ldexp(static_cast<float>(axis == 0 ? fixed : -fixed), -header.fractional_bits);
+      position[axis] = static_cast<float>(axis == 0 ? fixed : -fixed) * step;
     }
   }
 }

@@ -22,6 +22,7 @@ struct Header {
 
   NativeScale native() const { return antialiased ? compensated_scale(kLowPass) : NativeScale{}; }
   size_t bytes_of(Attribute attribute) const { return width(attribute, version, stored_sh_degree); }
+  uint64_t bytes_of_all(Attribute attribute) const { return uint64_t{count} * bytes_of(attribute); }
   // The attributes that are present are the first so many.
   int attributes() const { return stored_sh_degree > 0 ? kAttributes : kSh; }
 };

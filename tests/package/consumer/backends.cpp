@@ -7,7 +7,8 @@ static const char* outcome(VoyResult result) {
   return result < 0 ? voyGetLastErrorMessage() : voyResultString(result);
 }
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
   std::printf("cuda: %s\n", outcome(voyQueryBackend(VOY_BACKEND_CUDA)));
 
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
@@ -18,5 +19,7 @@ int main() {
   scene_desc.path = "http://";  // what libcurl refuses, so that the module was asked
   VoyScene scene = nullptr;
   std::printf("http: %s\n", outcome(voyOpenScene(device, &scene_desc, &scene)));
+  scene_desc.path = argv[1];  // a damaged .sog
+  std::printf("sog: %s\n", outcome(voyOpenScene(device, &scene_desc, &scene)));
   return voyDestroyDevice(device) < 0;
 }

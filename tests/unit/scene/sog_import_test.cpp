@@ -208,6 +208,18 @@ TEST(SogImport, RefusesFilesOutsideItsFolder) {
 }
 
 // Whatever a field becomes, a cloud or a refusal comes of it.
+// An image that is larger than its pixels could need is not read.
+TEST(SogImport, RefusesAnImageOfMoreBytesThanItsPixels) {
+  const test::TempFolder folder;
+  SogFiles files = test::sog_files(8, 0);
+  files["scales.webp"].resize(2'000'000, std::byte{1});
+  test::write_files(folder.file(""), files);
+  const std::string message =
+      test::refusal_of([&] { test::import_file(folder.file("meta.json")); });
+  EXPECT_NE(message.find("scales.webp: found 2000000 bytes, expected at most "), std::string::npos)
+      << message;
+}
+
 TEST(SogImport, EveryFieldMissingOrAbsurdIsRefusedOrRead) {
   const SogFiles files = test::sog_files(4, 1);
   const Json good = test::sog_meta(4, 1);

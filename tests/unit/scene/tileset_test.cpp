@@ -1,8 +1,10 @@
 // 3D Tiles whose tiles are glTF files with splats.
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/importer.h"
 #include "runtime/scene/transform.h"
 #include "tests/support/gltf_files.h"
 #include "tests/support/test_support.h"
@@ -146,6 +148,44 @@ TEST_F(Tileset, NamesWhatItDoesNotRead) {
               test::import_file(folder.file("tileset.json"));
             }).find("3DTILES_implicit_tiling"),
             std::string::npos);
+}
+
+using Opened = std::map<std::string, int>;
+
+// A file that counts how often others are opened from it.
+class CountingSource final : public ByteSource {
+ public:
+  CountingSource(std::unique_ptr<ByteSource> source, Opened& opened)
+      : source_(std::move(source)), opened_(opened) {}
+  const std::string& name() const override { return source_->name(); }
+  uint64_t size() const override { return source_->size(); }
+  void read(uint64_t offset, std::span<std::byte> into) const override {
+    source_->read(offset, into);
+  }
+  std::unique_ptr<ByteSource> open_beside(const std::string& path) const override {
+    ++opened_[path];
+    return source_->open_beside(path);
+  }
+
+ private:
+  std::unique_ptr<ByteSource> source_;
+  Opened& opened_;
+};
+
+// To tell what it is, for its header, and for its Gaussians: however many tiles name it.
+TEST_F(Tileset, AFileThatTilesNameInTurnsIsOpenedThreeTimes) {
+  write("a.glb", test::gltf_of(one).glb());
+  write("b.glb", test::gltf_of(two).glb());
+  Json root = {{"children", Json::array()}};
+  for (int i = 0; i < 5; ++i)
+    for (const char* uri : {"a.glb", "b.glb"}) root["children"].push_back(leaf(uri));
+  write("tileset.json", tiles(root));
+  Opened opened;
+  const auto source =
+      std::make_shared<CountingSource>(open_file_source(folder.file("tileset.json")), opened);
+  const GaussianCloud cloud = import_gaussians(source);
+  EXPECT_EQ(cloud.size(), 5 * (one.size() + two.size()));
+  EXPECT_EQ(opened, (Opened{{"a.glb", 3}, {"b.glb", 3}}));
 }
 
 TEST_F(Tileset, ManyTilesOfOneFileAreBounded) {

@@ -3,13 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <fstream>
 #include <vector>
+
+#include "tests/support/sample_files.h"
+#include "tests/support/test_support.h"
 
 namespace voyager::default_camera_test {
 namespace {
 
 using tools::Camera;
 using tools::camera_around;
+using namespace voyager::test;
 
 // A block of a city, 200 x 30 x 100 m around (500, 0, -40).
 std::vector<Vec3d> block() {
@@ -59,6 +65,25 @@ TEST(DefaultCamera, StraysChangeLittle) {
   const Camera expected = camera_around(block()), found = camera_around(positions);
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(found.pose.position[i], expected.pose.position[i], 15) << i;
+}
+
+// Files of one scene, whose writers ordered it each in their way.
+TEST(DefaultCamera, DoesNotDependOnTheOrder) {
+  const GaussianCloud cloud = random_cloud(10'000, 1, 0);
+  GaussianCloud turned = cloud;
+  for (size_t i = 0; i < cloud.size(); ++i)
+    std::copy_n(&cloud.position[3 * i], 3, &turned.position[3 * (cloud.size() - 1 - i)]);
+  const TempFolder folder;
+  std::vector<Camera> cameras;
+  for (const GaussianCloud& order : {cloud, turned}) {
+    const Bytes bytes = ply_of(order);
+    const std::string path = folder.file("scene.ply");
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), std::ssize(bytes));
+    cameras.push_back(tools::default_camera(path));
+  }
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(cameras[0].pose.position[i], cameras[1].pose.position[i]) << i;
 }
 
 TEST(DefaultCamera, StandsSomewhereWithoutGaussians) {

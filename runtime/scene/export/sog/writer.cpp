@@ -1,4 +1,6 @@
 // A .sog: PlayCanvas' images of codes, in a zip.
+#include "runtime/scene/export/sog/writer.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -15,8 +17,7 @@
 #include "runtime/scene/export/unit_code.h"
 #include "runtime/scene/export/writer.h"
 
-namespace voyager {
-namespace sog_export {
+namespace voyager::sog_export {
 namespace {
 
 using Json = nlohmann::json;
@@ -190,14 +191,11 @@ class SogWriter final : public GaussianWriter {
 };
 
 }  // namespace
-}  // namespace sog_export
 
-void require_sog() {}
-
-std::unique_ptr<GaussianWriter> write_sog(ByteSink& sink, uint64_t count, int sh_degree,
-                                          const NativeScale& native) {
+std::unique_ptr<GaussianWriter> write(ByteSink& sink, uint64_t count, int sh_degree,
+                                      const NativeScale& native) {
   check_sh_degree(sh_degree);
-  return std::make_unique<sog_export::SogWriter>(sink, count, sh_degree, native);
+  return std::make_unique<SogWriter>(sink, count, sh_degree, native);
 }
 
-}  // namespace voyager
+}  // namespace voyager::sog_export

@@ -2,15 +2,10 @@
 
 #include <algorithm>
 
+#include "runtime/scene/import/load.h"
+
 namespace voyager::gltf {
 namespace {
-
-template <class T>
-T load(const std::byte* at) {
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  return value;
-}
 
 Component component_of(const JsonValue& json) {
   const uint64_t value = json.whole(kMostIndex);

@@ -1,8 +1,8 @@
 #include "runtime/scene/import/gltf/accessor_blocks.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "runtime/math/byte_code.h"
 #include "runtime/scene/import/gltf/axes.h"
 #include "runtime/scene/sanitise.h"
 
@@ -14,18 +14,6 @@ constexpr size_t kMostBytes = 16 << 20;  // of a block
 // Without a minus before a zero.
 float minus(double value) {
   return static_cast<float>(0.0 - value);
-}
-
-// An opacity of 0 or 1 is beyond what a logit can say; a flat disc has a scale of 0.
-float logit_of(double opacity) {
-  if (std::isnan(opacity)) return NAN;
-  const double logit = std::log(opacity / (1 - opacity));
-  if (opacity <= 0) return -kMaxLogit;
-  return opacity >= 1 ? kMaxLogit : std::clamp(static_cast<float>(logit), -kMaxLogit, kMaxLogit);
-}
-
-float log_of(double scale) {
-  return scale == 0 ? kMinLogScale : static_cast<float>(std::log(scale));
 }
 
 class AccessorReader final : public BlockReader {
@@ -94,18 +82,18 @@ class AccessorReader final : public BlockReader {
       case Parameter::rotation:
         return store_rotation(v, &cloud.rotation[4 * i]);
       case Parameter::scale:
-        for (size_t k = 0; k < 3; ++k)
+        for (size_t k = 0; k < 3; ++k)  // a flat disc has a scale of 0
           cloud.log_scale[3 * i + k] =
-              primitive_.log_scales ? static_cast<float>(v[k]) : log_of(v[k]);
+              primitive_.log_scales ? static_cast<float>(v[k]) : log_of_scale(v[k], kMinLogScale);
         return;
       case Parameter::opacity:
-        cloud.opacity[i] = logit_of(v[0]);
+        cloud.opacity[i] = logit_of_opacity(v[0]);
         return;
       case Parameter::colour_opacity:
-        cloud.opacity[i] = logit_of(v[3]);
+        cloud.opacity[i] = logit_of_opacity(v[3]);
         return;
       case Parameter::colour:
-        for (size_t k = 0; k < 3; ++k) sh[k] = static_cast<float>((v[k] - 0.5) / kSh0);
+        for (size_t k = 0; k < 3; ++k) sh[k] = sh_of_colour(v[k]);
         return;
       case Parameter::sh:
         for (size_t k = 0; k < 3; ++k) sh[k] = static_cast<float>(kShSign[attribute.k] * v[k]);

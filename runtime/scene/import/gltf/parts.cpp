@@ -1,5 +1,6 @@
 #include "runtime/scene/import/gltf/parts.h"
 
+#include "runtime/scene/import/forwarded_blocks.h"
 #include "runtime/scene/import/placed_blocks.h"
 #include "runtime/scene/transform.h"
 
@@ -7,21 +8,13 @@ namespace voyager::gltf {
 namespace {
 
 // Keeps the scene that it reads from.
-class SceneReader final : public BlockReader {
+class SceneReader final : public ForwardedBlocks {
  public:
   SceneReader(std::shared_ptr<const Scene> scene, std::unique_ptr<BlockReader> reader)
-      : scene_(std::move(scene)), reader_(std::move(reader)) {}
-  const std::string& name() const override { return reader_->name(); }
-  uint64_t count() const override { return reader_->count(); }
-  int sh_degree() const override { return reader_->sh_degree(); }
-  NativeScale native() const override { return reader_->native(); }
-  std::array<double, 3> origin() const override { return reader_->origin(); }
-  RawBlock next(size_t most) override { return reader_->next(most); }
-  GaussianCloud decode(const RawBlock& block) const override { return reader_->decode(block); }
+      : ForwardedBlocks(std::move(reader)), scene_(std::move(scene)) {}
 
  private:
   std::shared_ptr<const Scene> scene_;
-  std::unique_ptr<BlockReader> reader_;
 };
 
 }  // namespace

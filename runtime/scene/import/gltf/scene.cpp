@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "runtime/scene/import/forwarded_blocks.h"
 #include "runtime/scene/import/gltf/accessor_blocks.h"
 #include "runtime/scene/import/gltf/axes.h"
 #include "runtime/scene/import/gltf/nodes.h"
@@ -29,23 +30,14 @@ void require_known_extensions(const JsonValue& json) {
 }
 
 // Linear colours, encoded.
-class EncodedReader final : public BlockReader {
+class EncodedReader final : public ForwardedBlocks {
  public:
-  explicit EncodedReader(std::unique_ptr<BlockReader> reader) : reader_(std::move(reader)) {}
-  const std::string& name() const override { return reader_->name(); }
-  uint64_t count() const override { return reader_->count(); }
-  int sh_degree() const override { return reader_->sh_degree(); }
-  NativeScale native() const override { return reader_->native(); }
-  std::array<double, 3> origin() const override { return reader_->origin(); }
-  RawBlock next(size_t most) override { return reader_->next(most); }
+  using ForwardedBlocks::ForwardedBlocks;
   GaussianCloud decode(const RawBlock& block) const override {
-    GaussianCloud cloud = reader_->decode(block);
+    GaussianCloud cloud = ForwardedBlocks::decode(block);
     encode_colours(cloud);
     return cloud;
   }
-
- private:
-  std::unique_ptr<BlockReader> reader_;
 };
 
 }  // namespace

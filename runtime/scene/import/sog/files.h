@@ -19,8 +19,8 @@ class Files {
   virtual std::vector<std::byte> meta() const = 0;
   // Bytes that these files take where they are, compressed or not.
   virtual uint64_t length(std::span<const std::string> files) const = 0;
-  // Refuses a file that is not there, and one outside the folder.
-  virtual std::vector<std::byte> read(const std::string& file) const = 0;
+  // Refuses a file that is not there, one outside the folder, and one of more than `most` bytes.
+  virtual std::vector<std::byte> read(const std::string& file, uint64_t most) const = 0;
 };
 
 inline constexpr uint64_t kMostMeta = 256 * 1024;  // bytes; writers need some 16 KB

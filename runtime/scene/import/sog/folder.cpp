@@ -14,10 +14,7 @@ class FolderFiles final : public Files {
   const std::string& name() const override { return meta_->name(); }
 
   std::vector<std::byte> meta() const override {
-    if (meta_->size() > kMostMeta)
-      refuse(name(), 0, "meta.json", std::to_string(meta_->size()) + " bytes",
-             "at most " + std::to_string(kMostMeta) + " bytes");
-    return read_all(*meta_);
+    return read_at_most(*meta_, "meta.json", kMostMeta);
   }
 
   uint64_t length(std::span<const std::string> files) const override {
@@ -26,11 +23,19 @@ class FolderFiles final : public Files {
     return bytes;
   }
 
-  std::vector<std::byte> read(const std::string& file) const override {
-    return read_all(*meta_->open_beside(file));
+  std::vector<std::byte> read(const std::string& file, uint64_t most) const override {
+    return read_at_most(*meta_->open_beside(file), file, most);
   }
 
  private:
+  std::vector<std::byte> read_at_most(const ByteSource& source, const std::string& file,
+                                      uint64_t most) const {
+    if (source.size() > most)
+      refuse(name(), 0, file, std::to_string(source.size()) + " bytes",
+             "at most " + std::to_string(most) + " bytes");
+    return read_all(source);
+  }
+
   std::shared_ptr<const ByteSource> meta_;
 };
 

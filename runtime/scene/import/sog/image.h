@@ -20,6 +20,12 @@ struct PixelRange {
   uint64_t least, most;
 };
 
+// No file of such an image is larger: a lossless WebP that is larger than its pixels says nothing
+// more.
+inline uint64_t most_bytes(const PixelRange& pixels) {
+  return (1 << 16) + 8 * pixels.most;
+}
+
 // A lossless WebP. Its size is held to `pixels` before memory is taken. `scene` and `file` are for
 // messages. Throws Error(refused_input).
 Image decode_webp(const std::string& scene, const std::string& file,

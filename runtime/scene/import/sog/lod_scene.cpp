@@ -133,12 +133,9 @@ class LodScene final : public BlockReader {
 };
 
 }  // namespace
-}  // namespace voyager::sog
 
-namespace voyager {
-
-std::unique_ptr<BlockReader> open_streamed_sog_blocks(std::shared_ptr<const ByteSource> source) {
-  return std::make_unique<sog::LodScene>(std::move(source));
+std::unique_ptr<BlockReader> open_streamed(std::shared_ptr<const ByteSource> source) {
+  return std::make_unique<LodScene>(std::move(source));
 }
 
-}  // namespace voyager
+}  // namespace voyager::sog

@@ -109,7 +109,7 @@ class Scene final : public BlockReader {
   void read_image(File file) {
     const std::string& name = meta_.files[file];
     const PixelRange range{meta_.count, 2 * meta_.count + (1 << 16)};
-    const Image image = decode_webp(name_, name, files_->read(name), range);
+    const Image image = decode_webp(name_, name, files_->read(name, most_bytes(range)), range);
     const auto [at, channels] = kPlaces[file];
     for (uint64_t i = 0; i < count_; ++i)
       std::copy_n(image.pixel(first_ + i), channels,
@@ -119,7 +119,8 @@ class Scene final : public BlockReader {
   void read_centroids() {
     const std::string& name = meta_.files[kCentroids];
     const uint64_t most = kMostCentroidRows * kCentroidsARow * 15;
-    const Image image = decode_webp(name_, name, files_->read(name), {1, most});
+    const Image image =
+        decode_webp(name_, name, files_->read(name, most_bytes({1, most})), {1, most});
     sh_degree_ = meta_.sh_degree.value_or(degree_of_width(image.width));
     const auto each = static_cast<uint32_t>(sh_coefficients(sh_degree_) - 1);
     const uint64_t found = uint64_t{image.height} * kCentroidsARow;
@@ -130,8 +131,7 @@ class Scene final : public BlockReader {
              "each 64 of shN.count");
     centroid_count_ = meta_.centroids.value_or(found);
     centroids_.resize(static_cast<size_t>(centroid_count_) * 3 * each);
-    for (size_t i = 0; i < centroids_.size(); ++i)
-      centroids_[i] = meta_.sh[image.pixel(i / 3)[i % 3]];
+    for (size_t i = 0; i < centroids_.size(); ++i) centroids_[i] = image.pixel(i / 3)[i % 3];
   }
 
   static int degree_of_width(uint32_t width) {
@@ -170,7 +170,9 @@ class Scene final : public BlockReader {
     decode_rotation(code(kQuats, 0), &cloud.rotation[4 * i]);
     cloud.opacity[i] = meta_.opacities[index(kColours, 3)];
     const size_t rest = width() - 3;
-    if (rest > 0) std::copy_n(&centroids_[label_of(row) * rest], rest, sh + 3);
+    if (rest == 0) return;
+    const uint8_t* codes = &centroids_[label_of(row) * rest];
+    for (size_t k = 0; k < rest; ++k) sh[3 + k] = meta_.sh[codes[k]];
   }
 
   std::unique_ptr<Files> files_;  // until the images are read
@@ -179,8 +181,8 @@ class Scene final : public BlockReader {
   int sh_degree_ = 0;
   uint64_t first_ = 0, count_ = 0, taken_ = 0;  // Gaussians
   uint64_t centroid_count_ = 0;
-  std::vector<float> centroids_;  // of each: [k - 1][rgb]
-  std::vector<std::byte> rows_;   // kRow bytes a Gaussian
+  std::vector<uint8_t> centroids_;  // of each the codes of [k - 1][rgb], which fit the cache
+  std::vector<std::byte> rows_;     // kRow bytes a Gaussian
 };
 
 }  // namespace
@@ -190,12 +192,8 @@ std::unique_ptr<BlockReader> open_scene(std::unique_ptr<Files> files, uint64_t f
   return std::make_unique<Scene>(std::move(files), first, count);
 }
 
-}  // namespace voyager::sog
-
-namespace voyager {
-
-std::unique_ptr<BlockReader> open_sog_blocks(std::shared_ptr<const ByteSource> source) {
-  return sog::open_scene(sog::open_files(std::move(source)));
+std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source) {
+  return open_scene(open_files(std::move(source)));
 }
 
-}  // namespace voyager
+}  // namespace voyager::sog

@@ -11,4 +11,7 @@ namespace voyager::sog {
 std::unique_ptr<BlockReader> open_scene(std::unique_ptr<Files> files, uint64_t first = 0,
                                         uint64_t count = UINT64_MAX);
 
+// open_sog_blocks()
+std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source);
+
 }  // namespace voyager::sog

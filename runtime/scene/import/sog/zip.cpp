@@ -1,5 +1,7 @@
 #include <zip.h>
 
+#include <algorithm>
+
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/sog/files.h"
@@ -29,17 +31,13 @@ class ZipFiles final : public Files {
   const std::string& name() const override { return name_; }
   std::vector<std::byte> meta() const override { return read("meta.json", kMostMeta); }
   uint64_t length(std::span<const std::string>) const override { return bytes_.size(); }
-  // Images are compressed already, so that a zip does not make them smaller.
-  std::vector<std::byte> read(const std::string& file) const override {
-    return read(file, 2 * bytes_.size() + kMostMeta);
-  }
-
- private:
-  std::vector<std::byte> read(const std::string& file, uint64_t most) const {
+  std::vector<std::byte> read(const std::string& file, uint64_t most) const override {
     zip_stat_t about;
     zip_stat_init(&about);
     if (zip_stat(zip_.get(), file.c_str(), 0, &about) != 0 || (about.valid & ZIP_STAT_SIZE) == 0)
       refuse(name_, 0, "zip of the .sog", "no file " + file, "the files that meta.json names");
+    // Images are compressed already, so that a zip does not make them smaller.
+    most = std::min(most, 2 * bytes_.size() + kMostMeta);
     if (about.size > most)
       refuse(name_, 0, file, std::to_string(about.size) + " bytes",
              "at most " + std::to_string(most) + " bytes");
@@ -54,6 +52,7 @@ class ZipFiles final : public Files {
     return bytes;
   }
 
+ private:
   static bool fill(zip_file_t& entry, std::span<std::byte> into) {
     while (!into.empty()) {
       const zip_int64_t got = zip_fread(&entry, into.data(), into.size());

@@ -41,6 +41,15 @@ class Shared {
   std::weak_ptr<const gltf::Scene> open_;
 };
 
+// Tiles that name one file come one after the other, so that it is opened once for all of them, now
+// and when its turn comes.
+void group_by_file(std::vector<Content>& contents) {
+  std::map<std::string, size_t> first;
+  for (size_t i = 0; i < contents.size(); ++i) first.try_emplace(contents[i].uri, i);
+  std::stable_sort(contents.begin(), contents.end(),
+                   [&](const Content& a, const Content& b) { return first[a.uri] < first[b.uri]; });
+}
+
 class Parts {
  public:
   explicit Parts(std::shared_ptr<const ByteSource> first) : first_(std::move(first)) {
@@ -51,6 +60,7 @@ class Parts {
     if (contents.empty())
       refuse(first_->name(), 0, "root", "no content of a leaf", "at least one glTF file");
     origin_ = origin_near(in_inria_axes(contents.front().transform).offset);
+    group_by_file(contents);
     for (Content& content : contents) add(std::move(content));
     const uint64_t bytes = gltf::sum_of(bytes_);
     const uint64_t most = most_gaussians(bytes, bytes_of_gaussian(sh_degree_));

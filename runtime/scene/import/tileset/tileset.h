@@ -12,10 +12,11 @@ bool is_tileset(const nlohmann::json& json);
 
 // The contents of the tiles without children, and of those that their children add to. Tiles of
 // other tilesets belong to it. Each file is opened for its header now, and again when its turn
-// comes. A file of a tile lies in the tileset's folder or below. Throws Error(refused_input)
-// naming file and place: implicit tiles, contents of other types, extensions that are required, a
-// tileset that is referred to twice, more than kMostDepth tilesets in one another, and more
-// Gaussians than the files are worth; else what opening the files throws.
+// comes; tiles that name one file follow the first that does. A file of a tile lies in the
+// tileset's folder or below. Throws Error(refused_input) naming file and place: implicit tiles,
+// contents of other types, extensions that are required, a tileset that is referred to twice, more
+// than kMostDepth tilesets in one another, and more Gaussians than the files are worth; else what
+// opening the files throws.
 std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source, nlohmann::json json);
 
 inline constexpr int kMostDepth = 16;
