@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "fly.h"
 #include "placement.h"
 
 namespace host {
@@ -63,7 +64,7 @@ void run_window(const Device& device, Window& window, Swapchain& swapchain, Rend
     if (!(current = swapchain.acquire(slot))) continue;
 
     const double now = glfwGetTime();
-    window.fly(camera, now - last, hud.has_mouse(), hud.has_keyboard());
+    fly(window, camera, now - last, hud.has_mouse(), hud.has_keyboard());
     bookmarks.update(window.get(), camera);
     last = now;
     if (state.steer_tau && stats) state.tau = steered(state, *stats);

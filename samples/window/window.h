@@ -1,11 +1,14 @@
 #pragma once
-// GLFW's window, and what a player does in it.
+// GLFW's window, and what a player does with mouse and keys in it.
 #define GLFW_INCLUDE_NONE
 #include <vulkan/vulkan.h>
 // After Vulkan, so that it declares what it does with it.
 #include <GLFW/glfw3.h>
 
-#include "fly_camera.h"
+#include <glm/vec2.hpp>
+#include <string>
+#include <vector>
+
 #include "instance.h"
 
 namespace host {
@@ -13,7 +16,8 @@ namespace host {
 // Before the instance: it knows which extensions a surface needs.
 class Glfw {
  public:
-  Glfw();
+  // no_display: what to say where there is none.
+  explicit Glfw(const std::string& no_display);
   ~Glfw() { glfwTerminate(); }
   Glfw(const Glfw&) = delete;
   Glfw& operator=(const Glfw&) = delete;
@@ -33,18 +37,27 @@ class Window {
   bool closed() const { return glfwWindowShouldClose(window_) != 0; }
   VkExtent2D extent() const;  // pixels; 0 while minimised
 
-  // W A S D, Q and E: along the camera's axes; Shift: faster; right button: turn; wheel: speed.
-  // ui_has_*: the HUD has the mouse or the keyboard.
-  void fly(FlyCamera& camera, double seconds, bool ui_has_mouse, bool ui_has_keyboard);
+  bool pressed(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
+  bool button(int button) const { return glfwGetMouseButton(window_, button) == GLFW_PRESS; }
+  // 1 while the first key is down, -1 while the second is, 0 for neither or both.
+  double axis(int positive, int negative) const {
+    return int{pressed(positive)} - int{pressed(negative)};
+  }
+  // Where the cursor is: shares of the width and the height, 0 to 1 inside.
+  glm::dvec2 cursor() const;
+  // Since the last call: pixels, to the right and down; steps of the wheel, upwards.
+  glm::dvec2 take_cursor_move();
+  double take_wheel();
+  // The files that were dropped on the window since the last call.
+  std::vector<std::string> take_dropped();
 
  private:
-  double key(int positive, int negative) const;
-
   VkInstance instance_;
   GLFWwindow* window_ = nullptr;
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
   glm::dvec2 cursor_ = {};
   double wheel_ = 0;
+  std::vector<std::string> dropped_;
 };
 
 }  // namespace host
