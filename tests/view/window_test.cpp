@@ -21,7 +21,8 @@ class ViewWindow : public ::testing::Test {
     folder_ = new TempFolder;
     set_up_failure_ =
         failure_of({"voyager synth city --gaussians 10000 --sh-degree 0 -o " + file("city.ply"),
-                    "voyager bake " + file("city.ply") + " -o " + file("city.voy")});
+                    "voyager bake " + file("city.ply") + " -o " + file("city.voy"),
+                    "voyager convert " + file("city.ply") + " -o " + file("city.splat")});
     std::ofstream(file("broken.ply")) << file_bytes(file("city.ply")).substr(0, 5000);
     server_ = new XServer;
   }
@@ -111,16 +112,19 @@ TEST_F(ViewWindow, AFlatSceneIsShownAndBakedOnce) {
   EXPECT_TRUE(has(again, "its bake is shown")) << again;
 }
 
-// Right of the line: other settings, the level of detail, and the error, which is measured.
+// Right of the line: other settings, the level of detail, and the error, which is measured. Another
+// scene then takes the place of all of them.
 TEST_F(ViewWindow, TheLineDividesTwoPictures) {
   const std::string side = file("settings.png"), detail = file("detail.png"),
                     error = file("error.png");
-  const std::string output = view(
-      file("city.voy"), "loaded\npanel off\ntau 1\nright settings\nright-tau 40\nstill\npicture " +
-                            side + "\nright detail\nstill\npicture " + detail +
-                            "\nmeasure\nstill\npicture " + error + "\n");
+  const std::string output =
+      view(file("city.voy"),
+           "loaded\npanel off\ntau 1\nright settings\nright-tau 40\nstill\npicture " + side +
+               "\nright detail\nstill\npicture " + detail + "\nmeasure\nstill\npicture " + error +
+               "\nopen " + file("city.splat") + "\nloaded\n");
   if (!skip_.empty()) VOYAGER_SKIP_WITHOUT(VULKAN, skip_);
   EXPECT_TRUE(has(output, "dB against the truth")) << output;
+  EXPECT_TRUE(has(output, "city.splat: it is shown")) << output;
   const auto differs = [&](const Picture& a, const Picture& b, uint32_t from, uint32_t to) {
     float most = 0;
     for (uint32_t y = 0; y < a.height; ++y)

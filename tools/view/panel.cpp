@@ -20,8 +20,8 @@ void show_scene(Session& session, PanelTexts& texts) {
                 : scene->file.empty() ? ", a sample is shown"
                                       : ", flat");
   }
-  if (ImGui::InputTextWithHint("##open", "file or URL, Enter opens it", texts.open,
-                               sizeof texts.open, ImGuiInputTextFlags_EnterReturnsTrue))
+  if (ImGui::InputTextWithHint("##open", "open a file or URL", texts.open, sizeof texts.open,
+                               ImGuiInputTextFlags_EnterReturnsTrue))
     session.open(texts.open);
   float budget = static_cast<float>(session.budget());
   ImGui::SliderFloat("budget, MB", &budget, 10, 64000, "%.0f", ImGuiSliderFlags_Logarithmic);

@@ -121,7 +121,7 @@ void SceneLoader::show_sample(const std::shared_ptr<const ByteSource>& source, u
   stage("reading", 0, 0);
   const GaussianCloud cloud = read_sample(source, wanted, [this] { checkpoint(); });
   if (!shown_) camera_ = tools::camera_around(positions(cloud));
-  auto memory = std::make_unique<MemoryFile>(source->name(), as_ply(cloud));
+  auto memory = std::make_unique<MemoryFile>(source->name() + ", as a .ply", as_ply(cloud));
   const VoyByteSource bytes = memory->source();
   VoySceneDesc desc = VOY_SCENE_DESC_INIT;
   desc.source = &bytes;

@@ -39,7 +39,7 @@ class SceneLoader {
   SceneLoader(const SceneLoader&) = delete;
   SceneLoader& operator=(const SceneLoader&) = delete;
 
-  const std::string& path() const { return request_.path; }
+  const LoadRequest& request() const { return request_; }
   LoadProgress progress() const;
   // The newest that has come since the last call.
   std::optional<LoadedScene> take();

@@ -11,7 +11,7 @@
 namespace voyager::view {
 namespace {
 
-constexpr std::chrono::minutes kLongestWait{10};
+constexpr std::chrono::minutes kLongestWait{60};
 
 // Throws std::invalid_argument, which becomes a refusal of the line.
 double number(const std::string& text) {
@@ -49,10 +49,7 @@ auto at_once(auto action) {
 
 Script::Action Script::parse_wait(const Words& words) {
   const std::string& name = words[0];
-  if (name == "loaded")
-    return [](Session& s, host::Window&) {
-      return s.stats() || (!s.scene() && s.loading().stage.empty());
-    };
+  if (name == "loaded") return [](Session& s, host::Window&) { return !s.is_opening(); };
   if (name == "baked")
     return [](Session& s, host::Window&) { return s.loading().stage.empty() && s.is_still(); };
   if (name == "still")

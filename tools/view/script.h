@@ -17,7 +17,7 @@ class Script {
   explicit Script(const std::string& path);
 
   // Once a frame: goes on for as long as nothing has to be waited for. False at the end. Throws
-  // Error(timeout) where a line waits for longer than ten minutes.
+  // Error(timeout) where a line waits for longer than an hour.
   bool step(Session& session, host::Window& window);
 
  private:

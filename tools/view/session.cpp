@@ -50,17 +50,18 @@ Session::Session(const host::Device& vulkan, const voy::Device& device, const Vi
 
 void Session::open(const std::string& path) {
   asked_ = std::chrono::steady_clock::now();
+  opening_ = true;
   if (!keep_.empty()) {
     try {
       tools::require_distinct({keep_}, {path});
       tools::require_writable(keep_);
     } catch (const Error& problem) {
+      opening_ = false;
       return say(problem.what());
     }
   }
   loader_ = nullptr;  // ends what is under way
-  loader_ = std::make_unique<SceneLoader>(
-      device_, LoadRequest{path, static_cast<uint64_t>(budget_ * 1e6), keep_});
+  loader_ = std::make_unique<SceneLoader>(device_, LoadRequest{path, budget_bytes(), keep_});
 }
 
 LoadProgress Session::loading() const {
@@ -71,7 +72,7 @@ void Session::set_budget(double megabytes) {
   budget_ = megabytes;
   if (!scene_ || !scene_->streamed()) return;
   try {
-    voy::check(voySetSceneMemoryBudget(scene_->scene.get(), static_cast<uint64_t>(budget_ * 1e6)));
+    voy::check(voySetSceneMemoryBudget(scene_->scene.get(), budget_bytes()));
   } catch (const voy::Error& problem) {
     say(problem.what());
   }
@@ -135,6 +136,7 @@ void Session::adopt(LoadedScene scene) {
   left_ = std::make_unique<SplatView>(vulkan_, device_, scene_->scene, scene_->has_tree());
   left_->set(settings.left);
   left_->resize(extent_);
+  if (scene_->streamed() && loader_->request().budget != budget_bytes()) set_budget(budget_);
   if (scene_->first) {
     if (bookmarks.empty() || !home_) home_ = scene_->camera;
     navigator.set_speed(0.05 * distance_between(scene_->info.boundsMin, scene_->info.boundsMax));
@@ -150,7 +152,10 @@ void Session::update(VkExtent2D extent) {
          std::chrono::steady_clock::now() - messages_.front().since > kMessageTime)
     messages_.pop_front();
   if (loader_) {
-    if (auto error = loader_->take_error()) say(*error);
+    if (auto error = loader_->take_error()) {
+      say(*error);
+      opening_ = false;
+    }
     if (auto scene = loader_->take()) {
       try {
         adopt(std::move(*scene));

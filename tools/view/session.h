@@ -61,6 +61,8 @@ class Session {
   void open(const std::string& path);
   const LoadedScene* scene() const { return scene_ ? &*scene_ : nullptr; }
   LoadProgress loading() const;
+  // Until something of what was opened last was drawn, or it was refused.
+  bool is_opening() const { return opening_; }
   void set_budget(double megabytes);
   double budget() const { return budget_; }
 
@@ -125,6 +127,7 @@ class Session {
   void update_error();
   void draw_again(uint32_t frames) { frames_to_draw_ = std::max(frames_to_draw_, frames); }
   void show_right(std::unique_ptr<SplatView> view);
+  uint64_t budget_bytes() const { return static_cast<uint64_t>(budget_ * 1e6); }
   bool detail_is_possible() const;
   bool is_moving() const;
 
@@ -134,7 +137,7 @@ class Session {
   const std::string keep_;
   double budget_;
   VkExtent2D extent_ = {0, 0};
-  bool refused_ = false;
+  bool refused_ = false, opening_ = false;
   std::chrono::steady_clock::time_point asked_ = {};  // for the scene
   std::optional<tools::Camera> home_;
 

@@ -101,6 +101,7 @@ void Session::frame_drawn(const FrameDesc& frame) {
   if (!frame.draw) return;
   --frames_to_draw_;
   if (!stats_) tell_time();
+  if (scene_->path == loader_->request().path) opening_ = false;
   stats_ = left_->stats();
   if (frame.right) right_stats_ = right_->stats();
   if (scene_->streamed()) {
