@@ -1,5 +1,7 @@
 #include "tools/view/script.h"
 
+#include <fmt/core.h>
+
 #include <fstream>
 #include <map>
 #include <memory>
@@ -157,7 +159,7 @@ Script::Script(const std::string& path) : path_(path) {
       lines_.push_back({text, parse(words)});
     } catch (const std::invalid_argument& problem) {
       throw Error(ErrorCode::refused_input,
-                  path + ": line " + std::to_string(number) + ": " + text + ": " + problem.what());
+                  fmt::format("{}: line {}: {}: {}", path, number, text, problem.what()));
     }
   }
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "runtime/base/error.h"
@@ -19,8 +18,15 @@ constexpr size_t kTimesKept = 240;
 constexpr std::chrono::milliseconds kMoving{300};                  // after the last move
 constexpr uint32_t kAfterChange = 4, kAfterChangeWithBudget = 60;  // frames, until τ has settled
 
+bool same(const VoyPose& a, const VoyPose& b) {
+  return std::ranges::equal(a.position, b.position) &&
+         std::ranges::equal(a.orientation, b.orientation);
+}
+
 bool same(const host::Camera& a, const host::Camera& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  const VoyFrustum &f = a.frustum, &g = b.frustum;
+  return same(a.pose, b.pose) && f.left == g.left && f.right == g.right && f.up == g.up &&
+         f.down == g.down && a.width == b.width && a.height == b.height;
 }
 
 // Coarser than asked for, where that takes too long.
@@ -77,7 +83,7 @@ FrameDesc Session::frame() {
   frame.right = right_.get();
   const bool shows_error = settings.right_side == RightSide::error && difference_ &&
                            error_->width == extent_.width && error_->height == extent_.height &&
-                           std::memcmp(&error_pose_, &frame.camera.pose, sizeof error_pose_) == 0;
+                           same(error_pose_, frame.camera.pose);
   if (shows_error) frame.still = difference_->view();
   frame.split = settings.split * static_cast<float>(extent_.width);
   frame.exposure = std::exp2(settings.stops);

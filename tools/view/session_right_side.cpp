@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "tools/view/camera_path.h"
 #include "tools/view/session.h"
