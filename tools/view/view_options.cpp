@@ -18,7 +18,9 @@ void add_common(CLI::App& command, ViewOptions& options) {
                       "first view is from above at an angle")
           ->type_name("FILE");
   add_camera_option(command, options.camera)->needs(cameras);
-  add_size_option(command, options.size);
+  add_size_option(command, options.size)
+      ->description("Size of the window in pixels")
+      ->default_str("1280x720");
   add_choice<VoyBackend>(
       command, "--backend", options.backend,
       {{"auto", VOY_BACKEND_AUTO}, {"cpu", VOY_BACKEND_CPU}, {"cuda", VOY_BACKEND_CUDA}},
