@@ -49,6 +49,10 @@ Window::Window(VkInstance instance, const char* title, int width, int height)
   glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double y) {
     static_cast<Window*>(glfwGetWindowUserPointer(window))->wheel_ += y;
   });
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    if (action == GLFW_PRESS)
+      static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.push_back(key);
+  });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
     auto& dropped = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_;
     dropped.insert(dropped.end(), paths, paths + count);
@@ -64,6 +68,10 @@ VkExtent2D Window::extent() const {
   int width = 0, height = 0;
   glfwGetFramebufferSize(window_, &width, &height);
   return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
+}
+
+std::vector<int> Window::take_keys() {
+  return std::exchange(keys_, {});
 }
 
 glm::dvec2 Window::cursor() const {

@@ -43,6 +43,8 @@ class Window {
   double axis(int positive, int negative) const {
     return int{pressed(positive)} - int{pressed(negative)};
   }
+  // Keys that went down since the last call, also those that are up again.
+  std::vector<int> take_keys();
   // Where the cursor is: shares of the width and the height, 0 to 1 inside.
   glm::dvec2 cursor() const;
   // Since the last call: pixels, to the right and down; steps of the wheel, upwards.
@@ -57,6 +59,7 @@ class Window {
   VkSurfaceKHR surface_ = VK_NULL_HANDLE;
   glm::dvec2 cursor_ = {};
   double wheel_ = 0;
+  std::vector<int> keys_;
   std::vector<std::string> dropped_;
 };
 

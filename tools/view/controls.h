@@ -4,7 +4,7 @@
 
 namespace voyager::view {
 
-// Mouse, keys and gamepad since the last call move the camera (docs/viewer.md lists them).
+// Mouse, held keys and gamepad since the last call move the camera (docs/viewer.md lists them).
 // panel_has_*: the panel has the mouse or the keyboard.
 void steer(host::Window& window, Navigator& navigator, double seconds, bool panel_has_mouse,
            bool panel_has_keyboard);

@@ -151,7 +151,8 @@ class Viewer {
           gui_.has_keyboard());
     last_ = now;
     gui_.begin();
-    if (!ImGui::GetIO().WantTextInput) press_keys();
+    for (const int key : window_.take_keys())
+      if (!ImGui::GetIO().WantTextInput) press(key);
     if (session_.settings.show_panel)
       show_panel(session_, texts_, description_, ImGui::GetIO().Framerate);
     show_notes(session_);
@@ -173,18 +174,28 @@ class Viewer {
     return drags_line_;
   }
 
-  void press_keys() {
-    const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
-    if (pressed(GLFW_KEY_H)) session_.settings.show_panel = !session_.settings.show_panel;
-    if (pressed(GLFW_KEY_B)) session_.add_bookmark();
-    if (pressed(GLFW_KEY_P)) session_.save_picture(texts_.picture, false);
-    if (pressed(GLFW_KEY_HOME)) session_.go_home();
-    if (pressed(GLFW_KEY_ESCAPE)) session_.cancel_path();
-    if (pressed(GLFW_KEY_1)) session_.navigator.set_mode(Navigation::orbit);
-    if (pressed(GLFW_KEY_2)) session_.navigator.set_mode(Navigation::fly);
-    if (pressed(GLFW_KEY_3)) {
-      session_.navigator.set_mode(Navigation::walk);
-      session_.navigator.set_speed(kWalkingSpeed);
+  void press(int key) {
+    switch (key) {
+      case GLFW_KEY_H:
+        session_.settings.show_panel = !session_.settings.show_panel;
+        break;
+      case GLFW_KEY_B:
+        return session_.add_bookmark();
+      case GLFW_KEY_P:
+        return session_.save_picture(texts_.picture, false);
+      case GLFW_KEY_HOME:
+        return session_.go_home();
+      case GLFW_KEY_ESCAPE:
+        return session_.cancel_path();
+      case GLFW_KEY_1:
+        return session_.navigator.set_mode(Navigation::orbit);
+      case GLFW_KEY_2:
+        return session_.navigator.set_mode(Navigation::fly);
+      case GLFW_KEY_3:
+        session_.navigator.set_mode(Navigation::walk);
+        return session_.navigator.set_speed(kWalkingSpeed);
+      default:
+        break;
     }
   }
 
