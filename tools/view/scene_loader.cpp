@@ -104,7 +104,8 @@ void SceneLoader::load_flat(std::shared_ptr<const ByteSource> source) {
     return load_baked(bake);
   }
   gaussians_ = open_blocks(source)->count();
-  if (gaussians_ > kMostFlat) show_sample(source, kFirstSample);
+  if (gaussians_ > kMostFlat)
+    for (const uint64_t wanted : kFirstSamples) show_sample(source, wanted);
   show_sample(source, kMostFlat);
   source.reset();
   if (request_.keep.empty()) make_cache_folder();

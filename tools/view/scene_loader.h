@@ -16,8 +16,8 @@ namespace voyager::view {
 
 // Flat scenes of more Gaussians are shown by a sample until they are baked.
 inline constexpr uint64_t kMostFlat = 300'000;
-// What of them comes first.
-inline constexpr uint64_t kFirstSample = 100'000;
+// What of them comes first, one after the other: a disk that is slow has little to find at first.
+inline constexpr uint64_t kFirstSamples[] = {20'000, 100'000};
 
 struct LoadRequest {
   std::string path;
