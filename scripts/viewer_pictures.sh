@@ -41,6 +41,7 @@ window viewer_error.png
 END
 view large.ply <<END
 loaded
+frames 10
 window viewer_sample.png
 END
 for picture in viewer*.png; do

@@ -12,6 +12,7 @@
 #include "tools/view/background_bake.h"
 #include "tools/view/bake_cache.h"
 #include "tools/view/sample.h"
+#include "tools/view/sparse_ply.h"
 
 namespace voyager::view {
 namespace {
@@ -104,7 +105,8 @@ void SceneLoader::load_flat(std::shared_ptr<const ByteSource> source) {
     return load_baked(bake);
   }
   gaussians_ = open_blocks(source)->count();
-  if (gaussians_ > kMostFlat)
+  // Where a small sample takes as long as a large one, the large one is first.
+  if (gaussians_ > kMostFlat && sparse_ply(source, 2))
     for (const uint64_t wanted : kFirstSamples) show_sample(source, wanted);
   show_sample(source, kMostFlat);
   source.reset();
