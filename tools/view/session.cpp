@@ -123,6 +123,7 @@ void Session::close_scene() {
   detail_nodes_.clear();
   detail_scene_.reset();
   scene_.reset();
+  waits_for_picture_ = false;
   error_.reset();
   difference_ = nullptr;
   stats_.reset();

@@ -138,6 +138,7 @@ void Session::frame_refused(const std::string& why) {
 }
 
 void Session::save_picture(const std::string& path, bool with_panel) {
+  if (!scene_ && !with_panel) return say("there is no scene to save a picture of");
   Capture capture;
   capture.with_panel = with_panel;
   capture.then = [this, path, tells = !path_](VkExtent2D extent, std::span<const uint8_t> rgba) {
@@ -154,7 +155,8 @@ void Session::save_picture(const std::string& path, bool with_panel) {
 }
 
 void Session::start_path(const std::string& folder, size_t pictures) {
-  if (bookmarks.empty()) return say("a path needs bookmarks, through which it goes");
+  if (!scene_ || bookmarks.empty())
+    return say("a path needs a scene, and bookmarks that it goes through");
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem) return say(folder + ": " + problem.message());

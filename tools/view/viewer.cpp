@@ -115,10 +115,13 @@ class Viewer {
     auto& captures = session_.captures();
     std::optional<Capture> capture;
     host::Readback readback;
-    if (!captures.empty() && frame.left) {
-      capture = std::move(captures.front());
+    if (!captures.empty()) {
+      // Without a scene there is the panel, or nothing.
+      if (frame.left || captures.front().with_panel) {
+        capture = std::move(captures.front());
+        readback = host::Readback(vulkan_, swapchain_.extent(), false);
+      }
       captures.pop_front();
-      readback = host::Readback(vulkan_, swapchain_.extent(), false);
     }
     if (!capture || capture->with_panel)
       frame.overlay = [this](VkCommandBuffer commands) { gui_.record(commands); };
