@@ -37,6 +37,7 @@ found=$(grep -oiE '^(imgui|stb|glfw|tinygltf|gtest|openxr|cli11|fmt|png|cairo|py
 hide="$others CURL PkgConfig"
 configure tools -DVOYAGER_BUILD_TOOLS=ON -DVOYAGER_CUDA=OFF || fail "$(cat "$work/tools.said")"
 expect_said tools "voyager report: left out (no cairo for this target, which libcairo2-dev and pkg-config bring)"
+expect_said tools "voyager view: left out (not all of Vulkan's loader, GLFW,"
 
 hide="TBB ZLIB PNG OpenXR GTest CURL"
 if configure missing -DVOYAGER_BUILD_TOOLS=ON -DVOYAGER_BUILD_SAMPLES=ON -DVOYAGER_BUILD_TESTS=ON -DVOYAGER_CUDA=OFF; then

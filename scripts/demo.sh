@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # From an empty clone to pictures: builds what it runs, makes a city, bakes it, draws one picture,
-# then a walk and a flight. The CUDA module is built too where nvcc is found. Safe to run again.
+# then a walk and a flight, and a window where there is a display. The CUDA module is built too where
+# nvcc is found. Safe to run again.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/steps.sh
@@ -8,8 +9,12 @@ bin=build/release/bin
 out=demo
 mkdir -p "$out"
 
+# A display, and somebody before it who can close a window.
+window=no
+if [[ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" && -z "${CI:-}" && -t 1 ]]; then window=yes; fi
+
 step "set-up: packages that are missing"
-scripts/setup.sh
+if [[ $window = yes ]]; then scripts/setup.sh view; else scripts/setup.sh; fi
 
 step "build: the library, the command line, a sample in C"
 cmake --preset release -DVOYAGER_BUILD_SAMPLES=OFF -DVOYAGER_BUILD_TESTS=OFF \
@@ -43,4 +48,6 @@ cat <<END
 Open       $PWD/$out/walk/0000.png, and on to 0119.png: the walk and the flight
 Then try   $bin/voyager render $out/city.voy -o $out/above.png
 With yours $bin/voyager render YOUR.ply -o yours.png
+Or look at it: $bin/voyager view YOUR.ply
 END
+if [[ $window = yes ]]; then "$bin/voyager" view "$out/city.voy" --cameras "$out/city.cameras.json"; fi

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what this machine lacks, from the distribution's packages: setup.sh [PART...]
 #   main    what builds and runs the library and the command line; the default, and with every part
-#   tests   beside it: the samples, `voyager report`, a software Vulkan, a browser, a web server
+#   view    beside it: `voyager view`, and a software Vulkan for machines without a GPU
+#   tests   beside main: the samples, `voyager report`, a software Vulkan, a browser, a web server
 #   checks  beside both: git, clang with its sanitizers, clang-format, clang-tidy
 #   bench   beside main: the benchmarks and the plots of bench/
 # scripts/setup_aarch64.sh is for the check of 64-bit Arm. No service is left running. Safe to run
@@ -17,13 +18,14 @@ packages[main]="
   libcurl4-openssl-dev
   libpng-dev libfmt-dev libcli11-dev
   libvulkan-dev glslang-tools"
-packages[samples]="libtinygltf-dev libglm-dev libglfw3-dev libimgui-dev libopenxr-dev libopenxr-loader1"
+packages[view]="libglm-dev libglfw3-dev libimgui-dev libstb-dev mesa-vulkan-drivers"
+packages[samples]="${packages[view]} libtinygltf-dev libopenxr-dev libopenxr-loader1"
 packages[report]="libcairo2-dev pkg-config fonts-dejavu-core"
 # GoogleTest and what inspects programs and .debs; software Vulkan and its validation, OpenXR's
 # rules, a window's display; certificates; a browser.
 packages[tests]="${packages[samples]} ${packages[report]}
   libgtest-dev binutils python3 dpkg-dev file
-  mesa-vulkan-drivers vulkan-validationlayers openxr-layer-corevalidation xvfb
+  vulkan-validationlayers openxr-layer-corevalidation xvfb
   openssl ca-certificates chromium-headless-shell"
 packages[checks]="${packages[tests]} git clang libclang-rt-dev clang-format clang-tidy"
 packages[bench]="libbenchmark-dev python3 python3-matplotlib"
@@ -31,8 +33,8 @@ packages[bench]="libbenchmark-dev python3 python3-matplotlib"
 wanted=${packages[main]}
 for part in "$@"; do
   case $part in
-    main | tests | checks | bench) wanted+=" ${packages[$part]}" ;;
-    *) echo "setup.sh: $part: no such part, expected main, tests, checks or bench" >&2; exit 2 ;;
+    main | view | tests | checks | bench) wanted+=" ${packages[$part]}" ;;
+    *) echo "setup.sh: $part: no such part, expected main, view, tests, checks or bench" >&2; exit 2 ;;
   esac
 done
 read -r -d '' -a wanted <<<"$wanted" || true

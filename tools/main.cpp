@@ -84,6 +84,7 @@ int main(int argc, char** argv) try {
   voyager::tools::add_export(app);
   voyager::tools::add_info(app);
   voyager::tools::add_render(app);
+  voyager::tools::add_view(app);
   voyager::tools::add_bench(app);
   voyager::tools::add_report(app);
   voyager::tools::add_devices(app);

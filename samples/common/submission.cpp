@@ -1,6 +1,7 @@
 #include "submission.h"
 
 #include "failure.h"
+#include "unique.h"
 
 namespace host {
 
@@ -38,6 +39,26 @@ void Submission::submit(VkQueue queue, VkFence fence) const {
   info.signalSemaphoreCount = static_cast<uint32_t>(signals_.semaphores.size());
   info.pSignalSemaphores = signals_.semaphores.data();
   check(vkQueueSubmit(queue, 1, &info, fence), "vkQueueSubmit");
+}
+
+void run_once(VkDevice device, VkQueue queue, uint32_t queue_family,
+              const std::function<void(VkCommandBuffer)>& record) {
+  const VkCommandPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr, 0,
+                                             queue_family};
+  VkCommandPool pool = VK_NULL_HANDLE;
+  check(vkCreateCommandPool(device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
+  const UniqueCommandPool owner(device, pool);
+  const VkCommandBufferAllocateInfo info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr,
+                                            pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
+  VkCommandBuffer commands = VK_NULL_HANDLE;
+  check(vkAllocateCommandBuffers(device, &info, &commands), "vkAllocateCommandBuffers");
+  VkCommandBufferBeginInfo begin = {};
+  begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+  check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+  record(commands);
+  check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
+  Submission(commands).submit(queue, VK_NULL_HANDLE);
+  check(vkQueueWaitIdle(queue), "vkQueueWaitIdle");
 }
 
 }  // namespace host

@@ -2,6 +2,7 @@
 // One command buffer's submission, with semaphores of either kind.
 #include <vulkan/vulkan.h>
 
+#include <functional>
 #include <vector>
 
 namespace host {
@@ -32,5 +33,9 @@ class Submission {
   std::vector<VkPipelineStageFlags> stages_;
   bool timelines_ = false;
 };
+
+// Records commands, submits them and waits until the queue is idle.
+void run_once(VkDevice device, VkQueue queue, uint32_t queue_family,
+              const std::function<void(VkCommandBuffer)>& record);
 
 }  // namespace host

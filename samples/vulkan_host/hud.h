@@ -1,7 +1,8 @@
 #pragma once
 // What a frame took, and what can be turned: Dear ImGui, in the overlay's render pass.
+#include "fly_camera.h"
+#include "gui.h"
 #include "renderer.h"
-#include "window.h"
 
 namespace host {
 
@@ -16,22 +17,17 @@ struct HudState {
 
 class Hud {
  public:
-  Hud(const Device& device, const Window& window, VkRenderPass pass);
-  ~Hud();
-  Hud(const Hud&) = delete;
-  Hud& operator=(const Hud&) = delete;
+  Hud(const Device& device, const Window& window, VkRenderPass pass) : gui_(device, window, pass) {}
 
-  bool has_mouse() const;
-  bool has_keyboard() const;
+  bool has_mouse() const { return gui_.has_mouse(); }
+  bool has_keyboard() const { return gui_.has_keyboard(); }
   // stats: NULL before the first frame and where no splats are drawn.
   void build(HudState& state, const Device& device, const VoyagerLayer& voyager,
              const VoyFrameStats* stats, const FlyCamera& camera);
-  void record(VkCommandBuffer commands) const;
+  void record(VkCommandBuffer commands) const { gui_.record(commands); }
 
  private:
-  void upload_fonts(const Device& device);
-
-  UniqueDescriptorPool pool_;
+  Gui gui_;
 };
 
 }  // namespace host

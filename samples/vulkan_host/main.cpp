@@ -81,9 +81,10 @@ void run(const Options& options, Validation* validation) {
 
   std::optional<Glfw> glfw;
   std::optional<Presentation> presentation;
-  if (!options.offscreen) presentation = glfw.emplace().presentation();
+  if (!options.offscreen)
+    presentation = glfw.emplace("no window (--offscreen needs none)").presentation();
   const Presentation* presents = presentation ? &*presentation : nullptr;
-  const Instance instance(validation, presents);
+  const Instance instance(kProgram, validation, presents);
   const Device device(instance, presents, options.device_name);
   const DepthConvention depth = convention(options.depth);
   VoyagerLayer voyager(device, voyager_options(options), depth);

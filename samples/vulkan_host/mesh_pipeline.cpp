@@ -4,21 +4,12 @@
 #include <iterator>
 
 #include "failure.h"
+#include "graphics_states.h"
 #include "mesh.frag.h"
 #include "mesh.vert.h"
 
 namespace host {
 namespace {
-
-UniqueShaderModule make_shader(VkDevice device, std::span<const uint32_t> code) {
-  VkShaderModuleCreateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-  info.codeSize = code.size_bytes();
-  info.pCode = code.data();
-  VkShaderModule shader = VK_NULL_HANDLE;
-  check(vkCreateShaderModule(device, &info, nullptr, &shader), "vkCreateShaderModule");
-  return {device, shader};
-}
 
 UniquePipelineLayout make_layout(VkDevice device) {
   const VkPushConstantRange range = {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(glm::mat4)};
@@ -31,79 +22,23 @@ UniquePipelineLayout make_layout(VkDevice device) {
   return {device, layout};
 }
 
-VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which,
-                                      const UniqueShaderModule& shader) {
-  VkPipelineShaderStageCreateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-  info.stage = which;
-  info.module = shader.get();
-  info.pName = "main";
-  return info;
-}
-
 constexpr VkVertexInputBindingDescription kBinding = {0, sizeof(Vertex),
                                                       VK_VERTEX_INPUT_RATE_VERTEX};
 constexpr VkVertexInputAttributeDescription kAttributes[] = {
     {0, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, position)},
     {1, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, normal)},
     {2, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(Vertex, colour)}};
-constexpr VkDynamicState kDynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
 
-// The states of the pipeline that neither shaders nor the render pass change.
-struct FixedStates {
-  explicit FixedStates(VoyDepthEncoding encoding) {
-    input.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
+struct MeshStates : GraphicsStates {
+  explicit MeshStates(VoyDepthEncoding encoding) {
     input.vertexBindingDescriptionCount = 1;
     input.pVertexBindingDescriptions = &kBinding;
     input.vertexAttributeDescriptionCount = std::size(kAttributes);
     input.pVertexAttributeDescriptions = kAttributes;
-    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-    viewport.viewportCount = viewport.scissorCount = 1;
-    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-    raster.lineWidth = 1;
-    samples.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-    dynamic.dynamicStateCount = std::size(kDynamic);
-    dynamic.pDynamicStates = kDynamic;
-    set_output(encoding);
-  }
-  FixedStates(const FixedStates&) = delete;
-  FixedStates& operator=(const FixedStates&) = delete;
-
-  void set_output(VoyDepthEncoding encoding) {
-    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
     depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
     depth.depthCompareOp = encoding == VOY_DEPTH_ENCODING_REVERSED ? VK_COMPARE_OP_GREATER_OR_EQUAL
                                                                    : VK_COMPARE_OP_LESS_OR_EQUAL;
-    write.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                           VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    blend.attachmentCount = 1;
-    blend.pAttachments = &write;
   }
-  void give_to(VkGraphicsPipelineCreateInfo& info) const {
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &samples;
-    info.pDepthStencilState = &depth;
-    info.pColorBlendState = &blend;
-    info.pDynamicState = &dynamic;
-  }
-
-  VkPipelineVertexInputStateCreateInfo input = {};
-  VkPipelineInputAssemblyStateCreateInfo assembly = {};
-  VkPipelineViewportStateCreateInfo viewport = {};
-  VkPipelineRasterizationStateCreateInfo raster = {};
-  VkPipelineMultisampleStateCreateInfo samples = {};
-  VkPipelineDepthStencilStateCreateInfo depth = {};
-  VkPipelineColorBlendAttachmentState write = {};
-  VkPipelineColorBlendStateCreateInfo blend = {};
-  VkPipelineDynamicStateCreateInfo dynamic = {};
 };
 
 UniquePipeline make_pipeline(VkDevice device, VkPipelineLayout layout, VkRenderPass render_pass,
@@ -113,10 +48,10 @@ UniquePipeline make_pipeline(VkDevice device, VkPipelineLayout layout, VkRenderP
   const VkBool32 encode_value = encode;
   const VkSpecializationMapEntry entry = {0, 0, sizeof encode_value};
   const VkSpecializationInfo constants = {1, &entry, sizeof encode_value, &encode_value};
-  VkPipelineShaderStageCreateInfo stages[] = {stage(VK_SHADER_STAGE_VERTEX_BIT, vertex),
-                                              stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
+  VkPipelineShaderStageCreateInfo stages[] = {shader_stage(VK_SHADER_STAGE_VERTEX_BIT, vertex),
+                                              shader_stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
   stages[1].pSpecializationInfo = &constants;
-  const FixedStates states(encoding);
+  const MeshStates states(encoding);
   VkGraphicsPipelineCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
   info.stageCount = std::size(stages);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "fly_camera.h"
+
 namespace host {
 namespace {
 
@@ -15,12 +17,6 @@ glm::dvec3 high(const VoySceneInfo& s) {
 }
 
 }  // namespace
-
-glm::dmat4 scene_from_upright() {
-  glm::dmat4 m(1);
-  m[1][1] = m[2][2] = -1;
-  return m;
-}
 
 double diagonal(const VoySceneInfo& scene) {
   return glm::length(high(scene) - low(scene));

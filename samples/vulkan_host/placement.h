@@ -16,7 +16,5 @@ glm::dmat4 place_mesh(const VoySceneInfo& scene, const std::optional<MeshPlace>&
 // From behind and above, as a whole.
 VoyPose overview(const VoySceneInfo& scene);
 double diagonal(const VoySceneInfo& scene);
-// Half a turn about x: from OpenXR's and glTF's axes to the scene's.
-glm::dmat4 scene_from_upright();
 
 }  // namespace host

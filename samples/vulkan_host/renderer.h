@@ -5,14 +5,13 @@
 #include <functional>
 #include <optional>
 
+#include "frames_in_flight.h"
 #include "mesh_pipeline.h"
 #include "options.h"
 #include "render_targets.h"
 #include "voyager_layer.h"
 
 namespace host {
-
-inline constexpr uint32_t kFramesInFlight = 2;
 
 // What becomes of a frame's image, and what is drawn over it.
 struct Delivery {

@@ -3,14 +3,6 @@
 #include <algorithm>
 
 namespace host {
-namespace {
-
-// What the composite draw samples with.
-constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-constexpr VkPipelineStageFlags kStages = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
-
-}  // namespace
-
 VoyagerLayer::VoyagerLayer(const Device& device, const VoyagerOptions& options,
                            const DepthConvention& depth)
     : vulkan_device_(device), depth_(depth), images_(options.images), tau_(options.tau) {
@@ -52,26 +44,12 @@ void VoyagerLayer::set_tau(double pixels) {
 }
 
 void VoyagerLayer::resize(VkExtent2D extent) {
-  target_ = {};
+  ring_ = {};
   // A view keeps its cut: another is made only where the image outgrows it.
   if (extent.width > view_extent_.width || extent.height > view_extent_.height)
     create_view(
         {std::max(extent.width, view_extent_.width), std::max(extent.height, view_extent_.height)});
-  VoyVulkanTargetDesc vulkan = VOY_VULKAN_TARGET_DESC_INIT;
-  vulkan.imageCount = images_;
-  vulkan.depth = VK_TRUE;
-  vulkan.depthLimit = VK_TRUE;
-  VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
-  desc.next = &vulkan;
-  desc.kind = VOY_TARGET_KIND_VULKAN;
-  desc.width = extent.width;
-  desc.height = extent.height;
-  target_ = device_.create_target(desc);
-  extent_ = extent;
-  ring_.resize(images_);
-  uint32_t count = 0;
-  voy::check(voyGetVulkanImages(target_.get(), images_, ring_.data(), &count));
-  frame_ = 0;
+  ring_ = VoyagerRing(vulkan_device_, device_, {extent, images_, VK_TRUE, VK_TRUE});
 }
 
 void VoyagerLayer::create_composite(VkRenderPass render_pass, VkFormat colour, VkFormat depth) {
@@ -84,16 +62,6 @@ void VoyagerLayer::create_composite(VkRenderPass render_pass, VkFormat colour, V
   composite_ = decltype(composite_)(composite);
 }
 
-VoyVulkanUse VoyagerLayer::use(VkCommandBuffer commands, uint32_t image) const {
-  VoyVulkanUse use = VOY_VULKAN_USE_INIT;
-  use.commandBuffer = commands;
-  use.queueFamily = vulkan_device_.queue_family();
-  use.imageIndex = image;
-  use.layout = kLayout;
-  use.stages = kStages;
-  return use;
-}
-
 void VoyagerLayer::record_depth_limit(VkCommandBuffer commands, uint32_t image,
                                       const HostDepth& depth) {
   VoyVulkanDepthLimit limit = VOY_VULKAN_DEPTH_LIMIT_INIT;
@@ -102,28 +70,11 @@ void VoyagerLayer::record_depth_limit(VkCommandBuffer commands, uint32_t image,
   limit.imageIndex = image;
   limit.depth = depth.image;
   limit.format = depth.format;
-  voy::check(voyRecordVulkanDepthLimit(target_.get(), &limit));
+  voy::check(voyRecordVulkanDepthLimit(ring_.target(), &limit));
 }
 
 void VoyagerLayer::record_release(VkCommandBuffer commands, uint32_t image) {
-  const VoyVulkanUse released = use(commands, image);
-  voy::check(voyRecordVulkanRelease(target_.get(), &released));
-}
-
-void VoyagerLayer::begin_frame() {
-  ++frame_;
-}
-
-uint64_t VoyagerLayer::timeline_value() const {
-  return vulkan_.sync == VOY_VULKAN_SYNC_TIMELINE ? frame_ : 0;
-}
-
-// Both are NULL with VOY_VULKAN_SYNC_HOST.
-SemaphoreUse VoyagerLayer::released(uint32_t image) const {
-  return {ring_[image].released, timeline_value()};
-}
-SemaphoreUse VoyagerLayer::rendered(uint32_t image) const {
-  return {ring_[image].rendered, timeline_value()};
+  ring_.record_release(commands, image);
 }
 
 void VoyagerLayer::render(const Camera& camera, uint32_t image, bool limited) {
@@ -135,11 +86,8 @@ void VoyagerLayer::render(const Camera& camera, uint32_t image, bool limited) {
   if (limited) eye.next = &limit;
   eye.pose = camera.pose;
   eye.frustum = camera.frustum;
-  eye.target = target_.get();
-  VoyVulkanFrame vulkan = VOY_VULKAN_FRAME_INIT;
-  vulkan.imageIndex = image;
-  vulkan.waitValue = vulkan.signalValue =
-      vulkan_.sync == VOY_VULKAN_SYNC_BINARY ? 1 : timeline_value();
+  eye.target = ring_.target();
+  const VoyVulkanFrame vulkan = ring_.frame(image);
   VoyFrame frame = VOY_FRAME_INIT;
   frame.next = &vulkan;
   frame.eyeCount = 1;
@@ -149,17 +97,16 @@ void VoyagerLayer::render(const Camera& camera, uint32_t image, bool limited) {
 }
 
 void VoyagerLayer::record_acquire(VkCommandBuffer commands, uint32_t image) {
-  const VoyVulkanUse acquired = use(commands, image);
-  voy::check(voyRecordVulkanAcquire(target_.get(), &acquired));
+  ring_.record_acquire(commands, image);
 }
 
 void VoyagerLayer::record_composite(VkCommandBuffer commands, uint32_t image,
                                     VoyVulkanDepthUse depth_use) {
   VoyVulkanCompositeDraw draw = VOY_VULKAN_COMPOSITE_DRAW_INIT;
   draw.commandBuffer = commands;
-  draw.target = target_.get();
+  draw.target = ring_.target();
   draw.imageIndex = image;
-  draw.area = {{0, 0}, extent_};
+  draw.area = {{0, 0}, ring_.extent()};
   draw.depthUse = depth_use;
   draw.encoding = depth_.encoding;
   draw.nearZ = depth_.near_z;

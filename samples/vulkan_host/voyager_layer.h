@@ -12,6 +12,7 @@
 #include "camera.h"
 #include "device.h"
 #include "submission.h"
+#include "voyager_ring.h"
 
 namespace host {
 
@@ -48,11 +49,11 @@ class VoyagerLayer {
 
   void record_depth_limit(VkCommandBuffer commands, uint32_t image, const HostDepth& depth);
   void record_release(VkCommandBuffer commands, uint32_t image);
-  void begin_frame();  // before the semaphores of this frame are asked for
-  SemaphoreUse released(uint32_t image) const;
+  void begin_frame() { ring_.begin_frame(); }  // before the semaphores of this frame are asked for
+  SemaphoreUse released(uint32_t image) const { return ring_.released(image); }
   // With VOY_VULKAN_SYNC_HOST the host has waited until commands A are done.
   void render(const Camera& camera, uint32_t image, bool limited);
-  SemaphoreUse rendered(uint32_t image) const;
+  SemaphoreUse rendered(uint32_t image) const { return ring_.rendered(image); }
   void record_acquire(VkCommandBuffer commands, uint32_t image);
   void record_composite(VkCommandBuffer commands, uint32_t image, VoyVulkanDepthUse depth_use);
 
@@ -61,8 +62,6 @@ class VoyagerLayer {
  private:
   void create_device(const VoyagerOptions& options);
   void create_view(VkExtent2D largest);
-  VoyVulkanUse use(VkCommandBuffer commands, uint32_t image) const;
-  uint64_t timeline_value() const;
 
   const Device& vulkan_device_;
   const DepthConvention depth_;
@@ -76,10 +75,7 @@ class VoyagerLayer {
   VkExtent2D view_extent_ = {0, 0};
   double tau_;
   voy::Handle<VoyComposite, voyDestroyVulkanComposite> composite_;
-  voy::Target target_;
-  VkExtent2D extent_ = {0, 0};
-  std::vector<VoyVulkanImage> ring_;
-  uint64_t frame_ = 0;  // of the target, from 1: what its timeline semaphores count
+  VoyagerRing ring_;
 };
 
 }  // namespace host

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "fly.h"
 #include "placement.h"
 
 namespace host {
@@ -19,17 +20,15 @@ float steered(const HudState& state, const VoyFrameStats& stats) {
 class Bookmarks {
  public:
   explicit Bookmarks(const std::vector<Camera>& cameras) : cameras_(cameras) {}
-  void update(GLFWwindow* window, FlyCamera& camera) {
-    const bool down = glfwGetKey(window, GLFW_KEY_C) == GLFW_PRESS;
-    if (down && !was_down_ && !cameras_.empty())
-      camera.look_from(cameras_[++index_ % cameras_.size()].pose);
-    was_down_ = down;
+  void update(Window& window, FlyCamera& camera) {
+    for (const int key : window.take_keys())
+      if (key == GLFW_KEY_C && !cameras_.empty())
+        camera.look_from(cameras_[++index_ % cameras_.size()].pose);
   }
 
  private:
   const std::vector<Camera>& cameras_;
   size_t index_ = 0;
-  bool was_down_ = false;
 };
 
 }  // namespace
@@ -63,8 +62,8 @@ void run_window(const Device& device, Window& window, Swapchain& swapchain, Rend
     if (!(current = swapchain.acquire(slot))) continue;
 
     const double now = glfwGetTime();
-    window.fly(camera, now - last, hud.has_mouse(), hud.has_keyboard());
-    bookmarks.update(window.get(), camera);
+    fly(window, camera, now - last, hud.has_mouse(), hud.has_keyboard());
+    bookmarks.update(window, camera);
     last = now;
     if (state.steer_tau && stats) state.tau = steered(state, *stats);
     voyager.set_tau(double{state.tau});

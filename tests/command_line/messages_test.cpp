@@ -132,7 +132,8 @@ TEST_F(Messages, AloneItShowsTheCommandsAndAnExample) {
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(alone.output, help.output);
-  for (const char* command : {"synth", "bake", "export", "info", "render", "bench", "devices"})
+  for (const char* command :
+       {"synth", "bake", "export", "info", "render", "view", "bench", "devices"})
     EXPECT_NE(help.output.find("\n  " + std::string(command) + " "), std::string::npos) << command;
   EXPECT_NE(help.output.find("voyager bake city.ply -o city.voy\n"), std::string::npos);
 }

@@ -13,6 +13,7 @@ void add_info(CLI::App& app);
 void add_render(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_report(CLI::App& app);  // of builds with cairo
+void add_view(CLI::App& app);    // of builds with a window
 void add_devices(CLI::App& app);
 
 }  // namespace voyager::tools

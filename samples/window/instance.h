@@ -17,8 +17,8 @@ struct Presentation {
 
 class Instance {
  public:
-  // validation and presentation may be NULL.
-  Instance(Validation* validation, const Presentation* presentation);
+  // validation and presentation may be NULL. `application` is what drivers call the program.
+  Instance(const char* application, Validation* validation, const Presentation* presentation);
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;

@@ -3,7 +3,9 @@
 #include <array>
 #include <vector>
 
-#include "renderer.h"
+#include "device.h"
+#include "frames_in_flight.h"
+#include "render_targets.h"
 
 namespace host {
 

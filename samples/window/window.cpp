@@ -1,7 +1,7 @@
 #include "window.h"
 
-#include <cmath>
-#include <string>
+#include <algorithm>
+#include <utility>
 
 #include "failure.h"
 
@@ -16,8 +16,8 @@ namespace {
 
 }  // namespace
 
-Glfw::Glfw() {
-  if (!glfwInit()) fail("no window (--offscreen needs none): glfwInit");
+Glfw::Glfw(const std::string& no_display) {
+  if (!glfwInit()) fail((no_display + ": glfwInit").c_str());
   if (!glfwVulkanSupported()) {
     glfwTerminate();
     throw Failure(kMachine, "found no Vulkan that presents to a window, expected one");
@@ -49,6 +49,14 @@ Window::Window(VkInstance instance, const char* title, int width, int height)
   glfwSetScrollCallback(window_, [](GLFWwindow* window, double, double y) {
     static_cast<Window*>(glfwGetWindowUserPointer(window))->wheel_ += y;
   });
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
+    if (action == GLFW_PRESS)
+      static_cast<Window*>(glfwGetWindowUserPointer(window))->keys_.push_back(key);
+  });
+  glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+    auto& dropped = static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_;
+    dropped.insert(dropped.end(), paths, paths + count);
+  });
 }
 
 Window::~Window() {
@@ -62,25 +70,30 @@ VkExtent2D Window::extent() const {
   return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
-double Window::key(int positive, int negative) const {
-  return (glfwGetKey(window_, positive) == GLFW_PRESS) -
-         (glfwGetKey(window_, negative) == GLFW_PRESS);
+std::vector<int> Window::take_keys() {
+  return std::exchange(keys_, {});
 }
 
-void Window::fly(FlyCamera& camera, double seconds, bool ui_has_mouse, bool ui_has_keyboard) {
-  constexpr double kRadiansAPixel = 0.004;
+glm::dvec2 Window::cursor() const {
   glm::dvec2 cursor;
   glfwGetCursorPos(window_, &cursor.x, &cursor.y);
-  if (!ui_has_mouse && glfwGetMouseButton(window_, GLFW_MOUSE_BUTTON_RIGHT) == GLFW_PRESS)
-    camera.turn((cursor_ - cursor) * kRadiansAPixel);
-  cursor_ = cursor;
-  if (!ui_has_mouse) camera.change_speed(std::pow(1.2, wheel_));
-  wheel_ = 0;
-  if (ui_has_keyboard) return;
-  const double faster = glfwGetKey(window_, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS ? 5 : 1;
-  camera.move(
-      {key(GLFW_KEY_D, GLFW_KEY_A), key(GLFW_KEY_E, GLFW_KEY_Q), key(GLFW_KEY_S, GLFW_KEY_W)},
-      seconds * faster);
+  int width = 1, height = 1;
+  glfwGetWindowSize(window_, &width, &height);
+  return cursor / glm::dvec2(std::max(width, 1), std::max(height, 1));
+}
+
+glm::dvec2 Window::take_cursor_move() {
+  glm::dvec2 cursor;
+  glfwGetCursorPos(window_, &cursor.x, &cursor.y);
+  return cursor - std::exchange(cursor_, cursor);
+}
+
+std::vector<std::string> Window::take_dropped() {
+  return std::exchange(dropped_, {});
+}
+
+double Window::take_wheel() {
+  return std::exchange(wheel_, 0);
 }
 
 }  // namespace host

@@ -9,7 +9,7 @@
 
 namespace host {
 
-Instance::Instance(Validation* validation, const Presentation* presentation) {
+Instance::Instance(const char* name, Validation* validation, const Presentation* presentation) {
   // Asked before there is an instance: what any device may need of one.
   VoyVulkanRequirements needs = VOY_VULKAN_REQUIREMENTS_INIT;
   voy::check(voyGetVulkanRequirements(nullptr, &needs));
@@ -22,7 +22,7 @@ Instance::Instance(Validation* validation, const Presentation* presentation) {
 
   VkApplicationInfo application = {};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-  application.pApplicationName = "vulkan_host";
+  application.pApplicationName = name;
   application.apiVersion = api_version_;
   VkInstanceCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-#include "placement.h"
-
 namespace host {
 namespace {
 
@@ -21,6 +19,12 @@ glm::dquat orientation(double yaw, double pitch) {
 }
 
 }  // namespace
+
+glm::dmat4 scene_from_upright() {
+  glm::dmat4 m(1);
+  m[1][1] = m[2][2] = -1;
+  return m;
+}
 
 FlyCamera::FlyCamera(const VoyPose& start, double metres_a_second) : speed_(metres_a_second) {
   look_from(start);
@@ -44,14 +48,27 @@ void FlyCamera::move(const glm::dvec3& axes, double seconds) {
   position_ += orientation(yaw_, pitch_) * axes * (speed_ * seconds);
 }
 
-Camera FlyCamera::camera(uint32_t width, uint32_t height) const {
+void FlyCamera::place(const glm::dvec3& position) {
+  position_ = position;
+}
+
+glm::dvec3 FlyCamera::direction(const glm::dvec3& axes) const {
+  return orientation(yaw_, pitch_) * axes;
+}
+
+glm::dvec3 FlyCamera::level_direction(const glm::dvec3& axes) const {
+  return orientation(yaw_, 0) * axes;
+}
+
+VoyPose FlyCamera::pose() const {
   const glm::dquat q = orientation(yaw_, pitch_);
+  return {{position_.x, position_.y, position_.z}, {q.x, q.y, q.z, q.w}};
+}
+
+Camera FlyCamera::camera(uint32_t width, uint32_t height) const {
   const double up = std::tan(std::acos(-1.0) / 6);
   const double right = up * width / height;
-  return {{{position_.x, position_.y, position_.z}, {q.x, q.y, q.z, q.w}},
-          {-right, right, up, -up},
-          width,
-          height};
+  return {pose(), {-right, right, up, -up}, width, height};
 }
 
 }  // namespace host

@@ -1,0 +1,36 @@
+#pragma once
+// The states of a graphics pipeline that are the same for most.
+#include <vulkan/vulkan.h>
+
+#include <span>
+
+#include "unique.h"
+
+namespace host {
+
+UniqueShaderModule make_shader(VkDevice device, std::span<const uint32_t> code);
+// Runs main().
+VkPipelineShaderStageCreateInfo shader_stage(VkShaderStageFlagBits which,
+                                             const UniqueShaderModule& shader);
+
+// Triangles without vertex buffers, without depth, one sample, no blending; viewport and scissor
+// are dynamic. Change what differs, before give_to().
+struct GraphicsStates {
+  GraphicsStates();
+  GraphicsStates(const GraphicsStates&) = delete;
+  GraphicsStates& operator=(const GraphicsStates&) = delete;
+  // Must outlive the use of `info`.
+  void give_to(VkGraphicsPipelineCreateInfo& info) const;
+
+  VkPipelineVertexInputStateCreateInfo input = {};
+  VkPipelineInputAssemblyStateCreateInfo assembly = {};
+  VkPipelineViewportStateCreateInfo viewport = {};
+  VkPipelineRasterizationStateCreateInfo raster = {};
+  VkPipelineMultisampleStateCreateInfo samples = {};
+  VkPipelineDepthStencilStateCreateInfo depth = {};
+  VkPipelineColorBlendAttachmentState write = {};
+  VkPipelineColorBlendStateCreateInfo blend = {};
+  VkPipelineDynamicStateCreateInfo dynamic = {};
+};
+
+}  // namespace host

@@ -1,0 +1,23 @@
+#pragma once
+// Where the bakes of flat scenes are kept: voyager/ in $XDG_CACHE_HOME, or in ~/.cache.
+#include <cstdint>
+#include <string>
+
+#include "runtime/base/file.h"
+
+namespace voyager::view {
+
+inline constexpr uint64_t kLargestCache = 20'000'000'000;  // bytes
+
+// The .voy of a flat scene, whether it is there or not: another one when the scene changes, which
+// its size and time of change tell.
+std::string cached_bake(const std::string& scene, const ByteSource& source);
+
+// Throws Error(io) where it cannot.
+void make_cache_folder();
+
+// Removes the .voy files that were used least recently, until the folder is within the largest
+// size; never `used`, which counts as used now. What cannot be removed stays.
+void trim_cache(const std::string& used);
+
+}  // namespace voyager::view

@@ -1,0 +1,184 @@
+#include "tools/view/script.h"
+
+#include <fmt/core.h>
+
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include "runtime/base/error.h"
+#include "tools/options.h"
+
+namespace voyager::view {
+namespace {
+
+constexpr std::chrono::minutes kLongestWait{60};
+
+// Throws std::invalid_argument, which becomes a refusal of the line.
+double number(const std::string& text) {
+  const auto value = tools::parse_number(text);
+  if (!value) throw std::invalid_argument("found " + text + ", expected a number");
+  return *value;
+}
+float small(const std::string& text) {
+  return static_cast<float>(number(text));
+}
+size_t whole(const std::string& text) {
+  const auto value = tools::parse_whole(text);
+  if (!value) throw std::invalid_argument("found " + text + ", expected a whole number");
+  return *value;
+}
+template <class T>
+T one_of(const std::string& text, const std::map<std::string, T>& names) {
+  const auto found = names.find(text);
+  if (found == names.end()) throw std::invalid_argument("found " + text);
+  return found->second;
+}
+const std::string& word(const std::vector<std::string>& words, size_t index) {
+  if (index >= words.size()) throw std::invalid_argument("found too few words");
+  return words[index];
+}
+
+auto at_once(auto action) {
+  return [action](Session& session, host::Window&) {
+    action(session);
+    return true;
+  };
+}
+
+}  // namespace
+
+Script::Action Script::parse_wait(const Words& words) {
+  const std::string& name = words[0];
+  if (name == "loaded") return [](Session& s, host::Window&) { return !s.is_opening(); };
+  if (name == "baked")
+    return [](Session& s, host::Window&) { return s.loading().stage.empty() && s.is_still(); };
+  if (name == "still")
+    return [](Session& s, host::Window&) { return s.is_still() && !s.is_busy(); };
+  if (name == "frames") {
+    const auto left = std::make_shared<size_t>(whole(word(words, 1)));
+    return [left](Session&, host::Window&) { return *left == 0 || --*left == 0; };
+  }
+  return nullptr;
+}
+
+Script::Action Script::parse_setting(const Words& words) {
+  const std::string& name = words[0];
+  const auto value = [&](size_t index = 1) { return small(word(words, index)); };
+  const auto set = [](auto change) {
+    return at_once([change](Session& session) { change(session.settings); });
+  };
+  if (name == "tau") return set([v = value()](Settings& s) { s.left.tau = v; });
+  if (name == "milliseconds") return set([v = value()](Settings& s) { s.left.milliseconds = v; });
+  if (name == "exposure") return set([v = value()](Settings& s) { s.stops = v; });
+  if (name == "line") return set([v = value()](Settings& s) { s.split = v; });
+  if (name == "right-tau") return set([v = value()](Settings& s) { s.right.tau = v; });
+  if (name == "background")
+    return set([r = value(), g = value(2), b = value(3)](Settings& s) {
+      s.background[0] = r;
+      s.background[1] = g;
+      s.background[2] = b;
+    });
+  if (name == "antialias") {
+    const auto antialias = one_of<VoyAntialias>(
+        word(words, 1), {{"on", VOY_ANTIALIAS_ON}, {"off", VOY_ANTIALIAS_OFF}});
+    return set([antialias](Settings& s) { s.left.antialias = antialias; });
+  }
+  if (name == "panel") {
+    const bool on = one_of<bool>(word(words, 1), {{"on", true}, {"off", false}});
+    return set([on](Settings& s) { s.show_panel = on; });
+  }
+  if (name == "right") {
+    const auto side = one_of<RightSide>(word(words, 1), {{"nothing", RightSide::none},
+                                                         {"settings", RightSide::settings},
+                                                         {"detail", RightSide::detail},
+                                                         {"error", RightSide::error}});
+    return set([side](Settings& s) { s.right_side = side; });
+  }
+  return nullptr;
+}
+
+Script::Action Script::parse_file(const Words& words) {
+  const std::string& name = words[0];
+  const auto with_file = [&](auto action) {
+    return at_once([action, file = word(words, 1)](Session& session) { action(session, file); });
+  };
+  if (name == "open") return with_file([](Session& s, const std::string& f) { s.open(f); });
+  if (name == "picture")
+    return with_file([](Session& s, const std::string& f) { s.save_picture(f, false); });
+  if (name == "window")
+    return with_file([](Session& s, const std::string& f) { s.save_picture(f, true); });
+  if (name == "save")
+    return with_file([](Session& s, const std::string& f) { s.save_bookmarks(f); });
+  if (name == "path")
+    return with_file([count = whole(word(words, 2))](Session& s, const std::string& f) {
+      s.start_path(f, count);
+    });
+  return nullptr;
+}
+
+Script::Action Script::parse(const Words& words) {
+  for (const auto parser : {parse_wait, parse_setting, parse_file})
+    if (Action action = parser(words)) return action;
+  const std::string& name = words[0];
+  if (name == "bookmark") return at_once([](Session& s) { s.add_bookmark(); });
+  if (name == "measure") return at_once([](Session& s) { s.measure_error(); });
+  if (name == "stop") return at_once([](Session& s) { s.cancel_path(); });
+  if (name == "home") return at_once([](Session& s) { s.go_home(); });
+  if (name == "budget")
+    return at_once([v = number(word(words, 1))](Session& s) { s.set_budget(v); });
+  if (name == "turn")
+    return at_once([x = number(word(words, 1)), y = number(word(words, 2))](Session& s) {
+      constexpr double kRadians = 3.14159265358979323846 / 180;
+      s.navigator.turn({x * kRadians, y * kRadians});
+    });
+  if (name == "move")
+    return at_once(
+        [v = glm::dvec3(number(word(words, 1)), number(word(words, 2)), number(word(words, 3)))](
+            Session& s) { s.navigator.move(v, 1 / s.navigator.speed()); });
+  if (name == "size")
+    return [width = whole(word(words, 1)), height = whole(word(words, 2))](Session&,
+                                                                           host::Window& window) {
+      glfwSetWindowSize(window.get(), static_cast<int>(width), static_cast<int>(height));
+      return true;
+    };
+  throw std::invalid_argument("found " + name + ", expected a line of docs/viewer.md");
+}
+
+Script::Script(const std::string& path) : path_(path) {
+  std::ifstream file(path);
+  if (!file) throw Error(ErrorCode::file_not_found, path + ": cannot be read");
+  std::string text;
+  for (size_t number = 1; std::getline(file, text); ++number) {
+    std::istringstream stream(text);
+    Words words;
+    for (std::string word; stream >> word;) words.push_back(word);
+    if (words.empty() || words[0][0] == '#') continue;
+    try {
+      lines_.push_back({text, parse(words)});
+    } catch (const std::invalid_argument& problem) {
+      throw Error(ErrorCode::refused_input,
+                  fmt::format("{}: line {}: {}: {}", path, number, text, problem.what()));
+    }
+  }
+}
+
+bool Script::step(Session& session, host::Window& window) {
+  const auto now = std::chrono::steady_clock::now();
+  while (next_ < lines_.size()) {
+    // Pictures that were asked for are of what was asked for before them.
+    if (!session.captures().empty() || session.path()) return true;
+    if (!lines_[next_].action(session, window)) {
+      if (now - since_ > kLongestWait)
+        throw Error(ErrorCode::timeout, path_ + ": " + lines_[next_].text + ": waited for " +
+                                            std::to_string(kLongestWait.count()) + " minutes");
+      return true;
+    }
+    ++next_;
+    since_ = now;
+  }
+  return !session.captures().empty() || session.path();
+}
+
+}  // namespace voyager::view

@@ -1,0 +1,51 @@
+#pragma once
+// How far a picture is from METHOD §12's truth: every leaf, with many samples a pixel.
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tools/cameras.h"
+
+namespace voyager::view {
+
+struct TruthRequest {
+  std::string file;           // of a scene with a tree, or a flat one
+  tools::Camera camera;       // of the picture
+  std::vector<uint8_t> rgba;  // the picture
+  VoyBackend backend = VOY_BACKEND_AUTO;
+  float background[3] = {0, 0, 0};
+};
+
+struct TruthResult {
+  double psnr = 0;  // dB; infinite where the pictures are equal
+  uint32_t width = 0, height = 0;
+  std::vector<uint8_t> difference;  // RGBA: grey where they are equal, 8 times the difference
+};
+
+// Draws the truth on a thread of its own, from a device and a copy of the scene of its own.
+class TruthJob {
+ public:
+  explicit TruthJob(TruthRequest request);
+  ~TruthJob() { thread_.join(); }
+  TruthJob(const TruthJob&) = delete;
+  TruthJob& operator=(const TruthJob&) = delete;
+
+  bool done() const { return done_; }
+  // Once done: nothing where it failed, and why.
+  const std::optional<TruthResult>& result() const { return result_; }
+  const std::string& error() const { return error_; }
+
+ private:
+  void run();
+
+  const TruthRequest request_;
+  std::optional<TruthResult> result_;
+  std::string error_;
+  std::atomic<bool> done_ = false;
+  std::thread thread_;
+};
+
+}  // namespace voyager::view

@@ -1,0 +1,29 @@
+#pragma once
+// What `voyager view` was asked.
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "tools/image_size.h"
+#include "voyager/voyager.h"
+
+namespace voyager::view {
+
+struct ViewOptions {
+  std::string scene;    // "": none yet
+  std::string cameras;  // bookmarks from the start; "": none
+  int64_t camera = 0;
+  tools::ImageSize size{1280, 720};
+  VoyBackend backend = VOY_BACKEND_AUTO;
+  std::string gpu;  // the Vulkan device whose name has this in it
+  double tau = 3;
+  double milliseconds = 0;  // 0: tau is fixed
+  VoyAntialias antialias = VOY_ANTIALIAS_ON;
+  double budget = 4000;  // MB
+  std::string keep;      // where a bake is written; "": the cache folder
+  std::string script;
+  bool validation = false;
+};
+
+void add_view_options(CLI::App& command, ViewOptions& options);
+
+}  // namespace voyager::view

@@ -1,0 +1,243 @@
+#include "tools/view/viewer.h"
+
+#include <fmt/core.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "failure.h"
+#include "gui.h"
+#include "mode_names.h"
+#include "readback.h"
+#include "runtime/base/error.h"
+#include "swapchain.h"
+#include "tools/console.h"
+#include "tools/output_paths.h"
+#include "tools/view/controls.h"
+#include "tools/view/panel.h"
+#include "tools/view/script.h"
+#include "tools/view/session.h"
+#include "validation.h"
+
+namespace voyager::view {
+namespace {
+
+constexpr double kIdleSeconds = 0.05;  // between two looks for what other threads did
+
+voy::Device create_device(const host::Device& vulkan_device, const ViewOptions& options) {
+  VoyVulkanDeviceDesc vulkan = vulkan_device.voyager_desc();
+  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  desc.next = &vulkan;
+  desc.backend = options.backend;
+  return voy::Device::create(desc);
+}
+
+// "llvmpipe, drawn by the cpu"
+std::string description(const host::Device& vulkan, const voy::Device& device) {
+  const VoyCapabilities found = device.capabilities();
+  return fmt::format("{}; scene: {}, {}", vulkan.name(), host::backend_name(found.backend),
+                     found.deviceName);
+}
+
+// All that a window takes, in the order in which it is made.
+class Viewer {
+ public:
+  Viewer(const ViewOptions& options, std::optional<Script> script, host::Validation* validation)
+      : glfw_("no display: `voyager view` needs one, `voyager render` draws without"),
+        presentation_(glfw_.presentation()),
+        instance_("voyager", validation, &presentation_),
+        vulkan_(instance_, &presentation_, options.gpu),
+        device_(create_device(vulkan_, options)),
+        description_(description(vulkan_, device_)),
+        window_(instance_.get(), "Voyager", static_cast<int>(options.size.width),
+                static_cast<int>(options.size.height)),
+        swapchain_(vulkan_, window_.surface()),
+        renderer_(vulkan_, swapchain_.colour_format()),
+        gui_(vulkan_, window_, renderer_.overlay_pass()),
+        session_(vulkan_, device_, options),
+        script_(std::move(script)) {
+    tools::note(description_);
+    if (!options.scene.empty()) session_.open(options.scene);
+  }
+  // Frames may be in flight.
+  ~Viewer() { vkDeviceWaitIdle(vulkan_.get()); }
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  void run() {
+    while (!window_.closed()) {
+      if (session_.is_still())
+        glfwWaitEventsTimeout(kIdleSeconds);
+      else
+        glfwPollEvents();
+      if (script_ && !script_->step(session_, window_)) return;
+      for (const std::string& path : window_.take_dropped()) session_.open(path);
+      name_window();
+      if (is_sized()) draw_frame();
+    }
+  }
+
+ private:
+  void name_window() {
+    const LoadedScene* scene = session_.scene();
+    const std::string title = scene ? scene->path + " - Voyager" : "Voyager";
+    if (title != title_) glfwSetWindowTitle(window_.get(), title.c_str());
+    title_ = title;
+  }
+
+  // False while the window is minimised.
+  bool is_sized() {
+    const VkExtent2D wanted = window_.extent();
+    if (current_ && wanted.width == asked_.width && wanted.height == asked_.height) return true;
+    vulkan_.wait_idle();
+    asked_ = wanted;
+    if (!swapchain_.resize(wanted)) {
+      glfwWaitEventsTimeout(kIdleSeconds);
+      current_ = false;
+      return false;
+    }
+    renderer_.resize(swapchain_.extent());
+    session_.resize(swapchain_.extent());
+    return true;
+  }
+
+  void draw_frame() {
+    steer_and_show();
+    session_.update(swapchain_.extent());
+    const uint32_t slot = renderer_.wait_for_slot();
+    current_ = swapchain_.acquire(slot);
+    if (!current_) return;
+    FrameDesc frame = session_.frame();
+    frame.acquired = swapchain_.acquired(slot);
+    frame.ready = swapchain_.ready();
+    auto& captures = session_.captures();
+    std::optional<Capture> capture;
+    host::Readback readback;
+    if (!captures.empty()) {
+      // Without a scene there is the panel, or nothing.
+      if (frame.left || captures.front().with_panel) {
+        capture = std::move(captures.front());
+        readback = host::Readback(vulkan_, swapchain_.extent(), false);
+      }
+      captures.pop_front();
+    }
+    if (!capture || capture->with_panel)
+      frame.overlay = [this](VkCommandBuffer commands) { gui_.record(commands); };
+    frame.record = [&](VkCommandBuffer commands, const host::RenderTargets& targets) {
+      swapchain_.record(commands, targets);
+      if (capture) readback.record(commands, targets);
+    };
+    draw(frame);
+    current_ = swapchain_.present();
+    if (!capture) return;
+    vulkan_.wait_idle();
+    capture->then(readback.extent(), readback.rgba());
+  }
+
+  void draw(FrameDesc& frame) {
+    try {
+      renderer_.draw(frame);
+      session_.frame_drawn(frame);
+    } catch (const voy::Error& problem) {
+      session_.frame_refused(problem.what());
+      frame.left = frame.right = nullptr;
+      frame.still = VK_NULL_HANDLE;
+      renderer_.draw(frame);  // the window's image was acquired, and waits
+    }
+  }
+
+  void steer_and_show() {
+    const double now = glfwGetTime();
+    steer(window_, session_.navigator, now - last_, gui_.has_mouse() || drags_line(),
+          gui_.has_keyboard());
+    last_ = now;
+    gui_.begin();
+    for (const int key : window_.take_keys())
+      if (!ImGui::GetIO().WantTextInput) press(key);
+    if (session_.settings.show_panel)
+      show_panel(session_, texts_, description_, ImGui::GetIO().Framerate);
+    show_notes(session_);
+    gui_.end();
+  }
+
+  // Whether the mouse has the line between the two pictures.
+  bool drags_line() {
+    constexpr double kGrip = 0.008;  // of the width
+    const bool pressed = window_.button(GLFW_MOUSE_BUTTON_LEFT);
+    const double at = window_.cursor().x;
+    Settings& settings = session_.settings;
+    const bool begins = pressed && !was_pressed_ && !gui_.has_mouse() &&
+                        settings.right_side != RightSide::none &&
+                        std::abs(at - double{settings.split}) < kGrip;
+    drags_line_ = pressed && (drags_line_ || begins);
+    was_pressed_ = pressed;
+    if (drags_line_) settings.split = static_cast<float>(std::clamp(at, 0.0, 1.0));
+    return drags_line_;
+  }
+
+  void press(int key) {
+    switch (key) {
+      case GLFW_KEY_H:
+        session_.settings.show_panel = !session_.settings.show_panel;
+        break;
+      case GLFW_KEY_B:
+        return session_.add_bookmark();
+      case GLFW_KEY_P:
+        return session_.save_picture(texts_.picture, false);
+      case GLFW_KEY_HOME:
+        return session_.go_home();
+      case GLFW_KEY_ESCAPE:
+        return session_.cancel_path();
+      case GLFW_KEY_1:
+        return session_.navigator.set_mode(Navigation::orbit);
+      case GLFW_KEY_2:
+        return session_.navigator.set_mode(Navigation::fly);
+      case GLFW_KEY_3:
+        session_.navigator.set_mode(Navigation::walk);
+        return session_.navigator.set_speed(kWalkingSpeed);
+      default:
+        break;
+    }
+  }
+
+  const host::Glfw glfw_;
+  const host::Presentation presentation_;
+  const host::Instance instance_;
+  const host::Device vulkan_;
+  const voy::Device device_;
+  const std::string description_;
+  host::Window window_;
+  host::Swapchain swapchain_;
+  FrameRenderer renderer_;
+  host::Gui gui_;
+  Session session_;
+  std::optional<Script> script_;
+  PanelTexts texts_;
+  std::string title_ = "Voyager";
+  bool current_ = false;                           // the swapchain fits the window
+  VkExtent2D asked_ = {0, 0};                      // the surface may have given another
+  double last_ = glfwGetTime();                    // seconds
+  bool was_pressed_ = false, drags_line_ = false;  // the left button; the line
+};
+
+}  // namespace
+
+void run_viewer(const ViewOptions& options) {
+  // Files first: what is refused is refused before there is a window.
+  if (!options.keep.empty()) {
+    tools::require_extension("--keep", options.keep, {".voy"});
+    tools::require_distinct({options.keep}, {options.scene, options.cameras, options.script});
+    tools::require_writable(options.keep);
+  }
+  std::optional<Script> script;
+  if (!options.script.empty()) script.emplace(options.script);
+  host::Validation validation;
+  Viewer(options, std::move(script), options.validation ? &validation : nullptr).run();
+  if (validation.messages() > 0)
+    throw Error(ErrorCode::internal,
+                fmt::format("--validation: {} messages", validation.messages()));
+}
+
+}  // namespace voyager::view

@@ -1,0 +1,11 @@
+#pragma once
+#include "tools/view/view_options.h"
+
+namespace voyager::view {
+
+// Opens the window, until it is closed or its script ends. Throws voyager::Error and voy::Error as
+// the library does for what it cannot begin with, host::Failure for a machine without a display or
+// without Vulkan.
+void run_viewer(const ViewOptions& options);
+
+}  // namespace voyager::view
