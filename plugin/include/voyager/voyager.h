@@ -882,7 +882,8 @@ typedef struct VoyFrameStats {
   uint64_t entered, left; /* nodes new in the cut, and gone, since the last frame */
   uint64_t splats;        /* that contribute to the image */
   uint64_t pairsBefore;   /* (tile, splat) pairs by bounding boxes */
-  uint64_t pairsAfter;    /* (tile, splat) pairs by ellipses at the α threshold */
+  uint64_t pairsAfter;    /* (tile, splat) pairs by ellipses at the α threshold; on CUDA without
+                             those that the view's last frame showed to be hidden, as are splats */
   uint64_t pairsDropped;  /* pairs, strips and Gaussians that were not drawn because buffers
                              were too small; 0 in a complete image */
   uint64_t bytesStreamed; /* read for streamed scenes since the view's last frame */
