@@ -5,22 +5,14 @@
 namespace voyager::cuda {
 namespace {
 
-// Cells of an eye on a level.
-size_t cells(const TileGrid& grid, int level) {
-  const int shift = 2 * level;
-  const auto side = [&](int32_t tiles) {
-    return static_cast<size_t>((tiles + (1 << shift) - 1) >> shift);
-  };
-  return side(grid.columns) * side(grid.rows);
-}
-
 TileLimits limit_layout(const FrameTiles& tiles, size_t& all) {
   TileLimits limits{};
   all = 0;
   for (int level = 0; level < kLimitLevels; ++level)
     for (uint32_t eye = 0; eye < tiles.eyes; ++eye) {
       limits.first[level][eye] = static_cast<uint32_t>(all);
-      all += cells(tiles.grids[eye], level);
+      all += static_cast<size_t>(limit_side(tiles.grids[eye].columns, level)) *
+             static_cast<size_t>(limit_side(tiles.grids[eye].rows, level));
     }
   return limits;
 }

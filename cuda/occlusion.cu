@@ -11,7 +11,8 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr int kSquare = kLimitSide * kLimitSide;  // tiles of a thread block, a side
+constexpr int kSquare =
+    kLimitSide * kLimitSide;  // tiles of a thread block, a side: a cell of level 2
 constexpr unsigned kThreads = kSquare * kSquare;
 
 // In tiles: what is farther from where a tile was is not looked at.
@@ -134,12 +135,9 @@ __global__ void __launch_bounds__(kThreads)
 
 unsigned squares(const FrameTiles& tiles) {
   unsigned all = 0;
-  for (uint32_t eye = 0; eye < tiles.eyes; ++eye) {
-    const auto side = [](int32_t count) {
-      return static_cast<unsigned>((count + kSquare - 1) / kSquare);
-    };
-    all += side(tiles.grids[eye].columns) * side(tiles.grids[eye].rows);
-  }
+  for (uint32_t eye = 0; eye < tiles.eyes; ++eye)
+    all += static_cast<unsigned>(limit_side(tiles.grids[eye].columns, 2) *
+                                 limit_side(tiles.grids[eye].rows, 2));
   return all;
 }
 

@@ -6,8 +6,7 @@
 
 namespace voyager::cuda {
 
-// No longer a frame's first pass than anybody waits for: a second has work only where tiles of the
-// first were left open.
+// A second pass has none where the first left no tile open.
 __device__ inline bool has_work(const SplatView& splats) {
   return splats.open_parts == nullptr || *splats.open_parts != 0;
 }
@@ -21,15 +20,9 @@ __device__ inline TileRange limit_cells(float low, float high, int side, int32_t
   return {static_cast<int32_t>(first), static_cast<int32_t>(end)};
 }
 
-__device__ inline int32_t limit_side(int32_t tiles, int level) {
-  const int shift = 2 * level;
-  return (tiles + (1 << shift) - 1) >> shift;
-}
-
-// Of the coarsest level that tells it in few cells; what is larger than that is not hidden.
+// By the finest level that tells it in few cells; what is larger than those is not hidden.
 __device__ inline bool hidden(const SplatView& splats, uint32_t eye, const ImageBounds& image,
                               float depth_scale) {
-  static_assert(kLimitSide == 4);
   constexpr int kMostCells = 3;  // a side
   const uint32_t depth = float_bits(sort_depth(image.nearest, depth_scale));
   const TileGrid& grid = splats.frame.grids[eye];

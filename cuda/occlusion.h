@@ -2,7 +2,6 @@
 // What covers a view's tiles, from frame to frame.
 #include <cuda_runtime_api.h>
 
-#include <array>
 #include <vector>
 
 #include "cuda/buffer.h"

@@ -16,8 +16,16 @@ inline constexpr uint32_t kDrawNothing = 0, kDrawAll = 0xffffffffu;
 inline constexpr int kLimitLevels = 3;
 inline constexpr int kLimitSide = 4;  // cells of a level that are one of the next, a side
 
+// Cells in a row or column of so many tiles.
+VOYAGER_HD int32_t limit_side(int32_t tiles, int level) {
+  static_assert(kLimitSide == 4);
+  const int shift = 2 * level;
+  return (tiles + (1 << shift) - 1) >> shift;
+}
+
 struct TileLimits {
-  const uint32_t* bits = nullptr;  // of the frame's tiles, then the coarser levels; null: all kDrawAll
+  const uint32_t* bits =
+      nullptr;  // of the frame's tiles, then the coarser levels; null: all kDrawAll
   uint32_t first[kLimitLevels][kMaxEyes];
 };
 
