@@ -181,13 +181,4 @@ std::string request_lines(const std::vector<Affine>& places) {
   return text;
 }
 
-bool differ_in_scale(const std::vector<Affine>& places) {
-  double least = INFINITY, most = 0;
-  for (const Affine& place : places) {
-    const double scale = std::cbrt(std::fabs(determinant(place.linear)));
-    least = std::min(least, scale), most = std::max(most, scale);
-  }
-  return most > least * std::sqrt(2.0);
-}
-
 }  // namespace voyager::tools

@@ -36,7 +36,4 @@ std::vector<std::unique_ptr<BlockReader>> placed(std::vector<std::unique_ptr<Blo
 // What a bake's request says of it (bake.h); empty where nothing is moved.
 std::string request_lines(const std::vector<Affine>& places);
 
-// True where two of them differ in scale so much that one native pixel does not do for both.
-bool differ_in_scale(const std::vector<Affine>& places);
-
 }  // namespace voyager::tools

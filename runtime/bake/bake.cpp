@@ -229,8 +229,9 @@ class Baker {
     result.gaussians = spool.gaussians;
     result.import = spool.import;
     if (bake_.step != BakeStep::all && bake_.step != BakeStep::merge) return result;
+    const std::vector<uint8_t> levels = levels_of(spool.inputs);
     const BakedScene baked = build_tree(read_cloud(spool), workers_, progress_, bake_.rule,
-                                        {bake_.native.cameras, spool.unseen_level});
+                                        {bake_.native.cameras, spool.unseen_level, levels});
     const Partition partition = partition_tree(baked.tree, bake_.chunk_bytes);
     write_scene_file(baked, partition, bake_.output, bake_.quality, workers_, progress_);
     result.nodes = baked.tree.size();

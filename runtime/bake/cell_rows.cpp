@@ -125,7 +125,7 @@ void write_info(const WorkFolder& folder, const SpoolInfo& spool, uint32_t cell_
   Packer packer;
   packer.put(spool.gaussians).put(std::array{spool.sh_degree, spool.row_degree});
   put(packer, spool.native);
-  packer.put(spool.unseen_level);
+  packer.put(spool.unseen_level).put_all(spool.inputs);
   packer.put(spool.source_origin).put(spool.import).put(cell_level).put(origin);
   write_sealed(folder.file(kSplitDone), packer.bytes());
 }
@@ -188,6 +188,7 @@ SplitInfo read_split_info(const WorkFolder& folder, const TreeRule& rule) {
   split.spool.sh_degree = degrees[0], split.spool.row_degree = degrees[1];
   split.spool.native = take_native(from);
   split.spool.unseen_level = from.take<int32_t>();
+  from.take_all(split.spool.inputs);
   split.spool.source_origin = from.take<std::array<double, 3>>();
   split.spool.import = from.take<ImportReport>();
   split.cell_level = from.take<uint32_t>();

@@ -68,8 +68,9 @@ void build_cell(const SplitInfo& split, uint32_t cell, const TreeRule& rule,
                 std::span<const TrainingCamera> cameras, const WorkFolder& folder,
                 Workers& workers) {
   CellRows rows = read_cell_rows(split, cell, folder);
-  const TreeLayout layout =
-      find_layout(rows.cloud, split.origin, rule, workers, {}, {cameras, split.spool.unseen_level});
+  const std::vector<uint8_t> levels = levels_of(split.spool.inputs, rows.sources);
+  const TreeLayout layout = find_layout(rows.cloud, split.origin, rule, workers, {},
+                                        {cameras, split.spool.unseen_level, levels});
   const uint32_t shared = cell_levels(layout.child_count)[kSharedLevels];
   const CellTree tree = merge_cell(std::move(rows), layout, split.origin, workers);
   std::vector<NodeRow> nodes;

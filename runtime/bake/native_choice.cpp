@@ -25,27 +25,35 @@ std::string request_line(const NativeChoice& choice) {
 }
 
 FoundScale native_scale(const NativeChoice& choice, const NativeScale& of_inputs,
-                        const NativePixelHistogram& pixels, const ScaleHistogram& scales) {
-  if (of_inputs.antialiased()) return {of_inputs, {}};
-  if (choice.pixel) return {{NativeSource::given, *choice.pixel, kPixelVariance}, {}};
+                        const NativePixelHistogram& pixels, std::span<const InputScales> inputs) {
+  if (of_inputs.antialiased()) return {of_inputs, {}, {}};
+  if (choice.pixel) return {{NativeSource::given, *choice.pixel, kPixelVariance}, {}, {}};
   if (!choice.cameras.empty()) {
     const NativePixel found = pixels.find();
     if (found.looked_at != 0 && found.seen == 0)
       throw Error(ErrorCode::refused_input,
                   "training cameras: found none that sees a Gaussian of the scene, expected the "
                   "cameras of this scene, in its coordinates");
-    return {found.scale(), found};
+    return {found.scale(), found, {}};
   }
-  if (of_inputs.source != NativeSource::unknown) return {of_inputs, {}};
-  return {scales.estimate(), {}};
+  if (of_inputs.source != NativeSource::unknown) return {of_inputs, {}, {}};
+  JoinedScale joined = joined_scale(inputs);
+  return {joined.scale, {}, std::move(joined.levels)};
 }
 
-FoundScale native_scale(const NativeChoice& choice, const GaussianCloud& cloud) {
+FoundScale native_scale(const NativeChoice& choice, const GaussianCloud& cloud,
+                        std::span<const uint32_t> ends) {
   NativePixelHistogram pixels(choice.cameras, cloud.report.read);
   if (!choice.pixel && !choice.cameras.empty()) pixels.add(cloud, 0);
-  ScaleHistogram scales;
-  scales.add(cloud);
-  return native_scale(choice, cloud.native, pixels, scales);
+  const uint32_t whole[] = {static_cast<uint32_t>(cloud.size())};
+  if (ends.empty()) ends = whole;
+  std::vector<InputScales> inputs;
+  for (const uint32_t end : ends) {
+    const uint32_t begin = inputs.empty() ? 0 : inputs.back().end;
+    inputs.emplace_back().end = end;
+    inputs.back().scales.add(cloud, begin, end);
+  }
+  return native_scale(choice, cloud.native, pixels, inputs);
 }
 
 }  // namespace voyager

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "runtime/bake/input_levels.h"
 #include "runtime/lod/block_footprints.h"
 #include "runtime/scene/native_pixel.h"
-#include "runtime/scene/scale_histogram.h"
 
 namespace voyager {
 
@@ -22,16 +22,19 @@ std::string request_line(const NativeChoice& choice);
 
 struct FoundScale {
   NativeScale scale;
-  std::optional<NativePixel> by_cameras;  // where cameras were asked
+  std::optional<NativePixel> by_cameras{};  // where cameras were asked
+  std::vector<InputLevel> inputs{};         // JoinedScale's, where they were asked
   // Of a block that no camera sees: the scene's median.
   int unseen_level() const { return by_cameras ? scale.level_of(by_cameras->median) : 0; }
 };
 
-// Of a whole cloud, sanitised. Throws Error(refused_input) where no camera sees a Gaussian.
-FoundScale native_scale(const NativeChoice& choice, const GaussianCloud& cloud);
+// Of a whole cloud, sanitised; `ends` are those of its inputs, or none of one. Throws
+// Error(refused_input) where no camera sees a Gaussian.
+FoundScale native_scale(const NativeChoice& choice, const GaussianCloud& cloud,
+                        std::span<const uint32_t> ends = {});
 
 // The same from histograms of its parts. of_inputs: as they say.
 FoundScale native_scale(const NativeChoice& choice, const NativeScale& of_inputs,
-                        const NativePixelHistogram& pixels, const ScaleHistogram& scales);
+                        const NativePixelHistogram& pixels, std::span<const InputScales> inputs);
 
 }  // namespace voyager

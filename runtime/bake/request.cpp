@@ -14,7 +14,7 @@
 namespace voyager {
 namespace {
 
-constexpr int kWorkVersion = 8;  // of the files in the folder
+constexpr int kWorkVersion = 9;  // of the files in the folder
 
 std::string state_of(const std::string& path) {
   struct stat info = {};

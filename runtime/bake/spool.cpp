@@ -21,6 +21,7 @@ constexpr size_t kMostInBlock = 1 << 16, kLeastInBlock = 256;  // Gaussians
 // One block on its way.
 struct Job {
   const BlockReader* reader = nullptr;
+  size_t input = 0;  // of the reader
   RawBlock raw;
   std::array<double, 3> origin{0, 0, 0};
   NativeScale native;
@@ -57,6 +58,7 @@ class Spooler {
         positions_(ScratchFile::create(folder.file(kPositionRows))),
         others_(ScratchFile::create(folder.file(kOtherRows))),
         choice_(native),
+        inputs_(readers_.size()),
         announced_(announced_by(readers_)),
         pixels_(native.cameras, announced_) {
     for (Job& job : jobs_) idle_.push(&job);
@@ -78,6 +80,7 @@ class Spooler {
       Job* job = nullptr;
       idle_.try_pop(job);
       job->reader = readers_[current_].get();
+      job->input = current_;
       job->raw = std::move(raw);
       return job;
     }
@@ -106,12 +109,13 @@ class Spooler {
       info_.source_origin = job.origin;
     require_alike(info_.source_origin, info_.native, job.origin, job.native, job.reader->name());
     add(info_.import, job.import);
-    scales_.add(job.scales);
+    inputs_[job.input].scales.add(job.scales);
     info_.sh_degree = std::max(info_.sh_degree, job.used_sh_degree);
     check_count(uint64_t{info_.gaussians} + job.piece.count);
     job.piece.first = info_.gaussians;
     look(job);
     info_.gaussians += job.piece.count;
+    inputs_[job.input].end = info_.gaussians;
     if (job.piece.count != 0) info_.pieces.push_back(job.piece);
     report(progress_, "reading", info_.import.read, announced_);
   }
@@ -126,10 +130,13 @@ class Spooler {
   }
 
   SpoolInfo take_info() {
-    const FoundScale found = native_scale(choice_, info_.native, pixels_, scales_);
+    for (size_t i = 1; i < inputs_.size(); ++i)  // some may be empty
+      inputs_[i].end = std::max(inputs_[i].end, inputs_[i - 1].end);
+    FoundScale found = native_scale(choice_, info_.native, pixels_, inputs_);
     info_.native = found.scale;
     info_.unseen_level = found.unseen_level();
     info_.by_cameras = found.by_cameras;
+    info_.inputs = std::move(found.inputs);
     return std::move(info_);
   }
 
@@ -159,7 +166,7 @@ class Spooler {
   ScratchFile positions_, others_;
   SpoolInfo info_;
   const NativeChoice& choice_;
-  ScaleHistogram scales_;
+  std::vector<InputScales> inputs_;
   uint64_t announced_;
   NativePixelHistogram pixels_;
 };
@@ -193,7 +200,7 @@ void write_info(const WorkFolder& folder, const SpoolInfo& info) {
   Packer packer;
   packer.put(info.gaussians).put(std::array{info.sh_degree, info.row_degree});
   put(packer, info.native);
-  packer.put(info.unseen_level);
+  packer.put(info.unseen_level).put_all(info.inputs);
   packer.put(info.source_origin).put(info.import).put_all(info.pieces);
   write_sealed(folder.file(kSpoolDone), packer.bytes());
 }
@@ -248,6 +255,7 @@ SpoolInfo read_spool_info(const WorkFolder& folder) {
   info.sh_degree = degrees[0], info.row_degree = degrees[1];
   info.native = take_native(from);
   info.unseen_level = from.take<int32_t>();
+  from.take_all(info.inputs);
   info.source_origin = from.take<std::array<double, 3>>();
   info.import = from.take<ImportReport>();
   from.take_all(info.pieces);

@@ -37,7 +37,8 @@ struct SpoolInfo {
   int32_t sh_degree = 0;   // the highest that is used
   int32_t row_degree = 0;  // of the inputs, and so of the rows in the spool
   NativeScale native;
-  int32_t unseen_level = 0;  // BlockFootprints
+  int32_t unseen_level = 0;        // BlockFootprints
+  std::vector<InputLevel> inputs;  // JoinedScale's
   std::array<double, 3> source_origin{0, 0, 0};
   ImportReport import;
   std::vector<SpoolPiece> pieces;

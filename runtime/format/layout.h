@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "runtime/lod/subtree_cursor.h"
+#include "runtime/scene/further_gaussians.h"
+#include "runtime/scene/hier_format.h"
 
 namespace voyager {
 
@@ -27,10 +29,11 @@ inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0
 inline constexpr uint32_t kFlagClustered = 4;    // the rule of the tree (tree_rule.h)
 inline constexpr uint32_t kFlagKeptTree = 8;     // a .hier's own: leaf opacities are linear
+inline constexpr uint32_t kFlagFurther = 256;    // further Gaussians (further.h) after chunks
 // From version 5 on: footprint levels beyond the first (node_code.h).
 inline constexpr uint32_t kFootprintShift = 4, kFootprintMask = 0xfu << kFootprintShift;
 inline constexpr uint32_t kFlags =
-    kFlagAntialiased | kFlagLeafExtents | kFlagClustered | kFlagKeptTree;
+    kFlagAntialiased | kFlagLeafExtents | kFlagClustered | kFlagKeptTree | kFlagFurther;
 inline constexpr uint32_t kChunkTag = 0x4b484356;  // "VCHK"
 
 enum class SectionKind : uint32_t { chunk_directory = 1, tiers = 2 };
@@ -120,6 +123,11 @@ struct ChunkHeader {
   double position_step[3];
 };
 static_assert(sizeof(ChunkHeader) == 64);
+
+// Of the section of further Gaussians: two counts, a node, a Gaussian, the checksum.
+inline constexpr uint64_t kLeastFurtherBytes =
+    8 + sizeof(FurtherCount) + kHierFloats * sizeof(float) + 8;
+static_assert(kLeastFurtherBytes == 260);
 
 inline constexpr uint64_t align_up(uint64_t bytes, uint64_t alignment) {
   return (bytes + alignment - 1) / alignment * alignment;

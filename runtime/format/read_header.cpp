@@ -18,8 +18,11 @@ uint32_t levels_of(const FileHeader& h) {
 
 void check_counts(const FileHeader& h, const Check& check) {
   const uint32_t levels = levels_of(h);
-  check.at_most(offsetof(FileHeader, flags), "flags", h.flags - (levels << kFootprintShift),
-                kFlags);
+  const uint32_t unknown = h.flags & ~(kFlags | levels << kFootprintShift);
+  check.equal(offsetof(FileHeader, flags), "unknown flags", unknown, 0);
+  check.that((h.flags & kFlagFurther) == 0 || ((h.flags & kFlagKeptTree) != 0 && h.node_count != 0),
+             offsetof(FileHeader, flags), "further Gaussians of a tree that is not a .hier's own",
+             "none");
   check.at_most(offsetof(FileHeader, flags), "footprint levels beyond the first", levels,
                 kFootprintLevels - 1);
   check.that(h.quality == 1 || h.quality == 2, offsetof(FileHeader, quality), "an unknown quality",

@@ -119,7 +119,11 @@ class DirectoryCheck {
 
   void finish(const std::vector<ChunkEntry>& chunks) {
     const FileHeader& h = header_;
-    check_.equal(offsetof(FileHeader, file_length), "end of the chunks", offset_, h.file_length);
+    if ((h.flags & kFlagFurther) == 0)
+      check_.equal(offsetof(FileHeader, file_length), "end of the chunks", offset_, h.file_length);
+    else
+      check_.that(h.file_length - offset_ >= kLeastFurtherBytes, offset_,
+                  "too little room for further Gaussians", "at least 260 bytes");
     check_.equal(offsetof(FileHeader, subtree_count), "subtrees in all chunks", subtree_,
                  h.subtree_count);
     if (chunks.empty()) return;

@@ -60,6 +60,8 @@ SceneFile::SceneFile(std::shared_ptr<const ByteSource> source) : source_(std::mo
   level_begin_ = std::move(sections.level_begin);
   tier_begin_ = std::move(sections.tier_begin);
   chunks_ = std::move(sections.chunks);
+  if ((header.flags & kFlagFurther) != 0)
+    info_.further_offset = chunks_.back().offset + chunks_.back().bytes;
   check_claims(*this, process_seed());
 }
 

@@ -33,6 +33,7 @@ struct SceneFileInfo {
   double position_error;                // compact: largest |error| of a mean, metres; lossless 0
   float largest_sh;                     // |coefficient|, over all bands of all nodes as read
   bool leaves_have_extent;              // some leaf's record has an extent that is not 0
+  uint64_t further_offset;  // of the section of further Gaussians (further.h); 0: there is none
   ImportReport import;
 };
 

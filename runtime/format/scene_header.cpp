@@ -20,7 +20,7 @@ FileHeader make_header(const SceneTotals& totals, size_t chunks) {
   h.flags = (totals.native.antialiased() ? kFlagAntialiased : 0) |
             (totals.leaves_have_extent ? kFlagLeafExtents : 0) |
             (totals.tree == TreeKind::clustered ? kFlagClustered : 0) |
-            (totals.kept_tree ? kFlagKeptTree : 0) |
+            (totals.kept_tree ? kFlagKeptTree : 0) | (totals.further ? kFlagFurther : 0) |
             static_cast<uint32_t>(totals.native.levels - 1) << kFootprintShift;
   h.quality = static_cast<uint32_t>(totals.quality);
   h.sh_degree = static_cast<uint32_t>(totals.sh_degree);

@@ -14,7 +14,7 @@ struct SceneTotals {
   int sh_degree = 0, left_out_bands = 0;
   TreeKind tree = TreeKind::clustered;
   float blend_share = kLateShare;
-  bool kept_tree = false;
+  bool kept_tree = false, further = false;  // the section of further Gaussians is there
   NativeScale native;
   uint32_t leaf_count = 0;
   uint32_t chunk_bytes = 0;

@@ -5,6 +5,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
 #include "runtime/format/chunk_codec.h"
+#include "runtime/format/further.h"
 #include "runtime/format/gather.h"
 #include "runtime/format/scene_header.h"
 
@@ -61,6 +62,7 @@ SceneTotals totals_of(const BakedScene& baked, const Partition& partition, Quali
   totals.tree = baked.kind;
   totals.blend_share = baked.tree.blend_share;
   totals.kept_tree = baked.kept;
+  totals.further = !baked.further.nodes.empty();
   return totals;
 }
 
@@ -108,6 +110,7 @@ void write_scene_file(const BakedScene& baked, const Partition& partition, const
       totals.leaves_have_extent |= batch[i].leaves_have_extent;
     }
   }
+  if (totals.further) write_further(file, baked.further);
   file.write_at(0, encode_head(totals, entries, file.position()));
   file.commit();
   report(progress, "writing", chunks, chunks);

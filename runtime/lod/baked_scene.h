@@ -8,6 +8,7 @@
 #include "runtime/lod/tree.h"
 #include "runtime/lod/tree_rule.h"
 #include "runtime/math/node_code.h"
+#include "runtime/scene/further_gaussians.h"
 #include "runtime/scene/gaussian_cloud.h"
 
 namespace voyager {
@@ -38,6 +39,7 @@ struct BakedScene {
   // The tree is a .hier's own (kept_tree.h): opacities of leaves are linear, too, and neither boxes
   // of leaves nor merged Gaussians nor axes are what a build makes of them.
   bool kept = false;
+  FurtherGaussians further{};  // of a kept tree
 
   // The opacity of the node's Gaussian is a logit.
   bool has_logit(uint32_t node) const { return tree.is_leaf(node) && !kept; }

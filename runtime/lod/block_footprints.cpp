@@ -16,7 +16,11 @@ constexpr size_t kLookedAt = 32;
 
 uint8_t footprint_level(const GaussianCloud& cloud, std::span<const uint32_t> leaves,
                         const BlockFootprints& footprints) {
-  if (!footprints.known.empty()) return footprints.known[leaves.front()];
+  if (!footprints.known.empty()) {
+    uint8_t level = 0;
+    for (const uint32_t leaf : leaves) level = std::max(level, footprints.known[leaf]);
+    return level;
+  }
   std::vector<uint32_t> visible;
   for (const uint32_t leaf : leaves)
     if (cloud.opacity[leaf] >= kVisibleLogit) visible.push_back(leaf);

@@ -10,8 +10,10 @@ namespace voyager {
 
 struct BlockFootprints {
   std::span<const TrainingCamera> cameras{};
-  int unseen_level = 0;              // of a block that no camera sees
-  std::span<const uint8_t> known{};  // by Gaussian, of a scene that is baked again; asked first
+  int unseen_level = 0;  // of a block that no camera sees
+  // By Gaussian, of a scene that is baked again, or of inputs with levels of their own; asked
+  // first. A block has the smallest pixel of its Gaussians.
+  std::span<const uint8_t> known{};
 };
 
 // Of a block: that of the lower quartile of the native pixels of a few of its Gaussians, among the

@@ -35,7 +35,7 @@ class Keeper {
     nest();
     read_gaussians();
     finish_clouds();
-    kept_.further = links_.further;
+    kept_.unused = links_.unused;
     kept_.childless = links_.childless;
     return std::move(kept_);
   }
@@ -132,6 +132,7 @@ class Keeper {
   void read_gaussians() {
     std::vector<uint32_t> node_of(file_.gaussians(), kNoNode);
     for (uint32_t n = 0; n < links_.gaussian.size(); ++n) node_of[links_.gaussian[n]] = n;
+    const std::vector<uint32_t> place_of = make_further();
     for (size_t begin = 0; begin < node_of.size(); begin += kBlock) {
       report(progress_, "reading", begin, node_of.size());
       const size_t count = std::min(kBlock, node_of.size() - begin);
@@ -139,8 +140,24 @@ class Keeper {
       const hier::Rows rows(bytes, count, file_.half());
       for (size_t i = 0; i < count; ++i)
         if (node_of[begin + i] != kNoNode) take(rows, i, begin + i, node_of[begin + i]);
+      if (place_of.empty()) continue;
+      for (size_t i = 0; i < count; ++i)
+        if (const uint32_t place = place_of[begin + i]; place != kNoNode)
+          rows.copy_all(i, &baked().further.words[kHierFloats * place]);
     }
     report(progress_, "reading", node_of.size(), node_of.size());
+  }
+
+  // Room for the further Gaussians, and the place there of each of the file's, or kNoNode; nothing
+  // where there are none.
+  std::vector<uint32_t> make_further() {
+    if (links_.further.empty()) return {};
+    std::vector<uint32_t> place_of(file_.gaussians(), kNoNode);
+    uint32_t place = 0;
+    for (const FurtherCount& of : links_.further)
+      for (uint32_t i = 1; i <= of.count; ++i) place_of[links_.gaussian[of.node] + i] = place++;
+    baked().further = {links_.further, std::vector<float>(kHierFloats * place)};
+    return place_of;
   }
 
   void take(const hier::Rows& rows, size_t row, size_t gaussian, uint32_t node) {
@@ -204,9 +221,8 @@ KeptTree read_kept_tree(std::shared_ptr<const ByteSource> source, const Progress
 
 std::vector<std::string> notes_of(const KeptTree& kept) {
   std::vector<std::string> notes;
-  if (kept.further != 0)
-    notes.push_back(std::to_string(kept.further) +
-                    " Gaussians left out: a node draws the first of its own");
+  if (kept.unused != 0)
+    notes.push_back(std::to_string(kept.unused) + " Gaussians left out: no node has them");
   if (kept.childless != 0)
     notes.push_back(std::to_string(kept.childless) +
                     " inner nodes without children, which are drawn as leaves are");

@@ -14,6 +14,8 @@ namespace voyager {
 static_assert(std::endian::native == std::endian::little);
 
 inline constexpr size_t kHierShFloats = 48;  // [16][3]: always degree 3
+// Of a Gaussian: position, rotation, log scale, opacity, SH.
+inline constexpr size_t kHierFloats = 3 + 4 + 3 + 1 + kHierShFloats;
 
 struct HierNode {
   int32_t depth;   // 0 for a leaf

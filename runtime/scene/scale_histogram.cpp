@@ -23,8 +23,8 @@ float middle_of(const float* axes) {
 
 }  // namespace
 
-void ScaleHistogram::add(const GaussianCloud& cloud) {
-  for (size_t i = 0; i < cloud.size(); ++i) {
+void ScaleHistogram::add(const GaussianCloud& cloud, size_t begin, size_t end) {
+  for (size_t i = begin; i < end; ++i) {
     if (!(cloud.opacity[i] >= kVisibleLogit)) continue;
     const float bin =
         (middle_of(cloud.log_scale.data() + 3 * i) - static_cast<float>(kLowest)) * kSteps;

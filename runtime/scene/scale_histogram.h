@@ -17,7 +17,8 @@ inline constexpr float kVisibleLogit = -2.9444f;  // of an opacity of 1/20
 // Sums over parts of a scene, in any order: the same for each way to take it apart.
 class ScaleHistogram {
  public:
-  void add(const GaussianCloud& cloud);
+  void add(const GaussianCloud& cloud) { add(cloud, 0, cloud.size()); }
+  void add(const GaussianCloud& cloud, size_t begin, size_t end);
   void add(const ScaleHistogram& other);
   // What was found; unknown where no Gaussian was counted.
   NativeScale estimate() const;

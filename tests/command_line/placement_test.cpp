@@ -31,11 +31,24 @@ TEST_F(PlacedBake, IsTheSameInMemoryAndInParts) {
                              "'translate 500 0 0' --quality lossless -o ";
   const Outcome whole = run(inputs + scene);
   ASSERT_EQ(whole.exit_code, 0) << whole.output;
-  EXPECT_NE(whole.output.find("scaled differently"), std::string::npos) << whole.output;
   const std::string parts = folder.file("parts.voy"), work = folder.file("work");
   const Outcome apart = run(inputs + parts + " --work " + work);
   ASSERT_EQ(apart.exit_code, 0) << apart.output;
   EXPECT_TRUE(file_bytes(scene) == file_bytes(parts));
+}
+
+// Each has the pixel of its own estimate: two inputs, one twice as large.
+TEST_F(PlacedBake, InputsOfAnotherScaleHaveAnotherPixel) {
+  const auto line = [&](const std::string& inputs) {
+    EXPECT_EQ(failure_of({"voyager bake " + inputs + " -o " + scene}), "");
+    const std::string text = run("voyager info " + scene).output;
+    const size_t at = text.find("native pixel");
+    return text.substr(at, text.find('\n', at) - at);
+  };
+  EXPECT_EQ(line(input + " " + input).find(" to "), std::string::npos);
+  EXPECT_NE(line(input + " " + input + " --transform 'scale 2' --transform 'translate 500 0 0'")
+                .find(" to "),
+            std::string::npos);
 }
 
 TEST_F(PlacedBake, AWorkFolderIsOfOnePlacement) {

@@ -6,6 +6,7 @@
 #include "runtime/base/error.h"
 #include "runtime/format/export_flat.h"
 #include "runtime/format/export_hier.h"
+#include "runtime/format/further.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/fuzz/memory_limit.h"
 #include "tests/fuzz/scratch_folder.h"
@@ -32,9 +33,10 @@ bool written(const std::string& path, const Export& run) {
   }
 }
 
-// Of the words of one Gaussian, in the .hier layout: two counts, 11 + 48 words, node and box.
-constexpr uint64_t hier_bytes(uint64_t nodes) {
-  return 8 + nodes * (4 * (11 + 48) + 28 + 32);
+// In the .hier layout: two counts, 11 + 48 words of a Gaussian, node and box.
+uint64_t hier_bytes(const SceneFile& scene) {
+  const uint64_t nodes = scene.info().node_count;
+  return 8 + (nodes + FurtherReader(scene).gaussians()) * (4 * (11 + 48)) + nodes * (28 + 32);
 }
 
 size_t gaussians_in(const std::string& path) {
@@ -48,7 +50,7 @@ void export_all(const Bytes& bytes) {
   try {
     const SceneFile scene(std::make_shared<MemorySource>("fuzz.voy", bytes));
     if (written(hier, [&] { export_hier(scene, hier); }) &&
-        std::filesystem::file_size(hier) != hier_bytes(scene.info().node_count))
+        std::filesystem::file_size(hier) != hier_bytes(scene))
       std::abort();
     if (written(ply, [&] { export_leaves(scene, ply); }) &&
         gaussians_in(ply) != scene.info().leaf_count)

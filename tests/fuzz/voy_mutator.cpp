@@ -40,6 +40,10 @@ class File {
     return std::span(bytes_).subspan(header_.directory.offset,
                                      entries_.size() * sizeof(ChunkEntry));
   }
+  // After the last chunk, mostly nothing.
+  std::span<std::byte> further() {
+    return std::span(bytes_).subspan(entries_.back().offset + entries_.back().bytes);
+  }
   std::span<std::byte> stored(size_t chunk) {
     return std::span(bytes_).subspan(entries_[chunk].offset, entries_[chunk].bytes);
   }
@@ -134,6 +138,9 @@ void mutate_payload(File& file, Random& random) {
 }
 
 void mutate_file(File& file, Random& random) {
+  // Counts and nodes come first.
+  if (const auto further = file.further(); further.size() >= 8 && random.once_in(4))
+    return mutate_some_word(further.first(std::min<size_t>(further.size(), 40)), random);
   switch (random.below(10)) {
     case 0:
       return mutate_some_word(file.header(), random);

@@ -77,10 +77,19 @@ class Folder {
 
   // The tree is the same in every case: it is built once.
   Bytes in_memory(const Case& c) const {
-    if (!baked_) baked_ = build_tree(read_inputs(), workers_, {}, test::kSmallBlocks);
-    return test::scene_bytes(*baked_, c.quality, 0, c.chunk_bytes);
+    return test::scene_bytes(baked(), c.quality, 0, c.chunk_bytes);
   }
-  GaussianCloud read_inputs() const {
+  const BakedScene& baked() const {
+    if (baked_) return *baked_;
+    std::vector<uint32_t> ends;
+    GaussianCloud cloud = read_inputs(&ends);
+    const FoundScale found = native_scale({}, cloud, ends);
+    cloud.native = found.scale;
+    const std::vector<uint8_t> levels = levels_of(found.inputs);
+    baked_ = build_tree(std::move(cloud), workers_, {}, test::kSmallBlocks, {.known = levels});
+    return *baked_;
+  }
+  GaussianCloud read_inputs(std::vector<uint32_t>* ends = nullptr) const {
     GaussianCloud all;
     for (size_t i = 0; i < inputs.size(); ++i) {
       const auto source = open_file_source(inputs[i]);
@@ -89,6 +98,7 @@ class Folder {
         all = std::move(cloud);
       else
         append(all, std::move(cloud), inputs[i]);
+      if (ends != nullptr) ends->push_back(static_cast<uint32_t>(all.size()));
     }
     return all;
   }
@@ -169,6 +179,29 @@ TEST(BakeInParts, GivesBlocksTheFootprintsOfABakeInMemory) {
       }
       EXPECT_TRUE(most_in_cell > 9000 || folder.output() == whole);
     }
+}
+
+// Eight times as large is six levels of √2. Half of the large ones are where the small ones are:
+// some blocks are of both.
+TEST(BakeInParts, GivesInputsOfAnotherScaleAPixelOfTheirOwn) {
+  constexpr uint32_t kSmall = 5000;
+  GaussianCloud large = test::specks(4000, 35, 0);
+  for (float& scale : large.log_scale) scale += std::log(8.0f);
+  for (size_t i = 0; i < 2000; ++i) large.position[3 * i] += 1000;
+  const Folder folder({test::specks(kSmall, 34, 0), large});
+  const BakedScene& baked = folder.baked();
+  size_t alone = 0;
+  for (uint32_t n = 0; n < baked.tree.size(); ++n) {
+    if (!baked.tree.is_leaf(n)) continue;
+    const int level = footprint_level_of(baked.node_code[n]);
+    ASSERT_TRUE(level == 6 || (level == 0 && baked.gaussian[n] >= kSmall)) << level;
+    alone += level == 0;
+  }
+  EXPECT_GT(alone, 1000u);
+  EXPECT_LT(alone, 4000u);
+  for (const uint32_t most_in_cell : {1300u, 1u << 20})
+    for (const Quality quality : {Quality::compact, Quality::lossless})
+      folder.expect_equal({.quality = quality, .most_in_cell = most_in_cell});
 }
 
 TEST(BakeInParts, SaysWhatIsKnownAfterEachStep) {

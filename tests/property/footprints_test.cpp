@@ -6,6 +6,7 @@
 #include "tests/support/render_scene.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/stream_rig.h"
+#include "tests/support/tree_clouds.h"
 
 namespace voyager::footprints_test {
 namespace {

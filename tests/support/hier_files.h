@@ -56,6 +56,31 @@ inline HierSample merged_hier() {
   return s;
 }
 
+// Two roots under one that has a Gaussian of each, in the order of an export: nodes breadth-first,
+// Gaussians in the order of nodes. Node 1 has two further ones, of which one is not finite, and so
+// has node 4, which has no children.
+inline HierSample merged_roots_hier() {
+  HierSample s;
+  s.nodes = {{3, -1, 0, 0, 2, 1, 2},   // 0
+             {2, 0, 2, 0, 3, 3, 2},    // 1
+             {1, 0, 5, 0, 1, 5, 2},    // 2
+             {1, 1, 6, 0, 1, 7, 2},    // 3
+             {1, 1, 7, 0, 3, 0, 0},    // 4
+             {0, 2, 10, 1, 0, 0, 0},   // 5
+             {0, 2, 11, 1, 0, 0, 0},   // 6
+             {0, 3, 12, 1, 0, 0, 0},   // 7
+             {0, 3, 13, 1, 0, 0, 0}};  // 8
+  const float extents[] = {std::numeric_limits<float>::infinity(), 16, 7, 4, 3, 0, 0, 0, 0};
+  const float reach[] = {20, 16, 14, 12, 8, 4, 4, 2, 2};
+  for (size_t n = 0; n < s.nodes.size(); ++n)
+    s.boxes.push_back({{-reach[n], -1, -1}, extents[n], {reach[n], 1, 1}, extents[n]});
+  std::mt19937 random(9);
+  for (int i = 0; i < 14; ++i) add_hier_gaussian(s, random);
+  s.opacities[3] = -0.5f;
+  s.positions[3 * 4] = std::numeric_limits<float>::infinity();
+  return s;
+}
+
 // A node of one leaf. What random bytes do to a file is soon tried at all of its places.
 inline HierSample small_hier() {
   HierSample s;

@@ -119,12 +119,17 @@ GaussianCloud read_one(const BakeArguments& arguments, size_t i, BlockReader& re
   return import_gaussians(open_source(path), options);
 }
 
-GaussianCloud read_all(const BakeArguments& arguments, const Readers& readers,
-                       const Progress& progress) {
+// And where each input ends.
+std::pair<GaussianCloud, std::vector<uint32_t>> read_all(const BakeArguments& arguments,
+                                                         const Readers& readers,
+                                                         const Progress& progress) {
   GaussianCloud cloud = read_one(arguments, 0, *readers.front(), progress);
-  for (size_t i = 1; i < arguments.inputs.size(); ++i)
+  std::vector<uint32_t> ends{static_cast<uint32_t>(cloud.size())};
+  for (size_t i = 1; i < arguments.inputs.size(); ++i) {
     append(cloud, read_one(arguments, i, *readers[i], progress), shown_path(arguments.inputs[i]));
-  return cloud;
+    ends.push_back(static_cast<uint32_t>(cloud.size()));
+  }
+  return {std::move(cloud), std::move(ends)};
 }
 
 void require_sound(const std::string& path, const std::vector<std::string>& findings) {
@@ -212,12 +217,7 @@ Readers open_inputs(const BakeArguments& arguments, const NativeChoice& native) 
                       ": found a scene that was trained with a compensated filter, expected none "
                       "with --native-pixel and --training-cameras: it has no footprint");
   if (!arguments.placement.given()) return readers;
-  const std::vector<Affine> places = arguments.placement.of(readers.size());
-  if (!chosen && differ_in_scale(places))
-    note(
-        "--transform: the inputs are scaled differently, and get one native pixel, which is "
-        "estimated over all: --native-pixel or --training-cameras says what it is");
-  return placed(std::move(readers), places);
+  return placed(std::move(readers), arguments.placement.of(readers.size()));
 }
 
 BakeSummary write_baked(const BakeArguments& arguments, const BakedScene& baked, Workers& workers,
@@ -246,12 +246,13 @@ BakeSummary write_baked(const BakeArguments& arguments, const BakedScene& baked,
 BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& native,
                            const Readers& readers, const Progress& progress) {
   Workers workers;
-  GaussianCloud cloud = read_all(arguments, readers, progress);
-  const FoundScale found = native_scale(native, cloud);
+  auto [cloud, ends] = read_all(arguments, readers, progress);
+  const FoundScale found = native_scale(native, cloud, ends);
+  const std::vector<uint8_t> levels = levels_of(found.inputs);
   cloud.native = found.scale;
   if (found.by_cameras) describe(*found.by_cameras);
   BakedScene baked = build_tree(std::move(cloud), workers, progress, {.kind = arguments.tree},
-                                {native.cameras, found.unseen_level()});
+                                {native.cameras, found.unseen_level(), levels});
   const std::string kept = refine_file(arguments);
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
   const std::string learned = optimize_file(arguments);

@@ -33,6 +33,24 @@ bool same(float a, float b) {
   return std::bit_cast<uint32_t>(a) == std::bit_cast<uint32_t>(b);
 }
 
+// All numbers of the further Gaussians of all nodes.
+std::vector<uint32_t> further_bits(const Bytes& hier) {
+  const hier::File file(named(hier));
+  const hier::Tree tree = hier::read_tree(file);
+  std::vector<uint32_t> bits;
+  for (const FurtherCount& of : tree.further) {
+    const Bytes bytes = file.read_gaussians(tree.gaussian[of.node] + 1, of.count);
+    const hier::Rows rows(bytes, of.count, file.half());
+    bits.insert(bits.end(), {of.node, of.count});
+    for (size_t i = 0; i < of.count; ++i) {
+      float words[kHierFloats];
+      rows.copy_all(i, words);
+      for (const float word : words) bits.push_back(std::bit_cast<uint32_t>(word));
+    }
+  }
+  return bits;
+}
+
 // Nodes of both, breadth-first.
 void expect_same_tree(const Bytes& a, const Bytes& b) {
   const hier::File first(named(a)), second(named(b));
@@ -63,8 +81,34 @@ TEST(HierRoundTrip, EveryNumberComesBackFromALosslessScene) {
     const Bytes in = test::hier_bytes(test::merged_hier(), half);
     const Bytes out = hier_of(voy_of(in));
     expect_same_tree(in, out);
+    EXPECT_EQ(further_bits(in), further_bits(out));
     EXPECT_EQ(hier_of(voy_of(out)), out);
   }
+}
+
+TEST(HierRoundTrip, AMergedFileComesBackToTheByte) {
+  const Bytes in = test::hier_bytes(test::merged_roots_hier());
+  EXPECT_EQ(hier_of(voy_of(in)), in);
+  EXPECT_EQ(further_bits(in).size(), 3 * 2 + 5 * kHierFloats);
+  const Bytes half = test::hier_bytes(test::merged_roots_hier(), true);
+  EXPECT_EQ(further_bits(hier_of(voy_of(half))), further_bits(half));
+  EXPECT_EQ(further_bits(hier_of(voy_of(in, Quality::compact))), further_bits(in));
+}
+
+// More than are read at a time, of one node and of many.
+TEST(HierRoundTrip, AnyNumberOfFurtherGaussiansComesBack) {
+  constexpr int32_t kOfRoot = 9000, kChildren = 600;
+  test::HierSample s;
+  std::mt19937 random(10);
+  s.nodes.push_back({2, -1, 0, 0, kOfRoot, 1, kChildren});
+  s.boxes.push_back({{-1, -1, -1}, 9, {1, 1, 1}, 9});
+  for (int32_t i = 0; i < kChildren; ++i) {
+    s.nodes.push_back({1, 0, kOfRoot + 3 * i, 0, 3, 0, 0});
+    s.boxes.push_back({{-1, -1, -1}, 0, {1, 1, 1}, 0});
+  }
+  for (int32_t i = 0; i < kOfRoot + 3 * kChildren; ++i) test::add_hier_gaussian(s, random);
+  const Bytes in = test::hier_bytes(s);
+  EXPECT_TRUE(hier_of(voy_of(in)) == in);
 }
 
 // The format has no place for the share where blending starts, for footprints, and for the order of

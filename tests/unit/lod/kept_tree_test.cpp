@@ -34,10 +34,14 @@ TEST(KeptTree, IsTheFilesBreadthFirst) {
       EXPECT_EQ(scene.tree.records[n].child_count, children[n]) << n;
       EXPECT_EQ(scene.tree.records[n].extent, extents[n]) << n;
     }
-    EXPECT_EQ(kept.further, 1u);
+    ASSERT_EQ(kept.scene.further.nodes.size(), 1u);
+    EXPECT_EQ(kept.scene.further.nodes[0].node, 0u);
+    EXPECT_EQ(kept.scene.further.nodes[0].count, 1u);
+    EXPECT_EQ(kept.scene.further.words.size(), kHierFloats);
+    EXPECT_EQ(kept.unused, 0u);
     EXPECT_EQ(kept.childless, 1u);
     EXPECT_EQ(kept.grown, 0u);
-    EXPECT_EQ(notes_of(kept).size(), 2u);
+    EXPECT_EQ(notes_of(kept).size(), 1u);
   }
 }
 
@@ -82,6 +86,15 @@ TEST(KeptTree, BandsThatAreZeroEverywhereAreLeftOut) {
   EXPECT_EQ(kept.scene.leaves.sh_degree, 1);
   EXPECT_EQ(kept.scene.leaves.left_out_bands, 2);
   EXPECT_EQ(kept.scene.merged.sh[11], sample.sh[11]);
+}
+
+TEST(KeptTree, GaussiansOfNoNodeAreCounted) {
+  test::HierSample sample = test::merged_hier();
+  sample.nodes[0].count_merged = 1;
+  const KeptTree kept = read(test::hier_bytes(sample));
+  EXPECT_TRUE(kept.scene.further.nodes.empty());
+  EXPECT_EQ(kept.unused, 1u);
+  EXPECT_EQ(notes_of(kept).size(), 2u);
 }
 
 TEST(KeptTree, BoxesGrowToHoldTheirChildren) {
@@ -180,7 +193,10 @@ TEST(KeptTree, RefusesGaussiansThatNodesCannotHave) {
   expect_refused([](Sample& s) { s.nodes[1].count_leafs = 1; }, "node 1, Gaussians");
   expect_refused([](Sample& s) { s.nodes[1].start = -1; }, "node 1, start");
   expect_refused([](Sample& s) { s.nodes[1].start = 11; }, "node 1, start");
-  expect_refused([](Sample& s) { s.nodes[1].start = 7; }, "another node draws");
+  expect_refused([](Sample& s) { s.nodes[1].start = 7; }, "another node has");
+  // Nor further ones: every node could claim all of the file's.
+  expect_refused([](Sample& s) { s.nodes[0].count_merged = 3; }, "node 1, Gaussians");
+  expect_refused([](Sample& s) { s.nodes[1].count_merged = 12; }, "node 1, start");
   expect_refused([](Sample& s) { s.positions[6] = NAN; }, "Gaussian 2, position");
   expect_refused([](Sample& s) { s.positions[6] = 1e18f; }, "Gaussian 2, position");
   for (const float bad : {NAN, INFINITY}) {

@@ -88,6 +88,14 @@ void Rows::copy_sh(size_t i, float* to) const {
   for (size_t k = 0; k < kHierShFloats; ++k) to[k] = value(sh_, kHierShFloats * i + k);
 }
 
+void Rows::copy_all(size_t i, float* to) const {
+  std::memcpy(to, positions_ + 12 * i, 3 * sizeof(float));
+  for (size_t k = 0; k < 4; ++k) to[3 + k] = value(rotations_, 4 * i + k);
+  for (size_t k = 0; k < 3; ++k) to[7 + k] = value(log_scales_, 3 * i + k);
+  to[10] = value(opacities_, i);
+  copy_sh(i, to + 11);
+}
+
 File::File(std::shared_ptr<const ByteSource> source) : source_(std::move(source)) {
   const int64_t told = read_count(*source_, 0, "Gaussian count");
   half_ = told < 0;

@@ -24,6 +24,8 @@ class Rows {
   GaussianWords words(size_t i) const;
   // kHierShFloats of them.
   void copy_sh(size_t i, float* to) const;
+  // All kHierFloats, nothing mended.
+  void copy_all(size_t i, float* to) const;
 
  private:
   float value(const std::byte* array, size_t index) const;

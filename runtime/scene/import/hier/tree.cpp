@@ -30,7 +30,8 @@ class Walk {
     meet(0, -1);
     for (size_t i = 0; i < tree_.file_node.size(); ++i) visit(tree_.file_node[i]);
     if (tree_.file_node.size() != nodes_.size()) refuse_unreached();
-    tree_.further = file_.gaussians() - tree_.gaussian.size();
+    tree_.unused =
+        static_cast<uint64_t>(std::count(gaussian_met_.begin(), gaussian_met_.end(), false));
     return std::move(tree_);
   }
 
@@ -52,7 +53,7 @@ class Walk {
 
   void visit(size_t node) {
     const HierNode& n = nodes_[node];
-    take_gaussian(node, n);
+    take_gaussians(node, n);
     const int64_t begin = n.start_children, count = n.count_children;
     if (count < 0 ||
         (count > 0 && (begin < 1 || begin + count > static_cast<int64_t>(nodes_.size()))))
@@ -68,8 +69,9 @@ class Walk {
       meet(static_cast<size_t>(child), static_cast<int64_t>(node));
   }
 
-  // A leaf has one. An inner node draws the first of its merged ones.
-  void take_gaussian(size_t node, const HierNode& n) {
+  // A leaf has one. An inner node draws the first of its merged ones. No Gaussian is of two nodes,
+  // so that all of them are no more than the file's.
+  void take_gaussians(size_t node, const HierNode& n) {
     const bool leaf = n.depth == 0;
     if (leaf ? n.count_leafs != 1 || n.count_merged != 0 : n.count_leafs != 0 || n.count_merged < 1)
       refuse_node(node, "Gaussians",
@@ -81,12 +83,16 @@ class Walk {
       refuse_node(node, "start",
                   std::to_string(n.start) + " with " + std::to_string(count) + " Gaussians",
                   "a range of the file's " + std::to_string(file_.gaussians()));
-    const auto first = static_cast<size_t>(n.start);
-    if (gaussian_met_[first])
-      refuse_node(node, "start", std::to_string(n.start) + ", which another node draws",
-                  "a Gaussian of its own");
-    gaussian_met_[first] = true;
-    tree_.gaussian.push_back(static_cast<uint32_t>(first));
+    for (int64_t i = n.start; i < n.start + count; ++i) {
+      if (gaussian_met_[static_cast<size_t>(i)])
+        refuse_node(node, "Gaussians", std::to_string(i) + ", which another node has",
+                    "Gaussians of its own");
+      gaussian_met_[static_cast<size_t>(i)] = true;
+    }
+    if (count > 1)
+      tree_.further.push_back(
+          {static_cast<uint32_t>(tree_.gaussian.size()), static_cast<uint32_t>(count - 1)});
+    tree_.gaussian.push_back(static_cast<uint32_t>(n.start));
   }
 
   [[noreturn]] void refuse_unreached() const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "runtime/scene/further_gaussians.h"
 #include "runtime/scene/import/hier/file.h"
 
 namespace voyager::hier {
@@ -12,12 +13,13 @@ struct Tree {
   std::vector<uint32_t> child_count;
   std::vector<uint32_t> gaussian;  // the first of those that the file gives the node
   std::vector<uint32_t> file_node;
-  uint64_t further = 0;    // Gaussians that no node has first
-  uint64_t childless = 0;  // inner nodes without children
+  std::vector<FurtherCount> further;  // of nodes with several: those after the first
+  uint64_t unused = 0;                // Gaussians that no node has
+  uint64_t childless = 0;             // inner nodes without children
 };
 
-// Memory: 44 bytes a node. Throws Error(refused_input) naming the node where the links are no tree
-// over all nodes, each with a Gaussian of its own.
+// Memory: 44 bytes a node, 8 more where one has several Gaussians. Throws Error(refused_input)
+// naming the node where the links are no tree over all nodes, each with Gaussians of its own.
 Tree read_tree(const File& file);
 
 // Ascending.
