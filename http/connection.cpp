@@ -146,23 +146,27 @@ ErrorCode code_of(CURLcode code) {
 
 Connection::Connection(const std::string& url, const std::string& name, const Options& options,
                        const std::atomic<bool>& cancelled)
-    : name_(name), options_(options), cancelled_(cancelled) {
+    : url_(url), name_(name), options_(options), cancelled_(cancelled) {
   start_libcurl();
   multi_.reset(curl_multi_init());
-  easy_.reset(curl_easy_init());
-  if (!multi_ || !easy_) throw std::bad_alloc();
-  configure(url);
+  if (!multi_) throw std::bad_alloc();
+  begin_request();
 }
 
-void Connection::configure(const std::string& url) {
+// A handle of its own for each request: libcurl up to 8.0 keeps a pointer to the last header of the
+// one before, and reads there where a head begins with a folded line. Connections are the multi
+// handle's.
+void Connection::begin_request() {
+  easy_.reset(curl_easy_init());
+  if (!easy_) throw std::bad_alloc();
   CURL* easy = easy_.get();
-  set(easy, CURLOPT_URL, url.c_str());
+  set(easy, CURLOPT_URL, url_.c_str());
   set(easy, CURLOPT_ERRORBUFFER, error_);
   set(easy, CURLOPT_NOSIGNAL, 1L);
   set(easy, CURLOPT_USERAGENT, "voyager/" VOYAGER_VERSION);
   set(easy, CURLOPT_FOLLOWLOCATION, 1L);
   set(easy, CURLOPT_MAXREDIRS, static_cast<long>(options_.redirects));
-  set_protocols(easy, url.size() > 4 && (url[4] == 's' || url[4] == 'S'));
+  set_protocols(easy, url_.size() > 4 && (url_[4] == 's' || url_[4] == 'S'));
   set_certificates(easy);
   set(easy, CURLOPT_SUPPRESS_CONNECT_HEADERS, 1L);
   set(easy, CURLOPT_CONNECTTIMEOUT_MS, static_cast<long>(options_.stall_time.count()));
@@ -175,6 +179,7 @@ void Connection::configure(const std::string& url) {
 
 void Connection::get(Transfer& transfer) {
   Answer answer{name_, transfer};
+  begin_request();
   const std::string range =
       std::to_string(transfer.range.first) + "-" + std::to_string(transfer.range.last);
   set(easy_.get(), CURLOPT_RANGE, range.c_str());

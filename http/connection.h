@@ -59,12 +59,13 @@ class Connection {
   struct Answer;
   static size_t on_head(const char* line, size_t one, size_t count, void* answer);
   static size_t on_body(const char* bytes, size_t one, size_t count, void* answer);
-  void configure(const std::string& url);
+  void begin_request();
   CURLcode run(Answer& answer);
   // Milliseconds until it is over, for the reason in error_.
   int64_t time_left(const Answer& answer);
   [[noreturn]] void fail(CURLcode code, const Transfer& transfer) const;
 
+  const std::string url_;
   const std::string& name_;
   const Options& options_;
   const std::atomic<bool>& cancelled_;
