@@ -2,7 +2,6 @@
 // ids and the same weights, to the bit, whatever the camera does.
 #include <cstdlib>
 #include <cstring>
-#include <map>
 
 #include "cuda/search.h"
 #include "runtime/base/error.h"
@@ -236,11 +235,12 @@ TEST_F(SearchTest, AStepMovesAPartOfTheList) {
   const auto scene = scene_of(random_tree(TreeShape::four_way, 1000000, 13));
   const auto on = device();
   const auto search = search_of(on, scene, Search::temporal);
-  std::map<uint32_t, size_t> before;  // places of nodes
+  constexpr uint32_t kNone = 0xffffffffu;
+  std::vector<uint32_t> before(scene->tree.size(), kNone);  // places of nodes
   size_t moving_frames = 0;
   Vec3f centre = anywhere(random, 40.0f);
   const Vec3f step = 0.05f * anywhere(random, 1.0f);
-  for (int frame = 0; frame < 200; ++frame, centre = centre + step) {
+  for (int frame = 0; frame < 100; ++frame, centre = centre + step) {
     search->find({centre, 0.01f}, nullptr);
     const cuda::CutList list = search->list();
     uint32_t size = 0;
@@ -249,13 +249,12 @@ TEST_F(SearchTest, AStepMovesAPartOfTheList) {
     cuda::check(
         cudaMemcpy(nodes.data(), list.nodes, size * sizeof(uint32_t), cudaMemcpyDeviceToHost),
         "list");
-    std::map<uint32_t, size_t> now;
+    std::vector<uint32_t> now(before.size(), kNone);
     size_t moved = 0, stayed = 0;
-    for (size_t place = 0; place < size; ++place) {
+    for (uint32_t place = 0; place < size; ++place) {
       if (nodes[place] == kNoNode) continue;
-      now.emplace_hint(now.end(), nodes[place], place);
-      const auto was = before.find(nodes[place]);
-      if (was != before.end()) (was->second == place ? stayed : moved) += 1;
+      now[nodes[place]] = place;
+      if (before[nodes[place]] != kNone) (before[nodes[place]] == place ? stayed : moved) += 1;
     }
     ASSERT_TRUE(frame == 0 || stayed > moved) << "frame " << frame << ", " << moved << " moved";
     moving_frames += moved > stayed / 20;

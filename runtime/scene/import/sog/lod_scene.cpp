@@ -116,8 +116,13 @@ class LodScene final : public BlockReader {
     return {};
   }
 
+  // A file that has fewer than its meta.json said a moment ago has been changed.
   RawBlock rows_of(uint64_t count, size_t most) {
-    return scene_->next(static_cast<size_t>(std::min<uint64_t>(count, most)));
+    RawBlock rows = scene_->next(static_cast<size_t>(std::min<uint64_t>(count, most)));
+    if (rows.count == 0 && count > 0)
+      refuse(name(), 0, parts_[part_].file, std::to_string(at_) + " Gaussians",
+             std::to_string(count) + " more, as before it was read");
+    return rows;
   }
 
   std::shared_ptr<const ByteSource> source_;
