@@ -44,8 +44,8 @@ inline constexpr size_t kHalfHierBoxBytes = 16;  // the same in binary16
 
 // Where each array starts, for so many Gaussians and nodes.
 struct HierLayout {
-  HierLayout(uint64_t gaussians, uint64_t node_rows, bool half = false)
-      : value(half ? 2 : 4),
+  HierLayout(uint64_t gaussians, uint64_t node_rows, bool in_halves = false)
+      : value(in_halves ? 2 : 4),
         positions(4),
         rotations(positions + 12 * gaussians),
         log_scales(rotations + 4 * value * gaussians),
@@ -53,8 +53,8 @@ struct HierLayout {
         sh(opacities + value * gaussians),
         node_count(sh + kHierShFloats * value * gaussians),
         nodes(node_count + 4),
-        boxes(nodes + (half ? sizeof(HalfHierNode) : sizeof(HierNode)) * node_rows),
-        end(boxes + (half ? kHalfHierBoxBytes : sizeof(HierBox)) * node_rows) {}
+        boxes(nodes + (in_halves ? sizeof(HalfHierNode) : sizeof(HierNode)) * node_rows),
+        end(boxes + (in_halves ? kHalfHierBoxBytes : sizeof(HierBox)) * node_rows) {}
   uint64_t value;  // bytes of a number that is not a position
   uint64_t positions, rotations, log_scales, opacities, sh, node_count, nodes, boxes, end;
 };
