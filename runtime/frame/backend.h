@@ -32,9 +32,9 @@ enum class Splatting { ours, baseline_3dgs };
 // on: METHOD §12. off: METHOD §5, 3DGS's own picture. truth: as on, with the lower α* of the
 // truth, for the samples of a picture that others are judged by; exact and ex2 only.
 enum class Antialias { on, off, truth };
-// What tiles draw behind what covered them in the frame before, on CUDA. off: all of it. on: nothing,
-// and once more, whole, those that this left open. automatic: as on where that makes fewer pairs. No
-// bit of an image depends on it.
+// What tiles draw behind what covered them in the frame before, on CUDA. off: all of it. on:
+// nothing, and once more, whole, those that this left open. automatic: as on where that makes fewer
+// pairs. No bit of an image depends on it.
 enum class Occlusion { automatic, on, off };
 
 // Resolved once, at view creation.
