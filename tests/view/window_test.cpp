@@ -87,6 +87,17 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+// The scene's name may have spaces, and so may the picture's.
+TEST_F(ViewWindow, ClosesAfterSomeFramesWithTheLastOfThem) {
+  const std::string picture = file("a picture.png");
+  const Outcome found = run("voyager view " + file("city.voy") +
+                            " --size 320x240 --frames 3 --screenshot \"" + picture + "\"");
+  if (found.exit_code == 4) VOYAGER_SKIP_WITHOUT(VULKAN, found.output);
+  EXPECT_EQ(found.exit_code, 0) << found.output;
+  EXPECT_EQ(read_png(picture).width, 320u);
+  EXPECT_EQ(run("voyager view --screenshot a.png --script b.txt").exit_code, 1);
+}
+
 // What the window shows is what `voyager render` draws of the cameras that it saves, in every size
 // that the window has had; a broken file that is dropped changes nothing, and is told.
 TEST_F(ViewWindow, ShowsWhatRenderDrawsThroughResizesAndABrokenFile) {

@@ -164,6 +164,13 @@ Script::Script(const std::string& path) : path_(path) {
   }
 }
 
+Script::Script(size_t frames, const std::string& screenshot) : path_("--frames") {
+  const auto add = [&](const Words& words) { lines_.push_back({words[0], parse(words)}); };
+  add({"loaded"});
+  frames == 0 ? add({"still"}) : add({"frames", std::to_string(frames)});
+  if (!screenshot.empty()) add({"picture", screenshot});
+}
+
 bool Script::step(Session& session, host::Window& window) {
   const auto now = std::chrono::steady_clock::now();
   while (next_ < lines_.size()) {

@@ -15,6 +15,8 @@ class Script {
  public:
   // Throws Error(refused_input) naming file and line, Error(file_not_found).
   explicit Script(const std::string& path);
+  // What --frames and --screenshot ask for; "": no picture.
+  Script(size_t frames, const std::string& screenshot);
 
   // Once a frame: goes on for as long as nothing has to be waited for. False at the end. Throws
   // Error(timeout) where a line waits for longer than an hour.

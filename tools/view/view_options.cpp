@@ -53,10 +53,20 @@ void add_testing(CLI::App& command, ViewOptions& options) {
   command
       .add_option("--gpu", options.gpu, "The Vulkan device whose name has this in it, for a window")
       ->type_name("NAME");
+  CLI::Option* script =
+      command
+          .add_option("--script", options.script,
+                      "Do what the lines of this file say, then close the window (docs/viewer.md)")
+          ->type_name("FILE");
+  add_whole_option(command, "--frames", {1, 1000000}, options.frames,
+                   "Close the window so many frames after the scene is there")
+      ->excludes(script);
   command
-      .add_option("--script", options.script,
-                  "Do what the lines of this file say, then close the window (docs/viewer.md)")
-      ->type_name("FILE");
+      .add_option("--screenshot", options.screenshot,
+                  "Save the picture of the last frame, then close the window. Without --frames, "
+                  "once nothing changes any more")
+      ->type_name("PNG")
+      ->excludes(script);
   command.add_flag("--validation", options.validation,
                    "Run under Vulkan's validation layer, and fail if it reports anything");
   name_group(command, "Tests");

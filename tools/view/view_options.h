@@ -21,6 +21,8 @@ struct ViewOptions {
   double budget = 4000;  // MB
   std::string keep;      // where a bake is written; "": the cache folder
   std::string script;
+  size_t frames = 0;       // after which the window closes; 0: it stays, or until nothing changes
+  std::string screenshot;  // saved then; "": none
   bool validation = false;
 };
 

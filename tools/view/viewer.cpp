@@ -226,13 +226,17 @@ class Viewer {
 
 void run_viewer(const ViewOptions& options) {
   // Files first: what is refused is refused before there is a window.
-  if (!options.keep.empty()) {
-    tools::require_extension("--keep", options.keep, {".voy"});
-    tools::require_distinct({options.keep}, {options.scene, options.cameras, options.script});
-    tools::require_writable(options.keep);
-  }
+  if (!options.keep.empty()) tools::require_extension("--keep", options.keep, {".voy"});
+  if (!options.screenshot.empty())
+    tools::require_extension("--screenshot", options.screenshot, {".png"});
+  tools::require_distinct({options.keep, options.screenshot},
+                          {options.scene, options.cameras, options.script});
+  for (const std::string& output : {options.keep, options.screenshot})
+    if (!output.empty()) tools::require_writable(output);
   std::optional<Script> script;
   if (!options.script.empty()) script.emplace(options.script);
+  if (options.frames > 0 || !options.screenshot.empty())
+    script.emplace(options.frames, options.screenshot);
   host::Validation validation;
   Viewer(options, std::move(script), options.validation ? &validation : nullptr).run();
   if (validation.messages() > 0)
