@@ -17,14 +17,21 @@ std::unique_lock<std::mutex> claim_object(T& object, const char* name) {
   return lock;
 }
 
-// The view's state is the caller's while the lock lives.
-inline std::unique_lock<std::mutex> claim(ViewObject& view) {
-  auto lock = claim_object(view, "view");
+struct ViewClaim {
+  std::unique_lock<std::mutex> call, state;
+};
+
+// The view's state is the caller's while the claim lives. A scene's destruction on another thread
+// is waited for: to the host, that is no use of the view.
+inline ViewClaim claim(ViewObject& view) {
+  ViewClaim claim;
+  claim.call = claim_object(view, "view");
+  claim.state = std::unique_lock(view.state);
   if (!view.view)
     throw ApiError(
         VOY_ERROR_SCENE_DESTROYED,
         "view: found that a scene was destroyed, expected the view to be destroyed, too");
-  return lock;
+  return claim;
 }
 
 inline void check_has_frame(const ViewObject& view) {

@@ -1,6 +1,8 @@
 // How objects go while frames are under way.
 #include "plugin/objects.h"
 
+#include <algorithm>
+
 namespace voyager {
 
 DeviceObject::~DeviceObject() {
@@ -47,6 +49,12 @@ void ViewObject::drop_view() noexcept {
   if (device().abandoned) static_cast<void>(view.release());
   view.reset();
   scenes.clear();
+}
+
+bool ViewObject::draws(const std::shared_ptr<Object>& scene) const {
+  return std::any_of(drawn_.begin(), drawn_.end(), [&](const auto& drawn) {
+    return !drawn.owner_before(scene) && !scene.owner_before(drawn);
+  });
 }
 
 TargetObject::~TargetObject() {

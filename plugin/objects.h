@@ -99,22 +99,29 @@ struct ViewObject final : Child {
       : Child(kKind, std::move(owner)),
         eyes(drawn_eyes),
         instances(static_cast<uint32_t>(drawn.size())),
-        scenes(std::move(drawn)) {}
+        scenes(std::move(drawn)),
+        drawn_(scenes.begin(), scenes.end()) {}
 
   ~ViewObject() override { drop_view(); }
   // A view waits for its frames under way, which may wait for the host: so rings first see
   // to it that they end.
   void drop_view() noexcept;
+  // Whether it was made to draw the scene. Any thread, without a lock.
+  bool draws(const std::shared_ptr<Object>& scene) const;
 
   const uint32_t eyes, instances;
   uint32_t max_width = 0, max_height = 0;
-  std::mutex busy;                                 // guards what follows
+  std::mutex busy;                                 // held by a call of the host's
+  std::mutex state;                                // guards what follows; taken after `busy`
   std::vector<std::weak_ptr<vulkan::Ring>> rings;  // that it has drawn into
   double tau = 0;                                  // without a time budget
   // One an instance. None, and no view, once one of them was destroyed. The view reads the
   // scenes' memory, so is declared after them.
   std::vector<std::shared_ptr<SceneObject>> scenes;
   std::unique_ptr<View> view;
+
+ private:
+  const std::vector<std::weak_ptr<SceneObject>> drawn_;
 };
 
 struct TargetObject final : Child {

@@ -144,9 +144,8 @@ VoyResult VOY_CALL voyDestroyScene(VoyScene scene) {
       // No call holds the scene now, so no view of it can appear any more.
       for (const auto& child : HandleTable::instance().children(*object->parent(), Kind::view)) {
         auto& view = static_cast<ViewObject&>(*child);
-        const std::lock_guard frame(view.busy);
-        if (std::find(view.scenes.begin(), view.scenes.end(), object) == view.scenes.end())
-          continue;
+        if (!view.draws(object)) continue;
+        const std::lock_guard frame(view.state);
         view.drop_view();
       }
     }

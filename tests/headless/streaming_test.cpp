@@ -2,39 +2,20 @@
 // wait and frames that do not, refusals.
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <thread>
 
+#include "baked_scene.h"
 #include "host.h"
 
 namespace streaming_test {
 namespace {
-
-// A baked scene's bytes, made by the command line once for all tests.
-const std::string& baked_bytes() {
-  static const std::string bytes = [] {
-    std::string folder = (std::filesystem::temp_directory_path() / "voyager-XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr) return std::string();
-    const std::string ply = folder + "/scene.ply", voy = folder + "/scene.voy";
-    std::ofstream(ply, std::ios::binary) << ply_bytes(20000);
-    const std::string command =
-        std::string(VOYAGER_TOOL) + " bake " + ply + " -o " + voy + " >/dev/null 2>&1";
-    EXPECT_EQ(std::system(command.c_str()), 0);
-    std::ifstream file(voy, std::ios::binary);
-    std::string found((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-    std::filesystem::remove_all(folder);
-    return found;
-  }();
-  return bytes;
-}
 
 // The fixture's scene and view are those of the baked scene, streamed with `megabytes`.
 struct StreamedHost : Host {
   explicit StreamedHost(const Library& library, double megabytes,
                         VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT)
       : Host(library, desc) {
-    baked.bytes = baked_bytes();
+    baked.bytes = baked_bytes(20000);
     EXPECT_EQ(open(megabytes), VOY_SUCCESS) << voy.message();
     view_streamed();
   }

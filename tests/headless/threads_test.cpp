@@ -82,6 +82,32 @@ TEST(Threads, DestructionWaitsForCallsInFlight) {
   }
 }
 
+// To the host, the destruction of a scene is no use of a view: neither of one that draws it, nor of
+// others.
+TEST(Threads, AViewIsNotBusyWhileAnotherThreadDestroysScenes) {
+  const Library voy;
+  Host host(voy, VOY_DEVICE_DESC_INIT, 500);
+  std::atomic<bool> done{false};
+  std::thread destroyer([&] {
+    for (int i = 0; i < 100; ++i) {
+      const VoyByteSource source = host.bytes.source();
+      VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+      desc.source = &source;
+      VoyScene scene = nullptr;
+      EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_SUCCESS) << voy.message();
+      EXPECT_EQ(voy.DestroyScene(scene), VOY_SUCCESS) << voy.message();
+    }
+    EXPECT_EQ(voy.DestroyScene(host.scene), VOY_SUCCESS) << voy.message();
+    done = true;
+  });
+  while (!done) {
+    const VoyResult result = voy.SetViewTau(host.view, 3);
+    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_DESTROYED) << voy.message();
+  }
+  destroyer.join();
+  EXPECT_EQ(host.render(), VOY_ERROR_SCENE_DESTROYED);
+}
+
 // Whose release takes its time once told to, so that a destruction can be met halfway.
 struct SlowRelease {
   std::atomic<bool> slow{false}, entered{false}, device_gone{false};
