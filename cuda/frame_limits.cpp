@@ -1,5 +1,7 @@
 #include "cuda/frame_limits.h"
 
+#include <cstring>
+
 namespace voyager::cuda {
 
 namespace {
@@ -17,6 +19,8 @@ bool FrameLimits::fits(const FrameEye& eye) const {
 void FrameLimits::fit(const FrameEye& eye) {
   if (fits(eye)) return;
   values_ = {};
+  staged_.reset();
+  staged_.emplace(pixels_of(eye) * sizeof(float));
   values_ = Buffer<float>(pixels_of(eye));
 }
 
@@ -24,8 +28,11 @@ DepthLimits FrameLimits::upload(const FrameEye& eye, cudaStream_t stream) const 
   const DepthLimits& host = eye.limits;
   if (host.values == nullptr) return {};
   const size_t row = eye.camera.width * sizeof(float);
-  check(cudaMemcpy2DAsync(values_.data(), row, host.values, host.pitch, row, eye.camera.height,
-                          cudaMemcpyHostToDevice, stream),
+  for (size_t y = 0; y < eye.camera.height; ++y)
+    std::memcpy(staged_->data() + y * row,
+                reinterpret_cast<const unsigned char*>(host.values) + y * host.pitch, row);
+  check(cudaMemcpyAsync(values_.data(), staged_->data(), row * eye.camera.height,
+                        cudaMemcpyHostToDevice, stream),
         "depth limits");
   return {values_.data(), row, host.encoding};
 }

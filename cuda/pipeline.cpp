@@ -243,10 +243,10 @@ void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
     eyes[eye].target = images_[eye].target(frame.eyes[eye], frame.background);
   const SceneReading reading(instances_, stream_.get());
   launch_search(frame, *report);
+  for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
+    eyes[eye].limits = limits_[eye].upload(frame.eyes[eye], stream_.get());
   for (;;) {
     launch_lists(frame, *report);
-    for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
-      eyes[eye].limits = limits_[eye].upload(frame.eyes[eye], stream_.get());
     launch_image(frame, eyes, *report);
     copy(*report);
     report->wait();
