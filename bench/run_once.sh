@@ -47,6 +47,13 @@ run "$bin/voyager" report "$scene" --cameras "$cameras" --backend cpu --quick --
 run python3 bench/results.py "$folder/report"
 for i in 0 1; do run "$bin/voyager" render "$scene" --cameras "$cameras" --camera "$i" --size 64x36 --float -o "$folder/$i.pfm"; done
 run python3 bench/psnr.py "$folder/0.pfm" "$folder/1.pfm"
+eyes=("$scene" "$cameras" -o "$folder/eyes" --voyager "$bin/voyager" --eye 40x44 --frames 1 --options "--backend cpu")
+run python3 bench/foveation.py time "${eyes[@]}"
+if python3 -c 'import numpy' 2>/dev/null; then
+  run python3 bench/foveation.py error "${eyes[@]}"
+else
+  skip "bench/foveation.py error" "Python has no numpy"
+fi
 if python3 -c 'import matplotlib' 2>/dev/null; then
   run python3 bench/time_budget.py "$folder/budget" --voyager "$bin/voyager" --scene "$scene=$cameras" --ms 5 --size 64x36 --backend cpu
 else
