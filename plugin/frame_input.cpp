@@ -80,6 +80,17 @@ FrameInput frame_input(const VoyFrame& frame, uint32_t instances) {
   return input;
 }
 
+EyeView eye_view(const VoyPose& pose, const std::string& pose_field, const VoyFrustum& frustum,
+                 const std::string& frustum_field) {
+  check_frustum(frustum, frustum_field);
+  return {world_to_view(checked_orientation(pose.orientation, pose_field)),
+          checked_position(pose.position, pose_field),
+          frustum.left,
+          frustum.right,
+          frustum.up,
+          frustum.down};
+}
+
 FrameEye frame_eye(const VoyFrame& frame, const VoyFrameEye& eye, const Image& image,
                    const std::string& field) {
   check_count(eye.reserved, 0, 0, (field + ".reserved").c_str());

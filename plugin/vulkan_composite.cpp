@@ -2,6 +2,7 @@
 
 #include "plugin/call.h"
 #include "plugin/depth_limit.h"
+#include "plugin/frame_input.h"
 #include "plugin/structs.h"
 #include "plugin/vulkan_target.h"
 
@@ -80,12 +81,20 @@ VoyResult VOY_CALL voyRecordVulkanComposite(VoyComposite composite,
                                             const VoyVulkanCompositeDraw* draw) {
   return guarded("voyRecordVulkanComposite", [&](Call& call) {
     const auto object = call.use<CompositeObject>(composite);
-    check_structure(draw, VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW, "VoyVulkanCompositeDraw");
+    const VoyVulkanReprojection* moved = nullptr;
+    check_structure(draw, VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW, "VoyVulkanCompositeDraw",
+                    Extension{VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION, moved});
     const auto target = call.use<TargetObject>(draw->target);
     if (target->parent() != object->parent())
       refuse("draw.target: found a target of another device, expected the composite's");
     const vulkan::Ring& ring = vulkan_ring(*target);
-    object->composite.record(ring, draw->imageIndex, draw->layer, checked(*draw, ring));
+    vulkan::CompositeDraw wanted = checked(*draw, ring);
+    if (moved != nullptr)
+      wanted.reprojection = reprojection(
+          eye_view(moved->drawnPose, "draw.next.drawnPose", moved->drawnFrustum,
+                   "draw.next.drawnFrustum"),
+          eye_view(moved->pose, "draw.next.pose", moved->frustum, "draw.next.frustum"));
+    object->composite.record(ring, draw->imageIndex, draw->layer, wanted);
     return VOY_SUCCESS;
   });
 }

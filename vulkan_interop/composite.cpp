@@ -13,7 +13,9 @@ struct Push {
   int32_t first[2];
   int32_t layer;
   float slope, inverse_far, far_code;
+  alignas(16) Reprojection reprojection;
 };
+static_assert(sizeof(Push) <= 128);  // what every device has
 
 constexpr VkShaderStageFlags kFragment = VK_SHADER_STAGE_FRAGMENT_BIT;
 
@@ -49,14 +51,20 @@ Composite::Composite(std::shared_ptr<const Device> device, const CompositeDesc& 
   const auto vertex = make_module(*device_, composite_vert);
   const auto color = make_module(*device_, composite_color_frag);
   const auto depth = make_module(*device_, composite_depth_frag);
-  const auto make_pipeline = [&](const CompositeStages& stages) {
-    return make_composite_pipeline(*device_, layout_.get(), desc, stages);
-  };
-  color_ = make_pipeline({vertex.get(), color.get()});
-  if (!has_depth_) return;
-  for (const bool reversed : {false, true}) {
-    tested_[reversed] = make_pipeline({vertex.get(), depth.get(), true, true, reversed});
-    depth_only_[reversed] = make_pipeline({vertex.get(), depth.get(), true, false, reversed});
+  for (Pipelines* pipelines : {&as_drawn_, &reprojected_}) {
+    const bool moved = pipelines == &reprojected_;
+    const auto make_pipeline = [&](VkShaderModule fragment, bool places_depth, bool draws_color,
+                                   bool reversed) {
+      return make_composite_pipeline(
+          *device_, layout_.get(), desc,
+          {vertex.get(), fragment, places_depth, draws_color, reversed, moved});
+    };
+    pipelines->color = make_pipeline(color.get(), false, true, false);
+    for (const bool reversed : {false, true}) {
+      if (!has_depth_) break;
+      pipelines->tested[reversed] = make_pipeline(depth.get(), true, true, reversed);
+      pipelines->depth_only[reversed] = make_pipeline(depth.get(), true, false, reversed);
+    }
   }
 }
 
@@ -79,6 +87,8 @@ void Composite::record(const Ring& ring, uint32_t index, uint32_t layer,
     refuse("draw.depthUse: found TEST or WRITE for a target without depth, expected NONE");
   if (depth && !has_depth_)
     refuse("draw.depthUse: found TEST or WRITE for a composite without depthFormat, expected NONE");
+  if (to.reprojection && image.depth_view == VK_NULL_HANDLE)
+    refuse("draw.next: found a reprojection of a target without depth, expected one with depth");
   const DeviceFunctions& vk = device_->functions();
   const VkDescriptorSet set = ring.descriptors(index);
   vk.CmdBindDescriptorSets(to.commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_.get(), 0, 1, &set,
@@ -87,7 +97,8 @@ void Composite::record(const Ring& ring, uint32_t index, uint32_t layer,
                   static_cast<int32_t>(layer),
                   to.encoding.slope,
                   to.encoding.inverse_far,
-                  reversed ? 0.0f : 1.0f};
+                  reversed ? 0.0f : 1.0f,
+                  to.reprojection.value_or(Reprojection{})};
   vk.CmdPushConstants(to.commands, layout_.get(), kFragment, 0, sizeof push, &push);
   const VkViewport viewport{static_cast<float>(to.area.offset.x),
                             static_cast<float>(to.area.offset.y),
@@ -97,9 +108,10 @@ void Composite::record(const Ring& ring, uint32_t index, uint32_t layer,
                             1};
   vk.CmdSetViewport(to.commands, 0, 1, &viewport);
   vk.CmdSetScissor(to.commands, 0, 1, &to.area);
-  if (to.depth_use != DepthUse::test) draw(to, color_.get());
-  if (to.depth_use == DepthUse::test) draw(to, tested_[reversed].get());
-  if (to.depth_use == DepthUse::write) draw(to, depth_only_[reversed].get());
+  const Pipelines& pipelines = to.reprojection ? reprojected_ : as_drawn_;
+  if (to.depth_use != DepthUse::test) draw(to, pipelines.color.get());
+  if (to.depth_use == DepthUse::test) draw(to, pipelines.tested[reversed].get());
+  if (to.depth_use == DepthUse::write) draw(to, pipelines.depth_only[reversed].get());
 }
 
 }  // namespace voyager::vulkan

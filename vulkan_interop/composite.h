@@ -1,9 +1,10 @@
 #pragma once
 // Pipelines that draw an image of a ring over the host's, in the host's render pass.
-#include <array>
 #include <memory>
+#include <optional>
 
 #include "runtime/math/host_depth.h"
+#include "runtime/math/reprojection.h"
 #include "vulkan_interop/composite_pipeline.h"
 #include "vulkan_interop/ring.h"
 
@@ -16,6 +17,7 @@ struct CompositeDraw {
   VkRect2D area{};
   DepthUse depth_use = DepthUse::none;
   DepthEncoding encoding;  // of the attachment
+  std::optional<Reprojection> reprojection;
 };
 
 class Composite {
@@ -27,13 +29,15 @@ class Composite {
   void record(const Ring& ring, uint32_t index, uint32_t layer, const CompositeDraw& draw) const;
 
  private:
+  struct Pipelines {
+    Owned<VkPipeline> color, tested[2], depth_only[2];  // standard, reversed
+  };
   void draw(const CompositeDraw& draw, VkPipeline pipeline) const;
 
   std::shared_ptr<const Device> device_;
   bool has_depth_;
   Owned<VkPipelineLayout> layout_;
-  Owned<VkPipeline> color_;
-  std::array<Owned<VkPipeline>, 2> tested_, depth_only_;  // standard, reversed
+  Pipelines as_drawn_, reprojected_;
 };
 
 }  // namespace voyager::vulkan

@@ -50,7 +50,7 @@ VkPipelineColorBlendAttachmentState over(bool writes) {
 // The shaders, and what they are specialised to.
 struct ShaderState {
   ShaderState(const CompositeDesc& desc, const CompositeStages& from)
-      : choices{encodes(desc.color), !from.draws_color} {
+      : choices{encodes(desc.color), from.reprojected, !from.draws_color} {
     const auto stage = [](VkShaderStageFlagBits at, VkShaderModule module,
                           const VkSpecializationInfo* info) {
       return VkPipelineShaderStageCreateInfo{VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
@@ -61,16 +61,18 @@ struct ShaderState {
                                              "main",
                                              info};
     };
-    special = {from.places_depth ? 2u : 1u, entries, sizeof choices, choices};
+    special = {from.places_depth ? 3u : 2u, entries, sizeof choices, choices};
     stages[0] = stage(VK_SHADER_STAGE_VERTEX_BIT, from.vertex, nullptr);
     stages[1] = stage(VK_SHADER_STAGE_FRAGMENT_BIT, from.fragment, &special);
   }
   ShaderState(const ShaderState&) = delete;
   ShaderState& operator=(const ShaderState&) = delete;
 
-  VkBool32 choices[2];
-  VkSpecializationMapEntry entries[2] = {{0, 0, sizeof(VkBool32)},
-                                         {1, sizeof(VkBool32), sizeof(VkBool32)}};
+  // As the shaders number them; that of number 1 is the depth shader's alone.
+  VkBool32 choices[3];
+  VkSpecializationMapEntry entries[3] = {{0, 0, sizeof(VkBool32)},
+                                         {2, sizeof(VkBool32), sizeof(VkBool32)},
+                                         {1, 2 * sizeof(VkBool32), sizeof(VkBool32)}};
   VkSpecializationInfo special;
   VkPipelineShaderStageCreateInfo stages[2];
 };

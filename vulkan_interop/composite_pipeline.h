@@ -19,6 +19,7 @@ struct CompositeStages {
   bool places_depth = false;  // the fragment shader writes depth
   bool draws_color = true;
   bool reversed = false;  // depth
+  bool reprojected = false;
 };
 
 Owned<VkPipeline> make_composite_pipeline(const Device& device, VkPipelineLayout layout,

@@ -14,6 +14,11 @@ struct Picture {
   std::vector<float> metres;
 };
 
+struct Drawn {
+  std::vector<uint8_t> color;
+  std::vector<float> depth;
+};
+
 // As OpenGL and Vulkan have it with a far plane, and reversed without.
 struct Convention {
   VoyDepthEncoding encoding;
@@ -27,6 +32,8 @@ struct Convention {
 
 class Composites : public Interop {
  protected:
+  static constexpr size_t kPixels = size_t{kWidth} * kHeight;
+
   void TearDown() override {
     if (composite != nullptr) {
       EXPECT_EQ(voyDestroyVulkanComposite(composite), VOY_SUCCESS);
@@ -116,6 +123,65 @@ class Composites : public Interop {
     image.barrier(commands, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, to);
   }
 
+  VoyTarget make_target_with_depth() {
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    images.depth = VK_TRUE;
+    return make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+  }
+
+  static VoyVulkanCompositeDraw draw_of(VoyTarget target, VoyVulkanDepthUse depth_use,
+                                        const Convention& convention) {
+    VoyVulkanCompositeDraw draw = VOY_VULKAN_COMPOSITE_DRAW_INIT;
+    draw.target = target;
+    draw.area = {{0, 0}, {kWidth, kHeight}};
+    draw.depthUse = depth_use;
+    draw.encoding = convention.encoding;
+    draw.nearZ = convention.near_z;
+    draw.farZ = convention.far_z;
+    return draw;
+  }
+
+  // What the host's picture is after a frame of the eye was drawn and composited over it.
+  Drawn compose(Line& line, const VoyFrameEye& seen, VoyVulkanCompositeDraw draw,
+                const std::vector<uint8_t>& color_before, const std::vector<float>& depth_before) {
+    const MappedBuffer from_color(*host, kPixels * 4), from_depth(*host, kPixels * 4),
+        into_color(*host, kPixels * 4), into_depth(*host, kPixels * 4);
+    std::memcpy(from_color.data, color_before.data(), kPixels * 4);
+    std::memcpy(from_depth.data, depth_before.data(), kPixels * 4);
+    VkCommandBuffer commands = host->begin();
+    release(line, seen.target, 0, commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
+    host->finish(commands, {}, line.released(0));
+    EXPECT_EQ(render(line, 0, seen), VOY_SUCCESS) << voyGetLastErrorMessage();
+    commands = host->begin();
+    fill_image(commands, *color, from_color, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
+    fill_image(commands, *depth, from_depth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+    VoyVulkanUse used = use(commands, 0);
+    used.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    used.stages = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+    EXPECT_EQ(voyRecordVulkanAcquire(seen.target, &used), VOY_SUCCESS);
+    const VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
+                                      nullptr,
+                                      pass,
+                                      framebuffer,
+                                      {{0, 0}, {kWidth, kHeight}},
+                                      0,
+                                      nullptr};
+    vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    draw.commandBuffer = commands;
+    EXPECT_EQ(voyRecordVulkanComposite(composite, &draw), VOY_SUCCESS) << voyGetLastErrorMessage();
+    vkCmdEndRenderPass(commands);
+    color->barrier(commands, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    depth->barrier(commands, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
+    copy_to_buffer(commands, color->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   extent(kWidth, kHeight), 0, VK_IMAGE_ASPECT_COLOR_BIT, into_color);
+    copy_to_buffer(commands, depth->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                   extent(kWidth, kHeight), 0, VK_IMAGE_ASPECT_DEPTH_BIT, into_depth);
+    host->finish(commands, line.rendered(0), {});
+    return {into_color.read<uint8_t>(kPixels * 4), into_depth.read<float>(kPixels)};
+  }
+
   VkRenderPass pass = VK_NULL_HANDLE;
   VkFramebuffer framebuffer = VK_NULL_HANDLE;
   VkImageView color_view = VK_NULL_HANDLE, depth_view = VK_NULL_HANDLE;
@@ -143,69 +209,21 @@ constexpr VoyVulkanDepthUse kUses[] = {VOY_VULKAN_DEPTH_USE_NONE, VOY_VULKAN_DEP
 TEST_F(Composites, EqualTheOneMadeFromTheSameImages) {
   ASSERT_TRUE(create());
   make_attachments();
-  VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
-  images.depth = VK_TRUE;
-  const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+  const VoyTarget target = make_target_with_depth();
   Line line = line_of(target);
   const Picture before = host_picture(kWidth, kHeight);
-  const size_t pixels = size_t{kWidth} * kHeight;
-  const MappedBuffer from_color(*host, pixels * 4), from_depth(*host, pixels * 4),
-      into_color(*host, pixels * 4), into_depth(*host, pixels * 4);
-  std::memcpy(from_color.data, before.color.data(), pixels * 4);
   for (const Convention& convention : kConventions)
     for (const VoyVulkanDepthUse depth_use : kUses) {
       SCOPED_TRACE(std::to_string(convention.encoding) + ", depth use " +
                    std::to_string(depth_use));
-      std::vector<float> codes(pixels);
-      for (size_t i = 0; i < pixels; ++i) codes[i] = convention.code(before.metres[i]);
-      std::memcpy(from_depth.data, codes.data(), pixels * 4);
+      std::vector<float> codes(kPixels);
+      for (size_t i = 0; i < kPixels; ++i) codes[i] = convention.code(before.metres[i]);
       const Shot shot = expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target), 4);
-
-      VkCommandBuffer commands = host->begin();
-      release(line, target, 0, commands, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-      host->finish(commands, {}, line.released(0));
-      ASSERT_EQ(render(line, 0, eye(target)), VOY_SUCCESS) << voyGetLastErrorMessage();
-      commands = host->begin();
-      fill_image(commands, *color, from_color, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-      fill_image(commands, *depth, from_depth, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
-      VoyVulkanUse used = use(commands, 0);
-      used.layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-      used.stages = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
-      ASSERT_EQ(voyRecordVulkanAcquire(target, &used), VOY_SUCCESS);
-      const VkRenderPassBeginInfo begin{VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
-                                        nullptr,
-                                        pass,
-                                        framebuffer,
-                                        {{0, 0}, {kWidth, kHeight}},
-                                        0,
-                                        nullptr};
-      vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-      VoyVulkanCompositeDraw draw = VOY_VULKAN_COMPOSITE_DRAW_INIT;
-      draw.commandBuffer = commands;
-      draw.target = target;
-      draw.area = {{0, 0}, {kWidth, kHeight}};
-      draw.depthUse = depth_use;
-      draw.encoding = convention.encoding;
-      draw.nearZ = convention.near_z;
-      draw.farZ = convention.far_z;
-      ASSERT_EQ(voyRecordVulkanComposite(composite, &draw), VOY_SUCCESS)
-          << voyGetLastErrorMessage();
-      vkCmdEndRenderPass(commands);
-      color->barrier(commands, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-      depth->barrier(commands, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
-                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
-      copy_to_buffer(commands, color->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                     extent(kWidth, kHeight), 0, VK_IMAGE_ASPECT_COLOR_BIT, into_color);
-      copy_to_buffer(commands, depth->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                     extent(kWidth, kHeight), 0, VK_IMAGE_ASPECT_DEPTH_BIT, into_depth);
-      host->finish(commands, line.rendered(0), {});
-
-      const std::vector<uint8_t> got = into_color.read<uint8_t>(pixels * 4);
-      const std::vector<float> got_depth = into_depth.read<float>(pixels);
+      const Drawn got =
+          compose(line, eye(target), draw_of(target, depth_use, convention), before.color, codes);
       const bool tested = depth_use == VOY_VULKAN_DEPTH_USE_TEST;
       int wrong = 0, wrong_depth = 0, hidden = 0, drawn = 0;
-      for (size_t i = 0; i < pixels; ++i) {
+      for (size_t i = 0; i < kPixels; ++i) {
         const float z = shot.depth[i];  // +inf where it has none
         const bool nearer = z <= before.metres[i];
         const bool shows = !tested || nearer;
@@ -214,16 +232,118 @@ TEST_F(Composites, EqualTheOneMadeFromTheSameImages) {
         for (int k = 0; k < 4; ++k) {
           const double over = shows ? own[k] + before.color[4 * i + k] * (255 - own[3]) / 255.0
                                     : before.color[4 * i + k];
-          wrong += std::fabs(got[4 * i + k] - over) > 1.0;
+          wrong += std::fabs(got.color[4 * i + k] - over) > 1.0;
         }
         const bool writes = depth_use != VOY_VULKAN_DEPTH_USE_NONE && nearer && z < INFINITY;
-        wrong_depth += std::fabs(got_depth[i] - (writes ? convention.code(z) : codes[i])) > 2e-6f;
+        wrong_depth += std::fabs(got.depth[i] - (writes ? convention.code(z) : codes[i])) > 2e-6f;
       }
       EXPECT_EQ(wrong, 0);
       EXPECT_EQ(wrong_depth, 0);
       EXPECT_GT(drawn, 500);
       EXPECT_EQ(hidden > 0, tested);
     }
+}
+
+VoyVulkanReprojection reprojection(const VoyFrameEye& drawn, const VoyFrameEye& now) {
+  VoyVulkanReprojection out = VOY_VULKAN_REPROJECTION_INIT;
+  out.drawnPose = drawn.pose;
+  out.drawnFrustum = drawn.frustum;
+  out.pose = now.pose;
+  out.frustum = now.frustum;
+  return out;
+}
+
+double squared_error(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum / static_cast<double>(a.size());
+}
+
+TEST_F(Composites, ReprojectedToTheEyeThatDrewThemAreAsDrawn) {
+  ASSERT_TRUE(create());
+  make_attachments();
+  const VoyTarget target = make_target_with_depth();
+  Line line = line_of(target);
+  const Picture before = host_picture(kWidth, kHeight);
+  const VoyVulkanReprojection still = reprojection(eye(target), eye(target));
+  for (const Convention& convention : kConventions)
+    for (const VoyVulkanDepthUse depth_use : kUses) {
+      std::vector<float> codes(kPixels);
+      for (size_t i = 0; i < kPixels; ++i) codes[i] = convention.code(before.metres[i]);
+      VoyVulkanCompositeDraw draw = draw_of(target, depth_use, convention);
+      const Drawn as_drawn = compose(line, eye(target), draw, before.color, codes);
+      draw.next = &still;
+      const Drawn got = compose(line, eye(target), draw, before.color, codes);
+      int wrong = 0;
+      for (size_t i = 0; i < kPixels * 4; ++i)
+        wrong += std::abs(got.color[i] - as_drawn.color[i]) > 1;
+      EXPECT_EQ(wrong, 0) << convention.encoding << ", depth use " << depth_use;
+      for (size_t i = 0; i < kPixels; ++i)
+        ASSERT_NEAR(got.depth[i], as_drawn.depth[i], 1e-5) << convention.encoding << ", " << i;
+    }
+}
+
+// Against the frame that the eye would have had: a step aside, a turn, another frustum. A step
+// needs a depth for each pixel, and a cloud of Gaussians is no surface.
+TEST_F(Composites, ReprojectedShowWhatTheOtherEyeSees) {
+  ASSERT_TRUE(create());
+  make_attachments();
+  const VoyTarget target = make_target_with_depth();
+  Line line = line_of(target);
+  VoyFrameEye stepped = eye(target, 0.2), turned = eye(target), wider = eye(target);
+  turned.pose.orientation[1] = std::sin(0.02);
+  turned.pose.orientation[3] = std::cos(0.02);
+  wider.frustum = {-0.62, 0.6, 0.41, -0.4};
+  const std::vector<uint8_t> black(kPixels * 4);
+  const std::vector<float> far(kPixels, 1.0f);
+  struct Case {
+    const VoyFrameEye& now;
+    double share;  // of the error that is left
+  };
+  for (const auto& [now, share] : {Case{stepped, 0.75}, Case{turned, 0.1}, Case{wider, 0.1}}) {
+    const VoyVulkanReprojection moved = reprojection(eye(target), now);
+    VoyVulkanCompositeDraw draw = draw_of(target, VOY_VULKAN_DEPTH_USE_WRITE, kConventions[0]);
+    const Drawn as_drawn = compose(line, eye(target), draw, black, far);
+    draw.next = &moved;
+    const Drawn got = compose(line, eye(target), draw, black, far);
+    const Shot wanted = expected(VOY_COLOR_FORMAT_RGBA8_UNORM, now, 4);
+    const double before = squared_error(as_drawn.color, wanted.color);
+    EXPECT_LT(squared_error(got.color, wanted.color), share * before) << before;
+    int near = 0, both = 0;
+    for (size_t i = 0; i < kPixels; ++i) {
+      if (wanted.depth[i] == INFINITY || got.depth[i] == 1.0f) continue;
+      ++both;
+      near += std::fabs(got.depth[i] - kConventions[0].code(wanted.depth[i])) < 1e-3f;
+    }
+    EXPECT_GT(both, 500);
+    EXPECT_GT(near, both * 8 / 10) << both;
+  }
+}
+
+TEST_F(Composites, ReprojectionsAreRefusedByWhatIsWrong) {
+  ASSERT_TRUE(create());
+  make_attachments();
+  const VoyTarget target = make_target_with_depth();
+  VoyVulkanReprojection moved = reprojection(eye(target), eye(target));
+  VoyVulkanCompositeDraw draw = draw_of(target, VOY_VULKAN_DEPTH_USE_NONE, kConventions[0]);
+  draw.commandBuffer = host->begin();
+  draw.next = &moved;
+  const auto refused = [&](const char* part) {
+    EXPECT_EQ(voyRecordVulkanComposite(composite, &draw), VOY_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(voyGetLastErrorMessage()).find(part), std::string::npos)
+        << voyGetLastErrorMessage();
+    moved = reprojection(eye(target), eye(target));
+  };
+  moved.pose.position[1] = NAN;
+  refused("draw.next.pose.position");
+  moved.drawnPose.orientation[3] = 0;
+  refused("draw.next.drawnPose.orientation");
+  moved.frustum.left = moved.frustum.right;
+  refused("draw.next.frustum.left");
+  VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+  draw.target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
+  refused("without depth");
+  host->finish(draw.commandBuffer, {}, {});
 }
 
 }  // namespace

@@ -6,5 +6,5 @@
 layout(location = 0) out vec4 color;
 
 void main() {
-  color = image_color();
+  color = color_of(source_of_pixel());
 }

@@ -9,9 +9,10 @@ layout(constant_id = 1) const bool kOnlyDepth = false;
 layout(location = 0) out vec4 color;
 
 void main() {
-  const float z = texelFetch(depth_image, image_pixel(), 0).r;
-  if (isinf(z) && kOnlyDepth) discard;
-  const float t = isinf(z) ? 0.0 : clamp((1.0 / z - push.inverse_far) / push.slope, 0.0, 1.0);
+  const Source source = source_of_pixel();
+  const float inverse_z = inverse_z_of(source);
+  if (inverse_z == 0.0 && kOnlyDepth) discard;
+  const float t = clamp((inverse_z - push.inverse_far) / push.slope, 0.0, 1.0);
   gl_FragDepth = abs(push.far_code - t);
-  color = image_color();
+  color = color_of(source);
 }

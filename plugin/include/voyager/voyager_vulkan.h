@@ -444,10 +444,31 @@ typedef enum VoyVulkanDepthUse {
   VOY_VULKAN_DEPTH_USE_MAX_ENUM = 0x7fffffff
 } VoyVulkanDepthUse;
 
+/* In VoyVulkanCompositeDraw.next: draws the image as another eye sees it, for a frame that the host
+ * shows before Voyager has drawn it. Each pixel is taken from where the image shows what the eye
+ * sees there, by the image's own depth. What was not in the image, or behind something, is not
+ * known: it gets what is beside it, and beyond the image's edges their last pixels. Needs a target
+ * with depth. docs/vulkan.md has the error by the speed of the head. */
+typedef struct VoyVulkanReprojection {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION */
+  const void* next;
+  VoyPose drawnPose; /* of the VoyFrameEye that the layer was drawn for */
+  VoyFrustum drawnFrustum;
+  VoyPose pose; /* of the eye that sees it now */
+  VoyFrustum frustum;
+} VoyVulkanReprojection;
+#define VOY_VULKAN_REPROJECTION_INIT                                                       \
+  {                                                                                        \
+    VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, {0, 0, 0, 0}, \
+        {{0, 0, 0}, {0, 0, 0, 1}}, {                                                       \
+      0, 0, 0, 0                                                                           \
+    }                                                                                      \
+  }
+
 /* One draw of a composite. */
 typedef struct VoyVulkanCompositeDraw {
-  VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW */
-  const void* next;
+  VoyStructureType type;         /* VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW */
+  const void* next;              /* NULL or a VoyVulkanReprojection */
   VkCommandBuffer commandBuffer; /* recording, inside the render pass or dynamic rendering */
   VoyTarget target;              /* of the composite's device */
   uint32_t imageIndex;           /* acquired in SHADER_READ_ONLY_OPTIMAL for FRAGMENT_SHADER */
