@@ -51,8 +51,8 @@ uint64_t ply_bytes(uint64_t count, int sh_degree, bool double_positions = false)
 
 // .spz, version 4 (NGSP header, zstd streams) or 3 (one gzip stream, which readers of 2025 and
 // before know). Each attribute is spooled to a temporary file, so memory does not grow with `count`
-// (at most 2^32 - 1). Positions are 24-bit fixed point; a coordinate
-// beyond what fits is an error, never clamped. Other parameters are rounded to the nearest
+// (at most 2^32 - 1). Positions are 24-bit fixed point with spz_fractional_bits(); a coordinate
+// beyond what then fits is an error, never clamped. Other parameters are rounded to the nearest
 // step and clamped to the format's range: log scale [-10, 5.9375], SH [-1, 0.992], f_dc [-10/3,
 // 10/3]. The flag says that a scene was trained with a compensated filter, not which: it is read
 // as 3DGS's.
@@ -61,8 +61,8 @@ std::unique_ptr<GaussianWriter> write_spz(ByteSink& sink, uint64_t count, int sh
 
 // 12, which is 1/4096 m, or as many as fit where `largest_coordinate` (metres, world) is greater.
 int spz_fractional_bits(float largest_coordinate);
-// Inside a .glb, whose positions are from its node on: also more, up to 20, where
-// `largest_coordinate` is small. Steps are at most 1/4096 m or the 2^17th part of it, if that fits.
+// Inside a .glb, whose positions are from its node on: more, up to 20, where steps of 1/4096 m are
+// above the 2^17th part of `largest_coordinate`.
 int spz_fractional_bits_inside(float largest_coordinate);
 
 // antimatter15's .splat: binary32 positions (world) and scales; colour, opacity and rotation in a
