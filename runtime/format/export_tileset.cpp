@@ -35,7 +35,24 @@ struct Slack {
 };
 Slack slack_of_spz(float largest_coordinate) {
   return {std::exp(1.0 / 32),
-          3.4 * std::exp(-10.0) + std::ldexp(1.0, -spz_fractional_bits(largest_coordinate))};
+          3.4 * std::exp(-10.0) + std::ldexp(1.0, -spz_fractional_bits_inside(largest_coordinate))};
+}
+
+// Positions from the middle of the tile on, so that the steps of SPZ follow the size of the tile
+// and not how far it is from the scene's origin. Whole metres, so that hardly a bit is lost.
+void centre(GaussianCloud& cloud) {
+  for (size_t axis = 0; axis < 3; ++axis) {
+    float least = INFINITY, most = -INFINITY;
+    for (size_t i = axis; i < cloud.position.size(); i += 3) {
+      least = std::min(least, cloud.position[i]);
+      most = std::max(most, cloud.position[i]);
+    }
+    const double middle = std::round((double{least} + double{most}) / 2);
+    if (!std::isfinite(middle)) continue;
+    cloud.origin[axis] += middle;
+    for (size_t i = axis; i < cloud.position.size(); i += 3)
+      cloud.position[i] = static_cast<float>(double{cloud.position[i]} - middle);
+  }
 }
 
 TileBox box_of(const GaussianCloud& cloud, const Slack& slack) {
@@ -51,7 +68,7 @@ TileBox box_of(const GaussianCloud& cloud, const Slack& slack) {
         const double side = turn.row[axis][k] * double{g.scale[k]};
         variance += side * side;
       }
-      const double mean = double{g.mean[axis]},
+      const double mean = cloud.origin[static_cast<size_t>(axis)] + double{g.mean[axis]},
                    half = slack.factor * reach * std::sqrt(variance) + slack.metres;
       splat.least[axis] = mean - half;
       splat.most[axis] = mean + half;
@@ -141,7 +158,8 @@ class TilesetExport {
   }
 
   void write_tile(size_t index) {
-    const GaussianCloud cloud = read_tile(plan_[index]);
+    GaussianCloud cloud = read_tile(plan_[index]);
+    if (options_.flat.spz_inside) centre(cloud);
     TileEntry& entry = entries_[index];
     entry.uri = name_of_tile(index);
     entry.error = kErrorOfExtent * plan_[index].error;
@@ -150,8 +168,8 @@ class TilesetExport {
     contents.sh_degree = cloud.sh_degree;
     contents.native = cloud.native;
     contents.add(cloud);
-    entry.own = entry.volume =
-        box_of(cloud, options_.flat.spz_inside ? slack_of_spz(contents.reach()) : Slack{});
+    entry.own = entry.volume = box_of(
+        cloud, options_.flat.spz_inside ? slack_of_spz(contents.reach_from_origin()) : Slack{});
     const std::string path = place_(entry.uri);
     write_flat_file(path, options_.flat, contents,
                     [&](GaussianWriter& writer) { writer.append(cloud); });
@@ -159,8 +177,12 @@ class TilesetExport {
     summary_.gaussians += cloud.size();
     summary_.bytes += bytes;
     summary_.largest = std::max(summary_.largest, bytes);
-    summary_.contents.largest_coordinate =
-        std::max(summary_.contents.largest_coordinate, contents.largest_coordinate);
+    // As if all tiles were at one place: steps follow the reach of each.
+    for (size_t axis = 0; axis < 3; ++axis) {
+      double &least = summary_.contents.least[axis], &most = summary_.contents.most[axis];
+      least = std::min(least, contents.least[axis] - contents.origin[axis]);
+      most = std::max(most, contents.most[axis] - contents.origin[axis]);
+    }
   }
 
   // Children come after their parent.

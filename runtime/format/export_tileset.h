@@ -21,7 +21,7 @@ struct TilesetSummary {
   uint64_t gaussians = 0;  // of all tiles
   uint64_t bytes = 0;      // of all files
   uint64_t largest = 0;    // bytes of a tile's content
-  FlatContents contents;   // of the tiles together
+  FlatContents contents;   // of the tiles, each from its own origin on
 };
 
 // Where the file of that name, in the tileset's folder, is to be written.

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "runtime/scene/tileset_format.h"
+
 namespace voyager {
 namespace {
 
@@ -20,7 +22,7 @@ std::string json_list(const std::vector<double>& values) {
 
 // Of INRIA's axes; without -0.
 Vec3d to_tiles(const Vec3d& v) {
-  return {0.0 - v.x, 0.0 - v.z, 0.0 - v.y};
+  return tileset::kToInria * v + Vec3d{0, 0, 0};
 }
 
 // A centre and three half axes.

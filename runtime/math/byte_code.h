@@ -1,6 +1,7 @@
 #pragma once
 // What formats of a byte or a few bits a value have in common (scene/import).
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -45,12 +46,40 @@ float log_of_scale(Real scale, float of_zero = -100.0f) {
   return scale == 0 ? of_zero : static_cast<float>(std::log(scale));
 }
 
-// Of a unit quaternion's components all but one, which is at `largest` and not negative.
+// Of a unit quaternion's components all but one, which is at `largest` and not negative: fills it.
 inline void complete_unit(float* q, int largest) {
   float squared = 0.0f;
   for (int i = 0; i < 4; ++i)
     if (i != largest) squared += q[i] * q[i];
   q[largest] = squared < 1.0f ? std::sqrt(1.0f - squared) : 0.0f;
+}
+
+// A unit quaternion as formats store it: which of four components is the largest, and the others in
+// their order, of the sign that makes the largest positive. They are at most sqrt(1/2).
+inline constexpr float kSqrtHalf = 0.70710678f;
+struct SmallestThree {
+  int largest = 0;
+  std::array<float, 3> others{};
+};
+// The first of several that are as large.
+inline SmallestThree smallest_three(const std::array<float, 4>& q) {
+  SmallestThree found;
+  for (int i = 1; i < 4; ++i)
+    if (std::fabs(q[static_cast<size_t>(i)]) > std::fabs(q[static_cast<size_t>(found.largest)]))
+      found.largest = i;
+  const float sign = q[static_cast<size_t>(found.largest)] < 0.0f ? -1.0f : 1.0f;
+  size_t at = 0;
+  for (int i = 0; i < 4; ++i)
+    if (i != found.largest) found.others[at++] = sign * q[static_cast<size_t>(i)];
+  return found;
+}
+inline std::array<float, 4> quaternion_of(const SmallestThree& code) {
+  std::array<float, 4> q{};
+  size_t at = 0;
+  for (int i = 0; i < 4; ++i)
+    if (i != code.largest) q[static_cast<size_t>(i)] = code.others[at++];
+  complete_unit(q.data(), code.largest);
+  return q;
 }
 
 }  // namespace voyager

@@ -1,10 +1,10 @@
 #pragma once
-// What the .spz reader and writer agree on. SPZ axes are right-up-back, INRIA's
-// right-down-front: half a turn about x, the same in both directions.
+// What the .spz reader and writer agree on.
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/math/half_turn.h"
 #include "runtime/math/sh.h"
 
 namespace voyager::spz {
@@ -35,13 +35,10 @@ constexpr size_t width(Attribute attribute, uint32_t version, int sh_degree) {
   }
 }
 
-// Sign that SH coefficient k takes when y and z are mirrored: that of
-// basis k at (x, -y, -z) over basis k at (x, y, z).
-inline constexpr std::array<int, 16> kShSign = {1, -1, -1, 1,  -1, 1, 1,  -1,
-                                                1, -1, 1,  -1, -1, 1, -1, 1};
+// SPZ's axes are right-up-back, INRIA's right-down-front.
+inline constexpr HalfTurn kToInria = kHalfTurnX;
 
 inline constexpr float kColourScale = 0.15f;
-inline constexpr float kSqrtHalf = 0.70710678f;
 inline constexpr int kRotationSteps = 511;  // of sqrt(1/2), in nine bits
 
 }  // namespace voyager::spz

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "tests/command_line/program.h"
@@ -246,6 +247,22 @@ TEST_F(KeepData, ABakeThatIsEndedAtAnyMomentGoesOnToTheSameBytes) {
     if (fs::exists(work) && fs::is_empty(work)) fs::remove(work);
     EXPECT_TRUE(everything() == before) << signal;
   }
+}
+
+// What a killed one leaves is a hidden folder, which the next removes.
+TEST_F(KeepData, ATilesetThatIsKilledAtAnyMomentLeavesNothingToTheNext) {
+  const std::string scene = file("s.voy");
+  ASSERT_EQ(run("voyager bake " + small() + " -o " + scene).exit_code, 0);
+  fs::create_directory(file("t"));
+  write_bytes(file("t/notes.txt"), "x");
+  const std::string command = "voyager export " + scene + " --spz -o " + file("t/tileset.json");
+  for (const double milliseconds : {15.0, 30.0, 60.0, 90.0})
+    run_ended(command, milliseconds, SIGKILL);
+  ASSERT_EQ(run(command).exit_code, 0);
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(file("t")))
+    names.insert(entry.path().filename().string());
+  EXPECT_EQ(names, (std::set<std::string>{"notes.txt", "tile_00000.glb", "tileset.json"}));
 }
 
 // The folder that nobody named is the first one's as well.

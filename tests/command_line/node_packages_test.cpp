@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "tests/command_line/program.h"
 #include "tests/support/needs.h"
@@ -78,6 +80,19 @@ Differences differences(const GaussianCloud& a, const GaussianCloud& b) {
   return d;
 }
 
+// Of each SH coefficient and channel apart: how far `b` is from `a`, as a share of a's own size. A
+// coefficient that changed its sign or its place is 1 or more.
+std::vector<double> shares_of_sh(const GaussianCloud& a, const GaussianCloud& b) {
+  const size_t width = static_cast<size_t>(a.coefficients()) * 3;
+  std::vector<double> off(width), size(width);
+  for (size_t i = 0; i < a.sh.size(); ++i) {
+    off[i % width] += std::fabs(double{a.sh[i]} - double{b.sh[i]});
+    size[i % width] += std::fabs(double{a.sh[i]});
+  }
+  for (size_t k = 0; k < width; ++k) off[k] /= size[k];
+  return off;
+}
+
 class NodePackages : public ::testing::Test {
  protected:
   std::string file(const std::string& name) const { return folder_.file(name); }
@@ -107,6 +122,42 @@ class NodePackages : public ::testing::Test {
     EXPECT_LE(d.colour, 1.001f / 255 / 0.15f) << from;
     EXPECT_LE(d.rotation, 0.006) << from;   // 8 bits a component, of which one follows
     EXPECT_LE(d.sh, 9.001f / 128) << from;  // steps of 16 codes
+  }
+
+  // Coefficients of all signs and sizes that formats hold.
+  void make_vivid() {
+    GaussianCloud cloud = random_cloud(500, 8, 3);
+    cloud.native = {};
+    for (float& coefficient : cloud.sh) coefficient = std::clamp(3 * coefficient, -0.9f, 0.9f);
+    const Bytes bytes = ply_of(cloud);
+    std::ofstream(file("v.ply"), std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  }
+  void expect_each_coefficient(const std::string& a, const std::string& b, double most) {
+    const GaussianCloud one = import_file(file(a)), other = import_file(file(b));
+    ASSERT_EQ(one.size(), other.size());
+    ASSERT_EQ(one.sh_degree, 3);
+    ASSERT_EQ(other.sh_degree, 3);
+    const std::vector<double> shares = shares_of_sh(one, other);
+    for (size_t k = 0; k < shares.size(); ++k) EXPECT_LE(shares[k], most) << a << " " << k;
+  }
+  // The validator knows glTF, and not the extension: neither its names of attributes nor itself,
+  // nor what the compressed form uses. CesiumJS wants a matrix, though it be the identity.
+  void expect_sound(const std::string& name, int attributes, bool spz) {
+    const Outcome found = script("gltf_validator.mjs " + file(name));
+    ASSERT_EQ(found.exit_code, 0) << found.output;
+    int unknown = 0;
+    std::istringstream lines(found.output);
+    for (std::string line; std::getline(lines, line);) {
+      const bool attribute = line.starts_with("MESH_PRIMITIVE_INVALID_ATTRIBUTE ") &&
+                             line.find("/attributes/KHR_gaussian_splatting:") != std::string::npos;
+      unknown += attribute;
+      EXPECT_TRUE(attribute || (spz && (line == "UNUSED_OBJECT /bufferViews/0" ||
+                                        line == "NODE_MATRIX_DEFAULT /nodes/0/matrix")))
+          << name << ": " << line;
+    }
+    EXPECT_EQ(unknown, attributes) << name;
   }
 
  private:
@@ -157,20 +208,50 @@ TEST_F(NodePackages, SparkReadsWhatIsWritten) {
   if (VOYAGER_SOG) expect_spark_reads("o.sog");
 }
 
-// The validator knows glTF, and not the extension: neither its names of attributes nor itself.
+TEST_F(NodePackages, ShIsReadCoefficientByCoefficientAsSpzJsReadsIt) {
+  VOYAGER_NEEDS_PACKAGE("spz-js");
+  make_vivid();
+  ASSERT_NO_FATAL_FAILURE(by_node("spz_js.mjs", "v.ply", "theirs.spz"));
+  ASSERT_NO_FATAL_FAILURE(by_node("spz_js.mjs", "theirs.spz", "read.ply"));
+  ASSERT_NO_FATAL_FAILURE(convert("read.ply", "turned.ply", " --up y"));
+  expect_each_coefficient("turned.ply", "theirs.spz", 1e-5);
+  convert("v.ply", "ours.compressed.ply");
+  ASSERT_NO_FATAL_FAILURE(by_node("spz_js.mjs", "ours.compressed.ply", "read.ply"));
+  expect_each_coefficient("ours.compressed.ply", "read.ply", 0.1);
+}
+
+TEST_F(NodePackages, ShIsWrittenCoefficientByCoefficientAsSparkReadsIt) {
+  VOYAGER_NEEDS_PACKAGE("@sparkjsdev/spark");
+  make_vivid();
+  for (const char* written : {"o.spz", "o.compressed.ply", "o.ply"}) {
+    convert("v.ply", written, std::string(written) == "o.spz" ? " --spz-version 3" : "");
+    ASSERT_NO_FATAL_FAILURE(by_node("spark.mjs", written, "theirs.spz"));
+    // Spark turns no axes, as if a .ply had those of a .spz.
+    convert(written, "turned.ply", std::string(written) == "o.spz" ? "" : " --up y");
+    expect_each_coefficient("turned.ply", "theirs.spz", 0.2);  // Spark's steps are of 16 codes
+  }
+}
+
 TEST_F(NodePackages, TheValidatorFindsNothingInAGlb) {
   VOYAGER_NEEDS_PACKAGE("gltf-validator");
   make_city();
   convert("c.ply", "o.glb");
-  const Outcome found = script("gltf_validator.mjs " + file("o.glb"));
-  ASSERT_EQ(found.exit_code, 0) << found.output;
-  int attributes = 0;
-  std::istringstream lines(found.output);
-  for (std::string line; std::getline(lines, line); ++attributes)
-    EXPECT_TRUE(line.starts_with("MESH_PRIMITIVE_INVALID_ATTRIBUTE ") &&
-                line.find("/attributes/KHR_gaussian_splatting:") != std::string::npos)
-        << line;
-  EXPECT_EQ(attributes, 3 + 16);
+  expect_sound("o.glb", 3 + 16, false);
+  convert("c.ply", "z.glb", " --spz");
+  expect_sound("z.glb", 2 + 15, true);
+}
+
+TEST_F(NodePackages, TheValidatorFindsNothingInTheTilesOfATileset) {
+  VOYAGER_NEEDS_PACKAGE("gltf-validator");
+  ASSERT_EQ(
+      failure_of({"voyager synth city --gaussians 27000 --sh-degree 3 -o " + file("c.ply"),
+                  "voyager bake " + file("c.ply") + " -o " + file("c.voy"),
+                  "voyager export " + file("c.voy") + " -o " + file("plain/tileset.json"),
+                  "voyager export " + file("c.voy") + " --spz -o " + file("spz/tileset.json")}),
+      "");
+  for (const char* tile : {"tile_00000.glb", "tile_00001.glb"})
+    expect_sound(std::string("plain/") + tile, 3 + 16, false);
+  expect_sound("spz/tile_00000.glb", 2 + 15, true);
 }
 
 }  // namespace

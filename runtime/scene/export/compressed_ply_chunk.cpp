@@ -4,12 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/math/byte_code.h"
 #include "runtime/scene/export/unit_code.h"
 
 namespace voyager::compressed_ply {
 namespace {
-
-constexpr float kMostRotation = 0.70710678f;  // of all components but the largest
 
 using Triple = std::array<float, 3>;
 
@@ -61,14 +60,10 @@ uint32_t colour_code(const Range& range, const Triple& v, float opacity) {
 
 uint32_t rotation_code(const Quatf& any_length) {
   const Quatf unit = normalise(any_length);
-  const float q[4] = {unit.w, unit.x, unit.y, unit.z};
-  uint32_t largest = 0;
-  for (uint32_t i = 1; i < 4; ++i)
-    if (std::fabs(q[i]) > std::fabs(q[largest])) largest = i;
-  const float sign = q[largest] < 0.0f ? -1.0f : 1.0f;
-  uint32_t code = largest;
-  for (uint32_t i = 0; i < 4; ++i)
-    if (i != largest) code = code << 10 | unit_code(0.5f + sign * q[i] / (2 * kMostRotation), 10);
+  const SmallestThree three = smallest_three({unit.w, unit.x, unit.y, unit.z});
+  auto code = static_cast<uint32_t>(three.largest);
+  for (const float other : three.others)
+    code = code << 10 | unit_code(0.5f + other / (2 * kSqrtHalf), 10);
   return code;
 }
 

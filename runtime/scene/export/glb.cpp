@@ -24,12 +24,6 @@ uint64_t glb_gaussian_bytes(int sh_degree) {
   return (3 + 4 + 3 + 1 + 3 * static_cast<uint64_t>(sh_coefficients(sh_degree))) * sizeof(float);
 }
 
-// Half a turn about z, without -0.
-template <class T>
-std::array<T, 3> to_gltf(T x, T y, T z) {
-  return {T(0) - x, T(0) - y, z};
-}
-
 class GlbWriter final : public GaussianWriter {
  public:
   GlbWriter(PlacedSink& sink, uint64_t count, int sh_degree)
@@ -60,8 +54,8 @@ class GlbWriter final : public GaussianWriter {
 
   void finish() override {
     check_.finish();
-    const auto& origin = check_.origin();
-    document_.translation = to_gltf(origin[0], origin[1], origin[2]);
+    for (size_t k = 0; k < 3; ++k)
+      document_.translation[k] = gltf::kToInria.turned(check_.origin()[k], k);
     write_head(sink_, json(document_), json_bytes_, binary_bytes());
   }
 
@@ -83,14 +77,12 @@ class GlbWriter final : public GaussianWriter {
   }
 
   void widen_bounds(const GaussianCloud& batch) {
-    for (size_t i = 0; i < batch.size(); ++i) {
-      const float* p = &batch.position[3 * i];
-      const auto at = to_gltf(p[0], p[1], p[2]);
+    for (size_t i = 0; i < batch.size(); ++i)
       for (size_t k = 0; k < 3; ++k) {
-        document_.least[k] = std::min(document_.least[k], at[k]);
-        document_.most[k] = std::max(document_.most[k], at[k]);
+        const float at = gltf::kToInria.turned(batch.position[3 * i + k], k);
+        document_.least[k] = std::min(document_.least[k], at);
+        document_.most[k] = std::max(document_.most[k], at);
       }
-    }
   }
 
   void put_array(const GaussianCloud& cloud, size_t array) {
@@ -105,12 +97,13 @@ class GlbWriter final : public GaussianWriter {
   void put(std::initializer_list<float> values) { values_.insert(values_.end(), values); }
 
   void put_shape(const Gaussian& g, size_t array) {
-    const Quatf& q = g.rotation;
+    const Vec3f mean = gltf::kToInria * g.mean;
+    const Vec3f axis = gltf::kToInria * Vec3f{g.rotation.x, g.rotation.y, g.rotation.z};
     switch (array) {
       case 0:
-        return put({0.0f - g.mean.x, 0.0f - g.mean.y, g.mean.z});
+        return put({mean.x, mean.y, mean.z});
       case 1:
-        return put({-q.x, -q.y, q.z, q.w});
+        return put({axis.x, axis.y, axis.z, g.rotation.w});
       case 2:
         return put({g.scale.x, g.scale.y, g.scale.z});
       default:
@@ -119,7 +112,7 @@ class GlbWriter final : public GaussianWriter {
   }
 
   void put_sh(const GaussianCloud& cloud, size_t i, size_t k) {
-    const auto sign = static_cast<float>(gltf::kShSign[k]);
+    const auto sign = static_cast<float>(gltf::kToInria.sh[k]);
     const float* rgb = &cloud.sh[(i * static_cast<size_t>(cloud.coefficients()) + k) * 3];
     put({sign * rgb[0], sign * rgb[1], sign * rgb[2]});
   }

@@ -3,12 +3,12 @@
 #include <charconv>
 
 #include "runtime/math/sh.h"
+#include "runtime/scene/gltf_format.h"
 
 namespace voyager::glb {
 namespace {
 
 constexpr int kByte = 5121, kFloat = 5126, kArrayBuffer = 34962;  // numbers of glTF
-constexpr const char* kSpz = "KHR_gaussian_splatting_compression_spz_2";
 constexpr const char* kColour = "COLOR_0";
 
 // The shortest that is read as the same number, whatever the locale.
@@ -33,6 +33,13 @@ std::string list(size_t count, const Item& item) {
 
 const char* type_of(size_t components) {
   return components == 1 ? "SCALAR" : components == 3 ? "VEC3" : "VEC4";
+}
+
+std::string place(const Document& document) {
+  const auto& at = document.translation;
+  if (!document.spz_bytes) return R"("translation":)" + numbers(at);
+  return R"("matrix":[1,0,0,0,0,1,0,0,0,0,1,0,)" + number(at[0]) + "," + number(at[1]) + "," +
+         number(at[2]) + ",1]";
 }
 
 // What the draft of compression by SPZ maps its numbers to.
@@ -83,7 +90,7 @@ std::string accessors(const Document& document, const std::vector<Attribute>& al
 }  // namespace
 
 std::vector<Attribute> attributes(int sh_degree) {
-  const std::string extension = "KHR_gaussian_splatting:";
+  const std::string extension = std::string(gltf::kSplatting) + ":";
   std::vector<Attribute> all = {{"POSITION", 3},
                                 {extension + "ROTATION", 4},
                                 {extension + "SCALE", 3},
@@ -100,16 +107,16 @@ std::string json(const Document& document) {
       spz ? spz_attributes(document.sh_degree) : attributes(document.sh_degree);
   const std::string semantics =
       list(all.size(), [&](size_t i) { return "\"" + all[i].semantic + "\":" + number(i); });
-  const std::string used = spz ? R"(["KHR_gaussian_splatting",")" + std::string(kSpz) + R"("])"
-                               : R"(["KHR_gaussian_splatting"])";
+  const std::string used =
+      spz ? R"(["KHR_gaussian_splatting",")" + std::string(gltf::kSpz2) + R"("])"
+          : R"(["KHR_gaussian_splatting"])";
   return R"({"asset":{"version":"2.0","generator":"Voyager"},"extensionsUsed":)" + used +
          (spz ? R"(,"extensionsRequired":)" + used : "") +
-         R"(,"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"translation":)" +
-         numbers(document.translation) + R"(}],"meshes":[{"primitives":[{"mode":0,"attributes":{)" +
-         semantics +
+         R"(,"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,)" + place(document) +
+         R"(}],"meshes":[{"primitives":[{"mode":0,"attributes":{)" + semantics +
          R"(},"extensions":{"KHR_gaussian_splatting":{"kernel":"ellipse",)"
          R"("colorSpace":"srgb_rec709_display")" +
-         (spz ? R"(,"extensions":{")" + std::string(kSpz) + R"(":{"bufferView":0}})" : "") +
+         (spz ? R"(,"extensions":{")" + std::string(gltf::kSpz2) + R"(":{"bufferView":0}})" : "") +
          R"(}}}]}],"buffers":[{"byteLength":)" + number(binary_bytes(document, all)) +
          R"(}],"bufferViews":[)" + views(document, all) + R"(],"accessors":[)" +
          accessors(document, all) + "]}";

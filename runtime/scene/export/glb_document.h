@@ -21,7 +21,9 @@ struct Document {
   uint64_t count = 0;
   int sh_degree = 0;
   std::array<float, 3> least{}, most{};  // of positions
-  std::array<double, 3> translation{};   // of the node
+  // Of the node: its `translation`, or compressed its `matrix`, without which CesiumJS draws
+  // nothing.
+  std::array<double, 3> translation{};
   // Compressed: bytes of the .spz that is all of the binary chunk, in place of the arrays. Then
   // accessors have no views, and the first attribute with alpha is COLOR_0.
   std::optional<uint64_t> spz_bytes;

@@ -7,7 +7,8 @@
 #include "runtime/scene/export/batch_check.h"
 #include "runtime/scene/export/glb_container.h"
 #include "runtime/scene/export/glb_document.h"
-#include "runtime/scene/export/writer.h"
+#include "runtime/scene/export/spz_writer.h"
+#include "runtime/scene/gltf_format.h"
 
 namespace voyager {
 namespace {
@@ -34,8 +35,8 @@ class SpzGlbWriter final : public GaussianWriter {
         check_(count, sh_degree),
         json_bytes_(bytes_of_json(count, sh_degree)),
         binary_(sink, glb::binary_at(json_bytes_)),
-        spz_(write_spz(binary_, count, sh_degree, reach, version)),
-        step_(std::ldexp(1.0, -spz_fractional_bits(reach))) {
+        bits_(spz_fractional_bits_inside(reach)),
+        spz_(spz::write(binary_, count, sh_degree, {version, bits_, gltf::kToInria})) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     if (count == 0)
       throw Error(ErrorCode::unsupported, ".glb: found 0 Gaussians, expected 1 or more");
@@ -64,8 +65,8 @@ class SpzGlbWriter final : public GaussianWriter {
     if (bytes > std::numeric_limits<uint32_t>::max())
       throw Error(ErrorCode::unsupported,
                   ".glb: found " + std::to_string(bytes) + " bytes, expected at most 4294967295");
-    const auto& origin = check_.origin();
-    document_.translation = {0.0 - origin[0], 0.0 - origin[1], origin[2]};
+    for (size_t k = 0; k < 3; ++k)
+      document_.translation[k] = gltf::kToInria.turned(check_.origin()[k], k);
     glb::write_head(sink_, glb::json(document_), json_bytes_, binary_.written());
   }
 
@@ -78,13 +79,13 @@ class SpzGlbWriter final : public GaussianWriter {
     return (glb::json(document).size() + glb::kJsonSlack + 3) / 4 * 4;
   }
 
-  // As positions come back, in glTF's axes: half a turn about z from INRIA's.
+  // As positions come back.
   void widen_bounds(const GaussianCloud& batch) {
     for (size_t i = 0; i < batch.size(); ++i)
       for (size_t k = 0; k < 3; ++k) {
-        const double position = double{batch.position[3 * i + k]};
-        const double steps = std::round((k == 0 ? position : -position) / step_);
-        const auto at = static_cast<float>((k == 1 ? steps : 0.0 - steps) * step_);
+        const double position = gltf::kToInria.turned(double{batch.position[3 * i + k]}, k);
+        const auto at =
+            static_cast<float>(std::ldexp(std::round(std::ldexp(position, bits_)), -bits_) + 0.0);
         document_.least[k] = std::min(document_.least[k], at);
         document_.most[k] = std::max(document_.most[k], at);
       }
@@ -94,8 +95,8 @@ class SpzGlbWriter final : public GaussianWriter {
   BatchCheck check_;
   uint64_t json_bytes_;
   BinarySink binary_;
+  int bits_;  // of a position after the point
   std::unique_ptr<GaussianWriter> spz_;
-  double step_;  // metres
   glb::Document document_;
 };
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "runtime/math/signed_log.h"
 #include "runtime/scene/export/flat_file.h"
 
 namespace voyager {
@@ -22,11 +23,10 @@ double step_at(float at) {
 
 // Of a .sog the largest: 16 bits of sign(x) ln(|x| + 1) between the bounds.
 double sog_step(const FlatContents& contents) {
-  const auto mapped = [](double x) { return std::copysign(std::log1p(std::fabs(x)), x); };
   double largest = 0;
   for (size_t axis = 0; axis < 3; ++axis) {
     const double least = contents.least[axis], most = contents.most[axis];
-    largest = std::max(largest, (mapped(most) - mapped(least)) / 65535 *
+    largest = std::max(largest, (signed_log(most) - signed_log(least)) / 65535 *
                                     (1 + std::max(std::fabs(least), std::fabs(most))));
   }
   return largest;

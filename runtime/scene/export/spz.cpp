@@ -7,12 +7,14 @@
 #include "runtime/scene/export/gzip_sink.h"
 #include "runtime/scene/export/spool.h"
 #include "runtime/scene/export/spz_quantise.h"
+#include "runtime/scene/export/spz_writer.h"
 #include "runtime/scene/export/writer.h"
 
 namespace voyager {
 namespace {
 
-constexpr int kMostFractionalBits = 12;
+constexpr int kUsualFractionalBits = 12, kMostFractionalBits = 20;
+constexpr double kStepsInside = 1 << 17;  // to the largest coordinate
 constexpr double kMostSteps = (1 << 23) - 1;
 constexpr size_t kBlockGaussians = 4096;
 using Bytes = std::vector<std::byte>;
@@ -23,18 +25,19 @@ void put(Bytes& bytes, uint64_t value, int count) {
 
 class SpzWriter final : public GaussianWriter {
  public:
-  SpzWriter(ByteSink& sink, uint64_t count, int sh_degree, float largest_coordinate, int version)
+  SpzWriter(ByteSink& sink, uint64_t count, int sh_degree, const spz::WriterOptions& options)
       : sink_(sink),
         check_(count, sh_degree),
         count_(count),
         sh_degree_(sh_degree),
-        version_(version),
-        bits_(spz_fractional_bits(largest_coordinate)),
+        version_(options.version),
+        bits_(options.fractional_bits),
+        to_inria_(options.to_inria),
         streams_(sh_degree > 0 ? spz::kAttributes : spz::kSh) {
     check_sh_degree(sh_degree);
-    if (version != 3 && version != 4)
+    if (version_ != 3 && version_ != 4)
       throw Error(ErrorCode::invalid_argument,
-                  ".spz: found version " + std::to_string(version) + ", expected 3 or 4");
+                  ".spz: found version " + std::to_string(version_) + ", expected 3 or 4");
     if (count > std::numeric_limits<uint32_t>::max())
       throw Error(ErrorCode::invalid_argument, ".spz: found " + std::to_string(count) +
                                                    " Gaussians, expected at most 4294967295");
@@ -75,15 +78,15 @@ class SpzWriter final : public GaussianWriter {
       put(blocks_[spz::kColours], spz::quantise_colour(sh[k]), 1);
       put(blocks_[spz::kScales], spz::quantise_scale(cloud.log_scale[3 * i + k]), 1);
     }
-    put(blocks_[spz::kRotations], spz::quantise_rotation(cloud.words(i).rotation), 4);
+    put(blocks_[spz::kRotations], spz::quantise_rotation(cloud.words(i).rotation, to_inria_), 4);
     for (size_t k = 1; k < coefficients; ++k)
       for (size_t channel = 0; channel < 3; ++channel)
-        put(blocks_[spz::kSh], spz::quantise_sh(sh[3 * k + channel], k), 1);
+        put(blocks_[spz::kSh], spz::quantise_sh(sh[3 * k + channel], to_inria_.sh[k]), 1);
   }
 
   void put_position(const GaussianCloud& cloud, size_t i, size_t axis, uint64_t index) {
     const double world = cloud.origin[axis] + static_cast<double>(cloud.position[3 * i + axis]);
-    const double steps = std::round((axis == 0 ? world : -world) * (1 << bits_));
+    const double steps = std::round(to_inria_.turned(world, axis) * (1 << bits_));
     if (!(std::fabs(steps) <= kMostSteps))
       throw Error(ErrorCode::invalid_argument,
                   ".spz: Gaussian " + std::to_string(index) + ", coordinate " + "xyz"[axis] +
@@ -127,7 +130,9 @@ class SpzWriter final : public GaussianWriter {
   ByteSink& sink_;
   BatchCheck check_;
   uint64_t count_;
-  int sh_degree_, version_, bits_, streams_;
+  int sh_degree_, version_, bits_;
+  HalfTurn to_inria_;
+  int streams_;
   bool antialiased_ = false;
   std::vector<Spool> spools_;
   Bytes blocks_[spz::kAttributes];
@@ -136,14 +141,28 @@ class SpzWriter final : public GaussianWriter {
 }  // namespace
 
 int spz_fractional_bits(float largest_coordinate) {
-  int bits = kMostFractionalBits;
-  while (bits > 0 && static_cast<double>(largest_coordinate) * (1 << bits) > kMostSteps) --bits;
+  int bits = kUsualFractionalBits;
+  while (bits > 0 && double{largest_coordinate} * (1 << bits) > kMostSteps) --bits;
   return bits;
+}
+
+int spz_fractional_bits_inside(float largest_coordinate) {
+  int bits = spz_fractional_bits(largest_coordinate);
+  while (bits >= kUsualFractionalBits && bits < kMostFractionalBits &&
+         double{largest_coordinate} * (1 << bits) < kStepsInside)
+    ++bits;
+  return bits;
+}
+
+std::unique_ptr<GaussianWriter> spz::write(ByteSink& sink, uint64_t count, int sh_degree,
+                                           const WriterOptions& options) {
+  return std::make_unique<SpzWriter>(sink, count, sh_degree, options);
 }
 
 std::unique_ptr<GaussianWriter> write_spz(ByteSink& sink, uint64_t count, int sh_degree,
                                           float largest_coordinate, int version) {
-  return std::make_unique<SpzWriter>(sink, count, sh_degree, largest_coordinate, version);
+  return spz::write(sink, count, sh_degree,
+                    {version, spz_fractional_bits(largest_coordinate), spz::kToInria});
 }
 
 }  // namespace voyager

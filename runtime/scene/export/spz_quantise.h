@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "runtime/math/byte_code.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/scene/spz_format.h"
 
@@ -25,25 +26,21 @@ inline uint8_t quantise_colour(float f_dc) {
 inline uint8_t quantise_scale(float log_scale) {
   return quantise_byte((log_scale + 10.0f) * 16.0f);
 }
-inline uint8_t quantise_sh(float coefficient, size_t k) {
-  return quantise_byte(static_cast<float>(kShSign[k]) * coefficient * 128.0f + 128.0f);
+inline uint8_t quantise_sh(float coefficient, int sign) {
+  return quantise_byte(static_cast<float>(sign) * coefficient * 128.0f + 128.0f);
 }
 
 // Smallest three: the index (x, y, z, w) of the largest component in the top
 // two bits, then the others in order, a sign and nine bits of magnitude each.
-inline uint32_t quantise_rotation(const Quatf& any_length) {
+inline uint32_t quantise_rotation(const Quatf& any_length, const HalfTurn& to_inria) {
   const Quatf unit = normalise(any_length);
-  const float q[4] = {unit.x, -unit.y, -unit.z, unit.w};
-  uint32_t largest = 0;
-  for (uint32_t i = 1; i < 4; ++i)
-    if (std::fabs(q[i]) > std::fabs(q[largest])) largest = i;
-  const bool flip = q[largest] < 0.0f;
-  uint32_t code = largest;
-  for (uint32_t i = 0; i < 4; ++i) {
-    if (i == largest) continue;
-    const float steps = std::fabs(q[i]) / kSqrtHalf * kRotationSteps + 0.5f;
+  const Vec3f axis = to_inria * Vec3f{unit.x, unit.y, unit.z};
+  const SmallestThree three = smallest_three({axis.x, axis.y, axis.z, unit.w});
+  auto code = static_cast<uint32_t>(three.largest);
+  for (const float other : three.others) {
+    const float steps = std::fabs(other) / kSqrtHalf * kRotationSteps + 0.5f;
     const uint32_t magnitude = std::min(static_cast<uint32_t>(steps), uint32_t{kRotationSteps});
-    const bool negative = magnitude > 0 && (q[i] < 0.0f) != flip;
+    const bool negative = magnitude > 0 && other < 0.0f;
     code = (code << 10) | (negative ? 1u << 9 : 0u) | magnitude;
   }
   return code;

@@ -61,6 +61,9 @@ std::unique_ptr<GaussianWriter> write_spz(ByteSink& sink, uint64_t count, int sh
 
 // 12, which is 1/4096 m, or as many as fit where `largest_coordinate` (metres, world) is greater.
 int spz_fractional_bits(float largest_coordinate);
+// Inside a .glb, whose positions are from its node on: more, up to 20, where steps of 1/4096 m are
+// above the 2^17th part of `largest_coordinate`.
+int spz_fractional_bits_inside(float largest_coordinate);
 
 // antimatter15's .splat: binary32 positions (world) and scales; colour, opacity and rotation in a
 // byte each, rounded to the nearest step and clamped to the format's range. SH of degree 1 and
@@ -87,8 +90,10 @@ uint64_t compressed_ply_bytes(uint64_t count, int sh_degree);
 // degree 3).
 std::unique_ptr<GaussianWriter> write_glb(PlacedSink& sink, uint64_t count, int sh_degree);
 
-// The same compressed, KHR_gaussian_splatting_compression_spz_2: a .spz as write_spz() writes it,
-// of Gaussians from the node's translation on; largest_coordinate is from there, too.
+// The same compressed, KHR_gaussian_splatting_compression_spz_2: a .spz of Gaussians from the
+// node's translation on, as write_spz() writes it but for two things: its numbers are in glTF's
+// axes, as CesiumJS takes them, and it has spz_fractional_bits_inside(). largest_coordinate is from
+// the node's translation on, too.
 std::unique_ptr<GaussianWriter> write_spz_glb(PlacedSink& sink, uint64_t count, int sh_degree,
                                               float largest_coordinate, int version);
 

@@ -65,6 +65,8 @@ std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> s
 // What of a .spz is not read, for people: SH of degree 4, and extensions. Throws as its reader
 // does.
 std::vector<std::string> left_out_of_spz(const ByteSource& source);
+// The same of all .spz in a .glb, a .gltf or a tileset, each thing once with how many have it.
+std::vector<std::string> left_out_of_gltf(std::shared_ptr<const ByteSource> source);
 std::unique_ptr<BlockReader> open_glb_blocks(std::shared_ptr<const ByteSource> source);
 // HierarchicalGS's .hier: the leaves of its tree, in the order of the file's Gaussians. Holds the
 // links of the tree until it has read them, then 4 bytes a leaf.

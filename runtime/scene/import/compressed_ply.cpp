@@ -39,14 +39,12 @@ float sh_of_code(int code) {
 
 // Two bits say which component is the largest; the others follow in the order w, x, y, z.
 void decode_rotation(uint32_t word, float* wxyz) {
-  const int largest = static_cast<int>(word >> 30);
-  int shift = 20;
-  for (int i = 0; i < 4; ++i) {
-    if (i == largest) continue;
-    wxyz[i] = between(-std::sqrt(0.5f), std::sqrt(0.5f), bits(word, shift, 10), 1023);
-    shift -= 10;
-  }
-  complete_unit(wxyz, largest);
+  SmallestThree three{static_cast<int>(word >> 30), {}};
+  for (int i = 0; i < 3; ++i)
+    three.others[static_cast<size_t>(i)] =
+        between(-kSqrtHalf, kSqrtHalf, bits(word, 20 - 10 * i, 10), 1023);
+  const std::array<float, 4> q = quaternion_of(three);
+  std::copy(q.begin(), q.end(), wxyz);
 }
 
 class CompressedReader final : public BlockReader {

@@ -8,6 +8,7 @@
 #include "runtime/scene/append.h"
 #include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/import/import_blocks.h"
+#include "runtime/scene/import/json_value.h"
 #include "runtime/scene/import/peek_reader.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/shared_reader.h"
@@ -28,21 +29,22 @@ struct Format {
   // One of them at least: in blocks from any stream, or from a source.
   std::unique_ptr<BlockReader> (*open_stream)(std::unique_ptr<ByteReader>);
   std::unique_ptr<BlockReader> (*open_source)(std::shared_ptr<const ByteSource>);
+  bool is_json = false;  // all of the file is
 };
 constexpr Format kFormats[] = {
     {".splat", "", nullptr, open_splat_blocks, nullptr},
     {".ksplat", "", nullptr, open_ksplat_blocks, nullptr},
     {".hier", "", nullptr, nullptr, open_hier_blocks},
     {".hier_opt", "", nullptr, nullptr, open_hier_blocks},
-    {"lod-meta.json", "", nullptr, nullptr, open_streamed_sog_blocks},
-    {"meta.json", "", nullptr, nullptr, open_sog_blocks},
+    {"lod-meta.json", "", nullptr, nullptr, open_streamed_sog_blocks, true},
+    {"meta.json", "", nullptr, nullptr, open_sog_blocks, true},
     {"", "ply\n", import_ply, open_ply_blocks, open_ply_blocks},
     {"", "ply\r", import_ply, open_ply_blocks, open_ply_blocks},
     {"", "\x1f\x8b", import_spz, nullptr, open_spz_blocks},
     {"", "NGSP", import_spz, nullptr, open_spz_blocks},
     {"", "PK\x03\x04", nullptr, nullptr, open_sog_blocks},
     {"", "glTF", nullptr, nullptr, open_glb_blocks},
-    {"", "{", nullptr, nullptr, open_json_blocks},
+    {"", "{", nullptr, nullptr, open_json_blocks, true},
 };
 constexpr const char* kKnown =
     "a .ply or .compressed.ply (first bytes \"ply\"), a .spz (gzip 1f 8b, or \"NGSP\"), a .sog "
@@ -119,7 +121,11 @@ const Format& format_of(const ByteSource& source) {
   const auto first =
       std::span(bytes).first(static_cast<size_t>(std::min<uint64_t>(sizeof bytes, source.size())));
   source.read(0, first);
-  return format_of(first, source.name(), 0);
+  const Format& format = format_of(first, source.name(), 0);
+  if (format.is_json && source.size() > kMostJsonBytes)
+    refuse(source.name(), 0, "JSON", std::to_string(source.size()) + " bytes",
+           "at most " + std::to_string(kMostJsonBytes));
+  return format;
 }
 
 // A stream from its first byte on, and what of it was looked at.
@@ -187,9 +193,12 @@ bool is_importable(FirstBytes first_bytes, std::string_view name) {
 }
 
 std::vector<std::string> left_out_of(const ByteSource& source) {
-  const Format& format = format_of(source);
-  return format.open_source == open_spz_blocks ? left_out_of_spz(source)
-                                               : std::vector<std::string>{};
+  const auto open = format_of(source).open_source;
+  if (open == open_spz_blocks) return left_out_of_spz(source);
+  // Borrowed: nothing of it is kept.
+  if (open == open_glb_blocks || open == open_json_blocks)
+    return left_out_of_gltf(std::shared_ptr<const ByteSource>(&source, [](const ByteSource*) {}));
+  return {};
 }
 
 bool is_hier_name(std::string_view name) {

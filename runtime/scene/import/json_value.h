@@ -9,6 +9,9 @@
 
 namespace voyager {
 
+// Of a file's JSON: a value of two or three bytes takes up to 60 in memory. The scenes that are
+// listed in so much text are of more Gaussians than any machine holds.
+inline constexpr uint64_t kMostJsonBytes = uint64_t{64} << 20;
 // Levels in one another, of which a level of one byte takes 80 in memory.
 inline constexpr int kMostJsonLevels = 256;
 

@@ -24,11 +24,11 @@ class SpzImport {
     const std::span<const std::byte> first = input_.peek(1);
     if (!first.empty() && first[0] == std::byte{0x1f}) {
       GzipReader plain(input_);
-      begin(plain, spz::kNewestPlanar);
+      begin(plain, spz::kNewestPlanar, true);
       read_planar(plain);
       plain.finish();
     } else {
-      begin(input_, spz::kNewest);
+      begin(input_, spz::kNewest, false);
       if (header_.version == spz::kNewest)
         read_streams();
       else
@@ -40,9 +40,9 @@ class SpzImport {
   }
 
  private:
-  void begin(ByteReader& plain, uint32_t newest_version) {
+  void begin(ByteReader& plain, uint32_t newest_version, bool gzipped) {
     header_ = spz::read_header(plain, newest_version);
-    spz::check_count(input_, header_);
+    spz::check_count(input_, header_, gzipped);
     cloud_.sh_degree = header_.sh_degree;
     cloud_.native = header_.native();
   }

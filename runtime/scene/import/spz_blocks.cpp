@@ -2,11 +2,12 @@
 // each brings them together block by block.
 #include <algorithm>
 #include <array>
+#include <limits>
 
-#include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/import/decompress.h"
 #include "runtime/scene/import/placed_blocks.h"
 #include "runtime/scene/import/refuse.h"
+#include "runtime/scene/import/spz_blocks.h"
 #include "runtime/scene/import/spz_decode.h"
 
 namespace voyager {
@@ -26,11 +27,11 @@ class AttributeStream {
       gzip_ = gzip.get();
       plain_ = std::move(gzip);
       header_ = spz::read_header(*plain_, spz::kNewestPlanar);
-      spz::check_count(input_, header_);
+      spz::check_count(input_, header_, true);
       return;
     }
     header_ = spz::read_header(input_, spz::kNewest);
-    spz::check_count(input_, header_);
+    spz::check_count(input_, header_, false);
     if (header_.version != spz::kNewest) return;
     sizes_ = spz::read_stream_table(input_, header_).compressed;
     open_stream();
@@ -96,9 +97,11 @@ class AttributeStream {
 
 class SpzReader final : public BlockReader {
  public:
-  explicit SpzReader(std::shared_ptr<const ByteSource> source) : source_(std::move(source)) {
+  SpzReader(std::shared_ptr<const ByteSource> source, const HalfTurn& to_inria)
+      : source_(std::move(source)) {
     streams_.push_back(std::make_unique<AttributeStream>(*source_));
     header_ = streams_.front()->header();
+    header_.to_inria = to_inria;
     for (int i = 1; i < header_.attributes(); ++i)
       streams_.push_back(std::make_unique<AttributeStream>(*source_, *streams_.back()));
   }
@@ -161,21 +164,53 @@ class SpzReader final : public BlockReader {
 
 }  // namespace
 
-std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source) {
-  const spz::Extensions extensions = spz::read_announcement(*source).extensions;
-  const std::string what = source->name() + ": coordinate system";
-  std::unique_ptr<BlockReader> reader = std::make_unique<SpzReader>(std::move(source));
-  return extensions.turns() ? place_blocks(std::move(reader), extensions.axes, {}, what)
-                            : std::move(reader);
+std::unique_ptr<BlockReader> spz::open_in_axes(std::shared_ptr<const ByteSource> source,
+                                               const HalfTurn& to_inria) {
+  return std::make_unique<SpzReader>(std::move(source), to_inria);
 }
 
-std::vector<std::string> left_out_of_spz(const ByteSource& source) {
-  const spz::Announcement found = spz::read_announcement(source);
+spz::Bounds spz::bounds_of_positions(const ByteSource& source) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr uint64_t kAtOnce = 4096;
+  Bounds bounds{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  AttributeStream stream(source);
+  Header header = stream.header();
+  header.to_inria = kNoTurn;
+  GaussianCloud cloud;
+  std::vector<std::byte> codes;
+  for (uint64_t left = header.count; left > 0;) {
+    const auto count = static_cast<size_t>(std::min(left, kAtOnce));
+    codes.resize(count * header.bytes_of(kPositions));
+    cloud.position.resize(3 * count);
+    stream.read(codes, kAttributeName[kPositions]);
+    decode(header, kPositions, codes, 0, cloud);
+    for (size_t i = 0; i < 3 * count; ++i) {
+      bounds.least[i % 3] = std::min(bounds.least[i % 3], double{cloud.position[i]});
+      bounds.most[i % 3] = std::max(bounds.most[i % 3], double{cloud.position[i]});
+    }
+    left -= count;
+  }
+  return bounds;
+}
+
+std::vector<std::string> spz::left_out_of(const Announcement& found) {
   std::vector<std::string> unread = found.extensions.unread;
   if (found.header.stored_sh_degree > found.header.sh_degree)
     unread.insert(unread.begin(),
                   "spherical harmonics of degree " + std::to_string(found.header.stored_sh_degree));
   return unread;
+}
+
+std::unique_ptr<BlockReader> open_spz_blocks(std::shared_ptr<const ByteSource> source) {
+  const spz::Extensions extensions = spz::read_announcement(*source).extensions;
+  const std::string what = source->name() + ": coordinate system";
+  std::unique_ptr<BlockReader> reader = spz::open_in_axes(std::move(source), spz::kToInria);
+  return extensions.turns() ? place_blocks(std::move(reader), extensions.axes, {}, what)
+                            : std::move(reader);
+}
+
+std::vector<std::string> left_out_of_spz(const ByteSource& source) {
+  return spz::left_out_of(spz::read_announcement(source));
 }
 
 }  // namespace voyager

@@ -14,47 +14,44 @@ int byte(const std::byte* at) {
 }
 
 void decode_position(const Header& header, const std::byte* code, float* position) {
+  const HalfTurn& to_inria = header.to_inria;
   const float step = std::ldexp(1.0f, -header.fractional_bits);  // products with it are exact
-  for (int axis = 0; axis < 3; ++axis, code += header.version == 1 ? 2 : 3) {
+  for (size_t axis = 0; axis < 3; ++axis, code += header.version == 1 ? 2 : 3) {
     if (header.version == 1) {
       const float half = half_to_float(static_cast<uint16_t>(byte(code) | byte(code + 1) << 8));
-      position[axis] = axis == 0 ? half : 0.0f - half;
+      position[axis] = to_inria.turned(half, axis);
     } else {
       const int bits = byte(code) | byte(code + 1) << 8 | byte(code + 2) << 16;
       const int fixed = bits >= 1 << 23 ? bits - (1 << 24) : bits;
-      position[axis] = static_cast<float>(axis == 0 ? fixed : -fixed) * step;
+      position[axis] = static_cast<float>(to_inria.turned(fixed, axis)) * step;
     }
   }
 }
 
 // x, y, z in bytes; w is what is left of a unit quaternion.
 void decode_rotation_bytes(const std::byte* code, float* wxyz) {
-  float squared = 0.0f;
-  for (int i = 0; i < 3; ++i) {
-    const float v = static_cast<float>(byte(code + i)) / 127.5f - 1.0f;
-    squared += v * v;
-    wxyz[1 + i] = i == 0 ? v : -v;
-  }
-  wxyz[0] = std::sqrt(std::max(0.0f, 1.0f - squared));
+  for (int i = 0; i < 3; ++i) wxyz[1 + i] = static_cast<float>(byte(code + i)) / 127.5f - 1.0f;
+  complete_unit(wxyz, 0);
 }
 
 void decode_rotation_smallest_three(const std::byte* code, float* wxyz) {
   uint32_t bits = 0;
   for (int i = 3; i >= 0; --i) bits = bits << 8 | static_cast<uint32_t>(byte(code + i));
-  const int largest = static_cast<int>(bits >> 30);
-  float q[4] = {}, squared = 0.0f;  // x, y, z, w
-  for (int i = 3; i >= 0; --i) {
-    if (i == largest) continue;
+  SmallestThree three{static_cast<int>(bits >> 30), {}};
+  for (size_t i = 3; i-- > 0; bits >>= 10) {
     const float magnitude = static_cast<float>(bits & 511u) / kRotationSteps * kSqrtHalf;
-    q[i] = bits & 512u ? -magnitude : magnitude;
-    squared += magnitude * magnitude;
-    bits >>= 10;
+    three.others[i] = bits & 512u ? -magnitude : magnitude;
   }
-  q[largest] = std::sqrt(std::max(0.0f, 1.0f - squared));
-  wxyz[0] = q[3];
-  wxyz[1] = q[0];
-  wxyz[2] = -q[1];
-  wxyz[3] = -q[2];
+  const std::array<float, 4> xyzw = quaternion_of(three);
+  wxyz[0] = xyzw[3];
+  std::copy_n(xyzw.begin(), 3, wxyz + 1);
+}
+
+void decode_rotation(const Header& header, const std::byte* code, float* wxyz) {
+  header.version < 3 ? decode_rotation_bytes(code, wxyz)
+                     : decode_rotation_smallest_three(code, wxyz);
+  for (size_t axis = 0; axis < 3; ++axis)
+    wxyz[1 + axis] = header.to_inria.turned(wxyz[1 + axis], axis);
 }
 
 void decode_gaussian(const Header& header, Attribute attribute, const std::byte* code, size_t i,
@@ -76,13 +73,12 @@ void decode_gaussian(const Header& header, Attribute attribute, const std::byte*
         cloud.log_scale[3 * i + k] = static_cast<float>(byte(code + k)) / 16.0f - 10.0f;
       return;
     case kRotations:
-      return header.version < 3 ? decode_rotation_bytes(code, &cloud.rotation[4 * i])
-                                : decode_rotation_smallest_three(code, &cloud.rotation[4 * i]);
+      return decode_rotation(header, code, &cloud.rotation[4 * i]);
     default:
       for (size_t k = 1; k < coefficients; ++k)
         for (size_t channel = 0; channel < 3; ++channel, ++code)
           cloud.sh[(i * coefficients + k) * 3 + channel] =
-              static_cast<float>((byte(code) - 128) * kShSign[k]) / 128.0f;
+              static_cast<float>((byte(code) - 128) * header.to_inria.sh[k]) / 128.0f;
   }
 }
 

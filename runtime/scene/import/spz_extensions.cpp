@@ -78,6 +78,7 @@ Extensions read_extensions(const std::string& file, uint64_t offset,
       if (system >= std::size(kAxes))
         refuse(file, offset + at + 8, "coordinate system", std::to_string(system), "0 to 16");
       found.axes = axes_of(system == 0 ? kUsual : system);
+      found.says_axes = system != 0;
     } else {
       found.unread.push_back(named(type, length));
     }

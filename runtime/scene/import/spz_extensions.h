@@ -11,13 +11,15 @@
 
 namespace voyager::spz {
 
-// Records are looked at in so many bytes; what follows is stepped over.
+// Of all records: a gzip stream may go on for a thousand times the bytes of the file, and one
+// inside a glTF is read as often as it is placed.
 inline constexpr size_t kMostExtensionBytes = 1 << 16;
 
 struct Extensions {
   // From the axes that SPZ has without a word about them (right, up, back), in INRIA's axes, to
   // those that SPZ_ADOBE_coordinate_system says.
   Affine axes;
+  bool says_axes = false;           // there is one
   std::vector<std::string> unread;  // what is not read, for people
 
   bool turns() const { return !(axes == Affine{}); }

@@ -11,6 +11,7 @@ namespace voyager::spz {
 namespace {
 
 constexpr int kMaxFractionalBits = 24;
+constexpr uint64_t kMostInflation = 1032;  // bytes that deflate may make of one
 
 template <size_t count>
 std::array<std::byte, count> read_bytes(ByteReader& reader, const char* what) {
@@ -69,11 +70,17 @@ Header read_header(ByteReader& plain, uint32_t newest_version) {
   return header;
 }
 
-void check_count(const PeekReader& input, const Header& header) {
+void check_count(const PeekReader& input, const Header& header, bool gzipped) {
   const std::optional<uint64_t> left = input.remaining();
   if (!left) return;
   const uint64_t length = input.offset() + *left;
-  const uint64_t most = most_gaussians(length, bytes_of_gaussian(header.sh_degree));
+  uint64_t most = most_gaussians(length, bytes_of_gaussian(header.sh_degree));
+  if (gzipped) {
+    uint64_t stored = 0;  // bytes of a Gaussian
+    for (int i = 0; i < header.attributes(); ++i)
+      stored += header.bytes_of(static_cast<Attribute>(i));
+    most = std::min(most, length * kMostInflation / stored);
+  }
   if (header.count > most)
     refuse(
         input.name(), input.offset(), "Gaussians", std::to_string(header.count),
@@ -87,15 +94,15 @@ StreamTable read_stream_table(PeekReader& input, const Header& header) {
   in_range(file, at - 1, "streams", header.last, streams, streams);
   const auto rest = read_bytes<kStreamsHeaderBytes - kHeaderBytes>(input, "header");
   const uint64_t table = integer(&rest[0], 4);
-  const uint64_t furthest = header.has_extensions ? UINT32_MAX : kStreamsHeaderBytes;
+  const uint64_t furthest = kStreamsHeaderBytes + (header.has_extensions ? kMostExtensionBytes : 0);
   in_range(file, at, "offset of the stream table", table, kStreamsHeaderBytes, furthest);
   for (size_t i = 4; i < rest.size(); ++i)
     in_range(file, at + i, "reserved byte", integer(&rest[i], 1), 0, 0);
   StreamTable found;
   const uint64_t gap = table - kStreamsHeaderBytes, gap_at = input.offset();
-  std::vector<std::byte> records(std::min<uint64_t>(gap, kMostExtensionBytes));
-  const uint64_t got = input.read(records), skipped = got + input.skip(gap - got);
-  in_range(file, input.offset(), "bytes before the stream table", skipped, gap, gap);
+  std::vector<std::byte> records(gap);
+  const uint64_t got = input.read(records);
+  in_range(file, input.offset(), "bytes before the stream table", got, gap, gap);
   found.extensions = read_extensions(file, gap_at, records);
 
   uint64_t expected_end = start + table + streams * kTableEntryBytes;
@@ -119,11 +126,11 @@ StreamTable read_stream_table(PeekReader& input, const Header& header) {
 Extensions read_last_extensions(ByteReader& plain, const Header& header) {
   if (!header.has_extensions) return {};
   const uint64_t at = plain.offset();
-  std::vector<std::byte> records(kMostExtensionBytes);
-  records.resize(plain.read(records));
-  std::vector<std::byte> unused(4096);
-  while (plain.read(unused) == unused.size()) {
-  }
+  const std::vector<std::byte> records = read_as_they_come(plain, kMostExtensionBytes + 1);
+  if (records.size() > kMostExtensionBytes)
+    refuse(plain.name(), at, "extensions",
+           "more than " + std::to_string(kMostExtensionBytes) + " bytes after the last attribute",
+           "fewer, and then the end of the file");
   return read_extensions(plain.name(), at, records);
 }
 
@@ -136,7 +143,7 @@ Announcement read_announcement(const ByteSource& source) {
   if (!first.empty() && first[0] == std::byte{0x1f}) gzip = std::make_unique<GzipReader>(input);
   ByteReader& plain = gzip ? static_cast<ByteReader&>(*gzip) : input;
   found.header = read_header(plain, gzip ? kNewestPlanar : kNewest);
-  check_count(input, found.header);
+  check_count(input, found.header, gzip != nullptr);
   if (!found.header.has_extensions) return found;
   if (found.header.version == kNewest) {
     found.extensions = read_stream_table(input, found.header).extensions;

@@ -18,7 +18,8 @@ struct Header {
   int stored_sh_degree = 0;  // that the file has: bands above are stepped over
   int fractional_bits = 0;
   bool antialiased = false, has_extensions = false;
-  uint8_t last = 0;  // v1-v3: reserved; v4: number of streams
+  uint8_t last = 0;              // v1-v3: reserved; v4: number of streams
+  HalfTurn to_inria = kToInria;  // from the axes that the numbers are taken to have
 
   NativeScale native() const { return antialiased ? compensated_scale(kLowPass) : NativeScale{}; }
   size_t bytes_of(Attribute attribute) const { return width(attribute, version, stored_sh_degree); }
@@ -31,9 +32,10 @@ inline constexpr int kMostStoredShDegree = 4;
 // Reads the 16 bytes that all versions share, refusing what is out of range.
 Header read_header(ByteReader& plain, uint32_t newest_version);
 
-// Refuses more Gaussians than a file of that length is worth. `input` is the file, compressed as it
-// is; nothing is said of a stream whose length is not known.
-void check_count(const PeekReader& input, const Header& header);
+// Refuses more Gaussians than a file of that length is worth, and than its bytes can hold however
+// they are compressed. `input` is the file, compressed as it is; nothing is said of a stream whose
+// length is not known.
+void check_count(const PeekReader& input, const Header& header, bool gzipped);
 
 // What a version 4 has before its streams.
 struct StreamTable {
@@ -43,7 +45,8 @@ struct StreamTable {
 // The header's first 16 bytes were read; leaves `input` at the first stream.
 StreamTable read_stream_table(PeekReader& input, const Header& header);
 
-// Of versions 1 to 3, after the last attribute: reads to the end.
+// Of versions 1 to 3, after the last attribute: reads to the end, and refuses more than
+// kMostExtensionBytes.
 Extensions read_last_extensions(ByteReader& plain, const Header& header);
 
 // Of a whole file. What stands before extensions is decompressed for it.

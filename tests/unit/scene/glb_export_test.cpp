@@ -91,7 +91,7 @@ TEST(GlbExport, HoldsGaussiansAsTheyAreDrawn) {
     for (size_t k = 0; k < coefficients; ++k) {
       const std::vector<float> values = glb.splat(sh_name(k));
       for (size_t i = 0; i < values.size(); ++i)
-        ASSERT_EQ(values[i], static_cast<float>(gltf::kShSign[k]) *
+        ASSERT_EQ(values[i], static_cast<float>(gltf::kToInria.sh[k]) *
                                  cloud.sh[(i / 3 * coefficients + k) * 3 + i % 3]);
     }
   }
@@ -103,7 +103,7 @@ TEST(GlbExport, SignsOfShAreThoseOfHalfATurnAboutZ) {
   double here[16], there[16];
   sh_basis(3, d, here);
   sh_basis(3, turned, there);
-  for (size_t k = 0; k < 16; ++k) EXPECT_NEAR(there[k], gltf::kShSign[k] * here[k], 1e-12) << k;
+  for (size_t k = 0; k < 16; ++k) EXPECT_NEAR(there[k], gltf::kToInria.sh[k] * here[k], 1e-12) << k;
 }
 
 TEST(GlbExport, SaysWhatASplatReaderAsks) {

@@ -1,8 +1,12 @@
 // What a .glb or .gltf says, as INRIA's words.
+#include <chrono>
+#include <cstring>
 #include <fstream>
 
 #include "runtime/math/affine.h"
+#include "runtime/math/half_turn.h"
 #include "runtime/math/srgb.h"
+#include "runtime/scene/gltf_format.h"
 #include "runtime/scene/import/block_reader.h"
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/transform.h"
@@ -13,6 +17,7 @@
 namespace voyager::gltf_import_test {
 namespace {
 
+using gltf::kSpz2;
 using test::Bytes;
 using test::GltfFile;
 using test::Json;
@@ -254,37 +259,137 @@ TEST(GltfImport, FarNodesHaveAnOrigin) {
   EXPECT_NEAR(read.origin[0] + double{read.position[0]}, -1e7 + double{cloud.position[0]}, 1e-4);
 }
 
-GltfFile spz_file(const GaussianCloud& cloud, const std::string& name) {
+// `primitives` of one SPZ; without bounds of POSITION.
+GltfFile spz_file(const Bytes& spz, size_t count, const std::string& name, size_t primitives = 1) {
   GltfFile file;
   const Json primitive = {
       {"attributes", {{"POSITION", 0}}},
       {"mode", 0},
       {"extensions",
-       {{kExtension,
-         {{"extensions", {{name, {{"bufferView", file.add_view(test::spz_v4(cloud))}}}}}}}}}};
-  file.json["accessors"].push_back(
-      {{"componentType", 5126}, {"count", cloud.size()}, {"type", "VEC3"}});
+       {{kExtension, {{"extensions", {{name, {{"bufferView", file.add_view(spz)}}}}}}}}}};
+  file.json["accessors"].push_back({{"componentType", 5126}, {"count", count}, {"type", "VEC3"}});
   file.json["extensionsRequired"] = {kExtension, name};
-  file.add_node({{"mesh", file.add_mesh(Json::array({primitive}))}});
+  file.add_node({{"mesh", file.add_mesh(Json(primitives, primitive))}});
   return file;
 }
+GltfFile spz_file(const GaussianCloud& cloud, const std::string& name = kSpz2) {
+  return spz_file(test::spz_v4(cloud), cloud.size(), name);
+}
 
-// Its axes are half a turn about y from glTF's, so that it comes out as it would alone.
-TEST(GltfImport, ASpzInsideIsTheSpzAlone) {
+// Of the .spz alone, whose numbers are taken to be in the axes right, up, back: as a turn about
+// `axis` of them leaves them.
+GaussianCloud turned(GaussianCloud cloud, const HalfTurn& turn) {
+  const auto width = static_cast<size_t>(cloud.coefficients()) * 3;
+  for (size_t i = 0; i < cloud.position.size(); ++i)
+    cloud.position[i] = turn.turned(cloud.position[i], i % 3);
+  for (size_t i = 0; i < cloud.rotation.size(); ++i)
+    if (i % 4 != 0) cloud.rotation[i] = turn.turned(cloud.rotation[i], i % 4 - 1);
+  for (size_t i = 0; i < cloud.sh.size(); ++i) cloud.sh[i] *= float(turn.sh[i % width / 3]);
+  return cloud;
+}
+
+// CesiumJS takes them so, whatever the draft says of the axes of a .spz.
+TEST(GltfImport, NumbersOfASpzInsideAreInGltfsAxes) {
   const GaussianCloud cloud = test::random_cloud(70, 1, 3);
-  for (const char* name :
-       {"KHR_gaussian_splatting_compression_spz", "KHR_gaussian_splatting_compression_spz_2"})
-    expect_same(test::import_source(spz_file(cloud, name).glb()),
-                test::import_bytes(test::spz_v4(cloud)));
-  GltfFile wrong = spz_file(cloud, "KHR_gaussian_splatting_compression_spz_2");
+  const GaussianCloud alone = test::import_bytes(test::spz_v4(cloud));
+  for (const char* name : {"KHR_gaussian_splatting_compression_spz", kSpz2})
+    expect_same(test::import_source(spz_file(cloud, name).glb()), turned(alone, kHalfTurnY));
+  GltfFile wrong = spz_file(cloud);
   wrong.json["accessors"][0]["count"] = 71;
   const std::string message = test::refusal_of([&] { test::import_source(wrong.glb()); });
   EXPECT_NE(message.find("found 71 elements, expected 70"), std::string::npos) << message;
 }
 
+// The bounds of POSITION, in glTF's axes, tell what the numbers are. glTF's are half a turn about
+// y from right, up, back, and half a turn about z from a .ply's.
+TEST(GltfImport, BoundsTellTheAxesOfASpzInside) {
+  GaussianCloud cloud = test::random_cloud(70, 1, 3);
+  for (size_t i = 0; i < cloud.position.size(); ++i)  // in one octant: no two turns look alike
+    cloud.position[i] = std::fabs(cloud.position[i]) + 1;
+  const GaussianCloud alone = test::import_bytes(test::spz_v4(cloud));
+  // Of the numbers of the file.
+  float least[3] = {1e9f, 1e9f, 1e9f}, most[3] = {-1e9f, -1e9f, -1e9f};
+  for (size_t i = 0; i < alone.position.size(); ++i) {
+    const float number = kHalfTurnX.turned(alone.position[i], i % 3);
+    least[i % 3] = std::min(least[i % 3], number);
+    most[i % 3] = std::max(most[i % 3], number);
+  }
+  const auto with_bounds = [&](const HalfTurn& to_gltf, float off) {
+    GltfFile file = spz_file(cloud);
+    for (size_t k = 0; k < 3; ++k) {
+      const bool kept = to_gltf.sign[k] > 0;
+      file.json["accessors"][0]["min"].push_back((kept ? least[k] : -most[k]) - off);
+      file.json["accessors"][0]["max"].push_back((kept ? most[k] : -least[k]) + off);
+    }
+    return test::import_source(file.glb());
+  };
+  for (const float off : {0.0f, 0.0004f}) {  // before the numbers were rounded
+    expect_same(with_bounds(kNoTurn, off), turned(alone, kHalfTurnY));
+    expect_same(with_bounds(kHalfTurnY, off), alone);
+    expect_same(with_bounds(kHalfTurnZ, off), turned(alone, kHalfTurnX));
+  }
+  // Bounds that are no turn's.
+  expect_same(with_bounds(kHalfTurnX, 0), turned(alone, kHalfTurnY));
+  expect_same(with_bounds(kHalfTurnY, 1), turned(alone, kHalfTurnY));
+}
+
+TEST(GltfImport, ASpzInsideThatSaysItsAxesIsBelieved) {
+  Bytes planar = test::planar_spz(3, 4, 1, 2), named = planar;
+  for (const uint32_t word : {0xadbe0003u, 4u, 4u}) test::put(named, word);  // right, up, back
+  expect_same(test::import_source(spz_file(test::gzip(named), 4, kSpz2).glb()),
+              test::import_bytes(named));
+  expect_same(test::import_source(spz_file(test::gzip(planar), 4, kSpz2).glb()),
+              turned(test::import_bytes(planar), kHalfTurnY));
+}
+
+// 5,000 primitives of one SPZ of 60,000 Gaussians, a file of 400 kB: it is decompressed once, and
+// refused as soon as there are more than the file is worth.
+TEST(GltfImport, ManyPrimitivesOfOneSpzAreBounded) {
+  const GaussianCloud few = test::random_cloud(10, 1, 1);
+  const GltfFile small = spz_file(test::spz_v4(few), few.size(), kSpz2, 500);
+  EXPECT_EQ(test::import_source(small.glb()).size(), 5000u);
+  Bytes plain = test::planar_spz(3, 0, 3);
+  const uint32_t count = 60'000;
+  std::memcpy(plain.data() + 8, &count, sizeof count);
+  plain.resize(plain.size() + size_t{65} * count);
+  const Bytes glb = spz_file(test::gzip(plain), count, kSpz2, 5000).glb();
+  const auto start = std::chrono::steady_clock::now();
+  const std::string message = test::refusal_of([&] { test::import_source(glb); });
+  const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+  EXPECT_NE(message.find("Gaussians: found "), std::string::npos) << message;
+  EXPECT_LT(seconds.count(), 1.0);
+  // Views that differ in length alone would be opened one by one.
+  GltfFile nested = spz_file(test::spz_v4(few), few.size(), kSpz2, 2);
+  Json longer = nested.json["bufferViews"][0];
+  longer["byteLength"] = longer["byteLength"].get<int>() - 1;
+  nested.json["bufferViews"].push_back(longer);
+  nested.json["meshes"][0]["primitives"][1]["extensions"][kExtension]["extensions"][kSpz2]
+             ["bufferView"] = 1;
+  EXPECT_NE(test::refusal_of([&] {
+              test::import_source(nested.glb());
+            }).find("as another view of the same SPZ has"),
+            std::string::npos);
+}
+
+TEST(GltfImport, WhatOfASpzInsideIsNotReadIsToldOnce) {
+  Bytes planar = test::planar_spz(3, 3, 1, 2);
+  for (const uint32_t word : {0x4e410001u, 0u}) test::put(planar, word);
+  const std::string said = "an unknown extension 0x4e410001 (0 bytes), of ";
+  GltfFile file = spz_file(planar, 3, kSpz2, 7);
+  const auto left_out = [](const GltfFile& of) {
+    return left_out_of(MemorySource("sample.glb", of.glb()));
+  };
+  EXPECT_EQ(left_out(file), std::vector<std::string>{said + "the SPZ inside"});
+  const size_t more[] = {file.add_view(planar), file.add_view(test::planar_spz(3, 3, 1))};
+  Json& primitives = file.json["meshes"][0]["primitives"];
+  for (size_t i = 0; i < 2; ++i)
+    primitives[i]["extensions"][kExtension]["extensions"][kSpz2]["bufferView"] = more[i];
+  EXPECT_EQ(left_out(file), std::vector<std::string>{said + "2 of the 3 SPZ inside"});
+  EXPECT_TRUE(left_out(spz_file(test::random_cloud(3, 1, 1))).empty());
+}
+
 TEST(GltfImport, BlocksOfAnySizeGiveTheSameWords) {
-  GltfFile file =
-      spz_file(test::random_cloud(70, 1, 3), "KHR_gaussian_splatting_compression_spz_2");
+  GltfFile file = spz_file(test::random_cloud(70, 1, 3));
   file.add_node(
       {{"mesh", file.add_mesh(Json::array({file.primitive_of(test::random_cloud(90, 2, 1))}))},
        {"scale", {1, -2, 2}}});

@@ -1,4 +1,5 @@
 #include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/spz_extensions.h"
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/spz_format.h"
 #include "tests/support/sample_files.h"
@@ -105,7 +106,7 @@ TEST(SpzImport, ShSignsFollowTheBasis) {
   sh_basis(3, mirrored, there);
   for (size_t k = 0; k < 16; ++k) {
     EXPECT_GT(std::fabs(here[k]), 1e-3);
-    EXPECT_NEAR(there[k], spz::kShSign[k] * here[k], 1e-12) << k;
+    EXPECT_NEAR(there[k], spz::kToInria.sh[k] * here[k], 1e-12) << k;
   }
   const Bytes file = test::planar_spz(3, 5, 3);
   const GaussianCloud cloud = test::import_bytes(file);
@@ -182,6 +183,32 @@ TEST(SpzImport, ExtensionsThatAreNotReadAreNamed) {
     EXPECT_GT(test::import_bytes(bytes).size(), 1u);
   }
   EXPECT_TRUE(left_out_of(*source_of(test::planar_spz(3, 2, 3))).empty());
+}
+
+// A gzip stream makes a thousand bytes of one: what follows the last attribute is not read on and
+// on.
+TEST(SpzImport, RefusesMoreThanExtensionsAfterTheRecords) {
+  Bytes planar = test::planar_spz(3, 2, 1, 2);
+  Bytes all = planar;
+  all.resize(planar.size() + spz::kMostExtensionBytes);
+  EXPECT_EQ(test::import_bytes(test::gzip(all)).size(), 2u);
+  all.resize(all.size() + 1);
+  const Bytes more = test::gzip(all);
+  test::expect_refused(more, "extensions: found more than 65536 bytes", "after the records");
+  EXPECT_NE(test::refusal_of([&] { left_out_of(*source_of(more)); }).find("extensions"),
+            std::string::npos);
+}
+
+// What deflate can make of the file, were it all zeros.
+TEST(SpzImport, RefusesMoreGaussiansThanItsBytesHold) {
+  Bytes planar = test::planar_spz(3, 0, 3);
+  const uint32_t count = 100'000;
+  std::memcpy(planar.data() + 8, &count, sizeof count);
+  const Bytes bytes = test::gzip(planar);
+  EXPECT_NE(test::refusal_of([&] {
+              open_blocks(source_of(bytes));
+            }).find("Gaussians: found 100000, expected at most"),
+            std::string::npos);
 }
 
 // What x, y and z of the file point to, against the usual right, up, back.
@@ -334,7 +361,8 @@ TEST(SpzImport, RefusesEveryStreamTableFieldOutOfRange) {
       {with<uint8_t>(good, 15, 255), "streams"},
       {with<uint32_t>(good, 16, 31), "offset of the stream table"},
       {with<uint32_t>(good, 16, 33), "offset of the stream table"},
-      {with<uint32_t>(with<uint8_t>(good, 14, 2), 16, ~0u), "before the stream table"},
+      {with<uint32_t>(with<uint8_t>(good, 14, 2), 16, ~0u), "offset of the stream table"},
+      {with<uint32_t>(with<uint8_t>(good, 14, 2), 16, 60000), "before the stream table"},
       {with<uint8_t>(good, 20, 1), "reserved"},
       {with<uint8_t>(good, 31, 1), "reserved"},
       {with<uint64_t>(good, 40, ~0ull), "positions: uncompressed size"},

@@ -7,7 +7,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "runtime/math/byte_code.h"
 #include "runtime/math/gaussian.h"
+#include "runtime/math/signed_log.h"
 #include "runtime/scene/append.h"
 #include "runtime/scene/export/batch_check.h"
 #include "runtime/scene/export/morton_order.h"
@@ -25,11 +27,6 @@ using Json = nlohmann::json;
 constexpr uint32_t kSetsARow = 64;      // of the image of SH sets
 constexpr size_t kMostSets = 1 << 16;   // a label has two bytes
 constexpr uint8_t kFirstLargest = 252;  // of a rotation: w; then x, y, z
-
-// Steps are finest near the world's origin.
-double signed_log(double x) {
-  return std::copysign(std::log1p(std::fabs(x)), x);
-}
 
 struct Span {
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -49,14 +46,10 @@ void require_finite(const GaussianCloud& batch) {
 }
 
 void put_rotation(const Quatf& q, uint8_t* pixel) {
-  float wxyz[] = {q.w, q.x, q.y, q.z};
-  const auto largest = std::max_element(
-      wxyz, wxyz + 4, [](float a, float b) { return std::fabs(a) < std::fabs(b); });
-  const float sign = *largest < 0 ? -1.0f : 1.0f, reach = std::sqrt(0.5f);
-  for (const float* component = wxyz; component != wxyz + 4; ++component)
-    if (component != largest)
-      *pixel++ = static_cast<uint8_t>(unit_code((sign * *component + reach) / (2 * reach), 8));
-  *pixel = static_cast<uint8_t>(kFirstLargest + (largest - wxyz));
+  const SmallestThree three = smallest_three({q.w, q.x, q.y, q.z});
+  for (const float other : three.others)
+    *pixel++ = static_cast<uint8_t>(unit_code((other + kSqrtHalf) / (2 * kSqrtHalf), 8));
+  *pixel = static_cast<uint8_t>(kFirstLargest + three.largest);
 }
 
 class SogWriter final : public GaussianWriter {

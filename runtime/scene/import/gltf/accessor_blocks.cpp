@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "runtime/math/byte_code.h"
-#include "runtime/scene/import/gltf/axes.h"
+#include "runtime/scene/gltf_format.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager::gltf {
@@ -76,8 +76,8 @@ class AccessorReader final : public BlockReader {
     float* sh = cloud.sh.data() + (i * coefficients + attribute.k) * 3;
     switch (attribute.parameter) {
       case Parameter::position:
-        cloud.position[3 * i] = minus(v[0]), cloud.position[3 * i + 1] = minus(v[1]);
-        cloud.position[3 * i + 2] = static_cast<float>(v[2]);
+        for (size_t k = 0; k < 3; ++k)
+          cloud.position[3 * i + k] = static_cast<float>(kToInria.turned(v[k], k));
         return;
       case Parameter::rotation:
         return store_rotation(v, &cloud.rotation[4 * i]);
@@ -96,11 +96,12 @@ class AccessorReader final : public BlockReader {
         for (size_t k = 0; k < 3; ++k) sh[k] = sh_of_colour(v[k]);
         return;
       case Parameter::sh:
-        for (size_t k = 0; k < 3; ++k) sh[k] = static_cast<float>(kShSign[attribute.k] * v[k]);
+        for (size_t k = 0; k < 3; ++k) sh[k] = static_cast<float>(kToInria.sh[attribute.k] * v[k]);
     }
   }
 
-  // The half turn before x, y, z, w.
+  // The half turn before x, y, z, w, and not after it too: the Gaussian's own axes are free to
+  // stay.
   static void store_rotation(const double* v, float* wxyz) {
     wxyz[0] = static_cast<float>(v[2]), wxyz[1] = static_cast<float>(v[1]);
     wxyz[2] = minus(v[0]), wxyz[3] = minus(v[3]);

@@ -4,14 +4,12 @@
 #include <array>
 #include <filesystem>
 
+#include "runtime/scene/gltf_format.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/uri.h"
 
 namespace voyager::gltf {
 namespace {
-
-constexpr uint32_t kMagic = 0x46546c67, kJson = 0x4e4f534a, kBinary = 0x004e4942;
-constexpr uint64_t kHeaderBytes = 12, kChunkBytes = 8;
 
 uint32_t word(const std::byte* at) {
   uint32_t value = 0;
@@ -25,7 +23,7 @@ struct Chunk {
 };
 
 Chunk chunk_at(const ByteSource& source, uint64_t offset) {
-  std::array<std::byte, kChunkBytes> head;
+  std::array<std::byte, kChunkHeaderBytes> head;
   if (source.size() - offset < head.size())
     refuse(source.name(), offset, "chunk header", std::to_string(source.size() - offset) + " bytes",
            std::to_string(head.size()));
@@ -111,20 +109,22 @@ void File::read_chunks() {
     refuse(name(), 0, "header", std::to_string(source_->size()) + " bytes",
            std::to_string(head.size()));
   source_->read(0, head);
-  if (word(&head[4]) != 2) refuse(name(), 4, "version", std::to_string(word(&head[4])), "2");
+  if (word(&head[4]) != kVersion)
+    refuse(name(), 4, "version", std::to_string(word(&head[4])), std::to_string(kVersion));
   if (word(&head[8]) != source_->size())
     refuse(name(), 8, "length", std::to_string(word(&head[8])),
            std::to_string(source_->size()) + ", the bytes of the file");
   const Chunk text = chunk_at(*source_, kHeaderBytes);
-  if (text.type != kJson)
+  if (text.type != kJsonChunk)
     refuse(name(), kHeaderBytes + 4, "type of the first chunk", std::to_string(text.type),
-           std::to_string(kJson) + " (JSON)");
+           std::to_string(kJsonChunk) + " (JSON)");
   json_offset_ = text.offset;
   json_ = json_of(*source_, text.offset, text.size);
   // Chunks of other types may follow, and are not for us.
   for (uint64_t at = text.offset + text.size; at < source_->size();) {
     const Chunk chunk = chunk_at(*source_, at);
-    if (chunk.type == kBinary && !binary_.source) binary_ = {source_, chunk.offset, chunk.size};
+    if (chunk.type == kBinaryChunk && !binary_.source)
+      binary_ = {source_, chunk.offset, chunk.size};
     at = chunk.offset + chunk.size;
   }
 }

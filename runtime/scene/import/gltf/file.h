@@ -10,7 +10,6 @@
 
 namespace voyager::gltf {
 
-inline constexpr uint64_t kMostJsonBytes = uint64_t{64} << 20;
 inline constexpr uint64_t kMostIndex = UINT32_MAX;
 
 // Bytes where they lie: within `source`, checked.

@@ -21,6 +21,13 @@ std::unique_ptr<BlockReader> open_glb_blocks(std::shared_ptr<const ByteSource> s
   return open_file(gltf::File(std::move(source)));
 }
 
+std::vector<std::string> left_out_of_gltf(std::shared_ptr<const ByteSource> source) {
+  if (gltf::is_binary(*source)) return gltf::Scene(gltf::File(source)).left_out().texts();
+  nlohmann::json json = gltf::read_json(*source);
+  if (tileset::is_tileset(json)) return tileset::left_out(source, std::move(json)).texts();
+  return gltf::Scene(gltf::File(source, std::move(json))).left_out().texts();
+}
+
 std::unique_ptr<BlockReader> open_json_blocks(std::shared_ptr<const ByteSource> source) {
   nlohmann::json json = gltf::read_json(*source);
   if (tileset::is_tileset(json)) return tileset::open(std::move(source), std::move(json));

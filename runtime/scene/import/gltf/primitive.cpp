@@ -3,14 +3,12 @@
 #include <algorithm>
 
 #include "runtime/math/sh.h"
-#include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/gltf_format.h"
 
 namespace voyager::gltf {
 namespace {
 
-constexpr const char* kExtension = "KHR_gaussian_splatting";
-constexpr const char* kSpz[] = {"KHR_gaussian_splatting_compression_spz",
-                                "KHR_gaussian_splatting_compression_spz_2"};
+constexpr const char* kSpz[] = {kSpz1, kSpz2};
 constexpr size_t kLookedAt = 4096;  // Gaussians, for a negative scale
 
 using Components = std::initializer_list<Component>;
@@ -62,7 +60,7 @@ class Attributes {
 };
 
 std::string named(const std::string& attribute) {
-  return std::string(kExtension) + ":" + attribute;
+  return std::string(kSplatting) + ":" + attribute;
 }
 
 std::string sh_name(int degree, int n) {
@@ -98,19 +96,24 @@ void read_attributes(File& file, const JsonValue& json, Primitive& primitive) {
 }
 
 // A .spz says itself what it has.
-void read_spz(File& file, const JsonValue& json, const JsonValue& view, Primitive& primitive) {
-  primitive.spz = source_of(file.view(view), file.name() + ": SPZ of " + primitive.place);
-  const auto reader = open_spz_blocks(primitive.spz);
-  primitive.count = reader->count();
-  primitive.sh_degree = reader->sh_degree();
-  primitive.native = reader->native();
-  if (!json.has("attributes") || !json["attributes"].has("POSITION")) return;
+void read_spz(File& file, SpzViews& views, const JsonValue& json, const JsonValue& view,
+              Primitive& primitive) {
+  Spz& spz = views.open(file, view, primitive.place);
+  primitive.spz = spz.source;
+  primitive.count = spz.header.count;
+  primitive.sh_degree = spz.header.sh_degree;
+  primitive.native = spz.header.native();
+  if (!json.has("attributes") || !json["attributes"].has("POSITION")) {
+    primitive.spz_to_inria = axes_of(spz, nullptr);
+    return;
+  }
   const JsonValue index = json["attributes"]["POSITION"];
-  const uint64_t count =
-      file.json()["accessors"][index.whole(kMostIndex)]["count"].whole(UINT64_MAX);
+  const JsonValue position = file.json()["accessors"][index.whole(kMostIndex)];
+  const uint64_t count = position["count"].whole(UINT64_MAX);
   if (count != primitive.count)
     index.refuse(std::to_string(count) + " elements",
                  std::to_string(primitive.count) + ", the Gaussians of its SPZ");
+  primitive.spz_to_inria = axes_of(spz, &position);
 }
 
 // The view of a .spz, where the numbers are compressed.
@@ -141,16 +144,16 @@ void look_at(const Accessor& scales, Signs& signs) {
 
 }  // namespace
 
-std::optional<Primitive> read_primitive(File& file, const JsonValue& json) {
-  if (!json.has("extensions") || !json["extensions"].has(kExtension)) return std::nullopt;
-  const JsonValue extension = json["extensions"][kExtension];
+std::optional<Primitive> read_primitive(File& file, SpzViews& views, const JsonValue& json) {
+  if (!json.has("extensions") || !json["extensions"].has(kSplatting)) return std::nullopt;
+  const JsonValue extension = json["extensions"][kSplatting];
   if (json.has("mode") && json["mode"].whole(kMostIndex) != 0) json["mode"].refuse("0 (POINTS)");
   Primitive primitive;
   primitive.place = json.place();
   primitive.linear_colours =
       extension.has("colorSpace") && extension["colorSpace"].text() == "lin_rec709_display";
   if (const auto view = spz_view(extension))
-    read_spz(file, json, *view, primitive);
+    read_spz(file, views, json, *view, primitive);
   else
     read_attributes(file, json["attributes"], primitive);
   return primitive;

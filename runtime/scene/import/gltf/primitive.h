@@ -2,7 +2,9 @@
 // A primitive with KHR_gaussian_splatting: where its numbers are.
 #include <optional>
 
+#include "runtime/math/half_turn.h"
 #include "runtime/scene/import/gltf/accessor.h"
+#include "runtime/scene/import/gltf/spz_views.h"
 #include "runtime/scene/native_scale.h"
 
 namespace voyager::gltf {
@@ -24,11 +26,12 @@ struct Primitive {
   bool log_scales = false;            // as drafts of the extension had them
   std::vector<Attribute> attributes;  // without SPZ
   std::shared_ptr<const ByteSource> spz;  // a whole file, or null
+  std::optional<HalfTurn> spz_to_inria;   // of its numbers; else it says its axes itself
 };
 
 // Nothing where the primitive has no splats. Throws Error(refused_input) for an attribute that is
 // missing or of a type that the extension does not allow, and where counts differ.
-std::optional<Primitive> read_primitive(File& file, const JsonValue& json);
+std::optional<Primitive> read_primitive(File& file, SpzViews& views, const JsonValue& json);
 
 // Scales of the ratified extension are linear and not negative; those of its drafts were
 // logarithms. True where one of the first Gaussians of the primitives has a negative scale, or all

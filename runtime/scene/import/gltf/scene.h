@@ -2,6 +2,7 @@
 // The splats of a glTF file: its primitives, and the nodes that place them.
 #include "runtime/math/affine.h"
 #include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/gltf/nodes.h"
 #include "runtime/scene/import/gltf/primitive.h"
 
 namespace voyager::gltf {
@@ -23,17 +24,24 @@ class Scene {
   }
   // As File::bytes().
   const std::map<std::string, uint64_t>& bytes() const { return bytes_; }
+  // What of the SPZ inside is not read.
+  const LeftOut& left_out() const { return left_out_; }
   // The instance's own Gaussians, before it is placed.
   std::unique_ptr<BlockReader> open(const Instance& instance) const;
 
  private:
   void read_instances(File& file);
-  void check_count() const;
+  void add_count(const Primitive& primitive);
+  void place(const MeshNode& node, const std::vector<size_t>& primitives, const File& file);
 
   std::string name_;
   std::map<std::string, uint64_t> bytes_;
+  uint64_t total_bytes_ = 0;  // of what was opened so far
   std::vector<Primitive> primitives_;
   std::vector<Instance> instances_;
+  uint64_t count_ = 0;  // of all instances, with the greatest degree
+  int sh_degree_ = 0;
+  LeftOut left_out_;
 };
 
 }  // namespace voyager::gltf

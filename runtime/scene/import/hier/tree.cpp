@@ -1,6 +1,8 @@
 #include "runtime/scene/import/hier/tree.h"
 
 #include <algorithm>
+#include <bitset>
+#include <memory>
 
 #include "runtime/scene/import/refuse.h"
 
@@ -19,19 +21,40 @@ std::vector<HierNode> read_all_nodes(const File& file) {
   return nodes;
 }
 
+// Which Gaussians a node has. What the file's count says is believed as nodes come: a page is there
+// from its first Gaussian on.
+class Taken {
+ public:
+  explicit Taken(uint64_t gaussians) : pages_((gaussians + kPage - 1) / kPage) {}
+  // False where it was taken before.
+  bool take(uint64_t gaussian) {
+    std::unique_ptr<std::bitset<kPage>>& page = pages_[gaussian / kPage];
+    if (!page) page = std::make_unique<std::bitset<kPage>>();
+    if (page->test(gaussian % kPage)) return false;
+    page->set(gaussian % kPage);
+    ++count_;
+    return true;
+  }
+  uint64_t count() const { return count_; }
+
+ private:
+  static constexpr uint64_t kPage = 4096;
+  std::vector<std::unique_ptr<std::bitset<kPage>>> pages_;
+  uint64_t count_ = 0;
+};
+
 class Walk {
  public:
-  explicit Walk(const File& file) : file_(file), nodes_(read_all_nodes(file)) {}
+  explicit Walk(const File& file)
+      : file_(file), nodes_(read_all_nodes(file)), taken_(file.gaussians()) {}
 
   Tree run() {
     if (nodes_.empty()) return {};
     node_met_.resize(nodes_.size());
-    gaussian_met_.resize(file_.gaussians());
     meet(0, -1);
     for (size_t i = 0; i < tree_.file_node.size(); ++i) visit(tree_.file_node[i]);
     if (tree_.file_node.size() != nodes_.size()) refuse_unreached();
-    tree_.unused =
-        static_cast<uint64_t>(std::count(gaussian_met_.begin(), gaussian_met_.end(), false));
+    tree_.unused = file_.gaussians() - taken_.count();
     return std::move(tree_);
   }
 
@@ -83,12 +106,10 @@ class Walk {
       refuse_node(node, "start",
                   std::to_string(n.start) + " with " + std::to_string(count) + " Gaussians",
                   "a range of the file's " + std::to_string(file_.gaussians()));
-    for (int64_t i = n.start; i < n.start + count; ++i) {
-      if (gaussian_met_[static_cast<size_t>(i)])
+    for (int64_t i = n.start; i < n.start + count; ++i)
+      if (!taken_.take(static_cast<uint64_t>(i)))
         refuse_node(node, "Gaussians", std::to_string(i) + ", which another node has",
                     "Gaussians of its own");
-      gaussian_met_[static_cast<size_t>(i)] = true;
-    }
     if (count > 1)
       tree_.further.push_back(
           {static_cast<uint32_t>(tree_.gaussian.size()), static_cast<uint32_t>(count - 1)});
@@ -103,7 +124,8 @@ class Walk {
 
   const File& file_;
   const std::vector<HierNode> nodes_;
-  std::vector<bool> node_met_, gaussian_met_;
+  std::vector<bool> node_met_;
+  Taken taken_;
   Tree tree_;
 };
 

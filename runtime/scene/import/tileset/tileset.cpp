@@ -7,17 +7,13 @@
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/tileset/contents.h"
+#include "runtime/scene/tileset_format.h"
 #include "runtime/scene/transform.h"
 
 namespace voyager::tileset {
 namespace {
 
-// Tiles have z up, and their glTF files, with y up, are turned to it: (x, y, z) becomes
-// (x, -z, y). From z up to INRIA's axes so that a tile that is not moved is its glTF file alone.
-constexpr Mat3d kToInria{{{-1, 0, 0}, {0, 0, -1}, {0, -1, 0}}};
-
 Affine in_inria_axes(const Affine& transform) {
-  // Its own inverse.
   return {kToInria * transform.linear * kToInria, kToInria * transform.offset};
 }
 
@@ -53,7 +49,7 @@ void group_by_file(std::vector<Content>& contents) {
 class Parts {
  public:
   explicit Parts(std::shared_ptr<const ByteSource> first) : first_(std::move(first)) {
-    bytes_[first_->name()] = first_->size();
+    total_bytes_ = bytes_[first_->name()] = first_->size();
   }
 
   std::unique_ptr<BlockReader> read(std::vector<Content> contents) {
@@ -62,25 +58,23 @@ class Parts {
     origin_ = origin_near(in_inria_axes(contents.front().transform).offset);
     group_by_file(contents);
     for (Content& content : contents) add(std::move(content));
-    const uint64_t bytes = gltf::sum_of(bytes_);
-    const uint64_t most = most_gaussians(bytes, bytes_of_gaussian(sh_degree_));
-    if (count_ > most)
-      refuse(first_->name(), 0, "Gaussians", std::to_string(count_),
-             "at most " + std::to_string(most) + " in " + std::to_string(bytes) + " bytes");
     return merge_blocks(first_->name(), std::move(parts_), origin_);
   }
+
+  const LeftOut& left_out() const { return left_out_; }
 
  private:
   void add(Content content) {
     const Affine place = in_inria_axes(content.transform);
     const std::string name = content.place;
     std::shared_ptr<Shared>& known = shared_[content.uri];
-    if (!known) known = std::make_shared<Shared>(first_, std::move(content));
+    const bool is_new = !known;
+    if (is_new) known = std::make_shared<Shared>(first_, std::move(content));
     const std::shared_ptr<Shared> shared = known;
     const auto scene = last_ = shared->open();
-    for (const auto& [path, size] : scene->bytes()) {
-      uint64_t& used = bytes_[path];
-      used = std::max(used, size);
+    if (is_new) {
+      count_bytes(*scene);
+      left_out_.add(scene->left_out());
     }
     for (BlockPart& part : gltf::parts_of(
              *scene, [shared] { return shared->open(); }, place, origin_, name)) {
@@ -88,10 +82,27 @@ class Parts {
       sh_degree_ = std::max(sh_degree_, part.sh_degree);
       parts_.push_back(std::move(part));
     }
-    const uint64_t most = most_parts(gltf::sum_of(bytes_));
-    if (parts_.size() > most)
+    require_worth();
+  }
+
+  void count_bytes(const gltf::Scene& scene) {
+    for (const auto& [path, size] : scene.bytes()) {
+      uint64_t& used = bytes_[path];
+      total_bytes_ += size - std::min(used, size);
+      used = std::max(used, size);
+    }
+  }
+
+  // With each content, before the next is opened.
+  void require_worth() const {
+    const uint64_t parts = most_parts(total_bytes_);
+    if (parts_.size() > parts)
       refuse(first_->name(), 0, "placed primitives", std::to_string(parts_.size()),
-             "at most " + std::to_string(most));
+             "at most " + std::to_string(parts));
+    const uint64_t most = most_gaussians(total_bytes_, bytes_of_gaussian(sh_degree_));
+    if (count_ > most)
+      refuse(first_->name(), 0, "Gaussians", std::to_string(count_),
+             "at most " + std::to_string(most) + " in " + std::to_string(total_bytes_) + " bytes");
   }
 
   std::shared_ptr<const ByteSource> first_;
@@ -99,6 +110,8 @@ class Parts {
   std::map<std::string, std::shared_ptr<Shared>> shared_;  // by URI
   std::shared_ptr<const gltf::Scene> last_;                // open, for tiles that repeat it
   std::map<std::string, uint64_t> bytes_;                  // as gltf::File::bytes()
+  uint64_t total_bytes_ = 0;                               // of all of them
+  LeftOut left_out_;
   std::array<double, 3> origin_{};
   uint64_t count_ = 0;
   int sh_degree_ = 0;
@@ -113,6 +126,13 @@ bool is_tileset(const nlohmann::json& json) {
 std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source, nlohmann::json json) {
   std::vector<Content> contents = list_contents(*source, std::move(json));
   return Parts(std::move(source)).read(std::move(contents));
+}
+
+LeftOut left_out(std::shared_ptr<const ByteSource> source, nlohmann::json json) {
+  std::vector<Content> contents = list_contents(*source, std::move(json));
+  Parts parts(std::move(source));
+  parts.read(std::move(contents));
+  return parts.left_out();
 }
 
 }  // namespace voyager::tileset

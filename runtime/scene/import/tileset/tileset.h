@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/left_out.h"
 
 namespace voyager::tileset {
 
@@ -18,6 +19,9 @@ bool is_tileset(const nlohmann::json& json);
 // than kMostDepth tilesets in one another, and more Gaussians than the files are worth; else what
 // opening the files throws.
 std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source, nlohmann::json json);
+
+// What of the .spz in its files is not read. Opens each file as open() does, and throws as it.
+LeftOut left_out(std::shared_ptr<const ByteSource> source, nlohmann::json json);
 
 inline constexpr int kMostDepth = 16;
 
