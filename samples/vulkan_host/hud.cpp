@@ -30,6 +30,8 @@ void show_stats(const VoyFrameStats& stats) {
   for (uint32_t i = 0; i < stats.stageCount; ++i)
     ImGui::Text("%-10s %7.2f ms", voyStageName(static_cast<VoyStage>(i)), stats.milliseconds[i]);
   ImGui::Text("%-10s %7.2f ms", "total", stats.millisecondsTotal);
+  if (stats.budgetState == VOY_BUDGET_STATE_UNREACHABLE)
+    ImGui::Text("late at the coarsest tau: this machine needs more time");
   const auto count = [](const char* name, uint64_t value) {
     ImGui::Text("%-10s %10llu", name, static_cast<unsigned long long>(value));
   };
