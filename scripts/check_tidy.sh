@@ -6,7 +6,7 @@
 # kernels share with the CPU, runtime/stages, is checked through the CPU's sources.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-folders='(runtime|plugin|http|sog|tools|vulkan_interop|samples|cuda)'
+folders='(runtime|plugin|http|sog|tools|vulkan_interop|host|samples|cuda)'
 grep -oE '"file": "[^"]*"' "$1/compile_commands.json" | cut -d'"' -f4 | sort -u |
   grep -E "^$PWD/(($1)/$folders/.*/Unity/.*\.cxx|$folders/.*\.cpp)$" |
   grep -v 'runtime/cpu/rasterize_avx' |

@@ -24,7 +24,7 @@ std::string folder_of(const std::string& path) {
 
 }  // namespace
 
-// samples/common/files.cpp and samples/c_minimal, which use the C ABI alone, do the same.
+// host/common/files.cpp and samples/c_minimal, which use the C ABI alone, do the same.
 std::string written_path(const std::string& path) {
   constexpr int kMostLinks = 40;  // as the system has it
   fs::path target = path;

@@ -7,6 +7,7 @@
 
 #include "camera.h"
 #include "eye_images.h"
+#include "sampled_images.h"
 #include "visible_area.h"
 #include "voyager_layer.h"
 
@@ -30,11 +31,9 @@ class EyePass {
   const VoyagerLayer& voyager_;
   const DepthConvention convention_;
   UniqueRenderPass pass_;
-  UniqueDescriptorSetLayout set_layout_;
+  SampledImages sets_;  // slot by slot, eye by eye
   UniquePipelineLayout layout_;
   UniquePipeline pipeline_;
-  UniqueDescriptorPool pool_;
-  std::array<std::array<VkDescriptorSet, kEyes>, kFramesInFlight> sets_ = {};
   std::map<std::array<size_t, 3>, UniqueFramebuffer> framebuffers_;
 };
 

@@ -15,8 +15,7 @@ struct EyePush {
 
 UniqueRenderPass make_eye_render_pass(VkDevice device, VkFormat colour,
                                       std::optional<VkFormat> depth);
-// Sampled images at bindings 0 (colour) and, with depth, 1.
-UniqueDescriptorSetLayout make_eye_set_layout(VkDevice device, bool depth);
+// set: of colour and, with depth, depth.
 UniquePipelineLayout make_eye_layout(VkDevice device, VkDescriptorSetLayout set);
 UniquePipeline make_eye_pipeline(VkDevice device, VkPipelineLayout layout, VkRenderPass pass,
                                  bool depth);

@@ -1,7 +1,7 @@
 #include "graphics.h"
 
 #include <algorithm>
-#include <voyager/voyager.hpp>
+#include <vector>
 
 #include "failure.h"
 #include "warn_once.h"
@@ -62,34 +62,14 @@ Graphics::Graphics(const Runtime& runtime, Validation* validation) : runtime_(ru
 }
 
 void Graphics::create_instance(Validation* validation) {
-  // Asked before there is an instance: what any device may need of one.
-  VoyVulkanRequirements needs = VOY_VULKAN_REQUIREMENTS_INIT;
-  voy::check(voyGetVulkanRequirements(nullptr, &needs));
-  api_version_ = agree(runtime_, needs.apiVersion);
-  std::vector<const char*> extensions(needs.instanceExtensions,
-                                      needs.instanceExtensions + needs.instanceExtensionCount);
-  VkApplicationInfo application = {};
-  application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-  application.pApplicationName = "openxr_headset";
-  application.apiVersion = api_version_;
-  VkInstanceCreateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-  info.pApplicationInfo = &application;
-  if (validation) {
-    require_validation_layer();
-    extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-    extensions.push_back(VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
-    info.pNext = validation->instance_chain();
-    info.enabledLayerCount = 1;
-    info.ppEnabledLayerNames = &kValidationLayer;
-  }
-  info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
-  info.ppEnabledExtensionNames = extensions.data();
+  InstanceCreation creation("openxr_headset", validation, {});
+  api_version_ = agree(runtime_, creation.api_version());
+  creation.set_api_version(api_version_);
 
   auto request = xr_struct<XrVulkanInstanceCreateInfoKHR>(XR_TYPE_VULKAN_INSTANCE_CREATE_INFO_KHR);
   request.systemId = runtime_.system();
   request.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
-  request.vulkanCreateInfo = &info;
+  request.vulkanCreateInfo = &creation.info();
   VkResult result = VK_SUCCESS;
   const auto create = runtime_.function<PFN_xrCreateVulkanInstanceKHR>("xrCreateVulkanInstanceKHR");
   VkInstance instance = VK_NULL_HANDLE;
@@ -114,38 +94,14 @@ void Graphics::create_device() {
   largest_image_ = properties.limits.maxImageDimension2D;
   queue_family_ = find_queue_family(physical_);
 
-  // What this physical device has of what Voyager can use.
-  VoyVulkanPhysicalDevice asked = VOY_VULKAN_PHYSICAL_DEVICE_INIT;
-  asked.getInstanceProcAddr = vkGetInstanceProcAddr;
-  asked.instance = instance_.get();
-  asked.physicalDevice = physical_;
-  VoyVulkanRequirements needs = VOY_VULKAN_REQUIREMENTS_INIT;
-  voy::check(voyGetVulkanRequirements(&asked, &needs));
-  extensions_.assign(needs.deviceExtensions, needs.deviceExtensions + needs.deviceExtensionCount);
-  timeline_semaphore_ = needs.timelineSemaphore;
-
-  const float priority = 1;
-  VkDeviceQueueCreateInfo queue = {};
-  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-  queue.queueFamilyIndex = queue_family_;
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
-  VkPhysicalDeviceTimelineSemaphoreFeatures timeline = {};
-  timeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
-  timeline.timelineSemaphore = VK_TRUE;
-  VkDeviceCreateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-  if (timeline_semaphore_) info.pNext = &timeline;
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = static_cast<uint32_t>(extensions_.size());
-  info.ppEnabledExtensionNames = extensions_.data();
+  creation_ = std::make_unique<DeviceCreation>(instance_.get(), api_version_, physical_,
+                                               queue_family_, std::vector<const char*>());
 
   auto request = xr_struct<XrVulkanDeviceCreateInfoKHR>(XR_TYPE_VULKAN_DEVICE_CREATE_INFO_KHR);
   request.systemId = runtime_.system();
   request.pfnGetInstanceProcAddr = vkGetInstanceProcAddr;
   request.vulkanPhysicalDevice = physical_;
-  request.vulkanCreateInfo = &info;
+  request.vulkanCreateInfo = &creation_->info();
   VkResult result = VK_SUCCESS;
   const auto create = runtime_.function<PFN_xrCreateVulkanDeviceKHR>("xrCreateVulkanDeviceKHR");
   VkDevice device = VK_NULL_HANDLE;
@@ -168,19 +124,6 @@ XrGraphicsBindingVulkan2KHR Graphics::binding() const {
   binding.queueFamilyIndex = queue_family_;
   binding.queueIndex = 0;
   return binding;
-}
-
-VoyVulkanDeviceDesc Graphics::voyager_desc() const {
-  VoyVulkanDeviceDesc desc = VOY_VULKAN_DEVICE_DESC_INIT;
-  desc.getInstanceProcAddr = vkGetInstanceProcAddr;
-  desc.instance = instance_.get();
-  desc.physicalDevice = physical_;
-  desc.device = device_.get();
-  desc.apiVersion = api_version_;
-  desc.deviceExtensionCount = static_cast<uint32_t>(extensions_.size());
-  desc.deviceExtensions = extensions_.data();
-  desc.timelineSemaphore = timeline_semaphore_;
-  return desc;
 }
 
 }  // namespace host

@@ -4,8 +4,8 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
+#include "creation.h"
 #include "gpu.h"
 #include "runtime.h"
 #include "validation.h"
@@ -26,7 +26,7 @@ class Graphics {
 
   VkDevice get() const { return device_.get(); }
   VkPhysicalDevice physical() const { return physical_; }
-  operator Gpu() const { return {physical_, device_.get()}; }
+  operator Gpu() const { return {physical_, device_.get(), queue_, queue_family_}; }
   VkQueue queue() const { return queue_; }
   uint32_t queue_family() const { return queue_family_; }
   const std::string& name() const { return name_; }
@@ -36,7 +36,7 @@ class Graphics {
   // What xrCreateSession wants. Asks, as it must, for the runtime's requirements first.
   XrGraphicsBindingVulkan2KHR binding() const;
   // What voyCreateDevice needs to know. It points into this object.
-  VoyVulkanDeviceDesc voyager_desc() const;
+  VoyVulkanDeviceDesc voyager_desc() const { return creation_->voyager_desc(device_.get()); }
 
  private:
   void create_instance(Validation* validation);
@@ -50,8 +50,7 @@ class Graphics {
   VkQueue queue_ = VK_NULL_HANDLE;
   uint32_t queue_family_ = 0, api_version_ = 0, largest_image_ = 0;
   std::string name_;
-  std::vector<const char*> extensions_;
-  VkBool32 timeline_semaphore_ = VK_FALSE;
+  std::unique_ptr<DeviceCreation> creation_;
 };
 
 }  // namespace host

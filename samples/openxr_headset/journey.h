@@ -33,8 +33,8 @@ struct Journey {
   std::optional<Traveller> traveller;  // once there is a scene
   Statistics statistics;
   Patience patience;
-  std::string modes;         // how frames were handed over
-  double tau = options.tau;  // of the last session's last frame
+  std::string modes;   // how frames were handed over
+  std::string detail;  // of the last session's last frame
 };
 
 }  // namespace host

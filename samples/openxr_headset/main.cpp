@@ -36,6 +36,14 @@ std::string say_what_runs(const Runtime& runtime, const Graphics& graphics,
   return modes;
 }
 
+VoyagerOptions voyager_options(const Journey& journey) {
+  const Options& options = journey.options;
+  VoyagerOptions out = {options.scene, options.tau, options.time_budget,
+                        static_cast<uint64_t>(options.budget_megabytes * 1e6), std::nullopt};
+  if (!journey.cameras.empty()) out.first_frame = journey.cameras.front().pose;
+  return out;
+}
+
 Traveller start(const Journey& journey, const VoyagerLayer& voyager) {
   return journey.cameras.empty() ? Traveller(stand_on_ground(voyager.device(), voyager.scene()))
                                  : Traveller(journey.cameras);
@@ -47,8 +55,7 @@ bool visit(Journey& journey, Validations* validations) try {
   Runtime runtime(validations ? &validations->xr : nullptr);
   const Graphics graphics(runtime, validations ? &validations->vulkan : nullptr);
   const auto opening = std::chrono::steady_clock::now();
-  VoyagerLayer voyager(graphics, journey.options.scene, journey.options.tau,
-                       journey.options.time_budget);
+  VoyagerLayer voyager(graphics, voyager_options(journey));
   journey.patience.excuse(std::chrono::steady_clock::now() - opening);
   const Input input(runtime);
   journey.modes = say_what_runs(runtime, graphics, voyager);
@@ -56,7 +63,7 @@ bool visit(Journey& journey, Validations* validations) try {
   for (;;) {
     try {
       Visit(runtime, graphics, input, voyager, journey).run();
-      journey.tau = voyager.tau();
+      journey.detail = voyager.summary();
       return true;
     } catch (const Lost& lost) {
       journey.statistics.lost();
@@ -90,8 +97,8 @@ void run(const Options& options, Validations* validations) {
     throw;
   }
   if (journey.recorder) journey.recorder->write_cameras();
-  std::printf("%s; tau %g; %s\n", journey.statistics.summary().c_str(), journey.tau,
-              journey.modes.c_str());
+  std::printf("%s; %s%s%s\n", journey.statistics.summary().c_str(), journey.detail.c_str(),
+              journey.detail.empty() ? "" : "; ", journey.modes.c_str());
 }
 
 int parse_and_run(int argc, char** argv) {

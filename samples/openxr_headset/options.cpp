@@ -1,31 +1,10 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
+
+#include "option_checks.h"
 
 namespace host {
-namespace {
-
-std::string not_negative(const std::string& text) {
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return {};
-  return "found " + text + ", expected a number, 0 or more";
-}
-
-std::string above_zero(const std::string& text) {
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0) return {};
-  return "found " + text + ", expected milliseconds above 0";
-}
-
-std::string positive(const std::string& text) {
-  uint64_t value = 0;
-  const bool digits = text.find_first_not_of("0123456789") == std::string::npos;
-  if (digits && CLI::detail::lexical_cast(text, value) && value > 0) return {};
-  return "found " + text + ", expected a whole number, 1 or more";
-}
-
-}  // namespace
 
 std::optional<Options> parse_options(int argc, char** argv) {
   Options o;
@@ -42,10 +21,14 @@ std::optional<Options> parse_options(int argc, char** argv) {
       ->type_name("FOLDER");
   auto* const tau = app.add_option("--tau", o.tau, "Level of detail, pixels: smaller is finer")
                         ->check(CLI::Validator(not_negative, "PX"));
-  app.add_option("--time-budget", o.time_budget,
-                 "Voyager's share of a frame, both eyes: the granularity follows")
-      ->check(CLI::Validator(above_zero, "MS"))
-      ->excludes(tau);
+  auto* const time = app.add_option("--time-budget", o.time_budget,
+                                    "Voyager's part of a frame, both eyes: tau follows. Without it "
+                                    "and --tau, three quarters of the display's period")
+                         ->check(CLI::Validator(above_zero, "MS"))
+                         ->excludes(tau);
+  app.add_option("--budget", o.budget_megabytes,
+                 "Stream the scene: 10^6 bytes that its data may occupy")
+      ->check(CLI::Validator(megabytes, "MB"));
   app.add_flag("--validation", o.validation,
                "Run under the validation layers of Vulkan and OpenXR; exit with 1 if they report "
                "anything");
@@ -58,6 +41,8 @@ std::optional<Options> parse_options(int argc, char** argv) {
   }
   if (!o.readback.empty() && o.frames == 0)
     throw CLI::ValidationError("--readback", "expected --frames N with it");
+  // Pictures that are compared have one tau.
+  o.follows_display = tau->empty() && time->empty() && o.readback.empty();
   return o;
 }
 

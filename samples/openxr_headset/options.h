@@ -14,7 +14,9 @@ struct Options {
   bool validation = false;
   uint64_t frames = 0;  // 0: until the player leaves
   double tau = 3;
-  double time_budget = 0;  // milliseconds a frame in place of tau; 0 is none
+  double time_budget = 0;       // milliseconds a frame in place of tau; 0 is none
+  bool follows_display = true;  // neither was given: its period says how long a frame may take
+  double budget_megabytes = 0;  // of scene data, which is streamed then; 0: no limit
 };
 
 // Nothing where --help was printed. Throws CLI::ParseError.

@@ -1,5 +1,7 @@
 #include "readback.h"
 
+#include "image_copy.h"
+
 namespace host {
 namespace {
 
@@ -45,23 +47,6 @@ void blit(VkCommandBuffer commands, const EyeImage& from, VkImage to) {
                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_NEAREST);
 }
 
-void copy(VkCommandBuffer commands, VkImage from, VkExtent2D extent, VkBuffer to) {
-  const VkBufferImageCopy region = {
-      0, 0, 0, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}, {0, 0, 0}, {extent.width, extent.height, 1}};
-  vkCmdCopyImageToBuffer(commands, from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to, 1, &region);
-  const VkBufferMemoryBarrier barrier = {VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER,
-                                         nullptr,
-                                         VK_ACCESS_TRANSFER_WRITE_BIT,
-                                         VK_ACCESS_HOST_READ_BIT,
-                                         VK_QUEUE_FAMILY_IGNORED,
-                                         VK_QUEUE_FAMILY_IGNORED,
-                                         to,
-                                         0,
-                                         VK_WHOLE_SIZE};
-  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 0,
-                       nullptr, 1, &barrier, 0, nullptr);
-}
-
 }  // namespace
 
 Readback::Readback(const Graphics& graphics, const EyeImages& images) {
@@ -91,7 +76,7 @@ void Readback::record(VkCommandBuffer commands, const EyeImages& images) const {
     blit(commands, from, encoded);
     change(commands, from.colour->image(), from.layer, kCopiedFrom, kAttachment);
     change(commands, encoded, 0, kCopiedTo, kCopiedFrom);
-    copy(commands, encoded, eyes_[i].extent, eyes_[i].buffer.buffer.get());
+    copy_to_host(commands, encoded, VK_IMAGE_ASPECT_COLOR_BIT, eyes_[i].extent, eyes_[i].buffer);
   }
 }
 

@@ -3,28 +3,6 @@
 namespace host {
 namespace {
 
-UniqueFence make_fence(VkDevice device, VkFenceCreateFlags flags) {
-  const VkFenceCreateInfo info = {VK_STRUCTURE_TYPE_FENCE_CREATE_INFO, nullptr, flags};
-  VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(device, &info, nullptr, &fence), "vkCreateFence");
-  return {device, fence};
-}
-
-void wait_for(VkDevice device, VkFence fence) {
-  check(vkWaitForFences(device, 1, &fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-}
-
-void begin(VkCommandBuffer commands) {
-  VkCommandBufferBeginInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-  check(vkBeginCommandBuffer(commands, &info), "vkBeginCommandBuffer");
-}
-
-void end(VkCommandBuffer commands) {
-  check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
-}
-
 const VoyagerLayer& sized(VoyagerLayer& voyager, const EyeImages& images) {
   voyager.resize(images.extents(), images.depth_format().has_value());
   return voyager;
@@ -41,27 +19,10 @@ Renderer::Renderer(const Graphics& graphics, VoyagerLayer& voyager, const EyeIma
       recorder_(recorder),
       pass_(graphics, images.colour_format().format, images.depth_format(), sized(voyager, images),
             convention),
-      areas_{VisibleArea(graphics), VisibleArea(graphics)} {
-  const VkCommandPoolCreateInfo pool_info = {VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
-                                             VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                             graphics.queue_family()};
-  VkCommandPool pool = VK_NULL_HANDLE;
-  check(vkCreateCommandPool(graphics.get(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
-  pool_ = {graphics.get(), pool};
-  const VkCommandBufferAllocateInfo info = {VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, nullptr,
-                                            pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-  for (Slot& slot : slots_) {
-    for (VkCommandBuffer* commands : {&slot.before, &slot.after})
-      check(vkAllocateCommandBuffers(graphics.get(), &info, commands), "vkAllocateCommandBuffers");
-    slot.before_done = make_fence(graphics.get(), 0);
-    slot.after_done = make_fence(graphics.get(), VK_FENCE_CREATE_SIGNALED_BIT);
-    if (recorder) slot.readback.emplace(graphics, images);
-  }
-}
-
-// Frames may be in flight where a loss or an error ends the session.
-Renderer::~Renderer() {
-  vkDeviceWaitIdle(graphics_.get());
+      areas_{VisibleArea(graphics), VisibleArea(graphics)},
+      frames_(graphics) {
+  if (!recorder) return;
+  for (Recorded& recorded : recorded_) recorded.readback.emplace(graphics, images);
 }
 
 void Renderer::set_visible_area(size_t eye, VisibleArea area) {
@@ -70,65 +31,47 @@ void Renderer::set_visible_area(size_t eye, VisibleArea area) {
 }
 
 void Renderer::draw(const std::array<Camera, kEyes>& eyes, uint64_t frame) {
-  Slot& slot = slots_[slot_];
-  wait_for(graphics_.get(), slot.after_done.get());
-  save(slot);
+  const uint32_t slot = frames_.wait_for_slot();
+  save(recorded_[slot]);
   voyager_.begin_frame();
   submit_before(slot);
-  voyager_.render(eyes, convention_.near_z, slot_);
-  record_after(slot, eyes);
-  submit_after(slot);
-  if (recorder_) {
-    recorder_->add(frame, eyes);
-    slot.recorded = frame;
-  }
-  slot_ = (slot_ + 1) % kFramesInFlight;
+  voyager_.render(eyes, convention_.near_z, slot);
+  submit_after(slot, eyes);
+  if (!recorder_) return;
+  recorder_->add(frame, eyes);
+  recorded_[slot].frame = frame;
 }
 
-void Renderer::save(Slot& slot) {
-  if (!slot.recorded) return;
+void Renderer::save(Recorded& recorded) {
+  if (!recorded.frame) return;
   for (size_t eye = 0; eye < kEyes; ++eye)
-    recorder_->write_picture(*slot.recorded, eye, slot.readback->extent(eye),
-                             slot.readback->rgba(eye));
-  slot.recorded.reset();
+    recorder_->write_picture(*recorded.frame, eye, recorded.readback->extent(eye),
+                             recorded.readback->rgba(eye));
+  recorded.frame.reset();
 }
 
 void Renderer::finish() {
   graphics_.wait_idle();
-  for (Slot& slot : slots_) save(slot);
+  for (Recorded& recorded : recorded_) save(recorded);
 }
 
-void Renderer::submit_before(const Slot& slot) {
-  begin(slot.before);
-  voyager_.record_release(slot.before, slot_);
-  end(slot.before);
-  Submission submission(slot.before);
-  voyager_.signal_released(submission, slot_);
-  if (!voyager_.host_waits()) {
-    submission.submit(graphics_.queue(), VK_NULL_HANDLE);
-    return;
-  }
-  const VkFence fence = slot.before_done.get();
-  submission.submit(graphics_.queue(), fence);
-  wait_for(graphics_.get(), fence);
-  check(vkResetFences(graphics_.get(), 1, &fence), "vkResetFences");
+void Renderer::submit_before(uint32_t slot) {
+  const VkCommandBuffer commands = frames_.begin_before();
+  voyager_.record_release(commands, slot);
+  Submission submission(commands);
+  voyager_.signal_released(submission, slot);
+  frames_.submit_before(submission, voyager_.host_waits());
 }
 
-void Renderer::record_after(const Slot& slot, const std::array<Camera, kEyes>& eyes) {
-  begin(slot.after);
-  voyager_.record_acquire(slot.after, slot_);
+void Renderer::submit_after(uint32_t slot, const std::array<Camera, kEyes>& eyes) {
+  const VkCommandBuffer commands = frames_.begin_after();
+  voyager_.record_acquire(commands, slot);
   for (size_t eye = 0; eye < kEyes; ++eye)
-    pass_.record(slot.after, slot_, eye, images_.eye(eye), areas_[eye], eyes[eye].frustum);
-  if (slot.readback) slot.readback->record(slot.after, images_);
-  end(slot.after);
-}
-
-void Renderer::submit_after(const Slot& slot) {
-  Submission submission(slot.after);
-  voyager_.wait_for_rendered(submission, slot_);
-  const VkFence fence = slot.after_done.get();
-  check(vkResetFences(graphics_.get(), 1, &fence), "vkResetFences");
-  submission.submit(graphics_.queue(), fence);
+    pass_.record(commands, slot, eye, images_.eye(eye), areas_[eye], eyes[eye].frustum);
+  if (recorded_[slot].readback) recorded_[slot].readback->record(commands, images_);
+  Submission submission(commands);
+  voyager_.wait_for_rendered(submission, slot);
+  frames_.submit_after(submission);
 }
 
 }  // namespace host

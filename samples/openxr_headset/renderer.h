@@ -2,6 +2,7 @@
 // A frame's commands: Voyager draws both eyes, the eye pass fills the swapchain images. Two
 // frames are in flight.
 #include "eye_pass.h"
+#include "frame_commands.h"
 #include "readback.h"
 #include "recorder.h"
 
@@ -12,9 +13,6 @@ class Renderer {
   // recorder may be NULL. Resizes voyager.
   Renderer(const Graphics& graphics, VoyagerLayer& voyager, const EyeImages& images,
            const DepthConvention& convention, Recorder* recorder);
-  ~Renderer();
-  Renderer(const Renderer&) = delete;
-  Renderer& operator=(const Renderer&) = delete;
 
   // The runtime has another mask for this eye.
   void set_visible_area(size_t eye, VisibleArea area);
@@ -25,17 +23,15 @@ class Renderer {
   void finish();
 
  private:
-  struct Slot {
-    VkCommandBuffer before = VK_NULL_HANDLE, after = VK_NULL_HANDLE;  // Voyager's frame
-    UniqueFence before_done, after_done;
+  // The pictures of a slot's frame, which are written once it is done.
+  struct Recorded {
     std::optional<Readback> readback;
-    std::optional<uint64_t> recorded;  // the frame whose pictures are in it
+    std::optional<uint64_t> frame;
   };
 
-  void save(Slot& slot);
-  void submit_before(const Slot& slot);
-  void record_after(const Slot& slot, const std::array<Camera, kEyes>& eyes);
-  void submit_after(const Slot& slot);
+  void save(Recorded& recorded);
+  void submit_before(uint32_t slot);
+  void submit_after(uint32_t slot, const std::array<Camera, kEyes>& eyes);
 
   const Graphics& graphics_;
   VoyagerLayer& voyager_;
@@ -44,9 +40,8 @@ class Renderer {
   Recorder* recorder_;
   EyePass pass_;
   std::array<VisibleArea, kEyes> areas_;
-  UniqueCommandPool pool_;
-  std::array<Slot, kFramesInFlight> slots_;
-  uint32_t slot_ = 0;
+  std::array<Recorded, kFramesInFlight> recorded_;
+  FrameCommands frames_;  // goes first: it waits for the frames in flight
 };
 
 }  // namespace host

@@ -44,6 +44,7 @@ Visit::Visit(const Runtime& runtime, const Graphics& graphics, const Input& inpu
     : runtime_(runtime),
       graphics_(graphics),
       input_(input),
+      voyager_(voyager),
       journey_(journey),
       session_(runtime, graphics, input),
       images_(session_, runtime, graphics, voyager.largest(), journey.recorder.has_value()),
@@ -144,6 +145,7 @@ void Visit::frame() {
   }
   look(state.predictedDisplayTime);
   const std::optional<Views> views = views_;
+  hold_frame_time(state.predictedDisplayPeriod);
   if (views) steer(state, *views);
   if (!leaving_ && state.shouldRender && views && draw(*views)) {
     submit(state, *views);
@@ -155,6 +157,17 @@ void Visit::frame() {
     session_.end_frame(state.predictedDisplayTime, nullptr);
     journey_.statistics.empty();
   }
+}
+
+// Of a display's period three quarters are Voyager's; the eye pass and the compositor have the
+// rest. A runtime that shows a late application's frames twice tells twice the period: the shortest
+// counts.
+void Visit::hold_frame_time(XrDuration display_period) {
+  constexpr double kShare = 0.75, kMilliseconds = 1e-6;
+  if (!journey_.options.follows_display || !voyager_.has_tree() || display_period <= 0) return;
+  if (shortest_period_ && *shortest_period_ <= display_period) return;
+  shortest_period_ = display_period;
+  voyager_.hold_frame_time(kShare * kMilliseconds * static_cast<double>(display_period));
 }
 
 // Where the head is lost, the last that was known of it stays.

@@ -22,6 +22,7 @@ class Visit {
   void leave_when_finished();
   void frame();
   void look(XrTime display_time);
+  void hold_frame_time(XrDuration display_period);
   void steer(const XrFrameState& state, const Views& views);
   bool draw(const Views& views);
   std::optional<std::array<Camera, kEyes>> cameras(const Views& views) const;
@@ -30,11 +31,13 @@ class Visit {
   const Runtime& runtime_;
   const Graphics& graphics_;
   const Input& input_;
+  VoyagerLayer& voyager_;
   Journey& journey_;
   Session session_;
   EyeImages images_;
   Renderer renderer_;
   std::optional<Views> views_;  // the last that were known
+  std::optional<XrDuration> shortest_period_;
   std::optional<XrTime> recentre_at_, steered_at_;
   bool leaving_ = false;
 };

@@ -1,29 +1,32 @@
 #include "voyager_layer.h"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "failure.h"
 
 namespace host {
 namespace {
 
-// What the draws sample with.
-constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-constexpr VkPipelineStageFlags kStages = VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
+VoyTimeBudget time_budget(double milliseconds) {
+  VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
+  budget.milliseconds = milliseconds;
+  return budget;
+}
 
 }  // namespace
 
-VoyagerLayer::VoyagerLayer(const Graphics& graphics, const std::string& scene, double tau,
-                           double time_budget)
-    : graphics_(graphics), tau_(tau), time_budget_(time_budget) {
-  create_device();
-  scene_ = device_.open_scene(scene);
+VoyagerLayer::VoyagerLayer(const Graphics& graphics, const VoyagerOptions& options)
+    : graphics_(graphics), tau_(options.tau), frame_time_(options.frame_time) {
+  create_device(options.memory_budget);
+  open_scene(options);
 }
 
-void VoyagerLayer::create_device() {
+void VoyagerLayer::create_device(uint64_t memory_budget) {
   VoyVulkanDeviceDesc vulkan = graphics_.voyager_desc();
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
   desc.next = &vulkan;
+  desc.memoryBudget = desc.deviceMemoryBudget = memory_budget;  // whichever draws
   device_ = voy::Device::create(desc);
   capabilities_.next = &vulkan_;
   voy::check(voyGetCapabilities(device_.get(), &capabilities_));
@@ -31,6 +34,46 @@ void VoyagerLayer::create_device() {
   if (capabilities_.maxEyes < kEyes)
     throw Failure(kBadUsage, "the Voyager library: found views of " +
                                  std::to_string(capabilities_.maxEyes) + " eye, expected of 2");
+}
+
+// Within a budget a scene is streamed: what frames need is read while they are drawn, none of them
+// waits for it, and the budget is never exceeded. Voyager itself reads ahead of where the head
+// moves.
+void VoyagerLayer::open_scene(const VoyagerOptions& options) {
+  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+  if (options.first_frame) streaming.start = options.first_frame->position;
+  VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+  desc.path = options.scene.c_str();
+  if (options.memory_budget > 0) desc.next = &streaming;
+  scene_ = device_.open_scene(desc);
+  has_tree_ = scene_.info().nodeCount > 0;
+  streams_ = scene_.profile().streamed != 0;  // a flat file is loaded whole
+}
+
+void VoyagerLayer::hold_frame_time(double milliseconds) {
+  frame_time_ = milliseconds;
+  if (view_) view_.set_time_budget(time_budget(milliseconds));
+}
+
+std::string VoyagerLayer::summary() const {
+  if (!has_drawn_) return {};
+  const VoyFrameStats frame = view_.stats();
+  char text[256];
+  std::snprintf(text, sizeof text, "tau %g", frame.tau);
+  std::string summary = text;
+  if (frame.timeBudget > 0) {
+    std::snprintf(text, sizeof text, " to take %g ms", frame.timeBudget);
+    summary += text;
+  }
+  if (!streams_) return summary;
+  VoyStreamingStats streaming = VOY_STREAMING_STATS_INIT;
+  voy::check(voyGetStreamingStats(scene_.get(), &streaming));
+  std::snprintf(text, sizeof text, "; streamed: %llu of %llu chunks resident, %llu read, %.2f MB",
+                static_cast<unsigned long long>(streaming.residentChunks),
+                static_cast<unsigned long long>(scene_.info().chunkCount),
+                static_cast<unsigned long long>(streaming.arrived),
+                static_cast<double>(scene_.info().residentBytes) / 1e6);
+  return summary + text;
 }
 
 void VoyagerLayer::create_view(VkExtent2D largest) {
@@ -42,12 +85,12 @@ void VoyagerLayer::create_view(VkExtent2D largest) {
   desc.maxWidth = largest.width;
   desc.maxHeight = largest.height;
   desc.tau = tau_;
-  VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
-  budget.milliseconds = time_budget_;
-  if (time_budget_ > 0) desc.next = &budget;
+  const VoyTimeBudget budget = time_budget(frame_time_);
+  if (frame_time_ > 0) desc.next = &budget;
   view_ = {};  // its buffers go before the new one's come
   view_ = device_.create_view(desc);
   view_extent_ = largest;
+  has_drawn_ = false;
 }
 
 void VoyagerLayer::resize(const std::array<VkExtent2D, kEyes>& extents, bool depth) {
@@ -58,57 +101,28 @@ void VoyagerLayer::resize(const std::array<VkExtent2D, kEyes>& extents, bool dep
   // A view keeps its cut: another is made only where an image outgrows it.
   if (largest.width > view_extent_.width || largest.height > view_extent_.height)
     create_view(largest);
-  if (extents[0].width == extents[1].width && extents[0].height == extents[1].height) {
-    rings_.push_back(make_ring(extents[0], kEyes, depth));
-  } else {
-    for (const VkExtent2D extent : extents) rings_.push_back(make_ring(extent, 1, depth));
-  }
-  frame_ = 0;
+  const bool alike = extents[0].width == extents[1].width && extents[0].height == extents[1].height;
+  const uint32_t layers = alike ? kEyes : 1;
+  for (size_t i = 0; i < kEyes / layers; ++i)
+    rings_.emplace_back(graphics_, device_,
+                        RingDesc{extents[i], kFramesInFlight, depth, VK_FALSE, layers});
 }
 
-VoyagerLayer::Ring VoyagerLayer::make_ring(VkExtent2D extent, uint32_t layers, bool depth) const {
-  VoyVulkanTargetDesc vulkan = VOY_VULKAN_TARGET_DESC_INIT;
-  vulkan.imageCount = kFramesInFlight;
-  vulkan.layerCount = layers;
-  vulkan.depth = depth;
-  VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
-  desc.next = &vulkan;
-  desc.kind = VOY_TARGET_KIND_VULKAN;
-  desc.width = extent.width;
-  desc.height = extent.height;
-  Ring ring = {device_.create_target(desc), {}};
-  uint32_t count = 0;
-  voy::check(voyGetVulkanImages(ring.target.get(), kFramesInFlight, ring.images.data(), &count));
-  return ring;
-}
-
-VoyVulkanUse VoyagerLayer::use(VkCommandBuffer commands, uint32_t slot) const {
-  VoyVulkanUse use = VOY_VULKAN_USE_INIT;
-  use.commandBuffer = commands;
-  use.queueFamily = graphics_.queue_family();
-  use.imageIndex = slot;
-  use.layout = kLayout;
-  use.stages = kStages;
-  return use;
+void VoyagerLayer::begin_frame() {
+  for (VoyagerRing& ring : rings_) ring.begin_frame();
 }
 
 void VoyagerLayer::record_release(VkCommandBuffer commands, uint32_t slot) const {
-  const VoyVulkanUse released = use(commands, slot);
-  for (const Ring& ring : rings_) voy::check(voyRecordVulkanRelease(ring.target.get(), &released));
-}
-
-uint64_t VoyagerLayer::timeline_value() const {
-  return vulkan_.sync == VOY_VULKAN_SYNC_TIMELINE ? frame_ : 0;
+  for (const VoyagerRing& ring : rings_) ring.record_release(commands, slot);
 }
 
 // The semaphores are NULL with VOY_VULKAN_SYNC_HOST.
 void VoyagerLayer::signal_released(Submission& submission, uint32_t slot) const {
-  for (const Ring& ring : rings_) submission.signal({ring.images[slot].released, timeline_value()});
+  for (const VoyagerRing& ring : rings_) submission.signal(ring.released(slot));
 }
 void VoyagerLayer::wait_for_rendered(Submission& submission, uint32_t slot) const {
-  for (const Ring& ring : rings_)
-    submission.wait({ring.images[slot].rendered, timeline_value()},
-                    VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+  for (const VoyagerRing& ring : rings_)
+    submission.wait(ring.rendered(slot), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
 }
 
 void VoyagerLayer::render(const std::array<Camera, kEyes>& cameras, double near_z, uint32_t slot) {
@@ -116,24 +130,21 @@ void VoyagerLayer::render(const std::array<Camera, kEyes>& cameras, double near_
   for (uint32_t i = 0; i < kEyes; ++i) {
     eyes[i].pose = cameras[i].pose;
     eyes[i].frustum = cameras[i].frustum;
-    eyes[i].target = ring(i).target.get();
+    eyes[i].target = ring(i).target();
     eyes[i].layer = layer(i);
   }
-  VoyVulkanFrame vulkan = VOY_VULKAN_FRAME_INIT;
-  vulkan.imageIndex = slot;
-  vulkan.waitValue = vulkan.signalValue =
-      vulkan_.sync == VOY_VULKAN_SYNC_BINARY ? 1 : timeline_value();
+  const VoyVulkanFrame vulkan = rings_[0].frame(slot);  // the rings are in step
   VoyFrame frame = VOY_FRAME_INIT;
   frame.next = &vulkan;
   frame.eyeCount = kEyes;
   frame.eyes = eyes;
   frame.nearZ = near_z;
   view_.render(frame);
+  has_drawn_ = true;
 }
 
 void VoyagerLayer::record_acquire(VkCommandBuffer commands, uint32_t slot) const {
-  const VoyVulkanUse acquired = use(commands, slot);
-  for (const Ring& ring : rings_) voy::check(voyRecordVulkanAcquire(ring.target.get(), &acquired));
+  for (const VoyagerRing& ring : rings_) ring.record_acquire(commands, slot);
 }
 
 }  // namespace host

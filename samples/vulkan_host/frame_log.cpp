@@ -14,13 +14,22 @@ void FrameLog::add(const VoyagerLayer* voyager) {
   if (voyager) {
     const VoyFrameStats stats = voyager->stats();
     frame["frame"] = stats.frameIndex;  // the last that has ended, where frames overlap
-    frame["tau"] = voyager->tau();
+    frame["tau"] = stats.tau;
+    frame["time_budget_ms"] = stats.timeBudget;  // 0: none
     frame["cut"] = stats.cutSize;
     frame["splats"] = stats.splats;
     frame["nodes_tested"] = stats.nodesTested;
     for (uint32_t i = 0; i < stats.stageCount; ++i)
       frame["ms"][voyStageName(static_cast<VoyStage>(i))] = stats.milliseconds[i];
     frame["total_ms"] = stats.millisecondsTotal;
+    frame["resident_bytes"] = voyager->scene().residentBytes;
+    if (const auto streaming = voyager->streaming())
+      frame["streaming"] = {{"budget_bytes", streaming->budgetBytes},
+                            {"slots", streaming->slots},
+                            {"resident_chunks", streaming->residentChunks},
+                            {"missing_chunks", streaming->missingChunks},
+                            {"arrived", streaming->arrived},
+                            {"evicted", streaming->evicted}};
   }
   frames_.push_back(std::move(frame));
 }

@@ -15,10 +15,23 @@ void show_device(const Device& device, const VoyagerLayer& voyager) {
   if (vulkan.why[0]) ImGui::TextWrapped("%s", vulkan.why);
 }
 
+void show_memory(const VoyagerLayer& voyager) {
+  const auto megabytes = [](uint64_t bytes) { return static_cast<double>(bytes) / 1e6; };
+  ImGui::Text("scene %.1f MB", megabytes(voyager.scene().residentBytes));
+  const auto streaming = voyager.streaming();
+  if (!streaming) return;
+  ImGui::Text("streamed: %llu of %llu chunks in a budget of %.1f MB",
+              static_cast<unsigned long long>(streaming->residentChunks),
+              static_cast<unsigned long long>(streaming->slots), megabytes(streaming->budgetBytes));
+  ImGui::Text("still to come: %.1f MB", megabytes(streaming->missingBytes));
+}
+
 void show_stats(const VoyFrameStats& stats) {
   for (uint32_t i = 0; i < stats.stageCount; ++i)
     ImGui::Text("%-10s %7.2f ms", voyStageName(static_cast<VoyStage>(i)), stats.milliseconds[i]);
   ImGui::Text("%-10s %7.2f ms", "total", stats.millisecondsTotal);
+  if (stats.budgetState == VOY_BUDGET_STATE_UNREACHABLE)
+    ImGui::Text("late at the coarsest tau: this machine needs more time");
   const auto count = [](const char* name, uint64_t value) {
     ImGui::Text("%-10s %10llu", name, static_cast<unsigned long long>(value));
   };
@@ -30,11 +43,12 @@ void show_stats(const VoyFrameStats& stats) {
   count("pairs", stats.pairsAfter);
 }
 
-void show_controls(HudState& state) {
+void show_controls(HudState& state, bool has_tree) {
   ImGui::SliderFloat("tau, px", &state.tau, 0.5f, 30.0f, "%.2f", ImGuiSliderFlags_Logarithmic);
-  ImGui::Checkbox("steer tau by time", &state.steer_tau);
-  ImGui::SliderFloat("budget, ms", &state.time_budget, 1.0f, 200.0f, "%.0f",
-                     ImGuiSliderFlags_Logarithmic);
+  if (has_tree) ImGui::Checkbox("hold the frame time", &state.holds_time);
+  if (has_tree)
+    ImGui::SliderFloat("Voyager's part, ms", &state.frame_time, 1.0f, 200.0f, "%.1f",
+                       ImGuiSliderFlags_Logarithmic);
   ImGui::Checkbox("meshes", &state.look.mesh);
   int composite = static_cast<int>(state.look.composite);
   ImGui::RadioButton("depth limit", &composite, static_cast<int>(Composite::limit));
@@ -55,13 +69,9 @@ void Hud::build(HudState& state, const Device& device, const VoyagerLayer& voyag
   show_device(device, voyager);
   ImGui::Text("%.1f frames a second; speed %.3g m/s", static_cast<double>(ImGui::GetIO().Framerate),
               camera.speed());
-  const double resident = static_cast<double>(voyager.scene().residentBytes) / 1e6;
-  if (state.budget_megabytes > 0)
-    ImGui::Text("scene %.1f of %.1f MB", resident, state.budget_megabytes);
-  else
-    ImGui::Text("scene %.1f MB", resident);
+  show_memory(voyager);
   ImGui::Separator();
-  show_controls(state);
+  show_controls(state, voyager.has_tree());
   ImGui::Separator();
   if (stats) show_stats(*stats);
   ImGui::TextDisabled("W A S D Q E, Shift; right button; wheel; C: next camera");

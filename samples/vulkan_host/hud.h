@@ -9,10 +9,9 @@ namespace host {
 // What the HUD turns.
 struct HudState {
   Look look;
-  float tau;
-  bool steer_tau = false;       // towards time_budget
-  float time_budget = 16;       // milliseconds a frame of Voyager's
-  double budget_megabytes = 0;  // of scene data, given at the start; 0: no limit
+  float tau;              // where time is held, what Voyager chose
+  bool holds_time;        // tau follows frame_time
+  float frame_time = 12;  // milliseconds a frame of Voyager's
 };
 
 class Hud {

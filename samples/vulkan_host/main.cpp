@@ -30,10 +30,12 @@ DepthConvention convention(VoyDepthEncoding encoding) {
   return {encoding, kNear, 10000};
 }
 
-VoyagerOptions voyager_options(const Options& options) {
+VoyagerOptions voyager_options(const Options& options, const std::vector<Camera>& cameras) {
   VoyagerOptions out;
   out.scene = options.scene;
-  out.tau = options.tau;
+  out.tau = options.tau.value_or(out.tau);
+  out.frame_time = options.time_budget.value_or(0);
+  if (!cameras.empty()) out.first_frame = cameras.front().pose;
   out.memory_budget = static_cast<uint64_t>(options.budget_megabytes * 1e6);
   out.backend = options.backend;
   out.sharing = options.sharing;
@@ -55,6 +57,16 @@ void say_what_runs(const Device& device, const VoyagerLayer& voyager) {
               backend_name(voyager.capabilities().backend), sharing_name(vulkan.sharing),
               sync_name(vulkan.sync), vulkan.why[0] ? ": " : "", vulkan.why);
   std::fflush(stdout);
+}
+
+// Of a window's frame three quarters are Voyager's; the meshes, the composite and the display's
+// compositor have the rest.
+HudState hud_state(const Options& options, const Look& look, const VoyagerLayer& voyager,
+                   const Window& window) {
+  constexpr double kShare = 0.75;
+  const bool holds_time = options.time_budget || (!options.tau && voyager.has_tree());
+  return {look, static_cast<float>(options.tau.value_or(3)), holds_time,
+          static_cast<float>(options.time_budget.value_or(kShare * window.frame_milliseconds()))};
 }
 
 OffscreenOptions offscreen_options(const Options& options) {
@@ -87,7 +99,7 @@ void run(const Options& options, Validation* validation) {
   const Instance instance(kProgram, validation, presents);
   const Device device(instance, presents, options.device_name);
   const DepthConvention depth = convention(options.depth);
-  VoyagerLayer voyager(device, voyager_options(options), depth);
+  VoyagerLayer voyager(device, voyager_options(options, cameras), depth);
   say_what_runs(device, voyager);
 
   std::optional<Window> window;
@@ -104,9 +116,8 @@ void run(const Options& options, Validation* validation) {
   if (options.offscreen) {
     run_offscreen(device, renderer, voyager, depth, cameras, look, offscreen_options(options), log);
   } else {
-    HudState hud = {look, static_cast<float>(options.tau)};
-    hud.budget_megabytes = options.budget_megabytes;
-    run_window(device, *window, *swapchain, renderer, voyager, cameras, {options.frames, hud}, log);
+    run_window(device, *window, *swapchain, renderer, voyager, cameras,
+               {options.frames, hud_state(options, look, voyager, *window)}, log);
   }
   log.write(device, voyager);
 }

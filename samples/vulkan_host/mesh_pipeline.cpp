@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <iterator>
 
-#include "failure.h"
 #include "graphics_states.h"
 #include "mesh.frag.h"
 #include "mesh.vert.h"
@@ -11,17 +10,7 @@
 namespace host {
 namespace {
 
-UniquePipelineLayout make_layout(VkDevice device) {
-  const VkPushConstantRange range = {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(glm::mat4)};
-  VkPipelineLayoutCreateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-  info.pushConstantRangeCount = 1;
-  info.pPushConstantRanges = &range;
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  check(vkCreatePipelineLayout(device, &info, nullptr, &layout), "vkCreatePipelineLayout");
-  return {device, layout};
-}
-
+constexpr VkPushConstantRange kConstants = {VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof(glm::mat4)};
 constexpr VkVertexInputBindingDescription kBinding = {0, sizeof(Vertex),
                                                       VK_VERTEX_INPUT_RATE_VERTEX};
 constexpr VkVertexInputAttributeDescription kAttributes[] = {
@@ -41,8 +30,9 @@ struct MeshStates : GraphicsStates {
   }
 };
 
-UniquePipeline make_pipeline(VkDevice device, VkPipelineLayout layout, VkRenderPass render_pass,
-                             bool encode, VoyDepthEncoding encoding) {
+UniquePipeline make_mesh_pipeline(VkDevice device, VkPipelineLayout layout,
+                                  VkRenderPass render_pass, bool encode,
+                                  VoyDepthEncoding encoding) {
   const UniqueShaderModule vertex = make_shader(device, mesh_vert);
   const UniqueShaderModule fragment = make_shader(device, mesh_frag);
   const VkBool32 encode_value = encode;
@@ -51,18 +41,7 @@ UniquePipeline make_pipeline(VkDevice device, VkPipelineLayout layout, VkRenderP
   VkPipelineShaderStageCreateInfo stages[] = {shader_stage(VK_SHADER_STAGE_VERTEX_BIT, vertex),
                                               shader_stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment)};
   stages[1].pSpecializationInfo = &constants;
-  const MeshStates states(encoding);
-  VkGraphicsPipelineCreateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-  info.stageCount = std::size(stages);
-  info.pStages = stages;
-  states.give_to(info);
-  info.layout = layout;
-  info.renderPass = render_pass;
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-        "vkCreateGraphicsPipelines");
-  return {device, pipeline};
+  return make_pipeline(device, stages, MeshStates(encoding), layout, render_pass);
 }
 
 }  // namespace
@@ -72,9 +51,9 @@ MeshPipeline::MeshPipeline(const Device& device, VkRenderPass render_pass, VkFor
     : vertices_(device, std::as_bytes(std::span(mesh.vertices)), VK_BUFFER_USAGE_VERTEX_BUFFER_BIT),
       indices_(device, std::as_bytes(std::span(mesh.indices)), VK_BUFFER_USAGE_INDEX_BUFFER_BIT),
       index_count_(static_cast<uint32_t>(mesh.indices.size())),
-      layout_(make_layout(device.get())),
-      pipeline_(make_pipeline(device.get(), layout_.get(), render_pass,
-                              colour_format == VK_FORMAT_R8G8B8A8_UNORM, encoding)) {}
+      layout_(make_pipeline_layout(device.get(), VK_NULL_HANDLE, kConstants)),
+      pipeline_(make_mesh_pipeline(device.get(), layout_.get(), render_pass,
+                                   colour_format == VK_FORMAT_R8G8B8A8_UNORM, encoding)) {}
 
 void MeshPipeline::record(VkCommandBuffer commands, VkExtent2D extent,
                           const glm::mat4& clip_from_mesh) const {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "option_checks.h"
+
 namespace host {
 namespace {
 
@@ -15,21 +17,6 @@ void add_choice(CLI::App& app, const std::string& name, T& value,
   app.add_option_function<std::string>(
          name, [&value, names](const std::string& chosen) { value = names.at(chosen); }, help)
       ->check(CLI::IsMember(names));
-}
-
-std::string not_negative(const std::string& text) {
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0) return {};
-  return "found " + text + ", expected a number, 0 or more";
-}
-
-// From a byte to what 64 bits of them can count; 0 is no limit.
-std::string megabytes(const std::string& text) {
-  constexpr double kLeast = 1e-6, kMost = 1e12;
-  double value = 0;
-  if (CLI::detail::lexical_cast(text, value) && (value == 0 || (value >= kLeast && value <= kMost)))
-    return {};
-  return "found " + text + ", expected 0, or a number from 10^-6 to 10^12";
 }
 
 MeshPlace parse_place(const std::string& text) {
@@ -68,6 +55,20 @@ void add_choices(CLI::App& app, Options& o) {
                              {"binary", VOY_VULKAN_SYNC_BINARY},
                              {"host", VOY_VULKAN_SYNC_HOST}},
                             "How the queue and Voyager wait for one another");
+}
+
+void add_budgets(CLI::App& app, Options& o) {
+  auto* const tau = app.add_option("--tau", o.tau, "Level of detail, pixels: smaller is finer")
+                        ->check(CLI::Validator(not_negative, "PX"));
+  app.add_option(
+         "--time-budget", o.time_budget,
+         "Voyager's part of a frame: tau follows. In a window without --tau, three quarters "
+         "of the time that its display shows a frame")
+      ->check(CLI::Validator(above_zero, "MS"))
+      ->excludes(tau);
+  app.add_option("--budget", o.budget_megabytes,
+                 "Stream the scene: 10^6 bytes that its data may occupy")
+      ->check(CLI::Validator(megabytes, "MB"));
 }
 
 void add_mesh_options(CLI::App& app, Options& o) {
@@ -114,10 +115,7 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("-o", o.output, "Where the PNGs go")->type_name("FOLDER");
   add_mesh_options(app, o);
   add_choices(app, o);
-  app.add_option("--tau", o.tau, "Level of detail, pixels: smaller is finer")
-      ->check(CLI::Validator(not_negative, "PX"));
-  app.add_option("--budget", o.budget_megabytes, "10^6 bytes that scene data may occupy")
-      ->check(CLI::Validator(megabytes, "MB"));
+  add_budgets(app, o);
   app.add_option("--device", o.device_name, "The Vulkan device whose name has this in it")
       ->type_name("NAME");
   app.add_flag("--srgb", o.srgb, "Draw into an _SRGB image");

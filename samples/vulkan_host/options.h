@@ -32,8 +32,9 @@ struct Options {
   bool write_depth = false;
   bool srgb = false;
   uint64_t frames = 0;  // 0: a window runs until it is closed
-  double tau = 3;
-  double budget_megabytes = 0;  // of scene data; 0: no limit
+  // Neither: a window's display says how long a frame may take, and offscreen tau is 3.
+  std::optional<double> tau, time_budget;  // pixels; milliseconds a frame of Voyager's
+  double budget_megabytes = 0;             // of scene data, which is streamed then; 0: no limit
   Composite composite = Composite::limit;
   VoyDepthEncoding depth = VOY_DEPTH_ENCODING_REVERSED;
   VoyBackend backend = VOY_BACKEND_AUTO;

@@ -1,11 +1,10 @@
 #pragma once
 // A frame of this host, in a window or not: meshes, Voyager's image among them, the HUD.
 // Two frames are in flight.
-#include <array>
 #include <functional>
 #include <optional>
 
-#include "frames_in_flight.h"
+#include "frame_commands.h"
 #include "mesh_pipeline.h"
 #include "options.h"
 #include "render_targets.h"
@@ -31,9 +30,6 @@ class Renderer {
   // mesh: NULL for none. mesh_place: its axes (glTF's: y up) to the scene's.
   Renderer(const Device& device, VoyagerLayer& voyager, VkFormat colour_format,
            const DepthConvention& depth, const Mesh* mesh, const glm::dmat4& mesh_place);
-  ~Renderer();
-  Renderer(const Renderer&) = delete;
-  Renderer& operator=(const Renderer&) = delete;
 
   VkRenderPass overlay_pass() const { return passes_.overlay(); }
   VkExtent2D extent() const { return targets_.extent; }
@@ -41,20 +37,13 @@ class Renderer {
   // Waits until the queue is idle; the images are new.
   void resize(VkExtent2D extent);
   // The slot of the next frame, once the frame before it there is done.
-  uint32_t wait_for_slot();
+  uint32_t wait_for_slot() const { return frames_.wait_for_slot(); }
   // The camera's size must be the extent.
   void draw(const Camera& camera, const Look& look, const Delivery& delivery);
 
  private:
-  struct Slot {
-    VkCommandBuffer before = VK_NULL_HANDLE, after = VK_NULL_HANDLE;  // Voyager's frame
-    UniqueFence before_done, after_done;
-  };
-
-  void record_before(const Slot& slot, const Camera& camera, const Look& look);
-  void record_after(const Slot& slot, const Look& look, const Delivery& delivery);
-  void submit_before(const Slot& slot, bool splats);
-  void submit_after(const Slot& slot, bool splats, const Delivery& delivery);
+  VkCommandBuffer record_before(uint32_t slot, const Camera& camera, const Look& look);
+  VkCommandBuffer record_after(uint32_t slot, const Look& look, const Delivery& delivery);
   void record_meshes(VkCommandBuffer commands, const Camera& camera, bool mesh) const;
 
   const Device& device_;
@@ -65,9 +54,7 @@ class Renderer {
   RenderPasses passes_;
   std::optional<MeshPipeline> meshes_;
   RenderTargets targets_;
-  UniqueCommandPool pool_;
-  std::array<Slot, kFramesInFlight> slots_;
-  uint32_t slot_ = 0;
+  FrameCommands frames_;
 };
 
 }  // namespace host

@@ -5,10 +5,13 @@
 namespace host {
 VoyagerLayer::VoyagerLayer(const Device& device, const VoyagerOptions& options,
                            const DepthConvention& depth)
-    : vulkan_device_(device), depth_(depth), images_(options.images), tau_(options.tau) {
+    : vulkan_device_(device),
+      depth_(depth),
+      images_(options.images),
+      tau_(options.tau),
+      frame_time_(options.frame_time) {
   create_device(options);
-  scene_ = device_.open_scene(options.scene);
-  scene_info_ = scene_.info();
+  open_scene(options);
 }
 
 void VoyagerLayer::create_device(const VoyagerOptions& options) {
@@ -18,11 +21,24 @@ void VoyagerLayer::create_device(const VoyagerOptions& options) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
   desc.next = &vulkan;
   desc.backend = options.backend;
-  desc.memoryBudget = options.memory_budget;
+  desc.memoryBudget = desc.deviceMemoryBudget = options.memory_budget;  // whichever draws
   device_ = voy::Device::create(desc);
   capabilities_.next = &vulkan_;
   voy::check(voyGetCapabilities(device_.get(), &capabilities_));
   capabilities_.next = nullptr;
+}
+
+// Within a budget a scene is streamed: what frames need is read while they are drawn, none of them
+// waits for it, and the budget is never exceeded.
+void VoyagerLayer::open_scene(const VoyagerOptions& options) {
+  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+  if (options.first_frame) streaming.start = options.first_frame->position;
+  VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+  desc.path = options.scene.c_str();
+  if (options.memory_budget > 0) desc.next = &streaming;
+  scene_ = device_.open_scene(desc);
+  has_tree_ = scene_.info().nodeCount > 0;
+  streams_ = scene_.profile().streamed != 0;  // a flat file is loaded whole
 }
 
 void VoyagerLayer::create_view(VkExtent2D largest) {
@@ -33,6 +49,9 @@ void VoyagerLayer::create_view(VkExtent2D largest) {
   desc.maxWidth = largest.width;
   desc.maxHeight = largest.height;
   desc.tau = tau_;
+  VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
+  budget.milliseconds = frame_time_;
+  if (frame_time_ > 0) desc.next = &budget;
   view_ = {};  // its buffers go before the new one's come
   view_ = device_.create_view(desc);
   view_extent_ = largest;
@@ -40,7 +59,22 @@ void VoyagerLayer::create_view(VkExtent2D largest) {
 
 void VoyagerLayer::set_tau(double pixels) {
   tau_ = pixels;
+  frame_time_ = 0;
   if (view_) view_.set_tau(pixels);
+}
+
+void VoyagerLayer::hold_frame_time(double milliseconds) {
+  frame_time_ = milliseconds;
+  VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
+  budget.milliseconds = milliseconds;
+  if (view_) view_.set_time_budget(budget);
+}
+
+std::optional<VoyStreamingStats> VoyagerLayer::streaming() const {
+  if (!streams_) return std::nullopt;
+  VoyStreamingStats stats = VOY_STREAMING_STATS_INIT;
+  voy::check(voyGetStreamingStats(scene_.get(), &stats));
+  return stats;
 }
 
 void VoyagerLayer::resize(VkExtent2D extent) {

@@ -1,11 +1,13 @@
 #pragma once
 // Voyager in this engine: the part to copy. It owns a device, a scene, a view, and a target
-// whose ring has an image for each frame in flight. The order of a frame:
+// whose ring has an image for each frame in flight. open_scene() streams, hold_frame_time() steers
+// the level of detail; nothing else is needed for either. The order of a frame:
 //   1. commands A: the host's meshes, record_depth_limit, record_release; their submission
 //      signals released()
 //   2. render()
 //   3. commands B: record_acquire, then record_composite in a render pass; their submission
 //      waits for rendered()
+#include <optional>
 #include <string>
 #include <voyager/voyager.hpp>
 
@@ -19,7 +21,9 @@ namespace host {
 struct VoyagerOptions {
   std::string scene;
   double tau = 3;
-  uint64_t memory_budget = 0;  // bytes of scene data; 0: no limit
+  double frame_time = 0;               // as hold_frame_time(), or 0: tau is fixed
+  uint64_t memory_budget = 0;          // bytes of scene data; 0: no limit, and no streaming
+  std::optional<VoyPose> first_frame;  // where the first frames look from, if it is known
   VoyBackend backend = VOY_BACKEND_AUTO;
   VoyVulkanSharing sharing = VOY_VULKAN_SHARING_AUTO;
   VoyVulkanSync sync = VOY_VULKAN_SYNC_AUTO;
@@ -38,10 +42,17 @@ class VoyagerLayer {
 
   const VoyCapabilities& capabilities() const { return capabilities_; }
   const VoyVulkanCapabilities& vulkan_capabilities() const { return vulkan_; }
-  const VoySceneInfo& scene() const { return scene_info_; }
+  VoySceneInfo scene() const { return scene_.info(); }
+  bool has_tree() const { return has_tree_; }
   VoyFrameStats stats() const { return view_.stats(); }
-  double tau() const { return tau_; }
+  // None of a scene that is in memory as a whole.
+  std::optional<VoyStreamingStats> streaming() const;
+
+  // From the next frame on. One ends the other.
   void set_tau(double pixels);
+  // Voyager chooses tau so that its part of a frame takes no longer. Throws voy::Error for a scene
+  // without a tree.
+  void hold_frame_time(double milliseconds);
 
   // The queue must be idle: the target's images are replaced.
   void resize(VkExtent2D extent);
@@ -61,6 +72,7 @@ class VoyagerLayer {
 
  private:
   void create_device(const VoyagerOptions& options);
+  void open_scene(const VoyagerOptions& options);
   void create_view(VkExtent2D largest);
 
   const Device& vulkan_device_;
@@ -70,10 +82,10 @@ class VoyagerLayer {
   VoyCapabilities capabilities_ = VOY_CAPABILITIES_INIT;
   VoyVulkanCapabilities vulkan_ = VOY_VULKAN_CAPABILITIES_INIT;
   voy::Scene scene_;
-  VoySceneInfo scene_info_ = VOY_SCENE_INFO_INIT;
+  bool has_tree_ = false, streams_ = false;
   voy::View view_;
   VkExtent2D view_extent_ = {0, 0};
-  double tau_;
+  double tau_, frame_time_;
   voy::Handle<VoyComposite, voyDestroyVulkanComposite> composite_;
   VoyagerRing ring_;
 };

@@ -1,7 +1,5 @@
 #include "window_loop.h"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "fly.h"
@@ -10,10 +8,11 @@
 namespace host {
 namespace {
 
-// Follows the last frame's time gently: the cut's size falls faster than τ rises.
-float steered(const HudState& state, const VoyFrameStats& stats) {
-  const double ratio = std::max(stats.millisecondsTotal, 0.1) / double{state.time_budget};
-  return std::clamp(state.tau * static_cast<float>(std::pow(ratio, 0.2)), 0.5f, 30.0f);
+// Either tau is what the player turns it to, or it follows the time that frames may take.
+void set_detail(VoyagerLayer& voyager, HudState& state, const VoyFrameStats* last) {
+  if (!state.holds_time) return voyager.set_tau(double{state.tau});
+  voyager.hold_frame_time(double{state.frame_time});
+  if (last) state.tau = static_cast<float>(last->tau);
 }
 
 // Steps through the camera file with the key C.
@@ -38,7 +37,7 @@ void run_window(const Device& device, Window& window, Swapchain& swapchain, Rend
                 const WindowOptions& options, FrameLog& log) {
   Hud hud(device, window, renderer.overlay_pass());
   HudState state = options.hud;
-  const VoySceneInfo& scene = voyager.scene();
+  const VoySceneInfo scene = voyager.scene();
   FlyCamera camera(cameras.empty() ? overview(scene) : cameras.front().pose,
                    0.05 * diagonal(scene));
   Bookmarks bookmarks(cameras);
@@ -65,8 +64,7 @@ void run_window(const Device& device, Window& window, Swapchain& swapchain, Rend
     fly(window, camera, now - last, hud.has_mouse(), hud.has_keyboard());
     bookmarks.update(window, camera);
     last = now;
-    if (state.steer_tau && stats) state.tau = steered(state, *stats);
-    voyager.set_tau(double{state.tau});
+    set_detail(voyager, state, stats ? &*stats : nullptr);
     hud.build(state, device, voyager, stats ? &*stats : nullptr, camera);
 
     Delivery delivery;

@@ -93,7 +93,7 @@ TEST(ImportDirection, HttpImportsTheBaseOnly) {
 }
 
 TEST(ImportDirection, OnlyTheHttpModuleKnowsLibcurl) {
-  for (const char* folder : {"runtime", "plugin", "tools", "samples", "cuda"})
+  for (const char* folder : {"runtime", "plugin", "tools", "host", "samples", "cuda"})
     expect_no_include(folder, {"http/", "curl/"});
 }
 
@@ -102,7 +102,7 @@ TEST(ImportDirection, OnlyTheSogModuleKnowsLibwebpAndLibzip) {
                                             "runtime/scene/export/sog/"};
   expect_no_include(
       "sog", {"plugin/", "voyager/", "tools/", "samples/", "tests/", "bench/", "cuda", "http/"});
-  for (const char* folder : {"runtime", "plugin", "tools", "samples", "cuda"})
+  for (const char* folder : {"runtime", "plugin", "tools", "host", "samples", "cuda"})
     for (const Include& include : includes_below(folder)) {
       if (include.file.rfind("runtime/scene/import/sog/", 0) == 0 ||
           include.file.rfind("runtime/scene/export/sog/", 0) == 0)
@@ -113,7 +113,7 @@ TEST(ImportDirection, OnlyTheSogModuleKnowsLibwebpAndLibzip) {
 }
 
 TEST(ImportDirection, OnlyTheModuleIncludesCuda) {
-  for (const char* folder : {"tools", "samples"})
+  for (const char* folder : {"tools", "host", "samples"})
     expect_no_include(folder, {"cuda/", "cuda", "cub/"});
   // What measures the device itself is CUDA's own code.
   for (const Include& include : includes_below("bench")) {
@@ -146,7 +146,7 @@ TEST(ImportDirection, VulkanInteropKnowsNoScenesAndNoBackend) {
 
 // A host has voyager/*.h, and so do our examples of hosts.
 TEST(ImportDirection, HostsIncludeOnlyThePublicHeaders) {
-  for (const char* folder : {"samples", "tests/headless"}) {
+  for (const char* folder : {"host", "samples", "tests/headless"}) {
     size_t ours = 0;
     for (const Include& include : includes_below(folder)) {
       ours += include.name.rfind("voyager/", 0) == 0;

@@ -72,6 +72,15 @@ void expect_consistent(const Json& row) {
   EXPECT_EQ(counters["pairs_dropped"], 0);
 }
 
+// The first camera walks in place of the three, up to what it sees and along it.
+TEST_F(CommandLineBench, ACloseUpIsAWalkOfItsOwn) {
+  const Json report = report_of("city.voy", "--close-up --stages all --lod on --repeat 1");
+  ASSERT_TRUE(report.contains("frames"));
+  EXPECT_EQ(report["close_up"], true);
+  EXPECT_EQ(report["frames"], 60);
+  expect_consistent(report["rows"][0]);
+}
+
 TEST_F(CommandLineBench, AChoiceRunsThatOneConfiguration) {
   const Json report = report_of("city.voy", "--stages all --exp ex2 --tau 6 --repeat 5");
   EXPECT_EQ(report["stages"], "all");

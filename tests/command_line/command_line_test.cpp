@@ -51,6 +51,7 @@ TEST_F(CommandLine, SynthGivesTheSameBytesForTheSameArguments) {
       0);
   EXPECT_TRUE(file_bytes(file("city.ply")) == file_bytes(file("again.ply")));
   EXPECT_TRUE(file_bytes(file("city.cameras.json")) == file_bytes(file("again.cameras.json")));
+  EXPECT_TRUE(file_bytes(file("city.closeup.json")) == file_bytes(file("again.closeup.json")));
   ASSERT_EQ(run("voyager synth city --gaussians 10000 --sh-degree 1 -o - 2>/dev/null >" +
                 file("piped.ply"))
                 .exit_code,

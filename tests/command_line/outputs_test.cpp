@@ -78,10 +78,13 @@ TEST_F(Outputs, AreFoundToBeUnwritableBeforeTheWork) {
 }
 
 TEST_F(Outputs, TheCamerasBesideACityAreFoundToBeUnwritableToo) {
-  fs::create_directory(file("d.cameras.json"));
-  expect_refused("voyager synth city --gaussians 100000000 -o " + file("d.ply"), 4,
-                 file("d.cameras.json") + ": found a directory");
-  EXPECT_FALSE(fs::exists(file("d.ply")));
+  for (const std::string cameras : {"d.cameras.json", "e.closeup.json"}) {
+    fs::create_directory(file(cameras));
+    const std::string city = file(cameras.substr(0, 1) + ".ply");
+    expect_refused("voyager synth city --gaussians 100000000 -o " + city, 4,
+                   file(cameras) + ": found a directory");
+    EXPECT_FALSE(fs::exists(city));
+  }
 }
 
 TEST_F(Outputs, RoomIsAskedForBeforeTheWork) {

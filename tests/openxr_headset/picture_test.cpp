@@ -30,7 +30,7 @@ class Shown : public Headset {
     const Json start = read_json("city.cameras.json")[0];
     script["local_in_scene"] = {{"position", start["position"]}, {"orientation", {1, 0, 0, 0}}};
     script["output"] = file("shown");
-    expect_well_behaved(script, "--frames 3");
+    expect_well_behaved(script, "--frames 3 --tau 3");
     const Outcome result = run("voyager render " + file("city.voy") + " --cameras " +
                                file("shown/cameras.json") + " --stereo --all -o " + file("exact"));
     ASSERT_EQ(result.exit_code, 0) << result.output;

@@ -122,10 +122,38 @@ TEST_F(Headset, SkippedDisplayPeriodsAreMissed) {
 
 // From 3 to the least there is, where there is time to spare; to the greatest where there is none.
 TEST_F(Headset, TheGranularityFollowsATimeBudget) {
-  EXPECT_NE(expect_well_behaved({}, "--frames 20 --time-budget 1e6").find("tau 1;"),
-            std::string::npos);
-  EXPECT_NE(expect_well_behaved({}, "--frames 40 --time-budget 1e-6").find("tau 60;"),
-            std::string::npos);
+  EXPECT_NE(
+      expect_well_behaved({}, "--frames 20 --time-budget 1e6").find("tau 1 to take 1e+06 ms;"),
+      std::string::npos);
+  EXPECT_NE(
+      expect_well_behaved({}, "--frames 40 --time-budget 1e-6").find("tau 60 to take 1e-06 ms;"),
+      std::string::npos);
+}
+
+// Three quarters of the period that the runtime tells, which is less than a frame takes here: τ
+// rises.
+TEST_F(Headset, WithoutAChoiceTheDisplayGivesTheTimeBudget) {
+  const std::string output = expect_well_behaved({{"period_ns", 1000000}}, "--frames 40");
+  EXPECT_NE(output.find(" to take 0.75 ms;"), std::string::npos) << output;
+  const size_t at = output.find("tau ");
+  ASSERT_NE(at, std::string::npos) << output;
+  EXPECT_GT(std::atof(output.c_str() + at + 4), 3) << output;
+}
+
+// With less memory than the scene takes, chunks come and go within the budget.
+TEST_F(Headset, ABudgetBelowTheSceneStreams) {
+  const std::string output = expect_well_behaved({}, "--frames 20 --tau 0.5 --budget 0.5");
+  const size_t at = output.find("streamed: ");
+  ASSERT_NE(at, std::string::npos) << output;
+  unsigned resident = 0, chunks = 0, read = 0;
+  double megabytes = 0;
+  ASSERT_EQ(std::sscanf(output.c_str() + at, "streamed: %u of %u chunks resident, %u read, %lf MB",
+                        &resident, &chunks, &read, &megabytes),
+            4)
+      << output;
+  EXPECT_GT(resident, 0u);
+  EXPECT_LT(resident, chunks);
+  EXPECT_LE(megabytes, 0.5);
 }
 
 // With the exit code, on one line that names what is wrong.
@@ -152,6 +180,8 @@ TEST_F(Headset, RefusalsAreOneLine) {
       {scene + " --tau -1", 1, "--tau"},
       {scene + " --time-budget 0", 1, "--time-budget"},
       {scene + " --time-budget 8 --tau 3", 1, "--time-budget"},
+      {scene + " --budget -1", 1, "--budget"},
+      {scene + " --frames 1 --budget 0.001", 4, "budget"},
       {scene + " --readback " + file("refused"), 1, "--readback"},
       {scene + " --frames 1 --camera-file " + file("absent.json"), 2, "absent.json"},
       {scene + " --frames 1 --camera-file " + file("bad.json"), 2, "bad.json: camera 0"},

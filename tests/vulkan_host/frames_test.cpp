@@ -80,6 +80,38 @@ TEST_F(VulkanHost, StatsSayWhatRan) {
   EXPECT_NE(stats["sharing"], "auto");
 }
 
+// With less memory than the scene takes, what the cameras need comes and goes; nothing is ever over
+// the budget, and no frame waits.
+TEST_F(VulkanHost, ABudgetBelowTheSceneStreams) {
+  constexpr double kMegabytes = 0.5;
+  expect_success(host("--frames 60 --no-mesh --tau 0.5 -o " + file("streamed") + " --stats " +
+                          file("stats.json") + " --budget " + std::to_string(kMegabytes),
+                      "steady.json"));
+  const nlohmann::json frames = nlohmann::json::parse(file_bytes(file("stats.json")))["frames"];
+  ASSERT_EQ(frames.size(), 60u);
+  for (const nlohmann::json& frame : frames) {
+    const nlohmann::json& streaming = frame["streaming"];
+    EXPECT_LE(frame["resident_bytes"], kMegabytes * 1e6);
+    EXPECT_LE(streaming["budget_bytes"], kMegabytes * 1e6);
+    EXPECT_LE(streaming["resident_chunks"], streaming["slots"]);
+    EXPECT_GT(frame["cut"], 0);
+  }
+  EXPECT_GT(frames.back()["streaming"]["arrived"], frames.front()["streaming"]["arrived"]);
+  EXPECT_GT(frames.back()["streaming"]["evicted"], 0);
+}
+
+// From 3 to the least there is, where there is time to spare; to the greatest where there is none.
+TEST_F(VulkanHost, TauFollowsATimeBudget) {
+  for (const auto& [budget, tau] : {std::pair("1e6", 1.0), std::pair("1e-6", 60.0)}) {
+    expect_success(host("--frames 40 --no-mesh -o " + file("timed") + " --stats " +
+                            file("stats.json") + " --time-budget " + budget,
+                        "steady.json"));
+    const nlohmann::json frames = nlohmann::json::parse(file_bytes(file("stats.json")))["frames"];
+    EXPECT_EQ(frames.back()["tau"], tau) << budget;
+    EXPECT_EQ(frames.back()["time_budget_ms"], std::stod(budget));
+  }
+}
+
 // A binary glTF of this JSON alone.
 std::string glb(const std::string& json) {
   const uint32_t length = static_cast<uint32_t>(json.size());
@@ -128,6 +160,11 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       {host("--frames 1"), 1, "-o"},
       {host("--frames 1 --composite over" + out), 1, "--composite"},
       {host("--frames 1 --tau -1" + out), 1, "--tau"},
+      {host("--frames 1 --time-budget 0" + out), 1, "--time-budget"},
+      {host("--frames 1 --time-budget 8 --tau 3" + out), 1, "--time-budget"},
+      {"vulkan_host " + file("city.ply") +
+           " --offscreen --frames 1 --time-budget 8 --camera-file " + file("cameras.json") + out,
+       1, "VoyTimeBudget"},
       {host("--frames 1 --mesh-at 0,0,0,0" + out), 1, "--mesh-at"},
       {host("--frames 1 --mesh-at 0,0,1" + out), 1, "--mesh-at"},
       {host("--frames 1 --mesh-at 0,0,x,1" + out), 1, "--mesh-at"},

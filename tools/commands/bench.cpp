@@ -3,6 +3,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
+#include "tools/close_up.h"
 #include "tools/commands/bench_arguments.h"
 #include "tools/commands/commands.h"
 #include "tools/console.h"
@@ -59,6 +60,18 @@ std::shared_ptr<const Scene> load(const std::string& path, Workers& workers) {
   return load_scene(open_source(path), std::pmr::get_default_resource(), workers);
 }
 
+// In place of the cameras, from the first of them on.
+void walk_close_up(const BenchArguments& arguments, BenchSubject& subject) {
+  constexpr size_t kSteps = 60;
+  const std::span<const Camera> start(subject.cameras.data(), arguments.stereo ? 2 : 1);
+  subject.cameras =
+      close_up_cameras({subject.backend, subject.scene, subject.workers}, start, kSteps);
+  if (subject.cameras.empty())
+    throw Error(ErrorCode::refused_input, arguments.cameras +
+                                              ": found nothing in front of its first camera, "
+                                              "expected a surface with --close-up");
+}
+
 void bench(BenchArguments& arguments) {
   const bool whole = arguments.stereo || arguments.time_budget > 0;
   arguments.stages =
@@ -79,9 +92,11 @@ void bench(BenchArguments& arguments) {
                                               ": found a scene without a tree, "
                                               "expected a .voy with --time-budget");
   const auto backend = create_backend(arguments.backend);
-  const BenchSubject subject{scene, *backend, read_walk(arguments), workers};
+  BenchSubject subject{scene, *backend, read_walk(arguments), workers};
+  if (arguments.close_up) walk_close_up(arguments, subject);
   Json report = {{"scene", scene->name},
                  {"cameras", arguments.cameras},
+                 {"close_up", arguments.close_up},
                  {"version", VOYAGER_VERSION},
                  {"device", backend->device_name()},
                  {"multiprocessors_asked", arguments.backend.multiprocessors},
@@ -176,6 +191,9 @@ void add_bench(CLI::App& app) {
   command->add_flag("--stereo", arguments->stereo,
                     "Take the cameras two by two, left eye then right eye: what both cost against "
                     "one");
+  command->add_flag("--close-up", arguments->close_up,
+                    "Walk up to what stands in front of the first camera, to 0.3 m, and along it, "
+                    "in place of the cameras");
   command->add_flag("--verify", arguments->verify,
                     "Also compare the nodes and weights of every frame with those of the "
                     "exhaustive search");

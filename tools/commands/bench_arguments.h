@@ -31,7 +31,7 @@ struct BenchArguments {
   Occlusion occlusion = Occlusion::automatic;
   std::optional<uint32_t> lut_size;
   std::optional<size_t> repeat;
-  bool verify = false, stereo = false;
+  bool verify = false, stereo = false, close_up = false;
   double tau = 3;
   double time_budget = 0;  // milliseconds; 0: tau is fixed
   ImageSize size;

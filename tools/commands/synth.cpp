@@ -30,6 +30,12 @@ void generate(const CityDesc& city, GaussianWriter& writer) {
   writer.finish();
 }
 
+void write_cameras(const std::string& path, const std::string& cameras) {
+  AtomicFile file(path);
+  file.write(std::as_bytes(std::span(cameras)));
+  file.commit();
+}
+
 void write_city(const SynthArguments& arguments) {
   const CityDesc& city = arguments.city;
   if (arguments.output == "-") {
@@ -38,11 +44,13 @@ void write_city(const SynthArguments& arguments) {
     return;
   }
   const std::filesystem::path path(arguments.output);
-  const std::string cameras_path =
-      std::filesystem::path(path).replace_extension(".cameras.json").string();
+  const auto beside = [&](const char* ending) {
+    return std::filesystem::path(path).replace_extension(ending).string();
+  };
+  const std::string cameras_path = beside(".cameras.json"), close_up_path = beside(".closeup.json");
   const bool ply = has_ending(arguments.output, ".ply");
-  require_distinct({arguments.output, cameras_path}, {});
-  require_writable(cameras_path);
+  require_distinct({arguments.output, cameras_path, close_up_path}, {});
+  for (const std::string& cameras : {cameras_path, close_up_path}) require_writable(cameras);
   AtomicFile file(arguments.output);
   if (ply) require_room(arguments.output, ply_bytes(city.gaussians, city.sh_degree));
   const auto sink = sink_to(file);
@@ -52,13 +60,13 @@ void write_city(const SynthArguments& arguments) {
     generate(city, *write_spz(*sink, city.gaussians, city.sh_degree, largest_coordinate(city)));
   file.commit();
 
-  const std::string cameras = city_cameras_json(city);
-  AtomicFile cameras_file(cameras_path);
-  cameras_file.write(std::as_bytes(std::span(cameras)));
-  cameras_file.commit();
-  say(fmt::format("{}: {} Gaussians of SH degree {}, {}\n{}: cameras of a walk and a flight\n",
-                  arguments.output, city.gaussians, city.sh_degree,
-                  size_text(std::filesystem::file_size(arguments.output)), cameras_path));
+  write_cameras(cameras_path, city_cameras_json(city));
+  write_cameras(close_up_path, city_close_up_json(city));
+  say(fmt::format(
+      "{}: {} Gaussians of SH degree {}, {}\n{}: cameras of a walk and a flight\n"
+      "{}: cameras of a walk up to a wall and along it\n",
+      arguments.output, city.gaussians, city.sh_degree,
+      size_text(std::filesystem::file_size(arguments.output)), cameras_path, close_up_path));
 }
 
 std::string check_output(const std::string& path) {
@@ -85,7 +93,7 @@ void add_synth(CLI::App& app) {
       ->add_option(
           "-o", arguments->output,
           "File to write, a .ply or a .spz, or - for a .ply on standard output. The cameras "
-          "go to NAME.cameras.json beside it")
+          "go to NAME.cameras.json and NAME.closeup.json beside it")
       ->required()
       ->type_name("FILE")
       ->check(check_output);

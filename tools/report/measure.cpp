@@ -34,7 +34,7 @@ double bytes_moved(const FrameStats& stats) {
 }
 
 void set_times(const std::vector<FrameStats>& frames, ReportRow& row) {
-  row.frame = times_of(frames, kSearch, kFrameEnd);
+  row.frame = frame_times(frames);
   for (int stage = 0; stage < kStageCount; ++stage)
     row.stages.push_back(times_of(frames, stage, stage + 1));
   row.timed = frames.size();
@@ -42,13 +42,6 @@ void set_times(const std::vector<FrameStats>& frames, ReportRow& row) {
   row.splats = mean(frames, [](const FrameStats& stats) { return stats.splats; });
   row.pairs = mean(frames, [](const FrameStats& stats) { return stats.pairs_after; });
   row.bytes = mean(frames, bytes_moved);
-}
-
-double median_tau(const std::vector<FrameStats>& frames) {
-  std::vector<double> taus;
-  taus.reserve(frames.size());
-  for (const FrameStats& stats : frames) taus.push_back(stats.tau);
-  return percentile(taus, 0.5);
 }
 
 // Of the last time along the path.
@@ -64,6 +57,17 @@ std::vector<ComparedFrame> compared_frames(const ReportPlan& plan) {
 }
 
 }  // namespace
+
+ReportTimes frame_times(const std::vector<FrameStats>& frames) {
+  return times_of(frames, kSearch, kFrameEnd);
+}
+
+double median_tau(const std::vector<FrameStats>& frames) {
+  std::vector<double> taus;
+  taus.reserve(frames.size());
+  for (const FrameStats& stats : frames) taus.push_back(stats.tau);
+  return percentile(taus, 0.5);
+}
 
 FramePath Measurement::path_of(const ReportCase& is) const {
   FramePath path{plan_.path, plan_.repeats, {}, false};

@@ -1,4 +1,5 @@
 #pragma once
+#include "tools/cameras.h"
 #include "tools/report/energy_meter.h"
 #include "tools/report/reference_images.h"
 #include "tools/report/report_row.h"
@@ -22,7 +23,13 @@ struct ReportPlan {
   // another, their change is compared as well.
   std::vector<size_t> compared;
   size_t slow_frames = 0;  // of each of slow_paths(), from the first compared one on
+  Camera first_compared = {};
 };
+
+// From the search to the last pixel.
+ReportTimes frame_times(const std::vector<FrameStats>& frames);
+// As used.
+double median_tau(const std::vector<FrameStats>& frames);
 
 class Measurement {
  public:

@@ -9,6 +9,7 @@
 #include "tools/output_folder.h"
 #include "tools/output_paths.h"
 #include "tools/progress_bar.h"
+#include "tools/report/close_up_times.h"
 #include "tools/report/kept_rows.h"
 #include "tools/report/measure.h"
 #include "tools/report/pareto.h"
@@ -67,6 +68,8 @@ class Report {
     if (budgets != 0 && !rows_.empty())
       for (const ReportCase& is : time_budget_cases(cases[0], rows_[0].frame.median)) add(is);
     progress_("measuring", 1, 1);
+    close_up_ = close_up_times({backend_, scenes_.own(), workers_}, cases[0], plan_.first_compared,
+                               request_.target);
     write();
     for (const std::string& name : kept_.remove())
       note(fmt::format("{}: not removed: {} is not a file of the report", folder_.string(), name));
@@ -134,6 +137,7 @@ class Report {
     const std::vector<size_t> front = pareto_front(rows_);
     const Advice advised = advise(rows_, request_.target);
     const std::string advice = advice_text(rows_, advised, request_.target);
+    const std::string told = advice + (close_up_.empty() ? "" : " ") + close_up_text(close_up_);
     const auto stem = [](const std::string& path) {
       return std::filesystem::path(path).filename().replace_extension().string();
     };
@@ -146,11 +150,13 @@ class Report {
     json["target_ms"] = request_.target;
     json["recommended"] = advised.in_time ? Json(advised.row) : Json();
     json["recommendation"] = advice;
+    json["close_up"] = Json::array();
+    for (const CloseUpTimes& times : close_up_) json["close_up"].push_back(to_json(times));
     write_text(kJson, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     ReportPage page{"Error against run time: " + stem(request_.scene),
                     provenance(),
                     method(),
-                    advice,
+                    told,
                     report_plots(rows_, front),
                     rows_,
                     front,
@@ -159,7 +165,7 @@ class Report {
     write_text(kPage, html(page));
     for (const PagePlot& plot : page.plots) write_plot_png(output_->place(plot.file), plot.plot);
     output_->commit();
-    say(fmt::format("{}\n{}/{}\n", advice, request_.output, kPage));
+    say(fmt::format("{}\n{}/{}\n", told, request_.output, kPage));
   }
 
   const ReportRequest& request_;
@@ -181,6 +187,7 @@ class Report {
   size_t done_ = 0, total_ = 1;
   std::vector<ReportRow> rows_;
   std::vector<std::vector<PagePicture>> pictures_;
+  std::vector<CloseUpTimes> close_up_;
 };
 
 }  // namespace

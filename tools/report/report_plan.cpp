@@ -45,6 +45,7 @@ ReportPlan report_plan(const std::string& file, const ImageSize& size, ReportExt
   plan.repeats = std::max<size_t>(1, frames.timed / plan.path.size());
   plan.compared = compared_frames(plan.path.size(), frames.compared);
   plan.slow_frames = frames.slow;
+  plan.first_compared = cameras[plan.compared[0]];
   return plan;
 }
 

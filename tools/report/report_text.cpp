@@ -13,7 +13,7 @@ namespace voyager::tools {
 std::string sizes_text(const std::vector<FrameInput>& path) {
   std::set<std::tuple<uint64_t, uint32_t, uint32_t>> sizes;
   for (const FrameInput& frame : path) {
-    const Camera& camera = frame.eyes[0].camera;
+    const voyager::Camera& camera = frame.eyes[0].camera;
     sizes.insert({uint64_t{camera.width} * camera.height, camera.width, camera.height});
   }
   const auto text = [](const auto& size) {

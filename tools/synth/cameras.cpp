@@ -27,6 +27,17 @@ Pose walk_pose(int i) {
   return {centre + Vec3d{-kRadius * c, 0.0, kRadius * d}, {d, -0.06, c}, 0.0};
 }
 
+// From the middle of the road to the wall of the house at the corner, which it then looks at all
+// the way along.
+Pose close_up_pose(int i) {
+  constexpr int kApproach = kPoses / 2;
+  constexpr double kWall = -kHalfStreet, kNear = 0.3, kStart = -0.8, kAbreast = -11.0, kStep = 0.2;
+  const double share = i < kApproach ? static_cast<double>(i) / (kApproach - 1) : 1.0;
+  const double x = kStart + share * (kWall + kNear - kStart);
+  const double z = kAbreast - (i < kApproach ? 0.0 : kStep * (i - kApproach + 1));
+  return {{x, -1.7, z}, {-1.0, 0.0, 0.0}, 0.0};
+}
+
 // An arc around the middle of the city, sinking gently, looking ahead and inwards.
 Pose flight_pose(int i) {
   const double t = static_cast<double>(i) / (kPoses - 1), angle = -0.5 + 1.3 * t;
@@ -54,6 +65,15 @@ std::string entry(int id, const std::string& name, const Pose& pose) {
 }
 
 }  // namespace
+
+std::string city_close_up_json(const CityDesc& desc) {
+  city_layout(desc);  // as city_cameras_json()
+  std::string json = "[";
+  for (int i = 0; i < kPoses; ++i)
+    json += entry(i, fmt::format("closeup_{:03}", i), close_up_pose(i)) +
+            (i + 1 < kPoses ? ",\n" : "]\n");
+  return json;
+}
 
 std::string city_cameras_json(const CityDesc& desc) {
   city_layout(desc);  // refuses what generate_city refuses; every city has the same middle

@@ -45,4 +45,8 @@ float largest_coordinate(const CityDesc& desc);
 // a flight over the roofs (flight_000 to flight_059).
 std::string city_cameras_json(const CityDesc& desc);
 
+// The same of a face against a wall: 60 poses (closeup_000 to closeup_059), 30 from the middle of a
+// road until the eye is 0.3 m from the wall of a house, 30 along it at that distance, 0.2 m apart.
+std::string city_close_up_json(const CityDesc& desc);
+
 }  // namespace voyager::synth

@@ -1,10 +1,10 @@
 #pragma once
 // A frame of the window: Voyager draws one view or two, they are shown on either side of a line,
 // and the panel over them. Two frames are in flight.
-#include <array>
 #include <functional>
 #include <vector>
 
+#include "frame_commands.h"
 #include "render_targets.h"
 #include "tools/view/screen_pipeline.h"
 #include "tools/view/splat_view.h"
@@ -29,37 +29,28 @@ struct FrameDesc {
 class FrameRenderer {
  public:
   FrameRenderer(const host::Device& device, VkFormat colour);
-  ~FrameRenderer();
-  FrameRenderer(const FrameRenderer&) = delete;
-  FrameRenderer& operator=(const FrameRenderer&) = delete;
 
   VkRenderPass overlay_pass() const { return passes_.overlay(); }
   VkExtent2D extent() const { return targets_.extent; }
   // Waits until the queue is idle.
   void resize(VkExtent2D extent);
   // The slot of the next frame, once the frame before it there is done.
-  uint32_t wait_for_slot();
+  uint32_t wait_for_slot() const { return frames_.wait_for_slot(); }
   // Where Voyager refuses the frame, nothing is shown, and the same can be drawn without a scene.
   void draw(const FrameDesc& frame);
 
  private:
-  struct Slot {
-    VkCommandBuffer before = VK_NULL_HANDLE, after = VK_NULL_HANDLE;  // Voyager's frame
-    host::UniqueFence before_done, after_done;
-  };
-
-  void render(const Slot& slot, const FrameDesc& frame, const std::vector<SplatView*>& views);
-  void record_after(const Slot& slot, const FrameDesc& frame, const std::vector<SplatView*>& drawn);
-  void record_screen(VkCommandBuffer commands, const FrameDesc& frame);
+  void render(const FrameDesc& frame, const std::vector<SplatView*>& views);
+  VkCommandBuffer record_after(uint32_t slot, const FrameDesc& frame,
+                               const std::vector<SplatView*>& drawn);
+  void record_screen(VkCommandBuffer commands, uint32_t slot, const FrameDesc& frame);
 
   const host::Device& device_;
   const VkFormat colour_;
   host::RenderPasses passes_;
   ScreenPipeline screen_;
   host::RenderTargets targets_;
-  host::UniqueCommandPool pool_;
-  std::array<Slot, host::kFramesInFlight> slots_;
-  uint32_t slot_ = 0;
+  host::FrameCommands frames_;
 };
 
 }  // namespace voyager::view

@@ -1,10 +1,8 @@
 #pragma once
 // Draws what Voyager drew over all of an attachment: one picture, or two beside a line.
-#include <array>
-
 #include "frames_in_flight.h"
 #include "gpu.h"
-#include "unique.h"
+#include "sampled_images.h"
 
 namespace voyager::view {
 
@@ -22,11 +20,8 @@ class ScreenPipeline {
   void record(VkCommandBuffer commands, uint32_t slot, VkExtent2D extent, const Screen& screen);
 
  private:
-  VkDevice device_;
-  host::UniqueDescriptorSetLayout set_layout_;
+  host::SampledImages sets_;  // one a slot
   host::UniquePipelineLayout layout_;
-  host::UniqueDescriptorPool pool_;
-  std::array<VkDescriptorSet, host::kFramesInFlight> sets_ = {};
   host::UniquePipeline pipeline_;
 };
 

@@ -149,6 +149,30 @@ TEST(Synth, CamerasAreRotationsThatStandInTheOpen) {
   }
 }
 
+// Up to a wall that every city has, without a tree, a lamp or a car in the way.
+TEST(Synth, TheCloseUpEndsAtAWall) {
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    const CityDesc desc{seed % 2 ? 10000u : 1'000'000u, seed, 3};
+    const synth::Layout layout = synth::city_layout(desc);
+    const nlohmann::json cameras = nlohmann::json::parse(synth::city_close_up_json(desc));
+    ASSERT_EQ(cameras.size(), 60u);
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      const auto& camera = cameras[i];
+      const Vec3d p{camera["position"][0], camera["position"][1], camera["position"][2]};
+      if (p.x > -7.7) {  // farther from the wall than what counts as blocked
+        EXPECT_FALSE(layout.blocked(p, 0.2)) << camera["img_name"] << " seed " << seed;
+      }
+      EXPECT_EQ(camera["rotation"][0][2], -1.0);
+      if (i < 29) continue;
+      size_t walls = 0;  // whose plane is 0.3 m ahead, where the eye looks
+      for (const synth::Cell& cell : layout.cells())
+        for (const synth::Building& b : cell.buildings)
+          walls += std::abs(p.x - b.x1 - 0.3) < 1e-9 && p.z > b.z0 && p.z < b.z1 && b.front[1];
+      EXPECT_EQ(walls, 1u) << camera["img_name"] << " seed " << seed;
+    }
+  }
+}
+
 TEST(Synth, TheLayoutKnowsWhatStandsWhere) {
   const synth::Layout layout(2, 1);
   size_t buildings = 0;

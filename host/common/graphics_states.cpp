@@ -52,15 +52,41 @@ GraphicsStates::GraphicsStates() {
   dynamic.pDynamicStates = kDynamic;
 }
 
-void GraphicsStates::give_to(VkGraphicsPipelineCreateInfo& info) const {
-  info.pVertexInputState = &input;
-  info.pInputAssemblyState = &assembly;
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples;
-  info.pDepthStencilState = &depth;
-  info.pColorBlendState = &blend;
-  info.pDynamicState = &dynamic;
+UniquePipelineLayout make_pipeline_layout(VkDevice device, VkDescriptorSetLayout set,
+                                          const VkPushConstantRange& constants) {
+  VkPipelineLayoutCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+  info.setLayoutCount = set ? 1 : 0;
+  info.pSetLayouts = &set;
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &constants;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  check(vkCreatePipelineLayout(device, &info, nullptr, &layout), "vkCreatePipelineLayout");
+  return {device, layout};
+}
+
+UniquePipeline make_pipeline(VkDevice device,
+                             std::span<const VkPipelineShaderStageCreateInfo> stages,
+                             const GraphicsStates& states, VkPipelineLayout layout,
+                             VkRenderPass pass) {
+  VkGraphicsPipelineCreateInfo info = {};
+  info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
+  info.stageCount = static_cast<uint32_t>(stages.size());
+  info.pStages = stages.data();
+  info.pVertexInputState = &states.input;
+  info.pInputAssemblyState = &states.assembly;
+  info.pViewportState = &states.viewport;
+  info.pRasterizationState = &states.raster;
+  info.pMultisampleState = &states.samples;
+  info.pDepthStencilState = &states.depth;
+  info.pColorBlendState = &states.blend;
+  info.pDynamicState = &states.dynamic;
+  info.layout = layout;
+  info.renderPass = pass;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  check(vkCreateGraphicsPipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+        "vkCreateGraphicsPipelines");
+  return {device, pipeline};
 }
 
 }  // namespace host

@@ -14,13 +14,11 @@ VkPipelineShaderStageCreateInfo shader_stage(VkShaderStageFlagBits which,
                                              const UniqueShaderModule& shader);
 
 // Triangles without vertex buffers, without depth, one sample, no blending; viewport and scissor
-// are dynamic. Change what differs, before give_to().
+// are dynamic. Change what differs, before make_pipeline().
 struct GraphicsStates {
   GraphicsStates();
   GraphicsStates(const GraphicsStates&) = delete;
   GraphicsStates& operator=(const GraphicsStates&) = delete;
-  // Must outlive the use of `info`.
-  void give_to(VkGraphicsPipelineCreateInfo& info) const;
 
   VkPipelineVertexInputStateCreateInfo input = {};
   VkPipelineInputAssemblyStateCreateInfo assembly = {};
@@ -32,5 +30,13 @@ struct GraphicsStates {
   VkPipelineColorBlendStateCreateInfo blend = {};
   VkPipelineDynamicStateCreateInfo dynamic = {};
 };
+
+// set: NULL for none.
+UniquePipelineLayout make_pipeline_layout(VkDevice device, VkDescriptorSetLayout set,
+                                          const VkPushConstantRange& constants);
+UniquePipeline make_pipeline(VkDevice device,
+                             std::span<const VkPipelineShaderStageCreateInfo> stages,
+                             const GraphicsStates& states, VkPipelineLayout layout,
+                             VkRenderPass pass);
 
 }  // namespace host

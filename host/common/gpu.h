@@ -1,5 +1,5 @@
 #pragma once
-// What the parts that samples share need to know of a host's device.
+// What the shared parts need to know of a host's device.
 #include <vulkan/vulkan.h>
 
 namespace host {
@@ -7,6 +7,8 @@ namespace host {
 struct Gpu {
   VkPhysicalDevice physical;
   VkDevice device;
+  VkQueue queue;  // the host's one queue
+  uint32_t queue_family;
 };
 
 }  // namespace host

@@ -2,9 +2,8 @@
 
 namespace host {
 
-VoyagerRing::VoyagerRing(const Device& vulkan_device, const voy::Device& device,
-                         const RingDesc& desc)
-    : desc_(desc), queue_family_(vulkan_device.queue_family()), images_(desc.images) {
+VoyagerRing::VoyagerRing(const Gpu& gpu, const voy::Device& device, const RingDesc& desc)
+    : desc_(desc), queue_family_(gpu.queue_family), images_(desc.images) {
   VoyVulkanCapabilities modes = VOY_VULKAN_CAPABILITIES_INIT;
   VoyCapabilities capabilities = VOY_CAPABILITIES_INIT;
   capabilities.next = &modes;
@@ -12,6 +11,7 @@ VoyagerRing::VoyagerRing(const Device& vulkan_device, const voy::Device& device,
   sync_ = modes.sync;
   VoyVulkanTargetDesc vulkan = VOY_VULKAN_TARGET_DESC_INIT;
   vulkan.imageCount = desc.images;
+  vulkan.layerCount = desc.layers;
   vulkan.depth = desc.depth;
   vulkan.depthLimit = desc.depth_limit;
   VoyTargetDesc target = VOY_TARGET_DESC_INIT;

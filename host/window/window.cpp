@@ -70,6 +70,13 @@ VkExtent2D Window::extent() const {
   return {static_cast<uint32_t>(width), static_cast<uint32_t>(height)};
 }
 
+double Window::frame_milliseconds() const {
+  constexpr int kUsual = 60;  // where the display does not say
+  GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+  const GLFWvidmode* const mode = monitor ? glfwGetVideoMode(monitor) : nullptr;
+  return 1000.0 / (mode && mode->refreshRate > 0 ? mode->refreshRate : kUsual);
+}
+
 std::vector<int> Window::take_keys() {
   return std::exchange(keys_, {});
 }

@@ -36,6 +36,8 @@ class Window {
   VkSurfaceKHR surface() const { return surface_; }
   bool closed() const { return glfwWindowShouldClose(window_) != 0; }
   VkExtent2D extent() const;  // pixels; 0 while minimised
+  // How long the primary display shows a frame.
+  double frame_milliseconds() const;
 
   bool pressed(int key) const { return glfwGetKey(window_, key) == GLFW_PRESS; }
   bool button(int button) const { return glfwGetMouseButton(window_, button) == GLFW_PRESS; }

@@ -5,10 +5,12 @@
 //   2. voyRenderFrame with frame() in VoyFrame.next
 //   3. commands B: record_acquire, then whatever samples the image in a fragment shader; their
 //      submission waits for rendered()
+#include <voyager/voyager_vulkan.h>
+
 #include <vector>
 #include <voyager/voyager.hpp>
 
-#include "device.h"
+#include "gpu.h"
 #include "submission.h"
 
 namespace host {
@@ -17,13 +19,14 @@ struct RingDesc {
   VkExtent2D extent = {0, 0};
   uint32_t images = 1;
   VkBool32 depth = VK_FALSE, depth_limit = VK_FALSE;
+  uint32_t layers = 1;  // of each image
 };
 
 class VoyagerRing {
  public:
   VoyagerRing() = default;
   // Both devices must outlive it.
-  VoyagerRing(const Device& vulkan, const voy::Device& device, const RingDesc& desc);
+  VoyagerRing(const Gpu& gpu, const voy::Device& device, const RingDesc& desc);
 
   explicit operator bool() const { return static_cast<bool>(target_); }
   VoyTarget target() const { return target_.get(); }

@@ -1,7 +1,7 @@
 #include "device.h"
 
 #include <optional>
-#include <voyager/voyager.hpp>
+#include <vector>
 
 #include "failure.h"
 
@@ -74,38 +74,11 @@ Device::Device(const Instance& instance, const Presentation* presentation, const
   physical_ = choice.physical;
   queue_family_ = choice.queue_family;
   name_ = choice.name;
-  create(presentation != nullptr);
-}
-
-void Device::create(bool with_swapchain) {
-  // What this physical device has of what Voyager can use.
-  VoyVulkanPhysicalDevice asked = VOY_VULKAN_PHYSICAL_DEVICE_INIT;
-  asked.getInstanceProcAddr = vkGetInstanceProcAddr;
-  asked.instance = instance_.get();
-  asked.physicalDevice = physical_;
-  VoyVulkanRequirements needs = VOY_VULKAN_REQUIREMENTS_INIT;
-  voy::check(voyGetVulkanRequirements(&asked, &needs));
-  extensions_.assign(needs.deviceExtensions, needs.deviceExtensions + needs.deviceExtensionCount);
-  timeline_semaphore_ = needs.timelineSemaphore;
-  if (with_swapchain) extensions_.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-
-  const float priority = 1;
-  VkDeviceQueueCreateInfo queue = {};
-  queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-  queue.queueFamilyIndex = queue_family_;
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
-  VkPhysicalDeviceTimelineSemaphoreFeatures timeline = {};
-  timeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES;
-  timeline.timelineSemaphore = VK_TRUE;
-  VkDeviceCreateInfo info = {};
-  info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-  if (timeline_semaphore_) info.pNext = &timeline;
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
-  info.enabledExtensionCount = static_cast<uint32_t>(extensions_.size());
-  info.ppEnabledExtensionNames = extensions_.data();
-  check(vkCreateDevice(physical_, &info, nullptr, &device_), "vkCreateDevice");
+  std::vector<const char*> extensions;
+  if (presentation) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  creation_ = std::make_unique<DeviceCreation>(instance.get(), instance.api_version(), physical_,
+                                               queue_family_, extensions);
+  check(vkCreateDevice(physical_, &creation_->info(), nullptr, &device_), "vkCreateDevice");
   vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
 }
 
@@ -115,19 +88,6 @@ Device::~Device() {
 
 void Device::wait_idle() const {
   check(vkDeviceWaitIdle(device_), "vkDeviceWaitIdle");
-}
-
-VoyVulkanDeviceDesc Device::voyager_desc() const {
-  VoyVulkanDeviceDesc desc = VOY_VULKAN_DEVICE_DESC_INIT;
-  desc.getInstanceProcAddr = vkGetInstanceProcAddr;
-  desc.instance = instance_.get();
-  desc.physicalDevice = physical_;
-  desc.device = device_;
-  desc.apiVersion = instance_.api_version();
-  desc.deviceExtensionCount = static_cast<uint32_t>(extensions_.size());
-  desc.deviceExtensions = extensions_.data();
-  desc.timelineSemaphore = timeline_semaphore_;
-  return desc;
 }
 
 }  // namespace host

@@ -2,9 +2,10 @@
 // The host's VkDevice and its one queue, with what Voyager asks for enabled.
 #include <voyager/voyager_vulkan.h>
 
+#include <memory>
 #include <string>
-#include <vector>
 
+#include "creation.h"
 #include "gpu.h"
 #include "instance.h"
 
@@ -22,26 +23,23 @@ class Device {
   VkDevice get() const { return device_; }
   VkInstance instance() const { return instance_.get(); }
   VkPhysicalDevice physical() const { return physical_; }
-  operator Gpu() const { return {physical_, device_}; }
+  operator Gpu() const { return {physical_, device_, queue_, queue_family_}; }
   VkQueue queue() const { return queue_; }
   uint32_t queue_family() const { return queue_family_; }
   const std::string& name() const { return name_; }
   void wait_idle() const;
 
   // What voyCreateDevice needs to know. It points into this object.
-  VoyVulkanDeviceDesc voyager_desc() const;
+  VoyVulkanDeviceDesc voyager_desc() const { return creation_->voyager_desc(device_); }
 
  private:
-  void create(bool with_swapchain);
-
   const Instance& instance_;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
   uint32_t queue_family_ = 0;
   std::string name_;
-  std::vector<const char*> extensions_;
-  VkBool32 timeline_semaphore_ = VK_FALSE;
+  std::unique_ptr<DeviceCreation> creation_;
 };
 
 }  // namespace host
