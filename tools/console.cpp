@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <mutex>
 
+#include "runtime/base/printable.h"
+
 namespace voyager::tools {
 namespace {
 
@@ -43,7 +45,7 @@ Verbosity verbosity() {
 }
 
 void note(const std::string& text) {
-  if (verbosity() != Verbosity::quiet) print(stderr, "voyager: " + text + "\n");
+  if (verbosity() != Verbosity::quiet) print(stderr, "voyager: " + printable(text) + "\n");
 }
 
 void warn(const std::string& text) {

@@ -52,8 +52,9 @@ void add_flat_options(CLI::App& command, FlatArguments& arguments) {
                                                        ", expected a share of up to 100% "
                                                        "or a number of Gaussians, 1 or more");
           },
-          "Of a .voy, fewer Gaussians: a share of the leaves (25%) or how many. The tree's merged "
-          "Gaussians take the place of what is left out where that is seen least")
+          "Of a .voy, or of a .hier alone with convert, fewer Gaussians: a share of the leaves "
+          "(25%) or how many. The tree's merged Gaussians take the place of what is left out where "
+          "that is seen least")
       ->type_name("P%|N");
   add_whole_option(command, "--spz-version", {3, 4}, arguments.spz_version,
                    "Version of a .spz: 4, or 3, which more programs read (default: 4, inside of a "

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "runtime/base/printable.h"
+
 namespace voyager {
 
 enum class ErrorCode {
@@ -24,7 +26,9 @@ enum class ErrorCode {
 
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  // Of the message control characters are escaped: it may name what a stranger's file says.
+  Error(ErrorCode code, const std::string& message)
+      : std::runtime_error(printable(message)), code_(code) {}
   ErrorCode code() const { return code_; }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "runtime/math/gaussian.h"
@@ -20,7 +21,13 @@ inline float logit_of_odds(double part, double rest) {
 
 // The logit of an opacity of code / 255, code from 0 to 255.
 inline float logit_of_byte(int code) {
-  return logit_of_odds(code, 255.0 - code);
+  // A logarithm for each Gaussian is a seventh of the time that reading a .spz takes.
+  static const std::array<float, 256> logits = [] {
+    std::array<float, 256> all{};
+    for (int i = 0; i < 256; ++i) all[static_cast<size_t>(i)] = logit_of_odds(i, 255.0 - i);
+    return all;
+  }();
+  return logits[static_cast<size_t>(code)];
 }
 
 // The logit of a linear opacity.

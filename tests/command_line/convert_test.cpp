@@ -1,5 +1,7 @@
 // From one format to another, and a share of a tree as a flat file.
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -144,6 +146,27 @@ TEST_F(ConvertCommand, ATilesetOfATreeIsReadBack) {
       run("voyager export " + file("c.voy") + " -o " + file("none/tileset.json") + " --keep 25%");
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_FALSE(fs::exists(file("none")));
+}
+
+// Whenever it is killed: the file of before, or the whole new one, and nothing beside it.
+TEST_F(ConvertCommand, AKilledOneLeavesTheFileOfBefore) {
+  const std::string folder = file("killed"), out = folder + "/out.spz";
+  fs::create_directories(folder);
+  if (const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_RDWR, 0600); unnamed >= 0)
+    ::close(unnamed);
+  else
+    GTEST_SKIP() << "this file system has no files without a name";
+  ASSERT_EQ(run("voyager convert " + file("c.ply") + " -o " + file("whole.spz")).exit_code, 0);
+  const std::string whole = file_bytes(file("whole.spz"));
+  for (int milliseconds = 5; milliseconds < 80; milliseconds += 15) {
+    write_bytes(out, "before");
+    run_shell("timeout -s KILL 0.0" + std::string(milliseconds < 10 ? "0" : "") +
+              std::to_string(milliseconds) + " " +
+              program("voyager convert " + file("c.ply") + " -o " + out));
+    const std::string found = file_bytes(out);
+    EXPECT_TRUE(found == "before" || found == whole) << milliseconds << " ms";
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+  }
 }
 
 TEST_F(ConvertCommand, EndingsMayBeInCapitals) {

@@ -217,5 +217,39 @@ TEST_F(Messages, SizesAreInUnitsForPeopleAndInBytesForPrograms) {
   EXPECT_NE(baked.output.find(" MB, "), std::string::npos) << baked.output;
 }
 
+// A stranger's file must not steer the terminal: each kind of name that a message repeats, with ESC
+// or CSI in it.
+TEST_F(Messages, NamesInFilesReachTheTerminalWithoutControlCharacters) {
+  const std::string ply = "ply\nformat binary_little_endian 1.0\n";
+  const std::string asset = R"({"asset":{"version":"2.0"},)";
+  const auto node = [&](const std::string& uri) {
+    return asset +
+           R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[
+      {"attributes":{"POSITION":0},"extensions":{"KHR_gaussian_splatting":{}}}]}],
+      "accessors":[{"bufferView":0,"componentType":5126,"count":1,"type":"VEC3"}],
+      "bufferViews":[{"buffer":0,"byteLength":12}],"buffers":[{"byteLength":12,"uri":")" +
+           uri + R"("}]})";
+  };
+  const std::pair<const char*, std::string> table[] = {
+      {"type.ply", ply + "element vertex 1\nproperty \x1b[2J x\nend_header\n"},
+      {"name.ply", ply + "element vertex 1\nproperty list int int \x1b[2J\nend_header\n"},
+      {"element.ply", ply + "element \x1b[2J -1\nend_header\n"},
+      {"comment.ply", ply + "comment \x1b[2J\nwrong \x9b[2J\n"},
+      {"required.gltf", asset + R"("extensionsRequired":["\u001b[2J\u009b[2J"]})"},
+      {"beside.gltf", node("\\u001b[2J.bin")},
+      {"outside.gltf", node("../%1b[2J.bin")},
+      {"scheme.gltf", node("http://\\u009b[2J")},
+      {"tileset.json", R"({"asset":{"version":"1.1"},"geometricError":1,"root":{"geometricError":0,
+        "boundingVolume":{"sphere":[0,0,0,1]},"content":{"uri":"\u001b[2J.glb"}}})"}};
+  for (const auto& [name, text] : table) {
+    write_bytes(file(name), text);
+    const Outcome done = run("voyager convert " + file(name) + " -o " + file("out.ply"));
+    EXPECT_NE(done.exit_code, 0) << name;
+    EXPECT_NE(done.output.find("[2J"), std::string::npos) << name << ": " << done.output;
+    for (const char* control : {"\x1b", "\x9b"})
+      EXPECT_EQ(done.output.find(control), std::string::npos) << name << ": " << done.output;
+  }
+}
+
 }  // namespace
 }  // namespace voyager::messages_test

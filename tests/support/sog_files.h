@@ -121,6 +121,24 @@ inline SogFiles sog_files(size_t count, int sh_degree) {
   return files;
 }
 
+// A streamed scene of so many files, each of `count` Gaussians (a multiple of 1000), which share
+// images of one colour.
+inline SogFiles one_colour_streamed_sog(size_t files, size_t count, size_t pixels) {
+  SogFiles made;
+  const Bytes image = webp(std::vector<uint8_t>(4 * pixels, 255), 1000);
+  for (const char* name : {"means_l.webp", "means_u.webp", "scales.webp", "quats.webp", "sh0.webp"})
+    made[name] = image;
+  nlohmann::json children = nlohmann::json::array(), names = nlohmann::json::array();
+  for (size_t i = 0; i < files; ++i) {
+    names.push_back(std::to_string(i) + ".json");
+    made[names.back()] = bytes_of(sog_meta(count, 0).dump());
+    children.push_back({{"lods", {{"0", {{"file", i}, {"offset", 0}, {"count", count}}}}}});
+  }
+  const nlohmann::json lod = {{"filenames", names}, {"tree", {{"children", children}}}};
+  made["lod-meta.json"] = bytes_of(lod.dump());
+  return made;
+}
+
 inline GaussianCloud import_sog(const Bytes& bytes) {
   return import_gaussians(std::make_shared<MemorySource>("sample.sog", bytes));
 }

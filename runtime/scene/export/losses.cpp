@@ -1,5 +1,6 @@
 // What formats have no place for, in words.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -13,6 +14,12 @@ namespace {
 std::string metres(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g m", value);
+  return text;
+}
+
+std::string place(const std::array<double, 3>& at) {
+  char text[96];
+  std::snprintf(text, sizeof text, "(%.0f, %.0f, %.0f) m", at[0], at[1], at[2]);
   return text;
 }
 
@@ -33,31 +40,38 @@ double sog_step(const FlatContents& contents) {
 }
 constexpr double kCoarse = 0.01;  // metres
 
+std::string coarse_spz(float reach, const std::string& origin) {
+  const int bits = spz_fractional_bits(reach);
+  if (bits >= spz_fractional_bits(0)) return "";
+  return "positions are in steps of " + metres(std::ldexp(1.0, -bits)) + ": one is " +
+         metres(double{reach}) + " from " + origin;
+}
+
 // Positions of the world, where the scene is far from the world's origin.
-std::string coarse_positions(FlatFormat format, const FlatContents& contents) {
-  const double coordinate = contents.largest_coordinate;
+std::string coarse_positions(FlatFormat format, const FlatContents& contents,
+                             const FlatOptions& options) {
   const bool in_binary32 = format == FlatFormat::splat || format == FlatFormat::compressed_ply ||
                            format == FlatFormat::sog;
   if (in_binary32 && contents.is_moved())
     return "positions are in steps of " + metres(step_at(contents.reach())) + ": they are " +
-           metres(coordinate) + " from the world's origin";
+           metres(contents.largest_coordinate) + " from the world's origin";
   if (format == FlatFormat::sog && sog_step(contents) > kCoarse)
     return "positions are in steps of up to " + metres(sog_step(contents)) +
            " where they are farthest from the world's origin";
-  const int bits = spz_fractional_bits(contents.reach());
-  if (format == FlatFormat::spz && bits < spz_fractional_bits(0))
-    return "positions are in steps of " + metres(std::ldexp(1.0, -bits)) + ": one is " +
-           metres(coordinate) + " from the world's origin";
+  if (format == FlatFormat::spz) return coarse_spz(contents.reach(), "the world's origin");
+  if (format == FlatFormat::glb && options.spz_inside)
+    return coarse_spz(contents.reach_from_origin(),
+                      "the scene's origin, " + place(contents.origin));
   return "";
 }
 
-std::string lost_filter(FlatFormat format, const NativeScale& native) {
+std::string lost_filter(FlatFormat format, const NativeScale& native, const FlatOptions& options) {
   if (!native.antialiased()) return "";
-  if (format == FlatFormat::splat || format == FlatFormat::glb)
+  const bool spz = format == FlatFormat::spz || (format == FlatFormat::glb && options.spz_inside);
+  if (format == FlatFormat::splat || (format == FlatFormat::glb && !spz))
     return "the format cannot say that the scene was trained with a compensated (antialiasing) "
            "filter: left out";
-  if ((format == FlatFormat::spz || format == FlatFormat::sog) &&
-      native.low_pass == kMipSplattingLowPass)
+  if ((spz || format == FlatFormat::sog) && native.low_pass == kMipSplattingLowPass)
     return "the format cannot say that the filter of the training is Mip-Splatting's: it is read "
            "as 3DGS's";
   return "";
@@ -67,17 +81,11 @@ std::string lost_filter(FlatFormat format, const NativeScale& native) {
 
 std::vector<std::string> losses(FlatFormat format, const FlatContents& contents,
                                 const FlatOptions& options) {
-  if (format == FlatFormat::glb && options.spz_inside) {
-    FlatContents inside = contents;  // its places are from the origin
-    inside.largest_coordinate = double{contents.reach_from_origin()};
-    inside.origin = {};
-    return losses(FlatFormat::spz, inside);
-  }
   std::vector<std::string> lost;
   if (format == FlatFormat::splat && contents.sh_degree > 0)
     lost.push_back("the format has no spherical harmonics of degree 1 and more: left out");
   for (const std::string& text :
-       {lost_filter(format, contents.native), coarse_positions(format, contents)})
+       {lost_filter(format, contents.native, options), coarse_positions(format, contents, options)})
     if (!text.empty()) lost.push_back(text);
   return lost;
 }

@@ -25,9 +25,7 @@ constexpr TypeName kTypes[] = {
 };
 
 std::string in_quotes(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text.substr(0, 80)) out += (c >= 32 && c < 127) ? c : '?';
-  return out + "\"";
+  return "\"" + std::string(text.substr(0, 80)) + "\"";
 }
 
 class Parser {

@@ -49,6 +49,23 @@ TEST(FlatFile, SaysWhereStepsOfASogAreLarge) {
   EXPECT_NE(lost[0].find("steps of up to 0.0163 m"), std::string::npos) << lost[0];
 }
 
+// Inputs that are joined may lie far apart: 5 km from the origin of the first, which is 4500 km
+// from the world's.
+TEST(FlatFile, SaysFromWhichOriginAPositionIsFar) {
+  FlatContents contents;
+  contents.origin = contents.least = {4404.0 * 1024, 0, 0};
+  contents.most = {4404.0 * 1024 + 5000, 0, 0};
+  contents.largest_coordinate = contents.most[0];
+  const std::vector<std::string> inside =
+      losses(FlatFormat::glb, contents, {.spz_version = 3, .spz_inside = true});
+  ASSERT_EQ(inside.size(), 1u);
+  EXPECT_NE(inside[0].find("5e+03 m from the scene's origin, (4509696, 0, 0) m"), std::string::npos)
+      << inside[0];
+  const std::vector<std::string> alone = losses(FlatFormat::spz, contents);
+  ASSERT_EQ(alone.size(), 1u);
+  EXPECT_NE(alone[0].find("4.51e+06 m from the world's origin"), std::string::npos) << alone[0];
+}
+
 TEST(FlatFile, ContentsHaveTheBoundsOfAllBatches) {
   FlatContents contents;
   GaussianCloud cloud = test::random_cloud(2, 4, 0);

@@ -268,5 +268,27 @@ TEST(SogImport, NoFlippedByteCrashes) {
   test::expect_flips_are_harmless(test::zip(test::sog_files(4, 0)), test::import_sog);
 }
 
+// Every image is held to the count before its pixels take memory: one of 16,000 x 16,000 pixels
+// takes a gigabyte, which a file of some hundred bytes must not cost.
+TEST(SogImport, AnImageOfAnotherSizeThanTheCountIsRefusedBeforeItIsDecoded) {
+  const SogFiles good = test::sog_files(8, 1);
+  Bytes large = good.at("sh0.webp");
+  // Of a lossless WebP the width and height minus 1, in 14 bits each, follow the byte 0x2f.
+  const uint32_t header = 15999 | 15999 << 14 | 1 << 28;
+  ASSERT_EQ(large[20], std::byte{0x2f});
+  std::memcpy(&large[21], &header, sizeof header);
+  for (const auto& [name, bytes] : good) {
+    if (name == "meta.json") continue;
+    SogFiles files = good;
+    files[name] = large;
+    expect_refused(files, name + ": found 16000 x 16000 pixels");
+    const test::TempFolder folder;
+    test::write_files(folder.file(""), files);
+    const std::string message =
+        test::refusal_of([&] { test::import_file(folder.file("meta.json")); });
+    EXPECT_NE(message.find(name + ": found 16000 x 16000 pixels"), std::string::npos) << message;
+  }
+}
+
 }  // namespace
 }  // namespace voyager::sog_import_test

@@ -113,6 +113,34 @@ TEST(StreamedSog, RefusesWhatDoesNotFitTogether) {
   expect("/filenames/0", "/etc/passwd", "in the same folder or below");
 }
 
+std::string refusal_of_files(const SogFiles& files) {
+  const test::TempFolder folder;
+  test::write_files(folder.file(""), files);
+  return test::refusal_of([&] { test::import_file(folder.file("lod-meta.json")); });
+}
+
+// Each of them alone is worth its Gaussians.
+TEST(StreamedSog, RefusesMoreGaussiansThanAllFilesTogetherAreWorth) {
+  const std::string message = refusal_of_files(test::one_colour_streamed_sog(4, 120'000, 120'000));
+  EXPECT_NE(message.find("Gaussians of the files: found 480000, expected at most 3"),
+            std::string::npos)
+      << message;
+}
+
+TEST(StreamedSog, RefusesMorePixelsThanAllFilesTogetherAreWorth) {
+  const std::string message = refusal_of_files(test::one_colour_streamed_sog(60, 1000, 65'000));
+  EXPECT_NE(message.find("pixels of this and earlier images"), std::string::npos) << message;
+}
+
+TEST(StreamedSog, AnEnvironmentThatIsAFileOfTheTreeIsRefused) {
+  const Folder folder;
+  Json meta = good_meta();
+  meta["environment"] = "./fine_1/meta.json";
+  const std::string message = folder.refusal(meta);
+  EXPECT_NE(message.find("environment: found \"./fine_1/meta.json\""), std::string::npos)
+      << message;
+}
+
 TEST(StreamedSog, EveryFieldMissingOrAbsurdIsRefusedOrRead) {
   const Folder folder;
   const Json good = good_meta();

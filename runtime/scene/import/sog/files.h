@@ -1,6 +1,8 @@
 #pragma once
 // The files of a SOG scene: in a zip (.sog), or beside a meta.json.
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -10,6 +12,11 @@
 
 namespace voyager::sog {
 
+// Of files by their paths, so that one that is named twice counts once.
+using FileBytes = std::map<std::string, uint64_t>;
+
+uint64_t sum_of(const FileBytes& files);
+
 class Files {
  public:
   virtual ~Files() = default;
@@ -17,8 +24,9 @@ class Files {
   virtual const std::string& name() const = 0;
   // The text of meta.json. Refuses one of more than 256 KiB.
   virtual std::vector<std::byte> meta() const = 0;
-  // Bytes that these files take where they are, compressed or not.
-  virtual uint64_t length(std::span<const std::string> files) const = 0;
+  // Bytes that these files take where they are, compressed or not, by the path of each: of a zip,
+  // the zip's.
+  virtual FileBytes bytes(std::span<const std::string> files) const = 0;
   // Refuses a file that is not there, one outside the folder, and one of more than `most` bytes.
   virtual std::vector<std::byte> read(const std::string& file, uint64_t most) const = 0;
 };

@@ -1,4 +1,6 @@
 #include <array>
+#include <filesystem>
+#include <numeric>
 
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
@@ -17,9 +19,12 @@ class FolderFiles final : public Files {
     return read_at_most(*meta_, "meta.json", kMostMeta);
   }
 
-  uint64_t length(std::span<const std::string> files) const override {
-    uint64_t bytes = 0;
-    for (const std::string& file : files) bytes += meta_->open_beside(file)->size();
+  FileBytes bytes(std::span<const std::string> files) const override {
+    FileBytes bytes;
+    for (const std::string& file : files) {
+      const auto source = meta_->open_beside(file);
+      bytes[std::filesystem::path(source->name()).lexically_normal().string()] = source->size();
+    }
     return bytes;
   }
 
@@ -40,6 +45,11 @@ class FolderFiles final : public Files {
 };
 
 }  // namespace
+
+uint64_t sum_of(const FileBytes& files) {
+  return std::accumulate(files.begin(), files.end(), uint64_t{0},
+                         [](uint64_t sum, const auto& file) { return sum + file.second; });
+}
 
 std::unique_ptr<Files> open_folder(std::shared_ptr<const ByteSource> meta) {
   return std::make_unique<FolderFiles>(std::move(meta));

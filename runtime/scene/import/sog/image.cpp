@@ -7,7 +7,7 @@
 namespace voyager::sog {
 
 Image decode_webp(const std::string& scene, const std::string& file,
-                  std::span<const std::byte> bytes, const PixelRange& pixels) {
+                  std::span<const std::byte> bytes, const PixelRange& pixels, PixelBudget* budget) {
   constexpr int kLossless = 2;
   const auto* data = reinterpret_cast<const uint8_t*>(bytes.data());
   WebPBitstreamFeatures features;
@@ -21,6 +21,11 @@ Image decode_webp(const std::string& scene, const std::string& file,
     refuse(scene, 0, file,
            std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels",
            std::to_string(pixels.least) + " to " + std::to_string(pixels.most) + " pixels");
+  if (budget && image.pixels() > budget->most - budget->used)
+    refuse(scene, 0, file,
+           std::to_string(budget->used + image.pixels()) + " pixels of this and earlier images",
+           "at most " + std::to_string(budget->most) + " in files of their size");
+  if (budget) budget->used += image.pixels();
   image.rgba.resize(static_cast<size_t>(4 * image.pixels()));
   const int stride = static_cast<int>(4 * image.width);
   if (!WebPDecodeRGBAInto(data, bytes.size(), image.rgba.data(), image.rgba.size(), stride))

@@ -26,9 +26,15 @@ inline uint64_t most_bytes(const PixelRange& pixels) {
   return (1 << 16) + 8 * pixels.most;
 }
 
-// A lossless WebP. Its size is held to `pixels` before memory is taken. `scene` and `file` are for
-// messages. Throws Error(refused_input).
+// Pixels that the images of several scenes may have together.
+struct PixelBudget {
+  uint64_t most, used = 0;
+};
+
+// A lossless WebP. Its size is held to `pixels`, and to what is left of `budget` (null: no limit),
+// before memory is taken. `scene` and `file` are for messages. Throws Error(refused_input).
 Image decode_webp(const std::string& scene, const std::string& file,
-                  std::span<const std::byte> bytes, const PixelRange& pixels);
+                  std::span<const std::byte> bytes, const PixelRange& pixels,
+                  PixelBudget* budget = nullptr);
 
 }  // namespace voyager::sog

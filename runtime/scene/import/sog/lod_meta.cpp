@@ -66,17 +66,27 @@ nlohmann::json read(const ByteSource& source) {
   return parse_json(source.name(), 0, text, kLodLevels);
 }
 
+std::string plain_path(const std::string& path) {
+  return std::filesystem::path(path).lexically_normal().string();
+}
+
 std::vector<std::string> file_names(const JsonValue& names) {
   std::vector<std::string> files;
   std::unordered_set<std::string> seen;
   for (size_t i = 0; i < names.size(); ++i) {
     const JsonValue name = names[i];
     files.push_back(name.text());
-    if (!seen.insert(std::filesystem::path(files.back()).lexically_normal().string()).second)
-      name.refuse("each file once");
+    if (!seen.insert(plain_path(files.back())).second) name.refuse("each file once");
   }
   if (files.empty()) names.refuse("at least one file");
   return files;
+}
+
+std::string environment(const JsonValue& name, const std::vector<std::string>& files) {
+  const std::string path = plain_path(name.text());
+  for (const std::string& file : files)
+    if (plain_path(file) == path) name.refuse("a file that is not one of filenames");
+  return name.text();
 }
 
 // Joins those that follow one another; refuses those that share a Gaussian.
@@ -112,7 +122,8 @@ std::vector<Part> finest_level(const ByteSource& lod_meta) {
   const std::vector<std::string> files = file_names(json["filenames"]);
   std::vector<Part> parts =
       joined(lod_meta.name(), Tree(json["tree"], files.size()).ranges(), files);
-  if (json.has("environment")) parts.push_back({json["environment"].text(), 0, UINT64_MAX});
+  if (json.has("environment"))
+    parts.push_back({environment(json["environment"], files), 0, UINT64_MAX});
   return parts;
 }
 

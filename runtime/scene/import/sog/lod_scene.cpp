@@ -14,12 +14,15 @@ namespace voyager::sog {
 namespace {
 
 constexpr uint64_t kBlockBytes = 16 << 20;  // of a block
+// A Gaussian takes six pixels, and its position alone several bytes.
+constexpr uint64_t kFreePixels = 1 << 24, kPixelsOfAByte = 64;
 
 class LodScene final : public BlockReader {
  public:
   explicit LodScene(std::shared_ptr<const ByteSource> source)
       : source_(std::move(source)), parts_(finest_level(*source_)) {
     for (Part& part : parts_) check(part);
+    check_total();
   }
 
   const std::string& name() const override { return source_->name(); }
@@ -71,10 +74,26 @@ class LodScene final : public BlockReader {
     return open_files(source_->open_beside(part.file));
   }
 
+  void take_meta(const Files& files) {
+    checked_ = read_meta(files);
+    bytes_.merge(files.bytes(checked_.named_files()));
+    whole_count_ += checked_.count;
+    has_sh_ = has_sh_ || checked_.has_sh;
+  }
+
+  // Files may share images, and each alone is worth some Gaussians whatever its size.
+  void check_total() {
+    const uint64_t bytes = sum_of(bytes_), most = most_gaussians_in(bytes, has_sh_);
+    if (whole_count_ > most)
+      refuse(name(), 0, "Gaussians of the files", std::to_string(whole_count_),
+             "at most " + std::to_string(most) + " in " + std::to_string(bytes) + " bytes");
+    budget_.most = kFreePixels + kPixelsOfAByte * bytes;
+  }
+
   // What is asked of a file's meta.json before any image is read.
   void check(Part& part) {
     const bool again = &part != parts_.data() && (&part)[-1].file == part.file;
-    if (!again) checked_ = read_meta(*files_of(part));
+    if (!again) take_meta(*files_of(part));
     const Meta& meta = checked_;
     if (meta.has_sh && !meta.sh_degree)
       refuse(name(), 0, part.file, "version 1", "version 2 in a streamed scene");
@@ -92,12 +111,13 @@ class LodScene final : public BlockReader {
   // Parts of one file that follow one another in it are read in one pass: its images are decoded
   // once.
   void open_next() {
+    done_ = nullptr;
     last_ = part_;
     while (last_ + 1 < parts_.size() && parts_[last_ + 1].file == parts_[part_].file &&
            parts_[last_ + 1].first >= end_of(parts_[last_]))
       ++last_;
     at_ = parts_[part_].first;
-    scene_ = open_scene(files_of(parts_[part_]), at_, end_of(parts_[last_]) - at_);
+    scene_ = open_scene(files_of(parts_[part_]), at_, end_of(parts_[last_]) - at_, &budget_);
   }
 
   static uint64_t end_of(const Part& part) { return part.first + part.count; }
@@ -130,7 +150,11 @@ class LodScene final : public BlockReader {
   uint64_t count_ = 0;
   int sh_degree_ = 0;
   std::optional<bool> antialiased_;
-  Meta checked_;                               // the file's of the part that was checked last
+  Meta checked_;              // the file's of the part that was checked last
+  FileBytes bytes_;           // of all images
+  uint64_t whole_count_ = 0;  // Gaussians of the files, wanted or not
+  bool has_sh_ = false;
+  PixelBudget budget_{0};
   size_t part_ = 0;                            // that is read
   size_t last_ = 0;                            // of those that the open file is read for
   uint64_t at_ = 0;                            // Gaussian of that file

@@ -17,10 +17,11 @@ struct Place {
 };
 constexpr std::array<Place, kFiles> kPlaces = {
     {{0, 3}, {3, 3}, {6, 3}, {9, 4}, {13, 4}, {0, 0}, {17, 2}}};
-constexpr size_t kRow = 19;
+constexpr size_t kRow = 19, kPixelBytes = 4;
 constexpr size_t kMostRows = (16 << 20) / kRow;  // of a block
 constexpr uint32_t kCentroidsARow = 64;          // of their image
 constexpr uint64_t kMostCentroidRows = 1024;
+constexpr uint64_t kSparePixels = 1 << 16;  // of an image, which writers round up
 
 int integer(const std::byte* code) {
   return std::to_integer<int>(*code);
@@ -46,9 +47,12 @@ void decode_rotation(const std::byte* code, float* wxyz) {
 
 class Scene final : public BlockReader {
  public:
-  Scene(std::unique_ptr<Files> files, uint64_t first, uint64_t count)
-      : files_(std::move(files)), name_(files_->name()), meta_(read_meta(*files_)) {
-    check_count(files_->length(meta_.named_files()));
+  Scene(std::unique_ptr<Files> files, uint64_t first, uint64_t count, PixelBudget* budget)
+      : files_(std::move(files)),
+        budget_(budget),
+        name_(files_->name()),
+        meta_(read_meta(*files_)) {
+    check_count(sum_of(files_->bytes(meta_.named_files())));
     if (meta_.has_sh) read_centroids();
     first_ = std::min(first, meta_.count);
     count_ = std::min(count, meta_.count - first_);
@@ -88,10 +92,8 @@ class Scene final : public BlockReader {
  private:
   size_t width() const { return static_cast<size_t>(sh_coefficients(sh_degree_)) * 3; }
 
-  // An image of one colour takes some thirty bytes, whatever its size.
   void check_count(uint64_t length) const {
-    const int degree = meta_.has_sh ? kMaxShDegree : 0;
-    const uint64_t most = most_gaussians(length, bytes_of_gaussian(degree) + kRow + 16);
+    const uint64_t most = most_gaussians_in(length, meta_.has_sh);
     if (meta_.count > most)
       refuse(
           name_, 0, "count", std::to_string(meta_.count) + " Gaussians",
@@ -106,21 +108,31 @@ class Scene final : public BlockReader {
     files_ = nullptr;
   }
 
+  Image decode(const std::string& image, const PixelRange& pixels) const {
+    return decode_webp(name_, image, files_->read(image, most_bytes(pixels)), pixels, budget_);
+  }
+
   void read_image(File file) {
     const std::string& name = meta_.files[file];
-    const PixelRange range{meta_.count, 2 * meta_.count + (1 << 16)};
-    const Image image = decode_webp(name_, name, files_->read(name, most_bytes(range)), range);
+    const PixelRange range{meta_.count, 2 * meta_.count + kSparePixels};
+    const Image image = decode(name, range);
     const auto [at, channels] = kPlaces[file];
     for (uint64_t i = 0; i < count_; ++i)
       std::copy_n(image.pixel(first_ + i), channels,
                   reinterpret_cast<uint8_t*>(rows_.data() + i * kRow + at));
   }
 
+  // Before version 2 only the image says how many there are.
+  PixelRange pixels_of_centroids() const {
+    if (!meta_.centroids) return {1, kMostCentroidRows * kCentroidsARow * 15};
+    const auto each = static_cast<uint64_t>(sh_coefficients(*meta_.sh_degree) - 1);
+    const uint64_t least = *meta_.centroids * each;
+    return {least, 2 * least + kSparePixels};
+  }
+
   void read_centroids() {
     const std::string& name = meta_.files[kCentroids];
-    const uint64_t most = kMostCentroidRows * kCentroidsARow * 15;
-    const Image image =
-        decode_webp(name_, name, files_->read(name, most_bytes({1, most})), {1, most});
+    const Image image = decode(name, pixels_of_centroids());
     sh_degree_ = meta_.sh_degree.value_or(degree_of_width(image.width));
     const auto each = static_cast<uint32_t>(sh_coefficients(sh_degree_) - 1);
     const uint64_t found = uint64_t{image.height} * kCentroidsARow;
@@ -176,6 +188,7 @@ class Scene final : public BlockReader {
   }
 
   std::unique_ptr<Files> files_;  // until the images are read
+  PixelBudget* budget_;
   std::string name_;
   Meta meta_;
   int sh_degree_ = 0;
@@ -187,9 +200,15 @@ class Scene final : public BlockReader {
 
 }  // namespace
 
+// An image of one colour takes some thirty bytes, whatever its size.
+uint64_t most_gaussians_in(uint64_t file_bytes, bool has_sh) {
+  return most_gaussians(file_bytes,
+                        bytes_of_gaussian(has_sh ? kMaxShDegree : 0) + kRow + 4 * kPixelBytes);
+}
+
 std::unique_ptr<BlockReader> open_scene(std::unique_ptr<Files> files, uint64_t first,
-                                        uint64_t count) {
-  return std::make_unique<Scene>(std::move(files), first, count);
+                                        uint64_t count, PixelBudget* budget) {
+  return std::make_unique<Scene>(std::move(files), first, count, budget);
 }
 
 std::unique_ptr<BlockReader> open(std::shared_ptr<const ByteSource> source) {

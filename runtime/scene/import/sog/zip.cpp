@@ -1,6 +1,7 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
@@ -30,7 +31,9 @@ class ZipFiles final : public Files {
 
   const std::string& name() const override { return name_; }
   std::vector<std::byte> meta() const override { return read("meta.json", kMostMeta); }
-  uint64_t length(std::span<const std::string>) const override { return bytes_.size(); }
+  FileBytes bytes(std::span<const std::string>) const override {
+    return {{std::filesystem::path(name_).lexically_normal().string(), bytes_.size()}};
+  }
   std::vector<std::byte> read(const std::string& file, uint64_t most) const override {
     zip_stat_t about;
     zip_stat_init(&about);
