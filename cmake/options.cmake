@@ -4,7 +4,6 @@ option(VOYAGER_BUILD_SAMPLES "Build the sample hosts for Vulkan and OpenXR" ON)
 set(VOYAGER_CUDA AUTO CACHE STRING "Build the CUDA module: AUTO (where nvcc is found), ON or OFF")
 set(VOYAGER_HTTP AUTO CACHE STRING "Build the HTTP module: AUTO (where libcurl is found), ON or OFF")
 set(VOYAGER_SOG AUTO CACHE STRING "Build the SOG module: AUTO (where libwebp and libzip are found), ON or OFF")
-set(VOYAGER_ISAL AUTO CACHE STRING "Decompress gzip with ISA-L: AUTO (where it is found), ON or OFF")
 set(VOYAGER_VIEW AUTO CACHE STRING "Build voyager view: AUTO (where GLFW, Dear ImGui and Vulkan are found), ON or OFF")
 
 # The tests run the tools and the samples, and the benchmarks use the tools' cameras and statistics.
@@ -40,7 +39,7 @@ macro(voyager_leave_out option what why)
   set(${option} OFF)
 endmacro()
 
-foreach(option VOYAGER_CUDA VOYAGER_HTTP VOYAGER_SOG VOYAGER_ISAL VOYAGER_VIEW)
+foreach(option VOYAGER_CUDA VOYAGER_HTTP VOYAGER_SOG VOYAGER_VIEW)
   set_property(CACHE ${option} PROPERTY STRINGS AUTO ON OFF)
   string(TOUPPER "${${option}}" ${option})
   string(REGEX REPLACE "^(1|YES|TRUE|Y)$" ON ${option} "${${option}}")

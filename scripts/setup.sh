@@ -14,7 +14,7 @@ declare -A packages
 packages[main]="
   g++ cmake ninja-build
   libtbb-dev zlib1g-dev libzstd-dev libxxhash-dev libeigen3-dev nlohmann-json3-dev
-  libwebp-dev libzip-dev libisal-dev
+  libwebp-dev libzip-dev
   libcurl4-openssl-dev
   libpng-dev libfmt-dev libcli11-dev
   libvulkan-dev glslang-tools"

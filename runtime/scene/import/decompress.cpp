@@ -57,16 +57,32 @@ void Decompressor::finish() {
   if (has_more()) refuse_stream("more bytes after its end", "none");
 }
 
-GzipReader::GzipReader(PeekReader& input) : Decompressor(input) {}
+GzipReader::GzipReader(PeekReader& input) : Decompressor(input) {
+  if (inflateInit2(&stream_, 16 + MAX_WBITS) != Z_OK) throw std::bad_alloc();
+}
 
-GzipReader::GzipReader(PeekReader& input, const GzipReader& other)
-    : Decompressor(input, other), inflate_(other.inflate_) {}
+GzipReader::GzipReader(PeekReader& input, const GzipReader& other) : Decompressor(input, other) {
+  // zlib's interface is not const-correct; it only reads from its source.
+  if (inflateCopy(&stream_, const_cast<z_stream*>(&other.stream_)) != Z_OK) throw std::bad_alloc();
+}
+
+GzipReader::~GzipReader() {
+  inflateEnd(&stream_);
+}
 
 Decompressor::Step GzipReader::step(std::span<const std::byte> in, std::span<std::byte> out) {
-  const Inflate::Step done = inflate_.step(in, out);
-  if (done.problem) refuse_stream(done.problem, "gzip data that matches its CRC");
-  ended_ = done.ended;
-  return {done.taken, done.made};
+  const size_t room = std::min<size_t>(out.size(), 1u << 30);  // zlib counts in 32 bits
+  // zlib's interface is not const-correct; it does not write to its input.
+  stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(in.data()));
+  stream_.avail_in = static_cast<uInt>(in.size());
+  stream_.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream_.avail_out = static_cast<uInt>(room);
+  const int code = inflate(&stream_, Z_NO_FLUSH);
+  if (code == Z_MEM_ERROR) throw std::bad_alloc();
+  if (code != Z_OK && code != Z_STREAM_END && code != Z_BUF_ERROR)
+    refuse_stream(stream_.msg ? stream_.msg : "an error of zlib", "gzip data that matches its CRC");
+  ended_ = code == Z_STREAM_END;
+  return {in.size() - stream_.avail_in, room - stream_.avail_out};
 }
 
 ZstdReader::ZstdReader(PeekReader& input, uint64_t compressed_size, uint64_t plain_size)

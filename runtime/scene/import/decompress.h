@@ -3,11 +3,11 @@
 // bytes; refusals of the compressed ones name the file and its own offset.
 // Memory is bounded whatever the input says: one block, and a window of at
 // most 32 KiB (gzip), or 8 MiB or what the stream holds, up to 128 MiB (zstd).
+#include <zlib.h>
 #include <zstd.h>
 
 #include <memory>
 
-#include "runtime/scene/import/inflate.h"
 #include "runtime/scene/import/peek_reader.h"
 
 namespace voyager {
@@ -53,13 +53,16 @@ class GzipReader final : public Decompressor {
   explicit GzipReader(PeekReader& input);
   // Goes on where `other` stands. So must `input`, in the same bytes.
   GzipReader(PeekReader& input, const GzipReader& other);
+  ~GzipReader() override;
+  GzipReader(const GzipReader&) = delete;
+  GzipReader& operator=(const GzipReader&) = delete;
 
  private:
   Step step(std::span<const std::byte> in, std::span<std::byte> out) override;
   uint64_t bytes_left() const override { return UINT64_MAX; }
   bool has_more() override { return !input_.peek(1).empty(); }
 
-  Inflate inflate_;
+  z_stream stream_ = {};
 };
 
 // One zstd frame in `compressed_size` bytes, which decompress to `plain_size`.
