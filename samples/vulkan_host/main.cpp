@@ -60,11 +60,13 @@ void say_what_runs(const Device& device, const VoyagerLayer& voyager) {
 }
 
 // Of a window's frame three quarters are Voyager's; the meshes, the composite and the display's
-// compositor have the rest.
+// compositor have the rest. A CPU needs longer than any display's frame, so it draws at a fixed
+// tau.
 HudState hud_state(const Options& options, const Look& look, const VoyagerLayer& voyager,
                    const Window& window) {
   constexpr double kShare = 0.75;
-  const bool holds_time = options.time_budget || (!options.tau && voyager.has_tree());
+  const bool on_gpu = voyager.capabilities().backend == VOY_BACKEND_CUDA;
+  const bool holds_time = options.time_budget || (!options.tau && voyager.has_tree() && on_gpu);
   return {look, static_cast<float>(options.tau.value_or(3)), holds_time,
           static_cast<float>(options.time_budget.value_or(kShare * window.frame_milliseconds()))};
 }

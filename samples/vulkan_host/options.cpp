@@ -60,10 +60,9 @@ void add_choices(CLI::App& app, Options& o) {
 void add_budgets(CLI::App& app, Options& o) {
   auto* const tau = app.add_option("--tau", o.tau, "Level of detail, pixels: smaller is finer")
                         ->check(CLI::Validator(not_negative, "PX"));
-  app.add_option(
-         "--time-budget", o.time_budget,
-         "Voyager's part of a frame: tau follows. In a window without --tau, three quarters "
-         "of the time that its display shows a frame")
+  app.add_option("--time-budget", o.time_budget,
+                 "Voyager's part of a frame: tau follows. In a window without --tau, on a GPU, "
+                 "three quarters of the time that its display shows a frame")
       ->check(CLI::Validator(above_zero, "MS"))
       ->excludes(tau);
   app.add_option("--budget", o.budget_megabytes,

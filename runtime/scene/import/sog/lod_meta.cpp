@@ -13,7 +13,6 @@ namespace voyager::sog {
 namespace {
 
 constexpr int kLodLevels = 128;  // of JSON: a level of the tree takes two
-constexpr uint64_t kMostLodBytes = 1 << 30;
 constexpr uint64_t kMostGaussians = uint64_t{1} << 40;
 
 struct Range {
@@ -58,9 +57,6 @@ class Tree {
 };
 
 nlohmann::json read(const ByteSource& source) {
-  if (source.size() > kMostLodBytes)
-    refuse(source.name(), 0, "lod-meta.json", std::to_string(source.size()) + " bytes",
-           "at most " + std::to_string(kMostLodBytes) + " bytes");
   const std::vector<std::byte> bytes = read_all(source);
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return parse_json(source.name(), 0, text, kLodLevels);

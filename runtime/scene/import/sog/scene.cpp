@@ -1,9 +1,11 @@
 #include "runtime/scene/import/sog/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "runtime/math/byte_code.h"
+#include "runtime/math/signed_log.h"
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/sog/image.h"
@@ -27,22 +29,22 @@ int integer(const std::byte* code) {
   return std::to_integer<int>(*code);
 }
 
-// Sign and logarithm keep the precision near the origin: v = sign(x) ln(|x| + 1).
 float position_of(const std::byte* low, const std::byte* high, double least, double most) {
   const double share = (integer(low) + 256 * integer(high)) / 65535.0;
-  const double v = (1.0 - share) * least + share * most;
-  return static_cast<float>(std::copysign(std::expm1(std::fabs(v)), v));
+  return static_cast<float>(signed_exp((1.0 - share) * least + share * most));
 }
 
 // The last byte says which component is the largest; the others follow in the order w, x, y, z.
 // Any other byte there leaves a rotation of zero, which sanitise() mends and counts.
 void decode_rotation(const std::byte* code, float* wxyz) {
-  const int largest = integer(code + 3) - 252;
-  if (largest < 0) return;
+  SmallestThree found;
+  found.largest = integer(code + 3) - 252;
+  if (found.largest < 0) return;
   const float reach = std::sqrt(0.5f);
-  for (int i = 0; i < 4; ++i)
-    if (i != largest) wxyz[i] = between(-reach, reach, static_cast<uint32_t>(integer(code++)), 255);
-  complete_unit(wxyz, largest);
+  for (float& other : found.others)
+    other = between(-reach, reach, static_cast<uint32_t>(integer(code++)), 255);
+  const std::array<float, 4> rotation = quaternion_of(found);
+  std::copy(rotation.begin(), rotation.end(), wxyz);
 }
 
 class Scene final : public BlockReader {
