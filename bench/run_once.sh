@@ -51,8 +51,10 @@ eyes=("$scene" "$cameras" -o "$folder/eyes" --voyager "$bin/voyager" --eye 40x44
 run python3 bench/foveation.py time "${eyes[@]}"
 if python3 -c 'import numpy' 2>/dev/null; then
   run python3 bench/foveation.py error "${eyes[@]}"
+  run python3 bench/reprojection.py "$scene" "$cameras" -o "$folder/between" --voyager "$bin/voyager" --frames 1 --turn 30 \
+    --options "--size 64x36 --backend cpu"
 else
-  skip "bench/foveation.py error" "Python has no numpy"
+  skip "bench/foveation.py error, bench/reprojection.py" "Python has no numpy"
 fi
 if python3 -c 'import matplotlib' 2>/dev/null; then
   run python3 bench/time_budget.py "$folder/budget" --voyager "$bin/voyager" --scene "$scene=$cameras" --ms 5 --size 64x36 --backend cpu
