@@ -18,7 +18,9 @@ class InputFiles final : public sog::Files {
 
   const std::string& name() const override { return name_; }
   std::vector<std::byte> meta() const override { return meta_; }
-  uint64_t length(std::span<const std::string>) const override { return input_.size(); }
+  sog::FileBytes bytes(std::span<const std::string>) const override {
+    return {{name_, input_.size()}};
+  }
   std::vector<std::byte> read(const std::string&, uint64_t) const override { return next(); }
 
  private:
