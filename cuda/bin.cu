@@ -195,19 +195,22 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
 
 // What a block may count at once, so that kBinBlocks still fit a multiprocessor: 20,000 tiles on
 // Orin, where an eye of 2064x2208 pixels has 17,802.
+int most_shared_bytes() {
+  return static_cast<int>(shared_bytes_of_block(kBinBlocks));
+}
 uint32_t most_band_tiles() {
-  return static_cast<uint32_t>(shared_bytes_of_block(kBinBlocks) / sizeof(uint32_t));
+  return static_cast<uint32_t>(most_shared_bytes()) / sizeof(uint32_t);
 }
 
 template <bool kLimited>
 void launch(const SplatFrame& f, const dim3& blocks, uint32_t band) {
-  const auto bytes = static_cast<int>(band * sizeof(uint32_t));
-  allow_shared_bytes(bin_count<kLimited>, bytes, "bin_count");
+  const size_t bytes = band * sizeof(uint32_t);
+  allow_shared_bytes(bin_count<kLimited>, most_shared_bytes(), "bin_count");
   bin_count<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
   check(cudaGetLastError(), "bin_count");
   bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats);
   check(cudaGetLastError(), "bin_place");
-  allow_shared_bytes(bin_scatter<kLimited>, bytes, "bin_scatter");
+  allow_shared_bytes(bin_scatter<kLimited>, most_shared_bytes(), "bin_scatter");
   bin_scatter<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
   check(cudaGetLastError(), "bin_scatter");
 }

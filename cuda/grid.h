@@ -47,8 +47,9 @@ inline size_t shared_bytes_of_block(unsigned blocks) {
   return static_cast<size_t>(std::min(all / static_cast<int>(blocks) - reserved, most));
 }
 
-// Before a launch with so much dynamic shared memory. Of the context, of which a process may have
-// several, so that it is said each time.
+// Before a launch with up to so much dynamic shared memory. Of the context, of which a process may
+// have several, so that it is said each time. Threads launch at once: of one kernel on one device
+// it must be the same each time, or one thread's launch would have the room of another's.
 template <class Kernel>
 void allow_shared_bytes(Kernel kernel, int bytes, const char* what) {
   check(cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, bytes), what);

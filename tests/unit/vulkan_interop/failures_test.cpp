@@ -309,7 +309,7 @@ TEST(VulkanFailures, OfAComposite) {
     desc.depth = depth;
     const uint32_t calls =
         fail_each_call(mock, [&] { const vulkan::Composite composite(device, desc); });
-    EXPECT_EQ(calls, depth == VK_FORMAT_UNDEFINED ? 6u : 10u);
+    EXPECT_EQ(calls, depth == VK_FORMAT_UNDEFINED ? 7u : 15u);
   }
 }
 
