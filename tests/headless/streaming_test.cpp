@@ -88,7 +88,7 @@ TEST(Streaming, AFrameThatWaitsIsTheResidentImage) {
 
 TEST(Streaming, ATooSmallBudgetSaysWhatItTakes) {
   const Library voy;
-  StreamedHost host(voy, 0);
+  StreamedHost host(voy, 0, device_for(VOY_BACKEND_CPU));  // of another, more is the least
   EXPECT_EQ(host.open(0.001), VOY_ERROR_OVER_BUDGET);
   EXPECT_NE(voy.message().find(" MB"), std::string::npos) << voy.message();
   ASSERT_EQ(host.open(0.6), VOY_SUCCESS) << voy.message();
@@ -114,7 +114,7 @@ TEST(Streaming, TheDevicesBudgetBindsStreamedScenesToo) {
 
 TEST(Streaming, ABudgetChangesWhileFramesAreDrawn) {
   const Library voy;
-  StreamedHost host(voy, 0);
+  StreamedHost host(voy, 0, device_for(VOY_BACKEND_CPU));  // of another, more is the least
   ASSERT_EQ(host.draw(1), VOY_SUCCESS);
   const std::vector<float> whole = host.pixels;
   ASSERT_EQ(voy.SetSceneMemoryBudget(host.scene, 600000), VOY_SUCCESS) << voy.message();
@@ -151,7 +151,7 @@ struct Warnings {
 TEST(Streaming, AReadThatFailsIsToldOnceAndTriedAgain) {
   const Library voy;
   Warnings warnings;
-  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  VoyDeviceDesc desc = device_for(VOY_BACKEND_CPU);
   desc.log = Warnings::log;
   desc.logUser = &warnings;
   StreamedHost host(voy, 0.6, desc);

@@ -41,6 +41,11 @@ class ByteWindow {
   size_t at_ = 0;
 };
 
+// What a message shows of a word of the file, which may be long and no text.
+inline std::string_view excerpt(std::string_view word) {
+  return word.substr(0, 40);
+}
+
 // "PLACE: found FOUND, expected EXPECTED" as Error(refused_input).
 [[noreturn]] void refuse_cameras(const std::string& place, const std::string& found,
                                  const std::string& expected);

@@ -51,7 +51,7 @@ const ColmapModel& colmap_model(const std::string& place, int32_t number) {
 const ColmapModel& colmap_model(const std::string& place, std::string_view name) {
   const auto found = std::ranges::find(kModels, name, &ColmapModel::name);
   if (found == kModels.end())
-    refuse_cameras(place, fmt::format("camera model {:.40}", name),
+    refuse_cameras(place, fmt::format("camera model {}", excerpt(name)),
                    "one of COLMAP's, such as PINHOLE");
   return with_focal_length(place, *found);
 }

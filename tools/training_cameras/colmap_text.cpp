@@ -53,7 +53,7 @@ class Lines {
     T value{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (text.empty() || error != std::errc{} || end != text.data() + text.size())
-      refuse_cameras(place(), text.empty() ? "the end of the line" : fmt::format("{:.40}", text),
+      refuse_cameras(place(), text.empty() ? "the end of the line" : std::string(excerpt(text)),
                      what);
     return value;
   }
