@@ -63,7 +63,7 @@ VOYAGER_HD float parent_sign(const Arrays& arrays, const DrawItem& item) {
 // one step, so that kNegligible has the loss's unit: what changes less hardly moves, where plain
 // Adam would move it as far as anything.
 struct AdamStep {
-  static constexpr float kFirstDecay = 0.9f, kSecondDecay = 0.999f, kNegligible = 0.01f;
+  static constexpr float kFirstDecay = 0.9f, kSecondDecay = 0.99f, kNegligible = 0.01f;
   static constexpr float kWarmSteps = 8;  // in which a row comes up to its pace
 
   uint32_t number;
