@@ -69,7 +69,7 @@ uint64_t announced(const Open& open) {
 // What `open` gives: in blocks of any size the same words to the bit, or a refusal; and as a whole
 // a sound cloud. More than some Gaussians take long, and say nothing new.
 template <class Open>
-void read_all_ways(const Open& open) {
+void expect_same_in_blocks_and_whole(const Open& open) {
   constexpr uint64_t kMost = 1000;
   if (announced(open) > kMost) return;
   const auto whole = unless_refused([&] { return read_blocks(*open(), 5000); });
