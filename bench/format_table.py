@@ -126,9 +126,10 @@ def partners(a, rows_a, b, rows_b):
 
 
 def angle(p, q):
-    """Degrees between two rotations."""
-    dot = abs(sum(x * y for x, y in zip(p, q))) / (math.hypot(*p) * math.hypot(*q) or 1)
-    return math.degrees(2 * math.acos(min(1.0, dot)))
+    """Degrees between two rotations; of equal ones exactly 0, which an arc cosine would not be."""
+    p, q = ([x / (math.hypot(*r) or 1) for x in r] for r in (p, q))
+    chord = min(math.dist(p, q), math.dist(p, [-x for x in q]))
+    return math.degrees(4 * math.asin(chord / 2))
 
 
 def differences(reference, other):
@@ -189,12 +190,15 @@ class Table:
         if len(rows) != len(truth[1]):
             sys.exit(f"{path}: found {len(rows)} Gaussians, expected {len(truth[1])}")
         name = what.replace(":", " with ") if is_made else os.path.basename(what)
-        ranges = next((ranges for ending, ranges in RANGES if name.endswith(ending)), {})
+        ranges = next((ranges for ending, ranges in RANGES
+                       if name.endswith(ending) or name.startswith(ending)), {})
         truth, outside = clamped(*truth, ranges)
         found = [f"{x:.2g}" for x in differences(truth, (names, rows))]
         if rest == 0:
             found[5] = ""
         decibels = self.psnr(self.picture_of_truth(rest), self.picture(path, "other.pfm"))
+        if decibels == "inf":
+            decibels = "identical"
         return [f"`{name}`", f"{os.path.getsize(path):,}", *found, f"{outside:,}" if outside else "", decibels]
 
 

@@ -9,7 +9,8 @@
 namespace voyager {
 
 struct HalfTurn {
-  std::array<int, 3> sign{};  // that x, y and z take; and those of a quaternion, which keeps its w
+  // That x, y and z take; and those of a quaternion, if the axes of what it turns are turned, too.
+  std::array<int, 3> sign{};
   // That SH coefficient k takes: basis k at the turned direction over basis k at the direction.
   std::array<int, 16> sh{};
 
@@ -21,6 +22,13 @@ struct HalfTurn {
   template <class T>
   constexpr T turned(T value, size_t axis) const {
     return sign[axis] > 0 ? value : T(0) - value;
+  }
+  // The turn after a rotation, whose own axes then stay as they are.
+  template <class T>
+  Quat<T> operator*(const Quat<T>& q) const {
+    if (sign[0] + sign[1] + sign[2] == 3) return q;
+    const auto kept = [&](size_t axis) { return sign[axis] > 0 ? T(1) : T(0); };
+    return Quat<T>{T(0), kept(0), kept(1), kept(2)} * q;
   }
   constexpr Mat3d matrix() const {
     return {{{double(sign[0]), 0, 0}, {0, double(sign[1]), 0}, {0, 0, double(sign[2])}}};

@@ -55,4 +55,27 @@ inline void expect_same(const std::optional<GaussianCloud>& a,
   if (!same) std::abort();
 }
 
+// 0 where the input is refused.
+template <class Open>
+uint64_t announced(const Open& open) {
+  uint64_t count = 0;
+  unless_refused([&] {
+    count = open()->count();
+    return GaussianCloud();
+  });
+  return count;
+}
+
+// What `open` gives: in blocks of any size the same words to the bit, or a refusal; and as a whole
+// a sound cloud. More than some Gaussians take long, and say nothing new.
+template <class Open>
+void expect_same_in_blocks_and_whole(const Open& open) {
+  constexpr uint64_t kMost = 1000;
+  if (announced(open) > kMost) return;
+  const auto whole = unless_refused([&] { return read_blocks(*open(), 5000); });
+  expect_same(whole, unless_refused([&] { return read_blocks(*open(), 3); }));
+  const auto sound = unless_refused([&] { return import_gaussians(*open()); });
+  if (sound.has_value() != whole.has_value() || (sound && !is_complete(*sound))) std::abort();
+}
+
 }  // namespace voyager::fuzz

@@ -98,12 +98,12 @@ class GlbWriter final : public GaussianWriter {
 
   void put_shape(const Gaussian& g, size_t array) {
     const Vec3f mean = gltf::kToInria * g.mean;
-    const Vec3f axis = gltf::kToInria * Vec3f{g.rotation.x, g.rotation.y, g.rotation.z};
+    const Quatf rotation = gltf::kToInria * g.rotation;
     switch (array) {
       case 0:
         return put({mean.x, mean.y, mean.z});
       case 1:
-        return put({axis.x, axis.y, axis.z, g.rotation.w});
+        return put({rotation.x, rotation.y, rotation.z, rotation.w});
       case 2:
         return put({g.scale.x, g.scale.y, g.scale.z});
       default:

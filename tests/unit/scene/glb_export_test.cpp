@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -78,9 +79,10 @@ TEST(GlbExport, HoldsGaussiansAsTheyAreDrawn) {
                scale = glb.splat("SCALE"), opacity = glb.splat("OPACITY");
     for (size_t i = 0; i < cloud.size(); ++i) {
       const Gaussian g = activate(cloud.words(i), true);
-      const float expected[] = {-g.mean.x,     -g.mean.y,    g.mean.z,     -g.rotation.x,
-                                -g.rotation.y, g.rotation.z, g.rotation.w, g.scale.x,
-                                g.scale.y,     g.scale.z,    g.opacity};
+      // The rotation is followed by half a turn about z.
+      const float expected[] = {-g.mean.x,    -g.mean.y,    g.mean.z,      -g.rotation.y,
+                                g.rotation.x, g.rotation.w, -g.rotation.z, g.scale.x,
+                                g.scale.y,    g.scale.z,    g.opacity};
       EXPECT_TRUE(std::equal(expected, expected + 3, &position[3 * i]));
       EXPECT_TRUE(std::equal(expected + 3, expected + 7, &rotation[4 * i]));
       EXPECT_TRUE(std::equal(expected + 7, expected + 10, &scale[3 * i]));
@@ -161,10 +163,12 @@ TEST(GlbExport, ARealBlockIsAsAnotherProgramWroteIt) {
   const Glb theirs(std::move(bytes));
   EXPECT_EQ(ours.floats("POSITION"), theirs.floats("POSITION"));
   for (size_t k = 0; k < 16; ++k) EXPECT_EQ(ours.splat(sh_name(k)), theirs.splat(sh_name(k))) << k;
-  for (const char* name : {"SCALE", "OPACITY"}) {
+  for (const char* name : {"SCALE", "OPACITY", "ROTATION"}) {
     const std::vector<float> a = ours.splat(name), b = theirs.splat(name);
+    const float unit = name == std::string("ROTATION") ? 1.0f : 0.0f;
     ASSERT_EQ(a.size(), b.size());
-    for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 2e-7f * b[i]) << name;
+    for (size_t i = 0; i < a.size(); ++i)
+      ASSERT_NEAR(a[i], b[i], 2e-7f * std::max(std::fabs(b[i]), unit)) << name;
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "runtime/math/byte_code.h"
 #include "runtime/math/signed_log.h"
@@ -40,9 +39,8 @@ void decode_rotation(const std::byte* code, float* wxyz) {
   SmallestThree found;
   found.largest = integer(code + 3) - 252;
   if (found.largest < 0) return;
-  const float reach = std::sqrt(0.5f);
   for (float& other : found.others)
-    other = between(-reach, reach, static_cast<uint32_t>(integer(code++)), 255);
+    other = between(-kSqrtHalf, kSqrtHalf, static_cast<uint32_t>(integer(code++)), 255);
   const std::array<float, 4> rotation = quaternion_of(found);
   std::copy(rotation.begin(), rotation.end(), wxyz);
 }
