@@ -4,7 +4,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -237,7 +236,7 @@ class Viewer {
   std::optional<Script> script_;
   PanelTexts texts_;
   std::string title_ = "Voyager";
-  bool current_ = false;                           // the canvas fits the window
+  bool current_ = false;                           // the canvas has the size that was asked for
   VkExtent2D asked_ = {0, 0};                      // the surface may have given another
   double last_ = glfw_ ? glfwGetTime() : 0;        // seconds, of the last input
   bool was_pressed_ = false, drags_line_ = false;  // the left button; the line
