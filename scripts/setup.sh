@@ -4,7 +4,7 @@
 #   view    beside it: `voyager view`, and a software Vulkan for machines without a GPU
 #   samples beside view: the samples for Vulkan and OpenXR
 #   tests   beside main: the samples, `voyager report`, a software Vulkan, a browser, a web server
-#   checks  beside both: git, clang with its sanitizers, clang-format, clang-tidy
+#   checks  beside main and tests: git, clang with its sanitizers, clang-format, clang-tidy
 #   bench   beside main: the benchmarks and the plots of bench/
 # scripts/setup_aarch64.sh is for the check of 64-bit Arm. No service is left running. Safe to run
 # again; root or sudo.
