@@ -35,6 +35,6 @@ if(missing)
   message(FATAL_ERROR "These packages of Debian and Ubuntu were not found:\n${missing}"
     "Install them, or leave out what needs them with -DVOYAGER_BUILD_BENCH=OFF, -DVOYAGER_BUILD_TESTS=OFF, "
     "-DVOYAGER_BUILD_SAMPLES=OFF or -DVOYAGER_BUILD_TOOLS=OFF. "
-    "scripts/setup.sh installs those of the library and the tools, scripts/setup.sh tests also those of the samples "
-    "and the tests, scripts/setup.sh bench those of the benchmarks.")
+    "scripts/setup.sh installs those of the library and the tools, scripts/setup.sh samples also those of the samples, "
+    "scripts/setup.sh tests those of both and of the tests, scripts/setup.sh bench those of the benchmarks.")
 endif()

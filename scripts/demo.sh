@@ -43,11 +43,13 @@ step "a walk and a flight through the city"
 "$bin/voyager" render "$out/city.voy" --cameras "$out/city.cameras.json" --all -o "$out/walk"
 step_times
 
+look="Or look at it: $bin/voyager view YOUR.ply"
+if [[ $window = no ]]; then look="In a window: scripts/setup.sh view, this script again, then $bin/voyager view YOUR.ply"; fi
 cat <<END
 
 Open       $PWD/$out/walk/0000.png, and on to 0119.png: the walk and the flight
 Then try   $bin/voyager render $out/city.voy -o $out/above.png
 With yours $bin/voyager render YOUR.ply -o yours.png
-Or look at it: $bin/voyager view YOUR.ply
+$look
 END
 if [[ $window = yes ]]; then "$bin/voyager" view "$out/city.voy" --cameras "$out/city.cameras.json"; fi

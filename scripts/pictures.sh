@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the pictures of the viewer and of the samples in docs/pictures anew, without a screen or a headset.
-# Needs a release build of everything, Xvfb (scripts/setup.sh tests) and pngquant.
+# Needs a release build of everything, a Vulkan device (scripts/setup.sh tests brings one in software) and pngquant.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$PWD/build/release
@@ -22,7 +22,7 @@ camera() {  # camera I FILE: the I-th of the city's
 
 view() {  # view SCENE [OPTION...], with a script on standard input
   cat >script.txt
-  xvfb-run -a -s "-screen 0 1400x900x24" "$voyager" view "$@" --script script.txt
+  env -u DISPLAY -u WAYLAND_DISPLAY "$voyager" view "$@" --script script.txt
 }
 
 view city.voy <<END

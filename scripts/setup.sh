@@ -2,8 +2,9 @@
 # Installs what this machine lacks, from the distribution's packages: setup.sh [PART...]
 #   main    what builds and runs the library and the command line; the default, and with every part
 #   view    beside it: `voyager view`, and a software Vulkan for machines without a GPU
+#   samples beside view: the samples for Vulkan and OpenXR
 #   tests   beside main: the samples, `voyager report`, a software Vulkan, a browser, a web server
-#   checks  beside both: git, clang with its sanitizers, clang-format, clang-tidy
+#   checks  beside main and tests: git, clang with its sanitizers, clang-format, clang-tidy
 #   bench   beside main: the benchmarks and the plots of bench/
 # scripts/setup_aarch64.sh is for the check of 64-bit Arm. No service is left running. Safe to run
 # again; root or sudo.
@@ -33,8 +34,8 @@ packages[bench]="libbenchmark-dev python3 python3-matplotlib"
 wanted=${packages[main]}
 for part in "$@"; do
   case $part in
-    main | view | tests | checks | bench) wanted+=" ${packages[$part]}" ;;
-    *) echo "setup.sh: $part: no such part, expected main, view, tests, checks or bench" >&2; exit 2 ;;
+    main | view | samples | tests | checks | bench) wanted+=" ${packages[$part]}" ;;
+    *) echo "setup.sh: $part: no such part, expected main, view, samples, tests, checks or bench" >&2; exit 2 ;;
   esac
 done
 read -r -d '' -a wanted <<<"$wanted" || true

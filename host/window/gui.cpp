@@ -4,6 +4,9 @@
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "failure.h"
 #include "frames_in_flight.h"
 #include "submission.h"
@@ -26,11 +29,11 @@ UniqueDescriptorPool make_pool(VkDevice device) {
 
 }  // namespace
 
-Gui::Gui(const Device& device, const Window& window, VkRenderPass pass)
-    : pool_(make_pool(device.get())) {
+Gui::Gui(const Device& device, const Window* window, VkRenderPass pass)
+    : in_window_(window != nullptr), pool_(make_pool(device.get())) {
   ImGui::CreateContext();
   ImGui::GetIO().IniFilename = nullptr;
-  ImGui_ImplGlfw_InitForVulkan(window.get(), true);
+  if (window) ImGui_ImplGlfw_InitForVulkan(window->get(), true);
   ImGui_ImplVulkan_InitInfo info = {};
   info.Instance = device.instance();
   info.PhysicalDevice = device.physical();
@@ -48,7 +51,7 @@ Gui::Gui(const Device& device, const Window& window, VkRenderPass pass)
 
 Gui::~Gui() {
   ImGui_ImplVulkan_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
+  if (in_window_) ImGui_ImplGlfw_Shutdown();
   ImGui::DestroyContext();
 }
 
@@ -59,9 +62,21 @@ bool Gui::has_keyboard() const {
   return ImGui::GetIO().WantCaptureKeyboard;
 }
 
+void Gui::resize(VkExtent2D extent) {
+  ImGui::GetIO().DisplaySize = {static_cast<float>(extent.width),
+                                static_cast<float>(extent.height)};
+}
+
+void Gui::step_clock() {
+  constexpr float kLeast = 1e-6f;  // Dear ImGui takes no frame without length
+  const auto now = std::chrono::steady_clock::now();
+  const std::chrono::duration<float> passed = now - std::exchange(last_, now);
+  ImGui::GetIO().DeltaTime = std::max(passed.count(), kLeast);
+}
+
 void Gui::begin() {
   ImGui_ImplVulkan_NewFrame();
-  ImGui_ImplGlfw_NewFrame();
+  in_window_ ? ImGui_ImplGlfw_NewFrame() : step_clock();
   ImGui::NewFrame();
 }
 

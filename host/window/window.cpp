@@ -16,6 +16,12 @@ namespace {
 
 }  // namespace
 
+bool Glfw::has_display() {
+  const bool found = glfwInit() == GLFW_TRUE;
+  glfwTerminate();
+  return found;
+}
+
 Glfw::Glfw(const std::string& no_display) {
   if (!glfwInit()) fail((no_display + ": glfwInit").c_str());
   if (!glfwVulkanSupported()) {

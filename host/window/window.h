@@ -16,6 +16,8 @@ namespace host {
 // Before the instance: it knows which extensions a surface needs.
 class Glfw {
  public:
+  // Whether a window could be opened now. Not while there is a Glfw.
+  static bool has_display();
   // no_display: what to say where there is none.
   explicit Glfw(const std::string& no_display);
   ~Glfw() { glfwTerminate(); }

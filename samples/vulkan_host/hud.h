@@ -16,7 +16,8 @@ struct HudState {
 
 class Hud {
  public:
-  Hud(const Device& device, const Window& window, VkRenderPass pass) : gui_(device, window, pass) {}
+  Hud(const Device& device, const Window& window, VkRenderPass pass)
+      : gui_(device, &window, pass) {}
 
   bool has_mouse() const { return gui_.has_mouse(); }
   bool has_keyboard() const { return gui_.has_keyboard(); }

@@ -60,15 +60,17 @@ void say_what_runs(const Device& device, const VoyagerLayer& voyager) {
 }
 
 // Of a window's frame three quarters are Voyager's; the meshes, the composite and the display's
-// compositor have the rest. A CPU needs longer than any display's frame, so it draws at a fixed
-// tau.
+// compositor have the rest. At half the rate Voyager has two. A CPU needs longer than any
+// display's frame, so it draws at a fixed tau.
 HudState hud_state(const Options& options, const Look& look, const VoyagerLayer& voyager,
                    const Window& window) {
   constexpr double kShare = 0.75;
+  const double frames = options.half_rate ? 2 : 1;
   const bool on_gpu = voyager.capabilities().backend == VOY_BACKEND_CUDA;
   const bool holds_time = options.time_budget || (!options.tau && voyager.has_tree() && on_gpu);
   return {look, static_cast<float>(options.tau.value_or(3)), holds_time,
-          static_cast<float>(options.time_budget.value_or(kShare * window.frame_milliseconds()))};
+          static_cast<float>(
+              options.time_budget.value_or(kShare * frames * window.frame_milliseconds()))};
 }
 
 OffscreenOptions offscreen_options(const Options& options) {
@@ -112,7 +114,7 @@ void run(const Options& options, Validation* validation) {
     colour = swapchain.emplace(device, window->surface()).colour_format();
   }
   Renderer renderer(device, voyager, colour, depth, mesh ? &*mesh : nullptr,
-                    place_mesh(voyager.scene(), options.mesh_place));
+                    place_mesh(voyager.scene(), options.mesh_place), options.half_rate);
   const Look look = {options.composite, options.mesh};
   FrameLog log(options.stats_file);
   if (options.offscreen) {

@@ -60,9 +60,10 @@ void add_choices(CLI::App& app, Options& o) {
 void add_budgets(CLI::App& app, Options& o) {
   auto* const tau = app.add_option("--tau", o.tau, "Level of detail, pixels: smaller is finer")
                         ->check(CLI::Validator(not_negative, "PX"));
-  app.add_option("--time-budget", o.time_budget,
-                 "Voyager's part of a frame: tau follows. In a window without --tau, on a GPU, "
-                 "three quarters of the time that its display shows a frame")
+  app.add_option(
+         "--time-budget", o.time_budget,
+         "Voyager's part of a frame: tau follows. In a window without --tau, on a GPU, "
+         "three quarters of the time that its display shows a frame, or two with --half-rate")
       ->check(CLI::Validator(above_zero, "MS"))
       ->excludes(tau);
   app.add_option("--budget", o.budget_megabytes,
@@ -118,6 +119,9 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--device", o.device_name, "The Vulkan device whose name has this in it")
       ->type_name("NAME");
   app.add_flag("--srgb", o.srgb, "Draw into an _SRGB image");
+  app.add_flag(
+      "--half-rate", o.half_rate,
+      "Voyager draws every second frame; those between are reprojected from the one before");
   app.add_flag("--write-depth", o.write_depth,
                "Beside each PNG this host's depth at the frame's end: 0000.pfm, metres");
   app.add_option("--stats", o.stats_file, "A JSON file of what each frame took")->type_name("FILE");

@@ -31,7 +31,8 @@ struct Options {
   bool validation = false;
   bool write_depth = false;
   bool srgb = false;
-  uint64_t frames = 0;  // 0: a window runs until it is closed
+  bool half_rate = false;  // every second frame is reprojected
+  uint64_t frames = 0;     // 0: a window runs until it is closed
   // Neither: a window's display says how long a frame may take, and offscreen tau is 3.
   std::optional<double> tau, time_budget;  // pixels; milliseconds a frame of Voyager's
   double budget_megabytes = 0;             // of scene data, which is streamed then; 0: no limit

@@ -6,12 +6,14 @@
 namespace host {
 
 Renderer::Renderer(const Device& device, VoyagerLayer& voyager, VkFormat colour_format,
-                   const DepthConvention& depth, const Mesh* mesh, const glm::dmat4& mesh_place)
+                   const DepthConvention& depth, const Mesh* mesh, const glm::dmat4& mesh_place,
+                   bool half_rate)
     : device_(device),
       voyager_(voyager),
       colour_format_(colour_format),
       depth_(depth),
       mesh_place_(mesh_place),
+      half_rate_(half_rate),
       passes_(device, colour_format),
       frames_(device) {
   if (mesh) meshes_.emplace(device, passes_.meshes(), colour_format, depth.encoding, *mesh);
@@ -23,20 +25,25 @@ void Renderer::resize(VkExtent2D extent) {
   targets_ = {};
   targets_ = RenderTargets(device_, passes_, colour_format_, extent);
   voyager_.resize(extent);
+  reuses_next_ = false;
 }
 
 void Renderer::draw(const Camera& camera, const Look& look, const Delivery& delivery) {
-  const uint32_t slot = wait_for_slot();
-  const bool splats = look.composite != Composite::none;
-  if (splats) voyager_.begin_frame();
-  Submission before(record_before(slot, camera, look));
-  if (splats) before.signal(voyager_.released(slot));
-  frames_.submit_before(before, splats && voyager_.host_waits());
+  wait_for_slot();
+  const bool renders = look.composite != Composite::none && !reuses_next_;
+  reuses_next_ = half_rate_ && renders;
+  if (renders) {
+    image_ = (image_ + 1) % kFramesInFlight;
+    voyager_.begin_frame();
+  }
+  Submission before(record_before(camera, look, renders));
+  if (renders) before.signal(voyager_.released(image_));
+  frames_.submit_before(before, renders && voyager_.host_waits());
 
-  if (splats) voyager_.render(camera, slot, look.composite == Composite::limit && look.mesh);
+  if (renders) voyager_.render(camera, image_, look.composite == Composite::limit && look.mesh);
 
-  Submission after(record_after(slot, look, delivery));
-  if (splats) after.wait(voyager_.rendered(slot), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+  Submission after(record_after(camera, look, renders, delivery));
+  if (renders) after.wait(voyager_.rendered(image_), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
   after.wait({delivery.wait}, VK_PIPELINE_STAGE_TRANSFER_BIT);
   after.signal({delivery.signal});
   frames_.submit_after(after);
@@ -52,24 +59,26 @@ void Renderer::record_meshes(VkCommandBuffer commands, const Camera& camera, boo
   vkCmdEndRenderPass(commands);
 }
 
-VkCommandBuffer Renderer::record_before(uint32_t slot, const Camera& camera, const Look& look) {
+VkCommandBuffer Renderer::record_before(const Camera& camera, const Look& look, bool renders) {
   const VkCommandBuffer commands = frames_.begin_before();
   record_meshes(commands, camera, look.mesh);
+  if (!renders) return commands;
   if (look.composite == Composite::limit && look.mesh)
-    voyager_.record_depth_limit(commands, slot, {targets_.depth.image.get(), kDepthFormat});
-  if (look.composite != Composite::none) voyager_.record_release(commands, slot);
+    voyager_.record_depth_limit(commands, image_, {targets_.depth.image.get(), kDepthFormat});
+  voyager_.record_release(commands, image_);
   return commands;
 }
 
-VkCommandBuffer Renderer::record_after(uint32_t slot, const Look& look, const Delivery& delivery) {
+VkCommandBuffer Renderer::record_after(const Camera& camera, const Look& look, bool renders,
+                                       const Delivery& delivery) {
   const VkCommandBuffer commands = frames_.begin_after();
-  const bool splats = look.composite != Composite::none;
-  if (splats) voyager_.record_acquire(commands, slot);
+  if (renders) voyager_.record_acquire(commands, image_);
   begin_pass(commands, passes_.overlay(), targets_.overlay.get(), targets_.extent, {}, 0);
-  if (splats)
+  if (look.composite != Composite::none)
     voyager_.record_composite(
-        commands, slot,
-        look.composite == Composite::test ? VOY_VULKAN_DEPTH_USE_TEST : VOY_VULKAN_DEPTH_USE_WRITE);
+        commands, image_,
+        look.composite == Composite::test ? VOY_VULKAN_DEPTH_USE_TEST : VOY_VULKAN_DEPTH_USE_WRITE,
+        renders ? nullptr : &camera);
   if (delivery.overlay) delivery.overlay(commands);
   vkCmdEndRenderPass(commands);
   delivery.record(commands, targets_);

@@ -27,9 +27,11 @@ struct Look {
 
 class Renderer {
  public:
-  // mesh: NULL for none. mesh_place: its axes (glTF's: y up) to the scene's.
+  // mesh: NULL for none. mesh_place: its axes (glTF's: y up) to the scene's. half_rate: Voyager
+  // draws every second frame, and those between are reprojected from the one before.
   Renderer(const Device& device, VoyagerLayer& voyager, VkFormat colour_format,
-           const DepthConvention& depth, const Mesh* mesh, const glm::dmat4& mesh_place);
+           const DepthConvention& depth, const Mesh* mesh, const glm::dmat4& mesh_place,
+           bool half_rate);
 
   VkRenderPass overlay_pass() const { return passes_.overlay(); }
   VkExtent2D extent() const { return targets_.extent; }
@@ -42,8 +44,9 @@ class Renderer {
   void draw(const Camera& camera, const Look& look, const Delivery& delivery);
 
  private:
-  VkCommandBuffer record_before(uint32_t slot, const Camera& camera, const Look& look);
-  VkCommandBuffer record_after(uint32_t slot, const Look& look, const Delivery& delivery);
+  VkCommandBuffer record_before(const Camera& camera, const Look& look, bool renders);
+  VkCommandBuffer record_after(const Camera& camera, const Look& look, bool renders,
+                               const Delivery& delivery);
   void record_meshes(VkCommandBuffer commands, const Camera& camera, bool mesh) const;
 
   const Device& device_;
@@ -51,10 +54,13 @@ class Renderer {
   const VkFormat colour_format_;
   const DepthConvention depth_;
   const glm::dmat4 mesh_place_;
+  const bool half_rate_;
   RenderPasses passes_;
   std::optional<MeshPipeline> meshes_;
   RenderTargets targets_;
   FrameCommands frames_;
+  uint32_t image_ = kFramesInFlight - 1;  // the last that Voyager drew
+  bool reuses_next_ = false;              // the next frame may show it again
 };
 
 }  // namespace host

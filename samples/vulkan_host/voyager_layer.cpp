@@ -128,6 +128,7 @@ void VoyagerLayer::render(const Camera& camera, uint32_t image, bool limited) {
   frame.eyes = &eye;
   frame.nearZ = depth_.near_z;
   view_.render(frame);
+  rendered_ = camera;
 }
 
 void VoyagerLayer::record_acquire(VkCommandBuffer commands, uint32_t image) {
@@ -135,7 +136,7 @@ void VoyagerLayer::record_acquire(VkCommandBuffer commands, uint32_t image) {
 }
 
 void VoyagerLayer::record_composite(VkCommandBuffer commands, uint32_t image,
-                                    VoyVulkanDepthUse depth_use) {
+                                    VoyVulkanDepthUse depth_use, const Camera* reprojected) {
   VoyVulkanCompositeDraw draw = VOY_VULKAN_COMPOSITE_DRAW_INIT;
   draw.commandBuffer = commands;
   draw.target = ring_.target();
@@ -145,6 +146,14 @@ void VoyagerLayer::record_composite(VkCommandBuffer commands, uint32_t image,
   draw.encoding = depth_.encoding;
   draw.nearZ = depth_.near_z;
   draw.farZ = depth_.far_z;
+  VoyVulkanReprojection reprojection = VOY_VULKAN_REPROJECTION_INIT;
+  if (reprojected) {
+    reprojection.drawnPose = rendered_.pose;
+    reprojection.drawnFrustum = rendered_.frustum;
+    reprojection.pose = reprojected->pose;
+    reprojection.frustum = reprojected->frustum;
+    draw.next = &reprojection;
+  }
   voy::check(voyRecordVulkanComposite(composite_.get(), &draw));
 }
 

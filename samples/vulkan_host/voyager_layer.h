@@ -7,6 +7,7 @@
 //   2. render()
 //   3. commands B: record_acquire, then record_composite in a render pass; their submission
 //      waits for rendered()
+// At half the rate every second frame is record_composite alone, of the image before.
 #include <optional>
 #include <string>
 #include <voyager/voyager.hpp>
@@ -66,7 +67,10 @@ class VoyagerLayer {
   void render(const Camera& camera, uint32_t image, bool limited);
   SemaphoreUse rendered(uint32_t image) const { return ring_.rendered(image); }
   void record_acquire(VkCommandBuffer commands, uint32_t image);
-  void record_composite(VkCommandBuffer commands, uint32_t image, VoyVulkanDepthUse depth_use);
+  // reprojected: the camera of a frame for which the image that was rendered last is shown again;
+  // that image was acquired already. NULL: as it was rendered.
+  void record_composite(VkCommandBuffer commands, uint32_t image, VoyVulkanDepthUse depth_use,
+                        const Camera* reprojected);
 
   bool host_waits() const { return vulkan_.sync == VOY_VULKAN_SYNC_HOST; }
 
@@ -86,6 +90,7 @@ class VoyagerLayer {
   voy::View view_;
   VkExtent2D view_extent_ = {0, 0};
   double tau_, frame_time_;
+  Camera rendered_ = {};  // of the last frame
   voy::Handle<VoyComposite, voyDestroyVulkanComposite> composite_;
   VoyagerRing ring_;
 };

@@ -75,6 +75,8 @@ class ViewWindow : public ::testing::Test {
     return read_png(file("rendered.png"));
   }
 
+  static const std::string& set_up_failure() { return set_up_failure_; }
+
   std::string skip_;
 
  private:
@@ -85,6 +87,16 @@ class ViewWindow : public ::testing::Test {
 
 bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
+}
+
+// Between two columns.
+float largest_difference(const Picture& a, const Picture& b, uint32_t from, uint32_t to) {
+  if (a.width != b.width || a.height != b.height || a.width < to) return 255;
+  float most = 0;
+  for (uint32_t y = 0; y < a.height; ++y)
+    for (uint32_t i = 3 * (y * a.width + from); i < 3 * (y * a.width + to); ++i)
+      most = std::max(most, std::abs(a.values[i] - b.values[i]));
+  return most;
 }
 
 // The scene's name may have spaces, and so may the picture's.
@@ -148,30 +160,50 @@ TEST_F(ViewWindow, TheLineDividesTwoPictures) {
   if (!skip_.empty()) VOYAGER_SKIP_WITHOUT(VULKAN, skip_);
   EXPECT_TRUE(has(output, "dB against the truth")) << output;
   EXPECT_TRUE(has(output, "city.splat: it is shown")) << output;
-  const auto differs = [&](const Picture& a, const Picture& b, uint32_t from, uint32_t to) {
-    float most = 0;
-    for (uint32_t y = 0; y < a.height; ++y)
-      for (uint32_t i = 3 * (y * a.width + from); i < 3 * (y * a.width + to); ++i)
-        most = std::max(most, std::abs(a.values[i] - b.values[i]));
-    return most;
-  };
   const Picture a = read_png(side), b = read_png(detail), c = read_png(error);
-  EXPECT_EQ(differs(a, b, 0, 158), 0);  // the line is at 160
-  EXPECT_EQ(differs(a, c, 0, 158), 0);
-  EXPECT_GT(differs(a, b, 162, 320), 100);
-  EXPECT_GT(differs(b, c, 162, 320), 100);
+  EXPECT_EQ(largest_difference(a, b, 0, 158), 0);  // the line is at 160
+  EXPECT_EQ(largest_difference(a, c, 0, 158), 0);
+  EXPECT_GT(largest_difference(a, b, 162, 320), 100);
+  EXPECT_GT(largest_difference(b, c, 162, 320), 100);
+}
+
+// A machine without a display, where nobody has to look.
+class ViewOffScreen : public ViewWindow {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(set_up_failure(), "");
+    ::unsetenv("DISPLAY");
+    ::unsetenv("WAYLAND_DISPLAY");
+  }
+};
+
+// The pictures are those of a window: what `voyager render` draws, with the panel over it.
+TEST_F(ViewOffScreen, PicturesNeedNoDisplay) {
+  const std::string output =
+      view(file("city.voy"), "loaded\nsize 480 200\nframes 2\nstill\nwindow " + file("panel.png") +
+                                 "\npicture " + file("plain.png") + "\nbookmark\nsave " +
+                                 file("off.json") + "\n");
+  if (!skip_.empty()) VOYAGER_SKIP_WITHOUT(VULKAN, skip_);
+  EXPECT_TRUE(has(output, "no display: drawn off screen")) << output;
+  const Picture plain = read_png(file("plain.png")), panel = read_png(file("panel.png"));
+  EXPECT_LE(largest_difference(plain, rendered("off.json", 0)), 1);
+  constexpr uint32_t kBesidePanel = 345;
+  EXPECT_GT(largest_difference(plain, panel, 0, kBesidePanel), 100);
+  EXPECT_EQ(largest_difference(plain, panel, kBesidePanel, 480), 0);
 }
 
 TEST_F(ViewWindow, RefusalsAreOneLine) {
   std::ofstream(file("wrong.txt")) << "loaded\n\njump 3\n";
+  std::ofstream(file("large.txt")) << "size 0 16385\n";
   const struct {
     std::string command;
     int exit_code;
     std::string names;
   } cases[] = {
       {"env -u DISPLAY -u WAYLAND_DISPLAY " + program("voyager view " + file("city.voy")), 4,
-       "no display: `voyager view` needs one, `voyager render` draws without"},
+       "no display for a window (`voyager render` needs none, nor do --script and --screenshot)"},
       {program("voyager view --script " + file("wrong.txt")), 2, "wrong.txt: line 3: jump 3"},
+      {program("voyager view --script " + file("large.txt")), 2, "large.txt: line 1: size 0 16385"},
       {program("voyager view --script " + file("absent.txt")), 2, "absent.txt"},
       {program("voyager view --cameras " + file("absent.json")), 2, "absent.json"},
       {program("voyager view --budget 0"), 1, "--budget"},

@@ -39,7 +39,7 @@ TEST_P(Frames, ValidationHasNothingToSay) {
   for (const std::string modes :
        {longest.c_str(), "--frames 25 --sync host", "--frames 25 --sharing host",
         "--frames 25 --composite test --depth standard", "--frames 25 --no-mesh",
-        "--frames 25 --srgb --depth standard"}) {
+        "--frames 25 --srgb --depth standard", "--frames 25 --half-rate"}) {
     const Outcome result =
         run(host("--validation --write-depth -o " + file("validated") + " " + modes, GetParam()));
     EXPECT_EQ(result.exit_code, 0) << modes << "\n" << result.output;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "runtime/base/error.h"
+#include "tools/cameras.h"
 #include "tools/options.h"
 
 namespace voyager::view {
@@ -29,6 +30,13 @@ size_t whole(const std::string& text) {
   if (!value) throw std::invalid_argument("found " + text + ", expected a whole number");
   return *value;
 }
+uint32_t side(const std::string& text) {
+  const size_t pixels = whole(text);
+  if (pixels < 1 || pixels > tools::kLargestSide)
+    throw std::invalid_argument(
+        fmt::format("found {}, expected pixels from 1 to {}", text, tools::kLargestSide));
+  return static_cast<uint32_t>(pixels);
+}
 template <class T>
 T one_of(const std::string& text, const std::map<std::string, T>& names) {
   const auto found = names.find(text);
@@ -41,7 +49,7 @@ const std::string& word(const std::vector<std::string>& words, size_t index) {
 }
 
 auto at_once(auto action) {
-  return [action](Session& session, host::Window&) {
+  return [action](Session& session, Canvas&) {
     action(session);
     return true;
   };
@@ -51,14 +59,13 @@ auto at_once(auto action) {
 
 Script::Action Script::parse_wait(const Words& words) {
   const std::string& name = words[0];
-  if (name == "loaded") return [](Session& s, host::Window&) { return !s.is_opening(); };
+  if (name == "loaded") return [](Session& s, Canvas&) { return !s.is_opening(); };
   if (name == "baked")
-    return [](Session& s, host::Window&) { return s.loading().stage.empty() && s.is_still(); };
-  if (name == "still")
-    return [](Session& s, host::Window&) { return s.is_still() && !s.is_busy(); };
+    return [](Session& s, Canvas&) { return s.loading().stage.empty() && s.is_still(); };
+  if (name == "still") return [](Session& s, Canvas&) { return s.is_still() && !s.is_busy(); };
   if (name == "frames") {
     const auto left = std::make_shared<size_t>(whole(word(words, 1)));
-    return [left](Session&, host::Window&) { return *left == 0 || --*left == 0; };
+    return [left](Session&, Canvas&) { return *left == 0 || --*left == 0; };
   }
   return nullptr;
 }
@@ -138,11 +145,11 @@ Script::Action Script::parse(const Words& words) {
         [v = glm::dvec3(number(word(words, 1)), number(word(words, 2)), number(word(words, 3)))](
             Session& s) { s.navigator.move(v, 1 / s.navigator.speed()); });
   if (name == "size")
-    return [width = whole(word(words, 1)), height = whole(word(words, 2))](Session&,
-                                                                           host::Window& window) {
-      glfwSetWindowSize(window.get(), static_cast<int>(width), static_cast<int>(height));
-      return true;
-    };
+    return
+        [size = VkExtent2D{side(word(words, 1)), side(word(words, 2))}](Session&, Canvas& canvas) {
+          canvas.set_size(size);
+          return true;
+        };
   throw std::invalid_argument("found " + name + ", expected a line of docs/viewer.md");
 }
 
@@ -171,12 +178,12 @@ Script::Script(size_t frames, const std::string& screenshot) : path_("--frames")
   if (!screenshot.empty()) add({"picture", screenshot});
 }
 
-bool Script::step(Session& session, host::Window& window) {
+bool Script::step(Session& session, Canvas& canvas) {
   const auto now = std::chrono::steady_clock::now();
   while (next_ < lines_.size()) {
     // Pictures that were asked for are of what was asked for before them.
     if (!session.captures().empty() || session.path()) return true;
-    if (!lines_[next_].action(session, window)) {
+    if (!lines_[next_].action(session, canvas)) {
       if (now - since_ > kLongestWait)
         throw Error(ErrorCode::timeout, path_ + ": " + lines_[next_].text + ": waited for " +
                                             std::to_string(kLongestWait.count()) + " minutes");

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/view/canvas.h"
 #include "tools/view/session.h"
-#include "window.h"
 
 namespace voyager::view {
 
@@ -20,11 +20,11 @@ class Script {
 
   // Once a frame: goes on for as long as nothing has to be waited for. False at the end. Throws
   // Error(timeout) where a line waits for longer than an hour.
-  bool step(Session& session, host::Window& window);
+  bool step(Session& session, Canvas& canvas);
 
  private:
   // True: done, go on with the next.
-  using Action = std::function<bool(Session&, host::Window&)>;
+  using Action = std::function<bool(Session&, Canvas&)>;
   struct Line {
     std::string text;
     Action action;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "failure.h"
@@ -12,9 +13,9 @@
 #include "mode_names.h"
 #include "readback.h"
 #include "runtime/base/error.h"
-#include "swapchain.h"
 #include "tools/console.h"
 #include "tools/output_paths.h"
+#include "tools/view/canvas.h"
 #include "tools/view/controls.h"
 #include "tools/view/panel.h"
 #include "tools/view/script.h"
@@ -41,21 +42,34 @@ std::string description(const host::Device& vulkan, const voy::Device& device) {
                      found.deviceName);
 }
 
-// All that a window takes, in the order in which it is made.
+// NULL: there is no display and nobody has to look, so that frames are drawn off screen.
+std::unique_ptr<host::Glfw> open_display(bool ends_by_itself) {
+  if (ends_by_itself && !host::Glfw::has_display()) {
+    tools::note("no display: drawn off screen");
+    return nullptr;
+  }
+  return std::make_unique<host::Glfw>(
+      "no display for a window (`voyager render` needs none, nor do --script and --screenshot)");
+}
+
+std::optional<host::Presentation> presentation_of(const host::Glfw* glfw) {
+  if (!glfw) return std::nullopt;
+  return glfw->presentation();
+}
+
+// All that the viewer takes, in the order in which it is made.
 class Viewer {
  public:
   Viewer(const ViewOptions& options, std::optional<Script> script, host::Validation* validation)
-      : glfw_("no display: `voyager view` needs one, `voyager render` draws without"),
-        presentation_(glfw_.presentation()),
-        instance_("voyager", validation, &presentation_),
-        vulkan_(instance_, &presentation_, options.gpu),
+      : glfw_(open_display(script.has_value())),
+        presentation_(presentation_of(glfw_.get())),
+        instance_("voyager", validation, presents()),
+        vulkan_(instance_, presents(), options.gpu),
         device_(create_device(vulkan_, options)),
         description_(description(vulkan_, device_)),
-        window_(instance_.get(), "Voyager", static_cast<int>(options.size.width),
-                static_cast<int>(options.size.height)),
-        swapchain_(vulkan_, window_.surface()),
-        renderer_(vulkan_, swapchain_.colour_format()),
-        gui_(vulkan_, window_, renderer_.overlay_pass()),
+        canvas_(instance_, vulkan_, {options.size.width, options.size.height}, glfw_ != nullptr),
+        renderer_(vulkan_, canvas_.colour_format()),
+        gui_(vulkan_, canvas_.window(), renderer_.overlay_pass()),
         session_(vulkan_, device_, options),
         script_(std::move(script)) {
     tools::note(description_);
@@ -67,51 +81,53 @@ class Viewer {
   Viewer& operator=(const Viewer&) = delete;
 
   void run() {
-    while (!window_.closed()) {
+    while (!canvas_.closed()) {
       if (session_.is_still())
-        glfwWaitEventsTimeout(kIdleSeconds);
+        canvas_.wait_for_events(kIdleSeconds);
       else
-        glfwPollEvents();
-      if (script_ && !script_->step(session_, window_)) return;
-      for (const std::string& path : window_.take_dropped()) session_.open(path);
+        canvas_.take_events();
+      if (script_ && !script_->step(session_, canvas_)) return;
       name_window();
       if (is_sized()) draw_frame();
     }
   }
 
  private:
+  const host::Presentation* presents() const { return presentation_ ? &*presentation_ : nullptr; }
+
   void name_window() {
     const LoadedScene* scene = session_.scene();
     const std::string title = scene ? scene->path + " - Voyager" : "Voyager";
-    if (title != title_) glfwSetWindowTitle(window_.get(), title.c_str());
+    if (title != title_) canvas_.set_title(title);
     title_ = title;
   }
 
   // False while the window is minimised.
   bool is_sized() {
-    const VkExtent2D wanted = window_.extent();
+    const VkExtent2D wanted = canvas_.wanted();
     if (current_ && wanted.width == asked_.width && wanted.height == asked_.height) return true;
     vulkan_.wait_idle();
     asked_ = wanted;
-    if (!swapchain_.resize(wanted)) {
-      glfwWaitEventsTimeout(kIdleSeconds);
+    if (!canvas_.resize(wanted)) {
+      canvas_.wait_for_events(kIdleSeconds);
       current_ = false;
       return false;
     }
-    renderer_.resize(swapchain_.extent());
-    session_.resize(swapchain_.extent());
+    renderer_.resize(canvas_.extent());
+    gui_.resize(canvas_.extent());
+    session_.resize(canvas_.extent());
     return true;
   }
 
   void draw_frame() {
     steer_and_show();
-    session_.update(swapchain_.extent());
+    session_.update(canvas_.extent());
     const uint32_t slot = renderer_.wait_for_slot();
-    current_ = swapchain_.acquire(slot);
+    current_ = canvas_.acquire(slot);
     if (!current_) return;
     FrameDesc frame = session_.frame();
-    frame.acquired = swapchain_.acquired(slot);
-    frame.ready = swapchain_.ready();
+    frame.acquired = canvas_.acquired(slot);
+    frame.ready = canvas_.ready();
     auto& captures = session_.captures();
     std::optional<Capture> capture;
     host::Readback readback;
@@ -119,18 +135,18 @@ class Viewer {
       // Without a scene there is the panel, or nothing.
       if (frame.left || captures.front().with_panel) {
         capture = std::move(captures.front());
-        readback = host::Readback(vulkan_, swapchain_.extent(), false);
+        readback = host::Readback(vulkan_, canvas_.extent(), false);
       }
       captures.pop_front();
     }
     if (!capture || capture->with_panel)
       frame.overlay = [this](VkCommandBuffer commands) { gui_.record(commands); };
     frame.record = [&](VkCommandBuffer commands, const host::RenderTargets& targets) {
-      swapchain_.record(commands, targets);
+      canvas_.record(commands, targets);
       if (capture) readback.record(commands, targets);
     };
     draw(frame);
-    current_ = swapchain_.present();
+    current_ = canvas_.present();
     if (!capture) return;
     vulkan_.wait_idle();
     capture->then(readback.extent(), readback.rgba());
@@ -149,24 +165,29 @@ class Viewer {
   }
 
   void steer_and_show() {
-    const double now = glfwGetTime();
-    steer(window_, session_.navigator, now - last_, gui_.has_mouse() || drags_line(),
-          gui_.has_keyboard());
-    last_ = now;
     gui_.begin();
-    for (const int key : window_.take_keys())
-      if (!ImGui::GetIO().WantTextInput) press(key);
+    if (host::Window* window = canvas_.window()) take_input(*window);
     if (session_.settings.show_panel)
       show_panel(session_, texts_, description_, ImGui::GetIO().Framerate);
     show_notes(session_);
     gui_.end();
   }
 
+  void take_input(host::Window& window) {
+    const double now = glfwGetTime();
+    steer(window, session_.navigator, now - last_, gui_.has_mouse() || drags_line(window),
+          gui_.has_keyboard());
+    last_ = now;
+    for (const int key : window.take_keys())
+      if (!ImGui::GetIO().WantTextInput) press(key);
+    for (const std::string& path : window.take_dropped()) session_.open(path);
+  }
+
   // Whether the mouse has the line between the two pictures.
-  bool drags_line() {
+  bool drags_line(const host::Window& window) {
     constexpr double kGrip = 0.008;  // of the width
-    const bool pressed = window_.button(GLFW_MOUSE_BUTTON_LEFT);
-    const double at = window_.cursor().x;
+    const bool pressed = window.button(GLFW_MOUSE_BUTTON_LEFT);
+    const double at = window.cursor().x;
     Settings& settings = session_.settings;
     const bool begins = pressed && !was_pressed_ && !gui_.has_mouse() &&
                         settings.right_side != RightSide::none &&
@@ -202,23 +223,22 @@ class Viewer {
     }
   }
 
-  const host::Glfw glfw_;
-  const host::Presentation presentation_;
+  const std::unique_ptr<const host::Glfw> glfw_;  // NULL: off screen
+  const std::optional<host::Presentation> presentation_;
   const host::Instance instance_;
   const host::Device vulkan_;
   const voy::Device device_;
   const std::string description_;
-  host::Window window_;
-  host::Swapchain swapchain_;
+  Canvas canvas_;
   FrameRenderer renderer_;
   host::Gui gui_;
   Session session_;
   std::optional<Script> script_;
   PanelTexts texts_;
   std::string title_ = "Voyager";
-  bool current_ = false;                           // the swapchain fits the window
+  bool current_ = false;                           // the canvas has the size that was asked for
   VkExtent2D asked_ = {0, 0};                      // the surface may have given another
-  double last_ = glfwGetTime();                    // seconds
+  double last_ = glfw_ ? glfwGetTime() : 0;        // seconds, of the last input
   bool was_pressed_ = false, drags_line_ = false;  // the left button; the line
 };
 
