@@ -5,6 +5,7 @@
 
 #include "runtime/math/sh.h"
 #include "runtime/scene/gltf_format.h"
+#include "tests/support/gltf_files.h"
 #include "tests/support/sample_files.h"
 #include "tests/support/test_support.h"
 
@@ -96,6 +97,18 @@ TEST(GlbExport, HoldsGaussiansAsTheyAreDrawn) {
         ASSERT_EQ(values[i], static_cast<float>(gltf::kToInria.sh[k]) *
                                  cloud.sh[(i / 3 * coefficients + k) * 3 + i % 3]);
     }
+  }
+}
+
+// Not another rotation of the same ellipsoid.
+TEST(GlbExport, RotationsComeBack) {
+  const GaussianCloud cloud = test::random_cloud(50, 3, 0);
+  const GaussianCloud back = test::import_source(glb_of(cloud).bytes);
+  ASSERT_EQ(back.size(), cloud.size());
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const Quatf a = activate(cloud.words(i), true).rotation,
+                b = activate(back.words(i), true).rotation;
+    EXPECT_NEAR(std::fabs(a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z), 1, 1e-6) << i;
   }
 }
 
