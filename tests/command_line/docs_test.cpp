@@ -116,7 +116,7 @@ const std::set<std::string>& options_of(const std::string& command) {
   const auto [at, fresh] = known.try_emplace(command);
   if (fresh) {
     const Outcome help = run("voyager " + command + " --help");
-    if (help.exit_code != 0) return at->second;
+    if (help.output.find("Usage: voyager " + command) == std::string::npos) return at->second;
     const std::regex option(R"((^|[ ,\[|])(--?[a-z][a-z0-9-]*))");
     for (std::sregex_iterator o(help.output.begin(), help.output.end(), option), end; o != end; ++o)
       at->second.insert((*o)[2]);
