@@ -7,7 +7,8 @@
 
 namespace voyager::test {
 
-// Xvfb on a display that it finds free itself; gone with this object.
+// Xvfb on a display that it finds free itself; gone with this object. It does not reset after its
+// last client, which the next one would find closed.
 class XServer {
  public:
   XServer() {
@@ -18,7 +19,7 @@ class XServer {
       ::close(ends[0]);
       const std::string fd = std::to_string(ends[1]);
       ::execlp("Xvfb", "Xvfb", "-displayfd", fd.c_str(), "-screen", "0", "1400x900x24", "-nolisten",
-               "tcp", nullptr);
+               "tcp", "-noreset", nullptr);
       ::_exit(127);
     }
     ::close(ends[1]);
