@@ -21,7 +21,7 @@ struct Plugin {
   int event_id = 0;
   std::mutex mutex;  // what follows
   std::shared_ptr<SplatRenderer> renderer;
-  std::string absent = "Unity has made no graphics device yet";  // why there is no renderer
+  std::string absent;  // why there is no renderer
   std::string error;
   std::array<CameraFrame, 16> cameras = {};  // more than Unity queues
   size_t next_camera = 0;
@@ -73,8 +73,8 @@ void initialize() {
   VoyVulkanDeviceDesc desc;
   if (!describe(vulkan->Instance(), &desc))
     throw std::runtime_error(
-        "found a Vulkan device from before the plugin was loaded, expected the plugin to be loaded "
-        "first (Load on startup, in its import settings)");
+        "found a Vulkan device that the plugin has not seen made, expected Unity to load the "
+        "plugin first (Load on startup, in its import settings)");
   configure_event(*vulkan);
   auto made = std::make_shared<SplatRenderer>(*vulkan, desc);
   const std::lock_guard lock(plugin.mutex);
@@ -108,13 +108,12 @@ void UNITY_INTERFACE_API on_render_event(int, void* data) {
   });
 }
 
+// Where Unity refuses, initialize() finds that the device was not seen.
 void intercept() {
-  bool accepted = false;
   if (auto* newer = plugin.interfaces->Get<IUnityGraphicsVulkanV2>())
-    accepted = newer->AddInterceptInitialization(intercept_creation, nullptr, 0);
+    newer->AddInterceptInitialization(intercept_creation, nullptr, 0);
   else if (auto* vulkan = plugin.interfaces->Get<IUnityGraphicsVulkan>())
-    accepted = vulkan->InterceptInitialization(intercept_creation, nullptr);
-  if (!accepted) report("Unity does not let the plugin see how it makes its Vulkan device");
+    vulkan->InterceptInitialization(intercept_creation, nullptr);
 }
 
 }  // namespace
@@ -124,6 +123,8 @@ using namespace voyager_unity;
 
 void UNITY_INTERFACE_API UnityPluginLoad(IUnityInterfaces* interfaces) {
   plugin.interfaces = interfaces;
+  plugin.absent = "found no graphics device, expected Unity to have made one";
+  plugin.error.clear();
   plugin.graphics = interfaces->Get<IUnityGraphics>();
   plugin.event_id = plugin.graphics->ReserveEventIDRange(1);
   intercept();
@@ -134,6 +135,7 @@ void UNITY_INTERFACE_API UnityPluginLoad(IUnityInterfaces* interfaces) {
 void UNITY_INTERFACE_API UnityPluginUnload() {
   plugin.graphics->UnregisterDeviceEventCallback(on_device_event);
   shut_down();
+  forget_device();
 }
 
 int UNITY_INTERFACE_API voyUnityOpenScene(const char* path) {

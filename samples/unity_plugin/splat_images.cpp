@@ -76,11 +76,11 @@ std::unique_ptr<QueueSignals> SplatImages::queue_signals(VkQueue queue) {
   signals->queue = queue;
   signals->released = released_semaphore_;
   signals->rendered = rendered_semaphore_;
-  signals->released_value = releases_ > signalled_ ? releases_ : 0;
-  signals->rendered_value = frames_ > waited_ ? frames_ : 0;
+  signals->released_value = released_since_ ? ++signals_ : 0;
+  signals->rendered_value = frames_ > waits_ ? frames_ : 0;
   signals->submitted = submitted_;
-  signalled_ = releases_;
-  waited_ = frames_;
+  released_since_ = false;
+  waits_ = frames_;
   return signals;
 }
 
@@ -94,7 +94,8 @@ uint32_t SplatImages::record_acquire(VkCommandBuffer commands) {
 void SplatImages::record_release(VkCommandBuffer commands, uint32_t image) {
   const VoyVulkanUse released = use(commands, image);
   voy::check(voyRecordVulkanRelease(target_.get(), &released));
-  released_at_[image] = ++releases_;
+  released_at_[image] = signals_ + 1;
+  released_since_ = true;
 }
 
 }  // namespace voyager_unity

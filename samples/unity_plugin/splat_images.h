@@ -60,8 +60,9 @@ class SplatImages {
   voy::Target target_;
   VkSemaphore released_semaphore_ = VK_NULL_HANDLE, rendered_semaphore_ = VK_NULL_HANDLE;
   std::array<uint64_t, kImages> released_at_ = {};  // values of released_semaphore_
-  uint64_t releases_ = 0, signalled_ = 0;           // of released_semaphore_: recorded, queued
-  uint64_t frames_ = 0, waited_ = 0;                // of rendered_semaphore_
+  uint64_t signals_ = 0;                            // of released_semaphore_, given to AccessQueue
+  bool released_since_ = false;                     // recorded, not yet signalled
+  uint64_t frames_ = 0, waits_ = 0;                 // values of rendered_semaphore_
   std::shared_ptr<std::atomic<uint64_t>> submitted_ = std::make_shared<std::atomic<uint64_t>>(0);
 };
 

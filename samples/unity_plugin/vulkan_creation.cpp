@@ -158,4 +158,8 @@ bool describe(const UnityVulkanInstance& unity, VoyVulkanDeviceDesc* desc) {
   return true;
 }
 
+void forget_device() {
+  created = {};
+}
+
 }  // namespace voyager_unity

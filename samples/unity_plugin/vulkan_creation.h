@@ -16,4 +16,7 @@ PFN_vkGetInstanceProcAddr UNITY_INTERFACE_API intercept_creation(PFN_vkGetInstan
 // interception. The pointers stay valid until another device is made.
 bool describe(const UnityVulkanInstance& unity, VoyVulkanDeviceDesc* desc);
 
+// Before the plugin is unloaded: handles of another device may have the same value.
+void forget_device();
+
 }  // namespace voyager_unity
