@@ -196,8 +196,8 @@ class VulkanHost {
       info.enabledExtensionCount = 1;
       info.ppEnabledExtensionNames = &extension;
     }
-    const auto create_instance = reinterpret_cast<PFN_vkCreateInstance>(
-        creation.loader(VK_NULL_HANDLE, "vkCreateInstance"));
+    const auto create_instance =
+        reinterpret_cast<PFN_vkCreateInstance>(creation.loader(VK_NULL_HANDLE, "vkCreateInstance"));
     if (create_instance(&info, nullptr, &instance) != VK_SUCCESS) {
       instance = VK_NULL_HANDLE;
       return;

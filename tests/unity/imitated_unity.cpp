@@ -186,7 +186,7 @@ std::unique_ptr<UnityTexture> ImitatedUnity::make_texture(VkFormat format, uint3
   desc.format = format;
   desc.width = width;
   desc.height = height;
-  const bool is_depth = format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+  const bool is_depth = format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT;
   if (is_depth) desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
   if (format == VK_FORMAT_D32_SFLOAT_S8_UINT) desc.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
   desc.usage |=

@@ -116,7 +116,8 @@ TEST_F(UnityPlugin, DepthHidesWhatIsBehind) {
   const Picture whole = reference(camera());
   const Picture metres = read_pfm(file("depth.pfm"));
   constexpr float kPlane = 12;
-  for (const VkFormat format : {VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT_S8_UINT}) {
+  for (const VkFormat format :
+       {VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT, VK_FORMAT_D32_SFLOAT_S8_UINT}) {
     const auto colour = unity.make_texture(VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight);
     const auto depth = unity.make_texture(format, kWidth, kHeight);
     const Picture drawn = shoot(unity, camera(), *colour, depth.get(),
