@@ -37,6 +37,7 @@ struct VulkanCreation {
   PFN_vkGetInstanceProcAddr loader = vkGetInstanceProcAddr;  // gives vkCreateInstance and Device
   bool asks_voyager = true;                                  // what to enable
   void* features = nullptr;                                  // the chain, where it does not ask
+  uint32_t api_version = VK_API_VERSION_1_2;
 };
 
 class VulkanHost {
@@ -74,7 +75,7 @@ class VulkanHost {
     out.instance = instance;
     out.physicalDevice = physical;
     out.device = device;
-    out.apiVersion = kVersion;
+    out.apiVersion = creation.api_version;
     out.deviceExtensionCount = static_cast<uint32_t>(extensions.size());
     out.deviceExtensions = extensions.data();
     out.timelineSemaphore = timelines;
@@ -144,8 +145,6 @@ class VulkanHost {
     return 0;
   }
 
-  static constexpr uint32_t kVersion = VK_API_VERSION_1_2;
-
   VulkanCreation creation;
   Messages messages;
   VkInstance instance = VK_NULL_HANDLE;
@@ -172,7 +171,7 @@ class VulkanHost {
   void make_instance() {
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-    application.apiVersion = kVersion;
+    application.apiVersion = creation.api_version;
     const VkValidationFeatureEnableEXT checks[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     VkValidationFeaturesEXT features{};

@@ -104,7 +104,8 @@ struct UnityTables {
     return true;
   }
   static void access_queue(UnityRenderingEventAndData callback, int id, void* data, bool flush) {
-    if (flush) self->cut();
+    EXPECT_TRUE(flush) << "the signal is for commands of this frame";
+    self->cut();
     self->queued_.emplace_back([callback, id, data] { callback(id, data); });
     if (!self->habits_.submits_on_thread) self->run_queued();
   }
@@ -163,6 +164,7 @@ void ImitatedUnity::load_plugin() {
 void ImitatedUnity::make_device() {
   VulkanCreation how;
   how.asks_voyager = false;
+  how.api_version = habits_.api_version;
   how.loader = intercept_ ? intercept_(loader, nullptr) : loader;
   VkPhysicalDeviceVulkan12Features features = {};
   features.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -213,26 +215,29 @@ void ImitatedUnity::run_queued() {
   queued_.clear();
 }
 
-void ImitatedUnity::clear(UnityTexture& colour, UnityTexture* depth, float cleared_depth) {
+void ImitatedUnity::clear(const UnityCameraEvent& event) {
+  UnityTexture& colour = *event.colour;
   use(colour, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
   const VkClearColorValue black = {};
   const VkImageSubresourceRange all = {colour.image.desc.aspect, 0, 1, 0, 1};
   vkCmdClearColorImage(commands_, colour.image.image, colour.layout, &black, 1, &all);
-  if (!depth) return;
-  use(*depth, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-  const VkClearDepthStencilValue value = {cleared_depth, 0};
-  const VkImageSubresourceRange both = {depth->image.desc.aspect, 0, 1, 0, 1};
-  vkCmdClearDepthStencilImage(commands_, depth->image.image, depth->layout, &value, 1, &both);
+  if (!event.depth) return;
+  UnityTexture& depth = *event.depth;
+  use(depth, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
+  const VkClearDepthStencilValue value = {event.cleared_depth, 0};
+  const VkImageSubresourceRange both = {depth.image.desc.aspect, 0, 1, 0, 1};
+  vkCmdClearDepthStencilImage(commands_, depth.image.image, depth.layout, &value, 1, &both);
 }
 
-void ImitatedUnity::frame(UnityTexture& colour, UnityTexture* depth, float cleared_depth,
-                          void* data) {
+void ImitatedUnity::frame(const std::vector<UnityCameraEvent>& events) {
   ++frame_;
   if (frame_ > 2) finish(frame_ - 2);
   commands_ = host_->begin();
   recorded_ = {commands_};
-  clear(colour, depth, cleared_depth);
-  render_event()(event_id(), data);
+  for (const UnityCameraEvent& event : events) {
+    clear(event);
+    render_event()(event_id(), event.data);
+  }
   InFlight flight{frame_, host_->make_fence(), {}};
   queued_.emplace_back(
       [this, last = commands_, fence = flight.fence] { host_->submit(last, {}, {}, fence); });

@@ -25,6 +25,15 @@ struct UnityHabits {
   bool submits_on_thread = false;  // AccessQueue calls back from another thread, at frame's end
   bool offers_extensions = true;   // else the driver has no extensions and no timelines
   bool chains_vulkan_1_2 = false;  // Unity asks for features of its own
+  uint32_t api_version = VK_API_VERSION_1_2;
+};
+
+// What one camera draws in a frame.
+struct UnityCameraEvent {
+  UnityTexture* colour;
+  UnityTexture* depth;  // or NULL
+  float cleared_depth;
+  void* data;  // for the plugin
 };
 
 // One at a time.
@@ -48,9 +57,8 @@ class ImitatedUnity {
   std::string last_error() const;
 
   std::unique_ptr<UnityTexture> make_texture(VkFormat format, uint32_t width, uint32_t height);
-  // A frame of Unity's: the textures are cleared, then the plugin's event runs with `data`.
-  // `depth` may be NULL; it is cleared to `cleared_depth`.
-  void frame(UnityTexture& colour, UnityTexture* depth, float cleared_depth, void* data);
+  // A frame of Unity's: each camera's textures are cleared, then the plugin's event runs for it.
+  void frame(const std::vector<UnityCameraEvent>& events);
   // Waits for all frames; the texture's bytes.
   std::vector<uint8_t> read(UnityTexture& texture);
 
@@ -59,7 +67,7 @@ class ImitatedUnity {
   void load_plugin();
   void make_device();
   void cut();
-  void clear(UnityTexture& colour, UnityTexture* depth, float cleared_depth);
+  void clear(const UnityCameraEvent& event);
   void use(UnityTexture& texture, VkImageLayout layout);
   void run_queued();
   void finish(uint64_t frame);

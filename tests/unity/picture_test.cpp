@@ -24,13 +24,19 @@ UnityHabits on_thread() {
 UnityHabits older() {
   UnityHabits habits;
   habits.has_v2 = false;
+  habits.api_version = VK_API_VERSION_1_0;
+  return habits;
+}
+UnityHabits with_features() {
+  UnityHabits habits;
   habits.chains_vulkan_1_2 = true;
   return habits;
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, UnityPictures,
                          ::testing::Values(Habit{"Usual", {}}, Habit{"OnAThread", on_thread()},
-                                           Habit{"OlderWithFeatures", older()}),
+                                           Habit{"Older", older()},
+                                           Habit{"WithFeatures", with_features()}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 TEST_P(UnityPictures, AreWhatVoyagerRenders) {
@@ -47,6 +53,31 @@ TEST_P(UnityPictures, AreWhatVoyagerRenders) {
     EXPECT_LE(largest_difference(drawn, expected), 1) << x;
     EXPECT_GT(*std::max_element(expected.values.begin(), expected.values.end()), 100);
   }
+  EXPECT_EQ(unity.last_error(), "");
+}
+
+// Each with its own texture, in every frame.
+TEST_F(UnityPlugin, TwoCamerasGetTheirOwnPictures) {
+  ImitatedUnity unity;
+  VOYAGER_NEEDS_VULKAN(unity);
+  ASSERT_EQ(unity.open_scene(file("scene.ply").c_str()), 1) << unity.last_error();
+  UnityCamera cameras[] = {camera(), camera()};
+  cameras[1].position[0] = -4;
+  std::unique_ptr<UnityTexture> textures[2];
+  for (auto& texture : textures)
+    texture = unity.make_texture(VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight);
+  for (int i = 0; i < 5; ++i) {
+    std::vector<UnityCameraEvent> events;
+    for (size_t c = 0; c < 2; ++c)
+      events.push_back(
+          {textures[c].get(), nullptr, 0, frame_data(unity, cameras[c], *textures[c])});
+    unity.frame(events);
+  }
+  for (size_t c = 0; c < 2; ++c)
+    EXPECT_LE(largest_difference(rgb_of(unity.read(*textures[c]), kWidth, kHeight),
+                                 reference(cameras[c])),
+              1)
+        << c;
   EXPECT_EQ(unity.last_error(), "");
 }
 

@@ -12,7 +12,8 @@ using UnityRefusals = UnityPlugin;
 // Frames go by, and the texture stays as Unity cleared it.
 void expect_unity_goes_on(ImitatedUnity& unity, const UnityCamera& camera) {
   const auto colour = unity.make_texture(VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight);
-  for (int i = 0; i < 4; ++i) unity.frame(*colour, nullptr, 0, frame_data(unity, camera, *colour));
+  for (int i = 0; i < 4; ++i)
+    unity.frame({{colour.get(), nullptr, 0, frame_data(unity, camera, *colour)}});
   const std::vector<uint8_t> bytes = unity.read(*colour);
   EXPECT_TRUE(std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0; }));
 }
@@ -56,11 +57,11 @@ TEST_F(UnityRefusals, AMissingSceneAndTexturesThatDoNotFit) {
   ASSERT_EQ(unity.open_scene(file("scene.ply").c_str()), 1) << unity.last_error();
   const auto colour = unity.make_texture(VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight);
   colour->samples = VK_SAMPLE_COUNT_4_BIT;
-  unity.frame(*colour, nullptr, 0, frame_data(unity, camera(), *colour));
+  unity.frame({{colour.get(), nullptr, 0, frame_data(unity, camera(), *colour)}});
   EXPECT_NE(unity.last_error().find("found 4 samples"), std::string::npos) << unity.last_error();
   colour->samples = VK_SAMPLE_COUNT_1_BIT;
   const auto small = unity.make_texture(VK_FORMAT_D32_SFLOAT, kWidth / 2, kHeight);
-  unity.frame(*colour, small.get(), 0, frame_data(unity, camera(), *colour, small.get()));
+  unity.frame({{colour.get(), small.get(), 0, frame_data(unity, camera(), *colour, small.get())}});
   EXPECT_NE(unity.last_error().find("the depth texture"), std::string::npos) << unity.last_error();
   EXPECT_LE(largest_difference(shoot(unity, camera(), *colour), reference(camera())), 1);
 }

@@ -47,7 +47,7 @@ class UnityPlugin : public ::testing::Test {
                                          UnityTexture& colour, UnityTexture* depth = nullptr,
                                          float cleared_depth = 0) {
     for (int i = 0; i < 5; ++i)
-      unity.frame(colour, depth, cleared_depth, frame_data(unity, camera, colour, depth));
+      unity.frame({{&colour, depth, cleared_depth, frame_data(unity, camera, colour, depth)}});
     return unity.read(colour);
   }
   static Picture shoot(ImitatedUnity& unity, const UnityCamera& camera, UnityTexture& colour,
