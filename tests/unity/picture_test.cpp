@@ -1,6 +1,8 @@
 // The picture in Unity's texture, whatever Unity's habits.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
 
 #include "tests/unity/unity_rig.h"
 
@@ -78,6 +80,26 @@ TEST_F(UnityPlugin, TwoCamerasGetTheirOwnPictures) {
                                  reference(cameras[c])),
               1)
         << c;
+  EXPECT_EQ(unity.last_error(), "");
+}
+
+// On Unity's main thread, while the rendering thread draws.
+TEST_F(UnityPlugin, ASceneIsReplacedWhileFramesAreDrawn) {
+  ImitatedUnity unity;
+  VOYAGER_NEEDS_VULKAN(unity);
+  write_bytes(file("other.ply"), ply_bytes(50));
+  const auto colour = unity.make_texture(VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight);
+  int opened = 0;
+  std::atomic<bool> done = false;
+  std::thread main([&] {
+    for (const char* name : {"other.ply", "scene.ply", "other.ply", "scene.ply"})
+      opened += unity.open_scene(file(name).c_str());
+    done = true;
+  });
+  while (!done) unity.frame({{colour.get(), nullptr, 0, frame_data(unity, camera(), *colour)}});
+  main.join();
+  EXPECT_EQ(opened, 4);
+  EXPECT_LE(largest_difference(shoot(unity, camera(), *colour), reference(camera())), 1);
   EXPECT_EQ(unity.last_error(), "");
 }
 
