@@ -32,10 +32,18 @@ struct Point {
   uint64_t value = 0;
 };
 
+// How instance and device are made.
+struct VulkanCreation {
+  PFN_vkGetInstanceProcAddr loader = vkGetInstanceProcAddr;  // gives vkCreateInstance and Device
+  bool asks_voyager = true;                                  // what to enable
+  void* features = nullptr;                                  // the chain, where it does not ask
+  uint32_t api_version = VK_API_VERSION_1_2;
+};
+
 class VulkanHost {
  public:
   // Nothing is made where there is no Vulkan device: see exists().
-  VulkanHost() {
+  explicit VulkanHost(const VulkanCreation& how = {}) : creation(how) {
     make_instance();
     if (instance != VK_NULL_HANDLE) choose_device();
     if (physical != VK_NULL_HANDLE) make_device();
@@ -67,7 +75,7 @@ class VulkanHost {
     out.instance = instance;
     out.physicalDevice = physical;
     out.device = device;
-    out.apiVersion = kVersion;
+    out.apiVersion = creation.api_version;
     out.deviceExtensionCount = static_cast<uint32_t>(extensions.size());
     out.deviceExtensions = extensions.data();
     out.timelineSemaphore = timelines;
@@ -137,8 +145,7 @@ class VulkanHost {
     return 0;
   }
 
-  static constexpr uint32_t kVersion = VK_API_VERSION_1_2;
-
+  VulkanCreation creation;
   Messages messages;
   VkInstance instance = VK_NULL_HANDLE;
   VkPhysicalDevice physical = VK_NULL_HANDLE;
@@ -164,7 +171,7 @@ class VulkanHost {
   void make_instance() {
     VkApplicationInfo application{};
     application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-    application.apiVersion = kVersion;
+    application.apiVersion = creation.api_version;
     const VkValidationFeatureEnableEXT checks[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     VkValidationFeaturesEXT features{};
@@ -188,7 +195,9 @@ class VulkanHost {
       info.enabledExtensionCount = 1;
       info.ppEnabledExtensionNames = &extension;
     }
-    if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) {
+    const auto create_instance =
+        reinterpret_cast<PFN_vkCreateInstance>(creation.loader(VK_NULL_HANDLE, "vkCreateInstance"));
+    if (create_instance(&info, nullptr, &instance) != VK_SUCCESS) {
       instance = VK_NULL_HANDLE;
       return;
     }
@@ -229,7 +238,7 @@ class VulkanHost {
     }
   }
 
-  void make_device() {
+  void ask_voyager() {
     VoyVulkanPhysicalDevice self = VOY_VULKAN_PHYSICAL_DEVICE_INIT;
     self.getInstanceProcAddr = vkGetInstanceProcAddr;
     self.instance = instance;
@@ -238,7 +247,10 @@ class VulkanHost {
     ASSERT_EQ(voyGetVulkanRequirements(&self, &needs), VOY_SUCCESS) << voyGetLastErrorMessage();
     extensions.assign(needs.deviceExtensions, needs.deviceExtensions + needs.deviceExtensionCount);
     timelines = needs.timelineSemaphore;
+  }
 
+  void make_device() {
+    if (creation.asks_voyager) ask_voyager();
     const float priority = 1;
     const VkDeviceQueueCreateInfo queues{
         VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO, nullptr, 0, family, 1, &priority};
@@ -246,12 +258,14 @@ class VulkanHost {
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES, nullptr, timelines};
     VkDeviceCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    info.pNext = &features;
+    info.pNext = creation.asks_voyager ? &features : creation.features;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queues;
     info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
     info.ppEnabledExtensionNames = extensions.data();
-    VK(vkCreateDevice(physical, &info, nullptr, &device));
+    const auto create_device =
+        reinterpret_cast<PFN_vkCreateDevice>(creation.loader(instance, "vkCreateDevice"));
+    VK(create_device(physical, &info, nullptr, &device));
     vkGetDeviceQueue(device, family, 0, &queue);
     const VkCommandPoolCreateInfo commands{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, nullptr,
                                            VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT, family};
