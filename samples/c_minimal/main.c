@@ -21,14 +21,14 @@
 enum { kWidth = 960, kHeight = 540 };
 
 /* The entry points that this host uses, found by name at run time. */
-static VoyResult(VOY_CALL* create_device)(const VoyDeviceDesc*, VoyDevice*);
-static VoyResult(VOY_CALL* destroy_device)(VoyDevice);
-static VoyResult(VOY_CALL* open_scene)(VoyDevice, const VoySceneDesc*, VoyScene*);
-static VoyResult(VOY_CALL* get_scene_info)(VoyScene, VoySceneInfo*);
-static VoyResult(VOY_CALL* create_view)(VoyDevice, const VoyViewDesc*, VoyView*);
-static VoyResult(VOY_CALL* create_target)(VoyDevice, const VoyTargetDesc*, VoyTarget*);
-static VoyResult(VOY_CALL* render_frame)(VoyView, const VoyFrame*);
-static const char*(VOY_CALL* last_error)(void);
+static PFN_voyCreateDevice create_device;
+static PFN_voyDestroyDevice destroy_device;
+static PFN_voyOpenScene open_scene;
+static PFN_voyGetSceneInfo get_scene_info;
+static PFN_voyCreateView create_view;
+static PFN_voyCreateTarget create_target;
+static PFN_voyRenderFrame render_frame;
+static PFN_voyGetLastErrorMessage last_error;
 
 static int find(void* library, const char* name, void* function) {
   void* symbol = dlsym(library, name);

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include "elf.h"
 
@@ -16,6 +19,21 @@ TEST(Binary, ExportsExactlyTheBaseline) {
   std::vector<std::string> found = ElfFile(VOYAGER_LIBRARY).exports();
   std::sort(found.begin(), found.end());
   EXPECT_EQ(found, baseline);
+}
+
+// header_cpp17.cpp holds each of these types to its function, by name.
+TEST(Binary, EachExportHasATypeForLoadingAtRunTime) {
+  const auto text = [](const std::string& path) {
+    std::ifstream file(VOYAGER_SOURCE_DIR + path);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string headers =
+      text("/plugin/include/voyager/voyager.h") + text("/plugin/include/voyager/voyager_vulkan.h");
+  const std::string held = text("/tests/abi/header_cpp17.cpp");
+  for (const std::string& function : ElfFile(VOYAGER_LIBRARY).exports()) {
+    EXPECT_NE(headers.find("PFN_" + function + ")"), std::string::npos) << function;
+    EXPECT_NE(held.find("VOY_TEST_TYPE(" + function + ")"), std::string::npos) << function;
+  }
 }
 
 TEST(Binary, SonameHasMajorAndMinor) {

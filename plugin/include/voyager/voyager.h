@@ -908,6 +908,46 @@ VOY_API VoyResult VOY_CALL voyGetFrameStats(VoyView view, VoyFrameStats* stats);
  */
 VOY_API const char* VOY_CALL voyStageName(VoyStage stage);
 
+/* The types of the functions above, for hosts that load the library at run time (docs/abi.md). */
+typedef uint32_t(VOY_CALL* PFN_voyGetVersion)(void);
+typedef const char*(VOY_CALL* PFN_voyResultString)(VoyResult result);
+typedef const char*(VOY_CALL* PFN_voyGetLastErrorMessage)(void);
+typedef VoyResult(VOY_CALL* PFN_voyQueryBackend)(VoyBackend backend);
+typedef VoyResult(VOY_CALL* PFN_voyEnumerateDevices)(uint32_t capacity, VoyDeviceInfo* devices,
+                                                     uint32_t* count);
+typedef VoyResult(VOY_CALL* PFN_voyCreateDevice)(const VoyDeviceDesc* desc, VoyDevice* device);
+typedef VoyResult(VOY_CALL* PFN_voyDestroyDevice)(VoyDevice device);
+typedef VoyResult(VOY_CALL* PFN_voyGetCapabilities)(VoyDevice device,
+                                                    VoyCapabilities* capabilities);
+typedef VoyResult(VOY_CALL* PFN_voyOpenScene)(VoyDevice device, const VoySceneDesc* desc,
+                                              VoyScene* scene);
+typedef VoyResult(VOY_CALL* PFN_voySetSceneMemoryBudget)(VoyScene scene, uint64_t bytes);
+typedef VoyResult(VOY_CALL* PFN_voyDestroyScene)(VoyScene scene);
+typedef VoyResult(VOY_CALL* PFN_voyGetSceneInfo)(VoyScene scene, VoySceneInfo* info);
+typedef VoyResult(VOY_CALL* PFN_voyGetSceneNotes)(VoyScene scene, uint32_t capacity,
+                                                  VoySceneNote* notes, uint32_t* count);
+typedef VoyResult(VOY_CALL* PFN_voyGetStreamingStats)(VoyScene scene, VoyStreamingStats* stats);
+typedef VoyResult(VOY_CALL* PFN_voyCreateTarget)(VoyDevice device, const VoyTargetDesc* desc,
+                                                 VoyTarget* target);
+typedef VoyResult(VOY_CALL* PFN_voyDestroyTarget)(VoyTarget target);
+typedef VoyResult(VOY_CALL* PFN_voyCreateView)(VoyDevice device, const VoyViewDesc* desc,
+                                               VoyView* view);
+typedef VoyResult(VOY_CALL* PFN_voyDestroyView)(VoyView view);
+typedef VoyResult(VOY_CALL* PFN_voySetViewTau)(VoyView view, double tau);
+typedef VoyResult(VOY_CALL* PFN_voySetViewTimeBudget)(VoyView view, const VoyTimeBudget* budget);
+typedef VoyResult(VOY_CALL* PFN_voyFovFromAngles)(double left, double right, double up, double down,
+                                                  VoyFrustum* frustum);
+typedef VoyResult(VOY_CALL* PFN_voyFovFromIntrinsics)(double fx, double fy, double cx, double cy,
+                                                      double width, double height,
+                                                      VoyFrustum* frustum);
+typedef VoyResult(VOY_CALL* PFN_voyRenderFrame)(VoyView view, const VoyFrame* frame);
+typedef VoyResult(VOY_CALL* PFN_voyGetViewCut)(VoyView view, uint32_t instance, uint32_t capacity,
+                                               uint32_t* nodes, uint32_t* count);
+typedef VoyResult(VOY_CALL* PFN_voyGetViewOmissions)(VoyView view, uint32_t capacity,
+                                                     VoyOmission* omissions, uint32_t* count);
+typedef VoyResult(VOY_CALL* PFN_voyGetFrameStats)(VoyView view, VoyFrameStats* stats);
+typedef const char*(VOY_CALL* PFN_voyStageName)(VoyStage stage);
+
 #ifdef __cplusplus
 }
 #endif

@@ -491,6 +491,23 @@ typedef struct VoyVulkanCompositeDraw {
 VOY_API VoyResult VOY_CALL voyRecordVulkanComposite(VoyComposite composite,
                                                     const VoyVulkanCompositeDraw* draw);
 
+/* The types of the functions above, for hosts that load the library at run time (docs/abi.md). */
+typedef VoyResult(VOY_CALL* PFN_voyGetVulkanRequirements)(
+    const VoyVulkanPhysicalDevice* physicalDevice, VoyVulkanRequirements* requirements);
+typedef VoyResult(VOY_CALL* PFN_voyGetVulkanImages)(VoyTarget target, uint32_t capacity,
+                                                    VoyVulkanImage* images, uint32_t* count);
+typedef VoyResult(VOY_CALL* PFN_voyRecordVulkanRelease)(VoyTarget target, const VoyVulkanUse* use);
+typedef VoyResult(VOY_CALL* PFN_voyRecordVulkanAcquire)(VoyTarget target, const VoyVulkanUse* use);
+typedef VoyResult(VOY_CALL* PFN_voyRecordVulkanCopy)(VoyTarget target, const VoyVulkanCopy* copy);
+typedef VoyResult(VOY_CALL* PFN_voyRecordVulkanDepthLimit)(VoyTarget target,
+                                                           const VoyVulkanDepthLimit* limit);
+typedef VoyResult(VOY_CALL* PFN_voyCreateVulkanComposite)(VoyDevice device,
+                                                          const VoyVulkanCompositeDesc* desc,
+                                                          VoyComposite* composite);
+typedef VoyResult(VOY_CALL* PFN_voyDestroyVulkanComposite)(VoyComposite composite);
+typedef VoyResult(VOY_CALL* PFN_voyRecordVulkanComposite)(VoyComposite composite,
+                                                          const VoyVulkanCompositeDraw* draw);
+
 #ifdef __cplusplus
 }
 #endif
