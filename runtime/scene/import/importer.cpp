@@ -57,10 +57,13 @@ struct Unread {
   std::string_view ending, first_bytes;
   const char* why;
 };
+constexpr const char* kUnreadRad =
+    "Spark's .rad is not read, because it has no specification; other programs convert it to .ply";
 constexpr Unread kUnread[] = {
     {".lcc2", "",
      "LCC2 is not read, because it has no specification; other programs convert it to .ply"},
-    {"", "RAD0", "Spark's .rad is not read; other programs convert it to .ply"},
+    {"", "RAD0", kUnreadRad},
+    {"", "RADC", kUnreadRad},  // a chunk in a file of its own
 };
 
 // JSON may begin with white space.
