@@ -105,7 +105,7 @@ Affine parse_transform(const std::string& text) {
 
 Affine turn_up(const std::string& axis) {
   if (axis == "y") return {{{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}}, {}};
-  if (axis == "z") return {{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}}, {}};
+  if (axis == "z") return {kFromZUp, {}};
   return {};
 }
 

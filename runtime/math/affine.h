@@ -7,6 +7,8 @@
 namespace voyager {
 
 inline constexpr Mat3d kIdentity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+// To INRIA's axes from those with x right, y forward and z up.
+inline constexpr Mat3d kFromZUp{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};
 
 struct Affine {
   Mat3d linear = kIdentity;

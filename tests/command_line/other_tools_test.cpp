@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/command_line/program.h"
+#include "tests/support/lcc_files.h"
 #include "tests/support/needs.h"
 #include "tests/support/sample_files.h"
 #include "tests/support/test_support.h"
@@ -110,6 +111,30 @@ TEST_F(OtherTools, ReadASogAsWeDo) {
   EXPECT_LE(largest_difference(theirs.sh, ours.sh), 1e-5f);
   for (size_t i = 0; i < ours.position.size(); ++i)
     ASSERT_NEAR(theirs.position[i], ours.position[i], 1e-5 * (1 + std::fabs(ours.position[i])));
+}
+
+// Made by hand: its finest level. splat-transform goes by the counts of the .lcc.
+TEST_F(OtherTools, ReadAnLccAsWeDo) {
+  LccFiles files = lcc_files(true);
+  nlohmann::json meta = lcc_meta(2, true);
+  meta["splats"] = {5, 2};
+  files["scene.lcc"] = bytes_of(meta.dump());
+  for (const auto& [name, bytes] : files)
+    write_bytes(file(name), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  const Outcome outcome =
+      run_shell("splat-transform -q -w -O 0 " + file("scene.lcc") + " " + file("back.ply"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const GaussianCloud ours = import_file(file("scene.lcc")), theirs = import_file(file("back.ply"));
+  ASSERT_EQ(ours.size(), 5u);
+  EXPECT_LE(largest_difference(ours.position, theirs.position), 1e-5f);
+  EXPECT_LE(largest_difference(ours.log_scale, theirs.log_scale), 1e-5f);
+  EXPECT_LE(largest_opacity_difference(ours, theirs), 1e-5f);
+  EXPECT_LE(largest_difference(ours.sh, theirs.sh), 1e-5f);
+  for (size_t i = 0; i < ours.size(); ++i) {
+    float dot = 0;
+    for (size_t k = 0; k < 4; ++k) dot += ours.rotation[4 * i + k] * theirs.rotation[4 * i + k];
+    EXPECT_NEAR(std::fabs(dot), 1, 1e-5) << i;
+  }
 }
 
 }  // namespace

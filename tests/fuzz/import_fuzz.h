@@ -18,13 +18,15 @@ inline bool is_complete(const GaussianCloud& cloud) {
          cloud.rotation.size() == 4 * n && cloud.sh.size() == 3 * n * coefficients;
 }
 
-// The result of `read`, or nothing where it refuses the input.
+// The result of `read`, or nothing where it refuses the input, or a file beside it is missing.
 template <class Read>
 std::optional<GaussianCloud> unless_refused(const Read& read) {
   try {
     return read();
   } catch (const Error& error) {
-    if (error.code() != ErrorCode::refused_input) std::abort();
+    const bool is_refused =
+        error.code() == ErrorCode::refused_input || error.code() == ErrorCode::file_not_found;
+    if (!is_refused) std::abort();
     return std::nullopt;
   }
 }

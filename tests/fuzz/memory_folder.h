@@ -31,9 +31,11 @@ class FileOfFolder final : public ByteSource {
   std::unique_ptr<ByteSource> open_beside(const std::string& path) const override {
     const auto place = std::filesystem::path(name()).parent_path() / path;
     const auto file = folder_->find(place.lexically_normal().string());
-    if (!stays_in_folder(path) || file == folder_->end())
+    if (!stays_in_folder(path))
       throw Error(ErrorCode::refused_input, name() + ": found a reference to the file " + path +
                                                 ", expected one of the archive");
+    if (file == folder_->end())
+      throw Error(ErrorCode::file_not_found, place.string() + ": no such file");
     return std::make_unique<FileOfFolder>(folder_, place.string(), file->second);
   }
 

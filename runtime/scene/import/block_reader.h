@@ -71,6 +71,11 @@ std::unique_ptr<BlockReader> open_glb_blocks(std::shared_ptr<const ByteSource> s
 // HierarchicalGS's .hier: the leaves of its tree, in the order of the file's Gaussians. Holds the
 // links of the tree until it has read them, then 4 bytes a leaf.
 std::unique_ptr<BlockReader> open_hier_blocks(std::shared_ptr<const ByteSource> source);
+// The .lcc of an LCC scene, whose other files are beside it: its finest level of detail, then its
+// environment. Holds 32 bytes a cell.
+std::unique_ptr<BlockReader> open_lcc_blocks(std::shared_ptr<const ByteSource> source);
+// What of it is not read, for people. Throws as its reader does.
+std::vector<std::string> left_out_of_lcc(const ByteSource& source);
 // A .gltf, or the tileset.json of 3D Tiles.
 std::unique_ptr<BlockReader> open_json_blocks(std::shared_ptr<const ByteSource> source);
 

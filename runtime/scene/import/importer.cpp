@@ -36,6 +36,7 @@ constexpr Format kFormats[] = {
     {".ksplat", "", nullptr, open_ksplat_blocks, nullptr},
     {".hier", "", nullptr, nullptr, open_hier_blocks},
     {".hier_opt", "", nullptr, nullptr, open_hier_blocks},
+    {".lcc", "", nullptr, nullptr, open_lcc_blocks, true},
     {"lod-meta.json", "", nullptr, nullptr, open_streamed_sog_blocks, true},
     {"meta.json", "", nullptr, nullptr, open_sog_blocks, true},
     {"", "ply\n", import_ply, open_ply_blocks, open_ply_blocks},
@@ -49,17 +50,20 @@ constexpr Format kFormats[] = {
 constexpr const char* kKnown =
     "a .ply or .compressed.ply (first bytes \"ply\"), a .spz (gzip 1f 8b, or \"NGSP\"), a .sog "
     "(a zip), a .glb (\"glTF\"), a .gltf or tileset.json (\"{\"), or by its name a .splat, a "
-    ".ksplat, a .hier, or the meta.json or lod-meta.json of a SOG folder";
+    ".ksplat, a .hier, a .lcc, or the meta.json or lod-meta.json of a SOG folder";
 
 // Formats that are known and not read.
 struct Unread {
   std::string_view ending, first_bytes;
   const char* why;
 };
+constexpr const char* kUnreadRad =
+    "Spark's .rad is not read, because it has no specification; other programs convert it to .ply";
 constexpr Unread kUnread[] = {
-    {".lcc", "", "LCC is not read; other programs convert it to .ply"},
-    {".lcc2", "", "LCC is not read; other programs convert it to .ply"},
-    {"", "RAD0", "Spark's .rad is not read; other programs convert it to .ply"},
+    {".lcc2", "",
+     "LCC2 is not read, because it has no specification; other programs convert it to .ply"},
+    {"", "RAD0", kUnreadRad},
+    {"", "RADC", kUnreadRad},  // a chunk in a file of its own
 };
 
 // JSON may begin with white space.
@@ -94,7 +98,7 @@ const Row* find(const Row (&rows)[count], FirstBytes first, std::string_view nam
   return found == rows + count ? nullptr : found;
 }
 
-// An unread one may begin as another does: LCC's is JSON.
+// An unread one may begin as another does: LCC2's is JSON.
 const Format* known_format(FirstBytes first, std::string_view name) {
   return find(kUnread, first, name) ? nullptr : find(kFormats, first, name);
 }
@@ -195,6 +199,7 @@ bool is_importable(FirstBytes first_bytes, std::string_view name) {
 std::vector<std::string> left_out_of(const ByteSource& source) {
   const auto open = format_of(source).open_source;
   if (open == open_spz_blocks) return left_out_of_spz(source);
+  if (open == open_lcc_blocks) return left_out_of_lcc(source);
   // Borrowed: nothing of it is kept.
   if (open == open_glb_blocks || open == open_json_blocks)
     return left_out_of_gltf(std::shared_ptr<const ByteSource>(&source, [](const ByteSource*) {}));
