@@ -80,7 +80,7 @@ std::string repeated(const std::string& value, size_t count) {
 
 TEST(ClaimedSize, JsonOfTooManyValuesIsRefusedBeforeItIsHeld) {
   constexpr size_t kCount = 2'200'000;
-  for (const std::string value : {"{}", "[]", "0", "\"\"", " [ ] ", "{\"a\":[0]}"}) {
+  for (const std::string value : {"{}", " [ ] ", "{\"a\":[0]}"}) {
     const std::string text = repeated(value, kCount);
     const long before = peak_kilobytes();
     const std::string message = test::refusal_of([&] { parse_json("a.gltf", 20, text); });
