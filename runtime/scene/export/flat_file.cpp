@@ -119,8 +119,9 @@ void FlatContents::add(const GaussianCloud& batch) {
     largest_coordinate = std::max(largest_coordinate, std::fabs(coordinate));
   }
   count += batch.size();
-  clamped.add({count_outside(kSpzRange, batch), count_outside(kSplatRange, batch),
-               count_outside(kCompressedPlyRange, batch)});
+  const ValueRange ranges[] = {kSpzRange, kSplatRange, kCompressedPlyRange};
+  const std::vector<uint64_t> outside = count_outside(ranges, batch);
+  clamped.add({outside[0], outside[1], outside[2]});
 }
 
 float FlatContents::reach() const {

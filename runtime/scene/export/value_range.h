@@ -2,6 +2,8 @@
 // The values that formats of few bits hold; their writers clamp others.
 #include <cstdint>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "runtime/math/sh.h"
 #include "runtime/scene/gaussian_cloud.h"
@@ -27,7 +29,7 @@ inline constexpr ValueRange kSplatRange = {-kAnyValue, kAnyValue, static_cast<fl
 inline constexpr ValueRange kCompressedPlyRange = {-kAnyValue, kAnyValue, kAnyValue, 4.0f,
                                                    "SH of degree 1 to 3 from -4 to 4"};
 
-// Gaussians of the batch with a value outside.
-uint64_t count_outside(const ValueRange& range, const GaussianCloud& batch);
+// For each range the Gaussians of the batch with a value outside; a NaN is outside.
+std::vector<uint64_t> count_outside(std::span<const ValueRange> ranges, const GaussianCloud& batch);
 
 }  // namespace voyager
