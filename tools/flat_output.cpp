@@ -12,6 +12,7 @@
 #include "runtime/lod/kept_tree.h"
 #include "tools/byte_size.h"
 #include "tools/console.h"
+#include "tools/counted.h"
 #include "tools/options.h"
 #include "tools/progress_bar.h"
 
@@ -60,7 +61,7 @@ void add_flat_options(CLI::App& command, FlatArguments& arguments) {
                    "Version of a .spz: 4, or 3, which more programs read (default: 4, inside of a "
                    ".glb 3)");
   command.add_flag("--spz", arguments.spz_inside,
-                   "Compress a .glb: SPZ inside, about a tenth of the size "
+                   "Compress a .glb: SPZ inside, about a fifth of the size "
                    "(KHR_gaussian_splatting_compression_spz_2, a draft)");
   name_group(command, "Flat files");
 }
@@ -117,12 +118,13 @@ void describe_flat_file(const std::string& path, const FlatContents& contents,
   const FlatFormat format = flat_format_of(path).value();
   for (const std::string& lost : losses(format, contents, options))
     note(fmt::format("{}: {}", path, lost));
-  say(fmt::format("{}: {} Gaussians of SH degree {}, {}\n", path, contents.count,
+  say(fmt::format("{}: {} of SH degree {}, {}\n", path, counted(contents.count, "Gaussian"),
                   format == FlatFormat::splat ? 0 : contents.sh_degree,
                   size_text(std::filesystem::file_size(path))));
   const ImportReport& report = contents.report;
   if (report.dropped() + report.repaired() > 0)
-    say(fmt::format("{} Gaussians dropped, {} repaired\n", report.dropped(), report.repaired()));
+    say(fmt::format("{} dropped, {} repaired\n", counted(report.dropped(), "Gaussian"),
+                    report.repaired()));
 }
 
 }  // namespace voyager::tools

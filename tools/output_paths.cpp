@@ -8,6 +8,7 @@
 #include "runtime/base/error.h"
 #include "runtime/base/file.h"
 #include "runtime/base/name_ending.h"
+#include "runtime/base/open_source.h"
 #include "runtime/base/output_path.h"
 #include "runtime/base/url.h"
 
@@ -55,7 +56,8 @@ void require_different(const std::string& output, const std::string& other, cons
 void require_distinct(const std::vector<std::string>& outputs,
                       const std::vector<std::string>& inputs) {
   for (size_t i = 0; i < outputs.size(); ++i) {
-    for (const std::string& input : inputs) require_different(outputs[i], input, "an input");
+    for (const std::string& input : inputs)
+      require_different(outputs[i], scene_file(input), "an input");
     for (size_t j = 0; j < i; ++j) require_different(outputs[i], outputs[j], "another output");
   }
 }

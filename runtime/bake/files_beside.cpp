@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "runtime/base/file.h"
+#include "runtime/base/open_source.h"
 #include "runtime/scene/import/block_reader.h"
 
 namespace voyager {
@@ -48,7 +49,7 @@ bool may_refer_to_files(const ByteSource& source) {
 
 std::set<std::string> files_beside(const std::string& input) {
   const auto names = std::make_shared<Names>();
-  const auto source = std::make_shared<NotedSource>(open_file_source(input), names);
+  const auto source = std::make_shared<NotedSource>(open_source(input), names);
   if (may_refer_to_files(*source)) open_blocks(source);
   return *names;
 }

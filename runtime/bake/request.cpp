@@ -44,7 +44,7 @@ std::string line_of(const std::string& path) {
     return "input " + shown_path(path) + " of " + std::to_string(open_source(path)->size()) +
            " bytes, its URL's checksum " +
            std::to_string(checksum(std::as_bytes(std::span(path)))) + "\n";
-  return "input " + state_of(path) + line_of_beside(files_beside(path));
+  return "input " + state_of(scene_file(path)) + line_of_beside(files_beside(path));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "runtime/base/open_source.h"
 
 #include <array>
+#include <filesystem>
 
 #include "runtime/base/http_module.h"
 #include "runtime/base/module.h"
@@ -21,8 +22,18 @@ std::unique_ptr<ByteSource> open_url(const std::string& url) {
 
 }  // namespace
 
+std::string scene_file(const std::string& path) {
+  std::error_code ignored;
+  if (is_url(path) || !std::filesystem::is_directory(path, ignored)) return path;
+  for (const char* name : {"lod-meta.json", "meta.json", "tileset.json"}) {
+    const std::filesystem::path file = std::filesystem::path(path) / name;
+    if (std::filesystem::exists(file, ignored)) return file.string();
+  }
+  return path;
+}
+
 std::unique_ptr<ByteSource> open_source(const std::string& path) {
-  return is_url(path) ? open_url(path) : open_file_source(path);
+  return is_url(path) ? open_url(path) : open_file_source(scene_file(path));
 }
 
 }  // namespace voyager

@@ -175,6 +175,8 @@ class TilesetExport {
                     [&](GaussianWriter& writer) { writer.append(cloud); });
     const uint64_t bytes = std::filesystem::file_size(path);
     summary_.gaussians += cloud.size();
+    summary_.contents.count += cloud.size();
+    summary_.contents.clamped.add(contents.clamped);
     summary_.bytes += bytes;
     summary_.largest = std::max(summary_.largest, bytes);
     // As if all tiles were at one place: steps follow the reach of each.

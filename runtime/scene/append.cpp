@@ -31,7 +31,9 @@ void require_alike(const std::array<double, 3>& origin, const NativeScale& nativ
   };
   if (origin != more_origin)
     throw Error(ErrorCode::refused_input, more_name + ": origin: found " + text(more_origin) +
-                                              ", expected the first input's " + text(origin));
+                                              ", expected the first input's " + text(origin) +
+                                              ": with --transform inputs are joined wherever they "
+                                              "are (\"scale 1\" leaves them in place)");
   const auto filter = [](const NativeScale& scale) {
     return scale.antialiased()
                ? "a compensated filter of " + std::to_string(scale.low_pass) + " square pixels"
@@ -40,7 +42,8 @@ void require_alike(const std::array<double, 3>& origin, const NativeScale& nativ
   if (native != more_native)
     throw Error(ErrorCode::refused_input, more_name + ": trained with: found " +
                                               filter(more_native) + ", expected " + filter(native) +
-                                              " as in the first input");
+                                              " as in the first input: convert each that has a "
+                                              "compensated filter to a .glb, which leaves it out");
 }
 
 void add(ImportReport& sum, const ImportReport& more) {

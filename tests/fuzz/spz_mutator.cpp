@@ -3,6 +3,9 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include <algorithm>
+
+#include "runtime/scene/import/spz_header.h"
 #include "runtime/scene/spz_format.h"
 #include "tests/fuzz/mutator.h"
 
@@ -102,7 +105,8 @@ struct Streams {
   // Streams of the length that the header asks for.
   void fit() {
     const uint64_t count = integer(head, 8, 4);
-    const int degree = static_cast<int>(integer(head, 12, 1) & 3);
+    const int degree =
+        static_cast<int>(std::min<uint64_t>(integer(head, 12, 1), spz::kMostStoredShDegree));
     plain.resize(degree > 0 ? spz::kAttributes : spz::kSh);
     head[15] = static_cast<std::byte>(plain.size());
     for (size_t i = 0; i < plain.size(); ++i) {

@@ -114,7 +114,6 @@ TEST(Transform, AnyTransformMapsTheCovariance) {
   }
 }
 
-// A flat disc stays one, however thin: its axes are not taken from the square of their ratio.
 // Without a length a rotation is the identity, which turns with the scene.
 TEST(Transform, ARotationWithoutLengthTurns) {
   const Affine turned{{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}, {0, 0, 0}};
@@ -132,6 +131,7 @@ TEST(Transform, ARotationWithoutLengthTurns) {
   }
 }
 
+// A flat disc stays one, however thin: its axes are not taken from the square of their ratio.
 TEST(Transform, ThinDiscsKeepTheirThickness) {
   GaussianCloud cloud = test::random_cloud(50, 5, 0);
   for (size_t i = 0; i < cloud.size(); ++i) cloud.log_scale[3 * i] = std::log(1e-8f);

@@ -30,6 +30,7 @@
 #include "tools/commands/commands.h"
 #include "tools/commands/optimize_options.h"
 #include "tools/console.h"
+#include "tools/counted.h"
 #include "tools/joined_inputs.h"
 #include "tools/options.h"
 #include "tools/output_paths.h"
@@ -165,16 +166,18 @@ void verify_file(const std::string& path, const LodTree& tree, const Partition& 
 
 void print_summary(const BakeArguments& arguments, const BakeSummary& result,
                    const Stopwatch& watch) {
-  say(fmt::format("{}: {} Gaussians, {} nodes, {} subtrees, {} chunks, {}, {:.1f} s{}\n",
-                  arguments.output, result.gaussians, result.nodes, result.subtrees, result.chunks,
+  say(fmt::format("{}: {}, {}, {}, {}, {}, {:.1f} s{}\n", arguments.output,
+                  counted(result.gaussians, "Gaussian"), counted(result.nodes, "node"),
+                  counted(result.subtrees, "subtree"), counted(result.chunks, "chunk"),
                   size_text(open_file_source(arguments.output)->size()),
                   watch.milliseconds() / 1000,
                   arguments.verify    ? ", verified"
                   : result.cells != 0 ? fmt::format(", in {} cells", result.cells)
                                       : ""));
   if (result.import.dropped() + result.import.repaired() > 0)
-    say(fmt::format("{} Gaussians dropped, {} repaired (voyager info {} tells which)\n",
-                    result.import.dropped(), result.import.repaired(), arguments.output));
+    say(fmt::format("{} dropped, {} repaired (voyager info {} tells which)\n",
+                    counted(result.import.dropped(), "Gaussian"), result.import.repaired(),
+                    arguments.output));
 }
 
 // What was measured for --refine so far.

@@ -12,6 +12,7 @@
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
 #include "tools/console.h"
+#include "tools/counted.h"
 #include "tools/cut_export.h"
 #include "tools/flat_output.h"
 #include "tools/options.h"
@@ -37,10 +38,15 @@ Camera choose_camera(const ExportArguments& arguments) {
                                    : camera.resized(arguments.size.width, arguments.size.height);
 }
 
-void refuse_keep(const FlatArguments& flat, const std::string& output) {
+// A flat file of the scene's own tree can be asked for with --keep, and nothing else.
+void refuse_keep(const FlatArguments& flat, const std::string& found, const std::string& expected) {
   if (flat.keep)
-    throw Error(ErrorCode::invalid_argument,
-                "--keep: found -o " + output + ", expected a flat file without --cut-camera");
+    throw Error(ErrorCode::invalid_argument, "--keep: found " + found + ", expected " + expected);
+}
+
+void refuse_keep_of_tree(const FlatArguments& flat, const std::string& output) {
+  refuse_keep(flat, "-o " + output + ", which holds the whole tree",
+              "a name that ends in one of " + CLI::detail::join(flat_format_endings(), ", "));
 }
 
 constexpr const char* kTileset = "tileset.json";
@@ -58,7 +64,7 @@ std::string folder_of(const std::string& output) {
 // The files of a tileset appear together, tileset.json last.
 void export_tiles(const ExportArguments& arguments, const FlatOptions& options) {
   const std::string& output = arguments.output;
-  refuse_keep(arguments.flat, output);
+  refuse_keep_of_tree(arguments.flat, output);
   const SceneFile scene(open_source(arguments.scene));
   OutputFolder folder(folder_of(output), {arguments.scene});
   folder.require_place(kTileset);
@@ -69,9 +75,10 @@ void export_tiles(const ExportArguments& arguments, const FlatOptions& options) 
   folder.commit();
   for (const std::string& lost : losses(FlatFormat::glb, made.contents, options))
     note(fmt::format("{}: {}", output, lost));
-  say(fmt::format("{}: {} tiles, {} leaves as {} Gaussians, {}, the largest tile {}\n", output,
-                  made.tiles, made.leaves, made.gaussians, size_text(made.bytes),
-                  size_text(made.largest)));
+  const std::string leaves = made.leaves == 1 ? "1 leaf" : fmt::format("{} leaves", made.leaves);
+  say(fmt::format("{}: {}, {} as {}, {}, the largest tile {}\n", output,
+                  counted(made.tiles, "tile"), leaves, counted(made.gaussians, "Gaussian"),
+                  size_text(made.bytes), size_text(made.largest)));
 }
 
 void export_scene(const ExportArguments& arguments) {
@@ -80,7 +87,7 @@ void export_scene(const ExportArguments& arguments) {
   const FlatOptions options = flat_options(arguments.flat, output);
   if (!arguments.cameras.empty()) {
     require_extension("-o with --cut-camera", output, flat_format_endings());
-    refuse_keep(arguments.flat, output);
+    refuse_keep(arguments.flat, "--cut-camera", "one of the two");
     const Camera camera = choose_camera(arguments);
     const Progress progress = progress_bar();
     progress("exporting", 0, 0);
@@ -94,8 +101,10 @@ void export_scene(const ExportArguments& arguments) {
   require_extension("-o", output, endings);
   const SceneFile scene(open_source(arguments.scene));
   if (flat_format_of(output)) return export_flat(scene, arguments.flat, output);
-  refuse_keep(arguments.flat, output);
+  refuse_keep_of_tree(arguments.flat, output);
   export_hier(scene, output, progress_bar());
+  const std::string lost = lost_native_pixel(scene.info().native);
+  if (!lost.empty()) note(fmt::format("{}: {}", output, lost));
   say(fmt::format("{}: {}\n", output, size_text(std::filesystem::file_size(output))));
 }
 

@@ -6,6 +6,7 @@
 #include "runtime/base/open_source.h"
 #include "runtime/base/url.h"
 #include "runtime/format/reader.h"
+#include "runtime/scene/import/format_name.h"
 #include "tools/byte_size.h"
 #include "tools/commands/commands.h"
 #include "tools/options.h"
@@ -21,21 +22,26 @@ constexpr const char* kNativeSources[] = {"unknown", "given", "training cameras"
 constexpr const char* kNoteKinds[] = {"omitted", "repaired", "dropped", "damaged"};
 
 // What only the file says: how the tree was built (docs/lod-tree.md) and how it is cut up. Zeros
-// and no rule for a flat scene.
+// and no rule for a flat scene, which has a format in its place.
 struct TreeFacts {
   const char* rule = nullptr;
+  std::string format;
   uint32_t subtrees = 0, tiers = 0, chunk_bytes = 0;
   double least_pixel = 0;  // the native one, metres
 };
 
 TreeFacts tree_facts(const std::string& path, const VoySceneInfo& info) {
-  if (info.storage == VOY_SCENE_STORAGE_FLAT) return {.least_pixel = info.nativePixel};
+  if (info.storage == VOY_SCENE_STORAGE_FLAT)
+    return {.format = format_name(*open_source(path)), .least_pixel = info.nativePixel};
   const SceneFile file(open_source(path));
   const NativeScale& native = file.info().native;
   return {file.info().kept_tree                     ? "hier"
           : file.info().tree == TreeKind::clustered ? "clustered"
                                                     : "hierarchicalgs",
-          file.info().subtree_count, file.tiers().tier_count(), file.info().chunk_bytes,
+          {},
+          file.info().subtree_count,
+          file.tiers().tier_count(),
+          file.info().chunk_bytes,
           native.pixel_of(native.levels - 1)};
 }
 
@@ -76,6 +82,7 @@ void print_text(const std::string& path, const VoySceneInfo& info, const VoyScen
                 const TreeFacts& tree, const std::vector<VoySceneNote>& notes) {
   fmt::print("{}: {} scene\n", path, kStorageNames[info.storage]);
   fmt::print("  Gaussians     {}\n", info.gaussianCount);
+  if (!tree.format.empty()) fmt::print("  format        {}\n", tree.format);
   if (tree.rule != nullptr) fmt::print("  tree          {}\n", tree.rule);
   if (info.storage != VOY_SCENE_STORAGE_FLAT)
     fmt::print("  nodes         {} in {} levels, {} chunks ({} damaged)\n", info.nodeCount,
@@ -115,6 +122,8 @@ void print_json(const std::string& path, const VoySceneInfo& info, const VoyScen
   nlohmann::ordered_json json = {
       {"file", path},
       {"storage", kStorageNames[info.storage]},
+      {"format",
+       tree.format.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(tree.format)},
       {"gaussians", info.gaussianCount},
       {"tree", tree.rule == nullptr ? nlohmann::ordered_json() : nlohmann::ordered_json(tree.rule)},
       {"nodes", info.nodeCount},

@@ -8,6 +8,7 @@
 #include "runtime/base/name_ending.h"
 #include "runtime/base/output_path.h"
 #include "runtime/scene/append.h"
+#include "runtime/scene/export/value_range.h"
 
 namespace voyager {
 namespace {
@@ -101,6 +102,12 @@ std::vector<std::string> flat_format_endings() {
   return endings;
 }
 
+void ClampedCounts::add(const ClampedCounts& more) {
+  spz += more.spz;
+  splat += more.splat;
+  compressed_ply += more.compressed_ply;
+}
+
 void FlatContents::add(const GaussianCloud& batch) {
   voyager::add(report, batch.report);
   if (count == 0) origin = batch.origin;
@@ -112,6 +119,9 @@ void FlatContents::add(const GaussianCloud& batch) {
     largest_coordinate = std::max(largest_coordinate, std::fabs(coordinate));
   }
   count += batch.size();
+  const ValueRange ranges[] = {kSpzRange, kSplatRange, kCompressedPlyRange};
+  const std::vector<uint64_t> outside = count_outside(ranges, batch);
+  clamped.add({outside[0], outside[1], outside[2]});
 }
 
 float FlatContents::reach() const {

@@ -24,6 +24,13 @@ std::optional<FlatFormat> flat_format_of(const std::string& path);
 // The ends of names, each with its dot.
 std::vector<std::string> flat_format_endings();
 
+// Gaussians with a value that the format clamps (value_range.h).
+struct ClampedCounts {
+  uint64_t spz = 0, splat = 0, compressed_ply = 0;
+
+  void add(const ClampedCounts& more);
+};
+
 // What a writer has to know before the first Gaussian.
 struct FlatContents {
   uint64_t count = 0;
@@ -32,6 +39,7 @@ struct FlatContents {
   std::array<double, 3> origin{0, 0, 0};  // that all batches have
   double largest_coordinate = 0;          // metres, of the world, on any axis
   std::array<double, 3> least{}, most{};  // metres, of the world; 0 where count is
+  ClampedCounts clamped;
   ImportReport report;
 
   void add(const GaussianCloud& batch);
@@ -42,9 +50,12 @@ struct FlatContents {
   float reach_from_origin() const;
 };
 
-// What the format has no place for, a sentence each.
+// What the format has no place for, a sentence each: also a native pixel, which none has.
 std::vector<std::string> losses(FlatFormat format, const FlatContents& contents,
                                 const FlatOptions& options = {});
+
+// Of the native pixel alone, which a .hier has no place for either; empty where there is none.
+std::string lost_native_pixel(const NativeScale& native);
 
 // Before the work: throws Error(invalid_argument) for a path that is no format's, Error(io) where
 // the file could not be written, or where there is no room for what it takes at least.

@@ -7,6 +7,7 @@
 
 #include "runtime/math/signed_log.h"
 #include "runtime/scene/export/flat_file.h"
+#include "runtime/scene/export/value_range.h"
 
 namespace voyager {
 namespace {
@@ -65,9 +66,13 @@ std::string coarse_positions(FlatFormat format, const FlatContents& contents,
   return "";
 }
 
+bool has_spz(FlatFormat format, const FlatOptions& options) {
+  return format == FlatFormat::spz || (format == FlatFormat::glb && options.spz_inside);
+}
+
 std::string lost_filter(FlatFormat format, const NativeScale& native, const FlatOptions& options) {
   if (!native.antialiased()) return "";
-  const bool spz = format == FlatFormat::spz || (format == FlatFormat::glb && options.spz_inside);
+  const bool spz = has_spz(format, options);
   if (format == FlatFormat::splat || (format == FlatFormat::glb && !spz))
     return "the format cannot say that the scene was trained with a compensated (antialiasing) "
            "filter: left out";
@@ -77,7 +82,31 @@ std::string lost_filter(FlatFormat format, const NativeScale& native, const Flat
   return "";
 }
 
+std::string clamped_values(uint64_t clamped, uint64_t count, const ValueRange& range) {
+  if (clamped == 0) return "";
+  return "values outside of the format's range are clamped, in " + std::to_string(clamped) +
+         " of " + std::to_string(count) + " Gaussians: it holds " + range.words;
+}
+
+std::string clamped_values(FlatFormat format, const FlatContents& contents,
+                           const FlatOptions& options) {
+  const ClampedCounts& clamped = contents.clamped;
+  if (has_spz(format, options)) return clamped_values(clamped.spz, contents.count, kSpzRange);
+  if (format == FlatFormat::splat)
+    return clamped_values(clamped.splat, contents.count, kSplatRange);
+  if (format == FlatFormat::compressed_ply)
+    return clamped_values(clamped.compressed_ply, contents.count, kCompressedPlyRange);
+  return "";
+}
+
 }  // namespace
+
+// Only a tree has one; inputs of a conversion do not.
+std::string lost_native_pixel(const NativeScale& native) {
+  if (!(native.pixel > 0)) return "";
+  return "the format has no place for the native pixel, " + metres(native.pixel) +
+         ": a bake of this file estimates it, unless --native-pixel is given";
+}
 
 std::vector<std::string> losses(FlatFormat format, const FlatContents& contents,
                                 const FlatOptions& options) {
@@ -85,7 +114,8 @@ std::vector<std::string> losses(FlatFormat format, const FlatContents& contents,
   if (format == FlatFormat::splat && contents.sh_degree > 0)
     lost.push_back("the format has no spherical harmonics of degree 1 and more: left out");
   for (const std::string& text :
-       {lost_filter(format, contents.native, options), coarse_positions(format, contents, options)})
+       {lost_filter(format, contents.native, options), lost_native_pixel(contents.native),
+        coarse_positions(format, contents, options), clamped_values(format, contents, options)})
     if (!text.empty()) lost.push_back(text);
   return lost;
 }

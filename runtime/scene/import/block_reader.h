@@ -14,6 +14,9 @@ namespace voyager {
 
 class BlockReader;
 
+// Of a block, unless one Gaussian alone has more: a row may be as wide as a header says.
+inline constexpr size_t kMostBlockBytes = 16 << 20;
+
 // Some Gaussians as the input has them.
 struct RawBlock {
   std::vector<std::byte> bytes;
@@ -34,9 +37,9 @@ class BlockReader {
   // That all blocks have (GaussianCloud::origin).
   virtual std::array<double, 3> origin() const { return {}; }
 
-  // The next Gaussians, at most `most`, which is at least 1, and of few bytes (16 MiB) unless one
-  // alone has more. From one thread at a time. Throws Error(refused_input) as the importer of the
-  // format does, Error(io).
+  // The next Gaussians, at most `most`, which is at least 1, and of kMostBlockBytes at most. From
+  // one thread at a time. Throws Error(refused_input) as the importer of the format does,
+  // Error(io).
   virtual RawBlock next(size_t most) = 0;
   // The Gaussians of a block, not yet sanitised; the same words that importing the
   // whole gives. Safe from several threads, also beside next().

@@ -12,7 +12,6 @@ namespace voyager::ply {
 namespace {
 
 constexpr uint64_t kChunkGaussians = 256;
-constexpr size_t kMostBytes = 16 << 20;  // of a block: a row may be as wide as a header says
 constexpr size_t kIndexBytes = sizeof(uint64_t);
 
 enum Word { kPosition, kScale, kColour, kRotation, kWords };
@@ -73,7 +72,7 @@ class CompressedReader final : public BlockReader {
   // A block is the index of its first Gaussian, the rows of the vertices and those of the SH bands.
   RawBlock next(size_t most) override {
     const size_t width = vertex().stride + sh_stride();
-    const uint64_t rows = std::min<uint64_t>(most, std::max<size_t>(1, kMostBytes / width));
+    const uint64_t rows = std::min<uint64_t>(most, std::max<size_t>(1, kMostBlockBytes / width));
     RawBlock block;
     block.count = static_cast<size_t>(std::min(rows, count() - taken_));
     if (block.count == 0) {

@@ -7,11 +7,13 @@
 #include "runtime/base/name_ending.h"
 #include "runtime/scene/append.h"
 #include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/format_name.h"
 #include "runtime/scene/import/import_blocks.h"
 #include "runtime/scene/import/json_value.h"
 #include "runtime/scene/import/peek_reader.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/shared_reader.h"
+#include "runtime/scene/import/spz_header.h"
 #include "runtime/scene/sanitise.h"
 #include "runtime/scene/sh_bands.h"
 
@@ -204,6 +206,18 @@ std::vector<std::string> left_out_of(const ByteSource& source) {
   if (open == open_glb_blocks || open == open_json_blocks)
     return left_out_of_gltf(std::shared_ptr<const ByteSource>(&source, [](const ByteSource*) {}));
   return {};
+}
+
+std::string format_name(const ByteSource& source) {
+  const Format& format = format_of(source);
+  if (format.open_source == open_spz_blocks)
+    return "SPZ " + std::to_string(spz::read_announcement(source).header.version);
+  if (format.first_bytes.starts_with("ply")) return ".ply";
+  if (format.open_source == open_sog_blocks) return "SOG";
+  if (format.open_source == open_streamed_sog_blocks) return "SOG, streamed";
+  if (format.open_source == open_glb_blocks) return "glTF, binary";
+  if (format.open_source == open_json_blocks) return "glTF or 3D Tiles, JSON";
+  return std::string(format.ending);
 }
 
 bool is_hier_name(std::string_view name) {

@@ -19,24 +19,33 @@ std::string found_text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-// How many arrays and objects are in one another, at most; counts no further than past `most`.
-int levels_of(std::string_view text, int most) {
-  int level = 0, deepest = 0;
-  bool in_string = false;
-  for (size_t i = 0; i < text.size() && deepest <= most; ++i) {
+// What a text takes when it is parsed. Exact for JSON; of anything else the parser refuses what
+// follows the first error.
+struct Extent {
+  int levels = 0;  // arrays and objects in one another; counted no further than past the limit
+  uint64_t values = 1;
+};
+
+Extent extent_of(std::string_view text, int most_levels) {
+  Extent extent;
+  int level = 0;
+  bool in_string = false, begun = false;  // begun: an array or object that nothing is in yet
+  for (size_t i = 0; i < text.size() && extent.levels <= most_levels; ++i) {
     const char c = text[i];
     if (in_string) {
       if (c == '\\') ++i;
       in_string = c != '"';
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '[' || c == '{') {
-      deepest = std::max(deepest, ++level);
-    } else if (c == ']' || c == '}') {
-      --level;
+      continue;
     }
+    if (c == ' ' || c == '\n' || c == '\r' || c == '\t') continue;
+    const bool ends = c == ']' || c == '}';
+    if (c == ',' || (begun && !ends)) ++extent.values;
+    begun = c == '[' || c == '{';
+    if (begun) extent.levels = std::max(extent.levels, ++level);
+    if (ends) --level;
+    in_string = c == '"';
   }
-  return deepest;
+  return extent;
 }
 
 // As much of a place as a message has room for: a value far down would own as much as all above it.
@@ -50,9 +59,13 @@ std::string shortened(std::string place) {
 
 // The parser's own callback would count levels, too, but looks at all siblings of each value.
 Json parse_json(const std::string& file, uint64_t offset, std::string_view text, int levels) {
-  if (levels_of(text, levels) > levels)
+  const Extent extent = extent_of(text, levels);
+  if (extent.levels > levels)
     refuse(file, offset, "JSON", "more than " + std::to_string(levels) + " levels",
            "fewer in one another");
+  if (extent.values > kMostJsonValues)
+    refuse(file, offset, "JSON", std::to_string(extent.values) + " values",
+           "at most " + std::to_string(kMostJsonValues));
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {

@@ -9,9 +9,12 @@
 
 namespace voyager {
 
-// Of a file's JSON: a value of two or three bytes takes up to 60 in memory. The scenes that are
-// listed in so much text are of more Gaussians than any machine holds.
+// Of a file's JSON. The scenes that are listed in so much text are of more Gaussians than any
+// machine holds.
 inline constexpr uint64_t kMostJsonBytes = uint64_t{64} << 20;
+// Numbers, strings, arrays, objects and so on: one takes up to 200 bytes in memory beside its text.
+// A tileset of 100,000 tiles has some 2,000,000.
+inline constexpr uint64_t kMostJsonValues = uint64_t{1} << 21;
 // Levels in one another, of which a level of one byte takes 80 in memory.
 inline constexpr int kMostJsonLevels = 256;
 

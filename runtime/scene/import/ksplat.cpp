@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "runtime/math/byte_code.h"
 #include "runtime/math/half.h"
@@ -13,17 +14,14 @@
 namespace voyager::ksplat {
 namespace {
 
-constexpr size_t kMostBytes = 16 << 20;  // of a block
 constexpr size_t kCentre = 3 * sizeof(float);
 
-int byte(const std::byte* at) {
-  return std::to_integer<int>(*at);
-}
+using Bytes = std::span<const std::byte>;
 
 // `i` counts values from `from` on, each as wide as the level says.
-float real(Level level, const std::byte* from, size_t i) {
-  return level == Level::floats ? load<float>(from + 4 * i)
-                                : half_to_float(load<uint16_t>(from + 2 * i));
+float real(Level level, Bytes from, size_t i) {
+  return level == Level::floats ? load<float>(&from[4 * i])
+                                : half_to_float(load<uint16_t>(&from[2 * i]));
 }
 
 // A band has all red coefficients, then all green, then all blue: the place of value i in
@@ -89,8 +87,8 @@ class Reader final : public BlockReader {
     const Section& section = header_.sections[section_];
     const size_t row = header_.row_bytes(section), width = row + centre_bytes();
     RawBlock block;
-    block.count =
-        static_cast<size_t>(std::min<uint64_t>({most, kMostBytes / width, section.count - taken_}));
+    block.count = static_cast<size_t>(
+        std::min<uint64_t>({most, kMostBlockBytes / width, section.count - taken_}));
     block.bytes.resize(sizeof section_ + block.count * width);
     std::memcpy(block.bytes.data(), &section_, sizeof section_);
     const auto rest = std::span(block.bytes).subspan(sizeof section_);
@@ -110,11 +108,12 @@ class Reader final : public BlockReader {
     cloud.opacity.resize(block.count);
     cloud.sh.resize(block.count * sh_width());
     const Section& section = header_.sections[load<size_t>(block.bytes.data())];
-    const std::byte* rows = block.bytes.data() + sizeof section_;
-    const size_t row = header_.row_bytes(section);
-    const std::byte* centres = rows + block.count * row;
+    const size_t row = header_.row_bytes(section), centre = centre_bytes();
+    const Bytes rows = Bytes(block.bytes).subspan(sizeof section_);
+    const Bytes centres = rows.subspan(block.count * row);
     for (size_t i = 0; i < block.count; ++i)
-      decode_row(section, rows + i * row, centres + i * centre_bytes(), i, cloud);
+      decode_row(section, rows.subspan(i * row, row), centres.subspan(i * centre, centre), i,
+                 cloud);
     return cloud;
   }
 
@@ -160,33 +159,33 @@ class Reader final : public BlockReader {
     std::memcpy(into, centre, kCentre);
   }
 
-  void decode_row(const Section& section, const std::byte* row, const std::byte* centre, size_t i,
+  void decode_row(const Section& section, Bytes row, Bytes centre, size_t i,
                   GaussianCloud& cloud) const {
     const Level level = header_.level;
     const size_t each = level == Level::floats ? 4 : 2;
     for (size_t k = 0; k < 3; ++k) {
       cloud.position[3 * i + k] = position(section, row, centre, k);
-      cloud.log_scale[3 * i + k] = log_of_scale(real(level, row + 3 * each, k));
+      cloud.log_scale[3 * i + k] = log_of_scale(real(level, row.subspan(3 * each), k));
     }
-    for (size_t k = 0; k < 4; ++k) cloud.rotation[4 * i + k] = real(level, row + 6 * each, k);
-    const std::byte* colour = row + 10 * each;
+    for (size_t k = 0; k < 4; ++k)
+      cloud.rotation[4 * i + k] = real(level, row.subspan(6 * each), k);
+    const Bytes colour = row.subspan(10 * each);
     float* sh = &cloud.sh[i * sh_width()];
-    for (size_t k = 0; k < 3; ++k) sh[k] = sh_of_colour(byte(colour + k) / 255.0);
-    cloud.opacity[i] = logit_of_byte(byte(colour + 3));
+    for (size_t k = 0; k < 3; ++k) sh[k] = sh_of_colour(integer(colour[k]) / 255.0);
+    cloud.opacity[i] = logit_of_byte(integer(colour[3]));
     const size_t rest = 3 * (static_cast<size_t>(sh_coefficients(section.sh_degree)) - 1);
-    for (size_t k = 0; k < rest; ++k) sh[3 + place_of(k)] = coefficient(colour + 4, k);
+    for (size_t k = 0; k < rest; ++k) sh[3 + place_of(k)] = coefficient(colour.subspan(4), k);
   }
 
-  float position(const Section& section, const std::byte* row, const std::byte* centre,
-                 size_t axis) const {
-    if (!header_.compressed()) return load<float>(row + 4 * axis);
-    const double code = load<uint16_t>(row + 2 * axis), steps = section.position_steps;
+  float position(const Section& section, Bytes row, Bytes centre, size_t axis) const {
+    if (!header_.compressed()) return load<float>(&row[4 * axis]);
+    const double code = load<uint16_t>(&row[2 * axis]), steps = section.position_steps;
     const double half = static_cast<double>(section.bucket_width) / 2;
-    return static_cast<float>(static_cast<double>(load<float>(centre + 4 * axis)) +
+    return static_cast<float>(static_cast<double>(load<float>(&centre[4 * axis])) +
                               (code - steps) / steps * half);
   }
 
-  float coefficient(const std::byte* from, size_t k) const {
+  float coefficient(Bytes from, size_t k) const {
     if (header_.level != Level::halves_and_bytes) return real(header_.level, from, k);
     return between(header_.sh_least, header_.sh_most, std::to_integer<uint32_t>(from[k]), 255);
   }

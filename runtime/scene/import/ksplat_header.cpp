@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 #include "runtime/math/sh.h"
 #include "runtime/scene/import/growth.h"
 #include "runtime/scene/import/ksplat_format.h"
+#include "runtime/scene/import/load.h"
 #include "runtime/scene/import/refuse.h"
 
 namespace voyager::ksplat {
@@ -32,9 +32,7 @@ class Fields {
 
   template <class T>
   T value(size_t offset) const {
-    T found;
-    std::memcpy(&found, bytes_.data() + offset, sizeof found);
-    return found;
+    return load<T>(&bytes_[offset]);
   }
 
   template <class T>

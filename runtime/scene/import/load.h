@@ -18,4 +18,8 @@ T load(const std::byte* from, bool big_endian = false) {
   return value;
 }
 
+inline int integer(std::byte b) {
+  return std::to_integer<int>(b);
+}
+
 }  // namespace voyager

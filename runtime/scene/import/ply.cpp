@@ -20,7 +20,6 @@ using ply::Property;
 using ply::Type;
 
 constexpr size_t kRowBytes = 256 * 1024;  // stays in cache while it is taken apart by columns
-constexpr size_t kMostBytes = 16 << 20;   // of a block: a row may be as wide as a header says
 
 // One property of the rows and where its words go.
 struct Column {
@@ -76,7 +75,7 @@ class PlyReader final : public BlockReader {
   // The same in place of another block, whose memory is used again.
   void next(size_t most, RawBlock& block) {
     const size_t stride = vertex().stride;
-    const uint64_t rows = std::min<uint64_t>(most, std::max<size_t>(1, kMostBytes / stride));
+    const uint64_t rows = std::min<uint64_t>(most, std::max<size_t>(1, kMostBlockBytes / stride));
     block.count = static_cast<size_t>(std::min(rows, count() - taken_));
     if (block.count == 0) return ply::skip_the_rest(input_, header_, header_.vertex + 1);
     block.bytes.resize(block.count * stride);

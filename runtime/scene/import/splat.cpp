@@ -2,35 +2,33 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <span>
 
 #include "runtime/math/byte_code.h"
 #include "runtime/scene/import/block_reader.h"
+#include "runtime/scene/import/load.h"
 #include "runtime/scene/import/refuse.h"
 
 namespace voyager::splat {
 namespace {
 
 constexpr size_t kRow = 32, kScale = 12, kColour = 24, kRotation = 28;  // bytes
-constexpr size_t kMostRows = (16 << 20) / kRow;                         // of a block
+constexpr size_t kMostRows = kMostBlockBytes / kRow;
 
 static_assert(std::endian::native == std::endian::little);
 
-int byte(const std::byte* at) {
-  return std::to_integer<int>(*at);
-}
-
-void decode_row(const std::byte* row, size_t i, GaussianCloud& cloud) {
+void decode_row(std::span<const std::byte, kRow> row, size_t i, GaussianCloud& cloud) {
   float scale[3];
-  std::memcpy(&cloud.position[3 * i], row, sizeof scale);
-  std::memcpy(scale, row + kScale, sizeof scale);
+  std::memcpy(&cloud.position[3 * i], row.data(), sizeof scale);
+  std::memcpy(scale, &row[kScale], sizeof scale);
   for (size_t k = 0; k < 3; ++k) {
     cloud.log_scale[3 * i + k] = log_of_scale(scale[k]);
-    cloud.sh[3 * i + k] = sh_of_colour(byte(row + kColour + k) / 255.0);
+    cloud.sh[3 * i + k] = sh_of_colour(integer(row[kColour + k]) / 255.0);
   }
-  cloud.opacity[i] = logit_of_byte(byte(row + kColour + 3));
+  cloud.opacity[i] = logit_of_byte(integer(row[kColour + 3]));
   // As the format's author reads them, and writers mean them; many writers cut fractions off.
   for (size_t k = 0; k < 4; ++k)
-    cloud.rotation[4 * i + k] = static_cast<float>(byte(row + kRotation + k) - 128) / 128.0f;
+    cloud.rotation[4 * i + k] = static_cast<float>(integer(row[kRotation + k]) - 128) / 128.0f;
 }
 
 class Reader final : public BlockReader {
@@ -68,7 +66,9 @@ class Reader final : public BlockReader {
     cloud.rotation.resize(4 * block.count);
     cloud.opacity.resize(block.count);
     cloud.sh.resize(3 * block.count);
-    for (size_t i = 0; i < block.count; ++i) decode_row(block.bytes.data() + i * kRow, i, cloud);
+    const std::span rows(block.bytes);
+    for (size_t i = 0; i < block.count; ++i)
+      decode_row(rows.subspan(i * kRow).first<kRow>(), i, cloud);
     return cloud;
   }
 

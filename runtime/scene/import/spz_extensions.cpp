@@ -1,8 +1,8 @@
 #include "runtime/scene/import/spz_extensions.h"
 
 #include <cstdio>
-#include <cstring>
 
+#include "runtime/scene/import/load.h"
 #include "runtime/scene/import/refuse.h"
 
 namespace voyager::spz {
@@ -46,12 +46,6 @@ Affine axes_of(uint32_t system) {
   return axes;
 }
 
-uint32_t word(std::span<const std::byte> bytes) {
-  uint32_t value = 0;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  return value;
-}
-
 std::string named(uint32_t type, size_t bytes) {
   if (type == kSafeOrbitCamera)
     return "the extension SPZ_ADOBE_safe_orbit_camera (limits of a viewer's camera)";
@@ -67,14 +61,14 @@ Extensions read_extensions(const std::string& file, uint64_t offset,
   Extensions found;
   for (size_t at = 0; at < bytes.size();) {
     const auto rest = bytes.subspan(at);
-    const size_t length = rest.size() < 8 ? 0 : word(rest.subspan(4));
+    const size_t length = rest.size() < 8 ? 0 : load<uint32_t>(&rest[4]);
     if (rest.size() < 8 || length > rest.size() - 8) {
       found.unread.push_back(std::to_string(rest.size()) + " bytes of extensions without an order");
       break;
     }
-    const uint32_t type = word(rest);
+    const uint32_t type = load<uint32_t>(rest.data());
     if (type == kCoordinateSystem && length == 4) {
-      const uint32_t system = word(rest.subspan(8));
+      const uint32_t system = load<uint32_t>(&rest[8]);
       if (system >= std::size(kAxes))
         refuse(file, offset + at + 8, "coordinate system", std::to_string(system), "0 to 16");
       found.axes = axes_of(system == 0 ? kUsual : system);

@@ -5,6 +5,7 @@
 
 #include "runtime/scene/import/decompress.h"
 #include "runtime/scene/import/growth.h"
+#include "runtime/scene/import/load.h"
 #include "runtime/scene/import/refuse.h"
 
 namespace voyager::spz {
@@ -21,12 +22,6 @@ std::array<std::byte, count> read_bytes(ByteReader& reader, const char* what) {
     refuse(reader.name(), reader.offset(), what, std::to_string(got) + " bytes",
            std::to_string(count) + " bytes");
   return bytes;
-}
-
-uint64_t integer(const std::byte* bytes, int count) {
-  uint64_t value = 0;
-  for (int i = count - 1; i >= 0; --i) value = value << 8 | std::to_integer<uint64_t>(bytes[i]);
-  return value;
 }
 
 std::string hex(uint64_t value) {
@@ -51,14 +46,14 @@ Header read_header(ByteReader& plain, uint32_t newest_version) {
   const std::string& file = plain.name();
   const auto field = [&](const char* name, size_t offset, uint64_t low, uint64_t high) {
     return static_cast<uint8_t>(
-        in_range(file, at + offset, name, integer(&bytes[offset], 1), low, high));
+        in_range(file, at + offset, name, load<uint8_t>(&bytes[offset]), low, high));
   };
-  const uint64_t magic = integer(&bytes[0], 4);
+  const uint64_t magic = load<uint32_t>(&bytes[0]);
   if (magic != kMagic) refuse(file, at, "magic", hex(magic), hex(kMagic) + " (NGSP)");
   Header header;
   header.version = static_cast<uint32_t>(
-      in_range(file, at + 4, "version", integer(&bytes[4], 4), 1, newest_version));
-  header.count = static_cast<uint32_t>(integer(&bytes[8], 4));
+      in_range(file, at + 4, "version", load<uint32_t>(&bytes[4]), 1, newest_version));
+  header.count = load<uint32_t>(&bytes[8]);
   header.stored_sh_degree = field("SH degree", 12, 0, kMostStoredShDegree);
   header.sh_degree = std::min(header.stored_sh_degree, kMaxShDegree);
   header.fractional_bits = field("fractional bits", 13, 0, kMaxFractionalBits);
@@ -93,11 +88,11 @@ StreamTable read_stream_table(PeekReader& input, const Header& header) {
   const uint64_t streams = static_cast<uint64_t>(header.attributes());
   in_range(file, at - 1, "streams", header.last, streams, streams);
   const auto rest = read_bytes<kStreamsHeaderBytes - kHeaderBytes>(input, "header");
-  const uint64_t table = integer(&rest[0], 4);
+  const uint64_t table = load<uint32_t>(&rest[0]);
   const uint64_t furthest = kStreamsHeaderBytes + (header.has_extensions ? kMostExtensionBytes : 0);
   in_range(file, at, "offset of the stream table", table, kStreamsHeaderBytes, furthest);
   for (size_t i = 4; i < rest.size(); ++i)
-    in_range(file, at + i, "reserved byte", integer(&rest[i], 1), 0, 0);
+    in_range(file, at + i, "reserved byte", load<uint8_t>(&rest[i]), 0, 0);
   StreamTable found;
   const uint64_t gap = table - kStreamsHeaderBytes, gap_at = input.offset();
   std::vector<std::byte> records(gap);
@@ -111,9 +106,9 @@ StreamTable read_stream_table(PeekReader& input, const Header& header) {
     const auto entry = read_bytes<kTableEntryBytes>(input, "stream table");
     const std::string name = kAttributeName[i];
     const uint64_t size = header.count * uint64_t{header.bytes_of(static_cast<Attribute>(i))};
-    in_range(file, entry_at + 8, (name + ": uncompressed size").c_str(), integer(&entry[8], 8),
+    in_range(file, entry_at + 8, (name + ": uncompressed size").c_str(), load<uint64_t>(&entry[8]),
              size, size);
-    const uint64_t compressed = found.compressed[i] = integer(&entry[0], 8);
+    const uint64_t compressed = found.compressed[i] = load<uint64_t>(&entry[0]);
     if (__builtin_add_overflow(expected_end, compressed, &expected_end))
       refuse(file, entry_at, name + ": compressed size", std::to_string(compressed), "less");
   }

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "runtime/base/error.h"
 #include "runtime/base/url.h"
+#include "tests/support/sample_files.h"
+#include "tests/support/test_support.h"
 
 namespace voyager::open_source_test {
 namespace {
@@ -41,6 +45,21 @@ TEST(OpenSource, TakesAnythingElseForAFile) {
       EXPECT_EQ(error.code(), ErrorCode::file_not_found) << error.what();
     }
   }
+}
+
+// A streamed scene's folder may hold a meta.json for another program.
+TEST(OpenSource, OfAFolderOpensTheFileOfItsScene) {
+  const test::TempFolder folder;
+  const std::string path = folder.file("");
+  EXPECT_EQ(scene_file(path), path);
+  EXPECT_NE(test::refusal_of([&] { open_source(path); }).find("found a directory"),
+            std::string::npos);
+  for (const char* name : {"tileset.json", "meta.json", "lod-meta.json"}) {
+    std::ofstream(folder.file(name)) << name;
+    EXPECT_EQ(open_source(path)->name(), folder.file(name));
+    EXPECT_EQ(scene_file(folder.file(name)), folder.file(name));
+  }
+  EXPECT_EQ(scene_file("http://localhost/"), "http://localhost/");
 }
 
 }  // namespace

@@ -71,5 +71,34 @@ TEST(ClaimedSize, JsonIsHeldToABound) {
   }
 }
 
+std::string repeated(const std::string& value, size_t count) {
+  std::string text = "[" + value;
+  text.reserve(count * (value.size() + 1) + 1);
+  for (size_t i = 1; i < count; ++i) text += "," + value;
+  return text + "]";
+}
+
+TEST(ClaimedSize, JsonOfTooManyValuesIsRefusedBeforeItIsHeld) {
+  constexpr size_t kCount = 2'200'000;
+  for (const std::string value : {"{}", " [ ] ", "{\"a\":[0]}"}) {
+    const std::string text = repeated(value, kCount);
+    const long before = peak_kilobytes();
+    const std::string message = test::refusal_of([&] { parse_json("a.gltf", 20, text); });
+    EXPECT_LT(peak_kilobytes() - before, 1024) << value;
+    const size_t in_each = value[0] == '{' && value.size() > 2 ? 3 : 1;
+    EXPECT_EQ(message, "a.gltf: offset 20: JSON: found " + std::to_string(kCount * in_each + 1) +
+                           " values, expected at most 2097152");
+  }
+}
+
+TEST(ClaimedSize, JsonOfAsManyValuesAsLargeTilesetsHaveIsRead) {
+  const std::string tile =
+      R"({"boundingVolume":{"box":[1,2,3,4,5,6,7,8,9,10,11,12]},"geometricError":0.5,)"
+      R"("content":{"uri":"t, [{].glb"}})";
+  EXPECT_EQ(parse_json("tileset.json", 0, repeated(tile, 60'000)).size(), 60'000u);
+  EXPECT_EQ(parse_json("a", 0, repeated("0", kMostJsonValues - 1)).size(), kMostJsonValues - 1);
+  EXPECT_NE(test::refusal_of([] { parse_json("a", 0, repeated("0", kMostJsonValues)); }), "");
+}
+
 }  // namespace
 }  // namespace voyager::claimed_size_test

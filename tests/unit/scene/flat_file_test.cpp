@@ -1,5 +1,7 @@
 #include "runtime/scene/export/flat_file.h"
 
+#include <algorithm>
+
 #include "tests/support/sample_files.h"
 #include "tests/support/test_support.h"
 
@@ -36,6 +38,48 @@ TEST(FlatFile, SaysWhatTheFormatHasNoPlaceFor) {
   for (const FlatFormat format : {FlatFormat::ply, FlatFormat::compressed_ply, FlatFormat::spz,
                                   FlatFormat::splat, FlatFormat::glb, FlatFormat::sog})
     EXPECT_EQ(lost(format), 0u);
+}
+
+// Each format's last value is inside, and the next one outside.
+TEST(FlatFile, SaysHowManyGaussiansHaveClampedValues) {
+  GaussianCloud cloud = test::random_cloud(4, 1, 1);
+  cloud.native = {};
+  std::fill(cloud.log_scale.begin(), cloud.log_scale.end(), -10.0f);
+  std::fill(cloud.sh.begin(), cloud.sh.end(), 1.0f);
+  cloud.log_scale[0] = 5.9375f;
+  const auto clamped = [&](FlatFormat format, const FlatOptions& options = {}) -> std::string {
+    FlatContents contents;
+    contents.add(cloud);
+    const std::vector<std::string> lost = losses(format, contents, options);
+    return lost.empty() ? "" : lost.front().substr(0, lost.front().find(':'));
+  };
+  const std::string two = "values outside of the format's range are clamped, in 2 of 4 Gaussians";
+  for (const FlatFormat format : {FlatFormat::spz, FlatFormat::splat, FlatFormat::compressed_ply})
+    EXPECT_EQ(clamped(format), "");
+  cloud.log_scale[1] = 8.0f;
+  cloud.log_scale[3] = -10.01f;
+  EXPECT_EQ(clamped(FlatFormat::spz), two);
+  EXPECT_EQ(clamped(FlatFormat::glb, {.spz_inside = true}), two);
+  for (const FlatFormat format : {FlatFormat::ply, FlatFormat::compressed_ply, FlatFormat::splat,
+                                  FlatFormat::glb, FlatFormat::sog})
+    EXPECT_EQ(clamped(format), "");
+  cloud.sh[0] = 1.78f;
+  cloud.sh[13] = -1.78f;
+  EXPECT_EQ(clamped(FlatFormat::splat), two);
+  cloud.sh[11] = 4.01f;
+  cloud.sh[23] = -4.01f;
+  EXPECT_EQ(clamped(FlatFormat::compressed_ply), two);
+}
+
+TEST(FlatFile, SaysThatNoFormatHasANativePixel) {
+  FlatContents contents;
+  contents.native = {NativeSource::estimated, 0.05};
+  for (const FlatFormat format : {FlatFormat::ply, FlatFormat::compressed_ply, FlatFormat::spz,
+                                  FlatFormat::splat, FlatFormat::glb, FlatFormat::sog}) {
+    const std::vector<std::string> lost = losses(format, contents);
+    ASSERT_EQ(lost.size(), 1u);
+    EXPECT_NE(lost[0].find("native pixel, 0.05 m"), std::string::npos) << lost[0];
+  }
 }
 
 // ln(101) / 65535 of 101 metres is 7 mm, ln(201) / 65535 of 201 metres 16 mm.

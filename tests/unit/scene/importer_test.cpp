@@ -1,5 +1,7 @@
 #include "runtime/scene/import/importer.h"
 
+#include "runtime/scene/export/writer.h"
+#include "runtime/scene/import/format_name.h"
 #include "tests/support/sample_files.h"
 #include "tests/support/test_support.h"
 
@@ -20,6 +22,22 @@ TEST(Importer, TellsFormatsByTheirFirstBytes) {
   EXPECT_FALSE(is_importable(test::bytes_of("plyx"), ""));
   EXPECT_FALSE(is_importable(test::bytes_of("NGS"), ""));
   EXPECT_FALSE(is_importable({}, ""));
+}
+
+TEST(Importer, NamesTheFormat) {
+  const auto named = [](const std::string& name, const std::string& text) {
+    const Bytes bytes = test::bytes_of(text);
+    return format_name(MemorySource(name, bytes));
+  };
+  EXPECT_EQ(named("a", "ply\n"), ".ply");
+  EXPECT_EQ(named("a.splat", ""), ".splat");
+  EXPECT_EQ(named("f/meta.json", "{}"), "SOG");
+  test::BytesSink sink;
+  const auto writer = write_spz(sink, 1, 0, 1.0f, 3);
+  writer->append(test::random_cloud(1, 1, 0));
+  writer->finish();
+  EXPECT_EQ(format_name(MemorySource("a", sink.bytes)), "SPZ 3");
+  EXPECT_NE(test::refusal_of([&] { named("a", "hello"); }), "");
 }
 
 TEST(Importer, RefusesWhatItDoesNotKnowAndListsWhatItDoes) {

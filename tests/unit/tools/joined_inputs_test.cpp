@@ -68,6 +68,7 @@ TEST(JoinedInputs, MustAgreeWhereTheyAreNotMoved) {
                                     test::ply_of(far, true)};
   const std::string refusal = test::refusal_of([&] { tools::open_joined(sources_of(files), {}); });
   EXPECT_NE(refusal.find("input 1: origin: found"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("--transform"), std::string::npos) << refusal;
   EXPECT_EQ(tools::open_joined(sources_of(files), {{"-y"}, {}})->count(), 9u);
 }
 
@@ -79,6 +80,7 @@ TEST(JoinedInputs, OfDifferentFiltersAreRefused) {
   const std::vector<Bytes> files = {test::ply_of(test::random_cloud(4, 2, 0)), sink.bytes};
   const std::string refusal = test::refusal_of([&] { tools::open_joined(sources_of(files), {}); });
   EXPECT_NE(refusal.find("input 1: trained with: found"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find(".glb"), std::string::npos) << refusal;
 }
 
 }  // namespace

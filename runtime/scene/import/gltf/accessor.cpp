@@ -51,8 +51,8 @@ void place(File& file, const JsonValue& json, Accessor& accessor) {
 
 }  // namespace
 
-double Accessor::number(const std::byte* at, size_t i) const {
-  at += i * bytes_of(component);
+double Accessor::number(std::span<const std::byte> element, size_t i) const {
+  const std::byte* at = element.subspan(i * bytes_of(component), bytes_of(component)).data();
   switch (component) {
     case Component::f32:
       return static_cast<double>(load<float>(at));

@@ -1,6 +1,7 @@
 #pragma once
 // Numbers of a buffer, as an accessor describes them.
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,8 @@ struct Accessor {
   size_t element() const { return width * bytes_of(component); }
   // Bytes of so many consecutive elements, at least one.
   size_t span_of(size_t elements) const { return (elements - 1) * stride + element(); }
-  // Number i of an element that begins at `at`. A normalised integer is -1 to 1, or 0 to 1.
-  double number(const std::byte* at, size_t i) const;
+  // Number i of the element that begins there. A normalised integer is -1 to 1, or 0 to 1.
+  double number(std::span<const std::byte> element, size_t i) const;
   // Elements [first, first + count), which are within the accessor: span_of(count) bytes.
   void read(uint64_t first, std::span<std::byte> into) const;
 };

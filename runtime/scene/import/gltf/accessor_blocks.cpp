@@ -9,8 +9,6 @@
 namespace voyager::gltf {
 namespace {
 
-constexpr size_t kMostBytes = 16 << 20;  // of a block
-
 // Without a minus before a zero.
 float minus(double value) {
   return static_cast<float>(0.0 - value);
@@ -32,7 +30,7 @@ class AccessorReader final : public BlockReader {
     RawBlock block;
     const uint64_t left = primitive_.count - taken_;
     block.count = static_cast<size_t>(
-        std::min<uint64_t>({most, left, std::max<size_t>(1, kMostBytes / stride_)}));
+        std::min<uint64_t>({most, left, std::max<size_t>(1, kMostBlockBytes / stride_)}));
     if (block.count == 0) return block;
     size_t bytes = 0;
     for (const Attribute& attribute : primitive_.attributes)
@@ -56,22 +54,24 @@ class AccessorReader final : public BlockReader {
     cloud.rotation.resize(4 * block.count);
     cloud.opacity.resize(block.count);
     cloud.sh.resize(block.count * static_cast<size_t>(cloud.coefficients()) * 3);
-    const std::byte* from = block.bytes.data();
+    if (block.count == 0) return cloud;
+    std::span<const std::byte> rest(block.bytes);
     for (const Attribute& attribute : primitive_.attributes) {
       const Accessor& accessor = attribute.accessor;
       for (size_t i = 0; i < block.count; ++i) {
         double numbers[4] = {};
         for (size_t k = 0; k < accessor.width; ++k)
-          numbers[k] = accessor.number(from + i * accessor.stride, k);
+          numbers[k] = accessor.number(rest.subspan(i * accessor.stride), k);
         store(attribute, numbers, i, cloud);
       }
-      from += accessor.span_of(block.count);
+      rest = rest.subspan(accessor.span_of(block.count));
     }
     return cloud;
   }
 
  private:
-  void store(const Attribute& attribute, const double* v, size_t i, GaussianCloud& cloud) const {
+  void store(const Attribute& attribute, std::span<const double, 4> v, size_t i,
+             GaussianCloud& cloud) const {
     const size_t coefficients = static_cast<size_t>(cloud.coefficients());
     float* sh = cloud.sh.data() + (i * coefficients + attribute.k) * 3;
     switch (attribute.parameter) {
@@ -80,7 +80,7 @@ class AccessorReader final : public BlockReader {
           cloud.position[3 * i + k] = static_cast<float>(kToInria.turned(v[k], k));
         return;
       case Parameter::rotation:
-        return store_rotation(v, &cloud.rotation[4 * i]);
+        return store_rotation(v, std::span<float, 4>(&cloud.rotation[4 * i], 4));
       case Parameter::scale:
         for (size_t k = 0; k < 3; ++k)  // a flat disc has a scale of 0
           cloud.log_scale[3 * i + k] =
@@ -102,7 +102,7 @@ class AccessorReader final : public BlockReader {
 
   // The half turn before x, y, z, w, and not after it too: the Gaussian's own axes are free to
   // stay.
-  static void store_rotation(const double* v, float* wxyz) {
+  static void store_rotation(std::span<const double, 4> v, std::span<float, 4> wxyz) {
     wxyz[0] = static_cast<float>(v[2]), wxyz[1] = static_cast<float>(v[1]);
     wxyz[2] = minus(v[0]), wxyz[3] = minus(v[3]);
   }

@@ -5,17 +5,12 @@
 #include <filesystem>
 
 #include "runtime/scene/gltf_format.h"
+#include "runtime/scene/import/load.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/uri.h"
 
 namespace voyager::gltf {
 namespace {
-
-uint32_t word(const std::byte* at) {
-  uint32_t value = 0;
-  for (int i = 3; i >= 0; --i) value = value << 8 | std::to_integer<uint32_t>(at[i]);
-  return value;
-}
 
 struct Chunk {
   uint32_t type;
@@ -28,7 +23,7 @@ Chunk chunk_at(const ByteSource& source, uint64_t offset) {
     refuse(source.name(), offset, "chunk header", std::to_string(source.size() - offset) + " bytes",
            std::to_string(head.size()));
   source.read(offset, head);
-  const Chunk chunk{word(&head[4]), offset + head.size(), word(&head[0])};
+  const Chunk chunk{load<uint32_t>(&head[4]), offset + head.size(), load<uint32_t>(&head[0])};
   if (chunk.size > source.size() - chunk.offset)
     refuse(source.name(), offset, "chunk length", std::to_string(chunk.size),
            "at most " + std::to_string(source.size() - chunk.offset) + ", to the end of the file");
@@ -81,7 +76,7 @@ bool is_binary(const ByteSource& source) {
   std::array<std::byte, 4> magic;
   if (source.size() < magic.size()) return false;
   source.read(0, magic);
-  return word(magic.data()) == kMagic;
+  return load<uint32_t>(magic.data()) == kMagic;
 }
 
 nlohmann::json read_json(const ByteSource& source) {
@@ -109,10 +104,11 @@ void File::read_chunks() {
     refuse(name(), 0, "header", std::to_string(source_->size()) + " bytes",
            std::to_string(head.size()));
   source_->read(0, head);
-  if (word(&head[4]) != kVersion)
-    refuse(name(), 4, "version", std::to_string(word(&head[4])), std::to_string(kVersion));
-  if (word(&head[8]) != source_->size())
-    refuse(name(), 8, "length", std::to_string(word(&head[8])),
+  if (load<uint32_t>(&head[4]) != kVersion)
+    refuse(name(), 4, "version", std::to_string(load<uint32_t>(&head[4])),
+           std::to_string(kVersion));
+  if (load<uint32_t>(&head[8]) != source_->size())
+    refuse(name(), 8, "length", std::to_string(load<uint32_t>(&head[8])),
            std::to_string(source_->size()) + ", the bytes of the file");
   const Chunk text = chunk_at(*source_, kHeaderBytes);
   if (text.type != kJsonChunk)

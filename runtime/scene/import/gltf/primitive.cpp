@@ -135,7 +135,7 @@ void look_at(const Accessor& scales, Signs& signs) {
   scales.read(0, bytes);
   for (size_t i = 0; i < looked_at; ++i)
     for (size_t axis = 0; axis < 3; ++axis) {
-      const double scale = scales.number(bytes.data() + i * scales.stride, axis);
+      const double scale = scales.number(std::span(bytes).subspan(i * scales.stride), axis);
       if (scale < 0) signs.negative = true;
       if (scale == 0) signs.zero = true;
       if (scale > 0) signs.positive = true;

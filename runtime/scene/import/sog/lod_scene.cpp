@@ -13,7 +13,6 @@
 namespace voyager::sog {
 namespace {
 
-constexpr uint64_t kBlockBytes = 16 << 20;  // of a block
 // A Gaussian takes six pixels, and its position alone several bytes.
 constexpr uint64_t kFreePixels = 1 << 24, kPixelsOfAByte = 64;
 
@@ -34,7 +33,7 @@ class LodScene final : public BlockReader {
 
   // A block is decoded already: its file may be closed when decode() is called.
   RawBlock next(size_t most) override {
-    const uint64_t rows = kBlockBytes / bytes_of_gaussian(sh_degree_);
+    const uint64_t rows = kMostBlockBytes / bytes_of_gaussian(sh_degree_);
     const RawBlock codes = next_codes(static_cast<size_t>(std::min<uint64_t>(rows, most)));
     RawBlock block;
     block.count = codes.count;

@@ -6,6 +6,7 @@
 #include "runtime/math/byte_code.h"
 #include "runtime/math/signed_log.h"
 #include "runtime/scene/import/growth.h"
+#include "runtime/scene/import/load.h"
 #include "runtime/scene/import/refuse.h"
 #include "runtime/scene/import/sog/image.h"
 
@@ -19,30 +20,28 @@ struct Place {
 constexpr std::array<Place, kFiles> kPlaces = {
     {{0, 3}, {3, 3}, {6, 3}, {9, 4}, {13, 4}, {0, 0}, {17, 2}}};
 constexpr size_t kRow = 19, kPixelBytes = 4;
-constexpr size_t kMostRows = (16 << 20) / kRow;  // of a block
-constexpr uint32_t kCentroidsARow = 64;          // of their image
+constexpr size_t kMostRows = kMostBlockBytes / kRow;
+constexpr uint32_t kCentroidsARow = 64;  // of their image
 constexpr uint64_t kMostCentroidRows = 1024;
 constexpr uint64_t kSparePixels = 1 << 16;  // of an image, which writers round up
 
-int integer(const std::byte* code) {
-  return std::to_integer<int>(*code);
-}
+using Row = std::span<const std::byte, kRow>;
 
-float position_of(const std::byte* low, const std::byte* high, double least, double most) {
+float position_of(std::byte low, std::byte high, double least, double most) {
   const double share = (integer(low) + 256 * integer(high)) / 65535.0;
   return static_cast<float>(signed_exp((1.0 - share) * least + share * most));
 }
 
 // The last byte says which component is the largest; the others follow in the order w, x, y, z.
 // Any other byte there leaves a rotation of zero, which sanitise() mends and counts.
-void decode_rotation(const std::byte* code, float* wxyz) {
+void decode_rotation(std::span<const std::byte, 4> code, std::span<float, 4> wxyz) {
   SmallestThree found;
-  found.largest = integer(code + 3) - 252;
+  found.largest = integer(code[3]) - 252;
   if (found.largest < 0) return;
-  for (float& other : found.others)
-    other = between(-kSqrtHalf, kSqrtHalf, static_cast<uint32_t>(integer(code++)), 255);
+  for (size_t i = 0; i < found.others.size(); ++i)
+    found.others[i] = between(-kSqrtHalf, kSqrtHalf, static_cast<uint32_t>(integer(code[i])), 255);
   const std::array<float, 4> rotation = quaternion_of(found);
-  std::copy(rotation.begin(), rotation.end(), wxyz);
+  std::copy(rotation.begin(), rotation.end(), wxyz.begin());
 }
 
 class Scene final : public BlockReader {
@@ -85,7 +84,7 @@ class Scene final : public BlockReader {
     cloud.rotation.resize(4 * block.count);
     cloud.opacity.resize(block.count);
     cloud.sh.resize(block.count * width());
-    for (size_t i = 0; i < block.count; ++i) decode_row(block.bytes.data() + i * kRow, i, cloud);
+    for (size_t i = 0; i < block.count; ++i) decode_row(row_of(block.bytes, i), i, cloud);
     return cloud;
   }
 
@@ -154,24 +153,23 @@ class Scene final : public BlockReader {
     return degree;
   }
 
-  uint64_t label_of(const std::byte* row) const {
-    const std::byte* code = row + kPlaces[kLabels].at;
-    return static_cast<uint64_t>(integer(code)) + 256 * static_cast<uint64_t>(integer(code + 1));
+  static Row row_of(std::span<const std::byte> rows, size_t i) {
+    return rows.subspan(i * kRow).first<kRow>();
   }
+
+  static uint64_t label_of(Row row) { return load<uint16_t>(&row[kPlaces[kLabels].at]); }
 
   void check_labels() const {
     for (uint64_t i = 0; sh_degree_ > 0 && i < count_; ++i)
-      if (const uint64_t label = label_of(rows_.data() + i * kRow); label >= centroid_count_)
+      if (const uint64_t label = label_of(row_of(rows_, i)); label >= centroid_count_)
         refuse(name_, 0, meta_.files[kLabels],
                "label " + std::to_string(label) + " of Gaussian " + std::to_string(first_ + i),
                "less than the " + std::to_string(centroid_count_) + " centroids");
   }
 
-  void decode_row(const std::byte* row, size_t i, GaussianCloud& cloud) const {
-    const auto code = [&](File file, size_t channel) { return row + kPlaces[file].at + channel; };
-    const auto index = [&](File file, size_t channel) {
-      return std::to_integer<size_t>(*code(file, channel));
-    };
+  void decode_row(Row row, size_t i, GaussianCloud& cloud) const {
+    const auto code = [&](File file, size_t k) { return row[kPlaces[file].at + k]; };
+    const auto index = [&](File file, size_t k) { return std::to_integer<size_t>(code(file, k)); };
     float* sh = &cloud.sh[i * width()];
     for (size_t k = 0; k < 3; ++k) {
       cloud.position[3 * i + k] = position_of(code(kMeansLow, k), code(kMeansHigh, k),
@@ -179,7 +177,8 @@ class Scene final : public BlockReader {
       cloud.log_scale[3 * i + k] = meta_.scales[k][index(kScales, k)];
       sh[k] = meta_.colours[k][index(kColours, k)];
     }
-    decode_rotation(code(kQuats, 0), &cloud.rotation[4 * i]);
+    decode_rotation(row.subspan<kPlaces[kQuats].at, 4>(),
+                    std::span<float, 4>(&cloud.rotation[4 * i], 4));
     cloud.opacity[i] = meta_.opacities[index(kColours, 3)];
     const size_t rest = width() - 3;
     if (rest == 0) return;

@@ -23,24 +23,22 @@ struct Children {
   bool added;  // as the parent says: children are drawn beside their parent, not in its place
 };
 
-// One file of tiles.
+// One file of tiles. Its JSON is read when its turn comes: many may wait, in little text.
 struct Tiles {
-  nlohmann::json json;
+  Content content;           // of none the first
   std::string name, folder;  // the folder from the first one's
-  Affine transform;
   int depth;
 };
 
 enum class Kind { glb, gltf, tileset, other };
 
-Kind kind_of(const ByteSource& source, nlohmann::json& json) {
+Kind kind_of(const ByteSource& source) {
   if (gltf::is_binary(source)) return Kind::glb;
   std::array<std::byte, 1> first{};
   if (source.size() > 0) source.read(0, first);
   const auto c = std::to_integer<char>(first[0]);
   if (c != '{' && c != ' ' && c != '\t' && c != '\r' && c != '\n') return Kind::other;
-  json = gltf::read_json(source);
-  return is_tileset(json) ? Kind::tileset : Kind::gltf;
+  return is_tileset(gltf::read_json(source)) ? Kind::tileset : Kind::gltf;
 }
 
 std::string first_letters(const ByteSource& source) {
@@ -60,22 +58,23 @@ class Walk {
   explicit Walk(const ByteSource& first) : first_(first) {}
 
   std::vector<Content> run(nlohmann::json json) {
-    files_.push_back({std::move(json), first_.name(), "", {}, 0});
     seen_.insert(std::filesystem::path(first_.name()).filename().string());
+    visit_file(json, {{}, first_.name(), "", 0});
+    json = {};
     while (!files_.empty()) {
       const Tiles file = std::move(files_.front());
       files_.pop_front();
-      visit_file(file);
+      visit_file(gltf::read_json(*open_content(first_, file.content)), file);
     }
     return std::move(contents_);
   }
 
  private:
-  void visit_file(const Tiles& file) {
-    const JsonValue json(file.name, 0, file.json);
+  void visit_file(const nlohmann::json& text, const Tiles& file) {
+    const JsonValue json(file.name, 0, text);
     require_readable(json);
     std::vector<Children> open;
-    visit(json["root"], file, file.transform, false, open);
+    visit(json["root"], file, file.content.transform, false, open);
     while (!open.empty()) {
       Children& siblings = open.back();
       if (siblings.next == siblings.count) {
@@ -139,31 +138,29 @@ class Walk {
       contents_.push_back(std::move(content));
       return;
     }
-    nlohmann::json found;
     const auto source = open_content(first_, content);
-    switch (kind_of(*source, found)) {
+    switch (kind_of(*source)) {
       case Kind::glb:
       case Kind::gltf:
         scenes_.insert(content.uri);
         contents_.push_back(std::move(content));
         return;
       case Kind::tileset:
-        return add_file(uri, content, source->name(), std::move(found), file.depth + 1);
+        return add_file(uri, std::move(content), source->name(), file.depth + 1);
       case Kind::other:
         uri.refuse("a file that begins with " + first_letters(*source),
                    "a .glb, a .gltf or a tileset.json: no other content is read");
     }
   }
 
-  void add_file(const JsonValue& uri, const Content& content, const std::string& name,
-                nlohmann::json json, int depth) {
+  void add_file(const JsonValue& uri, Content content, const std::string& name, int depth) {
     if (!content.is_data && !seen_.insert(content.uri).second)
       uri.refuse(content.uri + " once more", "each tileset in one place");
     if (depth > kMostDepth)
       uri.refuse("more than " + std::to_string(kMostDepth) + " tilesets in one another", "fewer");
-    const std::string folder =
+    std::string folder =
         content.is_data ? "" : std::filesystem::path(content.uri).parent_path().string();
-    files_.push_back({std::move(json), name, folder, content.transform, depth});
+    files_.push_back({std::move(content), name, std::move(folder), depth});
   }
 
   const ByteSource& first_;
