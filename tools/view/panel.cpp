@@ -102,15 +102,27 @@ void show_navigation(Session& session) {
   ImGui::Text("at %.2f, %.2f, %.2f m", p.x, p.y, p.z);
 }
 
+// A file may bring hundreds: they scroll on their own.
+void show_numbers(Session& session) {
+  constexpr size_t kInARow = 8;
+  constexpr float kMostRows = 3.5f;  // half a row tells that there are more
+  const size_t count = session.bookmarks.size(), rows = (count + kInARow - 1) / kInARow;
+  if (count == 0) return;
+  const float height =
+      std::min(static_cast<float>(rows), kMostRows) * ImGui::GetTextLineHeightWithSpacing();
+  ImGui::BeginChild("numbers", {0, height});
+  for (size_t i = 0; i < count; ++i) {
+    if (i % kInARow != 0) ImGui::SameLine();
+    if (ImGui::SmallButton(std::to_string(i).c_str())) session.go_to(session.bookmarks[i]);
+  }
+  ImGui::EndChild();
+}
+
 void show_bookmarks(Session& session, PanelTexts& texts) {
   if (ImGui::Button("home")) session.go_home();
   ImGui::SameLine();
   if (ImGui::Button("add")) session.add_bookmark();
-  for (size_t i = 0; i < session.bookmarks.size(); ++i) {
-    if (i % 8 != 0) ImGui::SameLine();
-    const std::string name = std::to_string(i);
-    if (ImGui::SmallButton(name.c_str())) session.go_to(session.bookmarks[i]);
-  }
+  show_numbers(session);
   ImGui::InputText("##cameras", texts.cameras, sizeof texts.cameras);
   ImGui::SameLine();
   if (ImGui::Button("save cameras")) session.save_bookmarks(texts.cameras);
@@ -152,17 +164,18 @@ void show_panel(Session& session, PanelTexts& texts, const std::string& device, 
   ImGui::PushItemWidth(150);
   ImGui::TextWrapped("%s", device.c_str());
   if (session.is_still())
-    ImGui::Text("still: nothing to draw");
+    ImGui::TextUnformatted("still");
   else
     ImGui::Text("%.1f frames a second", double{window_rate});
+  ImGui::SameLine();
+  ImGui::TextDisabled("H hides this panel");
   if (section("Scene", Use::often)) show_scene(session, texts);
   if (section("Picture", Use::often)) show_picture(session.settings);
   if (section("Right of the line", Use::often)) show_comparison(session);
   if (section("Moving", Use::often)) show_navigation(session);
-  if (section("Bookmarks", Use::often)) show_bookmarks(session, texts);
+  if (section("Bookmarks", Use::seldom)) show_bookmarks(session, texts);
   if (section("Pictures and paths", Use::seldom)) show_pictures(session, texts);
   if (section("Statistics", Use::seldom)) show_statistics(session);
-  ImGui::TextDisabled("H hides this panel");
   ImGui::PopItemWidth();
   ImGui::End();
 }
