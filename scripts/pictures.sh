@@ -30,6 +30,12 @@ loaded
 still
 window viewer.png
 END
+view city.voy --size 1280x1000 <<END  # as high as the panel with all of its sections
+loaded
+bookmark
+still
+window viewer_panel.png
+END
 view city.voy --cameras city.cameras.json --camera 70 <<END
 loaded
 tau 12

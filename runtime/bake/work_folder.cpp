@@ -43,6 +43,10 @@ WorkFolder::~WorkFolder() {
   }
 }
 
+void WorkFolder::remove_abandoned(const std::string& path) {
+  OwnedFolder::remove_abandoned(path, kBake);
+}
+
 bool WorkFolder::has(const std::string& name) const {
   std::error_code ignored;
   return std::filesystem::exists(file(name), ignored);

@@ -15,11 +15,13 @@ class WorkFolder {
   // Makes the folder if it is absent, and marks it with `request`, lines of what is baked and how.
   // Throws Error(refused_input) for a folder of another request, or with files of anybody else.
   // With `alone` no other process may be in the folder while the object lives; without it, others
-  // may that are not alone either. Throws Error(io) if another process prevents that. With
+  // may that are not alone either. Throws FolderTaken if another process prevents that. With
   // `temporary` the object's end removes the folder, if the object has marked it. A folder in which
   // nothing was written is removed too.
   WorkFolder(const std::string& path, const std::string& request, bool alone, bool temporary);
   ~WorkFolder();
+  // Removes what a bake that was killed has left, as OwnedFolder::remove_abandoned() does.
+  static void remove_abandoned(const std::string& path);
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;
 

@@ -13,7 +13,6 @@
 #include <sstream>
 
 #include "runtime/base/checksum.h"
-#include "runtime/base/error.h"
 #include "runtime/base/file.h"
 #include "runtime/base/file_kind.h"
 #include "runtime/base/system_error.h"
@@ -142,8 +141,8 @@ void OwnedFolder::take(const std::string& text, bool alone, OtherKey other) {
     if (!same && other == OtherKey::refused) refuse_other(path_, kind_, key_part(found), text);
     const Lock locked = lock(alone);
     if (locked == Lock::refused)
-      throw Error(ErrorCode::io, path_ + ": found another process at work in the folder of " +
-                                     kind_.of + ", expected none");
+      throw FolderTaken(path_ + ": found another process at work in the folder of " + kind_.of +
+                        ", expected none");
     if (locked == Lock::held && same) return;
     if (locked == Lock::held)
       remove();

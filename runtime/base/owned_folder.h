@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "runtime/base/error.h"
 #include "runtime/base/file_descriptor.h"
 
 namespace voyager {
@@ -22,6 +23,12 @@ struct FolderKind {
   bool (*is_own)(std::string_view name, const std::vector<std::string>& notes);
 };
 
+// Another process is at work in the folder.
+class FolderTaken : public Error {
+ public:
+  explicit FolderTaken(const std::string& message) : Error(ErrorCode::io, message) {}
+};
+
 // A file itself, and no link to one: nothing else is ever removed.
 bool is_plain_file(const std::string& path);
 
@@ -33,7 +40,7 @@ class OwnedFolder {
   // other processes out while the object lives; else others that are not alone may be in, too. What
   // is there under another key is refused, or removed to start anew. Throws Error(refused_input),
   // with nothing touched, for a folder with files and no mark, or of another kind or key, naming
-  // the first line that differs; Error(io) where another process is in the folder.
+  // the first line that differs; FolderTaken where another process is in the folder.
   OwnedFolder(const std::string& path, const FolderKind& kind, const std::string& key, bool alone,
               OtherKey other = OtherKey::refused);
 

@@ -18,8 +18,8 @@ tools::Camera camera_at(double x) {
 Navigator navigator(Navigation mode) {
   Navigator made;
   made.look_from(camera_at(0), 10);
-  made.set_speed(2);
   made.set_mode(mode);
+  made.set_speed(2);
   return made;
 }
 
@@ -57,6 +57,16 @@ TEST(ViewMoving, FlyingTurnsOnTheSpotAndWalkingKeepsItsHeight) {
   walking.turn({1, -0.5});
   walking.move({0, 0, -1}, 1);
   EXPECT_NEAR(walking.position().y, before.y, 1e-9);
+}
+
+TEST(ViewMoving, WalkingBeginsAtAWalkingSpeed) {
+  Navigator moving = navigator(Navigation::fly);
+  moving.set_speed(50);
+  moving.set_mode(Navigation::walk);
+  EXPECT_EQ(moving.speed(), kWalkingSpeed);
+  moving.set_speed(3);
+  moving.set_mode(Navigation::walk);
+  EXPECT_EQ(moving.speed(), 3);
 }
 
 TEST(ViewMoving, SavedCamerasAreReadBack) {

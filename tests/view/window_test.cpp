@@ -1,6 +1,7 @@
 // `voyager view` as a person sees it, by scripts: what is shown, what is refused, what is saved.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include "tests/support/pictures.h"
 #include "tests/support/test_support.h"
 #include "tests/support/x_server.h"
+#include "tools/cameras.h"
 
 namespace voyager::test {
 namespace view_window_test {
@@ -53,7 +55,7 @@ class ViewWindow : public ::testing::Test {
   }
 
   // Runs the lines under the validation layer. Its output, or a skip or failure.
-  std::string view(const std::string& arguments, const std::string& lines) {
+  std::string view(const std::string& arguments, const std::string& lines, int exit_code = 0) {
     std::ofstream(file("script.txt")) << lines;
     const Outcome result = run("voyager view " + arguments +
                                " --size 320x240 --validation --script " + file("script.txt"));
@@ -62,7 +64,7 @@ class ViewWindow : public ::testing::Test {
                 ? result.output
                 : "";
     if (!skip_.empty()) return "";
-    EXPECT_EQ(result.exit_code, 0) << result.output;
+    EXPECT_EQ(result.exit_code, exit_code) << result.output;
     EXPECT_EQ(result.output.find("validation: "), std::string::npos) << result.output;
     return result.output;
   }
@@ -111,14 +113,16 @@ TEST_F(ViewWindow, ClosesAfterSomeFramesWithTheLastOfThem) {
 }
 
 // What the window shows is what `voyager render` draws of the cameras that it saves, in every size
-// that the window has had; a broken file that is dropped changes nothing, and is told.
+// that the window has had; a broken file that is dropped changes nothing, and is told. A path is
+// repeated from the cameras that are saved with it.
 TEST_F(ViewWindow, ShowsWhatRenderDrawsThroughResizesAndABrokenFile) {
   const std::string output =
-      view(file("city.voy"), "loaded\npanel off\nstill\nbookmark\npicture " + file("a.png") +
-                                 "\nsize 200 150\nframes 3\nturn 10 3\nstill\nbookmark\npicture " +
-                                 file("b.png") + "\nopen " + file("broken.ply") +
-                                 "\nframes 5\nbaked\npicture " + file("c.png") + "\npath " +
-                                 file("path") + " 3\nsave " + file("saved.json") + "\n");
+      view(file("city.voy"),
+           "loaded\npanel off\nstill\nbookmark\npicture " + file("a.png") +
+               "\nsize 200 150\nframes 3\nturn 10 3\nstill\nbookmark\npicture " + file("b.png") +
+               "\nopen " + file("broken.ply") + "\nframes 5\nbaked\npicture " + file("c.png") +
+               "\npath " + file("path") + " 3\nsave " + file("saved.json") + "\n",
+           2);
   if (!skip_.empty()) VOYAGER_SKIP_WITHOUT(VULKAN, skip_);
   EXPECT_TRUE(has(output, "broken.ply: offset")) << output;
   constexpr float kRounding =
@@ -131,9 +135,12 @@ TEST_F(ViewWindow, ShowsWhatRenderDrawsThroughResizesAndABrokenFile) {
   EXPECT_EQ(largest_difference(second, read_png(file("c.png"))), 0);
   EXPECT_EQ(largest_difference(second, read_png(file("path/0002.png"))), 0);
   EXPECT_GT(largest_difference(second, read_png(file("path/0000.png"))), 50);
+  EXPECT_LE(largest_difference(read_png(file("path/0001.png")), rendered("path/cameras.json", 1)),
+            kRounding);
 }
 
-// A flat scene is drawn at once, and its bake takes its place; the next time the bake is found.
+// A flat scene is drawn at once, and its bake takes its place; the next time the bake is found. A
+// bake that was damaged meanwhile is made anew.
 TEST_F(ViewWindow, AFlatSceneIsShownAndBakedOnce) {
   const std::string lines = "loaded\npanel off\nbaked\nstill\nbookmark\npicture " +
                             file("baked.png") + "\nsave " + file("flat.json") + "\n";
@@ -145,6 +152,31 @@ TEST_F(ViewWindow, AFlatSceneIsShownAndBakedOnce) {
   const std::string again = view(file("city.ply"), lines);
   EXPECT_FALSE(has(again, "it is shown")) << again;
   EXPECT_TRUE(has(again, "its bake is shown")) << again;
+  for (const auto& entry : std::filesystem::directory_iterator(file("cache/voyager")))
+    std::filesystem::resize_file(entry.path(), entry.file_size() / 2);
+  const std::string damaged = view(file("city.ply"), "loaded\nbaked\nstill\n");
+  EXPECT_TRUE(has(damaged, "the bake that was kept is of no use, and is made anew")) << damaged;
+  EXPECT_TRUE(has(damaged, "its bake is shown")) << damaged;
+}
+
+// Another scene is looked at from its own first view, whatever bookmarks there are; so it is after
+// a move to where nothing can be drawn from. An error that is still measured is not told of it.
+TEST_F(ViewWindow, AnotherSceneHasAHomeOfItsOwnAndNoErrorOfTheLast) {
+  write_bytes(file("few.ply"), first_rows(file_bytes(file("city.ply")), 1500, 100));
+  const std::string output =
+      view(file("city.voy"), "loaded\nbookmark\nmeasure\nopen " + file("few.ply") +
+                                 "\nloaded\nbookmark\nmove 1e300 0 0\nframes 2\nbookmark\n" +
+                                 "still\nsave " + file("homes.json") + "\n");
+  if (!skip_.empty()) VOYAGER_SKIP_WITHOUT(VULKAN, skip_);
+  const auto homes = tools::read_cameras(file("homes.json"));
+  ASSERT_EQ(homes.size(), 3u);
+  const auto same_place = [&](size_t a, size_t b) {
+    return std::ranges::equal(homes[a].pose.position, homes[b].pose.position);
+  };
+  EXPECT_FALSE(same_place(0, 1));
+  EXPECT_TRUE(same_place(1, 2));
+  const size_t told = output.find("against the truth");
+  EXPECT_TRUE(told == std::string::npos || told < output.find("few.ply: it is shown")) << output;
 }
 
 // Right of the line: other settings, the level of detail, and the error, which is measured. Another
@@ -165,6 +197,50 @@ TEST_F(ViewWindow, TheLineDividesTwoPictures) {
   EXPECT_EQ(largest_difference(a, c, 0, 158), 0);
   EXPECT_GT(largest_difference(a, b, 162, 320), 100);
   EXPECT_GT(largest_difference(b, c, 162, 320), 100);
+}
+
+// Nobody looks at the messages of a script: what was not done is its exit code. Nothing of this
+// waits for a scene that does not come.
+TEST_F(ViewWindow, WhatAScriptDidNotDoIsItsExitCode) {
+  const std::string city = file("city.voy"), picture = " --screenshot " + file("none.png");
+  write_bytes(file("half.voy"), file_bytes(city).substr(0, file_bytes(city).size() / 2));
+  std::ofstream(file("over.txt")) << "loaded\nsave " << city << "\nopen " << file("absent") << "\n";
+  std::ofstream(file("path.txt")) << "loaded\npath " << file("no_path") << " 3\n";
+  const struct {
+    std::string arguments;
+    int exit_code;
+    std::string names;
+  } cases[] = {
+      {file("absent.ply") + picture, 2, "absent.ply"},
+      {file("half.voy") + " --frames 1", 2, "half.voy: offset"},
+      {city + " --budget 0.001" + picture, 4, "memory budget"},
+      {picture, 1, "none.png: found no scene"},
+      {city + " --script " + file("over.txt"), 1, "over.txt: found 1 refused"},
+      {city + " --script " + file("path.txt"), 1, "no bookmarks"},
+  };
+  for (const auto& each : cases) {
+    const Outcome result =
+        run_shell("timeout 60 " + program("voyager view --quiet --size 64x48 " + each.arguments));
+    if (has(result.output, "found no V")) VOYAGER_SKIP_WITHOUT(VULKAN, result.output);
+    EXPECT_EQ(result.exit_code, each.exit_code) << each.arguments << "\n" << result.output;
+    EXPECT_TRUE(has(result.output, each.names)) << each.arguments << "\n" << result.output;
+    EXPECT_FALSE(std::filesystem::exists(file("none.png"))) << each.arguments;
+  }
+  EXPECT_EQ(file_bytes(city).substr(0, 3), file_bytes(file("half.voy")).substr(0, 3));
+}
+
+// Also while it bakes: nothing of the bake is left.
+TEST_F(ViewWindow, ASignalEndsItAsClosingDoes) {
+  const std::string log = file("signal.log");
+  const Outcome result = run_shell(
+      program("voyager view --size 64x48 " + file("whole.ply")) + " 2> " + log +
+      " & viewer=$!; while kill -0 $viewer 2> /dev/null && ! grep -q shown " + log +
+      "; do sleep 0.02; done; kill -TERM $viewer; wait $viewer; echo ended $?; cat " + log);
+  if (has(result.output, "found no V")) VOYAGER_SKIP_WITHOUT(VULKAN, result.output);
+  EXPECT_TRUE(has(result.output, "ended 0")) << result.output;
+  std::error_code none;  // it was ended before there was a cache
+  for (const auto& entry : std::filesystem::directory_iterator(file("cache/voyager"), none))
+    EXPECT_EQ(entry.path().extension(), ".voy");
 }
 
 // A machine without a display, where nobody has to look.
@@ -195,6 +271,19 @@ TEST_F(ViewOffScreen, PicturesNeedNoDisplay) {
 TEST_F(ViewWindow, RefusalsAreOneLine) {
   std::ofstream(file("wrong.txt")) << "loaded\n\njump 3\n";
   std::ofstream(file("large.txt")) << "size 0 16385\n";
+  const std::pair<std::string, std::string> lines[] = {
+      {"tau -5", "from 0"},        {"milliseconds -3", "from 0"},
+      {"line -4", "from 0 to 1"},  {"background 0 -4 2", "-4"},
+      {"exposure 1e9", "1e9"},     {"frames 0", "from 1"},
+      {"loaded extra", "1 words"}, {"budget -1", "found -1"},
+      {"path x 1", "from 2"},      {"right left", "settings|detail"}};
+  for (const auto& [line, names] : lines) {
+    std::ofstream(file("line.txt")) << line << "\n";
+    const Outcome result = run("voyager view --script " + file("line.txt"));
+    EXPECT_EQ(result.exit_code, 2) << line << "\n" << result.output;
+    EXPECT_TRUE(has(result.output, "line.txt: line 1: " + line + ": found ")) << result.output;
+    EXPECT_TRUE(has(result.output, names)) << result.output;
+  }
   const struct {
     std::string command;
     int exit_code;

@@ -7,13 +7,17 @@
 #include <filesystem>
 #include <vector>
 
+#include "runtime/bake/work_folder.h"
 #include "runtime/base/checksum.h"
 #include "runtime/base/error.h"
+#include "runtime/format/layout.h"
 
 namespace voyager::view {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kWork = ".work";
 
 fs::path cache_folder() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
@@ -38,8 +42,8 @@ std::string full_name(const std::string& scene) {
 }  // namespace
 
 std::string cached_bake(const std::string& scene, const ByteSource& source) {
-  const std::string about =
-      fmt::format("{}\n{}\n{}", full_name(scene), source.size(), time_of_change(scene));
+  const std::string about = fmt::format("{}\n{}\n{}\n{}", full_name(scene), source.size(),
+                                        time_of_change(scene), kSceneVersion);
   return (cache_folder() / fmt::format("{}-{:016x}.voy",
                                        fs::path(scene.substr(0, scene.find('?'))).stem().string(),
                                        checksum(std::as_bytes(std::span(about)))))
@@ -55,6 +59,10 @@ void make_cache_folder() {
                                    ", expected a folder for the bake: --keep names a file for it");
 }
 
+std::string work_folder(const std::string& bake) {
+  return bake + kWork;
+}
+
 void trim_cache(const std::string& used) {
   struct Kept {
     fs::path path;
@@ -66,6 +74,8 @@ void trim_cache(const std::string& used) {
   std::vector<Kept> files;
   uint64_t sum = 0;
   for (const auto& entry : fs::directory_iterator(cache_folder(), ignored)) {
+    if (entry.path().extension() == kWork && entry.is_directory(ignored))
+      WorkFolder::remove_abandoned(entry.path().string());
     if (entry.path().extension() != ".voy" || !entry.is_regular_file(ignored)) continue;
     files.push_back({entry.path(), entry.last_write_time(ignored), entry.file_size(ignored)});
     sum += files.back().bytes;

@@ -95,7 +95,7 @@ void DetailJob::run() {
     result_ = std::move(scene);
   } catch (const DetailStopped&) {
   } catch (const std::exception& problem) {
-    error_ = problem.what();
+    error_ = refusal_of(problem);
   }
   done_ = true;
 }

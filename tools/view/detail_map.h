@@ -10,6 +10,7 @@
 
 #include "runtime/math/vec.h"
 #include "tools/view/loaded_scene.h"
+#include "tools/view/refusal.h"
 
 namespace voyager::view {
 
@@ -31,7 +32,7 @@ class DetailJob {
   bool done() const { return done_; }
   // Once done: nothing where it failed, and why.
   std::optional<LoadedScene> take() { return std::exchange(result_, std::nullopt); }
-  const std::string& error() const { return error_; }
+  const Refusal& error() const { return error_; }
 
  private:
   void run();
@@ -41,7 +42,7 @@ class DetailJob {
   const std::vector<uint32_t> nodes_;
   const double footprint_;
   std::optional<LoadedScene> result_;
-  std::string error_;
+  Refusal error_;
   std::atomic<bool> stopped_ = false, done_ = false;
   std::thread thread_;
 };

@@ -28,6 +28,11 @@ void Navigator::look_from(const tools::Camera& camera, double distance) {
   distance_ = std::clamp(distance, kNearest, kFarthest);
 }
 
+void Navigator::set_mode(Navigation mode) {
+  if (mode == Navigation::walk && mode_ != mode) speed_ = kWalkingSpeed;
+  mode_ = mode;
+}
+
 void Navigator::turn(const glm::dvec2& radians) {
   const glm::dvec3 around = camera_.position() + distance_ * camera_.direction(kForward);
   camera_.turn(radians);

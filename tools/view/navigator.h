@@ -20,7 +20,7 @@ class Navigator {
   // distance: metres to the point that orbit turns around, straight ahead.
   void look_from(const tools::Camera& camera, double distance);
   Navigation mode() const { return mode_; }
-  void set_mode(Navigation mode) { mode_ = mode; }
+  void set_mode(Navigation mode);  // walking begins at a person's speed
 
   void turn(const glm::dvec2& radians);               // to the left, up; orbit: around the point
   void move(const glm::dvec3& axes, double seconds);  // right, up, back: 1 is full speed

@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/byte_size.h"
 
@@ -10,6 +11,10 @@ namespace voyager::view {
 namespace {
 
 constexpr float kPanelWidth = 330;
+constexpr float kHeightOfAll = 1000;  // pixels that all sections take, about
+// Also of numbers that are typed in.
+constexpr ImGuiSliderFlags kClamped = ImGuiSliderFlags_AlwaysClamp;
+constexpr ImGuiSliderFlags kClampedLogarithmic = kClamped | ImGuiSliderFlags_Logarithmic;
 
 void show_scene(Session& session, PanelTexts& texts) {
   const LoadedScene* scene = session.scene();
@@ -24,7 +29,7 @@ void show_scene(Session& session, PanelTexts& texts) {
                                ImGuiInputTextFlags_EnterReturnsTrue))
     session.open(texts.open);
   float budget = static_cast<float>(session.budget());
-  ImGui::SliderFloat("budget, MB", &budget, 10, 64000, "%.0f", ImGuiSliderFlags_Logarithmic);
+  ImGui::SliderFloat("budget, MB", &budget, 10, 64000, "%.0f", kClampedLogarithmic);
   if (ImGui::IsItemDeactivatedAfterEdit()) session.set_budget(double{budget});
 }
 
@@ -34,11 +39,9 @@ void show_detail_of(SplatSettings& settings) {
   ImGui::SameLine();
   if (ImGui::RadioButton("by milliseconds", by_time) && !by_time) settings.milliseconds = 50;
   if (settings.milliseconds > 0)
-    ImGui::SliderFloat("ms a frame", &settings.milliseconds, 2, 1000, "%.0f",
-                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderFloat("ms a frame", &settings.milliseconds, 2, 1000, "%.0f", kClampedLogarithmic);
   else
-    ImGui::SliderFloat("tau, pixels", &settings.tau, 0.25f, 60, "%.2f",
-                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    ImGui::SliderFloat("tau, pixels", &settings.tau, 0.25f, 60, "%.2f", kClampedLogarithmic);
   bool antialias = settings.antialias == VOY_ANTIALIAS_ON;
   if (ImGui::Checkbox("antialiasing", &antialias))
     settings.antialias = antialias ? VOY_ANTIALIAS_ON : VOY_ANTIALIAS_OFF;
@@ -49,7 +52,7 @@ void show_picture(Settings& settings) {
   bool coarser = settings.moving_milliseconds > 0;
   if (settings.left.milliseconds <= 0 && ImGui::Checkbox("coarser while moving", &coarser))
     settings.moving_milliseconds = coarser ? Settings().moving_milliseconds : 0;
-  ImGui::SliderFloat("exposure, stops", &settings.stops, -6, 6, "%.1f");
+  ImGui::SliderFloat("exposure, stops", &settings.stops, -6, 6, "%.1f", kClamped);
   ImGui::ColorEdit3("background", settings.background, ImGuiColorEditFlags_NoInputs);
 }
 
@@ -65,7 +68,7 @@ void show_comparison(Session& session) {
   ImGui::SameLine();
   choice("error", RightSide::error);
   if (settings.right_side != RightSide::none)
-    ImGui::SliderFloat("line", &settings.split, 0, 1, "%.2f");
+    ImGui::SliderFloat("line", &settings.split, 0, 1, "%.2f", kClamped);
   ImGui::PushID("right");
   if (settings.right_side == RightSide::settings) show_detail_of(settings.right);
   ImGui::PopID();
@@ -75,7 +78,11 @@ void show_comparison(Session& session) {
     ImGui::Text("the truth is being drawn ...");
   else if (ImGui::Button("measure this view"))
     session.measure_error();
-  if (session.error()) ImGui::Text("%.2f dB; shown 8 times, grey is none", session.error()->psnr);
+  if (!session.error()) return;
+  if (std::isinf(session.error()->psnr))
+    ImGui::Text("none: this view is the truth");
+  else
+    ImGui::Text("%.2f dB; shown 8 times, grey is none", session.error()->psnr);
 }
 
 void show_navigation(Session& session) {
@@ -89,21 +96,33 @@ void show_navigation(Session& session) {
   mode("walk", Navigation::walk);
   ImGui::NewLine();
   float speed = static_cast<float>(navigator.speed());
-  if (ImGui::SliderFloat("speed, m/s", &speed, 0.1f, 1000, "%.2f", ImGuiSliderFlags_Logarithmic))
+  if (ImGui::SliderFloat("speed, m/s", &speed, 0.1f, 1000, "%.2f", kClampedLogarithmic))
     navigator.set_speed(double{speed});
   const glm::dvec3& p = navigator.position();
   ImGui::Text("at %.2f, %.2f, %.2f m", p.x, p.y, p.z);
+}
+
+// A file may bring hundreds: they scroll on their own.
+void show_numbers(Session& session) {
+  constexpr size_t kInARow = 8;
+  constexpr float kMostRows = 3.5f;  // half a row tells that there are more
+  const size_t count = session.bookmarks.size(), rows = (count + kInARow - 1) / kInARow;
+  if (count == 0) return;
+  const float height =
+      std::min(static_cast<float>(rows), kMostRows) * ImGui::GetTextLineHeightWithSpacing();
+  ImGui::BeginChild("numbers", {0, height});
+  for (size_t i = 0; i < count; ++i) {
+    if (i % kInARow != 0) ImGui::SameLine();
+    if (ImGui::SmallButton(std::to_string(i).c_str())) session.go_to(session.bookmarks[i]);
+  }
+  ImGui::EndChild();
 }
 
 void show_bookmarks(Session& session, PanelTexts& texts) {
   if (ImGui::Button("home")) session.go_home();
   ImGui::SameLine();
   if (ImGui::Button("add")) session.add_bookmark();
-  for (size_t i = 0; i < session.bookmarks.size(); ++i) {
-    if (i % 8 != 0) ImGui::SameLine();
-    const std::string name = std::to_string(i);
-    if (ImGui::SmallButton(name.c_str())) session.go_to(session.bookmarks[i]);
-  }
+  show_numbers(session);
   ImGui::InputText("##cameras", texts.cameras, sizeof texts.cameras);
   ImGui::SameLine();
   if (ImGui::Button("save cameras")) session.save_bookmarks(texts.cameras);
@@ -125,11 +144,14 @@ void show_pictures(Session& session, PanelTexts& texts) {
   }
   if (ImGui::Button("save path"))
     session.start_path(texts.folder, static_cast<size_t>(texts.pictures));
-  ImGui::SliderInt("pictures", &texts.pictures, 2, 600);
+  ImGui::SliderInt("pictures", &texts.pictures, 2, 600, "%d", kClamped);
 }
 
-bool section(const char* name) {
-  return ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_DefaultOpen);
+// Those that are used most are open at first; the others where the window has room for all.
+enum class Use { often, seldom };
+bool section(const char* name, Use use) {
+  const bool open = use == Use::often || ImGui::GetIO().DisplaySize.y >= kHeightOfAll;
+  return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
 }
 
 }  // namespace
@@ -142,17 +164,18 @@ void show_panel(Session& session, PanelTexts& texts, const std::string& device, 
   ImGui::PushItemWidth(150);
   ImGui::TextWrapped("%s", device.c_str());
   if (session.is_still())
-    ImGui::Text("still: nothing to draw");
+    ImGui::TextUnformatted("still");
   else
     ImGui::Text("%.1f frames a second", double{window_rate});
-  if (section("Scene")) show_scene(session, texts);
-  if (section("Picture")) show_picture(session.settings);
-  if (section("Right of the line")) show_comparison(session);
-  if (section("Statistics")) show_statistics(session);
-  if (section("Moving")) show_navigation(session);
-  if (section("Bookmarks")) show_bookmarks(session, texts);
-  if (section("Pictures and paths")) show_pictures(session, texts);
+  ImGui::SameLine();
   ImGui::TextDisabled("H hides this panel");
+  if (section("Scene", Use::often)) show_scene(session, texts);
+  if (section("Picture", Use::often)) show_picture(session.settings);
+  if (section("Right of the line", Use::often)) show_comparison(session);
+  if (section("Moving", Use::often)) show_navigation(session);
+  if (section("Bookmarks", Use::seldom)) show_bookmarks(session, texts);
+  if (section("Pictures and paths", Use::seldom)) show_pictures(session, texts);
+  if (section("Statistics", Use::seldom)) show_statistics(session);
   ImGui::PopItemWidth();
   ImGui::End();
 }

@@ -1,13 +1,12 @@
 #include "tools/view/scene_loader.h"
 
 #include <filesystem>
-#include <stdexcept>
+#include <new>
 
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
 #include "runtime/frame/scene.h"
 #include "runtime/scene/import/block_reader.h"
-#include "tools/console.h"
 #include "tools/default_camera.h"
 #include "tools/view/background_bake.h"
 #include "tools/view/bake_cache.h"
@@ -19,17 +18,9 @@ namespace {
 
 struct LoadStopped {};
 
-std::string without_name(const voy::Error& error) {
-  const std::string text = error.what();
-  return tools::without_call(text.substr(text.find(": ") + 2));
-}
-
-bool is_baked(const std::string& file) {
-  try {
-    return scene_format(*open_source(file)) == SceneFormat::baked;
-  } catch (const Error&) {
-    return false;
-  }
+// What opening says of a file that is damaged, or of another version.
+bool is_of_the_file(const Refusal& refusal) {
+  return refusal.code == ErrorCode::refused_input || refusal.code == ErrorCode::damaged_chunk;
 }
 
 }  // namespace
@@ -53,22 +44,26 @@ std::optional<LoadedScene> SceneLoader::take() {
   return std::exchange(ready_, std::nullopt);
 }
 
-std::optional<std::string> SceneLoader::take_error() {
+std::optional<Refusal> SceneLoader::take_error() {
   const std::lock_guard lock(mutex_);
   return std::exchange(error_, std::nullopt);
 }
 
+std::optional<std::string> SceneLoader::take_note() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(note_, std::nullopt);
+}
+
 void SceneLoader::run() {
-  std::optional<std::string> error;
+  std::optional<Refusal> error;
   try {
     load();
   } catch (const LoadStopped&) {
-  } catch (const voy::Error& problem) {
-    error = without_name(problem);
-  } catch (const std::bad_alloc&) {
-    error = request_.path + ": out of memory";
+  } catch (const std::bad_alloc& problem) {
+    error = refusal_of(problem);
+    error->text = request_.path + ": " + error->text;
   } catch (const std::exception& problem) {
-    error = problem.what();
+    error = refusal_of(problem);
   }
   const std::lock_guard lock(mutex_);
   error_ = std::move(error);
@@ -100,10 +95,7 @@ void SceneLoader::load_baked(const std::string& file) {
 void SceneLoader::load_flat(std::shared_ptr<const ByteSource> source) {
   const std::string bake =
       request_.keep.empty() ? cached_bake(request_.path, *source) : request_.keep;
-  if (request_.keep.empty() && is_baked(bake)) {
-    trim_cache(bake);
-    return load_baked(bake);
-  }
+  if (request_.keep.empty() && load_cached(bake)) return trim_cache(bake);
   gaussians_ = open_blocks(source)->count();
   // Where a small sample takes as long as a large one, the large one is first.
   if (gaussians_ > kMostFlat && sparse_ply(source, 2))
@@ -117,6 +109,21 @@ void SceneLoader::load_flat(std::shared_ptr<const ByteSource> source) {
   });
   if (request_.keep.empty()) trim_cache(bake);
   load_baked(bake);
+}
+
+bool SceneLoader::load_cached(const std::string& bake) {
+  if (!std::filesystem::exists(bake)) return false;
+  try {
+    load_baked(bake);
+    return true;
+  } catch (const std::exception& problem) {
+    const Refusal refusal = refusal_of(problem);
+    if (!is_of_the_file(refusal)) throw;
+    std::filesystem::remove(bake);
+    const std::lock_guard lock(mutex_);
+    note_ = refusal.text + ": the bake that was kept is of no use, and is made anew";
+    return false;
+  }
 }
 
 // Whole, where it has no more than was wanted.

@@ -11,6 +11,7 @@
 
 #include "runtime/base/file.h"
 #include "tools/view/loaded_scene.h"
+#include "tools/view/refusal.h"
 
 namespace voyager::view {
 
@@ -44,13 +45,16 @@ class SceneLoader {
   // The newest that has come since the last call.
   std::optional<LoadedScene> take();
   // Why it could not be opened, or baked; once.
-  std::optional<std::string> take_error();
+  std::optional<Refusal> take_error();
+  // What people are to know of a scene that is opened all the same; once.
+  std::optional<std::string> take_note();
 
  private:
   void run();
   void load();
   void load_baked(const std::string& file);
   void load_flat(std::shared_ptr<const ByteSource> source);
+  bool load_cached(const std::string& bake);  // false: there is none that can be opened
   void show_sample(const std::shared_ptr<const ByteSource>& source, uint64_t wanted);
   void show(LoadedScene scene);
   LoadedScene described(voy::Scene scene, const std::string& file) const;
@@ -66,7 +70,8 @@ class SceneLoader {
   mutable std::mutex mutex_;
   LoadProgress progress_{"opening", 0, 0};
   std::optional<LoadedScene> ready_;
-  std::optional<std::string> error_;
+  std::optional<Refusal> error_;
+  std::optional<std::string> note_;
   std::thread thread_;  // last: it uses all of the above
 };
 

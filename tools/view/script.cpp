@@ -16,36 +16,60 @@ namespace {
 
 constexpr std::chrono::minutes kLongestWait{60};
 
-// Throws std::invalid_argument, which becomes a refusal of the line.
+constexpr double kMostTau = 1e6, kMostStops = 16, kMostDegrees = 3600;
+constexpr size_t kMostPictures = 1'000'000;
+
+// How many words each line has after the first.
+const std::map<std::string, size_t>& word_counts() {
+  static const std::map<std::string, size_t> counts = {
+      {"loaded", 0},    {"baked", 0},  {"still", 0},    {"frames", 1},       {"open", 1},
+      {"size", 2},      {"budget", 1}, {"picture", 1},  {"window", 1},       {"panel", 1},
+      {"tau", 1},       {"right", 1},  {"exposure", 1}, {"background", 3},   {"antialias", 1},
+      {"right-tau", 1}, {"line", 1},   {"measure", 0},  {"milliseconds", 1}, {"turn", 2},
+      {"move", 3},      {"home", 0},   {"bookmark", 0}, {"save", 1},         {"path", 2},
+      {"stop", 0}};
+  return counts;
+}
+
+// These throw std::invalid_argument, which becomes a refusal of the line.
+void check_words(const std::vector<std::string>& words) {
+  const auto found = word_counts().find(words[0]);
+  if (found == word_counts().end())
+    throw std::invalid_argument("found " + words[0] + ", expected a line of docs/viewer.md");
+  if (words.size() - 1 != found->second)
+    throw std::invalid_argument(fmt::format("found {} words after {}, expected {}",
+                                            words.size() - 1, words[0], found->second));
+}
 double number(const std::string& text) {
   const auto value = tools::parse_number(text);
   if (!value) throw std::invalid_argument("found " + text + ", expected a number");
   return *value;
 }
-float small(const std::string& text) {
-  return static_cast<float>(number(text));
+double number(const std::string& text, double least, double most) {
+  const auto value = tools::parse_number(text);
+  if (!value || *value < least || *value > most)
+    throw std::invalid_argument(
+        fmt::format("found {}, expected a number from {} to {}", text, least, most));
+  return *value;
 }
-size_t whole(const std::string& text) {
+size_t whole(const std::string& text, size_t least, size_t most) {
   const auto value = tools::parse_whole(text);
-  if (!value) throw std::invalid_argument("found " + text + ", expected a whole number");
+  if (!value || *value < least || *value > most)
+    throw std::invalid_argument(
+        fmt::format("found {}, expected a whole number from {} to {}", text, least, most));
   return *value;
 }
 uint32_t side(const std::string& text) {
-  const size_t pixels = whole(text);
-  if (pixels < 1 || pixels > tools::kLargestSide)
-    throw std::invalid_argument(
-        fmt::format("found {}, expected pixels from 1 to {}", text, tools::kLargestSide));
-  return static_cast<uint32_t>(pixels);
+  return static_cast<uint32_t>(whole(text, 1, tools::kLargestSide));
 }
 template <class T>
-T one_of(const std::string& text, const std::map<std::string, T>& names) {
-  const auto found = names.find(text);
-  if (found == names.end()) throw std::invalid_argument("found " + text);
-  return found->second;
-}
-const std::string& word(const std::vector<std::string>& words, size_t index) {
-  if (index >= words.size()) throw std::invalid_argument("found too few words");
-  return words[index];
+T one_of(const std::string& text, const std::vector<std::pair<std::string, T>>& names) {
+  std::string list;
+  for (const auto& [name, value] : names) {
+    if (name == text) return value;
+    list += (list.empty() ? "" : "|") + name;
+  }
+  throw std::invalid_argument("found " + text + ", expected " + list);
 }
 
 auto at_once(auto action) {
@@ -64,43 +88,47 @@ Script::Action Script::parse_wait(const Words& words) {
     return [](Session& s, Canvas&) { return s.loading().stage.empty() && s.is_still(); };
   if (name == "still") return [](Session& s, Canvas&) { return s.is_still() && !s.is_busy(); };
   if (name == "frames") {
-    const auto left = std::make_shared<size_t>(whole(word(words, 1)));
-    return [left](Session&, Canvas&) { return *left == 0 || --*left == 0; };
+    const auto left = std::make_shared<size_t>(whole(words[1], 1, kMostFrames));
+    return [left](Session&, Canvas&) { return --*left == 0; };
   }
   return nullptr;
 }
 
 Script::Action Script::parse_setting(const Words& words) {
   const std::string& name = words[0];
-  const auto value = [&](size_t index = 1) { return small(word(words, index)); };
+  const auto value = [&](double least, double most, size_t index = 1) {
+    return static_cast<float>(number(words[index], least, most));
+  };
   const auto set = [](auto change) {
     return at_once([change](Session& session) { change(session.settings); });
   };
-  if (name == "tau") return set([v = value()](Settings& s) { s.left.tau = v; });
-  if (name == "milliseconds") return set([v = value()](Settings& s) { s.left.milliseconds = v; });
-  if (name == "exposure") return set([v = value()](Settings& s) { s.stops = v; });
-  if (name == "line") return set([v = value()](Settings& s) { s.split = v; });
-  if (name == "right-tau") return set([v = value()](Settings& s) { s.right.tau = v; });
+  if (name == "tau") return set([v = value(0, kMostTau)](Settings& s) { s.left.tau = v; });
+  if (name == "milliseconds")
+    return set([v = value(0, kLongestFrame)](Settings& s) { s.left.milliseconds = v; });
+  if (name == "exposure")
+    return set([v = value(-kMostStops, kMostStops)](Settings& s) { s.stops = v; });
+  if (name == "line") return set([v = value(0, 1)](Settings& s) { s.split = v; });
+  if (name == "right-tau") return set([v = value(0, kMostTau)](Settings& s) { s.right.tau = v; });
   if (name == "background")
-    return set([r = value(), g = value(2), b = value(3)](Settings& s) {
+    return set([r = value(0, 1), g = value(0, 1, 2), b = value(0, 1, 3)](Settings& s) {
       s.background[0] = r;
       s.background[1] = g;
       s.background[2] = b;
     });
   if (name == "antialias") {
-    const auto antialias = one_of<VoyAntialias>(
-        word(words, 1), {{"on", VOY_ANTIALIAS_ON}, {"off", VOY_ANTIALIAS_OFF}});
+    const auto antialias =
+        one_of<VoyAntialias>(words[1], {{"on", VOY_ANTIALIAS_ON}, {"off", VOY_ANTIALIAS_OFF}});
     return set([antialias](Settings& s) { s.left.antialias = antialias; });
   }
   if (name == "panel") {
-    const bool on = one_of<bool>(word(words, 1), {{"on", true}, {"off", false}});
+    const bool on = one_of<bool>(words[1], {{"on", true}, {"off", false}});
     return set([on](Settings& s) { s.show_panel = on; });
   }
   if (name == "right") {
-    const auto side = one_of<RightSide>(word(words, 1), {{"nothing", RightSide::none},
-                                                         {"settings", RightSide::settings},
-                                                         {"detail", RightSide::detail},
-                                                         {"error", RightSide::error}});
+    const auto side = one_of<RightSide>(words[1], {{"nothing", RightSide::none},
+                                                   {"settings", RightSide::settings},
+                                                   {"detail", RightSide::detail},
+                                                   {"error", RightSide::error}});
     return set([side](Settings& s) { s.right_side = side; });
   }
   return nullptr;
@@ -109,7 +137,7 @@ Script::Action Script::parse_setting(const Words& words) {
 Script::Action Script::parse_file(const Words& words) {
   const std::string& name = words[0];
   const auto with_file = [&](auto action) {
-    return at_once([action, file = word(words, 1)](Session& session) { action(session, file); });
+    return at_once([action, file = words[1]](Session& session) { action(session, file); });
   };
   if (name == "open") return with_file([](Session& s, const std::string& f) { s.open(f); });
   if (name == "picture")
@@ -119,38 +147,38 @@ Script::Action Script::parse_file(const Words& words) {
   if (name == "save")
     return with_file([](Session& s, const std::string& f) { s.save_bookmarks(f); });
   if (name == "path")
-    return with_file([count = whole(word(words, 2))](Session& s, const std::string& f) {
+    return with_file([count = whole(words[2], 2, kMostPictures)](Session& s, const std::string& f) {
       s.start_path(f, count);
     });
   return nullptr;
 }
 
 Script::Action Script::parse(const Words& words) {
+  check_words(words);
   for (const auto parser : {parse_wait, parse_setting, parse_file})
     if (Action action = parser(words)) return action;
   const std::string& name = words[0];
   if (name == "bookmark") return at_once([](Session& s) { s.add_bookmark(); });
   if (name == "measure") return at_once([](Session& s) { s.measure_error(); });
   if (name == "stop") return at_once([](Session& s) { s.cancel_path(); });
-  if (name == "home") return at_once([](Session& s) { s.go_home(); });
   if (name == "budget")
-    return at_once([v = number(word(words, 1))](Session& s) { s.set_budget(v); });
+    return at_once(
+        [v = number(words[1], kLeastBudget, kLargestBudget)](Session& s) { s.set_budget(v); });
   if (name == "turn")
-    return at_once([x = number(word(words, 1)), y = number(word(words, 2))](Session& s) {
+    return at_once([x = number(words[1], -kMostDegrees, kMostDegrees),
+                    y = number(words[2], -kMostDegrees, kMostDegrees)](Session& s) {
       constexpr double kRadians = 3.14159265358979323846 / 180;
       s.navigator.turn({x * kRadians, y * kRadians});
     });
   if (name == "move")
-    return at_once(
-        [v = glm::dvec3(number(word(words, 1)), number(word(words, 2)), number(word(words, 3)))](
-            Session& s) { s.navigator.move(v, 1 / s.navigator.speed()); });
+    return at_once([v = glm::dvec3(number(words[1]), number(words[2]), number(words[3]))](
+                       Session& s) { s.navigator.move(v, 1 / s.navigator.speed()); });
   if (name == "size")
-    return
-        [size = VkExtent2D{side(word(words, 1)), side(word(words, 2))}](Session&, Canvas& canvas) {
-          canvas.set_size(size);
-          return true;
-        };
-  throw std::invalid_argument("found " + name + ", expected a line of docs/viewer.md");
+    return [size = VkExtent2D{side(words[1]), side(words[2])}](Session&, Canvas& canvas) {
+      canvas.set_size(size);
+      return true;
+    };
+  return at_once([](Session& s) { s.go_home(); });  // "home", the only one left
 }
 
 Script::Script(const std::string& path) : path_(path) {

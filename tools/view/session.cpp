@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "runtime/base/error.h"
 #include "tools/camera_writer.h"
@@ -37,6 +38,8 @@ Session::Session(const host::Device& vulkan, const voy::Device& device, const Vi
       device_(device),
       backend_(options.backend),
       keep_(options.keep),
+      cameras_(options.cameras),
+      ends_when_refused_(options.frames > 0 || !options.screenshot.empty()),
       budget_(options.budget) {
   settings.left.tau = static_cast<float>(options.tau);
   settings.left.milliseconds = static_cast<float>(options.milliseconds);
@@ -57,7 +60,7 @@ void Session::open(const std::string& path) {
       tools::require_writable(keep_);
     } catch (const Error& problem) {
       opening_ = false;
-      return say(problem.what());
+      return refuse(problem);
     }
   }
   loader_ = nullptr;  // ends what is under way
@@ -74,7 +77,7 @@ void Session::set_budget(double megabytes) {
   try {
     voy::check(voySetSceneMemoryBudget(scene_->scene.get(), budget_bytes()));
   } catch (const voy::Error& problem) {
-    say(problem.what());
+    refuse(problem);
   }
   draw_again(8);
 }
@@ -98,7 +101,7 @@ void Session::save_bookmarks(const std::string& path) {
     tools::write_cameras(path, bookmarks);
     say(fmt::format("{}: {} cameras saved", path, bookmarks.size()));
   } catch (const std::exception& problem) {
-    say(problem.what());
+    refuse(problem);
   }
 }
 
@@ -113,6 +116,11 @@ void Session::say(const std::string& text) {
   if (messages_.size() > kMostMessages) messages_.pop_front();
 }
 
+void Session::refuse(const Refusal& refusal) {
+  refusals_.push_back(refusal);
+  if (!ends_when_refused_) say(refusal.text);
+}
+
 // Views go before the scenes that they draw, and both once the queue is done with them.
 void Session::close_scene() {
   vulkan_.wait_idle();
@@ -124,6 +132,8 @@ void Session::close_scene() {
   detail_scene_.reset();
   scene_.reset();
   waits_for_picture_ = false;
+  if (truth_) truth_->stop();
+  if (truth_) dropped_truth_ = std::move(truth_);
   error_.reset();
   difference_ = nullptr;
   stats_.reset();
@@ -139,7 +149,7 @@ void Session::adopt(LoadedScene scene) {
   left_->resize(extent_);
   if (scene_->streamed() && loader_->request().budget != budget_bytes()) set_budget(budget_);
   if (scene_->first) {
-    if (bookmarks.empty() || !home_) home_ = scene_->camera;
+    if (cameras_.empty()) home_ = scene_->camera;
     navigator.set_speed(0.05 * distance_between(scene_->info.boundsMin, scene_->info.boundsMax));
     go_home();
   }
@@ -148,25 +158,41 @@ void Session::adopt(LoadedScene scene) {
 
 void Session::update(VkExtent2D extent) {
   extent_ = extent;
-  if (std::exchange(refused_, false)) close_scene();
+  if (const auto refusal = std::exchange(refused_frame_, std::nullopt)) {
+    opening_ = false;
+    if (refusal->code == ErrorCode::damaged_chunk) drop_cached_bake();
+    close_scene();
+  }
   while (!messages_.empty() &&
          std::chrono::steady_clock::now() - messages_.front().since > kMessageTime)
     messages_.pop_front();
-  if (loader_) {
-    if (auto error = loader_->take_error()) {
-      say(*error);
-      opening_ = false;
-    }
-    if (auto scene = loader_->take()) {
-      try {
-        adopt(std::move(*scene));
-      } catch (const voy::Error& problem) {
-        say(problem.what());
-        close_scene();
-      }
-    }
-  }
+  if (loader_) take_loaded();
   update_right_side();
+}
+
+void Session::take_loaded() {
+  if (auto note = loader_->take_note()) say(*note);
+  if (auto error = loader_->take_error()) {
+    refuse(*error);
+    opening_ = false;
+  }
+  auto scene = loader_->take();
+  if (!scene) return;
+  try {
+    adopt(std::move(*scene));
+  } catch (const voy::Error& problem) {
+    refuse(problem);
+    opening_ = false;
+    close_scene();
+  }
+}
+
+// So that it is made anew the next time.
+void Session::drop_cached_bake() {
+  const bool is_cached = keep_.empty() && !scene_->file.empty() && scene_->file != scene_->path;
+  std::error_code ignored;
+  if (is_cached && std::filesystem::remove(scene_->file, ignored))
+    say(scene_->path + ": its bake was damaged and is removed; opened again, it is baked anew");
 }
 
 }  // namespace voyager::view

@@ -11,6 +11,7 @@
 #include "tools/view/detail_map.h"
 #include "tools/view/frame_renderer.h"
 #include "tools/view/navigator.h"
+#include "tools/view/refusal.h"
 #include "tools/view/scene_loader.h"
 #include "tools/view/still_image.h"
 #include "tools/view/truth.h"
@@ -48,6 +49,7 @@ struct Message {
 struct PathRun {
   std::vector<tools::Camera> cameras;
   std::string folder;
+  std::vector<tools::Camera> drawn{};  // as they were, in the window's size
   size_t next = 0;
   bool in_frame = false;  // whether this frame is the next picture
 };
@@ -88,6 +90,13 @@ class Session {
 
   // What people are told, for a while; the last comes last.
   void say(const std::string& text);
+  // What was asked for and not done. People are told, but for what ends the program: that is its
+  // last line.
+  void refuse(const Refusal& refusal);
+  void refuse(const std::exception& problem) { refuse(refusal_of(problem)); }
+  const std::vector<Refusal>& refusals() const { return refusals_; }
+  // Something was refused that ends the program.
+  bool is_over() const { return ends_when_refused_ && !refusals_.empty(); }
   const std::deque<Message>& messages() const { return messages_; }
 
   Settings settings;
@@ -101,7 +110,7 @@ class Session {
   // After it.
   void frame_drawn(const FrameDesc& frame);
   // After Voyager refused a frame: the scene is closed before the next.
-  void frame_refused(const std::string& why);
+  void frame_refused(const std::exception& why);
   // Nothing has changed for a while and nothing is loading, so that the next frame is the last one.
   bool is_still() const;
   // Whether the truth or the level of detail is being made.
@@ -119,8 +128,12 @@ class Session {
  private:
   void adopt(LoadedScene scene);
   void close_scene();
+  void take_loaded();
+  void drop_cached_bake();
   void require_no_scene(const std::string& output) const;
   void put_on_path(FrameDesc& frame);
+  void end_path();
+  void return_from_nowhere();
   void tell_time() const;
   void update_right_side();
   void update_detail();
@@ -135,11 +148,14 @@ class Session {
   const voy::Device& device_;
   const VoyBackend backend_;
   const std::string keep_;
+  const std::string cameras_;
+  const bool ends_when_refused_;
   double budget_;
   VkExtent2D extent_ = {0, 0};
-  bool refused_ = false, opening_ = false;
+  std::optional<Refusal> refused_frame_;
+  bool opening_ = false;
   std::chrono::steady_clock::time_point asked_ = {};  // for the scene
-  std::optional<tools::Camera> home_;
+  std::optional<tools::Camera> home_;                 // of cameras_, or of the scene
 
   std::unique_ptr<SceneLoader> loader_;
   // Views go before the scenes that they draw.
@@ -148,7 +164,7 @@ class Session {
   std::unique_ptr<DetailJob> detail_job_;
   std::vector<uint32_t> detail_nodes_;  // of the last job
   bool waits_for_picture_ = false;
-  std::unique_ptr<TruthJob> truth_;
+  std::unique_ptr<TruthJob> truth_, dropped_truth_;  // the latter of a scene that is closed
   std::optional<TruthResult> error_;
   std::unique_ptr<StillImage> difference_;
   VoyPose error_pose_ = {};  // of the camera that the difference is of
@@ -156,6 +172,7 @@ class Session {
   std::optional<PathRun> path_;
   std::deque<Capture> captures_;
   std::deque<Message> messages_;
+  std::vector<Refusal> refusals_;
 
   uint32_t frames_to_draw_ = 0;
   std::chrono::steady_clock::time_point moved_ = {};  // the camera, last

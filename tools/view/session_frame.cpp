@@ -6,8 +6,10 @@
 #include <filesystem>
 
 #include "runtime/base/error.h"
+#include "tools/camera_writer.h"
 #include "tools/console.h"
 #include "tools/image_file.h"
+#include "tools/output_paths.h"
 #include "tools/view/camera_path.h"
 #include "tools/view/session.h"
 
@@ -15,6 +17,7 @@ namespace voyager::view {
 namespace {
 
 constexpr size_t kTimesKept = 240;
+constexpr double kFarthest = 1e17;  // metres from the origin; frames are refused some way beyond
 constexpr std::chrono::milliseconds kMoving{300};                  // after the last move
 constexpr uint32_t kAfterChange = 4, kAfterChangeWithBudget = 60;  // frames, until τ has settled
 
@@ -36,6 +39,10 @@ SplatSettings moving_settings(const Settings& settings) {
   moving.milliseconds = settings.moving_milliseconds;
   moving.least_tau = settings.left.tau;
   return moving;
+}
+
+std::string cameras_of_path(const std::string& folder) {
+  return folder + "/cameras.json";
 }
 
 bool is_missing(const VoyFrameStats& stats) {
@@ -71,7 +78,19 @@ void Session::put_on_path(FrameDesc& frame) {
   save_picture(fmt::format("{}/{:04}.png", path_->folder, path_->next), false);
 }
 
+// A camera that Voyager would refuse to draw from.
+void Session::return_from_nowhere() {
+  const glm::dvec3& p = navigator.position();
+  const bool is_near =
+      std::abs(p.x) < kFarthest && std::abs(p.y) < kFarthest && std::abs(p.z) < kFarthest;
+  if (!scene_ || is_near) return;
+  say("found a camera 1e17 m away or farther, expected one in sight of the scene: back to the "
+      "first view");
+  go_home();
+}
+
 FrameDesc Session::frame() {
+  return_from_nowhere();
   FrameDesc frame;
   frame.camera = navigator.camera(extent_.width, extent_.height);
   if (path_) put_on_path(frame);
@@ -100,12 +119,12 @@ FrameDesc Session::frame() {
 void Session::frame_drawn(const FrameDesc& frame) {
   drawn_camera_ = frame.camera;
   drawn_settings_ = settings;
-  if (path_ && path_->in_frame && ++path_->next == path_->cameras.size()) {
-    say(fmt::format("{}: {} pictures", path_->folder, path_->cameras.size()));
-    path_.reset();
+  if (path_ && path_->in_frame) {
+    path_->drawn.push_back(file_camera(frame.camera));
+    if (++path_->next == path_->cameras.size()) end_path();
   }
+  if (frames_to_draw_ > 0) --frames_to_draw_;
   if (!frame.draw) return;
-  --frames_to_draw_;
   if (!stats_) tell_time();
   if (scene_->path == loader_->request().path) opening_ = false;
   stats_ = left_->stats();
@@ -132,13 +151,15 @@ void Session::tell_time() const {
                           passed.count()));
 }
 
-void Session::frame_refused(const std::string& why) {
-  say(why);
-  refused_ = true;
+void Session::frame_refused(const std::exception& why) {
+  refused_frame_ = refusal_of(why);
+  refuse(*refused_frame_);
 }
 
 void Session::save_picture(const std::string& path, bool with_panel) {
-  if (!scene_ && !with_panel) return say("there is no scene to save a picture of");
+  if (!scene_ && !with_panel)
+    return refuse({ErrorCode::invalid_argument,
+                   path + ": found no scene, expected one to save a picture of"});
   Capture capture;
   capture.with_panel = with_panel;
   capture.then = [this, path, tells = !path_](VkExtent2D extent, std::span<const uint8_t> rgba) {
@@ -148,7 +169,7 @@ void Session::save_picture(const std::string& path, bool with_panel) {
       if (tells) say(path + ": picture saved");
     } catch (const std::exception& problem) {
       path_.reset();
-      say(problem.what());
+      refuse(problem);
     }
   };
   captures_.push_back(std::move(capture));
@@ -156,17 +177,34 @@ void Session::save_picture(const std::string& path, bool with_panel) {
 
 void Session::start_path(const std::string& folder, size_t pictures) {
   if (!scene_ || bookmarks.empty())
-    return say("a path needs a scene, and bookmarks that it goes through");
+    return refuse({ErrorCode::invalid_argument,
+                   folder + ": found no scene or no bookmarks, expected both for a path"});
+  try {
+    tools::require_distinct({cameras_of_path(folder)}, {scene_->path, scene_->file, cameras_});
+  } catch (const Error& problem) {
+    return refuse(problem);
+  }
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
-  if (problem) return say(folder + ": " + problem.message());
-  path_ = PathRun{path_through(bookmarks, std::max<size_t>(pictures, 2)), folder, 0};
+  if (problem) return refuse({ErrorCode::io, folder + ": " + problem.message()});
+  path_ = PathRun{path_through(bookmarks, pictures), folder};
+}
+
+// The pictures that there are, with their cameras.
+void Session::end_path() {
+  const PathRun run = std::move(*std::exchange(path_, std::nullopt));
+  try {
+    tools::write_cameras(cameras_of_path(run.folder), run.drawn);
+    say(fmt::format("{}: {} pictures, and their cameras.json", run.folder, run.next));
+  } catch (const std::exception& problem) {
+    refuse(problem);
+  }
 }
 
 void Session::cancel_path() {
   if (!path_) return;
-  say(fmt::format("{}: stopped after {} pictures", path_->folder, path_->next));
-  path_.reset();
+  say(fmt::format("{}: stopped before its end", path_->folder));
+  end_path();
 }
 
 }  // namespace voyager::view

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tools/view/camera_path.h"
 #include "tools/view/session.h"
@@ -55,7 +56,7 @@ void Session::update_detail() {
   }
   if (!detail_job_->done()) return;
   auto scene = detail_job_->take();
-  if (!scene) say(detail_job_->error());
+  if (!scene) refuse(detail_job_->error());
   detail_job_ = nullptr;
   if (!scene) {
     settings.right_side = RightSide::none;
@@ -69,7 +70,9 @@ void Session::update_detail() {
 
 void Session::measure_error() {
   if (!scene_ || is_measuring()) return;
-  if (scene_->file.empty()) return say("the error needs the bake, which is not done yet");
+  if (scene_->file.empty())
+    return refuse({ErrorCode::invalid_argument,
+                   scene_->path + ": found no bake yet, expected it for the error"});
   waits_for_picture_ = true;
   Capture capture;
   capture.plain = true;
@@ -85,16 +88,19 @@ void Session::measure_error() {
 }
 
 void Session::update_error() {
+  if (dropped_truth_ && dropped_truth_->done()) dropped_truth_ = nullptr;
   if (!truth_ || !truth_->done()) return;
   error_ = truth_->result();
-  if (!error_) say(truth_->error());
+  if (!error_) refuse(truth_->error());
   truth_ = nullptr;
   if (!error_) return;
   vulkan_.wait_idle();
   const VkExtent2D size = {error_->width, error_->height};
   difference_ = std::make_unique<StillImage>(vulkan_, size, error_->difference);
   settings.right_side = RightSide::error;
-  say(fmt::format("this view has {:.2f} dB against the truth", error_->psnr));
+  say(std::isinf(error_->psnr)
+          ? "this view is the truth"
+          : fmt::format("this view has {:.2f} dB against the truth", error_->psnr));
   draw_again(2);
 }
 

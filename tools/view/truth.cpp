@@ -12,15 +12,24 @@ namespace {
 constexpr uint32_t kSamples = 4;  // along each side of a pixel
 constexpr int kGain = 8;          // of the difference that is shown
 
-std::vector<uint8_t> truth_of(const TruthRequest& request) {
+struct TruthStopped {};
+
+void checkpoint(const std::atomic<bool>& stopped) {
+  if (stopped) throw TruthStopped();
+}
+
+std::vector<uint8_t> truth_of(const TruthRequest& request, const std::atomic<bool>& stopped) {
   tools::RenderChoices choices;
   choices.backend = request.backend;
   choices.lod = VOY_LOD_ALL_LEAVES;
   choices.antialias = VOY_ANTIALIAS_TRUTH;
   choices.supersample = kSamples;
   std::copy_n(request.background, 3, choices.background);
+  checkpoint(stopped);
   tools::Renderer renderer(request.file, choices, request.camera.width, request.camera.height);
+  checkpoint(stopped);
   renderer.render({&request.camera, 1});
+  checkpoint(stopped);
   return renderer.image(0).rgba8;
 }
 
@@ -47,15 +56,16 @@ TruthJob::TruthJob(TruthRequest request)
 
 void TruthJob::run() {
   try {
-    const std::vector<uint8_t> truth = truth_of(request_);
+    const std::vector<uint8_t> truth = truth_of(request_, stopped_);
     TruthResult result;
     result.psnr = tools::image_error({values(request_.rgba)}, {values(truth)}).psnr;
     result.width = request_.camera.width;
     result.height = request_.camera.height;
     result.difference = difference(request_.rgba, truth);
     result_ = std::move(result);
+  } catch (const TruthStopped&) {
   } catch (const std::exception& problem) {
-    error_ = problem.what();
+    error_ = refusal_of(problem);
   }
   done_ = true;
 }

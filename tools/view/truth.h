@@ -1,13 +1,13 @@
 #pragma once
 // How far a picture is from METHOD §12's truth: every leaf, with many samples a pixel.
 #include <atomic>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tools/cameras.h"
+#include "tools/view/refusal.h"
 
 namespace voyager::view {
 
@@ -29,22 +29,28 @@ struct TruthResult {
 class TruthJob {
  public:
   explicit TruthJob(TruthRequest request);
-  ~TruthJob() { thread_.join(); }
+  // Waits until the step that is under way has ended: the scene is loaded, or the truth drawn.
+  ~TruthJob() {
+    stop();
+    thread_.join();
+  }
   TruthJob(const TruthJob&) = delete;
   TruthJob& operator=(const TruthJob&) = delete;
 
+  // The result is of no use any more.
+  void stop() { stopped_ = true; }
   bool done() const { return done_; }
-  // Once done: nothing where it failed, and why.
+  // Once done: nothing where it failed or was stopped, and why it failed.
   const std::optional<TruthResult>& result() const { return result_; }
-  const std::string& error() const { return error_; }
+  const Refusal& error() const { return error_; }
 
  private:
   void run();
 
   const TruthRequest request_;
   std::optional<TruthResult> result_;
-  std::string error_;
-  std::atomic<bool> done_ = false;
+  Refusal error_;
+  std::atomic<bool> stopped_ = false, done_ = false;
   std::thread thread_;
 };
 

@@ -25,6 +25,10 @@ void add_common(CLI::App& command, ViewOptions& options) {
       command, "--backend", options.backend,
       {{"auto", VOY_BACKEND_AUTO}, {"cpu", VOY_BACKEND_CPU}, {"cuda", VOY_BACKEND_CUDA}},
       "What draws the scene. auto is CUDA if there is a device for it, else the CPU");
+  command
+      .add_option("--gpu", options.gpu,
+                  "Show the window with the Vulkan device whose name has this in it")
+      ->type_name("NAME");
   add_tau_or_budget_options(command, options.tau, options.milliseconds);
   add_choice<VoyAntialias>(command, "--antialias", options.antialias,
                            {{"on", VOY_ANTIALIAS_ON}, {"off", VOY_ANTIALIAS_OFF}},
@@ -36,29 +40,27 @@ void add_common(CLI::App& command, ViewOptions& options) {
 void add_files(CLI::App& command, ViewOptions& options) {
   add_number_option(
       command, "--budget", options.budget,
-      [](double value) { return value >= 1e-6 && value <= 1e9; },
+      [](double value) { return value >= kLeastBudget && value <= kLargestBudget; },
       "a number of MB above 0, from 1e-6 (a byte) to 1e9",
       "Keep at most so many MB (10^6 bytes) of a .voy in the memory of the device that draws; the "
       "rest is read as frames need it")
       ->type_name("MB");
   command
-      .add_option("--keep", options.keep,
-                  "Write the bake of a flat scene to this .voy, and leave it there. Without it the "
-                  "bake goes to the user's cache folder (docs/viewer.md)")
+      .add_option(
+          "--keep", options.keep,
+          "Write the bake of a flat scene to this .voy, and leave it there. Without it the "
+          "bake goes to the user's cache folder (docs/viewer.md), and is found there the next time")
       ->type_name("FILE");
   name_group(command, "Files and memory");
 }
 
 void add_testing(CLI::App& command, ViewOptions& options) {
-  command
-      .add_option("--gpu", options.gpu, "The Vulkan device whose name has this in it, for a window")
-      ->type_name("NAME");
   CLI::Option* script =
       command
           .add_option("--script", options.script,
                       "Do what the lines of this file say, then close the window (docs/viewer.md)")
           ->type_name("FILE");
-  add_whole_option(command, "--frames", {1, 1000000}, options.frames,
+  add_whole_option(command, "--frames", {1, kMostFrames}, options.frames,
                    "Close the window so many frames after the scene is there")
       ->excludes(script);
   command

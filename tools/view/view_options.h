@@ -8,6 +8,10 @@
 
 namespace voyager::view {
 
+inline constexpr double kLeastBudget = 1e-6, kLargestBudget = 1e9;  // MB
+inline constexpr double kLongestFrame = 1e9;                        // milliseconds
+inline constexpr size_t kMostFrames = 1'000'000;
+
 struct ViewOptions {
   std::string scene;    // "": none yet
   std::string cameras;  // bookmarks from the start; "": none

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <memory>
 #include <optional>
 
@@ -26,6 +27,28 @@ namespace voyager::view {
 namespace {
 
 constexpr double kIdleSeconds = 0.05;  // between two looks for what other threads did
+
+volatile std::sig_atomic_t interrupted = 0;
+
+// SIGINT and SIGTERM end the loop as closing the window does, so that a bake removes what it began.
+class SignalsEndLoop {
+ public:
+  SignalsEndLoop() {
+    for (const int signal : kSignals)
+      std::signal(signal, [](int which) {
+        interrupted = 1;
+        std::signal(which, SIG_DFL);  // the next one ends the program at once
+      });
+  }
+  ~SignalsEndLoop() {
+    for (const int signal : kSignals) std::signal(signal, SIG_DFL);
+  }
+  SignalsEndLoop(const SignalsEndLoop&) = delete;
+  SignalsEndLoop& operator=(const SignalsEndLoop&) = delete;
+
+ private:
+  static constexpr int kSignals[] = {SIGINT, SIGTERM};
+};
 
 voy::Device create_device(const host::Device& vulkan_device, const ViewOptions& options) {
   VoyVulkanDeviceDesc vulkan = vulkan_device.voyager_desc();
@@ -81,7 +104,7 @@ class Viewer {
   Viewer& operator=(const Viewer&) = delete;
 
   void run() {
-    while (!canvas_.closed()) {
+    while (!canvas_.closed() && !session_.is_over() && !interrupted) {
       if (session_.is_still())
         canvas_.wait_for_events(kIdleSeconds);
       else
@@ -91,6 +114,8 @@ class Viewer {
       if (is_sized()) draw_frame();
     }
   }
+
+  const std::vector<Refusal>& refusals() const { return session_.refusals(); }
 
  private:
   const host::Presentation* presents() const { return presentation_ ? &*presentation_ : nullptr; }
@@ -145,22 +170,25 @@ class Viewer {
       canvas_.record(commands, targets);
       if (capture) readback.record(commands, targets);
     };
-    draw(frame);
+    const bool is_drawn = draw(frame);
     current_ = canvas_.present();
-    if (!capture) return;
+    if (!capture || (!is_drawn && !capture->with_panel)) return;
     vulkan_.wait_idle();
     capture->then(readback.extent(), readback.rgba());
   }
 
-  void draw(FrameDesc& frame) {
+  // False where Voyager refused the frame, so that it is one without a scene.
+  bool draw(FrameDesc& frame) {
     try {
       renderer_.draw(frame);
       session_.frame_drawn(frame);
+      return true;
     } catch (const voy::Error& problem) {
-      session_.frame_refused(problem.what());
+      session_.frame_refused(problem);
       frame.left = frame.right = nullptr;
       frame.still = VK_NULL_HANDLE;
       renderer_.draw(frame);  // the window's image was acquired, and waits
+      return false;
     }
   }
 
@@ -216,8 +244,7 @@ class Viewer {
       case GLFW_KEY_2:
         return session_.navigator.set_mode(Navigation::fly);
       case GLFW_KEY_3:
-        session_.navigator.set_mode(Navigation::walk);
-        return session_.navigator.set_speed(kWalkingSpeed);
+        return session_.navigator.set_mode(Navigation::walk);
       default:
         break;
     }
@@ -242,10 +269,8 @@ class Viewer {
   bool was_pressed_ = false, drags_line_ = false;  // the left button; the line
 };
 
-}  // namespace
-
-void run_viewer(const ViewOptions& options) {
-  // Files first: what is refused is refused before there is a window.
+// Files first: what is refused is refused before there is a window.
+void check_files(const ViewOptions& options) {
   if (!options.keep.empty()) tools::require_extension("--keep", options.keep, {".voy"});
   if (!options.screenshot.empty())
     tools::require_extension("--screenshot", options.screenshot, {".png"});
@@ -253,12 +278,39 @@ void run_viewer(const ViewOptions& options) {
                           {options.scene, options.cameras, options.script});
   for (const std::string& output : {options.keep, options.screenshot})
     if (!output.empty()) tools::require_writable(output);
+}
+
+std::optional<Script> script_of(const ViewOptions& options) {
   std::optional<Script> script;
   if (!options.script.empty()) script.emplace(options.script);
   if (options.frames > 0 || !options.screenshot.empty())
     script.emplace(options.frames, options.screenshot);
+  return script;
+}
+
+// Where nobody looked at the messages. The exit code is that of the first.
+void check_refusals(const std::vector<Refusal>& refusals, const std::string& script) {
+  if (refusals.empty()) return;
+  const Refusal& first = refusals.front();
+  throw Error(first.code, script.empty()
+                              ? first.text
+                              : fmt::format("{}: found {} refused, expected none; the first: {}",
+                                            script, refusals.size(), first.text));
+}
+
+}  // namespace
+
+void run_viewer(const ViewOptions& options) {
+  check_files(options);
+  std::optional<Script> script = script_of(options);
+  const bool ends_by_itself = script.has_value();
+  const SignalsEndLoop signals;
   host::Validation validation;
-  Viewer(options, std::move(script), options.validation ? &validation : nullptr).run();
+  {
+    Viewer viewer(options, std::move(script), options.validation ? &validation : nullptr);
+    viewer.run();
+    if (ends_by_itself) check_refusals(viewer.refusals(), options.script);
+  }
   if (validation.messages() > 0)
     throw Error(ErrorCode::internal,
                 fmt::format("--validation: {} messages", validation.messages()));
