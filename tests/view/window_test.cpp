@@ -229,6 +229,21 @@ TEST_F(ViewWindow, WhatAScriptDidNotDoIsItsExitCode) {
   EXPECT_EQ(file_bytes(city).substr(0, 3), file_bytes(file("half.voy")).substr(0, 3));
 }
 
+// A picture without it is not what was asked for.
+TEST_F(ViewWindow, DoesNotWaitForAChunkThatCannotBeRead) {
+  std::string bytes = file_bytes(file("city.voy"));
+  const size_t middle = bytes.size() / 2;
+  std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(middle), bytes.size() / 8, '\0');
+  write_bytes(file("damaged.voy"), bytes);
+  const Outcome result =
+      run_shell("timeout 60 " + program("voyager view --quiet --size 64x48 --tau 0 " +
+                                        file("damaged.voy") + " --screenshot " + file("hole.png")));
+  if (has(result.output, "found no V")) VOYAGER_SKIP_WITHOUT(VULKAN, result.output);
+  EXPECT_EQ(result.exit_code, 3) << result.output;
+  EXPECT_TRUE(has(result.output, "could not be read")) << result.output;
+  EXPECT_FALSE(std::filesystem::exists(file("hole.png")));
+}
+
 // Also while it bakes: nothing of the bake is left.
 TEST_F(ViewWindow, ASignalEndsItAsClosingDoes) {
   const std::string log = file("signal.log");

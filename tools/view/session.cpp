@@ -139,6 +139,7 @@ void Session::close_scene() {
   stats_.reset();
   right_stats_.reset();
   streaming_.reset();
+  told_unreadable_ = false;
 }
 
 void Session::adopt(LoadedScene scene) {

@@ -130,6 +130,7 @@ class Session {
   void close_scene();
   void take_loaded();
   void drop_cached_bake();
+  bool more_comes();
   void require_no_scene(const std::string& output) const;
   void put_on_path(FrameDesc& frame);
   void end_path();
@@ -180,6 +181,8 @@ class Session {
   host::Camera drawn_camera_ = {};
   std::optional<VoyFrameStats> stats_, right_stats_;
   std::optional<VoyStreamingStats> streaming_;
+  std::chrono::steady_clock::time_point arrival_ = {};  // of a chunk, last
+  bool told_unreadable_ = false;                        // of this scene
   std::vector<float> frame_times_;
 };
 

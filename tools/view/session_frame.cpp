@@ -18,7 +18,9 @@ namespace {
 
 constexpr size_t kTimesKept = 240;
 constexpr double kFarthest = 1e17;  // metres from the origin; frames are refused some way beyond
-constexpr std::chrono::milliseconds kMoving{300};                  // after the last move
+constexpr std::chrono::milliseconds kMoving{300};  // after the last move
+// Of chunks, where some could not be read: after it no other is waited for.
+constexpr std::chrono::seconds kLongestBetweenArrivals{2};
 constexpr uint32_t kAfterChange = 4, kAfterChangeWithBudget = 60;  // frames, until τ has settled
 
 bool same(const VoyPose& a, const VoyPose& b) {
@@ -130,15 +132,34 @@ void Session::frame_drawn(const FrameDesc& frame) {
   stats_ = left_->stats();
   if (frame.right) right_stats_ = right_->stats();
   if (scene_->streamed()) {
-    streaming_.emplace(VoyStreamingStats VOY_STREAMING_STATS_INIT);
-    voy::check(voyGetStreamingStats(scene_->scene.get(), &*streaming_));
+    VoyStreamingStats now = VOY_STREAMING_STATS_INIT;
+    voy::check(voyGetStreamingStats(scene_->scene.get(), &now));
+    if (!streaming_ || now.arrived != streaming_->arrived)
+      arrival_ = std::chrono::steady_clock::now();
+    streaming_ = now;
   }
-  // What comes must be drawn; what a budget has no room for does not come.
-  const bool comes = streaming_ && streaming_->seenMissingChunks > 0 &&
-                     streaming_->residentChunks < streaming_->slots;
-  if (is_missing(*stats_) && comes) draw_again(2);
+  if (is_missing(*stats_) && more_comes()) draw_again(2);
   frame_times_.push_back(static_cast<float>(stats_->millisecondsTotal));
   if (frame_times_.size() > kTimesKept) frame_times_.erase(frame_times_.begin());
+}
+
+// What comes must be drawn. What a budget has no room for does not come, nor does what cannot be
+// read: that is refused once.
+bool Session::more_comes() {
+  if (!streaming_ || streaming_->seenMissingChunks == 0 ||
+      streaming_->residentChunks >= streaming_->slots)
+    return false;
+  if (streaming_->failures == 0 ||
+      std::chrono::steady_clock::now() - arrival_ < kLongestBetweenArrivals)
+    return true;
+  if (!told_unreadable_) {
+    told_unreadable_ = true;
+    refuse({ErrorCode::damaged_chunk,
+            fmt::format("{}: {} chunks that are seen could not be read; coarser ones are shown",
+                        scene_->path, streaming_->seenMissingChunks)});
+    drop_cached_bake();
+  }
+  return false;
 }
 
 // Of the first frame of a scene, a sample or a bake.
