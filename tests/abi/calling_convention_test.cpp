@@ -37,11 +37,14 @@ TEST(CallingConvention, EveryFunctionHasExportAndConvention) {
   EXPECT_EQ(matches(text, R"(VOY_API [\w ]+\*? VOY_CALL (voy\w+)\()"), functions);
 }
 
-TEST(CallingConvention, EveryCallbackHasConvention) {
+TEST(CallingConvention, EveryCallbackAndFunctionPointerHasConvention) {
   const std::string text = declarations();
-  const auto callbacks = matches(text, R"(\([\w ]*\* ?(\w+)\)\()");
-  EXPECT_EQ(callbacks, (std::set<std::string>{"VoyLogFunction", "allocate", "read", "release"}));
-  EXPECT_EQ(matches(text, R"(\(VOY_CALL\* ?(\w+)\)\()"), callbacks);
+  const auto pointers = matches(text, R"(\([\w ]*\* ?(\w+)\)\()");
+  std::set<std::string> expected = {"VoyLogFunction", "allocate", "read", "release"};
+  for (const std::string& function : matches(text, R"(\b(voy[A-Z]\w*)\()"))
+    expected.insert("PFN_" + function);
+  EXPECT_EQ(pointers, expected);
+  EXPECT_EQ(matches(text, R"(\(VOY_CALL\* ?(\w+)\)\()"), pointers);
 }
 
 }  // namespace
