@@ -130,7 +130,7 @@ class Session {
   void close_scene();
   void take_loaded();
   void drop_cached_bake();
-  bool more_comes();
+  void draw_what_comes();
   void require_no_scene(const std::string& output) const;
   void put_on_path(FrameDesc& frame);
   void end_path();

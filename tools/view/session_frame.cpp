@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "runtime/base/error.h"
 #include "tools/camera_writer.h"
@@ -138,28 +139,25 @@ void Session::frame_drawn(const FrameDesc& frame) {
       arrival_ = std::chrono::steady_clock::now();
     streaming_ = now;
   }
-  if (is_missing(*stats_) && more_comes()) draw_again(2);
+  if (is_missing(*stats_)) draw_what_comes();
   frame_times_.push_back(static_cast<float>(stats_->millisecondsTotal));
   if (frame_times_.size() > kTimesKept) frame_times_.erase(frame_times_.begin());
 }
 
 // What comes must be drawn. What a budget has no room for does not come, nor does what cannot be
-// read: that is refused once.
-bool Session::more_comes() {
-  if (!streaming_ || streaming_->seenMissingChunks == 0 ||
-      streaming_->residentChunks >= streaming_->slots)
-    return false;
+// read.
+void Session::draw_what_comes() {
+  const bool has_room = streaming_ && streaming_->seenMissingChunks > 0 &&
+                        streaming_->residentChunks < streaming_->slots;
+  if (!has_room) return;
   if (streaming_->failures == 0 ||
       std::chrono::steady_clock::now() - arrival_ < kLongestBetweenArrivals)
-    return true;
-  if (!told_unreadable_) {
-    told_unreadable_ = true;
-    refuse({ErrorCode::damaged_chunk,
-            fmt::format("{}: {} chunks that are seen could not be read; coarser ones are shown",
-                        scene_->path, streaming_->seenMissingChunks)});
-    drop_cached_bake();
-  }
-  return false;
+    return draw_again(2);
+  if (std::exchange(told_unreadable_, true)) return;
+  refuse({ErrorCode::damaged_chunk,
+          fmt::format("{}: {} chunks that are seen could not be read; coarser ones are shown",
+                      scene_->path, streaming_->seenMissingChunks)});
+  drop_cached_bake();
 }
 
 // Of the first frame of a scene, a sample or a bake.
