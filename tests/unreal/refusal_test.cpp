@@ -62,6 +62,10 @@ TEST_F(UnrealRefusals, AMissingSceneAndTexturesThatDoNotFit) {
   unreal.frame(view);
   EXPECT_NE(unreal.last_error().find("4 of depth, expected 1"), std::string::npos)
       << unreal.last_error();
+  UnrealView flat = view_of(textures, camera());
+  flat.view.ViewMatrices.StubProjection.M[2][3] = 0;
+  unreal.frame(flat);
+  EXPECT_NE(unreal.last_error().find("orthographic"), std::string::npos) << unreal.last_error();
   const std::vector<uint8_t> bytes = unreal.read(*textures.colour);
   EXPECT_TRUE(std::all_of(bytes.begin(), bytes.end(), [](uint8_t byte) { return byte == 0; }));
   EXPECT_LE(largest_difference(shoot(unreal, textures, camera()), reference(camera())), 1);

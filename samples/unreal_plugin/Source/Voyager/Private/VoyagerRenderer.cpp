@@ -41,6 +41,10 @@ bool FVoyagerRenderer::Draw(VkCommandBuffer Commands, const FVoyagerViewFrame& F
                             FString& Error) {
   FScopeLock Lock(&Mutex);
   if (!Scene.Get()) return true;
+  if (Frame.Projection.M[2][3] != 1) {
+    Error = TEXT("found an orthographic view, expected a perspective");
+    return false;
+  }
   FreeRetired();
   const FIntPoint Size = Frame.Area.Size();
   bool bNew = false;
