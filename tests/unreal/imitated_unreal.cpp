@@ -177,9 +177,9 @@ void ImitatedUnreal::frame(const UnrealView& view) {
     if (!extension) continue;
     using Pass = ISceneViewExtension::EPostProcessingPass;
     for (const Pass pass : {Pass::MotionBlur, Pass::Tonemap, Pass::FXAA}) {
-      FPostProcessingPassDelegateArray callbacks;
+      FAfterPassCallbackDelegateArray callbacks;
       extension->SubscribeToPostProcessingPass(pass, view.view, callbacks, true);
-      for (const FPostProcessingPassDelegate& callback : callbacks)
+      for (const FAfterPassCallbackDelegate& callback : callbacks)
         EXPECT_EQ(callback.Execute(builder, view.view, inputs).Texture,
                   view.override_output ? view.override_output : view.colour);
     }

@@ -5,11 +5,11 @@
 class FSceneView;
 struct FPostProcessMaterialInputs;
 
-struct FPostProcessingPassDelegate {
+struct FAfterPassCallbackDelegate {
   using FFunction = TFunction<FScreenPassTexture(FRDGBuilder&, const FSceneView&,
                                                  const FPostProcessMaterialInputs&)>;
   template <class T>
-  static FPostProcessingPassDelegate CreateRaw(
+  static FAfterPassCallbackDelegate CreateRaw(
       T* Object, FScreenPassTexture (T::*Function)(FRDGBuilder&, const FSceneView&,
                                                    const FPostProcessMaterialInputs&)) {
     return {[Object, Function](FRDGBuilder& Builder, const FSceneView& View,
@@ -19,14 +19,14 @@ struct FPostProcessingPassDelegate {
   }
   FFunction Execute;
 };
-using FPostProcessingPassDelegateArray = TArray<FPostProcessingPassDelegate>;
+using FAfterPassCallbackDelegateArray = TArray<FAfterPassCallbackDelegate>;
 
 class ISceneViewExtension {
  public:
   enum class EPostProcessingPass : uint32 { MotionBlur, Tonemap, FXAA };
   virtual ~ISceneViewExtension() = default;
   virtual void SubscribeToPostProcessingPass(EPostProcessingPass Pass, const FSceneView& InView,
-                                             FPostProcessingPassDelegateArray& InOutPassCallbacks,
+                                             FAfterPassCallbackDelegateArray& InOutPassCallbacks,
                                              bool bIsPassEnabled) = 0;
 };
 

@@ -68,11 +68,10 @@ void AddVoyagerPass(FRDGBuilder& GraphBuilder, const FVoyagerViewFrame& Frame, F
 }  // namespace
 
 void FVoyagerViewExtension::SubscribeToPostProcessingPass(
-    EPostProcessingPass Pass, const FSceneView&, FPostProcessingPassDelegateArray& Callbacks,
-    bool) {
+    EPostProcessingPass Pass, const FSceneView&, FAfterPassCallbackDelegateArray& Callbacks, bool) {
   if (Pass == EPostProcessingPass::Tonemap)
     Callbacks.Add(
-        FPostProcessingPassDelegate::CreateRaw(this, &FVoyagerViewExtension::Draw_RenderThread));
+        FAfterPassCallbackDelegate::CreateRaw(this, &FVoyagerViewExtension::Draw_RenderThread));
 }
 
 FScreenPassTexture FVoyagerViewExtension::Draw_RenderThread(

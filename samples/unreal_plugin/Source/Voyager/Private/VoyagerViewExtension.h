@@ -13,7 +13,7 @@ class FVoyagerViewExtension : public FSceneViewExtensionBase {
       : FSceneViewExtensionBase(AutoRegister), Renderer(InRenderer), Errors(InErrors) {}
 
   virtual void SubscribeToPostProcessingPass(EPostProcessingPass Pass, const FSceneView& View,
-                                             FPostProcessingPassDelegateArray& Callbacks,
+                                             FAfterPassCallbackDelegateArray& Callbacks,
                                              bool bIsPassEnabled) override;
 
  private:
