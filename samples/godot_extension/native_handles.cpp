@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <bit>
 #include <stdexcept>
 
 #include "godot.h"
@@ -37,7 +38,7 @@ uint64_t driver_resource(void* rendering_device, int64_t resource, uint64_t rid 
 
 template <class Handle>
 Handle handle_of(uint64_t value) {
-  return reinterpret_cast<Handle>(value);
+  return std::bit_cast<Handle>(value);
 }
 
 }  // namespace

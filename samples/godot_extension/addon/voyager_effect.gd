@@ -8,6 +8,7 @@ var _splats := VoyagerSplats.new()
 var _size := Vector2i.ZERO
 var _color_rid := RID()
 var _depth_rid := RID()
+var _retired: Array[RID] = []
 var _error := ""
 
 func _init() -> void:
@@ -16,9 +17,20 @@ func _init() -> void:
 func open_scene(path: String) -> void:
 	_splats.open_scene(path)
 
+func _notification(what: int) -> void:
+	if what != NOTIFICATION_PREDELETE:
+		return
+	var device := RenderingServer.get_rendering_device()
+	for rid in _retired + [_color_rid, _depth_rid]:
+		if rid.is_valid():
+			RenderingServer.call_on_render_thread(device.free_rid.bind(rid))
+
 # On the rendering thread.
 func _render_callback(_type: int, data: RenderData) -> void:
 	var device := RenderingServer.get_rendering_device()
+	for rid in _retired: # nothing shows them any more
+		device.free_rid(rid)
+	_retired.clear()
 	var buffers: RenderSceneBuffersRD = data.get_render_scene_buffers()
 	var size := buffers.get_internal_size()
 	if size != _size:
@@ -33,11 +45,9 @@ func _render_callback(_type: int, data: RenderData) -> void:
 
 # With data: Godot then keeps a texture in one layout for good, which the extension relies on.
 func _create_textures(device: RenderingDevice, size: Vector2i) -> void:
-	color.set_deferred("texture_rd_rid", RID())
-	depth.set_deferred("texture_rd_rid", RID())
 	for rid in [_color_rid, _depth_rid]:
 		if rid.is_valid():
-			device.free_rid(rid)
+			_retired.append(rid)
 	_color_rid = _create_texture(device, size, RenderingDevice.DATA_FORMAT_R8G8B8A8_UNORM)
 	_depth_rid = _create_texture(device, size, RenderingDevice.DATA_FORMAT_R32_SFLOAT)
 	_size = size

@@ -9,26 +9,26 @@
 
 class FVoyagerModule : public IVoyagerModule {
  public:
-  virtual void StartupModule() override {
+  void StartupModule() override {
     RequestVoyagerVulkanExtensions();
     // Unreal destroys its device before it unloads modules that were loaded before the device.
     FCoreDelegates::OnEnginePreExit.AddRaw(this, &FVoyagerModule::Stop);
   }
-  virtual void ShutdownModule() override {
+  void ShutdownModule() override {
     FCoreDelegates::OnEnginePreExit.RemoveAll(this);
     Stop();
   }
 
-  virtual bool OpenScene(const FString& Path, const FVector& Origin) override {
+  bool OpenScene(const FString& Path, const FVector& Origin) override {
     FString Error;
     if (Start(Error) && Renderer->OpenScene(Path, Origin, Error)) return true;
     Errors->Report(Error);
     return false;
   }
-  virtual void CloseScene() override {
+  void CloseScene() override {
     if (Renderer) Renderer->CloseScene();
   }
-  virtual FString GetLastError() const override { return Errors->GetLast(); }
+  FString GetLastError() const override { return Errors->GetLast(); }
 
  private:
   bool Start(FString& Error) {

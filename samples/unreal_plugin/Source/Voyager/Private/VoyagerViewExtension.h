@@ -12,9 +12,9 @@ class FVoyagerViewExtension : public FSceneViewExtensionBase {
                         const TSharedPtr<FVoyagerErrors>& InErrors)
       : FSceneViewExtensionBase(AutoRegister), Renderer(InRenderer), Errors(InErrors) {}
 
-  virtual void SubscribeToPostProcessingPass(EPostProcessingPass Pass, const FSceneView& View,
-                                             FAfterPassCallbackDelegateArray& Callbacks,
-                                             bool bIsPassEnabled) override;
+  void SubscribeToPostProcessingPass(EPostProcessingPass Pass, const FSceneView& View,
+                                     FAfterPassCallbackDelegateArray& Callbacks,
+                                     bool bIsPassEnabled) override;
 
  private:
   FScreenPassTexture Draw_RenderThread(FRDGBuilder& GraphBuilder, const FSceneView& View,
