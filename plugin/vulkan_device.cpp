@@ -46,6 +46,12 @@ void describe(const VoyVulkanPhysicalDevice& desc, VoyVulkanRequirements& out) {
   out.timelineSemaphore = device.has_timelines() ? VK_TRUE : VK_FALSE;
 }
 
+void describe_any(VoyVulkanRequirements& out) {
+  out.deviceExtensions = extension_list((1u << kCount) - 1);
+  out.deviceExtensionCount = kCount;
+  out.timelineSemaphore = VK_TRUE;
+}
+
 vulkan::Sharing sharing_of(VoyVulkanSharing sharing) {
   switch (sharing) {
     case VOY_VULKAN_SHARING_DEVICE:
@@ -121,7 +127,9 @@ VoyResult VOY_CALL voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physi
     check_structure(requirements, VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS, "VoyVulkanRequirements");
     VoyVulkanRequirements found = VOY_VULKAN_REQUIREMENTS_INIT;
     found.apiVersion = vulkan::kLeastVersion;
-    if (physicalDevice != nullptr) {
+    if (physicalDevice == nullptr) {
+      describe_any(found);
+    } else {
       check_structure(physicalDevice, VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE,
                       "VoyVulkanPhysicalDevice");
       check_vulkan(*physicalDevice);

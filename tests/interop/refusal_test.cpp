@@ -1,4 +1,6 @@
 // What a host must not ask, and what it is told.
+#include <set>
+
 #include "frames.h"
 
 namespace refusal_test {
@@ -10,11 +12,17 @@ void expect_refused(VoyResult found, VoyResult expected, const char* part) {
       << voyGetLastErrorMessage() << " should name " << part;
 }
 
-TEST_F(Interop, RequirementsBeforeAnInstanceNeedNothing) {
+// What a host names before it has a physical device covers what the device is then found to have.
+TEST_F(Interop, RequirementsBeforeAnInstanceNameWhatADeviceMayNeed) {
   VoyVulkanRequirements needs = VOY_VULKAN_REQUIREMENTS_INIT;
   ASSERT_EQ(voyGetVulkanRequirements(nullptr, &needs), VOY_SUCCESS);
   EXPECT_EQ(needs.apiVersion, VK_API_VERSION_1_1);
-  EXPECT_EQ(needs.deviceExtensionCount, 0u);
+  EXPECT_EQ(needs.instanceExtensionCount, 0u);
+  EXPECT_EQ(needs.timelineSemaphore, VK_TRUE);
+  const std::set<std::string> named(needs.deviceExtensions,
+                                    needs.deviceExtensions + needs.deviceExtensionCount);
+  EXPECT_EQ(named.count(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME), 1u);
+  for (const char* extension : host->extensions) EXPECT_EQ(named.count(extension), 1u) << extension;
   VoyVulkanPhysicalDevice none = VOY_VULKAN_PHYSICAL_DEVICE_INIT;
   expect_refused(voyGetVulkanRequirements(&none, &needs), VOY_ERROR_INVALID_ARGUMENT,
                  "getInstanceProcAddr");

@@ -37,6 +37,7 @@ struct VulkanCreation {
   PFN_vkGetInstanceProcAddr loader = vkGetInstanceProcAddr;  // gives vkCreateInstance and Device
   bool asks_voyager = true;                                  // what to enable
   void* features = nullptr;                                  // the chain, where it does not ask
+  std::vector<const char*> extensions;                       // the device's, where it does not ask
   uint32_t api_version = VK_API_VERSION_1_2;
 };
 
@@ -250,6 +251,7 @@ class VulkanHost {
   }
 
   void make_device() {
+    extensions = creation.extensions;
     if (creation.asks_voyager) ask_voyager();
     const float priority = 1;
     const VkDeviceQueueCreateInfo queues{

@@ -26,6 +26,19 @@ quietly cmake -G Ninja -S "$WORK/readme" -B "$WORK/readme/build" -DCMAKE_PREFIX_
 quietly cmake --build "$WORK/readme/build"
 expect_equal "README's program" "$("$WORK/readme/build/engine" "$scene")" opened
 
+# The lines of docs/engines.md lead from an empty folder to a picture.
+if pkg-config --exists vulkan; then
+  mkdir "$WORK/own"
+  ln -s "$WORK/here" "$WORK/own/voyager"
+  sed -n '/^## An engine of your own/,$s/^    //p' "$source/docs/engines.md" |
+    sed "s:VOYAGER/:$source/:; s:scene\.ply:$scene:" >"$WORK/own/lines"
+  (cd "$WORK/own" && HOME=$WORK/own CMAKE_GENERATOR=Ninja bash -eu lines) >"$WORK/own/said" 2>&1 ||
+    grep -q 'found no Vulkan device' "$WORK/own/said" || fail "docs/engines.md: $(cat "$WORK/own/said")"
+  if ! grep -q 'found no Vulkan device' "$WORK/own/said"; then
+    expect_equal "own/out.ppm" "$(head -n 1 "$WORK/own/out.ppm")" "P6 640 360 255"
+  fi
+fi
+
 # Moved as a whole; the first place is no more.
 mv "$WORK/here" "$WORK/moved"
 expect_all "$WORK/moved" moved

@@ -84,9 +84,11 @@ typedef struct VoyVulkanRequirements {
   { VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS, NULL, 0, 0, NULL, 0, NULL, VK_FALSE }
 
 /* Tells what to enable. Call it with physicalDevice NULL before creating the instance: it then
- * fills apiVersion and the instance extensions only. Call it with a physical device before creating
- * the VkDevice: it then lists what Voyager can use of what this device has. Nothing in the list is
- * mandatory. What the host does not enable may cost a mode (VoyVulkanCapabilities).
+ * fills apiVersion and the instance extensions, and all device extensions and the feature that
+ * Voyager can use of any device. A host that must name its device extensions before it has a
+ * physical device enables those of them that its device has. Call it with a physical device before
+ * creating the VkDevice: it then lists what Voyager can use of what this device has. Nothing in the
+ * lists is mandatory. What the host does not enable may cost a mode (VoyVulkanCapabilities).
  * Errors: INVALID_ARGUMENT (NULL; getInstanceProcAddr lacks functions of Vulkan 1.1), UNSUPPORTED
  * (a physical device older than Vulkan 1.1). */
 VOY_API VoyResult VOY_CALL voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physicalDevice,
