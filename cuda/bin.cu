@@ -103,8 +103,8 @@ constexpr unsigned kChunk = kPlaceThreads * kPlaceItems;
 using PlaceScan = cub::BlockScan<unsigned long long, kPlaceThreads, cub::BLOCK_SCAN_WARP_SCANS>;
 
 // One block: where each tile's list begins and ends, and the order in which lists are worked
-// on. What is beyond the room is cut off.
-__global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats) {
+// on. What is beyond the room is cut off. at_once: tiles that are rasterized at a time.
+__global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats, uint32_t at_once) {
   if (!has_work(splats)) return;
   __shared__ PlaceScan::TempStorage storage;
   __shared__ uint32_t counts[kChunk];
@@ -135,7 +135,8 @@ __global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats) {
     for (uint32_t i = threadIdx.x; i < kChunk && base + i < tiles; i += kPlaceThreads)
       splats.tiles[base + i] = {firsts[i], firsts[i + 1]};
   }
-  order.place(*splats.counters);
+  const float share = static_cast<float>(total) / static_cast<float>(at_once);
+  order.place(*splats.counters, max(kLeastHalved, static_cast<uint32_t>(kHalvedShare * share)));
   for (uint32_t tile = threadIdx.x; tile < tiles; tile += kPlaceThreads)
     splats.tile_order[order.take(splats.tile_counts[tile])] = tile;
   if (threadIdx.x == 0) splats.counters->pairs = total;
@@ -208,7 +209,7 @@ void launch(const SplatFrame& f, const dim3& blocks, uint32_t band) {
   allow_shared_bytes(bin_count<kLimited>, most_shared_bytes(), "bin_count");
   bin_count<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
   check(cudaGetLastError(), "bin_count");
-  bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats);
+  bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats, kRasterBlocks * f.multiprocessors);
   check(cudaGetLastError(), "bin_place");
   allow_shared_bytes(bin_scatter<kLimited>, most_shared_bytes(), "bin_scatter");
   bin_scatter<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);

@@ -23,14 +23,15 @@ struct BinOrder {
   }
   __device__ void count(uint32_t length) { atomicAdd(places + class_of(length), 1u); }
 
-  // From counts to first places.
-  __device__ void place(SplatCounters& counters) {
+  // From counts to first places. halved: the length from which on a tile is drawn in halves.
+  __device__ void place(SplatCounters& counters, uint32_t halved) {
     __syncthreads();
     if (threadIdx.x < 32) sum_up();
     __syncthreads();
     if (threadIdx.x == 0) {
       counters.large_lists = places[class_of(kMediumList)];
       counters.long_lists = places[class_of(kShortList)];
+      counters.halved_lists = min(places[class_of(halved)], kMaxHalvedLists);
     }
     __syncthreads();
   }

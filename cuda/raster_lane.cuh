@@ -9,7 +9,7 @@ namespace voyager::cuda {
 
 inline constexpr int kPartWidth = 8;               // pixels of a warp's part: a lane a column, and
 inline constexpr int kLaneRows = 32 / kPartWidth;  // rows that lie so far apart
-inline constexpr int kRows = 2;                    // pixels a lane
+inline constexpr int kRows = 2;                    // pixels a lane, of most lists
 
 // What a kernel is compiled for.
 template <Exponential E, bool kFilterOn, bool kSiblingsIn, bool kDepthOut, bool kCounting,
@@ -36,26 +36,32 @@ struct RasterSplat {
   float4 colour;  // r, g, b, 1/k
 };
 
-// -log α of the lane's pixels.
-__device__ inline void lane_logarithms(float x, float y, const float4& shape, const float4& middle,
-                                       float (&minus_log)[kRows]) {
+// -log α of the lane's pixels. below: rows from y to the first of them. A pixel's bits do not
+// depend on how many rows its lane has: both ways find it from the row that two would begin with.
+template <int kRows>
+__device__ inline void lane_logarithms(float x, float y, float below, const float4& shape,
+                                       const float4& middle, float (&minus_log)[kRows]) {
   const float dx = x - shape.x, dy = y - shape.y;
   const float p = dx * shape.z, q0 = fmaf(-middle.x, dx, dy) * shape.w;
   const float base = fmaf(p, p, -middle.y);
 #pragma unroll
   for (int row = 0; row < kRows; ++row) {
-    const float q = row == 0 ? q0 : fmaf(static_cast<float>(row * kLaneRows), shape.w, q0);
+    const float q = kRows == 1 ? fmaf(below, shape.w, q0)
+                    : row == 0 ? q0
+                               : fmaf(static_cast<float>(row * kLaneRows), shape.w, q0);
     minus_log[row] = fmaf(q, q, base);
   }
 }
 
 // In binary32.
-template <class M>
+template <class M, int kPixels>
 struct FloatLane {
-  float x, y;  // the centre of the first
+  static constexpr int kRows = kPixels;
+  float x, y, below;  // the centre of the first, and rows from y to it
   RasterPixel pixels[kRows];
 
-  __device__ FloatLane(float centre_x, float centre_y) : x(centre_x), y(centre_y) {}
+  __device__ FloatLane(float centre_x, float centre_y, int rows_below)
+      : x(centre_x), y(centre_y), below(static_cast<float>(rows_below)) {}
   __device__ void set_limit(int row, float limit) { pixels[row].limit = limit; }
   __device__ float limit(int row) const { return pixels[row].limit; }
   __device__ void set_farthest(int row, float z) { pixels[row].farthest = z; }
@@ -69,7 +75,7 @@ struct FloatLane {
                         const Lut& lut, Counts& counts) {
     constexpr Exponential E = M::kExponential;
     float minus_log[kRows];
-    lane_logarithms(x, y, shape, middle, minus_log);
+    lane_logarithms(x, y, below, shape, middle, minus_log);
 #pragma unroll
     for (int row = 0; row < kRows; ++row) {
       RasterPixel& pixel = pixels[row];
@@ -99,13 +105,13 @@ struct FloatLane {
 // is still told in binary32.
 template <class M>
 struct HalfLane {
-  static_assert(kRows == 2);
+  static constexpr int kRows = 2;
   float x, y;
   __half2 r{}, g{}, b{}, transmittance;
   float limits[kRows], depth[kRows] = {kInfinity, kInfinity}, halfway[kRows] = {0.5f, 0.5f};
   float farthest_z[kRows];
 
-  __device__ HalfLane(float centre_x, float centre_y)
+  __device__ HalfLane(float centre_x, float centre_y, int)
       : x(centre_x), y(centre_y), transmittance(__float2half2_rn(1.0f)) {}
   __device__ void set_limit(int row, float limit) { limits[row] = limit; }
   __device__ float limit(int row) const { return limits[row]; }
@@ -133,7 +139,7 @@ struct HalfLane {
   __device__ void blend(const float4& shape, const float4& middle, const float4& colour, const Lut&,
                         Counts& counts) {
     float minus_log[kRows];
-    lane_logarithms(x, y, shape, middle, minus_log);
+    lane_logarithms(x, y, 0.0f, shape, middle, minus_log);
     // What does not contribute has an α of 2^-∞.
     bool hits[kRows] = {minus_log[0] <= limits[0], minus_log[1] <= limits[1]};
     if constexpr (M::kLimits)
@@ -195,12 +201,12 @@ struct HalfLane {
   }
 };
 
-template <class M, Exponential E = M::kExponential>
+template <class M, int kPixels, Exponential E = M::kExponential>
 struct LaneOf {
-  using Type = FloatLane<M>;
+  using Type = FloatLane<M, kPixels>;
 };
-template <class M>
-struct LaneOf<M, Exponential::half2> {
+template <class M, int kPixels>
+struct LaneOf<M, kPixels, Exponential::half2> {
   using Type = HalfLane<M>;
 };
 

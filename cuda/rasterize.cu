@@ -1,6 +1,6 @@
-// METHOD §6–8: each tile's list, front to back. A warp has a part of the tile, a lane
-// several of its pixels. The warp takes 32 splats of the list at a time, a lane each, drops
-// those that miss its part, and blends the others one after the other. Warps wait for
+// METHOD §6–8: each tile's list, front to back. A warp has a part of the tile, a lane two of its
+// pixels, or one where the list is long. The warp takes 32 splats of the list at a time, a lane
+// each, drops those that miss its part, and blends the others one after the other. Warps wait for
 // nobody.
 #include <algorithm>
 
@@ -15,8 +15,7 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kAll = 0xffffffffu;
-constexpr int kPartHeight = kLaneRows * kRows;
-constexpr int kWarps = kTile / kPartWidth * (kTile / kPartHeight);
+constexpr int kWarps = 4;
 constexpr unsigned kThreads = 32 * kWarps;
 
 // The splats that a warp blends, in the order of the list.
@@ -67,7 +66,7 @@ template <class Lane>
 __device__ bool all_ended(const Lane& lane) {
   bool all = true;
 #pragma unroll
-  for (int row = 0; row < kRows; ++row) all &= lane.limit(row) == -kInfinity;
+  for (int row = 0; row < Lane::kRows; ++row) all &= lane.limit(row) == -kInfinity;
   return __all_sync(kAll, all);
 }
 
@@ -76,7 +75,7 @@ template <class Lane>
 __device__ float farthest_of(const Lane& lane) {
   float z = -kInfinity;
 #pragma unroll
-  for (int row = 0; row < kRows; ++row)
+  for (int row = 0; row < Lane::kRows; ++row)
     if (lane.limit(row) != -kInfinity) z = fmaxf(z, lane.farthest(row));
 #pragma unroll
   for (int other = 16; other > 0; other /= 2) z = fmaxf(z, __shfl_xor_sync(kAll, z, other));
@@ -114,6 +113,54 @@ __device__ void blend_mixed(const WarpSplats& chosen, int count, unsigned siblin
   }
 }
 
+// What a warp gathered of 32 places of a list.
+struct Gathered {
+  int count;
+  unsigned siblings;  // a bit for each that is to be corrected
+  bool many;          // and some of them for many
+};
+
+// Of the splats that the lanes hold, those that may touch the part.
+template <class M, class Lane>
+__device__ Gathered gather(const RasterSplat& splat, bool within, const Part& part,
+                           float log_threshold, WarpSplats& chosen) {
+  const uint32_t self = threadIdx.x % 32;
+  const bool touches = within && (!M::kFilter || rasterize_touches(splat, part, log_threshold));
+  const unsigned lanes = __ballot_sync(kAll, touches);
+  __syncwarp();
+  const int at = __popc(lanes & ((1u << self) - 1));
+  if (touches) {
+    chosen.shape[at] = splat.shape;
+    chosen.middle[at] = splat.middle;
+    chosen.colour[at] = Lane::prepare(splat.colour);
+  }
+  Gathered gathered{__popc(lanes), 0, false};
+  if constexpr (M::kSiblings) {
+    const Siblings own =
+        touches ? siblings_of<M::kExponential>(splat.middle.w, splat.colour.w) : Siblings::none;
+    gathered.siblings = __reduce_or_sync(kAll, own != Siblings::none ? 1u << at : 0);
+    gathered.many = __any_sync(kAll, own == Siblings::many);
+  }
+  return gathered;
+}
+
+template <class M, class Lane>
+__device__ void blend_gathered(const WarpSplats& chosen, const Gathered& gathered, const Lut& lut,
+                               Lane& lane, Counts& counts) {
+  if constexpr (!M::kSiblings)
+    blend_chosen<Siblings::none>(chosen, 0, gathered.count, lut, lane, counts);
+  else if (gathered.many)
+    blend_mixed<Siblings::many>(chosen, gathered.count, gathered.siblings, lut, lane, counts);
+  else
+    blend_mixed<Siblings::few>(chosen, gathered.count, gathered.siblings, lut, lane, counts);
+}
+
+// The depth (bits) of the last of the 32 places from first on. From the key: the splat's registers
+// are others' by then.
+__device__ uint32_t depth_at_end(const SplatView& splats, const TileList& list, uint32_t first) {
+  return static_cast<uint32_t>(splats.keys[min(first + 32, list.last) - 1] >> 32);
+}
+
 // The depth (bits) behind which the part is full; kDrawAll where the list comes to its end before.
 template <class M, class Lane>
 __device__ uint32_t rasterize_list(const SplatView& splats, const TileList& list, const Part& part,
@@ -129,28 +176,9 @@ __device__ uint32_t rasterize_list(const SplatView& splats, const TileList& list
     const bool valid = first + self < list.last;
     bool within = valid;
     if constexpr (M::kLimits) within = valid && splat.middle.z <= farthest;
-    const bool touches = within && (!M::kFilter || rasterize_touches(splat, part, log_threshold));
-    const unsigned lanes = __ballot_sync(kAll, touches);
+    const Gathered gathered = gather<M, Lane>(splat, within, part, log_threshold, chosen);
     __syncwarp();
-    const int at = __popc(lanes & ((1u << self) - 1));
-    if (touches) {
-      chosen.shape[at] = splat.shape;
-      chosen.middle[at] = splat.middle;
-      chosen.colour[at] = Lane::prepare(splat.colour);
-    }
-    __syncwarp();
-    const int count = __popc(lanes);
-    if constexpr (M::kSiblings) {
-      const Siblings own =
-          touches ? siblings_of<M::kExponential>(splat.middle.w, splat.colour.w) : Siblings::none;
-      const unsigned siblings = __reduce_or_sync(kAll, own != Siblings::none ? 1u << at : 0);
-      if (__any_sync(kAll, own == Siblings::many))
-        blend_mixed<Siblings::many>(chosen, count, siblings, lut, lane, counts);
-      else
-        blend_mixed<Siblings::few>(chosen, count, siblings, lut, lane, counts);
-    } else {
-      blend_chosen<Siblings::none>(chosen, 0, count, lut, lane, counts);
-    }
+    blend_gathered<M>(chosen, gathered, lut, lane, counts);
     bool ended;
     if constexpr (M::kLimits) {
       // Splats come front to back: behind one that is too far all are.
@@ -159,8 +187,7 @@ __device__ uint32_t rasterize_list(const SplatView& splats, const TileList& list
     } else {
       ended = all_ended(lane);
     }
-    // From the key: the splat's registers are others' by now.
-    if (ended) return static_cast<uint32_t>(splats.keys[min(first + 32, list.last) - 1] >> 32);
+    if (ended) return depth_at_end(splats, list, first);
   }
   return kDrawAll;
 }
@@ -178,44 +205,68 @@ __device__ void note_end(const SplatView& splats, uint32_t tile, uint32_t end) {
     atomicAdd(&splats.counters->open_parts, 1u);
 }
 
-template <class M>
-__device__ void rasterize_tile(const RasterParams& params, uint32_t list, WarpSplats& chosen,
+// A warp's part of a tile.
+struct PartOfTile {
+  uint32_t list;
+  unsigned column, row;  // of parts of 8x8 pixels
+  unsigned below;        // rows from there to its first
+};
+
+template <class M, int kRows>
+__device__ void rasterize_part(const RasterParams& params, const PartOfTile& of, WarpSplats& chosen,
                                const float* lut_entries) {
-  const uint32_t index = params.splats.frame.eye(list);
+  using Lane = typename LaneOf<M, kRows>::Type;
+  const uint32_t index = params.splats.frame.eye(of.list);
   const RasterEye& eye = params.eyes[index];
-  const uint32_t tile = list - params.splats.frame.first[index];
+  const uint32_t tile = of.list - params.splats.frame.first[index];
   const auto columns = static_cast<uint32_t>(params.splats.frame.grids[index].columns);
-  const unsigned warp = threadIdx.x / 32, self = threadIdx.x % 32;
-  const uint32_t part_x = tile % columns * kTile + warp % (kTile / kPartWidth) * kPartWidth;
-  const uint32_t part_y = tile / columns * kTile + warp / (kTile / kPartWidth) * kPartHeight;
+  const unsigned self = threadIdx.x % 32;
+  const uint32_t part_x = tile % columns * kTile + of.column * kPartWidth;
+  const uint32_t part_y = tile / columns * kTile + of.row * kPartWidth;
   const uint32_t x = part_x + self % kPartWidth, y = part_y + self / kPartWidth;
+  const auto row_of = [&](int row) { return y + of.below + row * kLaneRows; };
   const auto inside = [&](int row) {
-    return x < eye.target.width && y + row * kLaneRows < eye.target.height;
+    return x < eye.target.width && row_of(row) < eye.target.height;
   };
+  const auto top = static_cast<float>(part_y + of.below);
   const Part part{static_cast<float>(part_x) + 0.5f, static_cast<float>(part_x + kPartWidth) - 0.5f,
-                  static_cast<float>(part_y) + 0.5f,
-                  static_cast<float>(part_y + kPartHeight) - 0.5f};
-  typename LaneOf<M>::Type lane(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+                  top + 0.5f, top + static_cast<float>(Lane::kRows * kLaneRows) - 0.5f};
+  Lane lane(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, static_cast<int>(of.below));
 #pragma unroll
-  for (int row = 0; row < kRows; ++row)
+  for (int row = 0; row < Lane::kRows; ++row)
     lane.set_limit(row, inside(row) ? -params.log_threshold : -kInfinity);
   if constexpr (M::kLimits)
-    for (int row = 0; row < kRows; ++row)
-      lane.set_farthest(row,
-                        inside(row) ? limit_at(eye.limits, x, y + row * kLaneRows) : -kInfinity);
+    for (int row = 0; row < Lane::kRows; ++row)
+      lane.set_farthest(row, inside(row) ? limit_at(eye.limits, x, row_of(row)) : -kInfinity);
   Counts counts;
   const Lut lut{lut_entries, static_cast<float>(params.lut_size) / kLutRange};
-  const uint32_t end = rasterize_list<M>(params.splats, params.splats.tiles[list], part,
+  const uint32_t end = rasterize_list<M>(params.splats, params.splats.tiles[of.list], part,
                                          params.log_threshold, lut, chosen, lane, counts);
-  note_end(params.splats, list, end);
+  note_end(params.splats, of.list, end);
 #pragma unroll
-  for (int row = 0; row < kRows; ++row)
-    if (inside(row)) write_pixel(eye.target, x, y + row * kLaneRows, lane.pixel(row));
+  for (int row = 0; row < Lane::kRows; ++row)
+    if (inside(row)) write_pixel(eye.target, x, row_of(row), lane.pixel(row));
   if constexpr (M::kCount) {
     SplatCounters& sum = *params.splats.counters;
     atomicAdd(&sum.evaluated, static_cast<unsigned long long>(counts.evaluated));
     atomicAdd(&sum.blended, static_cast<unsigned long long>(counts.blended));
   }
+}
+
+// A warp has a quarter of the tile.
+template <class M>
+__device__ void rasterize_tile(const RasterParams& params, uint32_t list, WarpSplats& chosen,
+                               const float* lut_entries) {
+  const unsigned warp = threadIdx.x / 32;
+  rasterize_part<M, 2>(params, {list, warp % 2, warp / 2, 0}, chosen, lut_entries);
+}
+
+// A warp has an eighth of the tile. half: 0 the upper, 1 the lower.
+template <class M>
+__device__ void rasterize_half(const RasterParams& params, uint32_t list, unsigned half,
+                               WarpSplats& chosen, const float* lut_entries) {
+  const unsigned warp = threadIdx.x / 32;
+  rasterize_part<M, 1>(params, {list, warp % 2, half, warp / 2 * kLaneRows}, chosen, lut_entries);
 }
 
 // Their entries, in shared memory, where the mode has a table.
@@ -230,14 +281,26 @@ __device__ const float* read_lut(const RasterParams& params) {
   return lut_entries;
 }
 
-// A block a tile.
+// In halves the first tiles are drawn, whose lists are so long that they would end last. Not in
+// binary16, where a lane's two pixels are one number.
 template <class M>
-__global__ void __launch_bounds__(kThreads, 8)
+constexpr bool kHalves = M::kExponential != Exponential::half2;
+
+// A block a tile, or two.
+template <class M>
+__global__ void __launch_bounds__(kThreads, kRasterBlocks)
     rasterize_tiles(const __grid_constant__ RasterParams params) {
   __shared__ WarpSplats chosen[kWarps];
   const float* lut_entries = read_lut<M>(params);
-  rasterize_tile<M>(params, params.splats.tile_order[blockIdx.x], chosen[threadIdx.x / 32],
-                    lut_entries);
+  WarpSplats& own = chosen[threadIdx.x / 32];
+  const uint32_t halved = kHalves<M> ? params.splats.counters->halved_lists : 0;
+  if constexpr (kHalves<M>)
+    if (blockIdx.x < 2 * halved)
+      return rasterize_half<M>(params, params.splats.tile_order[blockIdx.x / 2], blockIdx.x % 2,
+                               own, lut_entries);
+  const uint32_t at = blockIdx.x - halved;
+  if (at < params.splats.frame.count())
+    rasterize_tile<M>(params, params.splats.tile_order[at], own, lut_entries);
 }
 
 // Of a second pass, which most often has no tile: those that it has come first. A kernel of its
@@ -263,7 +326,9 @@ size_t lut_bytes(const RasterParams& params) {
 
 template <class M>
 void launch(const SplatFrame& f, const RasterParams& params) {
-  rasterize_tiles<M><<<f.splats.frame.count(), kThreads, lut_bytes<M>(params), f.stream>>>(params);
+  const uint32_t most = f.splats.frame.count();
+  const uint32_t blocks = most + (kHalves<M> ? std::min(most, kMaxHalvedLists) : 0);
+  rasterize_tiles<M><<<blocks, kThreads, lut_bytes<M>(params), f.stream>>>(params);
 }
 
 template <class M>

@@ -58,13 +58,20 @@ struct SplatCounters {
   unsigned long long strips;                      // of them
   unsigned long long strip_room;                  // that they need in all regions
   unsigned long long strips_dropped;
-  uint32_t long_lists, large_lists;  // the first tiles of tile_order
+  uint32_t long_lists, large_lists, halved_lists;  // the first tiles of tile_order
   uint32_t open_parts;  // of tiles whose list was cut off before all of their pixels had ended
 };
 
 // At most so many keys are in lists behind the long ones, and behind the large ones: just
 // under where bin_order's classes begin.
 inline constexpr uint32_t kShortList = 511, kMediumList = 2047;
+
+// Thread blocks of rasterize.cu that are resident on a multiprocessor: a block has a tile.
+inline constexpr unsigned kRasterBlocks = 8;
+// Twice as many warps blend tiles whose lists are so much longer than what each resident block has
+// on average that they would end last; bench/NOTES.md has other shares. No more tiles than that.
+inline constexpr float kHalvedShare = 0.5f;
+inline constexpr uint32_t kLeastHalved = 64, kMaxHalvedLists = 1024;
 
 // A splat in one row of tiles.
 struct alignas(16) TileStrip {
