@@ -40,11 +40,11 @@ TEST(Results, NumbersAndNamesArePinned) {
                         VOYAGER_PIN(-17, VOY_ERROR_TIMEOUT)};
   for (const Pinned& pinned : all) {
     EXPECT_EQ(int{pinned.result}, pinned.number);
-    EXPECT_STREQ(voyResultString(pinned.result), pinned.name);
+    EXPECT_STREQ(voyResultName(pinned.result), pinned.name);
   }
   // None that the list above lacks: the header's next number has no name.
-  EXPECT_STREQ(voyResultString(static_cast<VoyResult>(-18)), "unknown VoyResult");
-  EXPECT_STREQ(voyResultString(static_cast<VoyResult>(2)), "unknown VoyResult");
+  EXPECT_STREQ(voyResultName(static_cast<VoyResult>(-18)), "unknown VoyResult");
+  EXPECT_STREQ(voyResultName(static_cast<VoyResult>(2)), "unknown VoyResult");
 }
 
 TEST(Results, StructureTypesArePinned) {
@@ -75,28 +75,35 @@ TEST(Results, StructureTypesArePinned) {
                                   VOY_STRUCTURE_TYPE_VULKAN_COPY,
                                   VOY_STRUCTURE_TYPE_VULKAN_DEPTH_LIMIT,
                                   VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC,
-                                  VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW};
+                                  VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW,
+                                  VOY_STRUCTURE_TYPE_TIME_BUDGET,
+                                  VOY_STRUCTURE_TYPE_SCENE_STREAMING,
+                                  VOY_STRUCTURE_TYPE_FRAME_STREAMING,
+                                  VOY_STRUCTURE_TYPE_STREAMING_STATS,
+                                  VOY_STRUCTURE_TYPE_SCENE_PROFILE,
+                                  VOY_STRUCTURE_TYPE_OMISSION,
+                                  VOY_STRUCTURE_TYPE_DEVICE_INFO,
+                                  VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION,
+                                  VOY_STRUCTURE_TYPE_EXPERIMENT,
+                                  VOY_STRUCTURE_TYPE_EXPERIMENT_CAPABILITIES,
+                                  VOY_STRUCTURE_TYPE_EXPERIMENT_STATS};
   int number = 0;
   for (const VoyStructureType type : all) EXPECT_EQ(int{type}, ++number);
 }
 
 TEST(Results, ChoicesArePinned) {
   EXPECT_EQ(int{VOY_BACKEND_REFERENCE}, 3);
-  EXPECT_EQ(int{VOY_LOG_INFO}, 2);
+  EXPECT_EQ(int{VOY_LOG_LEVEL_INFO}, 2);
   EXPECT_EQ(int{VOY_SCENE_STORAGE_COMPACT}, 2);
-  EXPECT_EQ(int{VOY_SCENE_NOTE_DAMAGED}, 3);
+  EXPECT_EQ(int{VOY_SCENE_NOTE_KIND_DAMAGED}, 3);
   EXPECT_EQ(int{VOY_COLOR_FORMAT_RGBA32F}, 2);
   EXPECT_EQ(int{VOY_COLOR_FORMAT_RGBA16F}, 3);
   EXPECT_EQ(int{VOY_DEPTH_ENCODING_REVERSED}, 2);
-  EXPECT_EQ(int{VOY_LOD_ALL_LEAVES}, 1);
-  EXPECT_EQ(int{VOY_LOD_LEVELS}, 3);
-  EXPECT_EQ(int{VOY_SEARCH_EXHAUSTIVE}, 1);
-  EXPECT_EQ(int{VOY_SEARCH_TEMPORAL_VISIT}, 4);
-  EXPECT_EQ(int{VOY_SEARCH_SWEEP}, 5);
-  EXPECT_EQ(int{VOY_EXPONENTIAL_LUT}, 3);
-  EXPECT_EQ(int{VOY_EXPONENTIAL_HALF2}, 4);
-  EXPECT_EQ(int{VOY_ALPHA_FILTER_OFF}, 1);
-  EXPECT_EQ(int{VOY_SPLATTING_3DGS}, 1);
+  EXPECT_EQ(int{VOY_LOD_ALL_LEAVES}, 2);
+  EXPECT_EQ(int{VOY_ANTIALIAS_OFF}, 1);
+  EXPECT_EQ(int{VOY_TIME_BUDGET_STATE_UNREACHABLE}, 3);
+  EXPECT_EQ(int{VOY_CLIP_Y_DOWN}, 1);
+  EXPECT_EQ(int{VOY_HAND_LEFT}, 1);
   EXPECT_EQ(int{VOY_STAGE_RESOLVE}, 5);
   EXPECT_EQ(VOY_MAX_STAGES, 16);
 }

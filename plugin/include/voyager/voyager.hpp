@@ -19,8 +19,7 @@ namespace voy {
 class Error : public std::runtime_error {
  public:
   Error(VoyResult result, const char* message)
-      : std::runtime_error(std::string(voyResultString(result)) + ": " + message),
-        result_(result) {}
+      : std::runtime_error(std::string(voyResultName(result)) + ": " + message), result_(result) {}
   VoyResult result() const { return result_; }
 
  private:
@@ -61,7 +60,7 @@ class Handle {
   T handle_ = nullptr;
 };
 
-class Scene : public Handle<VoyScene, voyDestroyScene> {
+class Scene : public Handle<VoyScene, voyCloseScene> {
  public:
   using Handle::Handle;
 
@@ -114,8 +113,7 @@ class View : public Handle<VoyView, voyDestroyView> {
     return omissions;
   }
   VoyFrameStats stats() const {
-    VoyFrameStats stats = {};
-    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    VoyFrameStats stats = VOY_FRAME_STATS_INIT;
     check(voyGetFrameStats(get(), &stats));
     return stats;
   }
