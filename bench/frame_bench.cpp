@@ -47,7 +47,7 @@ struct Totals {
       stage_ms[stage] += stats.milliseconds[stage];
     cut += static_cast<double>(stats.cutSize);
     splats += static_cast<double>(stats.splats);
-    pairs += static_cast<double>(stats.pairsAfter);
+    pairs += static_cast<double>(stats.pairsAfterFilter);
   }
 
   double quantile(double share) {
@@ -94,9 +94,9 @@ void frames(benchmark::State& state, VoyLod lod, double tau) {
   }
 }
 
-BENCHMARK_CAPTURE(frames, tau_0, VOY_LOD_CUT, 0.0)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frames, tau_3, VOY_LOD_CUT, 3.0)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(frames, tau_15, VOY_LOD_CUT, 15.0)
+BENCHMARK_CAPTURE(frames, tau_0, VOY_LOD_AUTO, 0.0)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frames, tau_3, VOY_LOD_AUTO, 3.0)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(frames, tau_15, VOY_LOD_AUTO, 15.0)
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(frames, all_leaves, VOY_LOD_ALL_LEAVES, 0.0)

@@ -99,7 +99,7 @@ int main(int argc, char** argv) try {
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
   streaming.memoryBudget = device_desc.deviceMemoryBudget;
   const Camera first = path.at(0);
-  streaming.start = first.pose.position;
+  streaming.startPosition = first.pose.position;
   VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
   scene_desc.next = &streaming;
   scene_desc.path = argv[1];
@@ -144,13 +144,13 @@ int main(int argc, char** argv) try {
     if (i == 0) first_image = seconds_since(start);
     VoyStreamingStats streamed = VOY_STREAMING_STATS_INIT;
     voyGetStreamingStats(handle, &streamed);
-    const bool whole = stats.missing == 0 || streamed.seenMissingChunks == 0;
+    const bool whole = stats.nodesUnrefined == 0 || streamed.seenMissingChunks == 0;
     if (settled == 0 && i > 10 && whole) settled = seconds_since(start);
     if (i == settling) voyGetStreamingStats(handle, &before);
     if (i >= settling) {
       wall.push_back(1e3 * seconds_since(begun));
       ms.push_back(stats.millisecondsTotal);
-      missing.push_back(static_cast<double>(stats.missing));
+      missing.push_back(static_cast<double>(stats.nodesUnrefined));
       cut.push_back(static_cast<double>(stats.cutSize));
       coarse += !whole;
       seen.push_back(static_cast<double>(streamed.seenChunks));
@@ -175,16 +175,16 @@ int main(int argc, char** argv) try {
       "\"evicted\": %llu, \"failures\": %llu, \"peak_host_mb\": %.0f}\n",
       device.capabilities().deviceName, static_cast<unsigned long long>(info.gaussianCount),
       info.shDegree, megabytes, static_cast<double>(after.budgetBytes) / 1e6,
-      static_cast<unsigned long long>(after.slots),
+      static_cast<unsigned long long>(after.chunkSlots),
       static_cast<unsigned long long>(after.residentChunks),
       static_cast<unsigned long long>(after.neededChunks), device_made, opened, first_image,
       settled, frames, coarse, quantile(missing, 0.5), quantile(missing, 0.99), quantile(cut, 0.5),
       quantile(seen, 0.5), quantile(unseen, 0.5), quantile(unseen, 0.99), quantile(ms, 0.5),
       quantile(ms, 0.99), quantile(wall, 0.5), quantile(wall, 0.99), quantile(wall, 1),
       static_cast<double>(after.bytesRead - before.bytesRead) / 1e6 / metres,
-      static_cast<unsigned long long>(after.late - before.late),
-      static_cast<unsigned long long>(after.arrived - before.arrived),
-      static_cast<unsigned long long>(after.evicted - before.evicted),
+      static_cast<unsigned long long>(after.lateChunks - before.lateChunks),
+      static_cast<unsigned long long>(after.arrivedChunks - before.arrivedChunks),
+      static_cast<unsigned long long>(after.evictedChunks - before.evictedChunks),
       static_cast<unsigned long long>(after.failures), static_cast<double>(peak_kilobytes()) / 1e3);
   return 0;
 } catch (const std::exception& error) {

@@ -1,5 +1,4 @@
 # `cpack` makes a .deb of each component and one relocatable .tar.gz of all.
-set(series ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 set(CPACK_GENERATOR TGZ)
 if(NOT CMAKE_CROSSCOMPILING)  # dpkg-shlibdeps asks this machine's packages
   list(APPEND CPACK_GENERATOR DEB)
@@ -24,7 +23,7 @@ function(voyager_package component name section description)
   set(CPACK_COMPONENT_${key}_DESCRIPTION "This package has ${description}." PARENT_SCOPE)
   set(CPACK_COMPONENT_${key}_DEPENDS ${ARGN} PARENT_SCOPE)
 endfunction()
-voyager_package(runtime libvoyager${series} libs "the library")
+voyager_package(runtime libvoyager${VOYAGER_SERIES} libs "the library")
 voyager_package(development libvoyager-dev libdevel "headers, CMake and pkg-config packages" runtime)
 voyager_package(tools voyager-tools graphics "the command line" runtime)
 voyager_package(http libvoyager-http libs "the module that reads http:// and https://" runtime)

@@ -17,7 +17,7 @@ foreach(module http sog cuda)
 endforeach()
 # As the SONAME, so that packages of two versions share no file.
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE COMPONENT runtime
-  DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/libvoyager${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/libvoyager${VOYAGER_SERIES})
 
 if(VOYAGER_BUILD_TOOLS)
   file(RELATIVE_PATH library_folder ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})

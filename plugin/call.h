@@ -50,7 +50,7 @@ class Call {
   // To the log of the device whose objects the call uses, if any.
   void log_error(const char* message) const {
     if (in_use_.empty()) return;
-    device_of(*in_use_.front()).log.write(VOY_LOG_ERROR, message);
+    device_of(*in_use_.front()).log.write(VOY_LOG_LEVEL_ERROR, message);
   }
 
  private:

@@ -24,8 +24,8 @@ DepthForm form_of(VoyDepthEncoding encoding) {
 
 DepthEncoding checked_encoding(const VoyDepthEncoding& encoding, double near_z, double far_z,
                                const std::string& name) {
-  check_enum(encoding, VOY_DEPTH_ENCODING_REVERSED, (name + ".encoding").c_str());
-  if (encoding == VOY_DEPTH_ENCODING_METRES) return {};
+  check_enum(encoding, VOY_DEPTH_ENCODING_REVERSED, (name + ".depthEncoding").c_str());
+  if (encoding == VOY_DEPTH_ENCODING_METERS) return {};
   if (!(near_z >= kLeastNear && near_z <= kMostNear))
     refuse_number(name + ".nearZ", near_z, "metres from 1e-18 to 1e18");
   if (!(far_z > near_z)) refuse_number(name + ".farZ", far_z, "metres beyond nearZ, or infinity");
@@ -37,7 +37,7 @@ DepthLimits depth_limits(const VoyEyeDepthLimit* limit, const Image& image,
   if (limit == nullptr) return {};
   check_count(limit->reserved, 0, 0, "VoyEyeDepthLimit.reserved");
   const DepthEncoding encoding =
-      checked_encoding(limit->encoding, limit->nearZ, limit->farZ, "VoyEyeDepthLimit");
+      checked_encoding(limit->depthEncoding, limit->nearZ, limit->farZ, "VoyEyeDepthLimit");
   if (limit->depth == nullptr && ring != nullptr && ring->desc().depth_limit) {
     check_count(limit->depthRowPitch, 0, 0, "VoyEyeDepthLimit.depthRowPitch");
     return {nullptr, 0, encoding};
@@ -45,7 +45,7 @@ DepthLimits depth_limits(const VoyEyeDepthLimit* limit, const Image& image,
   if (limit->depth == nullptr && ring != nullptr)
     refuse(
         "VoyEyeDepthLimit.depth: found NULL for a target without depthLimit, expected "
-        "VoyVulkanTargetDesc.depthLimit");
+        "VoyVulkanTargetDesc.hasDepthLimit");
   check_pointer(limit->depth, "VoyEyeDepthLimit.depth");
   if (ring != nullptr && ring->device().sharing() == vulkan::Sharing::device)
     throw ApiError(

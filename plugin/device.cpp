@@ -3,6 +3,7 @@
 
 #include "plugin/backend_choice.h"
 #include "plugin/call.h"
+#include "plugin/experiment.h"
 #include "plugin/structs.h"
 #include "plugin/version.h"
 #include "plugin/vulkan_device.h"
@@ -33,8 +34,8 @@ void check_backend(const VoyBackend& wanted) {
 void check_allocator(const VoyAllocator* allocator) {
   if (allocator == nullptr) return;
   check_structure(allocator, VOY_STRUCTURE_TYPE_ALLOCATOR, "VoyAllocator");
-  if (allocator->allocate == nullptr || allocator->release == nullptr)
-    refuse("desc.allocator: found NULL, expected both allocate and release");
+  if (allocator->allocate == nullptr || allocator->deallocate == nullptr)
+    refuse("desc.allocator: found NULL, expected both allocate and deallocate");
 }
 
 // A bit for each enumerant from 0 to last.
@@ -43,21 +44,12 @@ constexpr uint32_t bits_up_to(Enum last) {
   return (2u << last) - 1;
 }
 
-uint32_t exponentials_of(VoyBackend backend) {
-  if (backend == VOY_BACKEND_CUDA) return bits_up_to(VOY_EXPONENTIAL_HALF2);
-  return bits_up_to(backend == VOY_BACKEND_CPU ? VOY_EXPONENTIAL_LUT : VOY_EXPONENTIAL_EXACT);
-}
-
-uint32_t splattings_of(VoyBackend backend) {
-  return bits_up_to(backend == VOY_BACKEND_CUDA ? VOY_SPLATTING_3DGS : VOY_SPLATTING_OURS);
-}
-
 void log_creation(const DeviceObject& device, const std::string& cuda_left_out) {
   const auto write = [&](VoyLogLevel level, const std::string& what) {
     device.log.write(level, ("voyCreateDevice: " + what).c_str());
   };
-  if (!cuda_left_out.empty()) write(VOY_LOG_WARNING, "AUTO chose the CPU: " + cuda_left_out);
-  write(VOY_LOG_INFO, device.backend->device_name());
+  if (!cuda_left_out.empty()) write(VOY_LOG_LEVEL_WARNING, "AUTO chose the CPU: " + cuda_left_out);
+  write(VOY_LOG_LEVEL_INFO, device.backend->device_name());
 }
 
 // The UUID that the backend must have; NULL for any.
@@ -100,9 +92,9 @@ voyager::DeviceObject::DeviceObject(const VoyDeviceDesc& desc, VoyBackend kind,
     : Object(kKind),
       log{desc.log, desc.logUser, number(desc.logLevel)},
       memory(std::pmr::new_delete_resource()),
-      budget(desc.memoryBudget),
+      budget(desc.hostMemoryBudget),
       device_budget(desc.deviceMemoryBudget),
-      workers(desc.workerThreads),
+      workers(desc.workerThreadCount),
       backend_kind(kind),
       backend(std::move(chosen)) {
   if (desc.allocator != nullptr) memory = &host_memory.emplace(*desc.allocator);
@@ -124,8 +116,8 @@ VoyResult VOY_CALL voyCreateDevice(const VoyDeviceDesc* desc, VoyDevice* device)
     check_pointer(device, "device");
     check_version(desc->apiVersion);
     check_backend(desc->backend);
-    check_count(desc->workerThreads, 0, kMaxWorkerThreads, "desc.workerThreads");
-    check_enum(desc->logLevel, VOY_LOG_INFO, "desc.logLevel");
+    check_count(desc->workerThreadCount, 0, kMaxWorkerThreads, "desc.workerThreadCount");
+    check_enum(desc->logLevel, VOY_LOG_LEVEL_INFO, "desc.logLevel");
     check_allocator(desc->allocator);
     *device = static_cast<VoyDevice>(HandleTable::instance().insert(make_device(*desc, host)));
     return VOY_SUCCESS;
@@ -143,8 +135,10 @@ VoyResult VOY_CALL voyGetCapabilities(VoyDevice device, VoyCapabilities* capabil
   return guarded("voyGetCapabilities", [&](Call& call) {
     const auto object = call.use<DeviceObject>(device);
     VoyVulkanCapabilities* vulkan = nullptr;
+    VoyExperimentCapabilities* experiment = nullptr;
     check_structure(capabilities, VOY_STRUCTURE_TYPE_CAPABILITIES, "VoyCapabilities",
-                    Extension{VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES, vulkan});
+                    Extension{VOY_STRUCTURE_TYPE_VULKAN_CAPABILITIES, vulkan},
+                    Extension{VOY_STRUCTURE_TYPE_EXPERIMENT_CAPABILITIES, experiment});
     if (vulkan != nullptr && object->vulkan == nullptr)
       throw ApiError(VOY_ERROR_UNSUPPORTED,
                      "capabilities.next: found a VoyVulkanCapabilities for a device without a "
@@ -152,21 +146,19 @@ VoyResult VOY_CALL voyGetCapabilities(VoyDevice device, VoyCapabilities* capabil
     VoyCapabilities found = VOY_CAPABILITIES_INIT;
     found.next = capabilities->next;
     found.backend = object->backend_kind;
-    found.workerThreads = static_cast<uint32_t>(object->workers.count());
+    found.workerThreadCount = static_cast<uint32_t>(object->workers.count());
     object->backend->device_name().copy(found.deviceName, sizeof found.deviceName - 1);
     const auto uuid = object->backend->device_uuid();
     std::copy(uuid.begin(), uuid.end(), found.deviceUuid);
     found.maxInstances = kMaxInstances;
     found.maxEyes = kMaxEyes;
     found.maxWidth = found.maxHeight = kMaxImageSide;
-    found.searches = bits_up_to(VOY_SEARCH_SWEEP);
-    found.exponentials = exponentials_of(object->backend_kind);
-    found.splattings = splattings_of(object->backend_kind);
     found.targetKinds =
         bits_up_to(object->vulkan ? VOY_TARGET_KIND_VULKAN : VOY_TARGET_KIND_HOST_MEMORY);
     found.colorFormats = bits_up_to(VOY_COLOR_FORMAT_RGBA16F);
     *capabilities = found;
     if (vulkan != nullptr) fill(*vulkan, *object->vulkan);
+    if (experiment != nullptr) fill(*experiment, object->backend_kind);
     return VOY_SUCCESS;
   });
 }

@@ -31,8 +31,8 @@ VoyDeviceInfo host_info(VoyBackend kind, const Backend& backend) {
   info.usable = 1;
   info.memoryBytes = static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                      static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
-  info.workerThreads = static_cast<uint32_t>(Workers().count());
-  put(backend.device_name(), info.name);
+  info.workerThreadCount = static_cast<uint32_t>(Workers().count());
+  put(backend.device_name(), info.deviceName);
   return info;
 }
 
@@ -44,13 +44,13 @@ std::string cuda_needs() {
 VoyDeviceInfo cuda_info(const BackendDevice& device) {
   VoyDeviceInfo info = device_info(VOY_BACKEND_CUDA, cuda_needs());
   info.usable = device.missing.empty() ? 1 : 0;
-  std::copy(device.uuid.begin(), device.uuid.end(), info.uuid);
+  std::copy(device.uuid.begin(), device.uuid.end(), info.deviceUuid);
   info.memoryBytes = device.memory_bytes;
   std::copy_n(device.capability, 2, info.computeCapability);
   info.cudaVersion = device.cuda_version;
   put(device.driver, info.driver);
-  put(device.name, info.name);
-  put(device.missing, info.missing);
+  put(device.name, info.deviceName);
+  put(device.missing, info.why);
   return info;
 }
 
@@ -60,7 +60,7 @@ void add_cuda(std::vector<VoyDeviceInfo>& all) {
     for (const BackendDevice& device : list_backend("cuda")) all.push_back(cuda_info(device));
   } catch (const Error& error) {
     VoyDeviceInfo info = device_info(VOY_BACKEND_CUDA, cuda_needs());
-    put(error.what(), info.missing);
+    put(error.what(), info.why);
     all.push_back(info);
   }
 }

@@ -4,6 +4,7 @@
 #include "plugin/call.h"
 #include "plugin/claim.h"
 #include "plugin/depth_limit.h"
+#include "plugin/experiment.h"
 #include "plugin/frame_input.h"
 #include "plugin/frame_targets.h"
 #include "plugin/streaming.h"
@@ -16,35 +17,16 @@ namespace {
 static_assert(int{VOY_STAGE_RESOLVE} + 1 == int{kStageCount});
 static_assert(int{kStageCount} <= VOY_MAX_STAGES);
 
-VoySearch search_of(const FrameStats& stats) {
-  if (!stats.searched) return VOY_SEARCH_AUTO;
-  switch (stats.search) {
-    case Search::exhaustive:
-      return VOY_SEARCH_EXHAUSTIVE;
-    case Search::streaming:
-      return VOY_SEARCH_STREAMING;
-    case Search::temporal:
-      return VOY_SEARCH_TEMPORAL;
-    case Search::temporal_visit:
-      return VOY_SEARCH_TEMPORAL_VISIT;
-    case Search::sweep:
-    case Search::fastest:
-      break;
-  }
-  return VOY_SEARCH_SWEEP;
-}
-
-VoyBudgetState budget_of(const FrameStats& stats) {
-  if (stats.time_budget == 0) return VOY_BUDGET_STATE_NONE;
-  if (stats.total_milliseconds <= stats.time_budget) return VOY_BUDGET_STATE_HELD;
-  return stats.tau_is_greatest ? VOY_BUDGET_STATE_UNREACHABLE : VOY_BUDGET_STATE_LATE;
+VoyTimeBudgetState budget_of(const FrameStats& stats) {
+  if (stats.time_budget == 0) return VOY_TIME_BUDGET_STATE_NONE;
+  if (stats.total_milliseconds <= stats.time_budget) return VOY_TIME_BUDGET_STATE_HELD;
+  return stats.tau_is_greatest ? VOY_TIME_BUDGET_STATE_UNREACHABLE : VOY_TIME_BUDGET_STATE_LATE;
 }
 
 void fill(VoyFrameStats& out, const FrameStats& in) {
   out.frameIndex = in.frame_index;
-  out.search = search_of(in);
   out.tauStar = in.tau_star;
-  for (int i = 0; i < 3; ++i) out.cutCentre[i] = in.cut_centre[i];
+  for (int i = 0; i < 3; ++i) out.cutCenter[i] = in.cut_centre[i];
   out.stageCount = kStageCount;
   out.nodesTotal = in.nodes_total;
   out.nodesTested = in.nodes_tested;
@@ -52,20 +34,20 @@ void fill(VoyFrameStats& out, const FrameStats& in) {
   out.chunksRead = in.chunks_read;
   out.bytesRead = in.bytes_read;
   out.cutSize = in.cut_size;
-  out.entered = in.entered;
-  out.left = in.left;
-  out.missing = in.missing;
+  out.nodesEntered = in.entered;
+  out.nodesExited = in.left;
+  out.nodesUnrefined = in.missing;
   out.bytesStreamed = in.bytes_streamed;
   out.bytesNeeded = in.bytes_needed;
   out.splats = in.splats;
-  out.pairsBefore = in.pairs_before;
-  out.pairsAfter = in.pairs_after;
+  out.pairsBeforeFilter = in.pairs_before;
+  out.pairsAfterFilter = in.pairs_after;
   out.pairsDropped = in.pairs_dropped;
   std::copy(std::begin(in.milliseconds), std::end(in.milliseconds), out.milliseconds);
   out.millisecondsTotal = in.total_milliseconds;
   out.tau = in.tau;
-  out.timeBudget = in.time_budget;
-  out.budgetState = budget_of(in);
+  out.millisecondsBudget = in.time_budget;
+  out.timeBudgetState = budget_of(in);
 }
 
 }  // namespace
@@ -94,9 +76,9 @@ VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame) {
     input.tau = object->view->next_tau(object->tau);
     if (streaming != nullptr) {
       check_count(streaming->waitResident, 0, 1, "frame.next.waitResident");
-      check_count(streaming->standIn, 0, 1, "frame.next.standIn");
+      check_count(streaming->allowFallback, 0, 1, "frame.next.allowFallback");
       input.wait_resident = streaming->waitResident != 0;
-      input.stand_in = streaming->standIn != 0;
+      input.stand_in = streaming->allowFallback != 0;
     }
     for (const auto& scene : object->scenes) log_streaming(object->device(), *scene->scene);
     if (vulkan == nullptr)
@@ -110,13 +92,17 @@ VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame) {
 VoyResult VOY_CALL voyGetFrameStats(VoyView view, VoyFrameStats* stats) {
   return guarded("voyGetFrameStats", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
-    check_structure(stats, VOY_STRUCTURE_TYPE_FRAME_STATS, "VoyFrameStats");
+    VoyExperimentStats* experiment = nullptr;
+    check_structure(stats, VOY_STRUCTURE_TYPE_FRAME_STATS, "VoyFrameStats",
+                    Extension{VOY_STRUCTURE_TYPE_EXPERIMENT_STATS, experiment});
     const auto frame = claim(*object);
     check_has_frame(*object);
-    VoyFrameStats found = {};
-    found.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
-    fill(found, object->view->stats());
+    VoyFrameStats found = VOY_FRAME_STATS_INIT;
+    found.next = stats->next;
+    const FrameStats& last = object->view->stats();
+    fill(found, last);
     *stats = found;
+    if (experiment != nullptr) fill(*experiment, last);
     return VOY_SUCCESS;
   });
 }

@@ -37,7 +37,7 @@ uint32_t VOY_CALL voyGetVersion(void) {
   return VOY_MAKE_VERSION(VOYAGER_VERSION_MAJOR, VOYAGER_VERSION_MINOR, VOYAGER_VERSION_PATCH);
 }
 
-const char* VOY_CALL voyResultString(VoyResult result) {
+const char* VOY_CALL voyResultName(VoyResult result) {
   switch (number(result)) {
 #define VOYAGER_NAME(enumerant) \
   case enumerant:               \
@@ -79,9 +79,9 @@ const char* VOY_CALL voyStageName(VoyStage stage) {
   return index < kStageCount ? kStageNames[index] : nullptr;
 }
 
-VoyResult VOY_CALL voyFovFromAngles(double left, double right, double up, double down,
-                                    VoyFrustum* frustum) {
-  return guarded("voyFovFromAngles", [&](Call&) {
+VoyResult VOY_CALL voyFrustumFromAngles(double left, double right, double up, double down,
+                                        VoyFrustum* frustum) {
+  return guarded("voyFrustumFromAngles", [&](Call&) {
     check_pointer(frustum, "frustum");
     const VoyFrustum tangents = {angle_tangent(left, "left"), angle_tangent(right, "right"),
                                  angle_tangent(up, "up"), angle_tangent(down, "down")};
@@ -91,9 +91,9 @@ VoyResult VOY_CALL voyFovFromAngles(double left, double right, double up, double
   });
 }
 
-VoyResult VOY_CALL voyFovFromIntrinsics(double fx, double fy, double cx, double cy, double width,
-                                        double height, VoyFrustum* frustum) {
-  return guarded("voyFovFromIntrinsics", [&](Call&) {
+VoyResult VOY_CALL voyFrustumFromIntrinsics(double fx, double fy, double cx, double cy,
+                                            double width, double height, VoyFrustum* frustum) {
+  return guarded("voyFrustumFromIntrinsics", [&](Call&) {
     check_pointer(frustum, "frustum");
     check_positive(fx, "fx");
     check_positive(fy, "fy");

@@ -27,7 +27,7 @@ void* HostMemory::do_allocate(size_t size, size_t alignment) {
 
 void HostMemory::do_deallocate(void* memory, size_t size, size_t alignment) {
   try {
-    allocator_.release(allocator_.user, memory, size, alignment);
+    allocator_.deallocate(allocator_.user, memory, size, alignment);
   } catch (...) {
     // Called from destructors: there is nobody to tell.
   }

@@ -12,7 +12,7 @@ DeviceObject::~DeviceObject() {
 void DeviceObject::abandon() noexcept {
   if (abandoned.exchange(true)) return;
   log.write(
-      VOY_LOG_ERROR,
+      VOY_LOG_LEVEL_ERROR,
       "a frame into a Vulkan target did not finish, because `released` was not signalled. The "
       "memory that it may still use is not freed, and the device draws no more frames");
 }

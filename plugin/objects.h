@@ -23,7 +23,7 @@ namespace voyager {
 struct Log {
   VoyLogFunction function = nullptr;
   void* user = nullptr;
-  int32_t level = VOY_LOG_WARNING;
+  int32_t level = VOY_LOG_LEVEL_WARNING;
 
   void write(VoyLogLevel message_level, const char* message) const noexcept {
     if (function == nullptr || static_cast<int32_t>(message_level) > level) return;
@@ -137,7 +137,7 @@ struct TargetObject final : Child {
 };
 
 struct CompositeObject final : Child {
-  using Handle = VoyComposite;
+  using Handle = VoyVulkanComposite;
   static constexpr Kind kKind = Kind::composite;
   CompositeObject(std::shared_ptr<DeviceObject> owner, const vulkan::CompositeDesc& desc)
       : Child(kKind, std::move(owner)), composite(device().vulkan, desc) {}

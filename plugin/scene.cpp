@@ -35,15 +35,15 @@ VoySceneStorage storage_of(Storage storage) {
 VoySceneNoteKind kind_of(SceneNote::Kind kind) {
   switch (kind) {
     case SceneNote::Kind::repaired:
-      return VOY_SCENE_NOTE_REPAIRED;
+      return VOY_SCENE_NOTE_KIND_REPAIRED;
     case SceneNote::Kind::dropped:
-      return VOY_SCENE_NOTE_DROPPED;
+      return VOY_SCENE_NOTE_KIND_DROPPED;
     case SceneNote::Kind::damaged:
-      return VOY_SCENE_NOTE_DAMAGED;
+      return VOY_SCENE_NOTE_KIND_DAMAGED;
     case SceneNote::Kind::omitted:
       break;
   }
-  return VOY_SCENE_NOTE_OMITTED;
+  return VOY_SCENE_NOTE_KIND_OMITTED;
 }
 
 VoySceneNote note_of(const SceneNote& note) {
@@ -67,12 +67,13 @@ uint32_t damaged_chunks(const Scene& scene) {
 void log_opening(const Log& log, const Scene& scene) {
   const std::string tree =
       scene.flat() ? "a flat scene" : std::to_string(scene.node_count) + " nodes in its tree";
-  log.write(VOY_LOG_INFO, ("voyOpenScene: " + scene.name + ": " + std::to_string(scene.leaf_count) +
-                           " Gaussians, " + tree + (scene.streamed() ? ", streamed" : ""))
-                              .c_str());
+  log.write(VOY_LOG_LEVEL_INFO,
+            ("voyOpenScene: " + scene.name + ": " + std::to_string(scene.leaf_count) +
+             " Gaussians, " + tree + (scene.streamed() ? ", streamed" : ""))
+                .c_str());
   for (const SceneNote& note : scene.notes)
     if (note.kind != SceneNote::Kind::omitted)
-      log.write(VOY_LOG_WARNING,
+      log.write(VOY_LOG_LEVEL_WARNING,
                 ("voyOpenScene: " + scene.name + ": " + note.what + ": " + note.why).c_str());
 }
 
@@ -87,8 +88,8 @@ void put_profile(const Scene& scene, VoySceneProfile& out) {
   out.reserved = 0;
   std::copy(profile.chunks_of_degree.begin(), profile.chunks_of_degree.end(), out.chunksByShDegree);
   out.opacitiesAboveOne = profile.opacities_above_one;
-  out.leastAnisotropy = profile.least_anisotropy;
-  out.greatestAnisotropy = profile.greatest_anisotropy;
+  out.minAnisotropy = profile.least_anisotropy;
+  out.maxAnisotropy = profile.greatest_anisotropy;
 }
 
 VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
@@ -100,20 +101,20 @@ VoySceneInfo info_of(const Scene& scene, uint64_t resident_bytes) {
   info.damagedChunkCount = damaged_chunks(scene);
   info.shDegree = static_cast<uint32_t>(scene.sh_degree);
   info.storage = storage_of(scene.storage);
-  info.antialiased = scene.native.antialiased() ? 1 : 0;
+  info.trainedAntialiased = scene.native.antialiased() ? 1 : 0;
   for (int i = 0; i < 3; ++i) {
     info.origin[i] = scene.origin[i];
     info.boundsMin[i] = scene.origin[i] + static_cast<double>(scene.bounds_min[i]);
     info.boundsMax[i] = scene.origin[i] + static_cast<double>(scene.bounds_max[i]);
   }
   info.residentBytes = resident_bytes;
-  info.droppedCount = scene.import.dropped();
-  info.repairedCount = scene.import.repaired();
-  info.positionError = scene.position_error;
+  info.droppedGaussianCount = scene.import.dropped();
+  info.repairCount = scene.import.repaired();
+  info.maxPositionError = scene.position_error;
   info.nativePixel = scene.native.pixel;
   const bool known = scene.native.source != NativeSource::unknown;
-  info.lowPass = known ? scene.native.low_pass : kLowPass;
-  info.nativeSource = static_cast<VoyNativeSource>(scene.native.source);
+  info.pixelFilter = known ? scene.native.low_pass : kLowPass;
+  info.nativePixelSource = static_cast<VoyNativePixelSource>(scene.native.source);
   return info;
 }
 
@@ -138,8 +139,8 @@ VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* desc, VoyS
   });
 }
 
-VoyResult VOY_CALL voyDestroyScene(VoyScene scene) {
-  return guarded("voyDestroyScene", [&](Call& call) {
+VoyResult VOY_CALL voyCloseScene(VoyScene scene) {
+  return guarded("voyCloseScene", [&](Call& call) {
     for (const auto& object : call.remove<SceneObject>(scene)) {
       // No call holds the scene now, so no view of it can appear any more.
       for (const auto& child : HandleTable::instance().children(*object->parent(), Kind::view)) {

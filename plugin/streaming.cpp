@@ -34,10 +34,10 @@ void count_device_bytes(SceneObject& object) {
 }  // namespace
 
 void check_streaming(const VoySceneStreaming& streaming) {
-  check_count(streaming.readerThreads, 0, kMostReaders, "desc.next.readerThreads");
+  check_count(streaming.readerThreadCount, 0, kMostReaders, "desc.next.readerThreadCount");
   check_count(streaming.reserved, 0, 0, "desc.next.reserved");
-  for (int axis = 0; streaming.start != nullptr && axis < 3; ++axis)
-    check_coordinate(streaming.start[axis], "desc.next.start");
+  for (int axis = 0; streaming.startPosition != nullptr && axis < 3; ++axis)
+    check_coordinate(streaming.startPosition[axis], "desc.next.startPosition");
 }
 
 Budget& SceneObject::pool_budget() const {
@@ -48,9 +48,10 @@ void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>&
                    const VoySceneStreaming& streaming) {
   StreamingDesc desc;
   desc.budget = allowed(streaming.memoryBudget, object.pool_budget().left());
-  if (streaming.start != nullptr)
-    desc.start = {streaming.start[0], streaming.start[1], streaming.start[2]};
-  desc.readers = streaming.readerThreads == 0 ? kDefaultReaders : streaming.readerThreads;
+  if (streaming.startPosition != nullptr)
+    desc.start = {streaming.startPosition[0], streaming.startPosition[1],
+                  streaming.startPosition[2]};
+  desc.readers = streaming.readerThreadCount == 0 ? kDefaultReaders : streaming.readerThreadCount;
   object.scene = open_streamed(source, desc, *object.device().backend, &object.memory,
                                object.device().workers);
   count_device_bytes(object);
@@ -59,7 +60,7 @@ void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>&
 void log_streaming(const DeviceObject& device, const Scene& scene) {
   if (!scene.streamed()) return;
   for (const std::string& line : scene.stream->take_messages())
-    device.log.write(VOY_LOG_WARNING, ("streaming: " + line).c_str());
+    device.log.write(VOY_LOG_LEVEL_WARNING, ("streaming: " + line).c_str());
 }
 
 }  // namespace voyager
@@ -99,18 +100,18 @@ VoyResult VOY_CALL voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats
     VoyStreamingStats out = VOY_STREAMING_STATS_INIT;
     out.next = stats->next;
     out.budgetBytes = object->scene->stream->pool_bytes();
-    out.slots = found.slots;
+    out.chunkSlots = found.slots;
     out.residentChunks = found.resident;
     out.neededChunks = found.need.chunks;
     out.missingChunks = found.need.missing;
     out.missingBytes = found.need.missing_bytes;
     out.seenChunks = found.need.seen;
     out.seenMissingChunks = found.need.seen_missing;
-    out.requested = found.chunks.requested;
-    out.arrived = found.chunks.arrived;
-    out.late = found.chunks.late;
-    out.evicted = found.chunks.evicted;
-    out.flushed = found.chunks.flushed;
+    out.requestedChunks = found.chunks.requested;
+    out.arrivedChunks = found.chunks.arrived;
+    out.lateChunks = found.chunks.late;
+    out.evictedChunks = found.chunks.evicted;
+    out.flushedChunks = found.chunks.flushed;
     out.reads = found.reads;
     out.bytesRead = found.bytes_read;
     out.failures = found.failures;

@@ -20,9 +20,9 @@ void check_time_budget(const VoyTimeBudget& budget) {
       refuse_number(std::string("VoyTimeBudget.") + field, found, expected);
   };
   check("milliseconds", budget.milliseconds, budget.milliseconds > 0, "a finite number, > 0");
-  check("leastTau", budget.leastTau, budget.leastTau >= 0, "a finite number of pixels, >= 0");
-  check("greatestTau", budget.greatestTau, budget.greatestTau >= budget.leastTau,
-        "a finite number of pixels, >= leastTau");
+  check("minTau", budget.minTau, budget.minTau >= 0, "a finite number of pixels, >= 0");
+  check("maxTau", budget.maxTau, budget.maxTau >= budget.minTau,
+        "a finite number of pixels, >= minTau");
 }
 
 void set_time_budget(ViewObject& view, const VoyTimeBudget& budget) {
@@ -30,7 +30,7 @@ void set_time_budget(ViewObject& view, const VoyTimeBudget& budget) {
     throw ApiError(VOY_ERROR_UNSUPPORTED,
                    "VoyTimeBudget: found a view that draws every leaf, where tau has no effect; "
                    "expected a view that draws a cut");
-  view.view->set_time_budget({budget.milliseconds, budget.leastTau, budget.greatestTau}, view.tau);
+  view.view->set_time_budget({budget.milliseconds, budget.minTau, budget.maxTau}, view.tau);
 }
 
 }  // namespace voyager

@@ -2,14 +2,13 @@
 
 #include "plugin/call.h"
 #include "plugin/claim.h"
+#include "plugin/experiment.h"
 #include "plugin/structs.h"
 #include "plugin/time_budget.h"
 
 using namespace voyager;
 
 namespace {
-
-constexpr uint32_t kDefaultLutSize = 32, kMaxLutSize = 4096;
 
 // Counts come first: the arrays of a count that is refused are never read.
 void check_counts(const VoyViewDesc& desc) {
@@ -29,82 +28,17 @@ void check_counts(const VoyViewDesc& desc) {
   check_count(desc.maxHeight, 1, kMaxImageSide, "desc.maxHeight");
 }
 
-Search search_of(VoySearch search) {
-  switch (search) {
-    case VOY_SEARCH_EXHAUSTIVE:
-      return Search::exhaustive;
-    case VOY_SEARCH_STREAMING:
-      return Search::streaming;
-    case VOY_SEARCH_TEMPORAL:
-      return Search::temporal;
-    case VOY_SEARCH_SWEEP:
-      return Search::sweep;
-    case VOY_SEARCH_TEMPORAL_VISIT:
-      return Search::temporal_visit;
-    default:
-      return Search::fastest;
-  }
-}
-
-Lod lod_of(VoyLod lod) {
-  switch (lod) {
-    case VOY_LOD_ALL_LEAVES:
-      return Lod::all_leaves;
-    case VOY_LOD_BLOCKS:
-      return Lod::blocks;
-    case VOY_LOD_LEVELS:
-      return Lod::levels;
-    default:
-      return Lod::cut;
-  }
-}
-
-Exponential exponential_of(const VoyViewDesc& desc, VoyBackend backend) {
-  switch (desc.exponential) {
-    case VOY_EXPONENTIAL_EXACT:
-      return Exponential::exact;
-    case VOY_EXPONENTIAL_EX2:
-      return Exponential::ex2;
-    case VOY_EXPONENTIAL_HALF2:
-      return Exponential::half2;
-    case VOY_EXPONENTIAL_LUT:
-      return Exponential::lut;
-    default:
-      return backend == VOY_BACKEND_CUDA && desc.splatting == VOY_SPLATTING_OURS
-                 ? Exponential::ex2
-                 : Exponential::exact;
-  }
-}
-
-Antialias antialias_of(VoyAntialias antialias) {
-  switch (antialias) {
-    case VOY_ANTIALIAS_OFF:
-      return Antialias::off;
-    case VOY_ANTIALIAS_TRUTH:
-      return Antialias::truth;
-    default:
-      return Antialias::on;
-  }
-}
-
-PipelineDesc checked_choices(const VoyViewDesc& desc, VoyBackend backend) {
+PipelineDesc checked_choices(const VoyViewDesc& desc, const VoyExperiment* experiment,
+                             VoyBackend backend) {
   check_tau(desc.tau);
-  check_enum(desc.lod, VOY_LOD_LEVELS, "desc.lod");
-  check_enum(desc.search, VOY_SEARCH_SWEEP, "desc.search");
-  check_enum(desc.alphaFilter, VOY_ALPHA_FILTER_OFF, "desc.alphaFilter");
-  check_enum(desc.exponential, VOY_EXPONENTIAL_HALF2, "desc.exponential");
-  check_count(desc.lutSize, 0, kMaxLutSize, "desc.lutSize");
-  check_enum(desc.splatting, VOY_SPLATTING_3DGS, "desc.splatting");
-  check_enum(desc.antialias, VOY_ANTIALIAS_TRUTH, "desc.antialias");
+  check_enum(desc.lod, VOY_LOD_ALL_LEAVES, "desc.lod");
+  check_enum(desc.antialias, VOY_ANTIALIAS_OFF, "desc.antialias");
+  check_count(desc.reserved, 0, 0, "desc.reserved");
   PipelineDesc choices;
   choices.eyes = desc.eyeCount;
-  choices.lod = lod_of(desc.lod);
-  choices.search = search_of(desc.search);
-  choices.alpha_filter = desc.alphaFilter == VOY_ALPHA_FILTER_ON;
-  choices.lut_size = desc.lutSize == 0 ? kDefaultLutSize : desc.lutSize;
-  choices.exponential = exponential_of(desc, backend);
-  choices.antialias = antialias_of(desc.antialias);
-  if (desc.splatting == VOY_SPLATTING_3DGS) choices.splatting = Splatting::baseline_3dgs;
+  choices.lod = desc.lod == VOY_LOD_ALL_LEAVES ? Lod::all_leaves : Lod::cut;
+  choices.antialias = desc.antialias == VOY_ANTIALIAS_OFF ? Antialias::off : Antialias::on;
+  apply_experiment(experiment, backend, choices);
   return choices;
 }
 
@@ -126,11 +60,13 @@ VoyResult VOY_CALL voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyV
   return guarded("voyCreateView", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
     const VoyTimeBudget* budget = nullptr;
+    const VoyExperiment* experiment = nullptr;
     check_structure(desc, VOY_STRUCTURE_TYPE_VIEW_DESC, "VoyViewDesc",
-                    Extension{VOY_STRUCTURE_TYPE_TIME_BUDGET, budget});
+                    Extension{VOY_STRUCTURE_TYPE_TIME_BUDGET, budget},
+                    Extension{VOY_STRUCTURE_TYPE_EXPERIMENT, experiment});
     check_pointer(view, "view");
     check_counts(*desc);
-    const PipelineDesc choices = checked_choices(*desc, owner->backend_kind);
+    const PipelineDesc choices = checked_choices(*desc, experiment, owner->backend_kind);
     if (budget != nullptr) check_time_budget(*budget);
     const auto object =
         std::make_shared<ViewObject>(owner, checked_scenes(call, *desc, *owner), desc->eyeCount);

@@ -31,6 +31,7 @@ vulkan::CompositeDraw checked(const VoyVulkanCompositeDraw& draw, const vulkan::
   check_pointer(draw.commandBuffer, "draw.commandBuffer");
   check_count(draw.imageIndex, 0, ring.desc().images - 1, "draw.imageIndex");
   check_count(draw.layer, 0, ring.desc().layers - 1, "draw.layer");
+  check_count(draw.reserved, 0, 0, "draw.reserved");
   check_enum(draw.depthUse, VOY_VULKAN_DEPTH_USE_WRITE, "draw.depthUse");
   const VkExtent2D& extent = draw.area.extent;
   if (draw.area.offset.x < 0 || draw.area.offset.y < 0 || extent.width == 0 || extent.height == 0 ||
@@ -45,18 +46,19 @@ vulkan::CompositeDraw checked(const VoyVulkanCompositeDraw& draw, const vulkan::
   vulkan::CompositeDraw out;
   out.commands = draw.commandBuffer;
   out.area = draw.area;
+  out.upside_down = draw.upsideDown != VK_FALSE;
   out.depth_use = depth_use_of(draw.depthUse);
   if (out.depth_use == vulkan::DepthUse::none) return out;
-  out.encoding = checked_encoding(draw.encoding, draw.nearZ, draw.farZ, "draw");
+  out.encoding = checked_encoding(draw.depthEncoding, draw.nearZ, draw.farZ, "draw");
   if (out.encoding.form == DepthForm::metres)
-    refuse("draw.encoding: found METRES, expected STANDARD or REVERSED");
+    refuse("draw.depthEncoding: found METERS, expected STANDARD or REVERSED");
   return out;
 }
 
 }  // namespace
 
 VoyResult VOY_CALL voyCreateVulkanComposite(VoyDevice device, const VoyVulkanCompositeDesc* desc,
-                                            VoyComposite* composite) {
+                                            VoyVulkanComposite* composite) {
   return guarded("voyCreateVulkanComposite", [&](Call& call) {
     const auto owner = call.use<DeviceObject>(device);
     check_structure(desc, VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC, "VoyVulkanCompositeDesc");
@@ -65,19 +67,19 @@ VoyResult VOY_CALL voyCreateVulkanComposite(VoyDevice device, const VoyVulkanCom
       throw ApiError(VOY_ERROR_UNSUPPORTED,
                      "device: found a device without a VoyVulkanDeviceDesc, expected one with it");
     const auto object = std::make_shared<CompositeObject>(owner, checked(*desc));
-    *composite = static_cast<VoyComposite>(HandleTable::instance().insert(object));
+    *composite = static_cast<VoyVulkanComposite>(HandleTable::instance().insert(object));
     return VOY_SUCCESS;
   });
 }
 
-VoyResult VOY_CALL voyDestroyVulkanComposite(VoyComposite composite) {
+VoyResult VOY_CALL voyDestroyVulkanComposite(VoyVulkanComposite composite) {
   return guarded("voyDestroyVulkanComposite", [&](Call& call) {
     call.remove<CompositeObject>(composite);
     return VOY_SUCCESS;
   });
 }
 
-VoyResult VOY_CALL voyRecordVulkanComposite(VoyComposite composite,
+VoyResult VOY_CALL voyRecordVulkanComposite(VoyVulkanComposite composite,
                                             const VoyVulkanCompositeDraw* draw) {
   return guarded("voyRecordVulkanComposite", [&](Call& call) {
     const auto object = call.use<CompositeObject>(composite);

@@ -101,7 +101,7 @@ vulkan::DeviceDesc voyager::vulkan_device_desc(const VoyVulkanDeviceDesc& desc) 
   out.instance = desc.instance;
   out.physical_device = desc.physicalDevice;
   out.device = desc.device;
-  out.version = desc.apiVersion;
+  out.version = desc.vulkanVersion;
   for (uint32_t i = 0; i < desc.deviceExtensionCount; ++i) {
     check_pointer(desc.deviceExtensions[i], "deviceExtensions[]");
     out.extensions.emplace_back(desc.deviceExtensions[i]);
@@ -126,7 +126,7 @@ VoyResult VOY_CALL voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physi
   return guarded("voyGetVulkanRequirements", [&](Call&) {
     check_structure(requirements, VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS, "VoyVulkanRequirements");
     VoyVulkanRequirements found = VOY_VULKAN_REQUIREMENTS_INIT;
-    found.apiVersion = vulkan::kLeastVersion;
+    found.vulkanVersion = vulkan::kLeastVersion;
     if (physicalDevice == nullptr) {
       describe_any(found);
     } else {

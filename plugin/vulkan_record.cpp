@@ -103,13 +103,16 @@ VoyResult VOY_CALL voyRecordVulkanDepthLimit(VoyTarget target, const VoyVulkanDe
     check_commands(limit->commandBuffer);
     check_layer(ring, limit->imageIndex, limit->layer);
     check_pointer(limit->depth, "limit.depth");
-    check_layout(limit->layout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "limit.layout");
-    check_offset(limit->offset, ring.desc(), "limit.offset");
+    check_layout(limit->depthLayout, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, "limit.depthLayout");
+    check_offset(limit->depthOffset, ring.desc(), "limit.depthOffset");
     if (!ring.desc().depth_limit)
-      refuse("target: found a target without depthLimit, expected VoyVulkanTargetDesc.depthLimit");
-    ring.record_depth_limit(limit->imageIndex, limit->layer,
-                            {limit->commandBuffer, limit->queueFamily, limit->depth, limit->format,
-                             limit->layout, limit->depthLayer, limit->offset});
+      refuse(
+          "target: found a target without hasDepthLimit, expected "
+          "VoyVulkanTargetDesc.hasDepthLimit");
+    ring.record_depth_limit(
+        limit->imageIndex, limit->layer,
+        {limit->commandBuffer, limit->queueFamily, limit->depth, limit->depthFormat,
+         limit->depthLayout, limit->depthLayer, limit->depthOffset});
     return VOY_SUCCESS;
   });
 }

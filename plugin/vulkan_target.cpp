@@ -119,8 +119,8 @@ vulkan::RingDesc ring_desc(const VoyTargetDesc& desc, const VoyVulkanTargetDesc&
   out.height = desc.height;
   out.images = images.imageCount;
   out.layers = images.layerCount;
-  out.depth = images.depth != VK_FALSE;
-  out.depth_limit = images.depthLimit != VK_FALSE;
+  out.depth = images.hasDepth != VK_FALSE;
+  out.depth_limit = images.hasDepthLimit != VK_FALSE;
   if (out.format == ColorFormat::none && !out.depth)
     refuse("desc: found neither color nor depth, expected at least one");
   read_images(images, device.sharing() == vulkan::Sharing::device, out);

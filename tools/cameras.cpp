@@ -65,7 +65,7 @@ Camera read_camera(const std::string& place, const nlohmann::json& json) {
 
 VoyFrustum Camera::frustum() const {
   VoyFrustum f{};
-  const VoyResult result = voyFovFromIntrinsics(fx, fy, cx, cy, width, height, &f);
+  const VoyResult result = voyFrustumFromIntrinsics(fx, fy, cx, cy, width, height, &f);
   if (result != VOY_SUCCESS) throw Error(ErrorCode::refused_input, voyGetLastErrorMessage());
   return f;
 }

@@ -45,26 +45,26 @@ const char* name_of(VoySearch search) {
   }
 }
 
-const char* name_of(VoyBudgetState state) {
+const char* name_of(VoyTimeBudgetState state) {
   switch (state) {
-    case VOY_BUDGET_STATE_HELD:
+    case VOY_TIME_BUDGET_STATE_HELD:
       return "held";
-    case VOY_BUDGET_STATE_LATE:
+    case VOY_TIME_BUDGET_STATE_LATE:
       return "late";
-    case VOY_BUDGET_STATE_UNREACHABLE:
+    case VOY_TIME_BUDGET_STATE_UNREACHABLE:
       return "unreachable";
     default:
       return "none";
   }
 }
 
-Json to_json(const VoyFrameStats& s) {
+Json to_json(const VoyFrameStats& s, VoySearch search) {
   Json ms;
   for (uint32_t stage = 0; stage < s.stageCount; ++stage)
     ms[voyStageName(static_cast<VoyStage>(stage))] = s.milliseconds[stage];
   ms["total"] = s.millisecondsTotal;
   return {
-      {"search", name_of(s.search)},
+      {"search", name_of(search)},
       {"nodes_total", s.nodesTotal},
       {"nodes_tested", s.nodesTested},
       {"subtrees_visited", s.subtreesVisited},
@@ -72,20 +72,20 @@ Json to_json(const VoyFrameStats& s) {
       {"bytes_read", s.bytesRead},
       {"cut", s.cutSize},
       {"cut_centre",
-       {binary32_hex(s.cutCentre[0]), binary32_hex(s.cutCentre[1]), binary32_hex(s.cutCentre[2])}},
+       {binary32_hex(s.cutCenter[0]), binary32_hex(s.cutCenter[1]), binary32_hex(s.cutCenter[2])}},
       {"tau_star", binary32_hex(s.tauStar)},
       {"tau", s.tau},
-      {"time_budget", s.timeBudget > 0 ? Json(s.timeBudget) : Json()},
-      {"budget", name_of(s.budgetState)},
-      {"entered", s.entered},
-      {"left", s.left},
+      {"time_budget", s.millisecondsBudget > 0 ? Json(s.millisecondsBudget) : Json()},
+      {"budget", name_of(s.timeBudgetState)},
+      {"entered", s.nodesEntered},
+      {"left", s.nodesExited},
       {"splats", s.splats},
-      {"pairs_before", s.pairsBefore},
-      {"pairs_after", s.pairsAfter},
+      {"pairs_before", s.pairsBeforeFilter},
+      {"pairs_after", s.pairsAfterFilter},
       {"pairs_dropped", s.pairsDropped},
       {"bytes_streamed", s.bytesStreamed},
       {"bytes_needed", s.bytesNeeded},
-      {"missing", s.missing},
+      {"missing", s.nodesUnrefined},
       {"ms", ms}};
 }
 
@@ -154,7 +154,7 @@ void FrameFiles::write(size_t first, std::span<const Camera> cameras, const Rend
     for (const uint32_t node : renderer.cut()) text += fmt::format("{}\n", node);
     write_text(cut_.place(first / cameras.size(), ".txt"), text);
   }
-  if (!stats_.empty()) frames_.push_back(to_json(renderer.stats()));
+  if (!stats_.empty()) frames_.push_back(to_json(renderer.stats(), renderer.search()));
 }
 
 void FrameFiles::finish(const Renderer& renderer) {

@@ -15,8 +15,8 @@ namespace {
 // An error ends the command, and is printed there.
 void write_log(void* user, VoyLogLevel level, const char* message) {
   RendererLog& log = *static_cast<RendererLog*>(user);
-  if (level == VOY_LOG_INFO) return detail(message);
-  if (level != VOY_LOG_WARNING) return;
+  if (level == VOY_LOG_LEVEL_INFO) return detail(message);
+  if (level != VOY_LOG_LEVEL_WARNING) return;
   if (log.waits)
     log.warnings.push_back(without_call(message));
   else
@@ -29,13 +29,13 @@ voy::Device create_device(const RenderChoices& choices, RendererLog& log) {
   desc.backend = choices.backend;
   desc.log = write_log;
   desc.logUser = &log;
-  desc.logLevel = verbosity() == Verbosity::verbose ? VOY_LOG_INFO : VOY_LOG_WARNING;
+  desc.logLevel = verbosity() == Verbosity::verbose ? VOY_LOG_LEVEL_INFO : VOY_LOG_LEVEL_WARNING;
   desc.deviceMemoryBudget = static_cast<uint64_t>(std::llround(choices.budget * 1e6));
   const bool on_host = choices.backend == VOY_BACKEND_CPU ||
                        choices.backend == VOY_BACKEND_REFERENCE ||
                        (choices.budget > 0 && choices.backend == VOY_BACKEND_AUTO &&
                         voyQueryBackend(VOY_BACKEND_CUDA) != VOY_SUCCESS);
-  if (on_host) desc.memoryBudget = desc.deviceMemoryBudget;
+  if (on_host) desc.hostMemoryBudget = desc.deviceMemoryBudget;
   return voy::Device::create(desc);
 }
 
@@ -44,7 +44,7 @@ voy::Scene open_scene(const voy::Device& device, const std::string& path,
   VoySceneDesc desc = VOY_SCENE_DESC_INIT;
   desc.path = path.c_str();
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
-  streaming.start = choices.start;
+  streaming.startPosition = choices.start;
   if (choices.streamed) desc.next = &streaming;
   return device.open_scene(desc);
 }
@@ -59,16 +59,15 @@ voy::View create_view(const voy::Device& device, VoyScene scene, const RenderCho
   desc.maxHeight = max_height * choices.supersample;
   desc.lod = choices.lod;
   desc.tau = choices.tau;
-  const bool temporal = choices.search == VOY_SEARCH_AUTO || choices.search == VOY_SEARCH_TEMPORAL;
-  desc.search = temporal && !choices.slack ? VOY_SEARCH_TEMPORAL_VISIT : choices.search;
-  desc.alphaFilter = choices.alpha_filter;
-  desc.exponential = choices.exponential;
-  desc.lutSize = choices.lut_size;
-  desc.splatting = choices.splatting;
   desc.antialias = choices.antialias;
+  VoyExperiment experiment = choices.experiment;
+  const bool temporal =
+      experiment.search == VOY_SEARCH_AUTO || experiment.search == VOY_SEARCH_TEMPORAL;
+  if (temporal && !choices.slack) experiment.search = VOY_SEARCH_TEMPORAL_VISIT;
   VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
   budget.milliseconds = choices.time_budget;
-  if (choices.time_budget > 0) desc.next = &budget;
+  if (choices.time_budget > 0) experiment.next = &budget;
+  desc.next = &experiment;
   return device.create_view(desc);
 }
 
@@ -81,6 +80,14 @@ Renderer::Renderer(const std::string& scene, const RenderChoices& choices, uint3
       scene_(open_scene(device_, scene, choices)),
       view_(create_view(device_, scene_.get(), choices, max_width, max_height)),
       images_(choices.eyes) {}
+
+VoySearch Renderer::search() const {
+  VoyExperimentStats found = VOY_EXPERIMENT_STATS_INIT;
+  VoyFrameStats stats = VOY_FRAME_STATS_INIT;
+  stats.next = &found;
+  voy::check(voyGetFrameStats(view_.get(), &stats));
+  return found.search;
+}
 
 voy::Target Renderer::create_target(const Camera& camera, RenderedImage& image) const {
   const size_t pixels = size_t{camera.width} * camera.height;
@@ -115,7 +122,8 @@ void Renderer::describe() const {
   const VoyCapabilities found = device_.capabilities();
   const bool cuda = found.backend == VOY_BACKEND_CUDA;
   note(fmt::format("drawing with the {} backend: {}{}", backend_name(found.backend),
-                   found.deviceName, cuda ? "" : fmt::format(", {} threads", found.workerThreads)));
+                   found.deviceName,
+                   cuda ? "" : fmt::format(", {} threads", found.workerThreadCount)));
 }
 
 void Renderer::render(std::span<const Camera> cameras) {
@@ -135,7 +143,7 @@ void Renderer::render(std::span<const Camera> cameras) {
   std::copy_n(choices_.background, 3, frame.background);
   VoyFrameStreaming streaming = VOY_FRAME_STREAMING_INIT;
   streaming.waitResident = choices_.wait_resident ? 1 : 0;
-  streaming.standIn = choices_.keep_going ? 1 : 0;
+  streaming.allowFallback = choices_.keep_going ? 1 : 0;
   if (choices_.streamed) frame.next = &streaming;
   view_.render(frame);
   if (!samples()) return;

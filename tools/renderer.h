@@ -7,20 +7,17 @@
 
 #include "tools/cameras.h"
 #include "voyager/voyager.hpp"
+#include "voyager/voyager_experiment.h"
 
 namespace voyager::tools {
 
 struct RenderChoices {
   VoyBackend backend = VOY_BACKEND_AUTO;
-  VoyLod lod = VOY_LOD_CUT;
+  VoyLod lod = VOY_LOD_AUTO;
   double tau = 3;
   double time_budget = 0;  // milliseconds; 0: tau is fixed
-  VoySearch search = VOY_SEARCH_AUTO;
+  VoyExperiment experiment = VOY_EXPERIMENT_INIT;
   bool slack = true;  // off: VOY_SEARCH_TEMPORAL visits all of the last cut
-  VoyAlphaFilter alpha_filter = VOY_ALPHA_FILTER_ON;
-  VoyExponential exponential = VOY_EXPONENTIAL_AUTO;
-  uint32_t lut_size = 32;
-  VoySplatting splatting = VOY_SPLATTING_OURS;
   VoyAntialias antialias = VOY_ANTIALIAS_ON;
   uint32_t supersample = 1;  // samples a pixel along each axis: METHOD §12's truth where above 1
   float background[3] = {0, 0, 0};  // code values, 0 to 1
@@ -62,6 +59,8 @@ class Renderer {
   bool draws_cut() const { return choices_.lod != VOY_LOD_ALL_LEAVES && has_tree(); }
   std::vector<uint32_t> cut() const { return view_.cut(); }
   VoyFrameStats stats() const { return view_.stats(); }
+  // That found the last frame's cut.
+  VoySearch search() const;
   std::vector<VoyOmission> omissions() const { return view_.omissions(); }
   std::string device_name() const { return device_.capabilities().deviceName; }
   // Says what draws, and passes the warnings on.

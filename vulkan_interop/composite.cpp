@@ -13,6 +13,7 @@ struct Push {
   int32_t first[2];
   int32_t layer;
   float slope, inverse_far, far_code;
+  int32_t last_row;  // of the area, where the image is drawn upside down; else -1
   alignas(16) Reprojection reprojection;
 };
 static_assert(sizeof(Push) <= 128);  // what every device has
@@ -98,6 +99,7 @@ void Composite::record(const Ring& ring, uint32_t index, uint32_t layer,
                   to.encoding.slope,
                   to.encoding.inverse_far,
                   reversed ? 0.0f : 1.0f,
+                  to.upside_down ? static_cast<int32_t>(to.area.extent.height) - 1 : -1,
                   to.reprojection.value_or(Reprojection{})};
   vk.CmdPushConstants(to.commands, layout_.get(), kFragment, 0, sizeof push, &push);
   const VkViewport viewport{static_cast<float>(to.area.offset.x),

@@ -15,6 +15,7 @@ enum class DepthUse { none, test, write };
 struct CompositeDraw {
   VkCommandBuffer commands = VK_NULL_HANDLE;
   VkRect2D area{};
+  bool upside_down = false;  // the image's first row goes to the last row of `area`
   DepthUse depth_use = DepthUse::none;
   DepthEncoding encoding;  // of the attachment
   std::optional<Reprojection> reprojection;

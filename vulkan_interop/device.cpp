@@ -28,9 +28,9 @@ Device::Device(const DeviceDesc& desc, const ExternalSupport& backend)
       version_(desc.version),
       timelines_(desc.timelines) {
   if (desc.version < kLeastVersion)
-    throw Error(
-        ErrorCode::unsupported,
-        "VoyVulkanDeviceDesc.apiVersion: found a version below Vulkan 1.1, expected 1.1 or newer");
+    throw Error(ErrorCode::unsupported,
+                "VoyVulkanDeviceDesc.vulkanVersion: found a version below Vulkan 1.1, expected 1.1 "
+                "or newer");
   choose_sharing(desc.sharing, backend);
   choose_sync(desc.sync, backend);
   imports_host_memory_ = sharing_ == Sharing::host &&

@@ -60,7 +60,7 @@ VkImageAspectFlags limit_aspect(VkFormat format) {
       return VK_IMAGE_ASPECT_COLOR_BIT;
     default:
       throw Error(ErrorCode::unsupported,
-                  "VoyVulkanDepthLimit.format: found VkFormat " + std::to_string(format) +
+                  "VoyVulkanDepthLimit.depthFormat: found VkFormat " + std::to_string(format) +
                       ", expected D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT");
   }
 }

@@ -25,8 +25,8 @@ class Reader {
     camera.height = side("height");
     const double cx = json_.contains("cx") ? number("cx") : camera.width / 2.0;
     const double cy = json_.contains("cy") ? number("cy") : camera.height / 2.0;
-    if (voyFovFromIntrinsics(number("fx"), number("fy"), cx, cy, camera.width, camera.height,
-                             &camera.frustum) != VOY_SUCCESS)
+    if (voyFrustumFromIntrinsics(number("fx"), number("fy"), cx, cy, camera.width, camera.height,
+                                 &camera.frustum) != VOY_SUCCESS)
       refuse("fx, fy, cx, cy", "a frustum: " + std::string(voyGetLastErrorMessage()));
     const glm::dvec3 position = vector(field("position"), "position");
     for (int i = 0; i < 3; ++i) {

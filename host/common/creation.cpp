@@ -14,7 +14,7 @@ InstanceCreation::InstanceCreation(const char* name, Validation* validation,
                      needs.instanceExtensions + needs.instanceExtensionCount);
   application_.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
   application_.pApplicationName = name;
-  application_.apiVersion = std::max<uint32_t>(needs.apiVersion, VK_API_VERSION_1_1);
+  application_.apiVersion = std::max<uint32_t>(needs.vulkanVersion, VK_API_VERSION_1_1);
   info_.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info_.pApplicationInfo = &application_;
   if (validation) {
@@ -58,7 +58,7 @@ DeviceCreation::DeviceCreation(VkInstance instance, uint32_t api_version, VkPhys
   desc_.getInstanceProcAddr = vkGetInstanceProcAddr;
   desc_.instance = instance;
   desc_.physicalDevice = physical;
-  desc_.apiVersion = api_version;
+  desc_.vulkanVersion = api_version;
   desc_.deviceExtensionCount = info_.enabledExtensionCount;
   desc_.deviceExtensions = extensions_.data();
   desc_.timelineSemaphore = needs.timelineSemaphore;

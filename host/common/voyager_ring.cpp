@@ -12,8 +12,8 @@ VoyagerRing::VoyagerRing(const Gpu& gpu, const voy::Device& device, const RingDe
   VoyVulkanTargetDesc vulkan = VOY_VULKAN_TARGET_DESC_INIT;
   vulkan.imageCount = desc.images;
   vulkan.layerCount = desc.layers;
-  vulkan.depth = desc.depth;
-  vulkan.depthLimit = desc.depth_limit;
+  vulkan.hasDepth = desc.depth;
+  vulkan.hasDepthLimit = desc.depth_limit;
   VoyTargetDesc target = VOY_TARGET_DESC_INIT;
   target.next = &vulkan;
   target.kind = VOY_TARGET_KIND_VULKAN;

@@ -40,6 +40,15 @@ inline double determinant(const Mat3d& m) {
   return dot(m.row[0], cross(m.row[1], m.row[2]));
 }
 
+// Of a matrix that is not singular.
+inline Affine inverse(const Affine& a) {
+  const auto& row = a.linear.row;
+  const double share = 1 / determinant(a.linear);
+  const Mat3d linear = transposed({{share * cross(row[1], row[2]), share * cross(row[2], row[0]),
+                                    share * cross(row[0], row[1])}});
+  return {linear, -1.0 * (linear * a.offset)};
+}
+
 // The unit quaternion of a rotation matrix, up to its sign: from the largest of the four
 // components, so that nothing cancels.
 inline Quatd quaternion_of(const Mat3d& m) {

@@ -89,7 +89,7 @@ void Splats::create_device(const NativeDevice& native) {
   vulkan.instance = native.instance;
   vulkan.physicalDevice = native.physical;
   vulkan.device = native.device;
-  vulkan.apiVersion = VK_API_VERSION_1_1;  // Godot's instance has this version or a newer one
+  vulkan.vulkanVersion = VK_API_VERSION_1_1;  // Godot's instance has this version or a newer one
   vulkan.deviceExtensionCount = static_cast<uint32_t>(extensions.size());
   vulkan.deviceExtensions = extensions.data();
   vulkan.sync = VOY_VULKAN_SYNC_HOST;

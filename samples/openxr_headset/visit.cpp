@@ -202,8 +202,8 @@ std::optional<std::array<Camera, kEyes>> Visit::cameras(const Views& views) cons
     cameras[i].pose = to_voyager(world_from_local * eyes[i]);
     cameras[i].width = images_.eye(i).extent.width;
     cameras[i].height = images_.eye(i).extent.height;
-    if (voyFovFromAngles(fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown,
-                         &cameras[i].frustum) != VOY_SUCCESS) {
+    if (voyFrustumFromAngles(fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown,
+                             &cameras[i].frustum) != VOY_SUCCESS) {
       warn_once(
           "xrLocateViews: found the angles of no frustum, expected left below right and down below "
           "up: such frames stay empty");

@@ -26,7 +26,7 @@ void VoyagerLayer::create_device(uint64_t memory_budget) {
   VoyVulkanDeviceDesc vulkan = graphics_.voyager_desc();
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
   desc.next = &vulkan;
-  desc.memoryBudget = desc.deviceMemoryBudget = memory_budget;  // whichever draws
+  desc.hostMemoryBudget = desc.deviceMemoryBudget = memory_budget;  // whichever draws
   device_ = voy::Device::create(desc);
   capabilities_.next = &vulkan_;
   voy::check(voyGetCapabilities(device_.get(), &capabilities_));
@@ -41,7 +41,7 @@ void VoyagerLayer::create_device(uint64_t memory_budget) {
 // moves.
 void VoyagerLayer::open_scene(const VoyagerOptions& options) {
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
-  if (options.first_frame) streaming.start = options.first_frame->position;
+  if (options.first_frame) streaming.startPosition = options.first_frame->position;
   VoySceneDesc desc = VOY_SCENE_DESC_INIT;
   desc.path = options.scene.c_str();
   if (options.memory_budget > 0) desc.next = &streaming;
@@ -61,8 +61,8 @@ std::string VoyagerLayer::summary() const {
   char text[256];
   std::snprintf(text, sizeof text, "tau %g", frame.tau);
   std::string summary = text;
-  if (frame.timeBudget > 0) {
-    std::snprintf(text, sizeof text, " to take %g ms", frame.timeBudget);
+  if (frame.millisecondsBudget > 0) {
+    std::snprintf(text, sizeof text, " to take %g ms", frame.millisecondsBudget);
     summary += text;
   }
   if (!streams_) return summary;
@@ -71,7 +71,7 @@ std::string VoyagerLayer::summary() const {
   std::snprintf(text, sizeof text, "; streamed: %llu of %llu chunks resident, %llu read, %.2f MB",
                 static_cast<unsigned long long>(streaming.residentChunks),
                 static_cast<unsigned long long>(scene_.info().chunkCount),
-                static_cast<unsigned long long>(streaming.arrived),
+                static_cast<unsigned long long>(streaming.arrivedChunks),
                 static_cast<double>(scene_.info().residentBytes) / 1e6);
   return summary + text;
 }

@@ -55,7 +55,7 @@ CompositePass::CompositePass(const DeviceFunctions& functions, const voy::Device
   desc.renderPass = pass_;
   desc.colorFormat = colour;
   desc.depthFormat = depth;
-  VoyComposite composite = nullptr;
+  VoyVulkanComposite composite = nullptr;
   const VoyResult result = voyCreateVulkanComposite(device.get(), &desc, &composite);
   if (result < 0) functions_.destroy_render_pass(functions_.device, pass_, nullptr);
   voy::check(result);

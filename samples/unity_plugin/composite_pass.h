@@ -57,7 +57,7 @@ class CompositePass {
   const DeviceFunctions& functions_;
   VkFormat colour_, depth_;
   VkRenderPass pass_ = VK_NULL_HANDLE;
-  voy::Handle<VoyComposite, voyDestroyVulkanComposite> composite_;
+  voy::Handle<VoyVulkanComposite, voyDestroyVulkanComposite> composite_;
 };
 
 }  // namespace voyager_unity

@@ -148,13 +148,17 @@ void UNITY_INTERFACE_API voyUnityCloseScene() {
 
 void* UNITY_INTERFACE_API voyUnityCamera(const float* camera_to_world, const float* projection,
                                          float near_z, float far_z, void* colour, void* depth) {
-  float world[16], lens[16];
-  std::copy(camera_to_world, camera_to_world + 16, world);
-  std::copy(projection, projection + 16, lens);
-  const std::lock_guard lock(plugin.mutex);
-  CameraFrame& camera = plugin.cameras[plugin.next_camera++ % plugin.cameras.size()];
-  camera = {scene_pose(world), frustum(lens), near_z, far_z, colour, depth};
-  return &camera;
+  CameraFrame* camera = nullptr;
+  guarded([&] {
+    float world[16], lens[16];
+    std::copy(camera_to_world, camera_to_world + 16, world);
+    std::copy(projection, projection + 16, lens);
+    const CameraFrame frame = {scene_pose(world), frustum(lens), near_z, far_z, colour, depth};
+    const std::lock_guard lock(plugin.mutex);
+    camera = &plugin.cameras[plugin.next_camera++ % plugin.cameras.size()];
+    *camera = frame;
+  });
+  return camera;
 }
 
 UnityRenderingEventAndData UNITY_INTERFACE_API voyUnityRenderEvent() {

@@ -20,10 +20,11 @@ UNITY_INTERFACE_EXPORT int UNITY_INTERFACE_API voyUnityOpenScene(const char* pat
 UNITY_INTERFACE_EXPORT void UNITY_INTERFACE_API voyUnityCloseScene();
 
 // Says what the next event draws, and where. Returns the data for
-// CommandBuffer.IssuePluginEventAndData; it is valid for the next 16 calls. Matrices are
+// CommandBuffer.IssuePluginEventAndData, valid for the next 16 calls; NULL for a camera that
+// Voyager refuses (voyUnityLastError), with which the event draws nothing. Matrices are
 // Camera.cameraToWorldMatrix and Camera.projectionMatrix, lengths are metres.
-// colour: Texture.GetNativeTexturePtr() of a RenderTexture that the splats are blended over. Row 0
-// of it is the top of the picture.
+// colour: Texture.GetNativeTexturePtr() of a RenderTexture that the splats are blended over. Its
+// first row is the bottom of the picture, as Unity draws with Vulkan.
 // depth: the same of a RenderTexture of format Depth and the same size, which hides splats behind
 // it, or NULL.
 UNITY_INTERFACE_EXPORT void* UNITY_INTERFACE_API voyUnityCamera(const float* camera_to_world,

@@ -162,8 +162,9 @@ void SplatRenderer::composite(const CameraFrame& frame) {
   draw.target = images_->target();
   draw.imageIndex = images_->record_acquire(state.commandBuffer);
   draw.area = {{0, 0}, images_->extent()};
+  draw.upsideDown = VK_TRUE;  // as Unity draws into textures with Vulkan
   draw.depthUse = frame.depth ? VOY_VULKAN_DEPTH_USE_TEST : VOY_VULKAN_DEPTH_USE_NONE;
-  draw.encoding = VOY_DEPTH_ENCODING_REVERSED;  // Unity's with Vulkan
+  draw.depthEncoding = VOY_DEPTH_ENCODING_REVERSED;  // Unity's with Vulkan
   draw.nearZ = static_cast<double>(frame.near_z);
   draw.farZ = static_cast<double>(frame.far_z);
   try {

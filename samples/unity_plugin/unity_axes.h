@@ -7,7 +7,7 @@
 namespace voyager_unity {
 
 // `camera_to_world` is Camera.cameraToWorldMatrix. The camera in it looks along -z, as Unity's
-// documentation says, so its handedness is not the world's.
+// documentation says, so its hand is not the world's. Throws voy::Error, as does frustum().
 VoyPose scene_pose(const float (&camera_to_world)[16]);
 
 // `projection` is Camera.projectionMatrix, which follows OpenGL on every platform.

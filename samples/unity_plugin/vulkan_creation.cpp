@@ -43,7 +43,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* own,
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
   if (own->pApplicationInfo) application = *own->pApplicationInfo;
   const uint32_t own_version = application.apiVersion;
-  application.apiVersion = std::max(own_version, needs.apiVersion);
+  application.apiVersion = std::max(own_version, needs.vulkanVersion);
   const Names extensions = with(own->ppEnabledExtensionNames, own->enabledExtensionCount,
                                 needs.instanceExtensions, needs.instanceExtensionCount);
   VkInstanceCreateInfo info = *own;
@@ -151,7 +151,7 @@ bool describe(const UnityVulkanInstance& unity, VoyVulkanDeviceDesc* desc) {
   desc->instance = unity.instance;
   desc->physicalDevice = unity.physicalDevice;
   desc->device = unity.device;
-  desc->apiVersion = created.api_version;
+  desc->vulkanVersion = created.api_version;
   desc->deviceExtensionCount = static_cast<uint32_t>(created.extension_names.size());
   desc->deviceExtensions = created.extension_names.data();
   desc->timelineSemaphore = created.timelines;

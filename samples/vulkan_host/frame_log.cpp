@@ -15,7 +15,7 @@ void FrameLog::add(const VoyagerLayer* voyager) {
     const VoyFrameStats stats = voyager->stats();
     frame["frame"] = stats.frameIndex;  // the last that has ended, where frames overlap
     frame["tau"] = stats.tau;
-    frame["time_budget_ms"] = stats.timeBudget;  // 0: none
+    frame["time_budget_ms"] = stats.millisecondsBudget;  // 0: none
     frame["cut"] = stats.cutSize;
     frame["splats"] = stats.splats;
     frame["nodes_tested"] = stats.nodesTested;
@@ -25,11 +25,11 @@ void FrameLog::add(const VoyagerLayer* voyager) {
     frame["resident_bytes"] = voyager->scene().residentBytes;
     if (const auto streaming = voyager->streaming())
       frame["streaming"] = {{"budget_bytes", streaming->budgetBytes},
-                            {"slots", streaming->slots},
+                            {"slots", streaming->chunkSlots},
                             {"resident_chunks", streaming->residentChunks},
                             {"missing_chunks", streaming->missingChunks},
-                            {"arrived", streaming->arrived},
-                            {"evicted", streaming->evicted}};
+                            {"arrived", streaming->arrivedChunks},
+                            {"evicted", streaming->evictedChunks}};
   }
   frames_.push_back(std::move(frame));
 }

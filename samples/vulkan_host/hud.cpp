@@ -22,7 +22,8 @@ void show_memory(const VoyagerLayer& voyager) {
   if (!streaming) return;
   ImGui::Text("streamed: %llu of %llu chunks in a budget of %.1f MB",
               static_cast<unsigned long long>(streaming->residentChunks),
-              static_cast<unsigned long long>(streaming->slots), megabytes(streaming->budgetBytes));
+              static_cast<unsigned long long>(streaming->chunkSlots),
+              megabytes(streaming->budgetBytes));
   ImGui::Text("still to come: %.1f MB", megabytes(streaming->missingBytes));
 }
 
@@ -30,17 +31,17 @@ void show_stats(const VoyFrameStats& stats) {
   for (uint32_t i = 0; i < stats.stageCount; ++i)
     ImGui::Text("%-10s %7.2f ms", voyStageName(static_cast<VoyStage>(i)), stats.milliseconds[i]);
   ImGui::Text("%-10s %7.2f ms", "total", stats.millisecondsTotal);
-  if (stats.budgetState == VOY_BUDGET_STATE_UNREACHABLE)
+  if (stats.timeBudgetState == VOY_TIME_BUDGET_STATE_UNREACHABLE)
     ImGui::Text("late at the coarsest tau: this machine needs more time");
   const auto count = [](const char* name, uint64_t value) {
     ImGui::Text("%-10s %10llu", name, static_cast<unsigned long long>(value));
   };
   count("cut", stats.cutSize);
-  count("entered", stats.entered);
-  count("left", stats.left);
+  count("entered", stats.nodesEntered);
+  count("left", stats.nodesExited);
   count("tested", stats.nodesTested);
   count("splats", stats.splats);
-  count("pairs", stats.pairsAfter);
+  count("pairs", stats.pairsAfterFilter);
 }
 
 void show_controls(HudState& state, bool has_tree) {

@@ -21,7 +21,7 @@ void VoyagerLayer::create_device(const VoyagerOptions& options) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
   desc.next = &vulkan;
   desc.backend = options.backend;
-  desc.memoryBudget = desc.deviceMemoryBudget = options.memory_budget;  // whichever draws
+  desc.hostMemoryBudget = desc.deviceMemoryBudget = options.memory_budget;  // whichever draws
   device_ = voy::Device::create(desc);
   capabilities_.next = &vulkan_;
   voy::check(voyGetCapabilities(device_.get(), &capabilities_));
@@ -32,7 +32,7 @@ void VoyagerLayer::create_device(const VoyagerOptions& options) {
 // waits for it, and the budget is never exceeded.
 void VoyagerLayer::open_scene(const VoyagerOptions& options) {
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
-  if (options.first_frame) streaming.start = options.first_frame->position;
+  if (options.first_frame) streaming.startPosition = options.first_frame->position;
   VoySceneDesc desc = VOY_SCENE_DESC_INIT;
   desc.path = options.scene.c_str();
   if (options.memory_budget > 0) desc.next = &streaming;
@@ -91,7 +91,7 @@ void VoyagerLayer::create_composite(VkRenderPass render_pass, VkFormat colour, V
   desc.renderPass = render_pass;
   desc.colorFormat = colour;
   desc.depthFormat = depth;
-  VoyComposite composite = nullptr;
+  VoyVulkanComposite composite = nullptr;
   voy::check(voyCreateVulkanComposite(device_.get(), &desc, &composite));
   composite_ = decltype(composite_)(composite);
 }
@@ -103,7 +103,7 @@ void VoyagerLayer::record_depth_limit(VkCommandBuffer commands, uint32_t image,
   limit.queueFamily = vulkan_device_.queue_family();
   limit.imageIndex = image;
   limit.depth = depth.image;
-  limit.format = depth.format;
+  limit.depthFormat = depth.format;
   voy::check(voyRecordVulkanDepthLimit(ring_.target(), &limit));
 }
 
@@ -113,7 +113,7 @@ void VoyagerLayer::record_release(VkCommandBuffer commands, uint32_t image) {
 
 void VoyagerLayer::render(const Camera& camera, uint32_t image, bool limited) {
   VoyEyeDepthLimit limit = VOY_EYE_DEPTH_LIMIT_INIT;  // depth NULL: what was recorded
-  limit.encoding = depth_.encoding;
+  limit.depthEncoding = depth_.encoding;
   limit.nearZ = depth_.near_z;
   limit.farZ = depth_.far_z;
   VoyFrameEye eye = VOY_FRAME_EYE_INIT;
@@ -143,7 +143,7 @@ void VoyagerLayer::record_composite(VkCommandBuffer commands, uint32_t image,
   draw.imageIndex = image;
   draw.area = {{0, 0}, ring_.extent()};
   draw.depthUse = depth_use;
-  draw.encoding = depth_.encoding;
+  draw.depthEncoding = depth_.encoding;
   draw.nearZ = depth_.near_z;
   draw.farZ = depth_.far_z;
   VoyVulkanReprojection reprojection = VOY_VULKAN_REPROJECTION_INIT;

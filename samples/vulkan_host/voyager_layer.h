@@ -91,7 +91,7 @@ class VoyagerLayer {
   VkExtent2D view_extent_ = {0, 0};
   double tau_, frame_time_;
   Camera rendered_ = {};  // of the last frame
-  voy::Handle<VoyComposite, voyDestroyVulkanComposite> composite_;
+  voy::Handle<VoyVulkanComposite, voyDestroyVulkanComposite> composite_;
   VoyagerRing ring_;
 };
 

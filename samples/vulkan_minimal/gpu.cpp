@@ -32,7 +32,7 @@ void Gpu::make_instance() {
   voy::check(voyGetVulkanRequirements(nullptr, &needs));
   VkApplicationInfo application = {};
   application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-  application.apiVersion = needs.apiVersion;
+  application.apiVersion = needs.vulkanVersion;
   VkInstanceCreateInfo info = {};
   info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
   info.pApplicationInfo = &application;
@@ -80,7 +80,7 @@ VoyVulkanDeviceDesc Gpu::voyager_desc() const {
   desc.instance = instance;
   desc.physicalDevice = physical;
   desc.device = device;
-  desc.apiVersion = VK_API_VERSION_1_1;
+  desc.vulkanVersion = VK_API_VERSION_1_1;
   desc.deviceExtensionCount = static_cast<uint32_t>(extensions_.size());
   desc.deviceExtensions = extensions_.data();
   desc.timelineSemaphore = timelines_;

@@ -40,7 +40,7 @@ TEST(CallingConvention, EveryFunctionHasExportAndConvention) {
 TEST(CallingConvention, EveryCallbackAndFunctionPointerHasConvention) {
   const std::string text = declarations();
   const auto pointers = matches(text, R"(\([\w ]*\* ?(\w+)\)\()");
-  std::set<std::string> expected = {"VoyLogFunction", "allocate", "read", "release"};
+  std::set<std::string> expected = {"VoyLogFunction", "allocate", "read", "deallocate"};
   for (const std::string& function : matches(text, R"(\b(voy[A-Z]\w*)\()"))
     expected.insert("PFN_" + function);
   EXPECT_EQ(pointers, expected);

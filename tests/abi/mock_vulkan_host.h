@@ -13,7 +13,7 @@ inline VoyVulkanDeviceDesc vulkan_desc(const std::vector<const char*>& extension
   desc.instance = voyager::test::VulkanMock::instance();
   desc.physicalDevice = voyager::test::VulkanMock::physical();
   desc.device = voyager::test::VulkanMock::handle();
-  desc.apiVersion = VK_API_VERSION_1_2;
+  desc.vulkanVersion = VK_API_VERSION_1_2;
   desc.deviceExtensionCount = static_cast<uint32_t>(extensions.size());
   desc.deviceExtensions = extensions.data();
   desc.timelineSemaphore = VK_TRUE;

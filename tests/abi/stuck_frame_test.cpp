@@ -136,7 +136,7 @@ TEST_F(StuckFrame, ATargetMayGoBeforeTheViewThatDrewIntoIt) {
 
 TEST_F(StuckFrame, ASceneMayGo) {
   module->idle = false;
-  EXPECT_EQ(voy.DestroyScene(host->scene), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(voy.CloseScene(host->scene), VOY_SUCCESS) << voy.message();
   expect_abandoned();
 }
 

@@ -26,7 +26,7 @@ struct VulkanTarget : testing::Test {
     semaphores.releasedHandle.fd = descriptor();
     semaphores.renderedHandle.fd = descriptor();
     ring.imageCount = kImages;
-    ring.depth = VK_TRUE;
+    ring.hasDepth = VK_TRUE;
     ring.images = images;
     ring.semaphoreCount = 1;
     ring.semaphores = &semaphores;
@@ -151,7 +151,7 @@ TEST_F(VulkanTarget, RefusedDescriptionsLeaveTheDescriptorsToTheHost) {
   ring.semaphoreCount = 2;
   EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
   ring = good;
-  ring.depth = VK_FALSE;
+  ring.hasDepth = VK_FALSE;
   EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
   ring = good;
   images[1].colorUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -214,8 +214,8 @@ TEST_F(VulkanTarget, AnImageThatIsPassedTwiceIsRefused) {
 
 // As in Vulkan and C: what is not 0 is true.
 TEST_F(VulkanTarget, ABooleanIsWhatIsNotZero) {
-  ring.depth = 2;
-  ring.depthLimit = 0x100;
+  ring.hasDepth = 2;
+  ring.hasDepthLimit = 0x100;
   ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
   VoyVulkanDepthLimit limit = VOY_VULKAN_DEPTH_LIMIT_INIT;
   limit.commandBuffer = VulkanMock::commands_at(0);
@@ -231,7 +231,7 @@ TEST_F(VulkanTarget, ABooleanIsWhatIsNotZero) {
 
 // Their sum with the target's size would be no int32_t.
 TEST_F(VulkanTarget, OffsetsFromWhichTheTargetReachesNoPixelAreRefused) {
-  ring.depthLimit = VK_TRUE;
+  ring.hasDepthLimit = VK_TRUE;
   ASSERT_EQ(create(), VOY_SUCCESS) << voy.message();
   const VkOffset2D offsets[] = {{INT32_MAX, 0}, {0, INT32_MAX}, {INT32_MAX - 10, 3}, {-1, 0}};
   VoyVulkanCopy copy = VOY_VULKAN_COPY_INIT;
@@ -244,7 +244,7 @@ TEST_F(VulkanTarget, OffsetsFromWhichTheTargetReachesNoPixelAreRefused) {
   VoyVulkanCompositeDesc composite_desc = VOY_VULKAN_COMPOSITE_DESC_INIT;
   composite_desc.renderPass = VulkanMock::as<VkRenderPass>(7);
   composite_desc.colorFormat = VK_FORMAT_B8G8R8A8_UNORM;
-  VoyComposite composite = nullptr;
+  VoyVulkanComposite composite = nullptr;
   ASSERT_EQ(voyCreateVulkanComposite(host.device, &composite_desc, &composite), VOY_SUCCESS)
       << voy.message();
   VoyVulkanCompositeDraw draw = VOY_VULKAN_COMPOSITE_DRAW_INIT;
@@ -252,7 +252,7 @@ TEST_F(VulkanTarget, OffsetsFromWhichTheTargetReachesNoPixelAreRefused) {
   draw.target = target;
   draw.area.extent = {Host::kWidth, Host::kHeight};
   for (const VkOffset2D& offset : offsets) {
-    copy.intoOffset = limit.offset = draw.area.offset = offset;
+    copy.intoOffset = limit.depthOffset = draw.area.offset = offset;
     EXPECT_EQ(voyRecordVulkanCopy(target, &copy), VOY_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(voyRecordVulkanDepthLimit(target, &limit), VOY_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(voyRecordVulkanComposite(composite, &draw), VOY_ERROR_INVALID_ARGUMENT);

@@ -1,4 +1,6 @@
 // A host's depth buffer hides splats: each encoding, and what is refused.
+#include <voyager/voyager_experiment.h>
+
 #include <algorithm>
 
 #include "hostile.h"
@@ -10,23 +12,23 @@ namespace {
 constexpr double kNear = 0.1;
 
 double encoded(VoyDepthEncoding encoding, double z, double far) {
-  if (encoding == VOY_DEPTH_ENCODING_METRES) return z;
+  if (encoding == VOY_DEPTH_ENCODING_METERS) return z;
   const double a = 1 / (1 - kNear / far), b = -kNear * a;
   return encoding == VOY_DEPTH_ENCODING_STANDARD ? a + b / z : (1 - a) - b / z;
 }
 
 double decoded(VoyDepthEncoding encoding, double d, double far) {
-  if (encoding == VOY_DEPTH_ENCODING_METRES) return d;
+  if (encoding == VOY_DEPTH_ENCODING_METERS) return d;
   const double t = encoding == VOY_DEPTH_ENCODING_STANDARD ? 1 - d : d;
   return t == 0 ? kInf : 1 / (1 / far + (1 / kNear - 1 / far) * t);
 }
 
 float cleared(VoyDepthEncoding encoding) {
-  if (encoding == VOY_DEPTH_ENCODING_METRES) return static_cast<float>(kInf);
+  if (encoding == VOY_DEPTH_ENCODING_METERS) return static_cast<float>(kInf);
   return encoding == VOY_DEPTH_ENCODING_STANDARD ? 1 : 0;
 }
 
-constexpr VoyDepthEncoding kEncodings[] = {VOY_DEPTH_ENCODING_METRES, VOY_DEPTH_ENCODING_STANDARD,
+constexpr VoyDepthEncoding kEncodings[] = {VOY_DEPTH_ENCODING_METERS, VOY_DEPTH_ENCODING_STANDARD,
                                            VOY_DEPTH_ENCODING_REVERSED};
 
 // A depth buffer of the size of the host's target, with padding that would hide all.
@@ -35,13 +37,13 @@ struct DepthBuffer {
       : pitch(Host::kWidth + padding), values(pitch * Host::kHeight) {
     limit.depth = values.data();
     limit.depthRowPitch = padding == 0 ? 0 : pitch * sizeof(float);
-    limit.encoding = encoding;
+    limit.depthEncoding = encoding;
     limit.nearZ = kNear;
     limit.farZ = far;
   }
   template <class ValueAt>
   void fill(const ValueAt& value_at) {
-    const bool far_is_one = limit.encoding == VOY_DEPTH_ENCODING_REVERSED;
+    const bool far_is_one = limit.depthEncoding == VOY_DEPTH_ENCODING_REVERSED;
     std::fill(values.begin(), values.end(), far_is_one ? 1.0f : 0.0f);
     for (size_t y = 0; y < Host::kHeight; ++y)
       for (size_t x = 0; x < Host::kWidth; ++x)
@@ -86,7 +88,7 @@ TEST_P(DepthLimitEncodings, HideTheSameSplats) {
     for (const double far : {100.0, kInf})
       for (const size_t padding : {0u, 5u}) {
         SCOPED_TRACE(std::to_string(encoding) + ", far " + std::to_string(far));
-        DepthBuffer buffer(encoding, far, padding), metres(VOY_DEPTH_ENCODING_METRES);
+        DepthBuffer buffer(encoding, far, padding), metres(VOY_DEPTH_ENCODING_METERS);
         buffer.fill([&](size_t x, size_t y) {
           const double z = wall(x, y);
           return z < kInf ? encoded(encoding, z, far) : double{cleared(encoding)};
@@ -110,7 +112,7 @@ TEST_P(DepthLimitEncodings, HideTheSameSplats) {
         EXPECT_TRUE(render(host, buffer.eye(host)) == whole) << "a cleared buffer hid something";
       }
   EXPECT_GT(hidden, 1000u);
-  DepthBuffer nothing(VOY_DEPTH_ENCODING_METRES);
+  DepthBuffer nothing(VOY_DEPTH_ENCODING_METERS);
   nothing.fill([](size_t, size_t) { return 0.0; });
   const Pixels hidden_all = render(host, nothing.eye(host));
   EXPECT_EQ(std::count(hidden_all.color.begin(), hidden_all.color.end(), 0.0f),
@@ -141,21 +143,21 @@ TEST_F(Hostile, DepthLimitsOutOfRange) {
     expect_invalid(with([&](VoyEyeDepthLimit& l) { l.depthRowPitch = pitch; }), "depthRowPitch");
   for (const int encoding : {-1, 3, INT32_MAX, INT32_MIN})
     expect_invalid(
-        with([&](VoyEyeDepthLimit& l) { l.encoding = bad_enum<VoyDepthEncoding>(encoding); }),
-        "encoding");
+        with([&](VoyEyeDepthLimit& l) { l.depthEncoding = bad_enum<VoyDepthEncoding>(encoding); }),
+        "depthEncoding");
   expect_invalid(with([](VoyEyeDepthLimit& l) { l.reserved = 1; }), "reserved");
   for (const VoyDepthEncoding encoding : {VOY_DEPTH_ENCODING_STANDARD, VOY_DEPTH_ENCODING_REVERSED})
     for (const double bad : {0.0, -1.0, 1e-19, 1e19, kInf, kNan}) {
-      expect_invalid(with([&](VoyEyeDepthLimit& l) { l.encoding = encoding, l.nearZ = bad; }),
+      expect_invalid(with([&](VoyEyeDepthLimit& l) { l.depthEncoding = encoding, l.nearZ = bad; }),
                      "nearZ");
       if (bad > 1) continue;
-      expect_invalid(with([&](VoyEyeDepthLimit& l) { l.encoding = encoding, l.farZ = bad; }),
+      expect_invalid(with([&](VoyEyeDepthLimit& l) { l.depthEncoding = encoding, l.farZ = bad; }),
                      "farZ");
     }
   expect_invalid(with([](VoyEyeDepthLimit& l) { l.farZ = l.nearZ; }), "farZ");
   EXPECT_EQ(host.pixels, before) << "a refused frame wrote to the target";
   EXPECT_EQ(with([](VoyEyeDepthLimit& l) {
-              l.encoding = VOY_DEPTH_ENCODING_METRES;
+              l.depthEncoding = VOY_DEPTH_ENCODING_METERS;
               l.nearZ = kNan, l.farZ = -1;
             }),
             VOY_SUCCESS)
@@ -163,7 +165,7 @@ TEST_F(Hostile, DepthLimitsOutOfRange) {
 }
 
 TEST_F(Hostile, ChainsOfAnEye) {
-  DepthBuffer buffer(VOY_DEPTH_ENCODING_METRES);
+  DepthBuffer buffer(VOY_DEPTH_ENCODING_METERS);
   buffer.fill([](size_t, size_t) { return 9.0; });
   VoyEyeDepthLimit first = buffer.limit, second = buffer.limit;
   VoyFrameEye eye = host.eye();
@@ -204,10 +206,12 @@ TEST(DepthLimit, TheBaselineRefusesIt) {
   if (voy.QueryBackend(VOY_BACKEND_CUDA) != VOY_SUCCESS) VOYAGER_SKIP_WITHOUT(CUDA, voy.message());
   Host host(voy, device_for(VOY_BACKEND_CUDA));
   VoyViewDesc desc = host.view_desc();
-  desc.splatting = VOY_SPLATTING_3DGS;
+  VoyExperiment experiment = VOY_EXPERIMENT_INIT;
+  experiment.splatting = VOY_SPLATTING_3DGS;
+  desc.next = &experiment;
   VoyView baseline = nullptr;
   ASSERT_EQ(voy.CreateView(host.device, &desc, &baseline), VOY_SUCCESS) << voy.message();
-  DepthBuffer buffer(VOY_DEPTH_ENCODING_METRES);
+  DepthBuffer buffer(VOY_DEPTH_ENCODING_METERS);
   const VoyFrameEye eye = buffer.eye(host);
   const VoyFrame frame = Host::frame(eye);
   EXPECT_EQ(voy.RenderFrame(baseline, &frame), VOY_ERROR_UNSUPPORTED);

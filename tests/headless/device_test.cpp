@@ -1,5 +1,7 @@
 // Which backend a host gets, on machines with a CUDA device and without, and that
 // VoyCapabilities says what it takes.
+#include <voyager/voyager_experiment.h>
+
 #include "on_backend.h"
 
 namespace device_test {
@@ -108,7 +110,7 @@ std::string creation_log(const Library& voy, VoyBackend backend, const Uuid* uui
   desc.deviceUuid = uuid == nullptr ? nullptr : uuid->bytes;
   desc.logUser = &text;
   desc.log = [](void* user, VoyLogLevel level, const char* message) {
-    EXPECT_EQ(level, VOY_LOG_WARNING) << message;
+    EXPECT_EQ(level, VOY_LOG_LEVEL_WARNING) << message;
     *static_cast<std::string*>(user) += std::string(message) + "\n";
   };
   VoyDevice device = nullptr;
@@ -146,12 +148,12 @@ TEST_F(Devices, TheListHasEachBackendAndSaysWhatIsMissing) {
   for (const VoyDeviceInfo& info : devices) {
     EXPECT_EQ(info.type, VOY_STRUCTURE_TYPE_DEVICE_INFO);
     EXPECT_NE(info.needs[0], '\0');
-    EXPECT_EQ(info.usable == 1, info.missing[0] == '\0') << info.missing;
+    EXPECT_EQ(info.usable == 1, info.why[0] == '\0') << info.why;
     if (info.usable == 0) continue;
-    EXPECT_NE(info.name[0], '\0');
+    EXPECT_NE(info.deviceName[0], '\0');
     EXPECT_GT(info.memoryBytes, 0u);
     Uuid uuid;
-    std::memcpy(uuid.bytes, info.uuid, sizeof uuid.bytes);
+    std::memcpy(uuid.bytes, info.deviceUuid, sizeof uuid.bytes);
     expect_chosen(info.backend, &uuid, info.backend);
   }
   EXPECT_EQ(voy.EnumerateDevices(0, nullptr, nullptr), VOY_ERROR_INVALID_ARGUMENT);
@@ -163,31 +165,33 @@ bool has(uint32_t mask, int enumerant) {
 }
 
 // Each choice by itself, the others as they are by default.
-void expect_views_as_capable(Host& host, const VoyCapabilities& found) {
-  const auto expect_made = [&](bool expected, const VoyViewDesc& desc) {
+void expect_views_as_capable(Host& host, const VoyExperimentCapabilities& found) {
+  const auto expect_made = [&](bool expected, const VoyExperiment& experiment) {
+    VoyViewDesc desc = host.view_desc();
+    desc.next = &experiment;
     VoyView view = nullptr;
     const VoyResult result = host.voy.CreateView(host.device, &desc, &view);
     EXPECT_EQ(result, expected ? VOY_SUCCESS : VOY_ERROR_UNSUPPORTED) << host.voy.message();
     EXPECT_EQ(host.voy.DestroyView(view), VOY_SUCCESS);
   };
-  VoyViewDesc desc = host.view_desc();
+  VoyExperiment experiment = VOY_EXPERIMENT_INIT;
   for (const VoySearch search :
        {VOY_SEARCH_AUTO, VOY_SEARCH_EXHAUSTIVE, VOY_SEARCH_STREAMING, VOY_SEARCH_TEMPORAL,
         VOY_SEARCH_TEMPORAL_VISIT, VOY_SEARCH_SWEEP}) {
-    desc.search = search;
-    expect_made(has(found.searches, search), desc);
+    experiment.search = search;
+    expect_made(has(found.searches, search), experiment);
   }
-  desc = host.view_desc();
+  experiment = VOY_EXPERIMENT_INIT;
   for (const VoyExponential exponential :
        {VOY_EXPONENTIAL_AUTO, VOY_EXPONENTIAL_EXACT, VOY_EXPONENTIAL_EX2, VOY_EXPONENTIAL_LUT,
         VOY_EXPONENTIAL_HALF2}) {
-    desc.exponential = exponential;
-    expect_made(has(found.exponentials, exponential), desc);
+    experiment.exponential = exponential;
+    expect_made(has(found.exponentials, exponential), experiment);
   }
-  desc = host.view_desc();
+  experiment = VOY_EXPERIMENT_INIT;
   for (const VoySplatting splatting : {VOY_SPLATTING_OURS, VOY_SPLATTING_3DGS}) {
-    desc.splatting = splatting;
-    expect_made(has(found.splattings, splatting), desc);
+    experiment.splatting = splatting;
+    expect_made(has(found.splattings, splatting), experiment);
   }
 }
 
@@ -196,17 +200,21 @@ INSTANTIATE_TEST_SUITE_P(Of, Capabilities, ::testing::ValuesIn(kBackends), backe
 
 TEST_P(Capabilities, AreWhatAViewMayChoose) {
   Host host(voy, device_for(GetParam()));
+  VoyExperimentCapabilities experiment = VOY_EXPERIMENT_CAPABILITIES_INIT;
   VoyCapabilities found = VOY_CAPABILITIES_INIT;
+  found.next = &experiment;
   ASSERT_EQ(voy.GetCapabilities(host.device, &found), VOY_SUCCESS) << voy.message();
-  EXPECT_EQ(has(found.splattings, VOY_SPLATTING_3DGS), found.backend == VOY_BACKEND_CUDA);
-  expect_views_as_capable(host, found);
+  EXPECT_EQ(has(experiment.splattings, VOY_SPLATTING_3DGS), found.backend == VOY_BACKEND_CUDA);
+  expect_views_as_capable(host, experiment);
 }
 
 TEST_F(Devices, TheCpuNamesTheBaselineItLacks) {
   for (const VoyBackend backend : {VOY_BACKEND_CPU, VOY_BACKEND_REFERENCE}) {
     Host host(voy, device_for(backend));
     VoyViewDesc desc = host.view_desc();
-    desc.splatting = VOY_SPLATTING_3DGS;
+    VoyExperiment experiment = VOY_EXPERIMENT_INIT;
+    experiment.splatting = VOY_SPLATTING_3DGS;
+    desc.next = &experiment;
     VoyView view = nullptr;
     EXPECT_EQ(voy.CreateView(host.device, &desc, &view), VOY_ERROR_UNSUPPORTED);
     EXPECT_NE(voy.message().find("3dgs"), std::string::npos) << voy.message();
@@ -218,8 +226,7 @@ TEST_F(Devices, AWholeImageHasDroppedNoPair) {
   for (const VoyBackend backend : {VOY_BACKEND_CPU, VOY_BACKEND_REFERENCE}) {
     Host host(voy, device_for(backend));
     ASSERT_EQ(host.render(), VOY_SUCCESS) << voy.message();
-    VoyFrameStats stats = {};
-    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    VoyFrameStats stats = VOY_FRAME_STATS_INIT;
     std::memset(&stats.pairsDropped, 0xff, sizeof stats.pairsDropped);
     ASSERT_EQ(voy.GetFrameStats(host.view, &stats), VOY_SUCCESS) << voy.message();
     EXPECT_EQ(stats.pairsDropped, 0u);

@@ -24,15 +24,15 @@ TEST_F(Hostile, NullEverywhere) {
   expect_invalid(voy.GetSceneNotes(host.scene, 0, nullptr, nullptr), "count");
   expect_invalid(voy.GetViewCut(host.view, 0, 0, nullptr, nullptr), "count");
   expect_invalid(voy.GetFrameStats(host.view, nullptr), "VoyFrameStats");
-  expect_invalid(voy.FovFromAngles(-1, 1, 1, -1, nullptr), "frustum");
-  expect_invalid(voy.FovFromIntrinsics(1, 1, 1, 1, 1, 1, nullptr), "frustum");
+  expect_invalid(voy.FrustumFromAngles(-1, 1, 1, -1, nullptr), "frustum");
+  expect_invalid(voy.FrustumFromIntrinsics(1, 1, 1, 1, 1, 1, nullptr), "frustum");
   for (const VoyResult result :
        {voy.GetCapabilities(nullptr, &capabilities), voy.GetSceneInfo(nullptr, nullptr),
         voy.RenderFrame(nullptr, nullptr), voy.SetViewTau(nullptr, 1),
         voy.OpenScene(nullptr, nullptr, nullptr), voy.CreateView(nullptr, nullptr, nullptr)})
     expect_refused(result, VOY_ERROR_INVALID_HANDLE, "found NULL");
   EXPECT_EQ(voy.DestroyDevice(nullptr), VOY_SUCCESS);
-  EXPECT_EQ(voy.DestroyScene(nullptr), VOY_SUCCESS);
+  EXPECT_EQ(voy.CloseScene(nullptr), VOY_SUCCESS);
   EXPECT_EQ(voy.DestroyView(nullptr), VOY_SUCCESS);
   EXPECT_EQ(voy.DestroyTarget(nullptr), VOY_SUCCESS);
 }
@@ -102,10 +102,10 @@ TEST_F(Hostile, GarbageStaleAndWrongKindHandlesAreToldApart) {
   for (void* garbage : {static_cast<void*>(&something), reinterpret_cast<void*>(1),
                         reinterpret_cast<void*>(UINTPTR_MAX), reinterpret_cast<void*>(0x5),
                         reinterpret_cast<void*>(0x0000000100ffff05)})
-    expect_refused(voy.DestroyScene(static_cast<VoyScene>(garbage)), VOY_ERROR_INVALID_HANDLE,
+    expect_refused(voy.CloseScene(static_cast<VoyScene>(garbage)), VOY_ERROR_INVALID_HANDLE,
                    "no handle of this library");
   const auto as_scene = static_cast<VoyScene>(static_cast<void*>(host.view));
-  expect_refused(voy.DestroyScene(as_scene), VOY_ERROR_INVALID_HANDLE, "found a view handle");
+  expect_refused(voy.CloseScene(as_scene), VOY_ERROR_INVALID_HANDLE, "found a view handle");
   const auto as_view = static_cast<VoyView>(static_cast<void*>(host.target));
   EXPECT_EQ(voy.SetViewTau(as_view, 1), VOY_ERROR_INVALID_HANDLE);
   // Every single-bit change of a handle is another handle or none.
@@ -128,9 +128,8 @@ TEST_F(Hostile, GarbageStaleAndWrongKindHandlesAreToldApart) {
 TEST_F(Hostile, ChildrenDoNotOutliveTheirParents) {
   Host other(voy);
   ASSERT_EQ(other.render(), VOY_SUCCESS);
-  ASSERT_EQ(voy.DestroyScene(other.scene), VOY_SUCCESS);
-  VoyFrameStats stats = {};
-  stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+  ASSERT_EQ(voy.CloseScene(other.scene), VOY_SUCCESS);
+  VoyFrameStats stats = VOY_FRAME_STATS_INIT;
   expect_refused(other.render(), VOY_ERROR_SCENE_DESTROYED, "scene was destroyed");
   EXPECT_EQ(voy.GetFrameStats(other.view, &stats), VOY_ERROR_SCENE_DESTROYED);
   EXPECT_EQ(voy.SetViewTau(other.view, 1), VOY_ERROR_SCENE_DESTROYED);

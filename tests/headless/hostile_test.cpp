@@ -1,5 +1,7 @@
 // Values that no sane host passes: an error with a message, no crash, and
 // everything still works afterwards. Sanitizer builds watch for the rest.
+#include <voyager/voyager_experiment.h>
+
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,12 +14,15 @@ namespace {
 
 TEST_F(Hostile, DeviceChoices) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  for (const uint32_t version : {0xffffffffu, VOY_MAKE_VERSION(0, 3, 0), VOY_MAKE_VERSION(0, 5, 0),
-                                 VOY_MAKE_VERSION(1, 0, 0), VOY_MAKE_VERSION(1, 2, 0)}) {
+  constexpr uint32_t kMinor = VOY_MAKE_VERSION(0, 1, 0), kMajor = VOY_MAKE_VERSION(1, 0, 0);
+  const uint32_t own = voy.GetVersion();
+  for (const uint32_t version :
+       {0xffffffffu, own + kMinor, own + kMajor, own + kMajor + kMinor, own + 2 * kMajor}) {
     desc.apiVersion = version;
-    expect_refused(create_device(desc), VOY_ERROR_INCOMPATIBLE_VERSION, "0.4.0");
+    expect_refused(create_device(desc), VOY_ERROR_INCOMPATIBLE_VERSION,
+                   "expected the major version of");
   }
-  desc.apiVersion = VOY_MAKE_VERSION(0, 4, 7);
+  desc.apiVersion = own + VOY_MAKE_VERSION(0, 0, 7);
   EXPECT_EQ(create_device(desc), VOY_SUCCESS);
   for (const int backend : {-1, 4, INT32_MAX, INT32_MIN}) {
     desc.backend = bad_enum<VoyBackend>(backend);
@@ -25,9 +30,9 @@ TEST_F(Hostile, DeviceChoices) {
     expect_invalid(voy.QueryBackend(bad_enum<VoyBackend>(backend)), "backend");
   }
   desc = VOY_DEVICE_DESC_INIT;
-  desc.workerThreads = UINT32_MAX;
-  expect_invalid(create_device(desc), "workerThreads");
-  desc.workerThreads = 0;
+  desc.workerThreadCount = UINT32_MAX;
+  expect_invalid(create_device(desc), "workerThreadCount");
+  desc.workerThreadCount = 0;
   desc.logLevel = bad_enum<VoyLogLevel>(3);
   expect_invalid(create_device(desc), "logLevel");
 }
@@ -58,17 +63,38 @@ TEST_F(Hostile, ViewSizesAndChoices) {
   }
   for (const int choice : {-1, 9, INT32_MAX}) {
     expect_invalid(with([&](VoyViewDesc& d) { d.lod = bad_enum<VoyLod>(choice); }), "lod");
-    expect_invalid(with([&](VoyViewDesc& d) { d.search = bad_enum<VoySearch>(choice); }), "search");
-    expect_invalid(with([&](VoyViewDesc& d) { d.alphaFilter = bad_enum<VoyAlphaFilter>(choice); }),
-                   "alphaFilter");
-    expect_invalid(with([&](VoyViewDesc& d) { d.exponential = bad_enum<VoyExponential>(choice); }),
-                   "exponential");
-    expect_invalid(with([&](VoyViewDesc& d) { d.splatting = bad_enum<VoySplatting>(choice); }),
-                   "splatting");
     expect_invalid(with([&](VoyViewDesc& d) { d.antialias = bad_enum<VoyAntialias>(choice); }),
                    "antialias");
   }
-  expect_invalid(with([](VoyViewDesc& d) { d.lutSize = 4097; }), "lutSize");
+  expect_invalid(with([](VoyViewDesc& d) { d.reserved = 1; }), "reserved");
+}
+
+TEST_F(Hostile, Experiments) {
+  VoyViewDesc desc = host.view_desc();
+  const auto with = [&](auto&& change) {
+    VoyExperiment experiment = VOY_EXPERIMENT_INIT;
+    change(experiment);
+    desc.next = &experiment;
+    return create_view(desc);
+  };
+  using E = VoyExperiment;
+  EXPECT_EQ(with([](E&) {}), VOY_SUCCESS) << voy.message();
+  for (const int choice : {-1, 9, INT32_MAX}) {
+    expect_invalid(with([&](E& e) { e.selection = bad_enum<VoySelection>(choice); }), "selection");
+    expect_invalid(with([&](E& e) { e.search = bad_enum<VoySearch>(choice); }), "search");
+    expect_invalid(with([&](E& e) { e.alphaFilter = bad_enum<VoyAlphaFilter>(choice); }),
+                   "alphaFilter");
+    expect_invalid(with([&](E& e) { e.exponential = bad_enum<VoyExponential>(choice); }),
+                   "exponential");
+    expect_invalid(with([&](E& e) { e.splatting = bad_enum<VoySplatting>(choice); }), "splatting");
+  }
+  expect_invalid(with([](E& e) { e.lutSize = 4097; }), "lutSize");
+  expect_invalid(with([](E& e) { e.truth = 2; }), "truth");
+  expect_invalid(with([](E& e) { e.reserved = 1; }), "reserved");
+  desc.antialias = VOY_ANTIALIAS_OFF;
+  expect_invalid(with([](E& e) { e.truth = 1; }), "truth");
+  desc.lod = VOY_LOD_ALL_LEAVES;
+  expect_invalid(with([](E& e) { e.selection = VOY_SELECTION_BLOCKS; }), "selection");
 }
 
 TEST_F(Hostile, TargetSizesAndPitches) {
@@ -201,8 +227,7 @@ TEST_F(Hostile, TargetLargerThanTheView) {
 }
 
 TEST_F(Hostile, QueriesBeforeAnyFrameAndWithoutACut) {
-  VoyFrameStats stats = {};
-  stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+  VoyFrameStats stats = VOY_FRAME_STATS_INIT;
   expect_invalid(voy.GetFrameStats(host.view, &stats), "without a rendered frame");
   uint32_t count = 77;
   expect_refused(voy.GetViewCut(host.view, 0, 0, nullptr, &count), VOY_ERROR_UNSUPPORTED, "cut");
@@ -224,7 +249,7 @@ TEST_F(Hostile, WhatASceneDoesNotNeedHasNoCount) {
   ASSERT_EQ(voy.GetSceneNotes(host.scene, count, notes.data(), &count), VOY_SUCCESS);
   int omitted = 0;
   for (const VoySceneNote& note : notes) {
-    if (note.kind != VOY_SCENE_NOTE_OMITTED) continue;
+    if (note.kind != VOY_SCENE_NOTE_KIND_OMITTED) continue;
     EXPECT_EQ(note.count, 0u) << note.what;
     EXPECT_GT(note.bytes, 0u) << note.what;
     ++omitted;
@@ -232,28 +257,28 @@ TEST_F(Hostile, WhatASceneDoesNotNeedHasNoCount) {
   EXPECT_EQ(omitted, 2) << "the tree, and the SH bands above degree 1";
 }
 
-TEST_F(Hostile, FovHelpers) {
+TEST_F(Hostile, FrustumHelpers) {
   VoyFrustum f = {1, 2, 3, 4};
   for (const double bad : {kNan, kInf, 1.5707963267948968, -3.0}) {
-    expect_invalid(voy.FovFromAngles(bad, 1, 1, -1, &f), "left");
-    expect_invalid(voy.FovFromIntrinsics(kNan, 1, 1, 1, 1, 1, &f), "fx");
+    expect_invalid(voy.FrustumFromAngles(bad, 1, 1, -1, &f), "left");
+    expect_invalid(voy.FrustumFromIntrinsics(kNan, 1, 1, 1, 1, 1, &f), "fx");
   }
-  expect_invalid(voy.FovFromAngles(1, 1, 1, -1, &f), "left");
-  expect_invalid(voy.FovFromIntrinsics(1, 0, 1, 1, 1, 1, &f), "fy");
+  expect_invalid(voy.FrustumFromAngles(1, 1, 1, -1, &f), "left");
+  expect_invalid(voy.FrustumFromIntrinsics(1, 0, 1, 1, 1, 1, &f), "fy");
   // In range one by one, but no frustum together.
-  expect_invalid(voy.FovFromAngles(-1.5707963267948963, 1, 1, -1, &f), "frustum.left");
-  expect_invalid(voy.FovFromAngles(0.5, 0.5 + 1e-9, 1, -1, &f), "frustum.left");
-  expect_invalid(voy.FovFromIntrinsics(1e-300, 1, 1e300, 0, 1, 1, &f), "frustum.left");
-  expect_invalid(voy.FovFromIntrinsics(1, 1, 0, 0, 1, 1e5, &f), "frustum.down: found -100000");
-  expect_invalid(voy.FovFromIntrinsics(1e9, 1, 0, 0, 1, 1, &f), "frustum.left");
-  expect_invalid(voy.FovFromIntrinsics(-DBL_MAX, 1, 0, 0, 1, 1, &f), "found -1.797693135e+308");
+  expect_invalid(voy.FrustumFromAngles(-1.5707963267948963, 1, 1, -1, &f), "frustum.left");
+  expect_invalid(voy.FrustumFromAngles(0.5, 0.5 + 1e-9, 1, -1, &f), "frustum.left");
+  expect_invalid(voy.FrustumFromIntrinsics(1e-300, 1, 1e300, 0, 1, 1, &f), "frustum.left");
+  expect_invalid(voy.FrustumFromIntrinsics(1, 1, 0, 0, 1, 1e5, &f), "frustum.down: found -100000");
+  expect_invalid(voy.FrustumFromIntrinsics(1e9, 1, 0, 0, 1, 1, &f), "frustum.left");
+  expect_invalid(voy.FrustumFromIntrinsics(-DBL_MAX, 1, 0, 0, 1, 1, &f), "found -1.797693135e+308");
   EXPECT_EQ(f.left, 1) << "a refused call wrote its output";
-  ASSERT_EQ(voy.FovFromIntrinsics(500, 400, 320, 250, 640, 480, &f), VOY_SUCCESS);
+  ASSERT_EQ(voy.FrustumFromIntrinsics(500, 400, 320, 250, 640, 480, &f), VOY_SUCCESS);
   EXPECT_EQ(f.left, -0.64);
   EXPECT_EQ(f.right, 0.64);
   EXPECT_EQ(f.up, 0.625);
   EXPECT_EQ(f.down, -0.575);
-  ASSERT_EQ(voy.FovFromAngles(-0.5, 0.6, 0.7, -0.8, &f), VOY_SUCCESS);
+  ASSERT_EQ(voy.FrustumFromAngles(-0.5, 0.6, 0.7, -0.8, &f), VOY_SUCCESS);
   EXPECT_EQ(f.right, std::tan(0.6));
 }
 

@@ -1,4 +1,6 @@
 // Several scenes in one view, as a host draws them.
+#include <voyager/voyager_experiment.h>
+
 #include <algorithm>
 #include <array>
 
@@ -94,7 +96,9 @@ struct Stage : Host {
   }
   VoyView view_of(const std::vector<VoyScene>& scenes) {
     VoyViewDesc desc = view_desc();
-    desc.exponential = VOY_EXPONENTIAL_EXACT;
+    VoyExperiment experiment = VOY_EXPERIMENT_INIT;
+    experiment.exponential = VOY_EXPONENTIAL_EXACT;
+    desc.next = &experiment;
     desc.antialias = VOY_ANTIALIAS_OFF;  // halves estimate native pixels of their own
     desc.instanceCount = static_cast<uint32_t>(scenes.size());
     desc.scenes = scenes.data();
@@ -200,8 +204,7 @@ TEST_P(Instances, OneSceneStandsInTwoPlaces) {
   EXPECT_GE(psnr(stage->draw(both, eye, poses), stage->draw(one, eye)), 60);
   const VoyFrameEye there = follow(eye, poses[1]);
   EXPECT_GE(psnr(stage->draw(both, there, poses), stage->draw(one, there, poses + 1)), 60);
-  VoyFrameStats stats = {};
-  stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+  VoyFrameStats stats = VOY_FRAME_STATS_INIT;
   ASSERT_EQ(voy.GetFrameStats(both, &stats), VOY_SUCCESS);
   EXPECT_EQ(stats.cutSize, 2u * Stage::kGaussians);
 }
@@ -275,12 +278,12 @@ TEST_P(Instances, AreOfTheViewsDeviceAndLiveAsLongAsTheirScenes) {
   const VoyFrameEye eye = stage->eye();
   const Picture expected = stage->draw(alone, eye);
   stage->draw(both, eye);
-  ASSERT_EQ(voy.DestroyScene(second), VOY_SUCCESS);
+  ASSERT_EQ(voy.CloseScene(second), VOY_SUCCESS);
   const VoyFrame frame = Host::frame(eye);
   EXPECT_EQ(voy.RenderFrame(both, &frame), VOY_ERROR_SCENE_DESTROYED);
   EXPECT_EQ(voy.SetViewTau(both, 1), VOY_ERROR_SCENE_DESTROYED);
   EXPECT_TRUE(expected == stage->draw(alone, eye)) << "the other scene's views are as they were";
-  ASSERT_EQ(voy.DestroyScene(stage->scene), VOY_SUCCESS);
+  ASSERT_EQ(voy.CloseScene(stage->scene), VOY_SUCCESS);
   EXPECT_EQ(voy.RenderFrame(both, &frame), VOY_ERROR_SCENE_DESTROYED);
   EXPECT_EQ(voy.DestroyView(both), VOY_SUCCESS);
 }
@@ -291,7 +294,7 @@ TEST_P(Instances, ScenesShareOneBudget) {
   VoySceneInfo info = VOY_SCENE_INFO_INIT;
   ASSERT_EQ(voy.GetSceneInfo(stage->scene, &info), VOY_SUCCESS);
   VoyDeviceDesc desc = device_for(GetParam());
-  desc.memoryBudget = 7 * info.residentBytes / 2;
+  desc.hostMemoryBudget = 7 * info.residentBytes / 2;
   Host small(voy, desc, Stage::kGaussians);
   const VoyByteSource source = stage->bytes.source();
   VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;

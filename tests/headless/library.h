@@ -10,11 +10,12 @@
 
 // clang-format off
 #define VOYAGER_ENTRY_POINTS(X) \
-  X(GetVersion) X(ResultString) X(GetLastErrorMessage) X(QueryBackend) \
+  X(GetVersion) X(ResultName) X(GetLastErrorMessage) X(QueryBackend) \
   X(CreateDevice) X(DestroyDevice) X(GetCapabilities) X(OpenScene) \
-  X(DestroyScene) X(GetSceneInfo) X(GetSceneNotes) X(CreateTarget) \
+  X(CloseScene) X(GetSceneInfo) X(GetSceneNotes) X(CreateTarget) \
   X(DestroyTarget) X(CreateView) X(DestroyView) X(SetViewTau) X(SetViewTimeBudget) \
-  X(FovFromAngles) X(FovFromIntrinsics) X(RenderFrame) X(GetViewCut) \
+  X(FrustumFromAngles) X(FrustumFromIntrinsics) X(FrustumFromProjection) \
+  X(PoseFromWorldMatrix) X(PoseFromViewMatrix) X(RenderFrame) X(GetViewCut) \
   X(GetFrameStats) X(StageName) X(SetSceneMemoryBudget) X(GetStreamingStats) \
   X(GetViewOmissions) X(EnumerateDevices)
 // clang-format on

@@ -123,7 +123,7 @@ TEST(Memory, DestroyingASceneGivesItsMemoryBackThoughAViewRemains) {
     ASSERT_EQ(voy.GetSceneInfo(host.scene, &info), VOY_SUCCESS);
     EXPECT_GE(info.residentBytes, 2000u * 4 * (3 + 3 + 4 + 1 + 12));
     EXPECT_LE(static_cast<int64_t>(info.residentBytes), memory.bytes_out);
-    ASSERT_EQ(voy.DestroyScene(host.scene), VOY_SUCCESS);
+    ASSERT_EQ(voy.CloseScene(host.scene), VOY_SUCCESS);
     EXPECT_EQ(memory.bytes_out, 0) << "scene and views of it are gone";
   }
   EXPECT_EQ(memory.bytes_out, 0);
@@ -148,7 +148,7 @@ TEST(Memory, ADeviceThatTheHostForgotGoesAtUnload) {
 TEST(Memory, TheBudgetBindsAllScenesOfADevice) {
   const Library voy;
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  desc.memoryBudget = 2'000'000;
+  desc.hostMemoryBudget = 2'000'000;
   Host host(voy, desc, 1000);
   BytesHost bytes;
   bytes.bytes = ply_bytes(20000);
@@ -165,7 +165,7 @@ TEST(Memory, TheBudgetBindsAllScenesOfADevice) {
   scene_desc.source = &small;
   for (int i = 0; i < 20; ++i) {
     ASSERT_EQ(voy.OpenScene(host.device, &scene_desc, &scene), VOY_SUCCESS) << voy.message();
-    ASSERT_EQ(voy.DestroyScene(scene), VOY_SUCCESS);
+    ASSERT_EQ(voy.CloseScene(scene), VOY_SUCCESS);
   }
   EXPECT_EQ(host.render(), VOY_SUCCESS);
 }
@@ -178,7 +178,7 @@ class Source : public ::testing::Test {
     VoyScene scene = nullptr;
     const VoyResult result = voy.OpenScene(host.device, &desc, &scene);
     EXPECT_EQ(scene == nullptr, result < 0);
-    EXPECT_EQ(voy.DestroyScene(scene), VOY_SUCCESS);
+    EXPECT_EQ(voy.CloseScene(scene), VOY_SUCCESS);
     return result;
   }
 

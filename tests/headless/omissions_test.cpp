@@ -21,8 +21,8 @@ TEST_F(ListedOmissions, AProfileIsFilledThroughTheChain) {
   EXPECT_EQ(profile.inputShDegree, 1u);
   EXPECT_EQ(profile.complete, 1u);
   EXPECT_EQ(profile.merged + profile.interpolated + profile.streamed + profile.reserved, 0u);
-  EXPECT_GE(profile.leastAnisotropy, 1.0f);
-  EXPECT_GE(profile.greatestAnisotropy, profile.leastAnisotropy);
+  EXPECT_GE(profile.minAnisotropy, 1.0f);
+  EXPECT_GE(profile.maxAnisotropy, profile.minAnisotropy);
   profile.type = VOY_STRUCTURE_TYPE_FRAME;
   expect_refused(voy.GetSceneInfo(host.scene, &info), VOY_ERROR_INVALID_STRUCTURE, "expected 33");
 }
@@ -58,7 +58,7 @@ TEST_F(ListedOmissions, AreRefusedByNameWhereTheCallIsWrong) {
   expect_refused(voy.GetViewOmissions(host.view, 2, nullptr, &count), VOY_ERROR_INVALID_ARGUMENT,
                  "omissions");
   Host other(voy);
-  ASSERT_EQ(voy.DestroyScene(other.scene), VOY_SUCCESS);
+  ASSERT_EQ(voy.CloseScene(other.scene), VOY_SUCCESS);
   EXPECT_EQ(voy.GetViewOmissions(other.view, 0, nullptr, &count), VOY_ERROR_SCENE_DESTROYED);
 }
 

@@ -59,7 +59,7 @@ class Scenes {
   void reopen(size_t i, Dice& dice) {
     VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
     const double start[3] = {dice.between(-20, 20), 0, dice.between(-20, 20)};
-    if (dice.one_in(2)) streaming.start = start;
+    if (dice.one_in(2)) streaming.startPosition = start;
     if (dice.one_in(2)) streaming.memoryBudget = static_cast<uint64_t>(dice.between(3e5, 4e6));
     const VoyScene made = opened(i, &streaming);
     VoyScene old = made;
@@ -67,7 +67,7 @@ class Scenes {
       const std::lock_guard lock(mutex_);
       std::swap(old, streamed_[i]);
     }
-    EXPECT_EQ(voy_.DestroyScene(old), VOY_SUCCESS) << voy_.message();
+    EXPECT_EQ(voy_.CloseScene(old), VOY_SUCCESS) << voy_.message();
   }
   // The other thread may have closed it.
   void rebudget(size_t i, Dice& dice) {

@@ -1,5 +1,7 @@
 // A streamed scene as a host has it: threads that read the host's bytes, budgets, frames that
 // wait and frames that do not, refusals.
+#include <voyager/voyager_experiment.h>
+
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -40,7 +42,7 @@ struct StreamedHost : Host {
   VoyResult draw(uint32_t wait, uint32_t stand_in = 0) {
     VoyFrameStreaming streaming = VOY_FRAME_STREAMING_INIT;
     streaming.waitResident = wait;
-    streaming.standIn = stand_in;
+    streaming.allowFallback = stand_in;
     VoyFrameEye one = eye();
     one.target = target;
     VoyFrame frame = VOY_FRAME_INIT;
@@ -55,8 +57,7 @@ struct StreamedHost : Host {
     return stats;
   }
   VoyFrameStats frame_stats() {
-    VoyFrameStats stats = {};
-    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    VoyFrameStats stats = VOY_FRAME_STATS_INIT;
     EXPECT_EQ(voy.GetFrameStats(view, &stats), VOY_SUCCESS);
     return stats;
   }
@@ -80,7 +81,7 @@ TEST(Streaming, AFrameThatWaitsIsTheResidentImage) {
   StreamedHost host(voy, 0);
   ASSERT_EQ(host.draw(1), VOY_SUCCESS) << voy.message();
   EXPECT_EQ(host.pixels, resident_image(voy));
-  EXPECT_EQ(host.frame_stats().missing, 0u);
+  EXPECT_EQ(host.frame_stats().nodesUnrefined, 0u);
   const VoyStreamingStats stats = host.streaming();
   EXPECT_GT(stats.residentChunks, 0u);
   EXPECT_EQ(stats.missingChunks, 0u);
@@ -94,7 +95,7 @@ TEST(Streaming, ATooSmallBudgetSaysWhatItTakes) {
   ASSERT_EQ(host.open(0.6), VOY_SUCCESS) << voy.message();
   host.view_streamed();
   EXPECT_EQ(host.draw(0), VOY_SUCCESS) << voy.message();
-  EXPECT_GT(host.frame_stats().missing, 0u);
+  EXPECT_GT(host.frame_stats().nodesUnrefined, 0u);
   EXPECT_EQ(host.draw(1), VOY_ERROR_OVER_BUDGET);
   EXPECT_NE(voy.message().find(" MB"), std::string::npos) << voy.message();
   EXPECT_LE(host.streaming().budgetBytes, 600000u);
@@ -103,7 +104,7 @@ TEST(Streaming, ATooSmallBudgetSaysWhatItTakes) {
 TEST(Streaming, TheDevicesBudgetBindsStreamedScenesToo) {
   const Library voy;
   VoyDeviceDesc desc = device_for(VOY_BACKEND_CPU);
-  desc.memoryBudget = 3000000;
+  desc.hostMemoryBudget = 3000000;
   StreamedHost host(voy, 0, desc);
   VoySceneInfo info = VOY_SCENE_INFO_INIT;
   ASSERT_EQ(voy.GetSceneInfo(host.scene, &info), VOY_SUCCESS);
@@ -120,7 +121,7 @@ TEST(Streaming, ABudgetChangesWhileFramesAreDrawn) {
   ASSERT_EQ(voy.SetSceneMemoryBudget(host.scene, 600000), VOY_SUCCESS) << voy.message();
   EXPECT_LE(host.streaming().budgetBytes, 600000u);
   ASSERT_EQ(host.draw(0), VOY_SUCCESS) << voy.message();
-  EXPECT_GT(host.frame_stats().missing, 0u);
+  EXPECT_GT(host.frame_stats().nodesUnrefined, 0u);
   EXPECT_EQ(voy.SetSceneMemoryBudget(host.scene, 10), VOY_ERROR_OVER_BUDGET);
   ASSERT_EQ(voy.SetSceneMemoryBudget(host.scene, 0), VOY_SUCCESS) << voy.message();
   ASSERT_EQ(host.draw(1), VOY_SUCCESS) << voy.message();
@@ -134,7 +135,7 @@ TEST(Streaming, ScenesGoWhileTheirBytesAreRead) {
     StreamedHost host(voy, 0);
     EXPECT_EQ(host.draw(0), VOY_SUCCESS);
     if (i % 2 == 0) {
-      EXPECT_EQ(voy.DestroyScene(host.scene), VOY_SUCCESS);
+      EXPECT_EQ(voy.CloseScene(host.scene), VOY_SUCCESS);
     }
   }
   EXPECT_FALSE(Library::is_mapped());
@@ -143,7 +144,8 @@ TEST(Streaming, ScenesGoWhileTheirBytesAreRead) {
 struct Warnings {
   std::vector<std::string> messages;
   static void log(void* user, VoyLogLevel level, const char* message) {
-    if (level == VOY_LOG_WARNING) static_cast<Warnings*>(user)->messages.emplace_back(message);
+    if (level == VOY_LOG_LEVEL_WARNING)
+      static_cast<Warnings*>(user)->messages.emplace_back(message);
   }
 };
 
@@ -177,26 +179,28 @@ TEST(Streaming, Refusals) {
   EXPECT_EQ(host.draw(0, 7), VOY_ERROR_INVALID_ARGUMENT);
 
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
-  streaming.readerThreads = 65;
+  streaming.readerThreadCount = 65;
   const VoyByteSource source = host.baked.source();
   VoySceneDesc desc = VOY_SCENE_DESC_INIT;
   desc.next = &streaming;
   desc.source = &source;
   VoyScene scene = nullptr;
   EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_ERROR_INVALID_ARGUMENT);
-  streaming.readerThreads = 0;
+  streaming.readerThreadCount = 0;
   streaming.reserved = 1;
   EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_ERROR_INVALID_ARGUMENT);
   streaming.reserved = 0;
   double start[3] = {0, NAN, 0};
-  streaming.start = start;
+  streaming.startPosition = start;
   EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_ERROR_INVALID_ARGUMENT);
   start[1] = 0;
   EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_SUCCESS) << voy.message();
 
   VoyView view = nullptr;
   VoyViewDesc wanted = host.view_desc();
-  wanted.search = VOY_SEARCH_EXHAUSTIVE;
+  VoyExperiment experiment = VOY_EXPERIMENT_INIT;
+  experiment.search = VOY_SEARCH_EXHAUSTIVE;
+  wanted.next = &experiment;
   EXPECT_EQ(voy.CreateView(host.device, &wanted, &view), VOY_ERROR_UNSUPPORTED);
   wanted = host.view_desc();
   wanted.lod = VOY_LOD_ALL_LEAVES;

@@ -76,7 +76,7 @@ TEST(Threads, DestructionWaitsForCallsInFlight) {
       std::fill(host.pixels.begin(), host.pixels.end(), 0.0f);
       host.device = nullptr;
     } else {
-      EXPECT_EQ(voy.DestroyScene(host.scene), VOY_SUCCESS);
+      EXPECT_EQ(voy.CloseScene(host.scene), VOY_SUCCESS);
     }
     renderer.join();
   }
@@ -95,9 +95,9 @@ TEST(Threads, AViewIsNotBusyWhileAnotherThreadDestroysScenes) {
       desc.source = &source;
       VoyScene scene = nullptr;
       EXPECT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_SUCCESS) << voy.message();
-      EXPECT_EQ(voy.DestroyScene(scene), VOY_SUCCESS) << voy.message();
+      EXPECT_EQ(voy.CloseScene(scene), VOY_SUCCESS) << voy.message();
     }
-    EXPECT_EQ(voy.DestroyScene(host.scene), VOY_SUCCESS) << voy.message();
+    EXPECT_EQ(voy.CloseScene(host.scene), VOY_SUCCESS) << voy.message();
     done = true;
   });
   while (!done) {
@@ -156,7 +156,7 @@ void expect_no_release_after_the_device(const Destroy& destroy) {
 
 TEST(Threads, DestroyingADeviceWaitsForTheDestructionOfItsScene) {
   expect_no_release_after_the_device(
-      [](const Library& voy, Host& host) { return voy.DestroyScene(host.scene); });
+      [](const Library& voy, Host& host) { return voy.CloseScene(host.scene); });
 }
 
 TEST(Threads, DestroyingADeviceWaitsForTheDestructionOfItsView) {
@@ -190,7 +190,7 @@ struct LogRecord {
 
 TEST(Threads, LogFollowsItsLevelOnTheCallingThread) {
   const Library voy;
-  for (const VoyLogLevel level : {VOY_LOG_ERROR, VOY_LOG_WARNING, VOY_LOG_INFO}) {
+  for (const VoyLogLevel level : {VOY_LOG_LEVEL_ERROR, VOY_LOG_LEVEL_WARNING, VOY_LOG_LEVEL_INFO}) {
     LogRecord record;
     VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
     desc.log = LogRecord::write;
@@ -199,11 +199,11 @@ TEST(Threads, LogFollowsItsLevelOnTheCallingThread) {
     {
       Host host(voy, desc);
       ASSERT_EQ(host.render(), VOY_SUCCESS);
-      EXPECT_EQ(record.count[VOY_LOG_ERROR], 0);
-      EXPECT_EQ(record.count[VOY_LOG_INFO] > 0, level == VOY_LOG_INFO);
+      EXPECT_EQ(record.count[VOY_LOG_LEVEL_ERROR], 0);
+      EXPECT_EQ(record.count[VOY_LOG_LEVEL_INFO] > 0, level == VOY_LOG_LEVEL_INFO);
       EXPECT_NE(voy.SetViewTau(host.view, -1), VOY_SUCCESS);
     }
-    EXPECT_EQ(record.count[VOY_LOG_ERROR], 1);
+    EXPECT_EQ(record.count[VOY_LOG_LEVEL_ERROR], 1);
   }
 }
 

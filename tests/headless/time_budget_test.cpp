@@ -41,8 +41,7 @@ class TimeBudget : public Hostile {
     const VoyFrameEye eye = host.eye();
     const VoyFrame frame = Host::frame(eye);
     EXPECT_EQ(voy.RenderFrame(drawn, &frame), VOY_SUCCESS) << voy.message();
-    VoyFrameStats stats = {};
-    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    VoyFrameStats stats = VOY_FRAME_STATS_INIT;
     EXPECT_EQ(voy.GetFrameStats(drawn, &stats), VOY_SUCCESS) << voy.message();
     return stats;
   }
@@ -59,8 +58,8 @@ TEST_F(TimeBudget, WithoutOneStatsTellTheTauThatWasSet) {
   ASSERT_EQ(voy.SetViewTau(view, 0.1), VOY_SUCCESS);
   const VoyFrameStats stats = draw(view);
   EXPECT_EQ(stats.tau, 0.1);
-  EXPECT_EQ(stats.timeBudget, 0);
-  EXPECT_EQ(stats.budgetState, VOY_BUDGET_STATE_NONE);
+  EXPECT_EQ(stats.millisecondsBudget, 0);
+  EXPECT_EQ(stats.timeBudgetState, VOY_TIME_BUDGET_STATE_NONE);
 }
 
 TEST_F(TimeBudget, TooLittleTimeRaisesTauToTheGreatestAndSaysSo) {
@@ -69,8 +68,8 @@ TEST_F(TimeBudget, TooLittleTimeRaisesTauToTheGreatestAndSaysSo) {
   ASSERT_EQ(create(&budget, &steered), VOY_SUCCESS) << voy.message();
   VoyFrameStats stats = draw(steered);
   EXPECT_EQ(stats.tau, 3);
-  EXPECT_EQ(stats.timeBudget, 1e-9);
-  EXPECT_EQ(stats.budgetState, VOY_BUDGET_STATE_LATE);
+  EXPECT_EQ(stats.millisecondsBudget, 1e-9);
+  EXPECT_EQ(stats.timeBudgetState, VOY_TIME_BUDGET_STATE_LATE);
   double last = 3;
   for (int i = 0; i < 30; ++i) {
     stats = draw(steered);
@@ -78,17 +77,17 @@ TEST_F(TimeBudget, TooLittleTimeRaisesTauToTheGreatestAndSaysSo) {
     last = stats.tau;
   }
   EXPECT_EQ(stats.tau, 60);
-  EXPECT_EQ(stats.budgetState, VOY_BUDGET_STATE_UNREACHABLE);
+  EXPECT_EQ(stats.timeBudgetState, VOY_TIME_BUDGET_STATE_UNREACHABLE);
 }
 
 TEST_F(TimeBudget, TimeToSpareLowersTauToTheLeast) {
   VoyTimeBudget budget = budget_of(1e9);
-  budget.leastTau = 0.5;
+  budget.minTau = 0.5;
   ASSERT_EQ(voy.SetViewTimeBudget(view, &budget), VOY_SUCCESS) << voy.message();
   VoyFrameStats stats = draw(view);
   for (int i = 0; i < 30; ++i) stats = draw(view);
   EXPECT_EQ(stats.tau, 0.5);
-  EXPECT_EQ(stats.budgetState, VOY_BUDGET_STATE_HELD);
+  EXPECT_EQ(stats.timeBudgetState, VOY_TIME_BUDGET_STATE_HELD);
 }
 
 TEST_F(TimeBudget, SettingTauEndsItAndGivesTheSameImage) {
@@ -107,14 +106,14 @@ TEST_F(TimeBudget, SettingTauEndsItAndGivesTheSameImage) {
   }
   ASSERT_EQ(voy.SetViewTau(view, 2), VOY_SUCCESS);
   for (int i = 0; i < 8; ++i) EXPECT_EQ(draw(view).tau, 2);
-  EXPECT_EQ(draw(view).budgetState, VOY_BUDGET_STATE_NONE);
+  EXPECT_EQ(draw(view).timeBudgetState, VOY_TIME_BUDGET_STATE_NONE);
 }
 
 TEST_F(TimeBudget, IsChangedWhileFramesGoOn) {
   VoyTimeBudget budget = budget_of(1e-9);
   ASSERT_EQ(voy.SetViewTimeBudget(view, &budget), VOY_SUCCESS);
   for (int i = 0; i < 30; ++i) draw(view);
-  budget.greatestTau = 20;
+  budget.maxTau = 20;
   ASSERT_EQ(voy.SetViewTimeBudget(view, &budget), VOY_SUCCESS);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(draw(view).tau, 20) << "the range counts at once";
 }
@@ -131,10 +130,10 @@ TEST_F(TimeBudget, Refusals) {
   for (const double bad : {0.0, -0.0, -1.0, kNan, kInf, -kInf})
     refused([&](VoyTimeBudget& b) { b.milliseconds = bad; }, "VoyTimeBudget.milliseconds: found");
   for (const double bad : {-1e-9, kNan, kInf, -kInf})
-    refused([&](VoyTimeBudget& b) { b.leastTau = bad; }, "VoyTimeBudget.leastTau: found");
+    refused([&](VoyTimeBudget& b) { b.minTau = bad; }, "VoyTimeBudget.minTau: found");
   for (const double bad : {0.99, -1.0, kNan, kInf})
-    refused([&](VoyTimeBudget& b) { b.greatestTau = bad; }, "VoyTimeBudget.greatestTau: found");
-  EXPECT_EQ(draw(view).budgetState, VOY_BUDGET_STATE_NONE) << "a refused one was set";
+    refused([&](VoyTimeBudget& b) { b.maxTau = bad; }, "VoyTimeBudget.maxTau: found");
+  EXPECT_EQ(draw(view).timeBudgetState, VOY_TIME_BUDGET_STATE_NONE) << "a refused one was set";
 
   VoyTimeBudget budget = budget_of(10);
   expect_invalid(voy.SetViewTimeBudget(view, nullptr), "VoyTimeBudget");
@@ -163,7 +162,7 @@ TEST_F(TimeBudget, IsRefusedWhereTauChangesNothing) {
   mixed.instanceCount = 2;
   mixed.scenes = both;
   ASSERT_EQ(voy.CreateView(host.device, &mixed, &made), VOY_SUCCESS) << voy.message();
-  EXPECT_EQ(draw(made).timeBudget, 10);
+  EXPECT_EQ(draw(made).millisecondsBudget, 10);
 }
 
 }  // namespace

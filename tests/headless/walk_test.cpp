@@ -32,8 +32,7 @@ size_t walk() {
                                  host.pixels.size() * sizeof(float));
     sum = sum * 31 + std::hash<std::string_view>()(image);
   }
-  VoyFrameStats stats = {};
-  stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+  VoyFrameStats stats = VOY_FRAME_STATS_INIT;
   EXPECT_EQ(voy.GetFrameStats(host.view, &stats), VOY_SUCCESS);
   EXPECT_EQ(stats.frameIndex, 299u);
   EXPECT_GT(stats.splats, 0u);
@@ -67,9 +66,9 @@ TEST(Walk, SameFrameTwiceIsTheSameImage) {
 TEST(Walk, ImagesDoNotDependOnTheNumberOfThreads) {
   const Library voy;
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
-  desc.workerThreads = 1;
+  desc.workerThreadCount = 1;
   Host one(voy, desc, 3000);
-  desc.workerThreads = 5;
+  desc.workerThreadCount = 5;
   Host five(voy, desc, 3000);
   ASSERT_EQ(one.render(), VOY_SUCCESS);
   ASSERT_EQ(five.render(), VOY_SUCCESS);

@@ -125,7 +125,7 @@ class Composites : public Interop {
 
   VoyTarget make_target_with_depth() {
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
-    images.depth = VK_TRUE;
+    images.hasDepth = VK_TRUE;
     return make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
   }
 
@@ -135,7 +135,7 @@ class Composites : public Interop {
     draw.target = target;
     draw.area = {{0, 0}, {kWidth, kHeight}};
     draw.depthUse = depth_use;
-    draw.encoding = convention.encoding;
+    draw.depthEncoding = convention.encoding;
     draw.nearZ = convention.near_z;
     draw.farZ = convention.far_z;
     return draw;
@@ -186,7 +186,7 @@ class Composites : public Interop {
   VkFramebuffer framebuffer = VK_NULL_HANDLE;
   VkImageView color_view = VK_NULL_HANDLE, depth_view = VK_NULL_HANDLE;
   std::unique_ptr<HostImage> color, depth;
-  VoyComposite composite = nullptr;
+  VoyVulkanComposite composite = nullptr;
 };
 
 Picture host_picture(uint32_t width, uint32_t height) {
@@ -242,6 +242,19 @@ TEST_F(Composites, EqualTheOneMadeFromTheSameImages) {
       EXPECT_GT(drawn, 500);
       EXPECT_EQ(hidden > 0, tested);
     }
+}
+
+// The rows of `area` in the opposite order, the rest as it is.
+template <class T>
+std::vector<T> turned(std::vector<T> pixels, const VkRect2D& area, size_t width, size_t channels) {
+  const auto left = static_cast<size_t>(area.offset.x), top = static_cast<size_t>(area.offset.y);
+  const auto place = [&](size_t row) {
+    return pixels.begin() + static_cast<std::ptrdiff_t>(((top + row) * width + left) * channels);
+  };
+  const auto count = static_cast<std::ptrdiff_t>(area.extent.width * channels);
+  for (size_t row = 0; row < area.extent.height / 2; ++row)
+    std::swap_ranges(place(row), place(row) + count, place(area.extent.height - 1 - row));
+  return pixels;
 }
 
 VoyVulkanReprojection reprojection(const VoyFrameEye& drawn, const VoyFrameEye& now) {
@@ -318,6 +331,32 @@ TEST_F(Composites, ReprojectedShowWhatTheOtherEyeSees) {
     EXPECT_GT(both, 500);
     EXPECT_GT(near, both * 8 / 10) << both;
   }
+}
+
+TEST_F(Composites, UpsideDownHaveTheSameRowsInTheOppositeOrder) {
+  ASSERT_TRUE(create());
+  make_attachments();
+  const VoyTarget target = make_target_with_depth();
+  Line line = line_of(target);
+  const Picture before = host_picture(kWidth, kHeight);
+  std::vector<float> codes(kPixels);
+  for (size_t i = 0; i < kPixels; ++i) codes[i] = kConventions[1].code(before.metres[i]);
+  const VoyVulkanReprojection moved = reprojection(eye(target), eye(target, 0.2));
+  for (const VoyVulkanDepthUse depth_use : kUses)
+    for (const VoyVulkanReprojection* next :
+         {static_cast<const VoyVulkanReprojection*>(nullptr), &moved}) {
+      SCOPED_TRACE(std::to_string(depth_use) + (next ? ", reprojected" : ""));
+      VoyVulkanCompositeDraw draw = draw_of(target, depth_use, kConventions[1]);
+      draw.next = next;
+      draw.area = {{5, 3}, {kWidth - 9, kHeight - 8}};
+      const Drawn upright = compose(line, eye(target), draw, before.color, codes);
+      draw.upsideDown = VK_TRUE;
+      const Drawn got = compose(line, eye(target), draw, turned(before.color, draw.area, kWidth, 4),
+                                turned(codes, draw.area, kWidth, 1));
+      EXPECT_NE(got.color, upright.color);
+      EXPECT_EQ(turned(got.color, draw.area, kWidth, 4), upright.color);
+      EXPECT_EQ(turned(got.depth, draw.area, kWidth, 1), upright.depth);
+    }
 }
 
 TEST_F(Composites, ReprojectionsAreRefusedByWhatIsWrong) {

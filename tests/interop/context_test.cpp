@@ -70,13 +70,12 @@ void draw_in_host_memory(HostsContext& context) {
   EXPECT_EQ(KEPT(voyRenderFrame(view, &frame)), VOY_SUCCESS) << voyGetLastErrorMessage();
   frame.eyeCount = 0;
   EXPECT_EQ(KEPT(voyRenderFrame(view, &frame)), VOY_ERROR_INVALID_ARGUMENT);
-  VoyFrameStats stats = {};
-  stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+  VoyFrameStats stats = VOY_FRAME_STATS_INIT;
   EXPECT_EQ(KEPT(voyGetFrameStats(view, &stats)), VOY_SUCCESS);
   EXPECT_GT(stats.splats, 100u);
   EXPECT_EQ(KEPT(voyDestroyView(view)), VOY_SUCCESS);
   EXPECT_EQ(KEPT(voyDestroyTarget(target)), VOY_SUCCESS);
-  EXPECT_EQ(KEPT(voyDestroyScene(scene)), VOY_SUCCESS);
+  EXPECT_EQ(KEPT(voyCloseScene(scene)), VOY_SUCCESS);
   EXPECT_EQ(KEPT(voyDestroyDevice(device)), VOY_SUCCESS);
 }
 
@@ -102,7 +101,7 @@ TEST_F(Interop, TheHostsCudaContextIsCurrentAfterEachCall) {
     FOR_EACH_MODE({
       context.after(VOY_SUCCESS, "create");
       VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
-      images.depth = VK_TRUE;
+      images.hasDepth = VK_TRUE;
       const VoyTargetDesc desc = target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images);
       VoyTarget target = nullptr;
       ASSERT_EQ(KEPT(voyCreateTarget(device, &desc, &target)), VOY_SUCCESS);

@@ -20,7 +20,7 @@ TEST_F(Interop, AFrameIsTheSameInARingAsInHostMemory) {
       SCOPED_TRACE(format.format);
       VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
       images.imageCount = 3;
-      images.depth = VK_TRUE;
+      images.hasDepth = VK_TRUE;
       const VoyTarget target = make_target(target_desc(format.format, &images));
       Line line = line_of(target);
       for (uint32_t frame = 0; frame < 5; ++frame) {
@@ -40,7 +40,7 @@ TEST_F(Interop, LayersKeepToThemselves) {
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
     images.imageCount = 1;
     images.layerCount = 2;
-    images.depth = VK_TRUE;
+    images.hasDepth = VK_TRUE;
     const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
     Line line = line_of(target);
     for (uint32_t layer = 0; layer < 2; ++layer) {
@@ -152,8 +152,8 @@ TEST_F(Interop, ADepthLimitFromTheHostsDepthBufferIsThatFromItsMemory) {
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
     images.imageCount = 1;
     images.layerCount = 2;
-    images.depth = VK_TRUE;
-    images.depthLimit = VK_TRUE;
+    images.hasDepth = VK_TRUE;
+    images.hasDepthLimit = VK_TRUE;
     const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA32F, &images));
     // Reversed, infinitely far: 0.1 m / z. A ramp from 8 to 16 m, and nothing in a corner.
     std::vector<float> depth(kWidth * kHeight);
@@ -173,7 +173,7 @@ TEST_F(Interop, ADepthLimitFromTheHostsDepthBufferIsThatFromItsMemory) {
     VoyFrameEye at = eye(target, 1);
     at.layer = 1;
     VoyEyeDepthLimit limit = VOY_EYE_DEPTH_LIMIT_INIT;
-    limit.encoding = VOY_DEPTH_ENCODING_REVERSED;
+    limit.depthEncoding = VOY_DEPTH_ENCODING_REVERSED;
     limit.nearZ = 0.1;
     limit.farZ = INFINITY;
     at.next = &limit;

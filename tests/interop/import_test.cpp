@@ -178,7 +178,7 @@ class Imports : public Interop {
   void draw_into(const std::vector<VoyVulkanImportedImage>& own) {
     const OwnSemaphores semaphores(*host, found.sync, shared());
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
-    images.depth = own[0].depth != VK_NULL_HANDLE ? VK_TRUE : VK_FALSE;
+    images.hasDepth = own[0].depth != VK_NULL_HANDLE ? VK_TRUE : VK_FALSE;
     images.images = own.data();
     images.semaphoreCount = static_cast<uint32_t>(semaphores.passed.size());
     images.semaphores = semaphores.passed.data();
@@ -198,7 +198,7 @@ class Imports : public Interop {
       const Shot shot = shoot(line, target, image, at, 4);
       const Shot whole = expected(VOY_COLOR_FORMAT_RGBA8_UNORM, at, 4);
       EXPECT_EQ(shot.color, whole.color) << "frame " << frame;
-      if (images.depth != VK_FALSE) {
+      if (images.hasDepth != VK_FALSE) {
         EXPECT_EQ(shot.depth, whole.depth) << "frame " << frame;
       }
     }

@@ -56,7 +56,7 @@ int wanted_cycles() {
 TEST_F(Interop, TargetsComeAndGoWithoutATrace) {
   FOR_EACH_MODE({
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
-    images.depth = images.depthLimit = VK_TRUE;
+    images.hasDepth = images.hasDepthLimit = VK_TRUE;
     const DeviceMemory memory(capabilities);
     int descriptors = 0;
     long pages = 0;
@@ -142,8 +142,7 @@ TEST_F(Interop, StatisticsFollowFramesUnderWay) {
     const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
     Line line = line_of(target);
     for (uint32_t frame = 0; frame < 6; ++frame) shoot(line, target, frame % 2, eye(target), 4);
-    VoyFrameStats stats = {};
-    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    VoyFrameStats stats = VOY_FRAME_STATS_INIT;
     ASSERT_EQ(voyGetFrameStats(view, &stats), VOY_SUCCESS) << voyGetLastErrorMessage();
     EXPECT_EQ(stats.frameIndex, 5u);
     EXPECT_GT(stats.splats, 100u);
@@ -165,8 +164,7 @@ TEST_F(Interop, WithoutSemaphoresAFrameHasEndedWhenItsCallReturns) {
       release(line, target, frame % 2, commands);
       host->finish(commands);
       ASSERT_EQ(render(line, frame % 2, eye(target)), VOY_SUCCESS) << voyGetLastErrorMessage();
-      VoyFrameStats stats = {};
-      stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+      VoyFrameStats stats = VOY_FRAME_STATS_INIT;
       ASSERT_EQ(voyGetFrameStats(view, &stats), VOY_SUCCESS) << voyGetLastErrorMessage();
       EXPECT_EQ(stats.frameIndex, frame);
     }

@@ -16,7 +16,7 @@ void expect_refused(VoyResult found, VoyResult expected, const char* part) {
 TEST_F(Interop, RequirementsBeforeAnInstanceNameWhatADeviceMayNeed) {
   VoyVulkanRequirements needs = VOY_VULKAN_REQUIREMENTS_INIT;
   ASSERT_EQ(voyGetVulkanRequirements(nullptr, &needs), VOY_SUCCESS);
-  EXPECT_EQ(needs.apiVersion, VK_API_VERSION_1_1);
+  EXPECT_EQ(needs.vulkanVersion, VK_API_VERSION_1_1);
   EXPECT_EQ(needs.instanceExtensionCount, 0u);
   EXPECT_EQ(needs.timelineSemaphore, VK_TRUE);
   const std::set<std::string> named(needs.deviceExtensions,
@@ -40,7 +40,7 @@ TEST_F(Interop, ADeviceIsRefusedByWhatIsWrong) {
   };
   vulkan.device = VK_NULL_HANDLE;
   refused(VOY_ERROR_INVALID_ARGUMENT, "device");
-  vulkan.apiVersion = VK_API_VERSION_1_0;
+  vulkan.vulkanVersion = VK_API_VERSION_1_0;
   refused(VOY_ERROR_UNSUPPORTED, "1.1");
   vulkan.sync = static_cast<VoyVulkanSync>(9);
   refused(VOY_ERROR_INVALID_ARGUMENT, "sync");
@@ -169,7 +169,7 @@ TEST_F(Interop, RecordingIsRefusedByWhatIsWrong) {
   limit.commandBuffer = commands;
   limit.depth = images_of(target)[0].color;
   expect_refused(voyRecordVulkanDepthLimit(target, &limit), VOY_ERROR_INVALID_ARGUMENT,
-                 "depthLimit");
+                 "hasDepthLimit");
   VoyVulkanCopy copy = VOY_VULKAN_COPY_INIT;
   copy.commandBuffer = commands;
   copy.into = images_of(target)[1].color;

@@ -20,7 +20,7 @@ class InteropStereo : public Interop {
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
     images.imageCount = 2;
     images.layerCount = layers;
-    images.depth = VK_TRUE;
+    images.hasDepth = VK_TRUE;
     return make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images, width));
   }
   VoyResult render_pair(VoyView pair, const VoyFrameEye* eyes, const VoyVulkanFrame* vulkan) {
@@ -83,8 +83,7 @@ TEST_F(InteropStereo, EyesAreLayersOfOneImage) {
         expect_alone(acquire_layer(line, target, image, eyes[i].layer, kWidth, i == 0), eyes[i]);
       }
     }
-    VoyFrameStats stats = {};
-    stats.type = VOY_STRUCTURE_TYPE_FRAME_STATS;
+    VoyFrameStats stats = VOY_FRAME_STATS_INIT;
     EXPECT_EQ(voyGetFrameStats(pair, &stats), VOY_SUCCESS) << voyGetLastErrorMessage();
     EXPECT_EQ(voyDestroyTarget(target), VOY_SUCCESS);
   });

@@ -76,7 +76,7 @@ class VulkanHost {
     out.instance = instance;
     out.physicalDevice = physical;
     out.device = device;
-    out.apiVersion = creation.api_version;
+    out.vulkanVersion = creation.api_version;
     out.deviceExtensionCount = static_cast<uint32_t>(extensions.size());
     out.deviceExtensions = extensions.data();
     out.timelineSemaphore = timelines;

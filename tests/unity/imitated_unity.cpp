@@ -274,7 +274,12 @@ std::vector<uint8_t> ImitatedUnity::read(UnityTexture& texture) {
                  VK_IMAGE_ASPECT_COLOR_BIT, into);
   host_->finish(commands_);
   commands_ = VK_NULL_HANDLE;
-  return into.read<uint8_t>(bytes);
+  const std::vector<uint8_t> upside_down = into.read<uint8_t>(bytes);
+  std::vector<uint8_t> rows;
+  const auto row = static_cast<std::ptrdiff_t>(size_t{4} * texture.image.desc.width);
+  for (auto end = upside_down.end(); end != upside_down.begin(); end -= row)
+    rows.insert(rows.end(), end - row, end);
+  return rows;
 }
 
 }  // namespace voyager::test

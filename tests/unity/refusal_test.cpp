@@ -66,6 +66,20 @@ TEST_F(UnityRefusals, AMissingSceneAndTexturesThatDoNotFit) {
   EXPECT_LE(largest_difference(shoot(unity, camera(), *colour), reference(camera())), 1);
 }
 
+TEST_F(UnityRefusals, ACameraThatIsScaledIsRefusedAndDrawsNothing) {
+  ImitatedUnity unity;
+  VOYAGER_NEEDS_VULKAN(unity);
+  ASSERT_EQ(unity.open_scene(file("scene.ply").c_str()), 1) << unity.last_error();
+  const auto colour = unity.make_texture(VK_FORMAT_R8G8B8A8_UNORM, kWidth, kHeight);
+  UnityCamera scaled = camera();
+  for (double& each : scaled.up) each *= 2;
+  EXPECT_EQ(frame_data(unity, scaled, *colour), nullptr);
+  EXPECT_NE(unity.last_error().find("the matrix scales"), std::string::npos) << unity.last_error();
+  const Picture drawn = shoot(unity, scaled, *colour);
+  EXPECT_EQ(*std::max_element(drawn.values.begin(), drawn.values.end()), 0);
+  EXPECT_LE(largest_difference(shoot(unity, camera(), *colour), reference(camera())), 1);
+}
+
 }  // namespace
 }  // namespace unity_refusal_test
 }  // namespace voyager::test

@@ -21,11 +21,11 @@ void try_device(VoyDeviceInfo& info) {
   if (info.usable == 0) return;
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
   desc.backend = info.backend;
-  desc.deviceUuid = info.uuid;
+  desc.deviceUuid = info.deviceUuid;
   VoyDevice device = nullptr;
   if (voyCreateDevice(&desc, &device) != VOY_SUCCESS) {
     info.usable = 0;
-    std::string(voyGetLastErrorMessage()).copy(info.missing, sizeof info.missing - 1);
+    std::string(voyGetLastErrorMessage()).copy(info.why, sizeof info.why - 1);
   }
   voyDestroyDevice(device);
 }
@@ -58,35 +58,35 @@ void print_row(const char* name, const std::string& value) {
 
 void print_device(const VoyDeviceInfo& info) {
   fmt::print("{}: {}\n", backend_name(info.backend),
-             info.name[0] != '\0' ? info.name : "no device");
+             info.deviceName[0] != '\0' ? info.deviceName : "no device");
   print_row("usable", info.usable != 0 ? "yes" : "no");
-  if (info.missing[0] != '\0') print_row("missing", info.missing);
+  if (info.why[0] != '\0') print_row("missing", info.why);
   print_row("needs", info.needs);
-  if (info.name[0] == '\0') return;
+  if (info.deviceName[0] == '\0') return;
   if (info.backend == VOY_BACKEND_CUDA) {
-    print_row("UUID", uuid_text(info.uuid));
+    print_row("UUID", uuid_text(info.deviceUuid));
     print_row("compute capability", capability_text(info));
     print_row("driver", fmt::format("{}{}for CUDA {}", info.driver,
                                     info.driver[0] != '\0' ? ", " : "", cuda_text(info)));
   } else {
-    print_row("threads", std::to_string(info.workerThreads));
+    print_row("threads", std::to_string(info.workerThreadCount));
   }
   print_row("memory", size_text(info.memoryBytes));
 }
 
 Json to_json(const VoyDeviceInfo& info) {
   const auto text = [](const std::string& value) { return value.empty() ? Json() : Json(value); };
-  const bool cuda = info.backend == VOY_BACKEND_CUDA && info.name[0] != '\0';
+  const bool cuda = info.backend == VOY_BACKEND_CUDA && info.deviceName[0] != '\0';
   return {{"backend", backend_name(info.backend)},
-          {"name", text(info.name)},
+          {"name", text(info.deviceName)},
           {"usable", info.usable != 0},
           {"needs", info.needs},
-          {"missing", text(info.missing)},
-          {"uuid", cuda ? Json(uuid_text(info.uuid)) : Json()},
+          {"missing", text(info.why)},
+          {"uuid", cuda ? Json(uuid_text(info.deviceUuid)) : Json()},
           {"compute_capability", cuda ? Json(capability_text(info)) : Json()},
           {"driver", text(info.driver)},
           {"driver_cuda", info.cudaVersion != 0 ? Json(cuda_text(info)) : Json()},
-          {"threads", info.workerThreads != 0 ? Json(info.workerThreads) : Json()},
+          {"threads", info.workerThreadCount != 0 ? Json(info.workerThreadCount) : Json()},
           {"memory_bytes", info.memoryBytes != 0 ? Json(info.memoryBytes) : Json()}};
 }
 

@@ -58,23 +58,22 @@ void print_profile(const VoySceneInfo& info, const VoySceneProfile& profile) {
   fmt::print("  merged        {}; {}\n", profile.merged ? "yes" : "no",
              profile.interpolated ? "cuts are interpolated" : "nothing to interpolate");
   fmt::print("  opacities     {} above 1\n", profile.opacitiesAboveOne);
-  fmt::print("  anisotropy    {:.4g} to {:.4g}\n", profile.leastAnisotropy,
-             profile.greatestAnisotropy);
+  fmt::print("  anisotropy    {:.4g} to {:.4g}\n", profile.minAnisotropy, profile.maxAnisotropy);
 }
 
 // METHOD §12: at what size the scene was seen in training, and where that is known from.
 std::string native_text(const VoySceneInfo& info, double least_pixel) {
-  switch (info.nativeSource) {
-    case VOY_NATIVE_SOURCE_FILE:
+  switch (info.nativePixelSource) {
+    case VOY_NATIVE_PIXEL_SOURCE_FILE:
       return fmt::format("none: trained with a compensated filter of {:.3g} square pixels",
-                         info.lowPass);
-    case VOY_NATIVE_SOURCE_UNKNOWN:
+                         info.pixelFilter);
+    case VOY_NATIVE_PIXEL_SOURCE_UNKNOWN:
       return "unknown: drawn as 3DGS does. Bake the scene again";
     default:
       return fmt::format(
           "{}{:.4g} m, {}",
           least_pixel < info.nativePixel ? fmt::format("{:.4g} to ", least_pixel) : "",
-          info.nativePixel, kNativeSources[info.nativeSource]);
+          info.nativePixel, kNativeSources[info.nativePixelSource]);
   }
 }
 
@@ -97,14 +96,14 @@ void print_text(const std::string& path, const VoySceneInfo& info, const VoyScen
              info.boundsMin[1], info.boundsMin[2], info.boundsMax[0], info.boundsMax[1],
              info.boundsMax[2]);
   if (info.storage == VOY_SCENE_STORAGE_COMPACT)
-    fmt::print("  mean error    {:.3g} m at most\n", info.positionError);
+    fmt::print("  mean error    {:.3g} m at most\n", info.maxPositionError);
   fmt::print("  in memory     {}\n", size_text(info.residentBytes));
-  fmt::print("  import        {} Gaussians dropped, {} repaired\n", info.droppedCount,
-             info.repairedCount);
+  fmt::print("  import        {} Gaussians dropped, {} repaired\n", info.droppedGaussianCount,
+             info.repairCount);
   for (const VoySceneNote& note : notes)
     fmt::print("  {:<13} {}: {} ({})\n", kNoteKinds[note.kind], note.what, note.why,
-               note.kind == VOY_SCENE_NOTE_OMITTED ? size_text(note.bytes)
-                                                   : fmt::format("{}", note.count));
+               note.kind == VOY_SCENE_NOTE_KIND_OMITTED ? size_text(note.bytes)
+                                                        : fmt::format("{}", note.count));
 }
 
 nlohmann::ordered_json to_json(const VoySceneProfile& profile) {
@@ -114,7 +113,7 @@ nlohmann::ordered_json to_json(const VoySceneProfile& profile) {
           {"interpolated", profile.interpolated != 0},
           {"streamed", profile.streamed != 0},
           {"opacities_above_one", profile.opacitiesAboveOne},
-          {"anisotropy", {profile.leastAnisotropy, profile.greatestAnisotropy}}};
+          {"anisotropy", {profile.minAnisotropy, profile.maxAnisotropy}}};
 }
 
 void print_json(const std::string& path, const VoySceneInfo& info, const VoySceneProfile& profile,
@@ -134,18 +133,18 @@ void print_json(const std::string& path, const VoySceneInfo& info, const VoyScen
       {"tiers", tree.tiers},
       {"chunk_bytes", tree.chunk_bytes},
       {"sh_degree", info.shDegree},
-      {"antialiased", info.antialiased != 0},
+      {"antialiased", info.trainedAntialiased != 0},
       {"native_pixel", info.nativePixel},
       {"least_native_pixel", tree.least_pixel},
-      {"native_source", kNativeSources[info.nativeSource]},
-      {"low_pass", info.lowPass},
+      {"native_source", kNativeSources[info.nativePixelSource]},
+      {"low_pass", info.pixelFilter},
       {"origin", info.origin},
       {"bounds_min", info.boundsMin},
       {"bounds_max", info.boundsMax},
-      {"position_error", info.positionError},
+      {"position_error", info.maxPositionError},
       {"resident_bytes", info.residentBytes},
-      {"dropped", info.droppedCount},
-      {"repaired", info.repairedCount},
+      {"dropped", info.droppedGaussianCount},
+      {"repaired", info.repairCount},
       {"profile", to_json(profile)},
       {"notes", nlohmann::json::array()}};
   for (const VoySceneNote& note : notes)

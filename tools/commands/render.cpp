@@ -90,24 +90,17 @@ void settle_truth(RenderArguments& arguments) {
     bad_usage("--supersample: found it with a cut, expected --lod off: the truth has every leaf");
   if (choices.antialias != VOY_ANTIALIAS_ON)
     bad_usage("--supersample: found it with --antialias off, expected on");
-  if (choices.exponential == VOY_EXPONENTIAL_LUT || choices.exponential == VOY_EXPONENTIAL_HALF2)
+  if (choices.experiment.exponential == VOY_EXPONENTIAL_LUT ||
+      choices.experiment.exponential == VOY_EXPONENTIAL_HALF2)
     bad_usage("--supersample: found it with --exp lut or half2, expected auto, exact or ex2");
   if (choices.depth) bad_usage("--supersample: found it with --depth, expected colours alone");
-  choices.antialias = VOY_ANTIALIAS_TRUTH;
+  choices.experiment.truth = 1;
 }
 
-VoyLod public_lod(Lod lod) {
-  switch (lod) {
-    case Lod::all_leaves:
-      return VOY_LOD_ALL_LEAVES;
-    case Lod::blocks:
-      return VOY_LOD_BLOCKS;
-    case Lod::levels:
-      return VOY_LOD_LEVELS;
-    case Lod::cut:
-      break;
-  }
-  return VOY_LOD_CUT;
+void choose_detail(Lod lod, RenderChoices& choices) {
+  if (lod == Lod::all_leaves) choices.lod = VOY_LOD_ALL_LEAVES;
+  if (lod == Lod::blocks) choices.experiment.selection = VOY_SELECTION_BLOCKS;
+  if (lod == Lod::levels) choices.experiment.selection = VOY_SELECTION_LEVELS;
 }
 
 // Once a frame was drawn, so that an error is the only line.
@@ -121,7 +114,7 @@ void describe(const RenderArguments& arguments, const Renderer& renderer, const 
 
 void render(RenderArguments& arguments) {
   arguments.choices.eyes = arguments.stereo ? 2 : 1;
-  arguments.choices.lod = public_lod(arguments.lod.value());
+  choose_detail(arguments.lod.value(), arguments.choices);
   settle_outputs(arguments);
   settle_streaming(arguments);
   if (arguments.choices.supersample > 1) settle_truth(arguments);

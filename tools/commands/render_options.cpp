@@ -108,7 +108,7 @@ void add_streaming(CLI::App& command, RenderArguments& arguments) {
 
 void add_detail(CLI::App& command, RenderArguments& arguments) {
   add_lod_options(command, arguments.lod);
-  add_choice<VoySearch>(command, "--search", arguments.choices.search,
+  add_choice<VoySearch>(command, "--search", arguments.choices.experiment.search,
                         {{"auto", VOY_SEARCH_AUTO},
                          {"temporal", VOY_SEARCH_TEMPORAL},
                          {"sweep", VOY_SEARCH_SWEEP},
@@ -122,15 +122,15 @@ void add_detail(CLI::App& command, RenderArguments& arguments) {
 }
 
 void add_splatting(CLI::App& command, RenderChoices& choices) {
-  add_choice<VoyAlphaFilter>(command, "--filter", choices.alpha_filter,
+  add_choice<VoyAlphaFilter>(command, "--filter", choices.experiment.alphaFilter,
                              {{"on", VOY_ALPHA_FILTER_ON}, {"off", VOY_ALPHA_FILTER_OFF}},
                              "The α-filter. off gives the same image, slower");
   add_choice<VoySplatting>(
-      command, "--splat", choices.splatting,
+      command, "--splat", choices.experiment.splatting,
       {{"ours", VOY_SPLATTING_OURS}, {"3dgs", VOY_SPLATTING_3DGS}},
       "How Gaussians become pixels. 3dgs is the baseline of measurements, on CUDA only");
   add_choice<VoyExponential>(
-      command, "--exp", choices.exponential,
+      command, "--exp", choices.experiment.exponential,
       {{"auto", VOY_EXPONENTIAL_AUTO},
        {"exact", VOY_EXPONENTIAL_EXACT},
        {"ex2", VOY_EXPONENTIAL_EX2},
@@ -145,7 +145,7 @@ void add_splatting(CLI::App& command, RenderChoices& choices) {
                    "Draw so many samples a pixel along each axis and average them: the truth that "
                    "pictures are judged by (docs/method.md), of every leaf")
       ->type_name("S");
-  add_whole_option(command, "--lut-size", {1, 4096}, choices.lut_size,
+  add_whole_option(command, "--lut-size", {1, 4096}, choices.experiment.lutSize,
                    "Intervals of the table of --exp lut")
       ->default_str("32");
   name_group(command, "Splatting, for measurements");

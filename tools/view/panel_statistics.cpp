@@ -28,7 +28,7 @@ void show_residency(const VoyStreamingStats& streaming) {
               static_cast<unsigned long long>(streaming.neededChunks - streaming.missingChunks),
               static_cast<unsigned long long>(streaming.neededChunks));
   const double held = static_cast<double>(streaming.residentChunks) /
-                      static_cast<double>(std::max<uint64_t>(streaming.slots, 1));
+                      static_cast<double>(std::max<uint64_t>(streaming.chunkSlots, 1));
   ImGui::ProgressBar(static_cast<float>(held), {170, 0});
   ImGui::SameLine();
   ImGui::Text("of %s", tools::size_text(streaming.budgetBytes).c_str());
@@ -50,7 +50,7 @@ void show_statistics(const Session& session) {
                        1.1f * *std::max_element(times.begin(), times.end()),
                        {ImGui::GetContentRegionAvail().x, 40});
     ImGui::Text("%.1f ms a frame, tau %.2f", stats->millisecondsTotal, stats->tau);
-    if (stats->budgetState == VOY_BUDGET_STATE_UNREACHABLE)
+    if (stats->timeBudgetState == VOY_TIME_BUDGET_STATE_UNREACHABLE)
       ImGui::TextColored({1, 0.75f, 0.3f, 1}, "the time budget is out of reach");
     show_stages(*stats);
     show_count("cut", stats->cutSize);

@@ -83,7 +83,7 @@ void SceneLoader::load_baked(const std::string& file) {
   checkpoint();
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
   streaming.memoryBudget = request_.budget;
-  streaming.start = camera_.pose.position;
+  streaming.startPosition = camera_.pose.position;
   VoySceneDesc desc = VOY_SCENE_DESC_INIT;
   desc.next = &streaming;
   desc.path = file.c_str();

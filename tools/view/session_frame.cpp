@@ -49,7 +49,7 @@ std::string cameras_of_path(const std::string& folder) {
 }
 
 bool is_missing(const VoyFrameStats& stats) {
-  return stats.missing > 0 || stats.bytesNeeded > 0;
+  return stats.nodesUnrefined > 0 || stats.bytesNeeded > 0;
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ void Session::frame_drawn(const FrameDesc& frame) {
   if (scene_->streamed()) {
     VoyStreamingStats now = VOY_STREAMING_STATS_INIT;
     voy::check(voyGetStreamingStats(scene_->scene.get(), &now));
-    if (!streaming_ || now.arrived != streaming_->arrived)
+    if (!streaming_ || now.arrivedChunks != streaming_->arrivedChunks)
       arrival_ = std::chrono::steady_clock::now();
     streaming_ = now;
   }
@@ -148,7 +148,7 @@ void Session::frame_drawn(const FrameDesc& frame) {
 // read.
 void Session::draw_what_comes() {
   const bool has_room = streaming_ && streaming_->seenMissingChunks > 0 &&
-                        streaming_->residentChunks < streaming_->slots;
+                        streaming_->residentChunks < streaming_->chunkSlots;
   if (!has_room) return;
   if (streaming_->failures == 0 ||
       std::chrono::steady_clock::now() - arrival_ < kLongestBetweenArrivals)

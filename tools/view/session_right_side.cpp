@@ -51,8 +51,9 @@ void Session::update_detail() {
     if (nodes == detail_nodes_) return;
     detail_nodes_ = nodes;
     const VoySceneInfo& info = scene_->info;
-    detail_job_ = std::make_unique<DetailJob>(device_, scene_->file, std::move(nodes),
-                                              info.lowPass * info.nativePixel * info.nativePixel);
+    detail_job_ =
+        std::make_unique<DetailJob>(device_, scene_->file, std::move(nodes),
+                                    info.pixelFilter * info.nativePixel * info.nativePixel);
   }
   if (!detail_job_->done()) return;
   auto scene = detail_job_->take();

@@ -12,8 +12,8 @@ constexpr double kNear = 0.2;  // metres, as `voyager render` has it
 VoyTimeBudget time_budget(const SplatSettings& settings) {
   VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
   budget.milliseconds = double{settings.milliseconds};
-  budget.leastTau = double{settings.least_tau};
-  budget.greatestTau = std::max(budget.greatestTau, budget.leastTau);
+  budget.minTau = double{settings.least_tau};
+  budget.maxTau = std::max(budget.maxTau, budget.minTau);
   return budget;
 }
 
@@ -74,7 +74,7 @@ void SplatView::render(const host::Camera& camera, const float* background, bool
   eye.target = ring_.target();
   VoyFrameStreaming streaming = VOY_FRAME_STREAMING_INIT;
   streaming.waitResident = wait && has_tree_ ? 1 : 0;
-  streaming.standIn = streaming.waitResident;
+  streaming.allowFallback = streaming.waitResident;
   VoyVulkanFrame vulkan = ring_.frame(image_);
   vulkan.next = &streaming;
   VoyFrame frame = VOY_FRAME_INIT;

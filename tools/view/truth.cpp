@@ -22,7 +22,7 @@ std::vector<uint8_t> truth_of(const TruthRequest& request, const std::atomic<boo
   tools::RenderChoices choices;
   choices.backend = request.backend;
   choices.lod = VOY_LOD_ALL_LEAVES;
-  choices.antialias = VOY_ANTIALIAS_TRUTH;
+  choices.experiment.truth = 1;
   choices.supersample = kSamples;
   std::copy_n(request.background, 3, choices.background);
   checkpoint(stopped);

@@ -7,6 +7,7 @@ layout(push_constant) uniform Push {
   int layer;
   float slope, inverse_far;  // the host's depth encoding, as runtime/math/host_depth.h has it
   float far_code;            // the depth of the far plane
+  int last_row;              // of the area, where the image is drawn upside down; else -1
   vec4 rows[3];              // of a Reprojection (runtime/math/reprojection.h), as the last two
   vec4 drawn, now;
 } push;
@@ -22,6 +23,12 @@ struct Source {
   float inverse_z;
 };
 
+// Of the pixel that is drawn, in the image's rows.
+vec2 pixel_center() {
+  const vec2 center = gl_FragCoord.xy - vec2(push.first);
+  return push.last_row < 0 ? center : vec2(center.x, float(push.last_row + 1) - center.y);
+}
+
 float inverse_depth(ivec2 pixel) {
   const float z = texelFetch(depth_image, ivec3(pixel, push.layer), 0).r;
   return isinf(z) ? 0.0 : 1.0 / z;
@@ -30,7 +37,7 @@ float inverse_depth(ivec2 pixel) {
 #include "reprojection.glsl"
 
 Source source_of_pixel() {
-  const ivec2 pixel = ivec2(gl_FragCoord.xy) - push.first;
+  const ivec2 pixel = ivec2(pixel_center());
   return kReprojected ? reprojected() : Source(vec2(pixel), 0.0);
 }
 

@@ -24,7 +24,7 @@ float inverse_z_now(ivec2 pixel) {
 }
 
 Source reprojected() {
-  const vec2 share = (gl_FragCoord.xy - vec2(push.first)) / image_size();
+  const vec2 share = pixel_center() / image_size();
   const vec3 seen = vec3(push.now.xy + share * push.now.zw, 1.0);
   Source source = Source(vec2(0.0), 0.0);
   for (int turn = 0; turn < kTurns; ++turn) {

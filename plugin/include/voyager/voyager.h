@@ -8,8 +8,12 @@
  * STRUCTS. Every struct starts with `type` and `next`. Start from its VOY_..._INIT macro, which
  * sets `type` and the defaults. `next` is NULL or points to an extension that the comment at
  * `next` names. A wrong `type` or an unknown `next` is VOY_ERROR_INVALID_STRUCTURE, so that a
- * request is never ignored silently. VoyPose and VoyFrustum are plain values without `type`;
- * they will never change. Fields named `reserved` must be 0.
+ * request is never ignored silently. VoyPose and VoyFrustum are plain values without `type`.
+ * A structure never changes its size or a field: what a later version adds comes through `next`.
+ * Fields named `reserved` must be 0.
+ *
+ * PROMISE. From 1.0 on, what this header and voyager_vulkan.h declare stays as it is until the
+ * major version changes. voyager_experiment.h is for measurements. It is outside the promise.
  *
  * RESULTS. Every call that can fail returns a VoyResult. 0 is success. A positive value is a
  * success with a remark. A negative value is an error, and voyGetLastErrorMessage explains it.
@@ -69,7 +73,7 @@ extern "C" {
  * its own minor version or an older one. The patch version never matters. */
 #define VOY_MAKE_VERSION(major, minor, patch) \
   ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
-#define VOY_API_VERSION VOY_MAKE_VERSION(0, 4, 0)
+#define VOY_API_VERSION VOY_MAKE_VERSION(0, 5, 0)
 
 /* The numbers never change. docs/abi.md says what a host can do about each error. */
 typedef enum VoyResult {
@@ -133,6 +137,10 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_OMISSION = 34,
   VOY_STRUCTURE_TYPE_DEVICE_INFO = 35,
   VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION = 36,
+  /* voyager_experiment.h */
+  VOY_STRUCTURE_TYPE_EXPERIMENT = 37,
+  VOY_STRUCTURE_TYPE_EXPERIMENT_CAPABILITIES = 38,
+  VOY_STRUCTURE_TYPE_EXPERIMENT_STATS = 39,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -147,7 +155,7 @@ typedef struct VoyTarget_T* VoyTarget;
 VOY_API uint32_t VOY_CALL voyGetVersion(void);
 
 /* Returns the name of a result, such as "VOY_ERROR_BUSY". Never NULL. */
-VOY_API const char* VOY_CALL voyResultString(VoyResult result);
+VOY_API const char* VOY_CALL voyResultName(VoyResult result);
 
 /* Returns the message of the last call that failed on this thread: what was found and what was
  * expected. UTF-8, never NULL, "" before the first failure. It stays valid until this thread's
@@ -165,9 +173,9 @@ typedef enum VoyBackend {
 } VoyBackend;
 
 typedef enum VoyLogLevel {
-  VOY_LOG_ERROR = 0,
-  VOY_LOG_WARNING = 1,
-  VOY_LOG_INFO = 2,
+  VOY_LOG_LEVEL_ERROR = 0,
+  VOY_LOG_LEVEL_WARNING = 1,
+  VOY_LOG_LEVEL_INFO = 2,
   VOY_LOG_LEVEL_MAX_ENUM = 0x7fffffff
 } VoyLogLevel;
 
@@ -189,8 +197,11 @@ typedef struct VoyAllocator {
    * returns VOY_ERROR_OUT_OF_HOST_MEMORY. */
   void*(VOY_CALL* allocate)(void* user, size_t size, size_t alignment);
   /* Frees `memory`, which was allocated with the same size and alignment. */
-  void(VOY_CALL* release)(void* user, void* memory, size_t size, size_t alignment);
+  void(VOY_CALL* deallocate)(void* user, void* memory, size_t size, size_t alignment);
 } VoyAllocator;
+/* The host must set both functions. */
+#define VOY_ALLOCATOR_INIT \
+  { VOY_STRUCTURE_TYPE_ALLOCATOR, NULL, NULL, NULL, NULL }
 
 typedef struct VoyDeviceDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_DEVICE_DESC */
@@ -203,20 +214,20 @@ typedef struct VoyDeviceDesc {
    * theirs. */
   const uint8_t* deviceUuid;
   /* Bytes of host memory that scene data may take, over all scenes of this device. 0: no limit. */
-  uint64_t memoryBudget;
+  uint64_t hostMemoryBudget;
   /* Bytes of CUDA device memory that streamed scenes may take. 0: no limit. Scenes that are loaded
    * whole are copied to the device without counting here. Other backends ignore it. */
   uint64_t deviceMemoryBudget;
-  uint32_t workerThreads; /* 1 to 1024, capped at the number of processors; 0: one each */
-  VoyLogLevel logLevel;   /* the most verbose level to log */
-  VoyLogFunction log;     /* or NULL */
+  uint32_t workerThreadCount; /* 1 to 1024, capped at the number of processors; 0: one each */
+  VoyLogLevel logLevel;       /* the most verbose level to log */
+  VoyLogFunction log;         /* or NULL */
   void* logUser;
   const VoyAllocator* allocator; /* NULL: the C++ heap. The struct is copied */
 } VoyDeviceDesc;
 #define VOY_DEVICE_DESC_INIT                                                                \
   {                                                                                         \
     VOY_STRUCTURE_TYPE_DEVICE_DESC, NULL, VOY_API_VERSION, VOY_BACKEND_AUTO, NULL, 0, 0, 0, \
-        VOY_LOG_WARNING, NULL, NULL, NULL                                                   \
+        VOY_LOG_LEVEL_WARNING, NULL, NULL, NULL                                             \
   }
 
 /* Tells whether voyCreateDevice can create this backend here, on any device. AUTO always can.
@@ -230,18 +241,25 @@ typedef struct VoyDeviceInfo {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_DEVICE_INFO */
   void* next;
   VoyBackend backend;            /* CUDA, CPU or REFERENCE */
-  uint32_t usable;               /* 1: yes. 0: no, and `missing` says why */
-  uint8_t uuid[16];              /* for VoyDeviceDesc.deviceUuid; zero for a CPU */
+  uint32_t usable;               /* 1: yes. 0: no, and `why` says why not */
+  uint8_t deviceUuid[16];        /* for VoyDeviceDesc.deviceUuid; zero for a CPU */
   uint64_t memoryBytes;          /* the device's own, or the host's; 0 if not known */
-  uint32_t workerThreads;        /* CPU and REFERENCE: one a processor; else 0 */
+  uint32_t workerThreadCount;    /* CPU and REFERENCE: one a processor; else 0 */
   uint32_t computeCapability[2]; /* CUDA: major, minor; else 0 */
   uint32_t cudaVersion;          /* the newest that the driver supports, 1000 * major + 10 * minor;
                                     0 without a driver */
   char driver[64];               /* the driver's release; "" if not known. UTF-8, terminated */
-  char name[256];                /* "" where a backend finds no device */
+  char deviceName[256];          /* "" where a backend finds no device */
   char needs[192];               /* what the backend needs of a machine */
-  char missing[512];             /* why it is not usable, and what to do; "" if it is */
+  char why[512];                 /* why it is not usable, and what to do; "" if it is */
 } VoyDeviceInfo;
+#define VOY_DEVICE_INFO_INIT                                                                   \
+  {                                                                                            \
+    VOY_STRUCTURE_TYPE_DEVICE_INFO, NULL, VOY_BACKEND_AUTO, 0, {0}, 0, 0, {0, 0}, 0, {0}, {0}, \
+        {0}, {                                                                                 \
+      0                                                                                        \
+    }                                                                                          \
+  }
 
 /* Lists the devices of this machine: CUDA devices in the order of the driver, the CPU, the
  * reference. AUTO takes the first CUDA device if it is usable, else the CPU. A backend that finds
@@ -266,25 +284,19 @@ VOY_API VoyResult VOY_CALL voyDestroyDevice(VoyDevice device);
 /* What a device can do. In the bit masks, bit 1 << e stands for the value e of the enum. */
 typedef struct VoyCapabilities {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_CAPABILITIES */
-  void* next;            /* NULL or a VoyVulkanCapabilities (voyager_vulkan.h) */
-  VoyBackend backend;    /* CPU, CUDA or REFERENCE: with AUTO, the choice made */
-  uint32_t workerThreads;
+  void* next;         /* NULL or a chain of VoyVulkanCapabilities and VoyExperimentCapabilities */
+  VoyBackend backend; /* CPU, CUDA or REFERENCE: with AUTO, the choice made */
+  uint32_t workerThreadCount;
   char deviceName[256];         /* UTF-8, terminated */
   uint8_t deviceUuid[16];       /* zero for a CPU */
   uint32_t maxInstances;        /* in a view; 64 in this version */
   uint32_t maxEyes;             /* in a view; 2 in this version */
   uint32_t maxWidth, maxHeight; /* of a target, pixels */
-  uint32_t searches;            /* bit mask of VoySearch */
-  uint32_t exponentials;        /* bit mask of VoyExponential */
-  uint32_t splattings;          /* bit mask of VoySplatting */
   uint32_t targetKinds;         /* bit mask of VoyTargetKind */
   uint32_t colorFormats;        /* bit mask of VoyColorFormat */
 } VoyCapabilities;
-#define VOY_CAPABILITIES_INIT                                                                     \
-  {                                                                                               \
-    VOY_STRUCTURE_TYPE_CAPABILITIES, NULL, VOY_BACKEND_AUTO, 0, {0}, {0}, 0, 0, 0, 0, 0, 0, 0, 0, \
-        0                                                                                         \
-  }
+#define VOY_CAPABILITIES_INIT \
+  { VOY_STRUCTURE_TYPE_CAPABILITIES, NULL, VOY_BACKEND_AUTO, 0, {0}, {0}, 0, 0, 0, 0, 0, 0 }
 
 /* Writes what the device can do. The caller sets `type` and `next`. */
 VOY_API VoyResult VOY_CALL voyGetCapabilities(VoyDevice device, VoyCapabilities* capabilities);
@@ -303,7 +315,7 @@ typedef struct VoyByteSource {
    * VOY_ERROR_FILE_NOT_FOUND and VOY_ERROR_REFUSED_INPUT. The call in progress reports any error
    * as VOY_ERROR_IO.
    * It may be called from any thread, and from several at once. `read`, `user` and the bytes must
-   * stay valid until voyDestroyScene or voyDestroyDevice returns. If voyOpenScene fails, they must
+   * stay valid until voyCloseScene or voyDestroyDevice returns. If voyOpenScene fails, they must
    * stay valid until it returns. */
   VoyResult(VOY_CALL* read)(void* user, uint64_t offset, uint64_t size, void* into);
 } VoyByteSource;
@@ -314,22 +326,22 @@ typedef struct VoyByteSource {
  * and they are read while frames are drawn. Files of other formats are still loaded whole.
  * A frame never waits for data: where a node's children are not resident yet, the node is drawn in
  * their place, so that the image has no hole. VoyFrameStreaming makes a frame wait.
- * A streamed scene needs VOY_LOD_CUT and VOY_SEARCH_AUTO, STREAMING or one of the TEMPORAL ones.
- * Reader threads of the library read the bytes, also between calls, until voyDestroyScene or
+ * A view of a streamed scene needs VOY_LOD_AUTO or VOY_LOD_CUT.
+ * Reader threads of the library read the bytes, also between calls, until voyCloseScene or
  * voyDestroyDevice returns. docs/streaming.md explains the rest. */
 typedef struct VoySceneStreaming {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_STREAMING */
   const void* next;
   /* Bytes that the scene may take in the memory that it is drawn from. They are part of
-   * VoyDeviceDesc.memoryBudget, or of deviceMemoryBudget on CUDA. 0, or more than is left there:
-   * all that is left there. */
+   * VoyDeviceDesc.hostMemoryBudget, or of deviceMemoryBudget on CUDA. 0, or more than is left
+   * there: all that is left there. */
   uint64_t memoryBudget;
   /* NULL, or where the first frames look from: x, y, z in the scene's coordinates, metres, each
    * below 1e18 in magnitude. voyOpenScene then reads what looks large from there as well as the
    * top of the tree, up to 64 MB of the file. Copied. */
-  const double* start;
-  uint32_t readerThreads; /* threads that read and decode; 1 to 64, or 0 for 4 */
-  uint32_t reserved;      /* 0 */
+  const double* startPosition;
+  uint32_t readerThreadCount; /* threads that read and decode; 1 to 64, or 0 for 4 */
+  uint32_t reserved;          /* 0 */
 } VoySceneStreaming;
 #define VOY_SCENE_STREAMING_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, NULL, 0, 0 }
@@ -362,9 +374,10 @@ VOY_API VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* de
  * changed). */
 VOY_API VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes);
 
-/* Waits for frames that draw the scene and frees its memory. From then on every call on a view
+/* Waits for frames that draw the scene, closes it and frees its memory. Closing NULL succeeds and
+ * does nothing. From then on every call on a view
  * with an instance of it returns VOY_ERROR_SCENE_DESTROYED, except voyDestroyView. */
-VOY_API VoyResult VOY_CALL voyDestroyScene(VoyScene scene);
+VOY_API VoyResult VOY_CALL voyCloseScene(VoyScene scene);
 
 typedef enum VoySceneStorage {
   VOY_SCENE_STORAGE_FLAT = 0, /* no tree */
@@ -373,15 +386,15 @@ typedef enum VoySceneStorage {
   VOY_SCENE_STORAGE_MAX_ENUM = 0x7fffffff
 } VoySceneStorage;
 
-/* Where VoySceneInfo.nativePixel and lowPass are known from. */
-typedef enum VoyNativeSource {
-  VOY_NATIVE_SOURCE_UNKNOWN = 0,   /* nothing is known: drawn as by VOY_ANTIALIAS_OFF */
-  VOY_NATIVE_SOURCE_GIVEN = 1,     /* named when the scene was baked */
-  VOY_NATIVE_SOURCE_CAMERAS = 2,   /* the training cameras */
-  VOY_NATIVE_SOURCE_FILE = 3,      /* the input was trained with a compensated filter */
-  VOY_NATIVE_SOURCE_ESTIMATED = 4, /* from the Gaussians: expect it within a factor of 3 */
-  VOY_NATIVE_SOURCE_MAX_ENUM = 0x7fffffff
-} VoyNativeSource;
+/* Where VoySceneInfo.nativePixel and pixelFilter are known from. */
+typedef enum VoyNativePixelSource {
+  VOY_NATIVE_PIXEL_SOURCE_UNKNOWN = 0,   /* nothing is known: drawn as by VOY_ANTIALIAS_OFF */
+  VOY_NATIVE_PIXEL_SOURCE_GIVEN = 1,     /* named when the scene was baked */
+  VOY_NATIVE_PIXEL_SOURCE_CAMERAS = 2,   /* the training cameras */
+  VOY_NATIVE_PIXEL_SOURCE_FILE = 3,      /* the input was trained with a compensated filter */
+  VOY_NATIVE_PIXEL_SOURCE_ESTIMATED = 4, /* from the Gaussians: expect it within a factor of 3 */
+  VOY_NATIVE_PIXEL_SOURCE_MAX_ENUM = 0x7fffffff
+} VoyNativePixelSource;
 
 typedef struct VoySceneInfo {
   VoyStructureType type;  /* VOY_STRUCTURE_TYPE_SCENE_INFO */
@@ -393,27 +406,27 @@ typedef struct VoySceneInfo {
   uint32_t damagedChunkCount;
   uint32_t shDegree; /* 0 to 3, as kept: top bands that are all zero are left out */
   VoySceneStorage storage;
-  uint32_t antialiased; /* 1: trained with the antialiased low-pass, says the input */
-  double origin[3];     /* world position of the zero of scene-local coordinates, metres */
-  double boundsMin[3];  /* world metres: means ± 3·(largest scale) */
+  uint32_t trainedAntialiased; /* 1: trained with the antialiased low-pass, says the input */
+  double origin[3];            /* world position of the zero of scene-local coordinates, metres */
+  double boundsMin[3];         /* world metres: means ± 3·(largest scale) */
   double boundsMax[3];
-  uint64_t residentBytes; /* of scene data, as VoyDeviceDesc.memoryBudget counts it */
-  uint64_t droppedCount;  /* Gaussians left out at import: values no Gaussian can have */
-  uint64_t repairedCount; /* repairs at import, counted for each Gaussian and attribute
-                             (scale, rotation, opacity, SH) */
-  double positionError;   /* compact storage: largest error of a mean, metres. Else 0 */
+  uint64_t residentBytes;        /* of scene data, as VoyDeviceDesc.hostMemoryBudget counts it */
+  uint64_t droppedGaussianCount; /* Gaussians left out at import: values no Gaussian can have */
+  uint64_t repairCount;          /* repairs at import, counted for each Gaussian and attribute
+                                      (scale, rotation, opacity, SH) */
+  double maxPositionError;       /* compact storage: largest error of a mean, metres. Else 0 */
   /* What VOY_ANTIALIAS_ON draws with (METHOD §12): the side of a training picture's pixel where the
    * Gaussians are, metres, the largest where blocks of Gaussians have different ones, 0 where they
    * get no footprint; and the pixel filter, square pixels. */
   double nativePixel;
-  double lowPass;
-  VoyNativeSource nativeSource;
+  double pixelFilter;
+  VoyNativePixelSource nativePixelSource;
   uint32_t reserved; /* 0 */
 } VoySceneInfo;
 #define VOY_SCENE_INFO_INIT                                                                      \
   {                                                                                              \
     VOY_STRUCTURE_TYPE_SCENE_INFO, NULL, 0, 0, 0, 0, 0, 0, VOY_SCENE_STORAGE_FLAT, 0, {0, 0, 0}, \
-        {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0, 0, 0, VOY_NATIVE_SOURCE_UNKNOWN, 0                     \
+        {0, 0, 0}, {0, 0, 0}, 0, 0, 0, 0, 0, 0, VOY_NATIVE_PIXEL_SOURCE_UNKNOWN, 0               \
   }
 
 /* In VoySceneInfo.next: the properties of a scene that decide which work and memory can be left out
@@ -431,7 +444,7 @@ typedef struct VoySceneProfile {
   uint64_t chunksByShDegree[4]; /* chunks that use SH degree 0, 1, 2, 3 */
   uint64_t opacitiesAboveOne;   /* Gaussians; only merged ones can exceed 1 */
   /* Of the Gaussians: the longest axis over the shortest. 0 if there are none. */
-  float leastAnisotropy, greatestAnisotropy;
+  float minAnisotropy, maxAnisotropy;
 } VoySceneProfile;
 #define VOY_SCENE_PROFILE_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_PROFILE, NULL, 0, 0, 0, 0, 0, 0, {0, 0, 0, 0}, 0, 0, 0 }
@@ -440,10 +453,10 @@ typedef struct VoySceneProfile {
 VOY_API VoyResult VOY_CALL voyGetSceneInfo(VoyScene scene, VoySceneInfo* info);
 
 typedef enum VoySceneNoteKind {
-  VOY_SCENE_NOTE_OMITTED = 0,  /* the scene does not need this, so it costs nothing */
-  VOY_SCENE_NOTE_REPAIRED = 1, /* Gaussians of which one attribute was repaired at import */
-  VOY_SCENE_NOTE_DROPPED = 2,  /* Gaussians left out at import */
-  VOY_SCENE_NOTE_DAMAGED = 3,  /* chunks that cannot be read */
+  VOY_SCENE_NOTE_KIND_OMITTED = 0,  /* the scene does not need this, so it costs nothing */
+  VOY_SCENE_NOTE_KIND_REPAIRED = 1, /* Gaussians of which one attribute was repaired at import */
+  VOY_SCENE_NOTE_KIND_DROPPED = 2,  /* Gaussians left out at import */
+  VOY_SCENE_NOTE_KIND_DAMAGED = 3,  /* chunks that cannot be read */
   VOY_SCENE_NOTE_KIND_MAX_ENUM = 0x7fffffff
 } VoySceneNoteKind;
 
@@ -457,6 +470,12 @@ typedef struct VoySceneNote {
   char what[64];  /* UTF-8, terminated */
   char why[192];
 } VoySceneNote;
+#define VOY_SCENE_NOTE_INIT                                                           \
+  {                                                                                   \
+    VOY_STRUCTURE_TYPE_SCENE_NOTE, NULL, VOY_SCENE_NOTE_KIND_OMITTED, 0, 0, 0, {0}, { \
+      0                                                                               \
+    }                                                                                 \
+  }
 
 /* Lists what was omitted, repaired, dropped or damaged: one note for each kind and cause. A
  * Gaussian with two repaired attributes counts in two notes.
@@ -471,17 +490,17 @@ VOY_API VoyResult VOY_CALL voyGetSceneNotes(VoyScene scene, uint32_t capacity, V
 typedef struct VoyStreamingStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_STREAMING_STATS */
   void* next;
-  uint64_t budgetBytes;           /* the scene's part of its budget: slots and tables */
-  uint64_t slots, residentChunks; /* chunks that fit, and that are resident */
-  uint64_t neededChunks;          /* that the latest frames need, whatever the budget */
-  uint64_t missingChunks;         /* needed but not resident */
-  uint64_t missingBytes;          /* size of missingChunks in the file */
-  uint64_t seenChunks;            /* needed and inside an eye's frustum plus the margin */
-  uint64_t seenMissingChunks;  /* seen but not resident; 0: nothing is shown coarser than asked */
-  uint64_t requested, arrived; /* chunks */
-  uint64_t late;               /* arrived after a frame had needed them */
-  uint64_t evicted;            /* chunks removed to make room */
-  uint64_t flushed;            /* requests dropped because nothing needed them any more */
+  uint64_t budgetBytes;                /* the scene's part of its budget: slots and tables */
+  uint64_t chunkSlots, residentChunks; /* chunks that fit, and that are resident */
+  uint64_t neededChunks;               /* that the latest frames need, whatever the budget */
+  uint64_t missingChunks;              /* needed but not resident */
+  uint64_t missingBytes;               /* size of missingChunks in the file */
+  uint64_t seenChunks;                 /* needed and inside an eye's frustum plus the margin */
+  uint64_t seenMissingChunks; /* seen but not resident; 0: nothing is shown coarser than asked */
+  uint64_t requestedChunks, arrivedChunks;
+  uint64_t lateChunks;    /* arrived after a frame had needed them */
+  uint64_t evictedChunks; /* removed to make room */
+  uint64_t flushedChunks; /* requests dropped because nothing needed them any more */
   uint64_t reads, bytesRead;
   uint64_t failures; /* failed reads and damaged chunks. Reads that may succeed later are tried
                         again. The log names each cause once (WARNING) */
@@ -545,70 +564,23 @@ VOY_API VoyResult VOY_CALL voyDestroyTarget(VoyTarget target);
 
 /* --------------------------------------------------------------------- view */
 
-/* Which nodes of a tree are drawn. docs/lod-selection.md compares the choices. */
+/* Which nodes of a tree are drawn. A flat scene has no tree: every Gaussian of it is drawn,
+ * whatever the choice. docs/lod-selection.md explains the cut. */
 typedef enum VoyLod {
-  VOY_LOD_CUT = 0,        /* the level-of-detail cut at tau. A flat scene has no cut and draws every
-                             Gaussian */
-  VOY_LOD_ALL_LEAVES = 1, /* every leaf, without search and interpolation */
-  /* The next two are baselines for measurements: no interpolation, not for streamed scenes. */
-  VOY_LOD_BLOCKS = 2, /* as CityGaussian: one depth of the tree for each block of the scene, chosen
-                         by the distance of the block */
-  VOY_LOD_LEVELS = 3, /* as Octree-GS: a node's level is log2 of its extent, rounded up, and is
-                         compared with the level that its distance asks for */
+  VOY_LOD_AUTO = 0, /* the library's choice: CUT in this version */
+  VOY_LOD_CUT = 1,  /* the level-of-detail cut at tau */
+  VOY_LOD_ALL_LEAVES =
+      2, /* every leaf, without search and interpolation; not for streamed scenes */
   VOY_LOD_MAX_ENUM = 0x7fffffff
 } VoyLod;
 
-/* How the cut is found. All searches find the same cut, to the bit. They differ in what they
- * read. */
-typedef enum VoySearch {
-  VOY_SEARCH_AUTO = 0,           /* TEMPORAL, or SWEEP where that is faster */
-  VOY_SEARCH_EXHAUSTIVE = 1,     /* tests every node: the baseline */
-  VOY_SEARCH_STREAMING = 2,      /* reads chunks from the top and skips those below the cut */
-  VOY_SEARCH_TEMPORAL = 3,       /* starts from the view's last cut and tests what may have changed.
-                                    Falls back to STREAMING for a view's first frame, and where that
-                                    is cheaper */
-  VOY_SEARCH_TEMPORAL_VISIT = 4, /* TEMPORAL, but visits all of the last cut: for measurements */
-  VOY_SEARCH_SWEEP = 5,          /* tests every node that has children, in one pass; a jump costs no
-                                    more than a step. On CUDA, of a scene that is resident, without
-                                    damage, and whose leaves have no extent, as all that this version
-                                    bakes; TEMPORAL runs elsewhere */
-  VOY_SEARCH_MAX_ENUM = 0x7fffffff
-} VoySearch;
-
-/* How the exponential in a splat's alpha is computed (docs/numerics.md has the errors). */
-typedef enum VoyExponential {
-  VOY_EXPONENTIAL_AUTO = 0,  /* EX2 on CUDA with VOY_SPLATTING_OURS, else EXACT */
-  VOY_EXPONENTIAL_EXACT = 1, /* within 2 ulp */
-  VOY_EXPONENTIAL_EX2 = 2,   /* base 2, with log2(e) folded into the conic */
-  VOY_EXPONENTIAL_LUT = 3,   /* the nearest entry of a table of lutSize + 1 entries */
-  VOY_EXPONENTIAL_HALF2 = 4, /* CUDA only: EX2 and blending in binary16, about 60 dB PSNR */
-  VOY_EXPONENTIAL_MAX_ENUM = 0x7fffffff
-} VoyExponential;
-
-/* Whether (tile, splat) pairs that cannot reach the alpha threshold are dropped before sorting. */
-typedef enum VoyAlphaFilter {
-  VOY_ALPHA_FILTER_ON = 0,
-  VOY_ALPHA_FILTER_OFF = 1, /* the same image, to the bit, but slower: for measurements */
-  VOY_ALPHA_FILTER_MAX_ENUM = 0x7fffffff
-} VoyAlphaFilter;
-
-/* How splats become pixels (docs/splatting.md). */
-typedef enum VoySplatting {
-  VOY_SPLATTING_OURS = 0, /* bins a splat into the tiles that its α-threshold ellipse touches */
-  VOY_SPLATTING_3DGS = 1, /* CUDA only, the baseline for measurements: 3-sigma boxes, (tile,
-                             depth) keys, expf, one thread for each pixel */
-  VOY_SPLATTING_MAX_ENUM = 0x7fffffff
-} VoySplatting;
-
 /* How a splat that is about a pixel large, or smaller, is drawn (docs/method.md, METHOD §12). */
 typedef enum VoyAntialias {
-  VOY_ANTIALIAS_ON = 0,    /* as in the scene's training pictures at any distance: Gaussians get the
-                              scene's native footprint (VoySceneInfo.nativePixel), and a splat that
-                              the pixel filter widens loses opacity */
-  VOY_ANTIALIAS_OFF = 1,   /* 3DGS's own picture: 0.3 square pixels are added to every splat. What
-                              is smaller than a pixel swells */
-  VOY_ANTIALIAS_TRUTH = 2, /* ON with an alpha threshold of 1e-4: for the samples of pictures that
-                              others are judged by. EXACT and EX2 only, slower */
+  VOY_ANTIALIAS_ON = 0,  /* as in the scene's training pictures at any distance: Gaussians get the
+                            scene's native footprint (VoySceneInfo.nativePixel), and a splat that
+                            the pixel filter widens loses opacity */
+  VOY_ANTIALIAS_OFF = 1, /* 3DGS's own picture: 0.3 square pixels are added to every splat. What
+                            is smaller than a pixel swells */
   VOY_ANTIALIAS_MAX_ENUM = 0x7fffffff
 } VoyAntialias;
 
@@ -621,8 +593,8 @@ typedef struct VoyTimeBudget {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_TIME_BUDGET */
   const void* next;
   double milliseconds; /* for a frame, all eyes together; finite, > 0 */
-  double leastTau;     /* pixels, finite, >= 0: the finest tau, even if time is left */
-  double greatestTau;  /* pixels, finite, >= leastTau: the coarsest, even if frames are late */
+  double minTau;       /* pixels, finite, >= 0: the finest tau, even if time is left */
+  double maxTau;       /* pixels, finite, >= minTau: the coarsest, even if frames are late */
 } VoyTimeBudget;
 #define VOY_TIME_BUDGET_INIT \
   { VOY_STRUCTURE_TYPE_TIME_BUDGET, NULL, 0.0, 1.0, 60.0 }
@@ -633,32 +605,24 @@ typedef struct VoyTimeBudget {
  *
  * Two eyes share one cut for each instance. It is the cut for the point midway between the eyes, as
  * fine as the more demanding eye needs. Covariance, colour, order and blending are computed for
- * each eye. So the image of an eye equals, to the bit, what this eye alone gives with that cut.
- * VOY_SPLATTING_3DGS draws one eye. */
+ * each eye. So the image of an eye equals, to the bit, what this eye alone gives with that cut. */
 typedef struct VoyViewDesc {
-  VoyStructureType type;  /* VOY_STRUCTURE_TYPE_VIEW_DESC */
-  const void* next;       /* NULL or a VoyTimeBudget */
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_VIEW_DESC */
+  const void* next; /* NULL or a chain of VoyTimeBudget and VoyExperiment (voyager_experiment.h) */
   uint32_t instanceCount; /* 1 to VoyCapabilities.maxInstances; more is UNSUPPORTED */
   const VoyScene* scenes; /* one for each instance, of the same device; copied */
   uint32_t eyeCount;      /* of every frame; 1 to VoyCapabilities.maxEyes; more is UNSUPPORTED */
   uint32_t maxWidth, maxHeight; /* pixels; the largest target that frames will have */
   VoyLod lod;
   double tau; /* granularity in pixels, finite, >= 0: smaller is finer. METHOD §3 */
-  VoySearch search;
-  VoyAlphaFilter alphaFilter;
-  VoyExponential exponential;
-  uint32_t lutSize; /* intervals of VOY_EXPONENTIAL_LUT, 1 to 4096; 0: 32 */
-  VoySplatting splatting;
   VoyAntialias antialias;
+  uint32_t reserved; /* 0 */
 } VoyViewDesc;
-#define VOY_VIEW_DESC_INIT                                                                   \
-  {                                                                                          \
-    VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_CUT, 3.0, VOY_SEARCH_AUTO, \
-        VOY_ALPHA_FILTER_ON, VOY_EXPONENTIAL_AUTO, 0, VOY_SPLATTING_OURS, VOY_ANTIALIAS_ON   \
-  }
+#define VOY_VIEW_DESC_INIT \
+  { VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_AUTO, 3.0, VOY_ANTIALIAS_ON, 0 }
 
 /* Creates a view. The host destroys it with voyDestroyView.
- * Errors: INVALID_ARGUMENT, UNSUPPORTED (a choice that VoyCapabilities does not list; a time budget
+ * Errors: INVALID_ARGUMENT, UNSUPPORTED (more than VoyCapabilities allows; a time budget
  * for a view that draws no cut, where tau has no effect), OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA:
  * the scene does not fit into the GPU's memory). */
 VOY_API VoyResult VOY_CALL voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
@@ -693,15 +657,58 @@ typedef struct VoyFrustum {
 
 /* Fills a frustum from angles in radians, as XrFovf has them, each inside ±π/2: the tangents of the
  * angles. Errors: INVALID_ARGUMENT (tangents that VoyFrustum does not allow). */
-VOY_API VoyResult VOY_CALL voyFovFromAngles(double left, double right, double up, double down,
-                                            VoyFrustum* frustum);
+VOY_API VoyResult VOY_CALL voyFrustumFromAngles(double left, double right, double up, double down,
+                                                VoyFrustum* frustum);
 
 /* Fills a frustum from pinhole intrinsics, all in pixels. cx and cy are measured from the top left
  * corner of the image; pixel centres lie at +0.5. left = -cx / fx, right = (width - cx) / fx,
  * up = cy / fy, down = -(height - cy) / fy (docs/conventions.md).
  * Errors: INVALID_ARGUMENT (tangents that VoyFrustum does not allow). */
-VOY_API VoyResult VOY_CALL voyFovFromIntrinsics(double fx, double fy, double cx, double cy,
-                                                double width, double height, VoyFrustum* frustum);
+VOY_API VoyResult VOY_CALL voyFrustumFromIntrinsics(double fx, double fy, double cx, double cy,
+                                                    double width, double height,
+                                                    VoyFrustum* frustum);
+
+/* Where the y of clip space points in the picture. */
+typedef enum VoyClipY {
+  VOY_CLIP_Y_UP = 0,   /* +1 is the top: OpenGL, Direct3D, Metal */
+  VOY_CLIP_Y_DOWN = 1, /* +1 is the bottom: Vulkan, without a negative viewport */
+  VOY_CLIP_Y_MAX_ENUM = 0x7fffffff
+} VoyClipY;
+
+/* Fills a frustum from a perspective projection: `matrix` is 16 numbers, column by column, that
+ * take columns (x, y, z, 1) of the camera's space to clip space. Row by row is the same memory
+ * where an engine multiplies rows from the left. The camera may look along -z or +z (the matrix
+ * tells), and its y may point up or down. The third row is not read, so that depth from 0 to 1 or
+ * from -1 to 1, reversed or not, with a finite far plane, an infinite one or an oblique near plane
+ * give the same frustum. Errors: INVALID_ARGUMENT (a number that is not finite; an orthographic,
+ * skewed or mirrored projection or one that moves the eye; tangents that VoyFrustum does not
+ * allow). */
+VOY_API VoyResult VOY_CALL voyFrustumFromProjection(const double* matrix, VoyClipY clipY,
+                                                    VoyFrustum* frustum);
+
+/* The hand of a world: what +z is where +x is right and +y is up. */
+typedef enum VoyHand {
+  VOY_HAND_RIGHT = 0, /* towards the viewer: OpenXR, glTF, Godot */
+  VOY_HAND_LEFT = 1,  /* away from the viewer: Unity, Unreal, Direct3D by habit */
+  VOY_HAND_MAX_ENUM = 0x7fffffff
+} VoyHand;
+
+/* Fills a pose from the matrix that takes columns (x, y, z, 1) of the own space of a camera or an
+ * object to the world: 16 numbers, column by column. The last column is the position in metres.
+ * The point (x, y, z) of a left-handed world is (x, y, -z) in Voyager's, so convert cameras and
+ * instances alike. A right-handed world is taken as it is.
+ * The own space has the world's hand, or the other one where the matrix mirrors, as Unity's
+ * cameraToWorldMatrix does. Its z, too, changes the sign if it is left-handed. So the pose is right
+ * for a camera that looks along +z of left-handed axes or along -z of right-handed ones.
+ * Errors: INVALID_ARGUMENT (a number that is not finite; a last row other than 0, 0, 0, 1; axes
+ * that are scaled or sheared by more than 1e-4). */
+VOY_API VoyResult VOY_CALL voyPoseFromWorldMatrix(const double* matrix, VoyHand worldHand,
+                                                  VoyPose* pose);
+
+/* The same from the inverse of that matrix, such as a camera's view matrix, which takes the world
+ * to the camera's own space. */
+VOY_API VoyResult VOY_CALL voyPoseFromViewMatrix(const double* matrix, VoyHand worldHand,
+                                                 VoyPose* pose);
 
 /* What one eye sees. It is an element of an array, so its size never changes. Later additions come
  * through `next`. */
@@ -720,13 +727,13 @@ typedef struct VoyFrameEye {
   { VOY_STRUCTURE_TYPE_FRAME_EYE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, {0, 0, 0, 0}, NULL, 0, 0 }
 
 /* What a value of the host's depth buffer means.
- * METRES: view-space z in metres; +inf means no geometry.
+ * METERS: view-space z in metres; +inf means no geometry.
  * STANDARD: projected depth d = a + b / z, 0 at nearZ and 1 at farZ.
  * REVERSED: projected depth d = a + b / z, 1 at nearZ and 0 at farZ.
  * d is clamped to [0, 1]. The d of farZ, which buffers are cleared to, means no geometry. NaN means
  * no geometry in every encoding. */
 typedef enum VoyDepthEncoding {
-  VOY_DEPTH_ENCODING_METRES = 0,
+  VOY_DEPTH_ENCODING_METERS = 0,
   VOY_DEPTH_ENCODING_STANDARD = 1,
   VOY_DEPTH_ENCODING_REVERSED = 2,
   VOY_DEPTH_ENCODING_MAX_ENUM = 0x7fffffff
@@ -736,21 +743,20 @@ typedef enum VoyDepthEncoding {
  * A splat whose centre has a greater view-space z than that is hidden: it is not blended in the
  * pixel and does not count for its depth. The image then holds what lies in front of the geometry,
  * and the host composites it over its own picture.
- * The memory belongs to the host and is read only during voyRenderFrame.
- * VOY_SPLATTING_3DGS does not support it (VOY_ERROR_UNSUPPORTED). */
+ * The memory belongs to the host and is read only during voyRenderFrame. */
 typedef struct VoyEyeDepthLimit {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT */
   const void* next;
   const float* depth;     /* rows from top to bottom, of the target's size; aligned to 4 bytes.
                              NULL: what voyRecordVulkanDepthLimit copied into the target */
   uint64_t depthRowPitch; /* bytes, a multiple of 4; 0: rows follow without a gap */
-  VoyDepthEncoding encoding;
+  VoyDepthEncoding depthEncoding;
   uint32_t reserved;  /* 0 */
-  double nearZ, farZ; /* metres, of the host's projection; ignored for METRES.
+  double nearZ, farZ; /* metres, of the host's projection; ignored for METERS.
                          1e-18 <= nearZ <= 1e18; nearZ < farZ; farZ may be infinite */
 } VoyEyeDepthLimit;
 #define VOY_EYE_DEPTH_LIMIT_INIT \
-  { VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, NULL, NULL, 0, VOY_DEPTH_ENCODING_METRES, 0, 0.0, 0.0 }
+  { VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, NULL, NULL, 0, VOY_DEPTH_ENCODING_METERS, 0, 0.0, 0.0 }
 
 /* Where an instance stands in the world. A point x of the scene is drawn at
  * position + scale·R·x, where R is the rotation of `orientation` (METHOD §6). x is in the scene's
@@ -781,7 +787,7 @@ typedef struct VoyFrameStreaming {
   uint32_t waitResident;
   /* Only for frames that wait. 1: data that is damaged or cannot be read is replaced by its nearest
    * ancestors. 0: such a frame fails with DAMAGED_CHUNK or with the error of the read. */
-  uint32_t standIn;
+  uint32_t allowFallback;
 } VoyFrameStreaming;
 #define VOY_FRAME_STREAMING_INIT \
   { VOY_STRUCTURE_TYPE_FRAME_STREAMING, NULL, 0, 0 }
@@ -803,7 +809,6 @@ typedef struct VoyFrame {
  * when Vulkan images are. After an error no target has changed.
  * Errors:
  * - INVALID_ARGUMENT: a value out of range.
- * - UNSUPPORTED: a depth limit with VOY_SPLATTING_3DGS.
  * - SCENE_DESTROYED: a scene of the view is gone.
  * - DAMAGED_CHUNK: the frame needs a chunk that is damaged.
  * - IO, FILE_NOT_FOUND, REFUSED_INPUT: the frame waits (VoyFrameStreaming) and a read failed.
@@ -835,9 +840,15 @@ typedef struct VoyOmission {
   char what[64]; /* UTF-8, terminated */
   char why[192];
 } VoyOmission;
+#define VOY_OMISSION_INIT                             \
+  {                                                   \
+    VOY_STRUCTURE_TYPE_OMISSION, NULL, 0, 0.0, {0}, { \
+      0                                               \
+    }                                                 \
+  }
 
-/* Lists what the view leaves out: the VOY_SCENE_NOTE_OMITTED of its scenes, each scene once, and
- * what the view itself leaves out, judged by its frames so far (docs/omissions.md). `capacity`,
+/* Lists what the view leaves out: the VOY_SCENE_NOTE_KIND_OMITTED of its scenes, each scene once,
+ * and what the view itself leaves out, judged by its frames so far (docs/omissions.md). `capacity`,
  * `count` and the result work as in voyGetSceneNotes. */
 VOY_API VoyResult VOY_CALL voyGetViewOmissions(VoyView view, uint32_t capacity,
                                                VoyOmission* omissions, uint32_t* count);
@@ -852,13 +863,13 @@ typedef enum VoyStage {
   VOY_STAGE_MAX_ENUM = 0x7fffffff
 } VoyStage;
 
-typedef enum VoyBudgetState {
-  VOY_BUDGET_STATE_NONE = 0,        /* the view has no time budget */
-  VOY_BUDGET_STATE_HELD = 1,        /* millisecondsTotal <= timeBudget */
-  VOY_BUDGET_STATE_LATE = 2,        /* longer than timeBudget: tau rises if this lasts */
-  VOY_BUDGET_STATE_UNREACHABLE = 3, /* longer than timeBudget, although tau is greatestTau */
-  VOY_BUDGET_STATE_MAX_ENUM = 0x7fffffff
-} VoyBudgetState;
+typedef enum VoyTimeBudgetState {
+  VOY_TIME_BUDGET_STATE_NONE = 0,        /* the view has no time budget */
+  VOY_TIME_BUDGET_STATE_HELD = 1,        /* millisecondsTotal <= millisecondsBudget */
+  VOY_TIME_BUDGET_STATE_LATE = 2,        /* longer than the budget: tau rises if this lasts */
+  VOY_TIME_BUDGET_STATE_UNREACHABLE = 3, /* longer than the budget, although tau is maxTau */
+  VOY_TIME_BUDGET_STATE_MAX_ENUM = 0x7fffffff
+} VoyTimeBudgetState;
 
 /* The room for stages in VoyFrameStats. stageCount says how many the library has. */
 #define VOY_MAX_STAGES 16
@@ -867,40 +878,43 @@ typedef enum VoyBudgetState {
  * well. */
 typedef struct VoyFrameStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STATS */
-  void* next;
-  uint64_t frameIndex;  /* frames of the view, counted from 0 */
-  VoySearch search;     /* the search that ran for the first instance with a cut: STREAMING where
-                           TEMPORAL fell back to it. AUTO if no instance has a cut */
+  void* next;            /* NULL or a VoyExperimentStats (voyager_experiment.h) */
+  uint64_t frameIndex;   /* frames of the view, counted from 0 */
+  VoyTimeBudgetState timeBudgetState;
   float tauStar;        /* of instance 0: the target size of a node, METHOD §3 */
-  float cutCentre[3];   /* of instance 0: scene-local coordinates, metres */
+  float cutCenter[3];   /* of instance 0: scene-local coordinates, metres */
   uint32_t stageCount;  /* entries of `milliseconds` that are in use */
   uint64_t nodesTotal;  /* of all instances */
   uint64_t nodesTested; /* evaluations of the cut predicate */
   uint64_t subtreesVisited;
-  uint64_t chunksRead;    /* chunks with a subtree that the search visited; EXHAUSTIVE: 0 */
-  uint64_t bytesRead;     /* by the search: records, tables and kept state */
-  uint64_t cutSize;       /* nodes; Gaussians where there is no cut */
-  uint64_t entered, left; /* nodes new in the cut, and gone, since the last frame */
-  uint64_t splats;        /* that contribute to the image */
-  uint64_t pairsBefore;   /* (tile, splat) pairs by bounding boxes */
-  uint64_t pairsAfter;    /* (tile, splat) pairs by ellipses at the α threshold; on CUDA without
-                             those that the view's last frame showed to be hidden, as are splats */
-  uint64_t pairsDropped;  /* pairs, strips and Gaussians that were not drawn because buffers
-                             were too small; 0 in a complete image */
-  uint64_t bytesStreamed; /* read for streamed scenes since the view's last frame */
-  uint64_t bytesNeeded;   /* size in the file of needed chunks that are not resident */
-  uint64_t missing;       /* cut nodes of size >= tau* whose children are not resident */
+  uint64_t chunksRead;        /* chunks with a subtree that the search visited */
+  uint64_t bytesRead;         /* by the search: records, tables and kept state */
+  uint64_t cutSize;           /* nodes; Gaussians where there is no cut */
+  uint64_t nodesEntered;      /* nodes new in the cut since the last frame */
+  uint64_t nodesExited;       /* nodes gone from the cut since the last frame */
+  uint64_t splats;            /* that contribute to the image */
+  uint64_t pairsBeforeFilter; /* (tile, splat) pairs by bounding boxes */
+  uint64_t pairsAfterFilter; /* (tile, splat) pairs by ellipses at the α threshold; on CUDA without
+                          those that the view's last frame showed to be hidden, as are splats */
+  uint64_t pairsDropped;     /* pairs, strips and Gaussians that were not drawn because buffers
+                                were too small; 0 in a complete image */
+  uint64_t bytesStreamed;    /* read for streamed scenes since the view's last frame */
+  uint64_t bytesNeeded;      /* size in the file of needed chunks that are not resident */
+  uint64_t nodesUnrefined;   /* cut nodes of size >= tau* whose children are not resident */
   double milliseconds[VOY_MAX_STAGES]; /* indexed by VoyStage; 0 from stageCount on */
   double millisecondsTotal;
-  double tau;        /* pixels, as used: voySetViewTau with it gives the same image, to the bit */
-  double timeBudget; /* milliseconds, when the frame was drawn; 0: no budget */
-  VoyBudgetState budgetState;
-  uint32_t reserved; /* 0 */
+  double tau; /* pixels, as used: voySetViewTau with it gives the same image, to the bit */
+  double millisecondsBudget; /* the time budget when the frame was drawn; 0: none */
 } VoyFrameStats;
+#define VOY_FRAME_STATS_INIT                                                                       \
+  {                                                                                                \
+    VOY_STRUCTURE_TYPE_FRAME_STATS, NULL, 0, VOY_TIME_BUDGET_STATE_NONE, 0, {0, 0, 0}, 0, 0, 0, 0, \
+        0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, {0}, 0, 0, 0                                           \
+  }
 
 /* Writes the statistics of the view's last successful frame. Frames into Vulkan images may still be
  * in flight; then it is the last frame that has finished, and frameIndex says which. The call waits
- * only for the view's first frame. The caller sets `type`; the call writes the rest.
+ * only for the view's first frame. The caller sets `type` and `next`; the call writes the rest.
  * Errors: INVALID_ARGUMENT (before the first frame). */
 VOY_API VoyResult VOY_CALL voyGetFrameStats(VoyView view, VoyFrameStats* stats);
 
@@ -910,7 +924,7 @@ VOY_API const char* VOY_CALL voyStageName(VoyStage stage);
 
 /* The types of the functions above, for hosts that load the library at run time (docs/abi.md). */
 typedef uint32_t(VOY_CALL* PFN_voyGetVersion)(void);
-typedef const char*(VOY_CALL* PFN_voyResultString)(VoyResult result);
+typedef const char*(VOY_CALL* PFN_voyResultName)(VoyResult result);
 typedef const char*(VOY_CALL* PFN_voyGetLastErrorMessage)(void);
 typedef VoyResult(VOY_CALL* PFN_voyQueryBackend)(VoyBackend backend);
 typedef VoyResult(VOY_CALL* PFN_voyEnumerateDevices)(uint32_t capacity, VoyDeviceInfo* devices,
@@ -922,7 +936,7 @@ typedef VoyResult(VOY_CALL* PFN_voyGetCapabilities)(VoyDevice device,
 typedef VoyResult(VOY_CALL* PFN_voyOpenScene)(VoyDevice device, const VoySceneDesc* desc,
                                               VoyScene* scene);
 typedef VoyResult(VOY_CALL* PFN_voySetSceneMemoryBudget)(VoyScene scene, uint64_t bytes);
-typedef VoyResult(VOY_CALL* PFN_voyDestroyScene)(VoyScene scene);
+typedef VoyResult(VOY_CALL* PFN_voyCloseScene)(VoyScene scene);
 typedef VoyResult(VOY_CALL* PFN_voyGetSceneInfo)(VoyScene scene, VoySceneInfo* info);
 typedef VoyResult(VOY_CALL* PFN_voyGetSceneNotes)(VoyScene scene, uint32_t capacity,
                                                   VoySceneNote* notes, uint32_t* count);
@@ -935,11 +949,17 @@ typedef VoyResult(VOY_CALL* PFN_voyCreateView)(VoyDevice device, const VoyViewDe
 typedef VoyResult(VOY_CALL* PFN_voyDestroyView)(VoyView view);
 typedef VoyResult(VOY_CALL* PFN_voySetViewTau)(VoyView view, double tau);
 typedef VoyResult(VOY_CALL* PFN_voySetViewTimeBudget)(VoyView view, const VoyTimeBudget* budget);
-typedef VoyResult(VOY_CALL* PFN_voyFovFromAngles)(double left, double right, double up, double down,
-                                                  VoyFrustum* frustum);
-typedef VoyResult(VOY_CALL* PFN_voyFovFromIntrinsics)(double fx, double fy, double cx, double cy,
-                                                      double width, double height,
-                                                      VoyFrustum* frustum);
+typedef VoyResult(VOY_CALL* PFN_voyFrustumFromAngles)(double left, double right, double up,
+                                                      double down, VoyFrustum* frustum);
+typedef VoyResult(VOY_CALL* PFN_voyFrustumFromIntrinsics)(double fx, double fy, double cx,
+                                                          double cy, double width, double height,
+                                                          VoyFrustum* frustum);
+typedef VoyResult(VOY_CALL* PFN_voyFrustumFromProjection)(const double* matrix, VoyClipY clipY,
+                                                          VoyFrustum* frustum);
+typedef VoyResult(VOY_CALL* PFN_voyPoseFromWorldMatrix)(const double* matrix, VoyHand worldHand,
+                                                        VoyPose* pose);
+typedef VoyResult(VOY_CALL* PFN_voyPoseFromViewMatrix)(const double* matrix, VoyHand worldHand,
+                                                       VoyPose* pose);
 typedef VoyResult(VOY_CALL* PFN_voyRenderFrame)(VoyView view, const VoyFrame* frame);
 typedef VoyResult(VOY_CALL* PFN_voyGetViewCut)(VoyView view, uint32_t instance, uint32_t capacity,
                                                uint32_t* nodes, uint32_t* count);

@@ -73,7 +73,7 @@ typedef struct VoyVulkanPhysicalDevice {
 typedef struct VoyVulkanRequirements {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS */
   void* next;
-  uint32_t apiVersion;             /* the lowest VkApplicationInfo.apiVersion */
+  uint32_t vulkanVersion;          /* the lowest VkApplicationInfo.apiVersion */
   uint32_t instanceExtensionCount; /* 0 in this version: Vulkan 1.1 is enough */
   const char* const* instanceExtensions;
   uint32_t deviceExtensionCount;
@@ -84,7 +84,7 @@ typedef struct VoyVulkanRequirements {
   { VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS, NULL, 0, 0, NULL, 0, NULL, VK_FALSE }
 
 /* Tells what to enable. Call it with physicalDevice NULL before creating the instance: it then
- * fills apiVersion and the instance extensions, and all device extensions and the feature that
+ * fills vulkanVersion and the instance extensions, and all device extensions and the feature that
  * Voyager can use of any device. A host that must name its device extensions before it has a
  * physical device enables those of them that its device has. Call it with a physical device before
  * creating the VkDevice: it then lists what Voyager can use of what this device has. Nothing in the
@@ -102,7 +102,7 @@ VOY_API VoyResult VOY_CALL voyGetVulkanRequirements(const VoyVulkanPhysicalDevic
  * The backend AUTO is CUDA if the CUDA device is this device, else the CPU. With `sharing` HOST any
  * device may draw: deviceUuid and AUTO then mean what they mean without Vulkan.
  * Further errors of voyCreateDevice: UNSUPPORTED (a sharing or sync that is not possible here; a
- * device or apiVersion older than 1.1; the message explains), DEVICE_LOST. */
+ * device or vulkanVersion older than 1.1; the message explains), DEVICE_LOST. */
 typedef struct VoyVulkanDeviceDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC */
   const void* next;
@@ -110,7 +110,7 @@ typedef struct VoyVulkanDeviceDesc {
   VkInstance instance;
   VkPhysicalDevice physicalDevice;
   VkDevice device;
-  uint32_t apiVersion; /* VkApplicationInfo.apiVersion of the instance */
+  uint32_t vulkanVersion; /* VkApplicationInfo.apiVersion of the instance */
   uint32_t deviceExtensionCount;
   const char* const* deviceExtensions; /* all that the host enabled */
   VkBool32 timelineSemaphore;          /* VK_TRUE: the host enabled the feature */
@@ -234,8 +234,8 @@ typedef struct VoyVulkanTargetDesc {
   const void* next;
   uint32_t imageCount;                  /* 1 to VOY_MAX_VULKAN_IMAGES */
   uint32_t layerCount;                  /* 1 to VOY_MAX_VULKAN_LAYERS */
-  VkBool32 depth;                       /* VK_TRUE: Voyager writes depth */
-  VkBool32 depthLimit;                  /* VK_TRUE: voyRecordVulkanDepthLimit will be used */
+  VkBool32 hasDepth;                    /* VK_TRUE: Voyager writes depth */
+  VkBool32 hasDepthLimit;               /* VK_TRUE: voyRecordVulkanDepthLimit will be used */
   const VoyVulkanImportedImage* images; /* imageCount of them; NULL: Voyager creates them */
   uint32_t semaphoreCount;              /* 0: Voyager creates them. Else 1 for TIMELINE and
                                            imageCount for BINARY */
@@ -257,6 +257,11 @@ typedef struct VoyVulkanImage {
   VkSemaphore released; /* TIMELINE: the same for all images. Sync HOST: VK_NULL_HANDLE */
   VkSemaphore rendered;
 } VoyVulkanImage;
+#define VOY_VULKAN_IMAGE_INIT                                                              \
+  {                                                                                        \
+    VOY_STRUCTURE_TYPE_VULKAN_IMAGE, NULL, VK_NULL_HANDLE, VK_NULL_HANDLE, VK_NULL_HANDLE, \
+        VK_NULL_HANDLE, VK_NULL_HANDLE, VK_NULL_HANDLE                                     \
+  }
 
 /* Lists the images of a target. With capacity 0 the call only sets *count. Otherwise it writes up
  * to `capacity` images, their `type` and `next` included, and sets *count to the number of images.
@@ -278,8 +283,7 @@ VOY_API VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacit
  *
  * Submit the signal that the frame waits for before calling voyRenderFrame. With HOST sharing the
  * call itself waits, and returns VOY_ERROR_TIMEOUT after 10 s. If voyRenderFrame fails with
- * anything but DEVICE_LOST, it signals nothing and consumes no wait. VOY_SPLATTING_3DGS draws with
- * HOST sharing only (VOY_ERROR_UNSUPPORTED).
+ * anything but DEVICE_LOST, it signals nothing and consumes no wait.
  *
  * With DEVICE sharing the call returns while the frame is in flight; it takes about 0.1 ms of host
  * time. It waits for the device in the first frame of a view, after a failure, when buffers must
@@ -321,20 +325,21 @@ typedef struct VoyVulkanUse {
         VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT \
   }
 
-/* Release and acquire alternate for each image. A second release in a row has no effect. An acquire
- * of an image that was not released is INVALID_ARGUMENT, and so is a layout or a queue family that
- * the image cannot have. A call that fails records nothing.
- * The commands of both must be submitted exactly once, in the order of the calls, because each call
- * counts as the hand-over. */
+/* RELEASE gives an image to Voyager: once for each image of a new ring, and after each use.
+ * ACQUIRE takes it back for the host when a frame has been drawn into it.
+ * For each image the two alternate, and the commands of each call are submitted exactly once, in
+ * the order of the calls.
+ *
+ * A second release in a row has no effect. An acquire of an image that was not released is
+ * INVALID_ARGUMENT, and so is a layout or a queue family that the image cannot have. A call that
+ * fails records nothing. */
 
-/* Records the hand-over of an image from the host to Voyager. Do this once for each image of a new
- * ring before its first frame, and after each use. The submission signals `released`.
+/* Records the release of an image, with its depth. The submission signals `released`.
  * Errors: INVALID_ARGUMENT (values out of range; a target of kind HOST_MEMORY), BUSY (another
  * thread draws into the target or records one of these two). */
 VOY_API VoyResult VOY_CALL voyRecordVulkanRelease(VoyTarget target, const VoyVulkanUse* use);
 
-/* Records the hand-over of an image, with its depth, from Voyager to the host. Do this before the
- * first use of the image in a frame. The submission waits for `rendered` at
+/* Records the acquire of an image, with its depth. The submission waits for `rendered` at
  * VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, or at TRANSFER and use.stages. After it the image is in
  * use.layout. Errors: as voyRecordVulkanRelease. */
 VOY_API VoyResult VOY_CALL voyRecordVulkanAcquire(VoyTarget target, const VoyVulkanUse* use);
@@ -380,10 +385,10 @@ typedef struct VoyVulkanDepthLimit {
   uint32_t layer; /* of the target */
   VkImage
       depth; /* the host's: 2D, one sample, usage TRANSFER_SRC, as large as the target or larger */
-  VkFormat format;      /* D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT */
-  VkImageLayout layout; /* TRANSFER_SRC_OPTIMAL or GENERAL */
+  VkFormat depthFormat;      /* D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT */
+  VkImageLayout depthLayout; /* TRANSFER_SRC_OPTIMAL or GENERAL */
   uint32_t depthLayer;
-  VkOffset2D offset; /* where the target's rectangle lies in it */
+  VkOffset2D depthOffset; /* where the target's rectangle lies in it */
 } VoyVulkanDepthLimit;
 #define VOY_VULKAN_DEPTH_LIMIT_INIT                                                       \
   {                                                                                       \
@@ -393,14 +398,14 @@ typedef struct VoyVulkanDepthLimit {
     }                                                                                     \
   }
 
-/* Records the copy. Errors: INVALID_ARGUMENT (values out of range; a target without depthLimit),
+/* Records the copy. Errors: INVALID_ARGUMENT (values out of range; a target without hasDepthLimit),
  * UNSUPPORTED (another format). Never BUSY. */
 VOY_API VoyResult VOY_CALL voyRecordVulkanDepthLimit(VoyTarget target,
                                                      const VoyVulkanDepthLimit* limit);
 
 /* ---------------------------------------------------------------- composite */
 
-typedef struct VoyComposite_T* VoyComposite;
+typedef struct VoyVulkanComposite_T* VoyVulkanComposite;
 
 /* A pipeline that draws a target's image over the host's image, with one sample. It draws inside
  * the host's render pass. With renderPass NULL it draws inside dynamic rendering with the formats
@@ -428,10 +433,10 @@ typedef struct VoyVulkanCompositeDesc {
  * format; renderPass NULL without dynamic rendering), and those of Vulkan. */
 VOY_API VoyResult VOY_CALL voyCreateVulkanComposite(VoyDevice device,
                                                     const VoyVulkanCompositeDesc* desc,
-                                                    VoyComposite* composite);
+                                                    VoyVulkanComposite* composite);
 
 /* Destroys a composite. The device must have finished all commands that use it. */
-VOY_API VoyResult VOY_CALL voyDestroyVulkanComposite(VoyComposite composite);
+VOY_API VoyResult VOY_CALL voyDestroyVulkanComposite(VoyVulkanComposite composite);
 
 /* What a composite does with depth. */
 typedef enum VoyVulkanDepthUse {
@@ -475,22 +480,25 @@ typedef struct VoyVulkanCompositeDraw {
   VoyTarget target;              /* of the composite's device */
   uint32_t imageIndex;           /* acquired in SHADER_READ_ONLY_OPTIMAL for FRAGMENT_SHADER */
   uint32_t layer;
-  VkRect2D area;              /* of the attachment, where the layer goes, pixel by pixel */
-  VoyVulkanDepthUse depthUse; /* TEST and WRITE need a target with depth and a depthFormat */
-  VoyDepthEncoding encoding;  /* of the attachment; STANDARD or REVERSED */
-  double nearZ, farZ;         /* of the host's projection, metres; farZ may be infinite */
+  VkRect2D area;       /* of the attachment, where the layer goes, pixel by pixel */
+  VkBool32 upsideDown; /* VK_TRUE: the attachment's first row is the bottom of the picture, so
+                          the layer's first row goes to the last row of `area` */
+  VoyVulkanDepthUse depthUse;     /* TEST and WRITE need a target with depth and a depthFormat */
+  VoyDepthEncoding depthEncoding; /* of the attachment; STANDARD or REVERSED */
+  uint32_t reserved;              /* 0 */
+  double nearZ, farZ;             /* of the host's projection, metres; farZ may be infinite */
 } VoyVulkanCompositeDraw;
 #define VOY_VULKAN_COMPOSITE_DRAW_INIT                                                            \
   {                                                                                               \
     VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW, NULL, VK_NULL_HANDLE, NULL, 0, 0, {{0, 0}, {0, 0}}, \
-        VOY_VULKAN_DEPTH_USE_NONE, VOY_DEPTH_ENCODING_STANDARD, 0.1, 1000.0                       \
+        VK_FALSE, VOY_VULKAN_DEPTH_USE_NONE, VOY_DEPTH_ENCODING_STANDARD, 0, 0.1, 1000.0          \
   }
 
 /* Records a draw. It changes the command buffer's pipeline, descriptor set 0, push constants,
  * viewport and scissor.
  * Errors: INVALID_ARGUMENT (values out of range; a target of another device or one that cannot be
  * sampled; depth that the target or the composite lacks). Never BUSY. */
-VOY_API VoyResult VOY_CALL voyRecordVulkanComposite(VoyComposite composite,
+VOY_API VoyResult VOY_CALL voyRecordVulkanComposite(VoyVulkanComposite composite,
                                                     const VoyVulkanCompositeDraw* draw);
 
 /* The types of the functions above, for hosts that load the library at run time (docs/abi.md). */
@@ -505,9 +513,9 @@ typedef VoyResult(VOY_CALL* PFN_voyRecordVulkanDepthLimit)(VoyTarget target,
                                                            const VoyVulkanDepthLimit* limit);
 typedef VoyResult(VOY_CALL* PFN_voyCreateVulkanComposite)(VoyDevice device,
                                                           const VoyVulkanCompositeDesc* desc,
-                                                          VoyComposite* composite);
-typedef VoyResult(VOY_CALL* PFN_voyDestroyVulkanComposite)(VoyComposite composite);
-typedef VoyResult(VOY_CALL* PFN_voyRecordVulkanComposite)(VoyComposite composite,
+                                                          VoyVulkanComposite* composite);
+typedef VoyResult(VOY_CALL* PFN_voyDestroyVulkanComposite)(VoyVulkanComposite composite);
+typedef VoyResult(VOY_CALL* PFN_voyRecordVulkanComposite)(VoyVulkanComposite composite,
                                                           const VoyVulkanCompositeDraw* draw);
 
 #ifdef __cplusplus

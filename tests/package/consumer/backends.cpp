@@ -4,7 +4,7 @@
 #include <cstdio>
 
 static const char* outcome(VoyResult result) {
-  return result < 0 ? voyGetLastErrorMessage() : voyResultString(result);
+  return result < 0 ? voyGetLastErrorMessage() : voyResultName(result);
 }
 
 int main(int argc, char** argv) {

@@ -30,15 +30,15 @@ class TVoyagerHandle {
 };
 
 using FVoyagerDeviceHandle = TVoyagerHandle<VoyDevice, voyDestroyDevice>;
-using FVoyagerSceneHandle = TVoyagerHandle<VoyScene, voyDestroyScene>;
+using FVoyagerSceneHandle = TVoyagerHandle<VoyScene, voyCloseScene>;
 using FVoyagerViewHandle = TVoyagerHandle<VoyView, voyDestroyView>;
 using FVoyagerTargetHandle = TVoyagerHandle<VoyTarget, voyDestroyTarget>;
-using FVoyagerCompositeHandle = TVoyagerHandle<VoyComposite, voyDestroyVulkanComposite>;
+using FVoyagerCompositeHandle = TVoyagerHandle<VoyVulkanComposite, voyDestroyVulkanComposite>;
 
 // False, with the library's message in Error, for an error.
 inline bool VoyagerSucceeded(VoyResult Result, FString& Error) {
   if (Result >= 0) return true;
-  Error = FString(UTF8_TO_TCHAR(voyResultString(Result))) + TEXT(": ") +
+  Error = FString(UTF8_TO_TCHAR(voyResultName(Result))) + TEXT(": ") +
           FString(UTF8_TO_TCHAR(voyGetLastErrorMessage()));
   return false;
 }

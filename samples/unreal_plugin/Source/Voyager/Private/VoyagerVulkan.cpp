@@ -46,7 +46,7 @@ bool CreateVoyagerDevice(VoyDevice* Device, FString& Error) {
   Vulkan.instance = RHI->RHIGetVkInstance();
   Vulkan.physicalDevice = RHI->RHIGetVkPhysicalDevice();
   Vulkan.device = RHI->RHIGetVkDevice();
-  Vulkan.apiVersion = RHI->RHIGetVulkanVersion();
+  Vulkan.vulkanVersion = RHI->RHIGetVulkanVersion();
   Vulkan.deviceExtensionCount = static_cast<uint32_t>(Names.Num());
   Vulkan.deviceExtensions = Names.GetData();
   Vulkan.sync = VOY_VULKAN_SYNC_HOST;  // Unreal's submissions take no semaphores from plugins

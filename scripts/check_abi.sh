@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# Compares what the headers promise with the recorded description of the last release: check_abi.sh
+# With --record it writes the description of this tree instead, for a release. Needs libabigail
+# (abigail-tools); without it the check is left out with a line that says so. Exports, sizes and offsets are
+# pinned by tests/abi as well; this also sees the type of a parameter or of a field change.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+recorded=tests/abi/recorded/voyager.abi
+command -v abidiff >/dev/null && command -v abidw >/dev/null ||
+  { echo "check_abi.sh: left out: abidiff is not here, install abigail-tools (scripts/setup.sh checks)"; exit 0; }
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+# A library whose variables have the type of each function and structure: libabigail reads types from the
+# debug information of what is exported, and structures in a `next` are behind no function.
+{
+  echo '#include <voyager/voyager_experiment.h>'
+  echo '#include <voyager/voyager_vulkan.h>'
+  sed 's/.*/PFN_& type_of_&;/' tests/abi/exports.txt
+  sed -n 's/^\(Voy[A-Za-z]*\) .*/\1 a_\1;/p' tests/abi/layout.txt
+} >"$folder/types.c"
+gcc -std=c99 -g -O0 -shared -fPIC -fno-eliminate-unused-debug-types -Iplugin/include "$folder/types.c" -o "$folder/libvoyager_types.so"
+
+if [ "${1:-}" = --record ]; then
+  abidw --headers-dir plugin/include --drop-private-types --no-show-locs --no-corpus-path --no-comp-dir-path \
+    --type-id-style hash --out-file "$recorded" "$folder/libvoyager_types.so"
+  echo "check_abi.sh: recorded $(wc -c <"$recorded") bytes in $recorded"
+  exit 0
+fi
+if ! abidiff --headers-dir2 plugin/include --drop-private-types --no-added-syms --suppressions tests/abi/recorded/outside_the_promise.ini \
+  "$recorded" "$folder/libvoyager_types.so"; then
+  echo "check_abi.sh: the headers differ from $recorded. While the major version is 0: name the change in CHANGELOG.md, raise the minor version and record anew" >&2
+  exit 1
+fi
+echo "check_abi.sh: the headers keep what $recorded promises"

@@ -1,0 +1,91 @@
+/* A host in C99, compiled against the headers that header_MAJOR.MINOR keeps. */
+#include "kept_host.h"
+
+#include <voyager/voyager_vulkan.h>
+
+enum { kSide = 16 };
+
+static int64_t logged;
+
+static void VOY_CALL count_message(void* user, VoyLogLevel level, const char* message) {
+  logged += user == &logged && level <= VOY_LOG_LEVEL_INFO && message[0] != '\0';
+}
+
+static const char* check_frame(VoyView view, const uint8_t* color, const float* depth) {
+  VoyFrameStats stats = VOY_FRAME_STATS_INIT;
+  int opaque = 0, seen = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    opaque += color[4 * i + 3] > 128;
+    seen += depth[i] > 1 && depth[i] < 100;
+  }
+  if (opaque == 0) return "nothing was drawn";
+  if (seen == 0) return "no depth was drawn";
+  if (voyGetFrameStats(view, &stats) < 0) return voyGetLastErrorMessage();
+  if (stats.splats == 0 || stats.tau != 5 || stats.millisecondsTotal <= 0 || stats.stageCount == 0)
+    return "the statistics are not of this frame";
+  return NULL;
+}
+
+static const char* draw(VoyDevice device, VoyScene scene) {
+  static uint8_t color[kSide * kSide * 4];
+  static float depth[kSide * kSide];
+  VoyViewDesc view_desc = VOY_VIEW_DESC_INIT;
+  VoyTargetDesc target_desc = VOY_TARGET_DESC_INIT;
+  VoyFrameEye eye = VOY_FRAME_EYE_INIT;
+  VoyInstancePose instance = VOY_INSTANCE_POSE_INIT;
+  VoyFrame frame = VOY_FRAME_INIT;
+  VoyView view = NULL;
+  view_desc.instanceCount = 1;
+  view_desc.scenes = &scene;
+  view_desc.maxWidth = view_desc.maxHeight = kSide;
+  view_desc.tau = 5;
+  if (voyCreateView(device, &view_desc, &view) < 0) return voyGetLastErrorMessage();
+  target_desc.width = target_desc.height = kSide;
+  target_desc.color = color;
+  target_desc.depth = depth;
+  if (voyCreateTarget(device, &target_desc, &eye.target) < 0) return voyGetLastErrorMessage();
+  if (voyFrustumFromAngles(-0.7, 0.7, 0.7, -0.7, &eye.frustum) < 0) return voyGetLastErrorMessage();
+  eye.pose.position[2] = 12;
+  frame.eyeCount = 1;
+  frame.eyes = &eye;
+  frame.instances = &instance;
+  if (voyRenderFrame(view, &frame) < 0) return voyGetLastErrorMessage();
+  return check_frame(view, color, depth);
+}
+
+static const char* open_and_draw(VoyDevice device, const char* path) {
+  VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+  VoySceneInfo info = VOY_SCENE_INFO_INIT;
+  VoyCapabilities capabilities = VOY_CAPABILITIES_INIT;
+  VoyScene scene = NULL;
+  const char* problem;
+  if (voyGetCapabilities(device, &capabilities) < 0) return voyGetLastErrorMessage();
+  if (capabilities.workerThreadCount != 2 || capabilities.maxEyes < 2) return "the capabilities";
+  desc.path = path;
+  if (voyOpenScene(device, &desc, &scene) < 0) return voyGetLastErrorMessage();
+  if (voyGetSceneInfo(scene, &info) < 0) return voyGetLastErrorMessage();
+  if (info.gaussianCount == 0 || info.boundsMax[0] <= info.boundsMin[0]) return "the scene's facts";
+  problem = draw(device, scene);
+  if (problem == NULL && voyCloseScene(scene) < 0) problem = voyGetLastErrorMessage();
+  return problem;
+}
+
+const char* run_kept_host(const char* scene) {
+  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  VoyVulkanPhysicalDevice nothing = VOY_VULKAN_PHYSICAL_DEVICE_INIT;
+  VoyVulkanRequirements needs = VOY_VULKAN_REQUIREMENTS_INIT;
+  VoyDevice device = NULL;
+  const char* problem;
+  desc.backend = VOY_BACKEND_CPU;
+  desc.workerThreadCount = 2;
+  desc.logLevel = VOY_LOG_LEVEL_INFO;
+  desc.log = count_message;
+  desc.logUser = &logged;
+  if (voyCreateDevice(&desc, &device) < 0) return voyGetLastErrorMessage();
+  problem = open_and_draw(device, scene);
+  if (problem == NULL && logged == 0) problem = "no message was logged";
+  if (problem == NULL && voyGetVulkanRequirements(&nothing, &needs) != VOY_ERROR_INVALID_ARGUMENT)
+    problem = "a Vulkan host without vkGetInstanceProcAddr was not refused";
+  if (voyDestroyDevice(device) < 0) return voyGetLastErrorMessage();
+  return problem;
+}
