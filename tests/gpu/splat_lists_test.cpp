@@ -180,24 +180,32 @@ TEST_F(SplatLists, WithoutMemoryAFrameSaysWhatItLeftOutAndTheNextIsWhole) {
 
 // A list that is long beside all others is blended by more warps, a pixel a lane. What else is in
 // the image, and so which lists those are, changes nothing of it.
-TEST_F(SplatLists, ALongListIsTheSameBesideShortOnesAndBesideLonger) {
-  constexpr uint32_t kSide = 800;
-  const FrameInput input = frame_input(look({0, 0, 0}, {0, 0, 1}, kSide, kSide, 90));
-  auto alone = empty_scene();
+constexpr uint32_t kSide = 800;
+
+// 600 small ones in the middle, and so many lines over the upper half.
+std::shared_ptr<Scene> heap_and_lines(int lines) {
+  auto scene = empty_scene();
   std::mt19937 random(9);
   std::normal_distribution<float> normal(0, 0.02f);
   for (int i = 0; i < 600; ++i)
-    add_gaussian(*alone, {normal(random), normal(random), 4 + 1e-3f * static_cast<float>(i)},
+    add_gaussian(*scene, {normal(random), normal(random), 4 + 1e-3f * static_cast<float>(i)},
                  {0.01f, 0.02f, 0.01f}, 0.01f + static_cast<float>(random() % 100) / 1000,
                  {static_cast<float>(random() % 2), 0.4f, static_cast<float>(random() % 2)});
-  auto beside = std::make_shared<Scene>(*alone);
-  for (int i = 0; i < 40000; ++i)
-    add_gaussian(*beside, {0, -3, 4}, {1.5f, 0.02f, 0.01f}, 0.01f, {0.5f, 0.5f, 0.5f});
-  const Frame few = draw(alone, {}, input), many = draw(beside, {}, input);
-  EXPECT_GT(many.stats.pairs_after, 1000000u);
-  const size_t half = size_t{2} * kSide * kSide;  // floats of the upper half, where the others are
-  EXPECT_EQ(different_bits(std::vector<float>(few.rgba.begin() + half, few.rgba.end()),
-                           std::vector<float>(many.rgba.begin() + half, many.rgba.end())),
+  for (int i = 0; i < lines; ++i)
+    add_gaussian(*scene, {0, -3, 4}, {1.5f, 0.02f, 0.01f}, 0.01f, {0.5f, 0.5f, 0.5f});
+  return scene;
+}
+
+// A list that is long beside all others is blended by more warps, a pixel a lane. What else is in
+// the image, and so which lists those are, changes nothing of it.
+TEST_F(SplatLists, ALongListIsTheSameBesideShortOnesAndBesideLonger) {
+  const FrameInput input = frame_input(look({0, 0, 0}, {0, 0, 1}, kSide, kSide, 90));
+  const Frame few = draw(heap_and_lines(0), {}, input);
+  const Frame many = draw(heap_and_lines(60000), {}, input);
+  EXPECT_GT(many.stats.pairs_after, 1500000u);
+  constexpr size_t kHalf = size_t{2} * kSide * kSide;  // floats of the upper half
+  EXPECT_EQ(different_bits(std::vector<float>(few.rgba.begin() + kHalf, few.rgba.end()),
+                           std::vector<float>(many.rgba.begin() + kHalf, many.rgba.end())),
             0u);
   EXPECT_GT(few.at(kSide / 2, kSide / 2)[3], 0.9f);
 }
