@@ -26,7 +26,7 @@ SplatImages::SplatImages(const DeviceFunctions& functions, const voy::Device& de
     : functions_(functions), native_(native), extent_(extent) {
   VoyVulkanTargetDesc vulkan = VOY_VULKAN_TARGET_DESC_INIT;
   vulkan.imageCount = kImages;
-  vulkan.depth = VK_TRUE;
+  vulkan.hasDepth = VK_TRUE;
   VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
   desc.next = &vulkan;
   desc.kind = VOY_TARGET_KIND_VULKAN;

@@ -7,7 +7,7 @@ TSharedPtr<FVoyagerImages> FVoyagerImages::Create(VoyDevice Device, const FIntPo
   Images->QueueFamily = QueueFamily;
   VoyVulkanTargetDesc Vulkan = VOY_VULKAN_TARGET_DESC_INIT;
   Vulkan.imageCount = kImages;
-  Vulkan.depth = VK_TRUE;
+  Vulkan.hasDepth = VK_TRUE;
   VoyTargetDesc Desc = VOY_TARGET_DESC_INIT;
   Desc.next = &Vulkan;
   Desc.kind = VOY_TARGET_KIND_VULKAN;

@@ -67,7 +67,7 @@ bool FVoyagerRenderer::Draw(VkCommandBuffer Commands, const FVoyagerViewFrame& F
   Draw.area = {{Frame.Area.Min.X, Frame.Area.Min.Y},
                {static_cast<uint32_t>(Size.X), static_cast<uint32_t>(Size.Y)}};
   Draw.depthUse = VOY_VULKAN_DEPTH_USE_TEST;
-  Draw.encoding = VOY_DEPTH_ENCODING_REVERSED;
+  Draw.depthEncoding = VOY_DEPTH_ENCODING_REVERSED;
   Draw.nearZ = Camera.NearZ;
   Draw.farZ = Camera.FarZ;
   Retired.Add({Fence, Composite->Record(Commands, Color, Depth, Draw, Error), nullptr, nullptr});
