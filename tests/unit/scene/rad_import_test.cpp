@@ -1,7 +1,7 @@
 // Spark's .rad, made by hand: what each encoding becomes, which Gaussians of a tree are read, and
 // what is refused.
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "runtime/base/file.h"
 #include "runtime/math/byte_code.h"
@@ -242,6 +242,15 @@ TEST(RadImport, WhatIsNotReadIsRefusedByName) {
   expect_refusal(with(1, {"alpha", "f32", Bytes(9), {}, {}, false}),
                  "found 9 bytes, expected 8 bytes");
   expect_refusal(one_chunk({}, 2), "found no property center");
+}
+
+TEST(RadImport, OtherCompressionIsRefusedByName) {
+  Bytes bytes = one_chunk(in_f32(), 2);
+  const Bytes gz = bytes_of("\"gz\""), xz = bytes_of("\"xz\"");
+  const auto at = std::search(bytes.begin(), bytes.end(), gz.begin(), gz.end());
+  ASSERT_NE(at, bytes.end());
+  std::copy(xz.begin(), xz.end(), at);
+  expect_refusal(bytes, "properties[0].compression: found \"xz\", expected \"gz\" (raw deflate)");
 }
 
 TEST(RadImport, HeadersThatDoNotFitAreRefused) {
