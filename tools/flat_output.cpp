@@ -66,14 +66,16 @@ void add_flat_options(CLI::App& command, FlatArguments& arguments) {
   name_group(command, "Flat files");
 }
 
-FlatOptions flat_options(const FlatArguments& arguments, const std::string& output) {
+FlatOptions flat_options(const FlatArguments& arguments, const std::string& output,
+                         bool writes_tilesets) {
   const std::optional<FlatFormat> format = flat_format_of(output);
   // The tiles of a tileset are .glb files.
-  const bool glb = format == FlatFormat::glb || has_ending(output, "tileset.json");
+  const bool glb =
+      format == FlatFormat::glb || (writes_tilesets && has_ending(output, "tileset.json"));
   if (arguments.spz_inside && !glb)
-    throw Error(
-        ErrorCode::invalid_argument,
-        "--spz: found -o " + output + ", expected a name that ends in .glb, or tileset.json");
+    throw Error(ErrorCode::invalid_argument, "--spz: found -o " + output +
+                                                 ", expected a name that ends in .glb" +
+                                                 (writes_tilesets ? ", or tileset.json" : ""));
   if (arguments.spz_version && format != FlatFormat::spz && !arguments.spz_inside)
     throw Error(ErrorCode::invalid_argument,
                 "--spz-version: found -o " + output +

@@ -25,7 +25,9 @@ struct FlatArguments {
 void add_flat_options(CLI::App& command, FlatArguments& arguments);
 
 // Throws Error(invalid_argument) where an option was given that is not the output's.
-FlatOptions flat_options(const FlatArguments& arguments, const std::string& output);
+// `writes_tilesets`: of a command that writes tileset.json, too.
+FlatOptions flat_options(const FlatArguments& arguments, const std::string& output,
+                         bool writes_tilesets = false);
 
 // What --keep asks for of a baked scene, its leaves without. Says what was written.
 void export_flat(const SceneFile& scene, const FlatArguments& arguments, const std::string& output);

@@ -3,6 +3,7 @@
 #include <array>
 #include <filesystem>
 
+#include "runtime/base/error.h"
 #include "runtime/base/http_module.h"
 #include "runtime/base/module.h"
 #include "runtime/base/url.h"
@@ -33,7 +34,15 @@ std::string scene_file(const std::string& path) {
 }
 
 std::unique_ptr<ByteSource> open_source(const std::string& path) {
-  return is_url(path) ? open_url(path) : open_file_source(scene_file(path));
+  if (is_url(path)) return open_url(path);
+  const std::string file = scene_file(path);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored))
+    throw Error(ErrorCode::refused_input,
+                file +
+                    ": found a directory, expected a file, or a folder with lod-meta.json, "
+                    "meta.json or tileset.json");
+  return open_file_source(file);
 }
 
 }  // namespace voyager

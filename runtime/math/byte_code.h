@@ -89,4 +89,17 @@ inline std::array<float, 4> quaternion_of(const SmallestThree& code) {
   return q;
 }
 
+// A rotation (w, x, y, z) of three bytes: its axis on an octahedron, u and v from -1 to 1, and its
+// angle from 0 to pi.
+inline std::array<float, 4> rotation_of_oct88r8(uint32_t u, uint32_t v, uint32_t angle) {
+  constexpr float kHalfPi = 1.57079633f;
+  float x = between(-1, 1, u, 255), y = between(-1, 1, v, 255);
+  const float z = 1 - std::fabs(x) - std::fabs(y), folded = std::max(-z, 0.0f);
+  x -= std::copysign(folded, x);
+  y -= std::copysign(folded, y);
+  const float half = between(0, kHalfPi, angle, 255);
+  const float of_axis = std::sin(half) / std::sqrt(x * x + y * y + z * z);
+  return {std::cos(half), of_axis * x, of_axis * y, of_axis * z};
+}
+
 }  // namespace voyager

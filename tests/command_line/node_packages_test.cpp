@@ -10,6 +10,7 @@
 
 #include "tests/command_line/program.h"
 #include "tests/support/needs.h"
+#include "tests/support/rad_files.h"
 #include "tests/support/sample_files.h"
 #include "tests/support/test_support.h"
 
@@ -108,10 +109,13 @@ class NodePackages : public ::testing::Test {
     const Outcome done = script(name + " " + file(from) + " " + file(to));
     ASSERT_EQ(done.exit_code, 0) << done.output;
   }
-  // `to`, a .spz that Spark wrote of `from`, against ours: one code off at most, and as far as
-  // Spark rounds. Spark turns no axes, as if a .ply had those of a .spz.
   void expect_spark_reads(const std::string& from, const std::string& options = "") {
     ASSERT_NO_FATAL_FAILURE(convert("c.ply", from, options));
+    expect_as_spark(from);
+  }
+  // A .spz that Spark wrote of `from`, against ours: one code off at most, and as far as Spark
+  // rounds. Spark turns no axes, as if a .ply had those of a .spz.
+  void expect_as_spark(const std::string& from) {
     ASSERT_NO_FATAL_FAILURE(by_node("spark.mjs", from, "theirs.spz"));
     ASSERT_NO_FATAL_FAILURE(convert(from, "ours.spz", from.ends_with(".spz") ? "" : " --up y"));
     const Differences d =
@@ -129,8 +133,10 @@ class NodePackages : public ::testing::Test {
     GaussianCloud cloud = random_cloud(500, 8, 3);
     cloud.native = {};
     for (float& coefficient : cloud.sh) coefficient = std::clamp(3 * coefficient, -0.9f, 0.9f);
-    const Bytes bytes = ply_of(cloud);
-    std::ofstream(file("v.ply"), std::ios::binary)
+    write("v.ply", ply_of(cloud));
+  }
+  void write(const std::string& name, const Bytes& bytes) const {
+    std::ofstream(file(name), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
   }
@@ -206,6 +212,22 @@ TEST_F(NodePackages, SparkReadsWhatIsWritten) {
   expect_spark_reads("o.compressed.ply");
   expect_spark_reads("o.spz", " --spz-version 3");
   if (VOYAGER_SOG) expect_spark_reads("o.sog");
+}
+
+// Made here: Spark's package writes none.
+TEST_F(NodePackages, ARadIsReadAsSparkReadsIt) {
+  VOYAGER_NEEDS_PACKAGE("@sparkjsdev/spark");
+  make_vivid();
+  GaussianCloud cloud = import_file(file("v.ply"));
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    float* q = &cloud.rotation[4 * i];
+    const float length = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], q[3]));
+    for (size_t k = 0; k < 4; ++k) q[k] /= length;
+  }
+  write("o.rad", rad_of(cloud, 65536));
+  ASSERT_NO_FATAL_FAILURE(expect_as_spark("o.rad"));
+  ASSERT_NO_FATAL_FAILURE(convert("o.rad", "turned.ply", " --up y"));
+  expect_each_coefficient("turned.ply", "theirs.spz", 0.2);
 }
 
 TEST_F(NodePackages, ShIsReadCoefficientByCoefficientAsSpzJsReadsIt) {

@@ -300,7 +300,8 @@ TEST_F(Hostile, EmptyAndNonsenseScenes) {
     EXPECT_EQ(open(), VOY_ERROR_FILE_NOT_FOUND) << voy.message();
   }
   desc.path = "/";
-  expect_refused(open(), VOY_ERROR_REFUSED_INPUT, "found a directory, expected a regular file");
+  expect_refused(open(), VOY_ERROR_REFUSED_INPUT,
+                 "found a directory, expected a file, or a folder with lod-meta.json");
   desc.path = "/dev/zero";
   expect_refused(open(), VOY_ERROR_REFUSED_INPUT, "character device");
   EXPECT_EQ(scene, nullptr);

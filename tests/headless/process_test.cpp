@@ -46,19 +46,20 @@ TEST(Process, LoadingAndUnloadingAHundredTimesLeavesNothing) {
   if (kSanitized) GTEST_SKIP() << "built with a sanitizer";
   constexpr int kWarm = 10, kTimes = 100;
   constexpr size_t kSlack = 64 << 10;  // bytes of heap that others may have taken meanwhile
-  size_t heap = 0, descriptors = 0, mapped = 0;
+  size_t heap = 0, descriptors = 0, mapped = 0, threads = 0;
   for (int i = 0; i < kWarm + kTimes; ++i) {
     draw_once(Library());
     if (i != kWarm - 1) continue;
     heap = mallinfo2().uordblks;
     descriptors = entries("/proc/self/fd");
     mapped = mappings();
+    threads = entries("/proc/self/task");  // a CUDA driver keeps some
   }
   EXPECT_FALSE(Library::is_mapped());
   EXPECT_LE(mallinfo2().uordblks, heap + kSlack);
   EXPECT_EQ(entries("/proc/self/fd"), descriptors);
   EXPECT_LE(mappings(), mapped + 4);
-  EXPECT_EQ(entries("/proc/self/task"), 1u) << "threads outlive the library";
+  EXPECT_EQ(entries("/proc/self/task"), threads) << "threads outlive the library";
 }
 
 TEST(Process, TwoCopiesOfTheLibraryKeepToThemselves) {

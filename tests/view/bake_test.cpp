@@ -5,6 +5,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "runtime/bake/bake.h"
 #include "runtime/bake/work_files.h"
@@ -52,6 +55,22 @@ TEST_F(ViewBake, WhatAKilledBakeLeftGoesAndWhatRunsStays) {
   trim_cache(cached("used.voy"));
   EXPECT_FALSE(fs::exists(work_folder(cached("killed.voy"))));
   EXPECT_TRUE(fs::exists(work_folder(cached("running.voy"))));
+}
+
+// Others may write to any folder that is not the user's own.
+TEST_F(ViewBake, WithoutAFolderOfTheUsersThereIsNoCache) {
+  const char* home = std::getenv("HOME");
+  const std::optional<std::string> kept = home ? std::optional<std::string>(home) : std::nullopt;
+  ASSERT_EQ(::unsetenv("HOME") | ::unsetenv("XDG_CACHE_HOME"), 0);
+  try {
+    make_cache_folder();
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("--keep names a file"), std::string::npos);
+  }
+  const std::vector<std::byte> bytes(1);
+  EXPECT_THROW(cached_bake("a.ply", MemorySource("a.ply", bytes)), Error);
+  EXPECT_EQ(kept ? ::setenv("HOME", kept->c_str(), 1) : 0, 0);
 }
 
 // Two viewers of one scene.

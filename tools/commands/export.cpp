@@ -84,7 +84,7 @@ void export_tiles(const ExportArguments& arguments, const FlatOptions& options) 
 void export_scene(const ExportArguments& arguments) {
   const std::string& output = arguments.output;
   require_distinct({output}, {arguments.scene, arguments.cameras});
-  const FlatOptions options = flat_options(arguments.flat, output);
+  const FlatOptions options = flat_options(arguments.flat, output, true);
   if (!arguments.cameras.empty()) {
     require_extension("-o with --cut-camera", output, flat_format_endings());
     refuse_keep(arguments.flat, "--cut-camera", "one of the two");

@@ -23,7 +23,12 @@ fs::path cache_folder() {
   const char* cache = std::getenv("XDG_CACHE_HOME");
   if (cache != nullptr && *cache != '\0') return fs::path(cache) / "voyager";
   const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr && *home != '\0' ? home : "/tmp") / ".cache/voyager";
+  // No folder that others write to, in which one of them may have put a bake of that name.
+  if (home == nullptr || *home == '\0')
+    throw Error(ErrorCode::io,
+                "the viewer's cache: found neither XDG_CACHE_HOME nor HOME in the environment, "
+                "expected a folder for the bake: --keep names a file for it");
+  return fs::path(home) / ".cache/voyager";
 }
 
 // "" for a URL, whose size must do.

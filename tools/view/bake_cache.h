@@ -9,6 +9,8 @@ namespace voyager::view {
 
 inline constexpr uint64_t kLargestCache = 20'000'000'000;  // bytes
 
+// All but work_folder() throw Error(io) where neither XDG_CACHE_HOME nor HOME is set.
+
 // The .voy of a flat scene, whether it is there or not: another one when the scene changes, which
 // its size and time of change tell, or when the version of .voy files does.
 std::string cached_bake(const std::string& scene, const ByteSource& source);

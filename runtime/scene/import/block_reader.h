@@ -79,6 +79,9 @@ std::unique_ptr<BlockReader> open_hier_blocks(std::shared_ptr<const ByteSource> 
 std::unique_ptr<BlockReader> open_lcc_blocks(std::shared_ptr<const ByteSource> source);
 // What of it is not read, for people. Throws as its reader does.
 std::vector<std::string> left_out_of_lcc(const ByteSource& source);
+// Spark's .rad without tables of SH: its Gaussians, or the leaves of its tree. Reads the tree's
+// numbers of children before the first block, and holds a chunk at a time.
+std::unique_ptr<BlockReader> open_rad_blocks(std::shared_ptr<const ByteSource> source);
 // A .gltf, or the tileset.json of 3D Tiles.
 std::unique_ptr<BlockReader> open_json_blocks(std::shared_ptr<const ByteSource> source);
 

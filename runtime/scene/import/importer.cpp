@@ -46,26 +46,24 @@ constexpr Format kFormats[] = {
     {"", "\x1f\x8b", import_spz, nullptr, open_spz_blocks},
     {"", "NGSP", import_spz, nullptr, open_spz_blocks},
     {"", "PK\x03\x04", nullptr, nullptr, open_sog_blocks},
+    {"", "RAD0", nullptr, nullptr, open_rad_blocks},
     {"", "glTF", nullptr, nullptr, open_glb_blocks},
     {"", "{", nullptr, nullptr, open_json_blocks, true},
 };
 constexpr const char* kKnown =
     "a .ply or .compressed.ply (first bytes \"ply\"), a .spz (gzip 1f 8b, or \"NGSP\"), a .sog "
-    "(a zip), a .glb (\"glTF\"), a .gltf or tileset.json (\"{\"), or by its name a .splat, a "
-    ".ksplat, a .hier, a .lcc, or the meta.json or lod-meta.json of a SOG folder";
+    "(a zip), a .rad (\"RAD0\"), a .glb (\"glTF\"), a .gltf or tileset.json (\"{\"), or by its "
+    "name a .splat, a .ksplat, a .hier, a .lcc, or the meta.json or lod-meta.json of a SOG folder";
 
 // Formats that are known and not read.
 struct Unread {
   std::string_view ending, first_bytes;
   const char* why;
 };
-constexpr const char* kUnreadRad =
-    "Spark's .rad is not read, because it has no specification; other programs convert it to .ply";
 constexpr Unread kUnread[] = {
     {".lcc2", "",
      "LCC2 is not read, because it has no specification; other programs convert it to .ply"},
-    {"", "RAD0", kUnreadRad},
-    {"", "RADC", kUnreadRad},  // a chunk in a file of its own
+    {"", "RADC", "a chunk of Spark's .rad is not read alone; give the .rad that names it"},
 };
 
 // JSON may begin with white space.
@@ -215,6 +213,7 @@ std::string format_name(const ByteSource& source) {
   if (format.first_bytes.starts_with("ply")) return ".ply";
   if (format.open_source == open_sog_blocks) return "SOG";
   if (format.open_source == open_streamed_sog_blocks) return "SOG, streamed";
+  if (format.open_source == open_rad_blocks) return ".rad";
   if (format.open_source == open_glb_blocks) return "glTF, binary";
   if (format.open_source == open_json_blocks) return "glTF or 3D Tiles, JSON";
   return std::string(format.ending);

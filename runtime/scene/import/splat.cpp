@@ -35,10 +35,11 @@ class Reader final : public BlockReader {
  public:
   explicit Reader(std::unique_ptr<ByteReader> reader) : reader_(std::move(reader)) {
     const std::optional<uint64_t> bytes = reader_->remaining();
-    if (!bytes || *bytes % kRow != 0)
+    // No scene is a file of nothing, as a failed download leaves it.
+    if (!bytes || *bytes == 0 || *bytes % kRow != 0)
       refuse(name(), reader_->offset(), "length of the .splat",
              bytes ? std::to_string(*bytes) + " bytes" : "a stream without a length",
-             "a multiple of 32 bytes, one row a Gaussian");
+             "a multiple of 32 bytes, one row a Gaussian, and not 0");
     count_ = *bytes / kRow;
   }
 

@@ -243,6 +243,11 @@ TEST(LccImport, RefusesFilesThatAreMissingOrDoNotFit) {
   expect_cut("data.bin", "index.bin: offset 60: offset: found 32 bytes at 192");
   expect_cut("shcoef.bin", "shcoef.bin: offset 0: length: found 447 bytes, expected 448");
   expect_cut("environment.bin", "environment.bin: offset 0: length: found 191 bytes");
+  for (const std::string name : {"index.bin", "environment.bin"}) {
+    LccFiles nothing = test::lcc_files(true);
+    nothing[name].clear();
+    expect_refused(nothing, name + ": offset 0: length: found 0 bytes");
+  }
   LccFiles files = test::lcc_files(false);
   files["environment.bin"] = test::lcc_environment(8, 1, false);
   Json meta = test::lcc_meta(2, false);

@@ -39,9 +39,9 @@ void require_apart(const ByteSource& index, const std::vector<Range>& ranges) {
 
 std::vector<Range> finest_level(const ByteSource& index, uint64_t levels, uint64_t data_bytes) {
   const uint64_t cell_bytes = bytes_of_cell(levels);
-  if (index.size() % cell_bytes != 0)
+  if (index.size() == 0 || index.size() % cell_bytes != 0)
     refuse(index.name(), 0, "length", std::to_string(index.size()) + " bytes",
-           "a multiple of the " + std::to_string(cell_bytes) + " of a cell");
+           "a multiple of the " + std::to_string(cell_bytes) + " of a cell, and not 0");
   const std::vector<std::byte> bytes = read_all(index);
   std::vector<Range> ranges;
   for (uint64_t cell = 0; cell < bytes.size(); cell += cell_bytes) {

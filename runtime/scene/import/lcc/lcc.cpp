@@ -67,9 +67,9 @@ Rows rows_of_environment(const ByteSource& lcc, Source file, const Meta& meta, b
   rows.scale = require_bounds(lcc, meta.environment_scale, "envscale");
   if (has_sh) rows.sh = require_bounds(lcc, meta.environment_sh, "envshcoef");
   const uint64_t size = rows.file->size(), row = rows.row_bytes();
-  if (size % row != 0)
+  if (size == 0 || size % row != 0)
     refuse(rows.file->name(), 0, "length", std::to_string(size) + " bytes",
-           "a multiple of the " + std::to_string(row) + " of a Gaussian");
+           "a multiple of the " + std::to_string(row) + " of a Gaussian, and not 0");
   rows.ranges = {{0, size / row}};
   return rows;
 }
