@@ -10,8 +10,8 @@
 #include <cstdio>
 
 #include "bench/vulkan_host.h"
-#include "cuda/device.h"
-#include "cuda/stream.h"
+#include "cuda/device/device.h"
+#include "cuda/device/stream.h"
 #include "vulkan_interop/resources.h"
 
 namespace voyager {

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "cuda/baseline.h"
-#include "cuda/device_pool.h"
-#include "cuda/external_ring.h"
-#include "cuda/pipeline.h"
-#include "cuda/search.h"
-#include "cuda/shared_by_scene.h"
+#include "cuda/frame/pipeline.h"
+#include "cuda/interop/external_ring.h"
+#include "cuda/scene/shared_by_scene.h"
+#include "cuda/search/search.h"
+#include "cuda/splat/baseline.h"
+#include "cuda/stream/device_pool.h"
 #include "cuda/train/node_trainer.h"
 #include "runtime/base/error.h"
 #include "runtime/frame/whole_tree.h"

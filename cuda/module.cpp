@@ -3,8 +3,8 @@
 #include <cstring>
 
 #include "cuda/cuda_backend.h"
-#include "cuda/device.h"
-#include "cuda/machine.h"
+#include "cuda/device/device.h"
+#include "cuda/device/machine.h"
 #include "runtime/base/error.h"
 
 namespace voyager::cuda {

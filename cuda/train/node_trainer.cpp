@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
-#include "cuda/device_gaussian.h"
-#include "cuda/device_parents.h"
-#include "cuda/draws.h"
-#include "cuda/splat_state.h"
-#include "cuda/stream.h"
+#include "cuda/device/stream.h"
+#include "cuda/device/upload_made.h"
+#include "cuda/frame/draws.h"
+#include "cuda/scene/device_gaussian.h"
+#include "cuda/scene/device_parents.h"
+#include "cuda/splat/splat_state.h"
 #include "cuda/train/train_launch.h"
-#include "cuda/upload_made.h"
 #include "runtime/frame/project_params.h"
 
 namespace voyager::cuda {

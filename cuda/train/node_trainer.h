@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "cuda/device.h"
+#include "cuda/device/device.h"
 #include "runtime/base/workers.h"
 #include "runtime/frame/node_trainer.h"
 

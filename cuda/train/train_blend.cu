@@ -1,8 +1,8 @@
 // The adjoint of rasterize_tiles (runtime/stages/blend_gradient.h): each tile's list front to back
 // once more. A warp has a part of the tile, a lane one of its pixels; of each splat the warp adds
 // its pixels' shares up before it adds them to the splat's sums.
-#include "cuda/check.h"
-#include "cuda/raster_part.cuh"
+#include "cuda/device/check.h"
+#include "cuda/splat/raster_part.cuh"
 #include "cuda/train/fixed_sum.cuh"
 #include "runtime/stages/blend_gradient.h"
 

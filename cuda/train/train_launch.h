@@ -3,7 +3,7 @@
 // stream. None waits for the host.
 #include <cuda_runtime_api.h>
 
-#include "cuda/splat_launch.h"
+#include "cuda/splat/splat_launch.h"
 #include "runtime/frame/node_trainer.h"
 
 namespace voyager::cuda {

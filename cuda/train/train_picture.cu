@@ -1,5 +1,5 @@
 // The truth from its samples, and how far a picture is from it.
-#include "cuda/check.h"
+#include "cuda/device/check.h"
 #include "cuda/train/fixed_sum.cuh"
 #include "cuda/train/train_launch.h"
 

@@ -1,8 +1,8 @@
 // The adjoint of projection (runtime/stages/project_gradient.h), of each place of a list.
-#include "cuda/check.h"
-#include "cuda/device_arrays.cuh"
-#include "cuda/draw_item.cuh"
-#include "cuda/grid.h"
+#include "cuda/device/check.h"
+#include "cuda/device/grid.h"
+#include "cuda/scene/device_arrays.cuh"
+#include "cuda/splat/draw_item.cuh"
 #include "cuda/train/fixed_sum.cuh"
 #include "runtime/stages/project_gradient.h"
 

@@ -1,9 +1,9 @@
 // Adam, of the merged nodes that a cut shows and of the parents that it blends with. A warp a
 // place: its lanes share the numbers of a row.
-#include "cuda/check.h"
-#include "cuda/device_gaussian.h"
-#include "cuda/draw_item.cuh"
-#include "cuda/grid.h"
+#include "cuda/device/check.h"
+#include "cuda/device/grid.h"
+#include "cuda/scene/device_gaussian.h"
+#include "cuda/splat/draw_item.cuh"
 #include "cuda/train/train_launch.h"
 
 namespace voyager::cuda {

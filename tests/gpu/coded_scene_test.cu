@@ -2,8 +2,8 @@
 #include <cstring>
 #include <random>
 
-#include "cuda/device_arrays.cuh"
-#include "cuda/device_pool.h"
+#include "cuda/scene/device_arrays.cuh"
+#include "cuda/stream/device_pool.h"
 #include "runtime/frame/open_streamed.h"
 #include "runtime/frame/scene_gaussians.h"
 #include "tests/gpu/device_test.h"

@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "cuda/check.h"
 #include "cuda/cuda_backend.h"
-#include "cuda/device.h"
+#include "cuda/device/check.h"
+#include "cuda/device/device.h"
 #include "tests/support/needs.h"
 
 namespace voyager::test {

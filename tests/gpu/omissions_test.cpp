@@ -2,9 +2,9 @@
 // the bit as where it is.
 #include <algorithm>
 
-#include "cuda/device_parents.h"
-#include "cuda/draws.h"
-#include "cuda/stream.h"
+#include "cuda/device/stream.h"
+#include "cuda/frame/draws.h"
+#include "cuda/scene/device_parents.h"
 #include "runtime/frame/whole_tree.h"
 #include "runtime/scene/sh_bands.h"
 #include "tests/gpu/splat_test.h"

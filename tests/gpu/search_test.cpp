@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "cuda/search.h"
+#include "cuda/search/search.h"
 #include "runtime/base/error.h"
 #include "runtime/math/lerp.h"
 #include "tests/gpu/device_test.h"

@@ -1,6 +1,6 @@
 // METHOD §10 on the device: every shot without NaN and with the same bits whether the
 // α-filter is on or off, and near the reference where backends can be.
-#include "cuda/device_scene.h"
+#include "cuda/scene/device_scene.h"
 #include "tests/gpu/agreement.h"
 #include "tests/gpu/splat_test.h"
 #include "tests/support/extreme_scenes.h"

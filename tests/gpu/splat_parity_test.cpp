@@ -55,7 +55,7 @@ TEST_F(SplatParity, CompactStorage) {
   expect_near();
 }
 
-// Above kMaxHalfCoefficient the device keeps binary32 (cuda/gaussian_view.h).
+// Above kMaxHalfCoefficient the device keeps binary32 (cuda/scene/gaussian_view.h).
 TEST_F(SplatParity, CoefficientsTooLargeForBinary16) {
   for (int degree = 0; degree <= 3; ++degree) {
     GaussianCloud cloud = random_cloud(3000, 40 + static_cast<uint32_t>(degree), degree);

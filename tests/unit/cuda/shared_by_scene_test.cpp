@@ -1,5 +1,5 @@
 // What a scene's views share on a device is made once, and goes with the last of them.
-#include "cuda/shared_by_scene.h"
+#include "cuda/scene/shared_by_scene.h"
 
 #include <gtest/gtest.h>
 

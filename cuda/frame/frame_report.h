@@ -1,0 +1,43 @@
+#pragma once
+// What the host learns of a frame once it has ended: its counters and times.
+#include "cuda/device/stage_timer.h"
+#include "cuda/frame/instances.h"
+#include "cuda/splat/splat_state.h"
+
+namespace voyager::cuda {
+
+class FrameReport {
+ public:
+  FrameReport(const Stream& stream, const DeviceInstances& instances)
+      : timer(stream), memory_(sizeof(PassCounters) + instances.report_bytes()) {}
+
+  // On the stream, behind the frame's work so far.
+  void copy(const PassCounters* counters, const DeviceInstances& instances, cudaStream_t stream) {
+    check(
+        cudaMemcpyAsync(memory_.data(), counters, sizeof *counters, cudaMemcpyDeviceToHost, stream),
+        "counters");
+    instances.report(memory_.data() + sizeof *counters, stream);
+    copied_.record(stream);
+  }
+  bool passed() const { return copied_.passed(); }
+  void wait() const { copied_.wait(); }
+
+  const PassCounters& counters() const {
+    return *reinterpret_cast<const PassCounters*>(memory_.data());
+  }
+  const unsigned char* instances() const { return memory_.data() + sizeof(PassCounters); }
+
+  StageTimer timer;
+  FrameTiles tiles{};
+  SplatRoom room;
+  bool limited = false;       // its tiles had limits
+  uint64_t target_bytes = 0;  // of the images
+
+ private:
+  static_assert(sizeof(PassCounters) % alignof(std::max_align_t) == 0);
+  PinnedMemory memory_;
+  // A host that waits for a frame sleeps meanwhile: a headset has no core to spin on.
+  Event copied_{cudaEventDisableTiming | cudaEventBlockingSync};
+};
+
+}  // namespace voyager::cuda

@@ -1,0 +1,426 @@
+#include "cuda/frame/pipeline.h"
+
+#include <algorithm>
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "cuda/device/range.h"
+#include "cuda/frame/frame_image.h"
+#include "cuda/frame/frame_limits.h"
+#include "cuda/frame/frame_report.h"
+#include "cuda/interop/external_ring.h"
+#include "cuda/splat/occlusion.h"
+#include "cuda/splat/splat_state.h"
+#include "runtime/base/error.h"
+#include "runtime/frame/choice_omission.h"
+#include "runtime/frame/instance.h"
+#include "runtime/frame/project_params.h"
+#include "runtime/math/alpha_lut.h"
+
+namespace voyager::cuda {
+namespace {
+
+Buffer<float> upload_lut(const PipelineDesc& desc) {
+  if (desc.exponential != Exponential::lut) return {};
+  std::vector<float> lut(desc.lut_size + 1);
+  fill_alpha_lut(desc.lut_size, lut.data());
+  return upload(std::span<const float>(lut));
+}
+
+template <class Work>
+void run_stage(Stage stage, FrameReport& report, const Work& work) {
+  const Range range(kStageNames[stage]);
+  work();
+  report.timer.end(stage);
+}
+
+class SplatPipeline final : public Pipeline {
+ public:
+  SplatPipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances,
+                const PipelineDesc& desc)
+      : device_(std::move(device)),
+        instances_(std::move(instances), desc.eyes),
+        desc_(desc),
+        lut_(upload_lut(desc)),
+        splats_(bin_blocks(device_->multiprocessors()), desc.eyes),
+        images_(desc.eyes),
+        limits_(desc.eyes),
+        occlusion_choice_(desc.count_pixels ? Occlusion::off : desc.occlusion) {}
+
+  // What it frees belongs to the device's context, and to frames that may be under way.
+  ~SplatPipeline() override {
+    device_->use_quietly();
+    cudaStreamSynchronize(stream_.get());
+  }
+
+  void draw(const FrameInput& frame, FrameStats& stats) override;
+  void resolve(const FrameInput& frame, FrameStats& stats) override {
+    for (size_t eye = 0; eye < images_.size(); ++eye)
+      images_[eye].resolve(frame.eyes[eye].image, stats);
+  }
+  void submit(const FrameInput& frame, bool checked) override;
+  bool finish(bool wait, FrameStats& stats) override;
+  bool counts_changes() const override { return instances_.counts_changes(); }
+  void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
+    device_->use();
+    instances_.all()[instance].draws->read_cut(cut);
+  }
+  bool cut_is_near() const override { return false; }
+  std::vector<Omission> omissions() const override;
+
+ private:
+  using Report = std::unique_ptr<FrameReport>;
+
+  using Eyes = std::array<RasterEye, kMaxEyes>;
+
+  Report begin_frame(const FrameInput& frame);
+  void fit(const FrameInput& frame, const FrameTiles& tiles);
+  void launch_search(const FrameInput& frame, FrameReport& report);
+  SplatFrame work(const FrameTiles& tiles, int pass) const;
+  void launch_lists(const FrameInput& frame, FrameReport& report);
+  void launch_checked_lists(const FrameInput& frame, FrameReport& report);
+  void launch_projections(const FrameInput& frame, SplatFrame& work);
+  static Eyes external_eyes(const FrameInput& frame);
+  void launch_image(const FrameInput& frame, const Eyes& eyes, FrameReport& report);
+  void launch_second_pass(const FrameInput& frame, const RasterChoices& choices, const Eyes& eyes,
+                          FrameReport& report);
+  void copy(FrameReport& report) const {
+    report.copy(splats_.counters(), instances_, stream_.get());
+  }
+  void make_room();
+  void collect(const FrameReport& report, FrameStats& stats) const;
+  uint64_t culling_bytes(const SplatCounters& counted) const;
+  void learn(const FrameReport& report);
+  void count_bytes(const FrameReport& report, FrameStats& stats) const;
+
+  std::shared_ptr<const Device> device_;
+  DeviceInstances instances_;
+  PipelineDesc desc_;
+  Buffer<float> lut_;
+  SplatState splats_;
+  std::vector<FrameImage> images_;  // of each eye, as limits
+  std::vector<FrameLimits> limits_;
+  OcclusionState occlusion_;
+  OcclusionChoice occlusion_choice_;
+  Stream stream_;
+  std::vector<Report> free_;      // made as many as were under way at once
+  std::deque<Report> under_way_;  // the oldest first
+  SplatRoom wanted_;              // by what frames that were under way have used
+};
+
+// One instance after the other, so that each finds on the device where its slots begin.
+void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work) {
+  for (size_t i = 0; i < instances_.all().size(); ++i) {
+    const DeviceInstance& instance = instances_.all()[i];
+    work.gaussians = instance.view();
+    work.draws = instance.draws->view();
+    for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
+      work.params[eye] =
+          project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i), desc_);
+    work.rows = launch_rows(work);
+    // Where no rows are told apart, the first pass has weighed all.
+    if (work.splats.open_parts == nullptr || work.rows.rows != nullptr)
+      instance.draws->weigh(work.rows, stream_.get());
+    if (launch_project(work, desc_.alpha_filter)) ++work.instance;
+  }
+}
+
+SplatFrame SplatPipeline::work(const FrameTiles& tiles, int pass) const {
+  SplatFrame work{};
+  work.splats = splats_.view(tiles, pass);
+  if (pass == 0) work.splats.limits = occlusion_.first();
+  work.multiprocessors = device_->multiprocessors();
+  work.stream = stream_.get();
+  return work;
+}
+
+// Up to the tiles' lists.
+void SplatPipeline::launch_lists(const FrameInput& frame, FrameReport& report) {
+  report.room = splats_.room();
+  SplatFrame lists = work(report.tiles, 0);
+  splats_.begin_frame(report.tiles, stream_.get());
+  run_stage(kProject, report, [&] { launch_projections(frame, lists); });
+  run_stage(kBin, report, [&] { launch_bin(lists); });
+  run_stage(kSort, report, [&] { launch_sort(lists); });
+}
+
+// Lists that found too little room are made again with more.
+void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& report) {
+  for (;;) {
+    launch_lists(frame, report);
+    copy(report);
+    report.wait();
+    if (!splats_.grow(room_for(report.counters()))) return;
+    report.timer.go_back_to(kSearch);
+  }
+}
+
+void SplatPipeline::launch_image(const FrameInput& frame, const Eyes& eyes, FrameReport& report) {
+  const RasterChoices choices{desc_.exponential,
+                              desc_.alpha_filter,
+                              desc_.count_pixels,
+                              instances_.siblings(),
+                              lut_.data(),
+                              desc_.lut_size,
+                              log_threshold(desc_.antialias)};
+  run_stage(kRasterize, report, [&] {
+    launch_rasterize(work(report.tiles, 0), choices, eyes.data());
+    if (occlusion_.limited()) launch_second_pass(frame, choices, eyes, report);
+  });
+}
+
+// All stages, for the tiles that the first pass left open. Without any, each kernel ends at once.
+void SplatPipeline::launch_second_pass(const FrameInput& frame, const RasterChoices& choices,
+                                       const Eyes& eyes, FrameReport& report) {
+  const Range range("second pass");
+  SplatFrame rest = work(report.tiles, 1);
+  rest.splats.limits =
+      occlusion_.second(report.tiles, rest.splats.ends, rest.splats.open_parts, stream_.get());
+  launch_projections(frame, rest);
+  launch_bin(rest);
+  launch_sort(rest);
+  launch_rasterize(rest, choices, eyes.data());
+}
+
+SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
+  for (const FrameEye& eye : frame.eyes)
+    if (desc_.count_pixels && (eye.limits.values != nullptr || eye.image.external.limited))
+      throw Error(ErrorCode::unsupported,
+                  "depth limits: found some, pixels are counted of frames without");
+  device_->use();
+  make_room();
+  Report report;
+  if (free_.empty()) {
+    report = std::make_unique<FrameReport>(stream_, instances_);
+  } else {
+    report = std::move(free_.back());
+    free_.pop_back();
+  }
+  report->tiles = frame_tiles(frame);
+  report->target_bytes = 0;
+  for (const FrameEye& eye : frame.eyes)
+    report->target_bytes +=
+        uint64_t{eye.image.width} * eye.image.height * pixel_bytes(eye.image.format);
+  fit(frame, report->tiles);
+  occlusion_.begin(occlusion_choice_.next(), frame, report->tiles,
+                   splats_.view(report->tiles, 0).ends, stream_.get());
+  report->limited = occlusion_.limited();
+  return report;
+}
+
+// To the frame's size. What is too small is replaced, and frames in flight still use it.
+void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
+  bool fits = splats_.fits(tiles) && (!occlusion_choice_.possible() || occlusion_.fits(tiles));
+  for (size_t eye = 0; eye < limits_.size(); ++eye)
+    fits = fits && limits_[eye].fits(frame.eyes[eye]);
+  if (fits) return;
+  stream_.wait();
+  splats_.fit(tiles);
+  if (occlusion_choice_.possible()) occlusion_.fit(tiles);
+  occlusion_.forget();
+  for (size_t eye = 0; eye < limits_.size(); ++eye) limits_[eye].fit(frame.eyes[eye]);
+}
+
+void SplatPipeline::launch_search(const FrameInput& frame, FrameReport& report) {
+  report.timer.begin();
+  run_stage(kSearch, report, [&] { instances_.update(frame, stream_.get()); });
+}
+
+// Frames that are left under way cannot be drawn again: they get room before they need it.
+void SplatPipeline::make_room() {
+  const SplatRoom wanted = std::exchange(wanted_, {}), room = splats_.room();
+  if (wanted.places <= room.places && wanted.strips <= room.strips && wanted.pairs <= room.pairs)
+    return;
+  stream_.wait();
+  splats_.grow(wanted);
+}
+
+void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
+  Report report = begin_frame(frame);
+  Eyes eyes{};
+  for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
+    eyes[eye].target = images_[eye].target(frame.eyes[eye], frame.background);
+  const SceneReading reading(instances_, stream_.get());
+  launch_search(frame, *report);
+  for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
+    eyes[eye].limits = limits_[eye].upload(frame.eyes[eye], stream_.get());
+  for (;;) {
+    launch_lists(frame, *report);
+    launch_image(frame, eyes, *report);
+    copy(*report);
+    report->wait();
+    if (!splats_.grow(room_for(report->counters()))) break;
+    report->timer.go_back_to(kSearch);
+  }
+  collect(*report, stats);
+  learn(*report);
+  free_.push_back(std::move(report));
+}
+
+// The eyes' targets may be layers of one image.
+template <class Work>
+void each_ring(const FrameInput& frame, const Work& work) {
+  const ExternalRing* before = nullptr;
+  for (const FrameEye& eye : frame.eyes) {
+    if (eye.image.external.ring != before) work(eye.image.external);
+    before = eye.image.external.ring;
+  }
+}
+
+// What was launched of a frame that fails may still write to its images.
+void mark_end_quietly(const FrameInput& frame, cudaStream_t stream) noexcept {
+  try {
+    each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
+  } catch (const std::exception&) {
+    return;  // a device that is lost writes nothing more
+  }
+}
+
+SplatPipeline::Eyes SplatPipeline::external_eyes(const FrameInput& frame) {
+  Eyes eyes{};
+  for (size_t i = 0; i < frame.eyes.size(); ++i) {
+    const FrameEye& eye = frame.eyes[i];
+    const ExternalTarget& external = eye.image.external;
+    eyes[i].target = raster_target(external, frame.background);
+    if (external.limited) eyes[i].limits = depth_limits(external, eye.limits.encoding);
+  }
+  return eyes;
+}
+
+void SplatPipeline::submit(const FrameInput& frame, bool checked) {
+  under_way_.push_back(begin_frame(frame));
+  const cudaStream_t stream = stream_.get();
+  const auto wait = [&](const ExternalTarget& target) { wait_released(target, stream); };
+  FrameReport& report = *under_way_.back();
+  try {
+    // In front of the frame's own work, so that the two APIs take fewer turns on the device.
+    // Lists that the host waits for come first: it would wait for its own queue.
+    if (!checked) each_ring(frame, wait);
+    {
+      const SceneReading reading(instances_, stream);
+      launch_search(frame, report);
+      checked ? launch_checked_lists(frame, report) : launch_lists(frame, report);
+    }
+    if (checked) each_ring(frame, wait);
+    launch_image(frame, external_eyes(frame), report);
+    each_ring(frame, [&](const ExternalTarget& target) { signal_rendered(target, stream); });
+    copy(report);  // the host that waits for the image does not wait for this
+    each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
+  } catch (...) {
+    mark_end_quietly(frame, stream);
+    under_way_.pop_back();
+    throw;
+  }
+}
+
+bool SplatPipeline::finish(bool wait, FrameStats& stats) {
+  if (under_way_.empty()) return false;
+  device_->use();
+  FrameReport& oldest = *under_way_.front();
+  if (wait) oldest.wait();
+  if (!oldest.passed()) return false;
+  collect(oldest, stats);
+  learn(oldest);
+  const SplatRoom used = room_for(oldest.counters());
+  const auto ahead = [](size_t& wanted, size_t needed) {
+    wanted = std::max(wanted, needed + needed / 8);
+  };
+  ahead(wanted_.places, used.places), ahead(wanted_.strips, used.strips);
+  ahead(wanted_.pairs, used.pairs);
+  free_.push_back(std::move(under_way_.front()));
+  under_way_.pop_front();
+  return true;
+}
+
+void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const {
+  instances_.collect(report.instances(), stats);
+  for (const SplatCounters& counted : report.counters()) {
+    stats.splats += counted.splats;
+    stats.pairs_before += counted.pairs_boxed;
+    stats.pairs_after += counted.pairs;
+    stats.pixels_evaluated += counted.evaluated;
+    stats.pixels_blended += counted.blended;
+  }
+  stats.pairs_dropped = dropped(report.counters(), report.room);
+  count_bytes(report, stats);
+  report.timer.collect(stats);
+}
+
+void SplatPipeline::learn(const FrameReport& report) {
+  uint64_t pairs = 0;
+  for (const SplatCounters& counted : report.counters()) pairs += counted.pairs;
+  occlusion_choice_.learn(report.limited, pairs);
+}
+
+// Bytes that culling reads: of the rows of a list, and of the places of those that it keeps.
+uint64_t SplatPipeline::culling_bytes(const SplatCounters& counted) const {
+  uint64_t bytes = 0;
+  const InstanceCounters* of = counted.instances;
+  for (const DeviceInstance& instance : instances_.all()) {
+    const CutList list = instance.draws->view().list;
+    if (list.room == 0) continue;
+    const uint64_t all = of[1].first_place - of[0].first_place;
+    const bool bounded = list.bounds != nullptr;
+    bytes += (bounded ? uint64_t{of->rows} * kRowPlaces : all) * instances_.bytes_a_place();
+    if (bounded) bytes += all / kRowPlaces * sizeof(MeanBounds);
+    ++of;
+  }
+  return bytes;
+}
+
+// What each stage reads and writes of its own arrays; what siblings share of their parents
+// is left out, and a Gaussian is read once for all eyes, which see about the same ones. All of a
+// second pass counts as the stages' own, though its time is rasterize's.
+void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) const {
+  // A block of bin has one eye's.
+  const uint64_t offsets = uint64_t{report.tiles.count()} * bin_blocks(device_->multiprocessors()) *
+                           sizeof(uint32_t) / desc_.eyes;
+  constexpr uint64_t kRecord = sizeof(SplatRecord), kKey = sizeof(DepthKey);
+  stats.gaussian_bytes = instances_.bytes_a_gaussian();
+  for (const SplatCounters& counted : report.counters()) {
+    if (counted.places == 0) continue;
+    const uint64_t pairs = counted.pairs;
+    uint64_t candidates = 0;
+    for (const InstanceCounters& instance : counted.instances)
+      candidates += instance.whole + instance.blended;
+    stats.bytes[kProject] += culling_bytes(counted) + 2 * sizeof(uint32_t) * candidates +
+                             counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) +
+                             counted.strips * sizeof(TileStrip);
+    stats.bytes[kBin] += 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
+    stats.bytes[kSort] += 2 * pairs * kKey;
+    stats.bytes[kRasterize] += pairs * (kKey + kRecord);
+  }
+  stats.bytes[kRasterize] += report.target_bytes;
+}
+
+std::vector<Omission> SplatPipeline::omissions() const {
+  ViewShape shape;
+  shape.eyes = desc_.eyes;
+  for (const FrameImage& image : images_) {
+    shape.pixels = std::max(shape.pixels, image.pixels());
+    shape.depth = shape.depth || image.depth();
+  }
+  shape.eye_bytes = splats_.room().places * sizeof(SplatRecord);
+  ViewChoices choices{desc_, false, sizeof(float)};
+  for (const FrameLimits& limits : limits_) choices.limits = choices.limits || limits.any();
+  std::vector<Omission> all = instances_.omissions();
+  for (const auto& more : {omissions_of(shape), omissions_of(choices, shape)})
+    all.insert(all.end(), more.begin(), more.end());
+  // Of kernels that are compiled without: registers and instructions, no memory.
+  if (!instances_.siblings() && !desc_.count_pixels)
+    all.push_back({"weights of siblings", "nothing that is drawn has a parent", 0, 0});
+  if (!desc_.count_pixels)
+    all.push_back({"counting of pixels", "no measurement asked for it", 0, 0});
+  return all;
+}
+
+}  // namespace
+
+std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Device> device,
+                                          std::vector<DeviceInstance> instances,
+                                          const PipelineDesc& desc) {
+  return std::make_unique<SplatPipeline>(std::move(device), std::move(instances), desc);
+}
+
+}  // namespace voyager::cuda

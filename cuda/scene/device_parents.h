@@ -1,0 +1,26 @@
+#pragma once
+// What interpolation reads beside the Gaussians (METHOD §4), on the device: shared by the views
+// of a scene that draw a cut. A scene of which every leaf is drawn has none of it.
+#include "cuda/device/buffer.h"
+#include "cuda/scene/gaussian_view.h"
+#include "runtime/frame/scene.h"
+
+namespace voyager::cuda {
+
+class DeviceParents {
+ public:
+  // The scene has a tree, and is resident.
+  explicit DeviceParents(const Scene& scene);
+
+  void add_to(GaussianView& gaussians) const;
+  // What a scene's take.
+  static uint64_t bytes(const Scene& scene);
+
+ private:
+  // A coded scene has these in its shapes.
+  Buffer<float> opacities_;
+  Buffer<uint8_t> node_codes_;
+  Buffer<uint32_t> parents_, child_counts_;
+};
+
+}  // namespace voyager::cuda

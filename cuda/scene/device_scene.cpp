@@ -1,0 +1,113 @@
+#include "cuda/scene/device_scene.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include "cuda/device/upload_made.h"
+#include "cuda/scene/device_gaussian.h"
+#include "cuda/stream/device_pool.h"
+#include "runtime/frame/scene_gaussians.h"
+
+namespace voyager::cuda {
+namespace {
+
+bool fits_binary16(const Scene& scene, Workers& workers) {
+  std::atomic<bool> fits{true};
+  workers.for_blocks(scene.gaussians.size(), size_t{1} << 15, [&](size_t begin, size_t end) {
+    const auto first = scene.sh.begin();
+    const auto at = [&](size_t i) {
+      return first + static_cast<std::ptrdiff_t>(i * sh_floats(scene));
+    };
+    const bool all = std::all_of(at(begin), at(end), [](float coefficient) {
+      return std::fabs(coefficient) <= kMaxHalfCoefficient;
+    });
+    if (!all) fits.store(false, std::memory_order_relaxed);
+  });
+  return fits.load();
+}
+
+}  // namespace
+
+DeviceScene::DeviceScene(const Device& device, const Scene& scene, Workers& workers) {
+  const GaussianArrays arrays = gaussian_arrays(scene);
+  const size_t count = gaussian_count(scene);
+  hulls_ = upload_made<float4>(
+      count, [&](size_t i) { return device_hull(arrays.gaussian(static_cast<uint32_t>(i))); });
+  view_.hulls = hulls_.data();
+  view_.sh_degree = scene.sh_degree;
+  view_.doubles = scene.doubles;
+  view_.footprints = footprints_differ(scene);
+  view_.count = static_cast<uint32_t>(count);
+  if (is_coded(scene))
+    upload_codes(device, scene);
+  else
+    upload_floats(scene, workers);
+}
+
+void DeviceScene::upload_codes(const Device& device, const Scene& scene) {
+  std::vector<ShStepSizes> steps;
+  for (const ShScales& scales : scene.sh_scales) steps.push_back(step_sizes(scales));
+  shape_codes_ = upload(std::span<const ShapeCode>(scene.shapes));
+  sh_rows_ = upload(std::span<const uint8_t>(scene.sh_rows));
+  sh_steps_ = upload(std::span<const ShStepSizes>(steps));
+  sh_blocks_ = upload(std::span<const ShGroupBlock>(scene.sh_blocks));
+  tables_ = device.code_tables();
+  view_.shapes = shape_codes_.data();
+  view_.coefficients = sh_rows_.data();
+  view_.sh_form = ShForm::coded;
+  view_.tables = tables_->view();
+  view_.sh_steps = sh_steps_.data();
+  view_.sh_groups = {sh_blocks_.data(), 0};
+}
+
+void DeviceScene::upload_floats(const Scene& scene, Workers& workers) {
+  shapes_ = upload_made<float4>(2 * scene.gaussians.size(), [&](size_t i) {
+    return device_shape(scene.gaussians[i / 2], i % 2);
+  });
+  const bool half = upload_coefficients(scene, workers);
+  if (footprints_differ(scene)) node_codes_ = upload(std::span<const uint8_t>(scene.node_code));
+  view_.shapes = shapes_.data();
+  view_.node_codes = node_codes_.data();
+  view_.coefficients =
+      half ? static_cast<const void*>(half_coefficients_.data()) : coefficients_.data();
+  view_.sh_form = half ? ShForm::half : ShForm::single;
+}
+
+bool DeviceScene::upload_coefficients(const Scene& scene, Workers& workers) {
+  if (!fits_binary16(scene, workers)) {
+    coefficients_ = upload(std::span<const float>(scene.sh));
+    return false;
+  }
+  const size_t stride = 8 * static_cast<size_t>(half_sh_words(scene.sh_degree));
+  const size_t count = scene.gaussians.size();
+  half_coefficients_ = Buffer<__half>(count * stride);
+  std::vector<__half> staging(std::min(count, kUploadBlock) * stride);
+  for (size_t first = 0; first < count; first += kUploadBlock) {
+    const size_t n = std::min(kUploadBlock, count - first);
+    workers.for_blocks(n, 4096, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        put_half_coefficients(&scene.sh[(first + i) * sh_floats(scene)], scene.sh_degree,
+                              &staging[i * stride]);
+    });
+    check(cudaMemcpy(half_coefficients_.data() + first * stride, staging.data(),
+                     n * stride * sizeof(__half), cudaMemcpyHostToDevice),
+          "upload of a scene");
+  }
+  check(cudaStreamSynchronize(nullptr), "upload of a scene");
+  return true;
+}
+
+GaussianView DeviceScene::view() const {
+  return pool_ == nullptr ? view_ : pool_->gaussians();
+}
+
+uint32_t DeviceScene::bytes_a_gaussian() const {
+  const GaussianView of = view();
+  const uint32_t code = of.footprints && of.sh_form != ShForm::coded ? sizeof(uint8_t) : 0;
+  return sizeof(float4) + shape_bytes(of.sh_form) + code +
+         coefficient_bytes(of.sh_degree, of.sh_form);
+}
+
+}  // namespace voyager::cuda

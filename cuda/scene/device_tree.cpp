@@ -1,0 +1,28 @@
+#include "cuda/scene/device_tree.h"
+
+#include "cuda/stream/device_pool.h"
+
+namespace voyager::cuda {
+
+DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree)
+    : subtrees_(upload(std::span<const SearchSubtree>(search.subtrees))),
+      records_(upload(std::span<const SearchRecord>(search.records))),
+      opens_(upload(std::span<const SubtreeSpan>(search.opens))),
+      chunks_(upload(std::span<const SearchChunk>(search.chunks))) {
+  if (search.leaves_have_extent) leaves_ = upload(std::span<const NodeRecord>(tree.records));
+  view_ = {subtrees_.data(),
+           records_.data(),
+           opens_.data(),
+           chunks_.data(),
+           leaves_.data(),
+           search.subtree_count(),
+           static_cast<uint32_t>(search.chunk_count()),
+           tree.blend_share,
+           nullptr};
+}
+
+TreeView DeviceTree::view() const {
+  return pool_ == nullptr ? view_ : pool_->tree();
+}
+
+}  // namespace voyager::cuda

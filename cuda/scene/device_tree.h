@@ -1,0 +1,44 @@
+#pragma once
+// The arrays that searches read, on the device: shared by all views of a scene.
+#include "cuda/device/buffer.h"
+#include "runtime/lod/tree.h"
+#include "runtime/select/search_tree.h"
+
+namespace voyager::cuda {
+
+// As kernels take it.
+struct TreeView {
+  const SearchSubtree* subtrees;
+  const SearchRecord* records;
+  const SubtreeSpan* opens;
+  const SearchChunk* chunks;
+  const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
+  uint32_t subtree_count, chunk_count;
+  float blend_share;  // LodTree's
+  // Of a streamed scene, whose nodes and records are addresses: the file's ids of nodes. Else null.
+  const uint32_t* node_ids;
+};
+
+class DevicePool;
+
+// What the partitioned searches need.
+class DeviceTree {
+ public:
+  DeviceTree(const SearchTree& search, const LodTree& tree);
+  // Of a streamed scene: its pool's, which outlives this.
+  explicit DeviceTree(const DevicePool& pool) : pool_(&pool) {}
+
+  // For a frame: a pool may have another size in the next.
+  TreeView view() const;
+
+ private:
+  Buffer<SearchSubtree> subtrees_;
+  Buffer<SearchRecord> records_;
+  Buffer<SubtreeSpan> opens_;
+  Buffer<SearchChunk> chunks_;
+  Buffer<NodeRecord> leaves_;
+  TreeView view_{};
+  const DevicePool* pool_ = nullptr;
+};
+
+}  // namespace voyager::cuda

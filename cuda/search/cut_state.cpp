@@ -1,0 +1,93 @@
+#include "cuda/search/cut_state.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace voyager::cuda {
+namespace {
+
+struct Layout {
+  std::vector<Block> blocks;
+  std::vector<Tier> tiers;
+};
+
+Layout make_layout(const SearchTree& tree) {
+  Layout layout;
+  for (size_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier) {
+    const uint32_t begin = tree.tier_begin[tier], end = tree.tier_begin[tier + 1];
+    const uint32_t count = (end - begin + kBlockSubtrees - 1) / kBlockSubtrees;
+    const auto first_block = static_cast<uint32_t>(layout.blocks.size());
+    layout.tiers.push_back({begin, first_block, count});
+    for (uint32_t i = 0; i < count; ++i) {
+      const uint32_t first = begin + i * kBlockSubtrees;
+      layout.blocks.push_back(
+          {first, std::min(end, first + kBlockSubtrees), kLevels * first_block + i, count});
+    }
+  }
+  return layout;
+}
+
+}  // namespace
+
+CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
+  const size_t subtrees = tree.subtree_count();
+  const Layout layout = make_layout(tree);
+  const size_t blocks = layout.blocks.size();
+  blocks_ = upload(std::span<const Block>(layout.blocks));
+  tiers_ = upload(std::span<const Tier>(layout.tiers));
+  watch_ = upload(std::span<const Watch>(std::vector<Watch>(subtrees, {INFINITY, 0})));
+  refined_ = Buffer<uint32_t>(subtrees);
+  cut_ = Buffer<uint32_t>(subtrees);
+  stand_ins_ = Buffer<uint32_t>(tree.chunks_come_and_go ? subtrees : 0);
+  segments_ = Buffer<Segment>(kLevels * blocks);
+  open_counts_ = Buffer<uint32_t>(blocks);
+  open_blocks_ = Buffer<uint32_t>(blocks);
+  open_block_count_ = Buffer<uint32_t>(1);
+  dirty_flags_ = Buffer<uint32_t>(blocks);
+  dirty_ = Buffer<uint32_t>(blocks);
+  due_ = Buffer<uint32_t>(subtrees);
+  signals_ = Buffer<uint32_t>(subtrees);
+  counters_ = Buffer<FrameCounters>(2);
+  const size_t places = most + most / 8 + 64 * kLevels * blocks;
+  nodes_ = Buffer<uint32_t>(places);
+  origin_ = Buffer<CutOrigin>(weights ? places : 0);
+  weights_ = Buffer<float>(weights ? places : 0);
+  ids_ = Buffer<uint32_t>(tree.chunks_come_and_go ? places : 0);
+  bounds_ = Buffer<MeanBounds>(places / kRowPlaces + 1);
+  for (const Buffer<uint32_t>* zero : {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_,
+                                       &open_block_count_, &dirty_flags_, &dirty_})
+    fill(*zero, 0);
+  fill(segments_, 0);
+  fill(weights_, 0);  // places that hold no node are read with the others
+  fill(nodes_, 0xff);
+  fill(ids_, 0xff);
+  fill(signals_, 0xff);
+  fill(counters_, 0);
+}
+
+StateView CutState::view() const {
+  return {watch_.data(),
+          refined_.data(),
+          cut_.data(),
+          stand_ins_.data(),
+          blocks_.data(),
+          tiers_.data(),
+          static_cast<uint32_t>(blocks_.size()),
+          static_cast<uint32_t>(tiers_.size()),
+          segments_.data(),
+          open_counts_.data(),
+          open_blocks_.data(),
+          open_block_count_.data(),
+          dirty_flags_.data(),
+          dirty_.data(),
+          due_.data(),
+          signals_.data(),
+          counters_.data(),
+          nodes_.data(),
+          origin_.data(),
+          weights_.data(),
+          ids_.data(),
+          bounds_.data()};
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,114 @@
+#pragma once
+// What a view keeps of its cut between frames, on the device; direct-indexed by
+// subtree, so that no result depends on the order in which warps come by.
+#include "cuda/device/buffer.h"
+#include "cuda/scene/device_tree.h"
+#include "cuda/search/search.h"
+#include "runtime/lod/subtrees.h"
+#include "runtime/select/visit.h"
+#include "runtime/select/watch.h"
+#include "runtime/stages/reach.h"
+
+namespace voyager::cuda {
+
+inline constexpr uint32_t kBlockSubtrees = 1024;
+inline constexpr uint32_t kLevels = 3;  // of a tier
+
+// Places for a segment of so many nodes, in whole rows: one in eight to spare.
+VOYAGER_HD uint32_t segment_room(uint32_t size) {
+  constexpr uint32_t kAlign = kRowPlaces;
+  return size == 0 ? 0 : (size + size / 8 + 2 * kAlign - 1) / kAlign * kAlign;
+}
+
+// Consecutive subtrees of one tier. Their cut nodes are in the cut list in three
+// segments, one a level; segments lie in the order of node ids (tier, level, block).
+struct Block {
+  uint32_t first, last;            // subtrees
+  uint32_t first_segment, stride;  // the segment of level l is first_segment + l * stride
+};
+
+// Blocks [first_block, first_block + blocks) are those of the subtrees from `begin` on.
+struct Tier {
+  uint32_t begin, first_block, blocks;
+};
+
+// The cut nodes of a block's level. `room` is more than `size`, so that a frame
+// rewrites only the segments that changed: the rest of it holds kNoNode.
+struct Segment {
+  uint32_t size, first, room;
+};
+
+// The records that a cut node's weight depends on; kNoRecord for a leaf's own, and for
+// the parent of the tree's root.
+struct CutOrigin {
+  uint32_t own, parent;
+};
+
+// Of one frame. The kernels add up work[0]; search_place moves it to work[1], where
+// search_emit and the host find it, and clears it for the next frame.
+struct FrameCounters {
+  unsigned long long nodes_tested, subtrees_visited, chunks_read, bytes_read;
+  unsigned long long entered, left;
+  // Nodes, places in the list, and nodes of the cut that stand in; kept from frame to frame.
+  uint32_t cut_size, list_size, stand_ins;
+  uint32_t streamed;             // 1: by streaming
+  uint32_t due_count;            // entries of due[]
+  uint32_t dirty_count;          // entries of dirty[]
+  uint32_t open_blocks_changed;  // 1: a block has its first open subtree, or no more
+  uint32_t next_chunks;          // streaming's ticket
+  uint32_t signal_head, signal_tail, signals_done;
+};
+
+// As kernels take it.
+struct StateView {
+  Watch* watch;
+  uint32_t* refined;    // bits of slots, and kOpen
+  uint32_t* cut;        // bits of slots
+  uint32_t* stand_ins;  // bits of slots; null where no record is ever blocked
+  const Block* blocks;
+  const Tier* tiers;
+  uint32_t block_count, tier_count;
+  Segment* segments;
+  uint32_t* open_counts;  // by block: open subtrees
+  uint32_t* open_blocks;  // those that had any when the list was last made
+  uint32_t* open_block_count;
+  uint32_t* dirty_flags;  // by block: in dirty[]
+  uint32_t* dirty;        // blocks with nodes that entered or left
+  uint32_t* due;          // subtrees to visit
+  uint32_t* signals;      // to open or close a subtree; kNoSignal where not written yet
+  FrameCounters* work;
+  uint32_t* nodes;     // the cut list: ascending, with kNoNode in between
+  CutOrigin* origin;   // of each place
+  float* weights;      // of each place
+  uint32_t* ids;       // of each place, where nodes are addresses: the file's
+  MeanBounds* bounds;  // of each row
+};
+
+inline constexpr uint32_t kNoSignal = 0xffffffffu;
+inline constexpr uint32_t kClose = 0x80000000u;  // beside the subtree; else it is to be opened
+
+class CutState {
+ public:
+  // most: no cut has more nodes. All memory is taken here.
+  CutState(const SearchTree& tree, size_t most, bool weights);
+
+  StateView view() const;
+  uint32_t list_room() const { return static_cast<uint32_t>(nodes_.size()); }
+
+ private:
+  Buffer<Watch> watch_;
+  Buffer<uint32_t> refined_, cut_, stand_ins_;
+  Buffer<Block> blocks_;
+  Buffer<Tier> tiers_;
+  Buffer<Segment> segments_;
+  Buffer<uint32_t> open_counts_, open_blocks_, open_block_count_, dirty_flags_, dirty_;
+  Buffer<uint32_t> due_, signals_;
+  Buffer<FrameCounters> counters_;
+  Buffer<uint32_t> nodes_;
+  Buffer<CutOrigin> origin_;
+  Buffer<float> weights_;
+  Buffer<uint32_t> ids_;
+  Buffer<MeanBounds> bounds_;
+};
+
+}  // namespace voyager::cuda

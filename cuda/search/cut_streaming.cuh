@@ -1,0 +1,106 @@
+#pragma once
+// The fully streaming search, as a warp runs it (METHOD §9).
+#include "cuda/search/cut_visit.cuh"
+
+namespace voyager::cuda {
+
+// Chunks that a warp takes at a time, one a lane: few, so that no warp is left with
+// many at the end.
+inline constexpr uint32_t kTicketChunks = 8;
+
+// The subtrees of a ticket's chunks, those of the chunks that are left out taken out.
+struct Ticket {
+  uint32_t first = 0;   // subtree of this lane's chunk
+  uint32_t before = 0;  // subtrees in the chunks of lower lanes
+  uint32_t total = 0;   // of all lanes
+};
+
+__device__ inline Ticket make_ticket(uint32_t first, uint32_t count) {
+  Ticket ticket;
+  ticket.first = first;
+  uint32_t sum = count;
+  for (unsigned step = 1; step < kTicketChunks; step *= 2) {
+    const uint32_t below = __shfl_up_sync(kAllLanes, sum, step);
+    if (lane_in_warp() >= step) sum += below;
+  }
+  ticket.before = sum - count;
+  ticket.total = __shfl_sync(kAllLanes, sum, kTicketChunks - 1);
+  return ticket;
+}
+
+// The k-th subtree; k < total.
+__device__ inline uint32_t subtree_of(const Ticket& ticket, uint32_t k) {
+  uint32_t subtree = 0;
+#pragma unroll
+  for (unsigned lane = 0; lane < kTicketChunks; ++lane) {
+    const uint32_t before = __shfl_sync(kAllLanes, ticket.before, lane);
+    const uint32_t first = __shfl_sync(kAllLanes, ticket.first, lane);
+    if (k >= before) subtree = first + (k - before);
+  }
+  return subtree;
+}
+
+__device__ inline void read_subtrees(const TreeView& tree, const StateView& state,
+                                     const Sight& sight, uint32_t reference, const Ticket& ticket,
+                                     Tally& tally) {
+  for (uint32_t base = 0; base < ticket.total; base += kGroups) {
+    const bool there = base + group_in_warp() < ticket.total;
+    const uint32_t subtree = subtree_of(ticket, there ? base + group_in_warp() : base);
+    const Known known = load_known(state, subtree);
+    const SearchSubtree s = load_subtree(tree, subtree);
+    const bool open = there && is_reached(tree, s, sight, tally);
+    const Visit v = visit_group(tree, s, sight, open, tally);
+    settle(state, s, subtree, known, v, reference, open, tally);
+    if (there && !open) close_subtree(state, subtree, s.child_count, known, tally);
+  }
+}
+
+__device__ inline bool has_open(const StateView& state, uint32_t first, uint32_t last) {
+  bool open = false;
+  for (uint32_t b = block_of(state, first); b <= block_of(state, last - 1); ++b)
+    open |= state.open_counts[b] != 0;
+  return open;
+}
+
+// Closes what was open in chunks that nothing leads to any more.
+__device__ inline void close_subtrees(const TreeView& tree, const StateView& state,
+                                      const Ticket& ticket, Tally& tally) {
+  for (uint32_t base = 0; base < ticket.total; base += kGroups) {
+    const bool there = base + group_in_warp() < ticket.total;
+    const uint32_t subtree = subtree_of(ticket, there ? base + group_in_warp() : base);
+    const Known known = load_known(state, subtree);
+    __syncwarp();
+    if (there) close_subtree(state, subtree, tree.subtrees[subtree].child_count, known, tally);
+  }
+}
+
+// Dynamic dispatch: a warp takes a ticket of chunks, tests the hull of each on a lane,
+// and reads those that may hold part of the cut. No chunk waits for another.
+__device__ inline void stream_chunks(const TreeView& tree, const StateView& state,
+                                     const Sight& sight, uint32_t reference, Tally& tally) {
+  for (;;) {
+    uint32_t taken = 0;
+    if (lane_in_warp() == 0) taken = atomicAdd(&state.work->next_chunks, kTicketChunks);
+    taken = __shfl_sync(kAllLanes, taken, 0);
+    if (taken >= tree.chunk_count) return;
+    const uint32_t chunk = taken + lane_in_warp();
+    uint32_t first = 0, count = 0;
+    bool reached = false, stale = false;
+    if (lane_in_warp() < kTicketChunks && chunk < tree.chunk_count) {
+      const SearchRecord hull =
+          load_record(reinterpret_cast<const SearchRecord*>(tree.chunks + chunk));
+      first = hull.children;  // the word in its place is first_subtree
+      count = tree.chunks[chunk + 1].first_subtree - first;
+      reached = judge(hull, sight).refined;
+      stale = !reached && has_open(state, first, first + count);
+      ++tally.hulls;
+      tally.chunks += reached;
+    }
+    if (__any_sync(kAllLanes, reached))
+      read_subtrees(tree, state, sight, reference, make_ticket(first, reached ? count : 0), tally);
+    if (__any_sync(kAllLanes, stale))
+      close_subtrees(tree, state, make_ticket(first, stale ? count : 0), tally);
+  }
+}
+
+}  // namespace voyager::cuda

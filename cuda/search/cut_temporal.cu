@@ -1,0 +1,227 @@
+// The temporal search (METHOD §9): check, visit, descend. Where too much has run
+// out of slack, the last of the three streams instead.
+#include <algorithm>
+
+#include "cuda/device/grid.h"
+#include "cuda/search/cut_streaming.cuh"
+#include "cuda/search/search_launch.h"
+
+namespace voyager::cuda {
+namespace {
+
+constexpr unsigned kThreads = 256;
+constexpr unsigned kRounds = kBlockSubtrees / kThreads;
+
+__device__ bool falls_back(const StateView& state, uint32_t max_due) {
+  return state.work->due_count > max_due;
+}
+
+// A subtree whose reference is forgotten in this frame keeps what slack is left.
+__device__ bool renew(Watch& watch, uint32_t current, const Travel& retired) {
+  if (watch_reference(watch) != current) return false;
+  const float slack = slack_left(watch, retired);
+  if (slack > 0.0f) watch.slack = slack;
+  return slack > 0.0f;
+}
+
+__device__ bool expired(Watch& watch, const Travel* travel, uint32_t current,
+                        const Travel& retired) {
+  return due(watch, travel) && !renew(watch, current, retired);
+}
+
+// Lists the open subtrees to visit, a block of them at a time: those whose slack has run
+// out, or all.
+template <bool kAll>
+__global__ void __launch_bounds__(kThreads)
+    search_check(StateView state, Travels travels, uint32_t reference) {
+  __shared__ Travel travel[kReferences];
+  __shared__ uint32_t found[kBlockSubtrees];
+  __shared__ uint32_t found_count, place;
+  static_assert(kThreads == kReferences);
+  travel[threadIdx.x] = travels.of[threadIdx.x];
+  const uint32_t open_blocks = *state.open_block_count;
+  for (uint32_t i = blockIdx.x; i < open_blocks; i += gridDim.x) {
+    if (threadIdx.x == 0) found_count = 0;
+    __syncthreads();
+    const Block block = state.blocks[state.open_blocks[i]];
+    bool gone[kRounds];  // its verdicts are no longer certain, so it is to be visited
+#pragma unroll
+    for (unsigned k = 0; k < kRounds; ++k) {
+      const uint32_t subtree = block.first + k * kThreads + threadIdx.x;
+      const bool there = subtree < block.last;
+      if (kAll)
+        gone[k] = there && (state.refined[subtree] & kOpen) != 0;
+      else
+        gone[k] = there && expired(state.watch[subtree], travel, reference, travels.retired);
+    }
+#pragma unroll
+    for (unsigned k = 0; k < kRounds; ++k) {
+      const uint32_t votes = __ballot_sync(kAllLanes, gone[k]);
+      if (votes == 0) continue;
+      uint32_t at = 0;
+      if (lane_in_warp() == 0) at = atomicAdd(&found_count, __popc(votes));
+      at = __shfl_sync(kAllLanes, at, 0);
+      if (gone[k])
+        found[at + __popc(votes & ((1u << lane_in_warp()) - 1))] =
+            block.first + k * kThreads + threadIdx.x;
+    }
+    __syncthreads();
+    if (threadIdx.x == 0) {
+      if (found_count != 0) place = atomicAdd(&state.work->due_count, found_count);
+      atomicAdd(&state.work->bytes_read,
+                (block.last - block.first) * (kAll ? sizeof(uint32_t) : sizeof(Watch)));
+    }
+    __syncthreads();
+    for (uint32_t k = threadIdx.x; k < found_count; k += kThreads) state.due[place + k] = found[k];
+    __syncthreads();
+  }
+}
+
+__device__ void send_signals(const StateView& state, uint32_t first, uint32_t last, uint32_t kind) {
+  const uint32_t place = atomicAdd(&state.work->signal_tail, last - first);
+  for (uint32_t i = first; i < last; ++i) atomicExch(&state.signals[place + (i - first)], i | kind);
+}
+
+// BOTTOM for the subtrees below a node that became refined; for those below one that
+// no longer is, the end: their parent's subtree answers for that part again (TOP).
+__device__ void signal_changes(const TreeView& tree, const StateView& state, const SearchSubtree& s,
+                               uint32_t old_refined, uint32_t refined) {
+  for (uint32_t left = (old_refined ^ refined) & s.interior; left != 0; left &= left - 1) {
+    const uint32_t slot = __ffs(left) - 1;
+    if (slot % kGroupLanes != lane_in_group()) continue;
+    const uint32_t record = record_of(s, slot);
+    const uint32_t first = tree.opens[record].first, last = tree.opens[record].last;
+    if (first != last) send_signals(state, first, last, refined >> slot & 1 ? 0 : kClose);
+  }
+}
+
+__global__ void __launch_bounds__(kThreads)
+    search_visit(TreeView tree, StateView state, Sight sight, uint32_t reference,
+                 uint32_t max_due) {
+  if (falls_back(state, max_due)) return;
+  Tally tally;
+  const uint32_t count = state.work->due_count;
+  const uint32_t warp = (blockIdx.x * kThreads + threadIdx.x) / 32;
+  const uint32_t warps = gridDim.x * kThreads / 32;
+  for (uint32_t base = warp * kGroups; base < count; base += warps * kGroups) {
+    const bool active = base + group_in_warp() < count;
+    const uint32_t subtree = state.due[active ? base + group_in_warp() : base];
+    const Known known = load_known(state, subtree);
+    const SearchSubtree s = load_subtree(tree, subtree);
+    const Visit v = visit_group(tree, s, sight, active, tally);
+    // One that nothing reaches any more closes at once, before its parent, which is due too, says
+    // so: what changed would enter the cut only to leave it again, and count as both.
+    const bool open = active && (v.cut == known.cut || is_reached(tree, s, sight, tally));
+    settle(state, s, subtree, known, v, reference, open, tally);
+    if (active) signal_changes(tree, state, s, known.refined, v.refined);
+    if (active && !open) close_subtree(state, subtree, s.child_count, known, tally);
+  }
+  tally.flush(state.work);
+}
+
+__device__ uint32_t read_now(const uint32_t* counter) {
+  return *static_cast<const volatile uint32_t*>(counter);
+}
+
+// Done when as many signals are answered as were sent: `done` is read first, so that
+// it can only be too small.
+__device__ bool all_answered(const FrameCounters* work) {
+  bool all = false;
+  if (lane_in_warp() == 0) {
+    const uint32_t done = read_now(&work->signals_done);
+    __threadfence();
+    all = done == read_now(&work->signal_tail);
+  }
+  return __shfl_sync(kAllLanes, all, 0);
+}
+
+// The signal of a ticket, or kNoSignal where it has not come yet. A group that waits
+// for one must not hold up the others of its warp.
+__device__ uint32_t take_signal(const StateView& state, uint32_t ticket) {
+  if (ticket >= read_now(&state.work->signal_tail)) return kNoSignal;
+  return atomicExch(&state.signals[ticket], kNoSignal);
+}
+
+// A subtree that opens may send more signals before its own counts as answered.
+__device__ void answer(const TreeView& tree, const StateView& state, const Sight& sight,
+                       uint32_t reference, uint32_t signal, Tally& tally) {
+  const bool any = signal != kNoSignal;
+  const bool opens = any && (signal & kClose) == 0;
+  const uint32_t subtree = any ? signal & ~kClose : 0;
+  const Known known = load_known(state, subtree);
+  const SearchSubtree s = load_subtree(tree, subtree);
+  const Visit v = visit_group(tree, s, sight, opens, tally);
+  settle(state, s, subtree, known, v, reference, opens, tally);
+  if (opens) signal_changes(tree, state, s, 0, v.refined);
+  if (any && !opens) close_subtree(state, subtree, s.child_count, known, tally);
+  __threadfence();
+  __syncwarp();
+  if (any && lane_in_group() == 0) atomicAdd(&state.work->signals_done, 1);
+}
+
+__device__ void answer_signals(const TreeView& tree, const StateView& state, const Sight& sight,
+                               uint32_t reference, Tally& tally) {
+  bool holds_ticket = false;
+  uint32_t ticket = 0;
+  while (!all_answered(state.work)) {
+    uint32_t signal = kNoSignal;
+    if (lane_in_group() == 0) {
+      if (!holds_ticket) ticket = atomicAdd(&state.work->signal_head, 1);
+      signal = take_signal(state, ticket);
+      holds_ticket = signal == kNoSignal;
+    }
+    signal = __shfl_sync(kAllLanes, signal, 0, kGroupLanes);
+    if (__any_sync(kAllLanes, signal != kNoSignal))
+      answer(tree, state, sight, reference, signal, tally);
+    else
+      __nanosleep(200);
+  }
+}
+
+// As many thread blocks as there is work for: those that wait only get in the way.
+__device__ bool helps(const FrameCounters* work) {
+  constexpr uint32_t kLeast = 4, kSignalsEach = 32;
+  return blockIdx.x < kLeast + read_now(&work->signal_tail) / kSignalsEach;
+}
+
+__global__ void __launch_bounds__(kThreads)
+    search_descend(TreeView tree, StateView state, Sight sight, uint32_t reference,
+                   uint32_t max_due) {
+  Tally tally;
+  if (falls_back(state, max_due)) {
+    stream_chunks(tree, state, sight, reference, tally);
+    if (blockIdx.x == 0 && threadIdx.x == 0) state.work->streamed = 1;
+  } else if (helps(state.work)) {
+    answer_signals(tree, state, sight, reference, tally);
+  }
+  tally.flush(state.work);
+}
+
+template <bool kAll>
+void launch_stages(const SearchFrame& f, const Travels& travels, uint32_t max_due) {
+  const unsigned check_blocks = resident_blocks<search_check<kAll>>(kThreads);
+  const unsigned visit_blocks = resident_blocks<search_visit>(kThreads);
+  const unsigned descend_blocks = resident_blocks<search_descend>(kThreads);
+  search_check<kAll>
+      <<<std::min(f.state.block_count, f.multiprocessors * check_blocks), kThreads, 0, f.stream>>>(
+          f.state, travels, f.reference);
+  check(cudaGetLastError(), "search_check");
+  search_visit<<<f.multiprocessors * visit_blocks, kThreads, 0, f.stream>>>(
+      f.tree, f.state, f.sight, f.reference, max_due);
+  check(cudaGetLastError(), "search_visit");
+  search_descend<<<f.multiprocessors * descend_blocks, kThreads, 0, f.stream>>>(
+      f.tree, f.state, f.sight, f.reference, max_due);
+  check(cudaGetLastError(), "search_descend");
+}
+
+}  // namespace
+
+void launch_temporal(const SearchFrame& f, const Travels& travels, uint32_t max_due) {
+  launch_stages<false>(f, travels, max_due);
+}
+
+void launch_temporal_visit(const SearchFrame& f) {
+  launch_stages<true>(f, {}, UINT32_MAX);
+}
+
+}  // namespace voyager::cuda

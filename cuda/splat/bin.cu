@@ -1,0 +1,239 @@
+// METHOD §7b: the (tile, splat) pairs, tile by tile. bin_count counts the pairs of each block's
+// strips in shared memory and adds them up over the blocks; bin_place turns the sums into
+// places; bin_scatter puts each block's pairs where its share of a list begins. A list's
+// order is sort_tiles' work.
+#include <algorithm>
+#include <cub/block/block_scan.cuh>
+
+#include "cuda/device/grid.h"
+#include "cuda/splat/bin_order.cuh"
+#include "cuda/splat/occlusion.cuh"
+#include "cuda/splat/splat_launch.h"
+
+namespace voyager::cuda {
+namespace {
+
+// Two blocks are all that a multiprocessor of Orin holds.
+constexpr unsigned kBinThreads = 768;
+constexpr unsigned kBinBlocks = 2;  // of a multiprocessor
+constexpr uint32_t kNarrow = 4;     // tiles of a strip that a lane places by itself
+
+// The strips of a block, and the tiles that it sees to: a band of those of its region's eye.
+struct Share {
+  const TileStrip* strips;
+  uint32_t count;
+  uint32_t first_tile, tiles;
+};
+
+__device__ Share bin_share(const SplatView& splats, uint32_t band) {
+  const uint32_t region = blockIdx.x % kStripRegions, room = splats.strip_room / kStripRegions;
+  const uint32_t part = blockIdx.x / kStripRegions, parts = gridDim.x / kStripRegions;
+  const uint32_t count = min(*strip_count(splats, region), room);
+  const uint32_t each = (count + parts - 1) / parts, first = min(part * each, count);
+  const FrameTiles& frame = splats.frame;
+  const uint32_t eye = region / (kStripRegions / frame.eyes);
+  const uint32_t tile = min(frame.first[eye] + blockIdx.y * band, frame.first[eye + 1]);
+  return {splats.strips + region * room + first, min(each, count - first), tile,
+          min(band, frame.first[eye + 1] - tile)};
+}
+
+// The part of a strip that lies in the band, from the band's first tile on.
+__device__ TileRange bin_band(const TileStrip& strip, const Share& share) {
+  const uint32_t begin = max(strip.first_tile, share.first_tile);
+  const uint32_t end = min(strip.first_tile + strip.tiles, share.first_tile + share.tiles);
+  if (begin >= end) return {0, 0};
+  return {static_cast<int32_t>(begin - share.first_tile),
+          static_cast<int32_t>(end - share.first_tile)};
+}
+
+// Where this block's pairs of a tile begin in its list, from the list's first.
+__device__ uint32_t* bin_offsets(const SplatView& splats, const Share& share) {
+  return splats.tile_offsets + size_t{blockIdx.x} * splats.frame.count() + share.first_tile;
+}
+
+// Whether a pair is in its tile's list. depth: of its key.
+template <bool kLimited>
+__device__ bool bin_takes(const SplatView& splats, uint32_t tile, uint32_t depth) {
+  return !kLimited || depth <= __ldg(splats.limits.bits + tile);
+}
+
+// band: tiles of an eye that a block counts in shared memory at a time.
+template <bool kLimited>
+__global__ void __launch_bounds__(kBinThreads, kBinBlocks)
+    bin_count(SplatView splats, uint32_t band) {
+  if (!has_work(splats)) return;
+  extern __shared__ uint32_t counts[];
+  const Share share = bin_share(splats, band);
+  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) counts[i] = 0;
+  __syncthreads();
+  for (uint32_t i = threadIdx.x; i < share.count; i += kBinThreads) {
+    const TileStrip strip = share.strips[i];
+    const TileRange range = bin_band(strip, share);
+    for (int32_t tile = range.begin; tile < range.end; ++tile)
+      if (bin_takes<kLimited>(splats, share.first_tile + tile, strip.depth))
+        atomicAdd(counts + tile, 1u);
+  }
+  __syncthreads();
+  uint32_t* offsets = bin_offsets(splats, share);
+  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) {
+    const uint32_t count = counts[i];
+    offsets[i] = count == 0 ? 0 : atomicAdd(splats.tile_counts + share.first_tile + i, count);
+  }
+}
+
+// By one warp: a region of strips a lane.
+__device__ void bin_strip_counts(const SplatView& splats) {
+  static_assert(kStripRegions == 32);
+  const uint32_t strips = *strip_count(splats, threadIdx.x);
+  const uint32_t room = splats.strip_room / kStripRegions;
+  unsigned long long sum = strips, dropped = strips > room ? strips - room : 0;
+  for (int step = 16; step != 0; step /= 2) {
+    sum += __shfl_xor_sync(0xffffffffu, sum, step);
+    dropped += __shfl_xor_sync(0xffffffffu, dropped, step);
+  }
+  const unsigned long long most = __reduce_max_sync(0xffffffffu, strips);
+  if (threadIdx.x != 0) return;
+  splats.counters->strips = sum;
+  splats.counters->strip_room = most * kStripRegions;
+  splats.counters->strips_dropped = dropped;
+}
+
+constexpr unsigned kPlaceThreads = 1024, kPlaceItems = 4;
+constexpr unsigned kChunk = kPlaceThreads * kPlaceItems;
+using PlaceScan = cub::BlockScan<unsigned long long, kPlaceThreads, cub::BLOCK_SCAN_WARP_SCANS>;
+
+// One block: where each tile's list begins and ends, and the order in which lists are worked
+// on. What is beyond the room is cut off. at_once: tiles that are rasterized at a time.
+__global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats, uint32_t at_once) {
+  if (!has_work(splats)) return;
+  __shared__ PlaceScan::TempStorage storage;
+  __shared__ uint32_t counts[kChunk];
+  __shared__ uint32_t firsts[kChunk + 1];
+  __shared__ BinOrder order;
+  const uint32_t tiles = splats.frame.count();
+  const auto room = static_cast<unsigned long long>(splats.pairs);
+  unsigned long long total = 0;
+  order.clear();
+  for (uint32_t base = 0; base < tiles; base += kChunk) {
+    __syncthreads();
+    for (uint32_t i = threadIdx.x; i < kChunk; i += kPlaceThreads) {
+      const uint32_t count = base + i < tiles ? splats.tile_counts[base + i] : 0;
+      counts[i] = count;
+      if (base + i < tiles) order.count(count);
+    }
+    __syncthreads();
+    unsigned long long own[kPlaceItems], before[kPlaceItems], sum;
+#pragma unroll
+    for (unsigned k = 0; k < kPlaceItems; ++k) own[k] = counts[threadIdx.x * kPlaceItems + k];
+    PlaceScan(storage).ExclusiveSum(own, before, sum);
+#pragma unroll
+    for (unsigned k = 0; k < kPlaceItems; ++k)
+      firsts[threadIdx.x * kPlaceItems + k] = static_cast<uint32_t>(min(total + before[k], room));
+    total += sum;
+    if (threadIdx.x == 0) firsts[kChunk] = static_cast<uint32_t>(min(total, room));
+    __syncthreads();
+    for (uint32_t i = threadIdx.x; i < kChunk && base + i < tiles; i += kPlaceThreads)
+      splats.tiles[base + i] = {firsts[i], firsts[i + 1]};
+  }
+  const float share = static_cast<float>(total) / static_cast<float>(at_once);
+  order.place(*splats.counters, max(kLeastHalved, static_cast<uint32_t>(kHalvedShare * share)));
+  for (uint32_t tile = threadIdx.x; tile < tiles; tile += kPlaceThreads)
+    splats.tile_order[order.take(splats.tile_counts[tile])] = tile;
+  if (threadIdx.x == 0) splats.counters->pairs = total;
+  if (threadIdx.x >= 32) return;
+  bin_strip_counts(splats);
+}
+
+__device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) {
+  if (place < splats.pairs) splats.keys[place] = key;
+}
+
+// A strip a lane; the rest of a wide one is the whole warp's.
+template <bool kLimited>
+__device__ void bin_strip(const SplatView& splats, const Share& share, uint32_t* cursors,
+                          const TileRange& range, DepthKey key) {
+  const auto begin = static_cast<uint32_t>(range.begin), lane = threadIdx.x % 32;
+  const auto tiles = static_cast<uint32_t>(range.end - range.begin);
+  const auto take = [&](uint32_t tile, DepthKey of) {
+    return bin_takes<kLimited>(splats, share.first_tile + tile, static_cast<uint32_t>(of >> 32))
+               ? atomicAdd(cursors + tile, 1u)
+               : splats.pairs;
+  };
+  uint32_t place[kNarrow];
+#pragma unroll
+  for (uint32_t k = 0; k < kNarrow; ++k) place[k] = k < tiles ? take(begin + k, key) : splats.pairs;
+#pragma unroll
+  for (uint32_t k = 0; k < kNarrow; ++k) bin_pair(splats, place[k], key);
+  unsigned wide = __ballot_sync(0xffffffffu, tiles > kNarrow);
+  for (; wide != 0; wide &= wide - 1) {
+    const int owner = __ffs(wide) - 1;
+    const DepthKey shared_key = __shfl_sync(0xffffffffu, key, owner);
+    const uint32_t first = __shfl_sync(0xffffffffu, begin, owner);
+    const uint32_t count = __shfl_sync(0xffffffffu, tiles, owner);
+    for (uint32_t k = kNarrow + lane; k < count; k += 32)
+      bin_pair(splats, take(first + k, shared_key), shared_key);
+  }
+}
+
+template <bool kLimited>
+__global__ void __launch_bounds__(kBinThreads, kBinBlocks)
+    bin_scatter(SplatView splats, uint32_t band) {
+  if (!has_work(splats)) return;
+  extern __shared__ uint32_t cursors[];
+  const Share share = bin_share(splats, band);
+  const uint32_t* offsets = bin_offsets(splats, share);
+  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads)
+    cursors[i] = splats.tiles[share.first_tile + i].first + offsets[i];
+  __syncthreads();
+  for (uint32_t base = threadIdx.x / 32 * 32; base < share.count; base += kBinThreads) {
+    const uint32_t i = base + threadIdx.x % 32;
+    TileStrip strip{};
+    if (i < share.count) strip = share.strips[i];
+    const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
+    bin_strip<kLimited>(splats, share, cursors, bin_band(strip, share), key);
+  }
+}
+
+// What a block may count at once, so that kBinBlocks still fit a multiprocessor: 20,000 tiles on
+// Orin, where an eye of 2064x2208 pixels has 17,802.
+int most_shared_bytes() {
+  return static_cast<int>(shared_bytes_of_block(kBinBlocks));
+}
+uint32_t most_band_tiles() {
+  return static_cast<uint32_t>(most_shared_bytes()) / sizeof(uint32_t);
+}
+
+template <bool kLimited>
+void launch(const SplatFrame& f, const dim3& blocks, uint32_t band) {
+  const size_t bytes = band * sizeof(uint32_t);
+  allow_shared_bytes(bin_count<kLimited>, most_shared_bytes(), "bin_count");
+  bin_count<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
+  check(cudaGetLastError(), "bin_count");
+  bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats, kRasterBlocks * f.multiprocessors);
+  check(cudaGetLastError(), "bin_place");
+  allow_shared_bytes(bin_scatter<kLimited>, most_shared_bytes(), "bin_scatter");
+  bin_scatter<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
+  check(cudaGetLastError(), "bin_scatter");
+}
+
+}  // namespace
+
+// As many as are resident, or the last would run alone.
+unsigned bin_blocks(unsigned multiprocessors) {
+  return std::max(kBinBlocks * multiprocessors / kStripRegions, 1u) * kStripRegions;
+}
+
+void launch_bin(const SplatFrame& f) {
+  uint32_t most = 0;  // tiles of an eye
+  for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
+    most = std::max(most, f.splats.frame.first[eye + 1] - f.splats.frame.first[eye]);
+  const uint32_t bands = (most + most_band_tiles() - 1) / most_band_tiles();
+  const uint32_t band = (most + bands - 1) / bands;
+  const dim3 blocks(bin_blocks(f.multiprocessors), bands);
+  if (f.splats.limits.bits == nullptr)
+    launch<false>(f, blocks, band);
+  else
+    launch<true>(f, blocks, band);
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,73 @@
+#pragma once
+// The buffers of the stages from projection on. They grow between frames, never in one.
+#include <algorithm>
+#include <array>
+
+#include "cuda/device/buffer.h"
+#include "cuda/search/search.h"
+#include "cuda/splat/splats.h"
+
+namespace voyager::cuda {
+
+// Of the buffers that the scene and the view decide.
+struct SplatRoom {
+  size_t places = 0, strips = 0, pairs = 0;
+};
+
+// A frame draws its tiles once, or once more those that their limits left open.
+inline constexpr int kPasses = 2;
+using PassCounters = std::array<SplatCounters, kPasses>;
+
+// What a frame's lists would have needed.
+SplatRoom room_for(const PassCounters& passes);
+
+// The eyes' tiles, one grid behind the other.
+FrameTiles frame_tiles(const FrameInput& frame);
+
+// Pairs, strips and places of a frame for which there was no room.
+uint64_t dropped(const PassCounters& passes, const SplatRoom& room);
+
+class SplatState {
+ public:
+  // bin_blocks: of bin.cu.
+  SplatState(unsigned bin_blocks, uint32_t eyes);
+
+  // Whether there is room for the tiles.
+  bool fits(const FrameTiles& tiles) const { return tiles.count() <= tiles_.size(); }
+  // Makes room for the tiles; what is there already stays. Nothing on the device uses the buffers.
+  // Throws Error.
+  void fit(const FrameTiles& tiles);
+  // Buffers that belong together may differ after an allocation that failed.
+  SplatRoom room() const {
+    return {std::min({records_.size() / eyes_, candidates_.size(), rows_.size() * kRowPlaces}),
+            strips_.size(), std::min(keys_.size(), merge_keys_.size())};
+  }
+  // Makes so much room, with some to spare. False where there is nothing to do, or no
+  // memory for it: the frame is then what it can be. Nothing on the device uses them.
+  bool grow(const SplatRoom& wanted);
+
+  // pass: without limits.
+  SplatView view(const FrameTiles& tiles, int pass) const;
+  // Clears what the kernels add to, in both passes.
+  void begin_frame(const FrameTiles& tiles, cudaStream_t stream) const;
+  const PassCounters* counters() const {
+    return reinterpret_cast<const PassCounters*>(counters_.data());
+  }
+
+ private:
+  bool grow_places(size_t wanted);
+  bool grow_strips(size_t wanted);
+  bool grow_pairs(size_t wanted);
+
+  unsigned bin_blocks_;
+  uint32_t eyes_;
+  Buffer<SplatRecord> records_;
+  Buffer<uint32_t> candidates_, rows_;
+  Buffer<DepthKey> keys_, merge_keys_;
+  Buffer<unsigned char> counters_;  // PassCounters, then a count a tile and pass, then the ends
+  Buffer<TileStrip> strips_;
+  Buffer<uint32_t> tile_offsets_, tile_order_;
+  Buffer<TileList> tiles_;
+};
+
+}  // namespace voyager::cuda

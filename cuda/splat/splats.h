@@ -1,0 +1,130 @@
+#pragma once
+// What the stages from projection on hand to one another, on the device.
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "cuda/splat/tile_limits.h"
+#include "runtime/stages/bin.h"
+
+namespace voyager::cuda {
+
+// A projected splat; log α of a pixel is log_opacity - (p² + q²), all in the conic's base.
+struct alignas(16) SplatRecord {
+  float x, y, p_x, q_y;
+  float skew, log_opacity, depth, t;
+  float r, g, b, inverse_k;
+};
+static_assert(sizeof(SplatRecord) == 48);
+
+// The grown support of a splat from its record, in every stage alike.
+// log_threshold: of α*, natural.
+VOYAGER_HD SupportEllipse support_of(const SplatRecord& r, float log_scale, float log_threshold) {
+  const Rounded threshold = Rounded(log_threshold) * log_scale;
+  return support_ellipse(r.x, r.y, {r.p_x, r.skew, r.q_y}, (threshold - r.log_opacity).value);
+}
+
+// A (tile, splat) pair in its tile's list: the bits of z > 0 above the splat's slot. An eye's
+// slots ascend with (instance, id), so that keys are in the contract's order.
+using DepthKey = unsigned long long;
+
+VOYAGER_HD uint32_t slot_of(DepthKey key) {
+  return static_cast<uint32_t>(key);
+}
+
+// Strips are appended in as many places, or all warps would wait for one counter. Each eye has as
+// many of them, the first eye the first ones.
+inline constexpr uint32_t kStripRegions = 32;
+struct alignas(128) StripRegion {
+  uint32_t strips;
+};
+
+struct InstanceCounters {
+  uint32_t first_place;
+  // Of its places, that may reach the image: those that are drawn untouched, and those that blend
+  // with their parents.
+  uint32_t whole, blended;
+  uint32_t rows;  // of its list that may reach the image, where the list has bounds
+};
+
+// Of one frame.
+struct SplatCounters {
+  StripRegion regions[kStripRegions];
+  unsigned long long pairs, pairs_boxed;          // of the ellipses, and of their boxes
+  unsigned long long evaluated, blended;          // pixels, where they are counted
+  InstanceCounters instances[kMaxInstances + 1];  // by SplatFrame::instance
+  uint32_t places;                                // of the lists that are drawn
+  uint32_t splats;                                // that reach the image
+  unsigned long long strips;                      // of them
+  unsigned long long strip_room;                  // that they need in all regions
+  unsigned long long strips_dropped;
+  uint32_t long_lists, large_lists, halved_lists;  // the first tiles of tile_order
+  uint32_t open_parts;  // of tiles whose list was cut off before all of their pixels had ended
+};
+
+// At most so many keys are in lists behind the long ones, and behind the large ones: just
+// under where bin_order's classes begin.
+inline constexpr uint32_t kShortList = 511, kMediumList = 2047;
+
+// Thread blocks of rasterize.cu that are resident on a multiprocessor: a block has a tile.
+inline constexpr unsigned kRasterBlocks = 8;
+// Twice as many warps blend tiles whose lists are so much longer than what each resident block has
+// on average that they would end last; bench/NOTES.md has other shares. No more tiles than that.
+inline constexpr float kHalvedShare = 0.5f;
+inline constexpr uint32_t kLeastHalved = 64, kMaxHalvedLists = 1024;
+
+// A splat in one row of tiles.
+struct alignas(16) TileStrip {
+  uint32_t slot, depth;        // of its key
+  uint32_t first_tile, tiles;  // none: the box reaches the row, the ellipse does not
+};
+
+// [first, last) of the pairs.
+struct TileList {
+  uint32_t first, last;
+};
+
+// The tiles of a frame: those of an eye behind those of the eye before it.
+struct FrameTiles {
+  TileGrid grids[kMaxEyes];
+  uint32_t first[kMaxEyes + 1];  // behind the last: as many as there are in all
+  uint32_t eyes;
+
+  VOYAGER_HD uint32_t eye(uint32_t tile) const {
+    uint32_t eye = 0;
+    for (uint32_t other = 1; other < kMaxEyes; ++other) eye += tile >= first[other];
+    return eye;
+  }
+  VOYAGER_HD uint32_t count() const { return first[kMaxEyes]; }
+};
+
+// As kernels take it.
+struct SplatView {
+  SplatRecord* records;  // by slot: a place's for all eyes one behind the other
+  // Places of the instance that is being projected: whole ones from the beginning, blended ones
+  // from the end.
+  uint32_t* candidates;
+  uint32_t* rows;       // of that instance's list
+  uint32_t places;      // room
+  TileStrip* strips;    // kStripRegions regions of equal room
+  uint32_t strip_room;  // of all
+  DepthKey* keys;
+  DepthKey* merge_keys;  // as many
+  uint32_t pairs;        // room
+  SplatCounters* counters;
+  uint32_t* tile_counts;   // behind the counters, so that they are cleared together
+  uint32_t* tile_offsets;  // [block of bin_count][tile]
+  TileList* tiles;
+  uint32_t* tile_order;  // longest lists first
+  // By tile, the depth (bits) behind which it is full; kDrawAll where it is not. Of both passes.
+  uint32_t* ends;
+  TileLimits limits;
+  const uint32_t* open_parts;  // of the first pass; null there
+  FrameTiles frame;
+};
+
+VOYAGER_HD uint32_t* strip_count(const SplatView& splats, uint32_t region) {
+  return &splats.counters->regions[region].strips;
+}
+
+}  // namespace voyager::cuda

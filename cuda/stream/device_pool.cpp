@@ -1,0 +1,262 @@
+#include "cuda/stream/device_pool.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "cuda/scene/device_gaussian.h"
+#include "runtime/base/error.h"
+#include "runtime/frame/scene_gaussians.h"
+
+namespace voyager::cuda {
+namespace {
+
+// Enough to keep the bus busy, and no more: what links chunks waits for those before it.
+constexpr size_t kMostPieces = 32, kLeastPieces = 4, kRingBytes = size_t{8} << 20;
+
+size_t pieces_of(const PoolLayout& piece) {
+  return std::clamp(kRingBytes / piece.filled_bytes(), kLeastPieces, kMostPieces);
+}
+
+bool shares_memory(const Device& device) {
+  int integrated = 0;
+  check(cudaDeviceGetAttribute(&integrated, cudaDevAttrIntegrated, device.ordinal()),
+        "device attribute");
+  return integrated != 0;
+}
+
+template <class T>
+void put(unsigned char* into, size_t index, const T& value) {
+  std::memcpy(into + index * sizeof(T), &value, sizeof(T));
+}
+
+void check_addresses(SlotShape shape, uint32_t slots) {
+  const uint64_t most = uint64_t{slots} * std::max(shape.nodes, shape.records);
+  if (most < kNotLinked) return;
+  throw Error(ErrorCode::unsupported, "streaming: found " + std::to_string(slots) +
+                                          " slots of up to " +
+                                          std::to_string(std::max(shape.nodes, shape.records)) +
+                                          " nodes, expected fewer than 2^32 - 2 in all");
+}
+
+}  // namespace
+
+PoolBytes DevicePool::bytes(const Device& device, const Scene& scene, SlotShape shape) {
+  const PoolLayout piece(scene, shape, 1);
+  PoolBytes bytes = piece.pool_bytes();
+  if (is_coded(scene)) bytes.fixed += CodeTables::kBytes;
+  if (shares_memory(device)) bytes.fixed += pieces_of(piece) * piece.filled_bytes();
+  return bytes;
+}
+
+DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
+                       uint32_t slots)
+    : device_(std::move(device)),
+      tables_(is_coded(scene) ? device_->code_tables() : nullptr),
+      shape_(shape),
+      sh_degree_(scene.sh_degree),
+      sh_form_(sh_form(scene)),
+      doubles_(scene.doubles),
+      footprints_(footprints_differ(scene)),
+      blend_share_(scene.tree.blend_share),
+      chunks_(scene.search.chunks),
+      piece_layout_(scene, shape, 1),
+      layout_(piece_layout_),
+      ring_(piece_layout_.filled_bytes(), pieces_of(piece_layout_)) {
+  make_room(slots);
+}
+
+// There is none yet.
+void DevicePool::make_room(uint32_t slots) {
+  check_addresses(shape_, slots);
+  layout_.set_slots(slots);
+  memory_ = Buffer<unsigned char>(layout_.bytes());
+  slots_ = slots;
+  check(cudaMemcpy(array<SearchChunk>(kChunks), chunks_.data(),
+                   chunks_.size() * sizeof(SearchChunk), cudaMemcpyHostToDevice),
+        "chunk hulls");
+  // Records that nothing hangs from open no subtrees, and no chunk says so again.
+  check(cudaMemset(array<SubtreeSpan>(kOpens), 0, slots * layout_.slot_bytes(kOpens)), "links");
+  check(cudaStreamSynchronize(nullptr), "links");
+  launch_unlink_all(array<SearchSubtree>(kSubtrees), chunks_.back().first_subtree, stream_.get());
+  applied_.record(stream_.get());
+}
+
+void DevicePool::resize(uint32_t slots) {
+  device_->use();
+  wait_for_frames();
+  stream_.wait();
+  slots_ = 0;
+  memory_ = {};
+  make_room(slots);
+}
+
+// What it frees belongs to the device's context, and to chunks that may be on their way.
+DevicePool::~DevicePool() {
+  device_->use_quietly();
+  cudaStreamSynchronize(stream_.get());
+}
+
+GaussianView DevicePool::gaussians() const {
+  return {array<float4>(kHulls),
+          array<unsigned char>(kShapes),
+          array<float>(kOpacities),
+          array<uint8_t>(kNodeCodes),
+          array<uint32_t>(kParents),
+          array<uint32_t>(kChildCounts),
+          array<uint4>(kCoefficients),
+          sh_degree_,
+          sh_form_,
+          doubles_,
+          footprints_,
+          slots_ * shape_.nodes,
+          tables_ == nullptr ? ShapeTables{} : tables_->view(),
+          array<ShStepSizes>(kStepSizes),
+          {nullptr, shape_.nodes}};
+}
+
+TreeView DevicePool::tree() const {
+  return {array<SearchSubtree>(kSubtrees),
+          array<SearchRecord>(kRecords),
+          array<SubtreeSpan>(kOpens),
+          array<SearchChunk>(kChunks),
+          layout_.unit(kLeaves) == 0 ? nullptr : array<NodeRecord>(kLeaves),
+          chunks_.back().first_subtree,
+          static_cast<uint32_t>(chunks_.size() - 1),
+          blend_share_,
+          array<uint32_t>(kNodeIds)};
+}
+
+// As pool_fill copies it into the slot.
+void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* into) const {
+  const Chunk& chunk = staged.content;
+  const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
+  for (size_t i = 0; i < chunk.node.size(); ++i) {
+    const uint32_t parent = staged.parent[i];
+    put(at(kParents), i, parent == kNoNode ? kNoNode : slot * shape_.nodes + parent);
+    put(at(kChildCounts), i, chunk.record_of(i).child_count);
+    if (layout_.unit(kLeaves) != 0) put(at(kLeaves), i, chunk.record_of(i));
+  }
+  if (sh_form_ == ShForm::coded)
+    pack_codes(chunk, into);
+  else
+    pack_floats(chunk, into);
+  std::memcpy(at(kNodeIds), chunk.node.data(), chunk.node.size() * sizeof(uint32_t));
+  std::memcpy(at(kRecords), staged.records.data(), staged.records.size() * sizeof(SearchRecord));
+}
+
+void DevicePool::pack_codes(const Chunk& chunk, unsigned char* into) const {
+  const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
+  const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
+  for (size_t i = 0; i < chunk.node.size(); ++i) {
+    const ShapeCode code = shape_code(chunk, i);
+    Gaussian g = restored_shape(code, shape_tables());
+    g.mean = chunk.words[i].mean;
+    put(at(kHulls), i, device_hull(g));
+    put(at(kShapes), i, code);
+    pack_sh(&chunk.sh[i * floats], sh_degree_, chunk.sh_scale,
+            at(kCoefficients) + i * layout_.unit(kCoefficients));
+  }
+  put(at(kStepSizes), 0, step_sizes(chunk.sh_scale));
+}
+
+void DevicePool::pack_floats(const Chunk& chunk, unsigned char* into) const {
+  const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
+  const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
+  for (size_t i = 0; i < chunk.node.size(); ++i) {
+    const Gaussian g = activate(chunk.words[i], chunk.has_logit(i));
+    put(at(kHulls), i, device_hull(g));
+    put(at(kShapes), 2 * i, device_shape(g, 0));
+    put(at(kShapes), 2 * i + 1, device_shape(g, 1));
+    put(at(kOpacities), i, g.opacity);
+    put(at(kNodeCodes), i, chunk.node_code[i]);
+    if (sh_form_ == ShForm::half)
+      put_half_coefficients(
+          &chunk.sh[i * floats], sh_degree_,
+          reinterpret_cast<__half*>(at(kCoefficients) + i * layout_.unit(kCoefficients)));
+  }
+  if (sh_form_ == ShForm::single)
+    std::memcpy(at(kCoefficients), chunk.sh.data(), chunk.sh.size() * sizeof(float));
+}
+
+PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
+                            const unsigned char* from) const {
+  PoolFill fill{};
+  for (uint32_t a = 0; a < kFilledArrays; ++a) {
+    const auto which = static_cast<PoolArray>(a);
+    const size_t unit = layout_.unit(which);
+    const size_t count = which == kRecords     ? staged.records.size()
+                         : which == kStepSizes ? 1
+                                               : staged.content.node.size();
+    const size_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
+    fill.copies[a] = {from + piece_layout_.begin(which),
+                      array<unsigned char>(which) + slot * layout_.slot_bytes(which),
+                      static_cast<uint32_t>(count * unit / word), static_cast<uint32_t>(word)};
+  }
+  return fill;
+}
+
+void DevicePool::fill(uint32_t slot, const StagedChunk& chunk) {
+  const std::shared_ptr<void> kept = keep_context();  // the thread may be the host's
+  device_->use();
+  require_room();
+  const UploadRing::Piece piece = ring_.take();
+  pack(slot, chunk, piece.host());
+  launch_fill(copies(slot, chunk, piece.device()), stream_.get());
+  piece.read_by(stream_.get());
+}
+
+// What may fail comes before what is launched.
+void DevicePool::apply(const LinkPatch& patch) {
+  device_->use();
+  require_room();
+  const PoolPatch copy = patches_.put(patch);
+  wait_for_frames();
+  launch_patch({array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords),
+                array<SubtreeSpan>(kOpens), array<uint32_t>(kParents)},
+               copy, stream_.get());
+  patches_.read_by(stream_.get());
+  applied_.record(stream_.get());
+}
+
+void DevicePool::require_room() const {
+  if (slots_ == 0)
+    throw Error(ErrorCode::over_budget,
+                "streaming: found no memory for any slot when a budget changed, expected some");
+}
+
+// On the device.
+void DevicePool::wait_for_frames() {
+  const std::lock_guard lock(readers_mutex_);
+  for (PoolReader* reader : readers_)
+    if (std::exchange(reader->reading_, false))
+      check(cudaStreamWaitEvent(stream_.get(), reader->ended_.get(), 0), "frames in flight");
+}
+
+DevicePool& pool_of(const Scene& scene, const Device& device) {
+  auto* pool = dynamic_cast<DevicePool*>(scene.pool.get());
+  if (pool != nullptr && &pool->device() == &device) return *pool;
+  throw Error(
+      ErrorCode::unsupported,
+      "scene: found a scene that is streamed to another device, expected the view's device");
+}
+
+PoolReader::PoolReader(DevicePool& pool) : pool_(pool) {
+  const std::lock_guard lock(pool_.readers_mutex_);
+  pool_.readers_.push_back(this);
+}
+
+PoolReader::~PoolReader() {
+  const std::lock_guard lock(pool_.readers_mutex_);
+  std::erase(pool_.readers_, this);
+}
+
+void PoolReader::begin(cudaStream_t stream) const {
+  pool_.require_room();
+  check(cudaStreamWaitEvent(stream, pool_.applied_.get(), 0), "links");
+}
+
+void PoolReader::end(cudaStream_t stream) noexcept {
+  reading_ = cudaEventRecord(ended_.get(), stream) == cudaSuccess || reading_;
+}
+
+}  // namespace voyager::cuda

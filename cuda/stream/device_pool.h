@@ -1,0 +1,108 @@
+#pragma once
+// The chunks of a streamed scene in a device's memory.
+//
+// Chunks and links go to the device on a stream of the pool's own, in the order in which they
+// are given. What links them waits there for the frames in flight, which read what it changes,
+// and frames that come later wait for it. A slot that is free again was unlinked before, so
+// that what fills it, behind that in the stream, overwrites nothing that a frame still reads.
+// No frame waits on the host.
+#include <mutex>
+#include <vector>
+
+#include "cuda/device/device.h"
+#include "cuda/scene/code_tables.h"
+#include "cuda/scene/gaussian_view.h"
+#include "cuda/stream/patch_buffers.h"
+#include "cuda/stream/upload_ring.h"
+
+namespace voyager::cuda {
+
+class PoolReader;
+
+class DevicePool final : public ChunkPool {
+ public:
+  static PoolBytes bytes(const Device& device, const Scene& scene, SlotShape shape);
+
+  // Takes all its memory. The scene outlives it; its description is complete, and its search has
+  // chunks and tiers. Throws Error(over_budget) for want of memory, Error(unsupported) where there
+  // are more addresses than 32 bits.
+  DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
+             uint32_t slots);
+  ~DevicePool() override;
+  DevicePool(const DevicePool&) = delete;
+  DevicePool& operator=(const DevicePool&) = delete;
+
+  // May wait for a piece of the ring, which is to say for chunks that came before it.
+  void fill(uint32_t slot, const StagedChunk& chunk) override;
+  void apply(const LinkPatch& patch) override;
+  // Waits for the device.
+  void resize(uint32_t slots) override;
+
+  const Device& device() const { return *device_; }
+  // Until it is resized.
+  GaussianView gaussians() const;
+  TreeView tree() const;
+
+ private:
+  friend class PoolReader;
+
+  template <class T>
+  T* array(PoolArray which) const {
+    return reinterpret_cast<T*>(memory_.data() + layout_.begin(which));
+  }
+  void pack(uint32_t slot, const StagedChunk& chunk, unsigned char* into) const;
+  void pack_codes(const Chunk& chunk, unsigned char* into) const;
+  void pack_floats(const Chunk& chunk, unsigned char* into) const;
+  PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;
+  // Throws Error(over_budget) where a resize has left no memory.
+  void require_room() const;
+  void wait_for_frames();
+  void make_room(uint32_t slots);
+
+  const std::shared_ptr<const Device> device_;
+  const std::shared_ptr<const CodeTables> tables_;  // of a coded scene
+  const SlotShape shape_;
+  const int sh_degree_;
+  const ShForm sh_form_;
+  const bool doubles_, footprints_;
+  const float blend_share_;
+  const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
+  const PoolLayout piece_layout_;                // of one slot
+  PoolLayout layout_;
+  uint32_t slots_ = 0;
+  Buffer<unsigned char> memory_;
+  UploadRing ring_;
+  PatchBuffers patches_;
+  Event applied_{cudaEventDisableTiming};
+  std::mutex readers_mutex_;
+  std::vector<PoolReader*> readers_;
+  Stream stream_;
+};
+
+// The scene's. Throws Error(unsupported) where it lies elsewhere than on the device.
+DevicePool& pool_of(const Scene& scene, const Device& device);
+
+// One stream's frames that read a pool, which outlives it. begin() and end() are called under
+// SceneStream::hold(), and so not while a patch is applied.
+class PoolReader {
+ public:
+  explicit PoolReader(DevicePool& pool);
+  ~PoolReader();
+  PoolReader(const PoolReader&) = delete;
+  PoolReader& operator=(const PoolReader&) = delete;
+
+  // What comes on the stream from now on finds what was linked. Throws Error(over_budget) where
+  // the pool has lost its memory.
+  void begin(cudaStream_t stream) const;
+  // What was launched on the stream so far has to end before links change.
+  void end(cudaStream_t stream) noexcept;
+
+ private:
+  friend class DevicePool;
+
+  DevicePool& pool_;
+  Event ended_{cudaEventDisableTiming};
+  bool reading_ = false;  // since links changed last
+};
+
+}  // namespace voyager::cuda

@@ -1,0 +1,97 @@
+#include <algorithm>
+
+#include "cuda/stream/pool_launch.h"
+
+namespace voyager::cuda {
+namespace {
+
+constexpr unsigned kThreads = 256;
+// A chunk is some 20 KB: what counts is how many reads are on the bus at once.
+constexpr unsigned kMostBlocks = 64;
+
+unsigned blocks_for(uint32_t threads) {
+  return std::clamp((threads + kThreads - 1) / kThreads, 1u, kMostBlocks);
+}
+
+__device__ uint32_t first_index() {
+  return blockIdx.x * kThreads + threadIdx.x;
+}
+__device__ uint32_t stride() {
+  return gridDim.x * kThreads;
+}
+
+template <class Word>
+__device__ void copy_words(const PoolCopy& copy) {
+  const Word* from = static_cast<const Word*>(copy.from);
+  Word* to = static_cast<Word*>(copy.to);
+  for (uint32_t i = first_index(); i < copy.words; i += stride()) to[i] = from[i];
+}
+
+// An array each row of thread blocks, so that none waits for another's reads.
+__global__ void __launch_bounds__(kThreads) pool_fill(PoolFill fill) {
+  const PoolCopy& copy = fill.copies[blockIdx.y];
+  if (copy.word_bytes == sizeof(uint4))
+    copy_words<uint4>(copy);
+  else if (copy.word_bytes == sizeof(uint32_t))
+    copy_words<uint32_t>(copy);
+  else
+    copy_words<uint8_t>(copy);
+}
+
+__device__ void set_records(const PoolTables& tables, const LinkPatch::Record* records,
+                            uint32_t count) {
+  for (uint32_t i = first_index(); i < count; i += stride()) {
+    const LinkPatch::Record r = records[i];
+    tables.records[r.record].children = r.children;
+    tables.opens[r.record] = r.opens;
+  }
+}
+
+__global__ void __launch_bounds__(kThreads) pool_cut(PoolTables tables, PoolPatch patch) {
+  set_records(tables, patch.cut, patch.cut_count);
+  for (uint32_t i = first_index(); i < patch.unlinked_count; i += stride())
+    tables.subtrees[patch.unlinked[i]].entry = kNotLinked;
+}
+
+__global__ void __launch_bounds__(kThreads) pool_tie(PoolTables tables, PoolPatch patch) {
+  set_records(tables, patch.tied, patch.tied_count);
+  for (uint32_t i = first_index(); i < patch.linked_count; i += stride())
+    tables.subtrees[patch.linked_subtrees[i]] = patch.linked[i];
+  for (uint32_t i = first_index(); i < patch.parent_count; i += stride()) {
+    const LinkPatch::Parent p = patch.parents[i];
+    tables.parents[p.node] = p.parent;
+  }
+}
+
+__global__ void __launch_bounds__(kThreads)
+    pool_unlink_all(SearchSubtree* subtrees, uint32_t count) {
+  for (uint32_t i = first_index(); i < count; i += stride()) subtrees[i] = kUnlinkedSubtree;
+}
+
+}  // namespace
+
+void launch_fill(const PoolFill& fill, cudaStream_t stream) {
+  uint32_t most = 0;
+  for (const PoolCopy& copy : fill.copies) most = std::max(most, copy.words);
+  pool_fill<<<dim3(blocks_for(most), kFilledArrays), kThreads, 0, stream>>>(fill);
+  check(cudaGetLastError(), "pool_fill");
+}
+
+void launch_patch(const PoolTables& tables, const PoolPatch& patch, cudaStream_t stream) {
+  if (const uint32_t most = std::max(patch.cut_count, patch.unlinked_count); most != 0) {
+    pool_cut<<<blocks_for(most), kThreads, 0, stream>>>(tables, patch);
+    check(cudaGetLastError(), "pool_cut");
+  }
+  if (const uint32_t most = std::max({patch.tied_count, patch.linked_count, patch.parent_count});
+      most != 0) {
+    pool_tie<<<blocks_for(most), kThreads, 0, stream>>>(tables, patch);
+    check(cudaGetLastError(), "pool_tie");
+  }
+}
+
+void launch_unlink_all(SearchSubtree* subtrees, uint32_t count, cudaStream_t stream) {
+  pool_unlink_all<<<blocks_for(count), kThreads, 0, stream>>>(subtrees, count);
+  check(cudaGetLastError(), "pool_unlink_all");
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,70 @@
+#include "cuda/stream/pool_layout.h"
+
+#include "runtime/frame/scene_gaussians.h"
+
+namespace voyager::cuda {
+namespace {
+
+constexpr size_t kAlign = 256;
+
+size_t aligned(size_t bytes) {
+  return (bytes + kAlign - 1) / kAlign * kAlign;
+}
+
+bool by_record(uint32_t array) {
+  return array == kRecords || array == kOpens;
+}
+
+}  // namespace
+
+ShForm sh_form(const Scene& scene) {
+  if (is_coded(scene)) return ShForm::coded;
+  return scene.largest_sh <= kMaxHalfCoefficient ? ShForm::half : ShForm::single;
+}
+
+PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots) {
+  const ShForm form = sh_form(scene);
+  const bool coded = form == ShForm::coded;
+  unit_ = {sizeof(float4),
+           shape_bytes(form),
+           coefficient_bytes(scene.sh_degree, form),
+           scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0,
+           coded ? 0 : sizeof(float),
+           sizeof(uint32_t),
+           sizeof(uint32_t),
+           sizeof(uint32_t),
+           coded ? 0 : sizeof(uint8_t),
+           sizeof(SearchRecord),
+           coded ? sizeof(ShStepSizes) : 0,
+           sizeof(SubtreeSpan),
+           sizeof(SearchSubtree),
+           sizeof(SearchChunk)};
+  fixed_bytes_ = {};
+  fixed_bytes_[kSubtrees] = scene.search.subtree_count() * unit_[kSubtrees];
+  fixed_bytes_[kChunks] = scene.search.chunks.size() * unit_[kChunks];
+  for (uint32_t a = 0; a < kPoolArrays; ++a) {
+    const size_t places = a == kSubtrees || a == kChunks ? 0
+                          : a == kStepSizes              ? 1
+                          : by_record(a)                 ? shape.records
+                                                         : shape.nodes;
+    slot_bytes_[a] = places * unit_[a];
+  }
+  set_slots(slots);
+}
+
+void PoolLayout::set_slots(uint32_t slots) {
+  begin_[0] = 0;
+  for (uint32_t a = 0; a < kPoolArrays; ++a)
+    begin_[a + 1] = begin_[a] + aligned(slots * slot_bytes_[a] + fixed_bytes_[a]);
+}
+
+PoolBytes PoolLayout::pool_bytes() const {
+  PoolBytes bytes{0, kPoolArrays * kAlign};
+  for (uint32_t a = 0; a < kPoolArrays; ++a) {
+    bytes.slot += slot_bytes_[a];
+    bytes.fixed += fixed_bytes_[a];
+  }
+  return bytes;
+}
+
+}  // namespace voyager::cuda

@@ -1,0 +1,58 @@
+#pragma once
+// Where a pool's arrays lie in its one allocation: as DeviceScene and DeviceTree have them,
+// but by address, slot by slot.
+#include <array>
+#include <cstddef>
+
+#include "cuda/scene/gaussian_view.h"
+#include "runtime/frame/backend.h"
+
+namespace voyager::cuda {
+
+enum PoolArray : uint32_t {
+  // By node, then by record: what a chunk brings.
+  kHulls,
+  kShapes,
+  kCoefficients,
+  kLeaves,
+  kOpacities,
+  kParents,
+  kChildCounts,
+  kNodeIds,
+  kNodeCodes,
+  kRecords,
+  kStepSizes,  // one a slot
+  kFilledArrays,
+  // What links chunks: by record, and two of the whole tree.
+  kOpens = kFilledArrays,
+  kSubtrees,
+  kChunks,
+  kPoolArrays
+};
+
+// Of the coefficients of a streamed scene, as a resident one decides it.
+ShForm sh_form(const Scene& scene);
+
+class PoolLayout {
+ public:
+  PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots);
+  void set_slots(uint32_t slots);
+
+  // Bytes of an element.
+  size_t unit(PoolArray array) const { return unit_[array]; }
+  // Bytes that a slot takes of it; 0 of what is the whole tree's.
+  size_t slot_bytes(PoolArray array) const { return slot_bytes_[array]; }
+  // From the allocation's start; multiples of 256.
+  size_t begin(PoolArray array) const { return begin_[array]; }
+  size_t bytes() const { return begin_[kPoolArrays]; }
+  // Of the arrays that a chunk brings, which come first.
+  size_t filled_bytes() const { return begin_[kFilledArrays]; }
+  // Together at least bytes(), whatever the slots.
+  PoolBytes pool_bytes() const;
+
+ private:
+  std::array<size_t, kPoolArrays> unit_, slot_bytes_, fixed_bytes_;
+  std::array<size_t, kPoolArrays + 1> begin_;
+};
+
+}  // namespace voyager::cuda

@@ -1,0 +1,35 @@
+#pragma once
+// What linking has changed in a streamed scene, on its way to one view's search.
+#include <optional>
+
+#include "cuda/device/mapped_memory.h"
+#include "cuda/device/stream.h"
+#include "cuda/search/search_launch.h"
+#include "runtime/stream/scene_stream.h"
+
+namespace voyager::cuda {
+
+class StreamChanges {
+ public:
+  StreamChanges();
+
+  // Since the last call, under SceneStream::hold(). None where that is not known, is too much, or
+  // frames that were told before have not ended: the search then starts from nothing. The device
+  // reads it until it has passed what read_by() says.
+  std::optional<Relinked> follow(const SceneStream& stream);
+  void read_by(cudaStream_t stream) const { read_[next_].record(stream); }
+
+ private:
+  std::optional<Relinked> copy();
+
+  static constexpr size_t kPieces = 4;
+  static constexpr size_t kSubtrees = size_t{1} << 14;  // of a piece
+
+  uint64_t version_ = 0;
+  std::vector<std::shared_ptr<const StreamChange>> changes_;
+  MappedMemory memory_;
+  Event read_[kPieces];
+  size_t next_ = 0;
+};
+
+}  // namespace voyager::cuda
