@@ -7,7 +7,7 @@
 namespace voyager::tools {
 namespace {
 
-// How many letters must be put in, taken out or changed.
+// The edit distance: how many letters must be inserted, removed or replaced.
 size_t distance(const std::string& a, const std::string& b) {
   std::vector<size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), size_t{0});
@@ -37,7 +37,8 @@ std::string suggestion(const std::string& found, const std::vector<std::string>&
   return meant.empty() ? "" : ", did you mean " + meant + "?";
 }
 
-// What no option and no command took: a wrong command, else an option's name rather than a value.
+// The argument that no option and no command has consumed, "" if there is none. If there are
+// several: a wrong command, else the first that looks like an option, else the first.
 std::string unexpected(const CLI::App& app) {
   const std::vector<std::string> rest = app.remaining(true);
   if (app.get_subcommands().empty() && !rest.empty() && !rest.front().starts_with('-'))
@@ -47,7 +48,8 @@ std::string unexpected(const CLI::App& app) {
   return option != rest.end() ? *option : rest.empty() ? "" : rest.front();
 }
 
-// "; scene is a.voy, -o is b.png": -output FILE, say, is -o with the rest of the word.
+// "; scene is a.voy, -o is utput": what positional and one-letter options have consumed. It shows a
+// user who typed -output that this was read as -o with the value "utput".
 std::string taken(const CLI::App& command) {
   std::string text;
   for (const CLI::Option* option : command.get_options())
@@ -74,12 +76,13 @@ std::string refuse_unexpected(const CLI::App& command, const std::string& found)
          (meant.empty() ? ", expected one of " + CLI::detail::join(names, ", ") : meant);
 }
 
-// CLI11's messages begin with the name.
+// CLI11's messages begin with the option's name.
 std::string option_in(const std::string& message) {
   return message.substr(0, message.find_first_of(": "));
 }
 
-// "-o FILE: image to write, a .png": its description's first sentence.
+// "-o FILE: image to write, a .png": an option's name, type, and the first sentence of its
+// description.
 std::string expected_by(const CLI::App& command, const std::string& name) {
   const CLI::Option* option = command.get_option_no_throw(name);
   if (option == nullptr) return "one";
@@ -89,7 +92,7 @@ std::string expected_by(const CLI::App& command, const std::string& name) {
   return option->nonpositional() ? name + " " + option->get_type_name() + ": " + text : text;
 }
 
-// "A excludes B", "A requires B": what follows the verb.
+// The B of CLI11's "A excludes B" and "A requires B".
 std::string other_option(const std::string& message) {
   return message.substr(message.rfind(' ') + 1);
 }
@@ -100,7 +103,8 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& error) {
   const std::string name = option_in(what), found = unexpected(app);
   const bool extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   const bool required = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
-  // A name that is mistyped is why another is missing.
+  // If an option's name is mistyped, the option that was meant is missing. The mistyped name is the
+  // better message.
   if ((extra && !found.empty()) || (required && found.starts_with('-')))
     return refuse_unexpected(command, found);
   if (required) return name + ": found none, expected " + expected_by(command, name);
@@ -111,7 +115,7 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     if (what.find("received") != std::string::npos)
       return name + ": found it more than once, expected it once";
-    if (what.find("override") != std::string::npos)  // which names flags without their dashes
+    if (what.find("override") != std::string::npos)  // this message names flags without dashes
       return "--" + name + ": found a value, expected none";
     return name + ": found no value, expected " + expected_by(command, name);
   }

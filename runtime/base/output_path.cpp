@@ -24,15 +24,16 @@ std::string folder_of(const std::string& path) {
 
 }  // namespace
 
-// host/common/files.cpp and samples/c_minimal, which use the C ABI alone, do the same.
+// host/common/files.cpp and samples/c_minimal resolve links in the same way. They use the C ABI
+// alone, so they cannot call this.
 std::string written_path(const std::string& path) {
-  constexpr int kMostLinks = 40;  // as the system has it
+  constexpr int kMostLinks = 40;  // Linux follows as many
   fs::path target = path;
   for (int links = 0; links < kMostLinks; ++links) {
     std::error_code no_link;
     const fs::path next = fs::read_symlink(target, no_link);
     if (no_link) return target.string();
-    target = target.parent_path() / next;  // which is `next` alone where that is absolute
+    target = target.parent_path() / next;  // equals `next` if that is absolute
   }
   throw Error(ErrorCode::io, path + ": found symbolic links in a circle, expected a file");
 }

@@ -6,26 +6,25 @@
 
 namespace voyager {
 
-// What symbolic links at `path` lead to, whether that is there or not: a file is written through
-// them. Throws Error(io) for links in a circle.
+// The path to which symbolic links at `path` lead, whether a file exists there or not. Files are
+// written to that path, so that the links stay. Throws Error(io) for links in a circle.
 std::string written_path(const std::string& path);
 
-// Throws Error(io) where something is there that no file may replace: a folder, a device, a named
-// pipe, a file that must not be written to.
+// Throws Error(io) if `path` is something that no file may replace: a folder, a device, a named
+// pipe, or a file without write permission.
 void require_replaceable(const std::string& path);
 
-// What a file at `path`, or files in a folder that ends in /, will take at least, and its name in
-// messages.
+// Disk space that files will need.
 struct Room {
-  std::string path;
-  uint64_t bytes = 0;
-  std::string what;
+  std::string path;    // a file, or a folder that ends in /
+  uint64_t bytes = 0;  // at least
+  std::string what;    // name in messages
 };
 
-// Of files that are there at the same time: throws Error(io) where a device has not as many bytes
-// free as all files on it take together.
+// `files` exist at the same time. Throws Error(io) if a device has fewer bytes free than all files
+// on it need together.
 void require_room(const std::vector<Room>& files);
-// Of one file.
+// The same for one file.
 void require_room(const std::string& path, uint64_t bytes);
 
 }  // namespace voyager

@@ -4,8 +4,8 @@
 
 namespace voyager {
 
-// Consecutive subtrees of a baked tree as the codec takes them. first_subtree is what
-// the chunk shall say of the first; its leaves' sources are their indices in the cloud.
+// A chunk of consecutive subtrees of a baked tree, as chunk_codec.h takes it. `first_subtree` is
+// the number of the first in the file. A leaf's source_index is its index in `baked.leaves`.
 Chunk gather_chunk(const BakedScene& baked, std::span<const Subtree> subtrees,
                    uint32_t first_subtree);
 

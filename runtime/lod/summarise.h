@@ -1,4 +1,5 @@
 #pragma once
+// Boxes, extents and merged Gaussians of a tree's nodes.
 #include "runtime/lod/baked_scene.h"
 #include "runtime/lod/merge.h"
 
@@ -11,17 +12,17 @@ struct Box {
 // mean ± 3·max(s), each end rounded once to binary32.
 Box leaf_box(const Gaussian& gaussian);
 
-// The Gaussian of a node as it is drawn, with its SH.
+// A node's Gaussian and SH, with the merge weight of METHOD §2.
 MergeInput node_gaussian(uint32_t node, const BakedScene& baked);
 
-// The same as a parent with that footprint (metres², no larger than the node's) is merged from it:
-// with what it weighs, and what its own footprint has more in its scales, so that nothing of it is
-// lost.
+// A node's Gaussian as an input of its parent's merge. `footprint` is the parent's, in metres²: if
+// the node's footprint is larger, the difference is added to the squares of the node's scales. In a
+// clustered tree the weight is the node's exposure weight.
 MergeInput merge_input(uint32_t node, double footprint, const BakedScene& baked);
 
-// Fills a node's box and extent, and an interior node's Gaussian, from its
-// children, which are done. Of a clustered tree also its exposure. Nodes of one level may be done
-// at once.
+// Fills a node's box and extent. For an interior node it also merges the Gaussian from the node's
+// children, which must be summarised before. In a clustered tree it fills the exposure too. Nodes
+// of one level may be summarised concurrently.
 void summarise(uint32_t node, BakedScene& baked);
 
 }  // namespace voyager

@@ -2,7 +2,8 @@
 // The bytes of HierarchicalGS's .hier, little-endian (docs/voy-format.md, "The .hier export"):
 //   int32 P; arrays of P positions (3), rotations (w, x, y, z), log scales (3), linear opacities
 //   and SH ([16][3]); int32 N; N nodes; N boxes.
-// Compressed files say -P: all but positions and whole numbers are binary16, and nodes shorter.
+// Compressed files have -P in place of P. In these, all but positions and whole numbers is
+// binary16, and a node is a HalfHierNode.
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -14,13 +15,13 @@ namespace voyager {
 static_assert(std::endian::native == std::endian::little);
 
 inline constexpr size_t kHierShFloats = 48;  // [16][3]: always degree 3
-// Of a Gaussian: position, rotation, log scale, opacity, SH.
+// Floats of a Gaussian: position, rotation, log scale, opacity, SH.
 inline constexpr size_t kHierFloats = 3 + 4 + 3 + 1 + kHierShFloats;
 
 struct HierNode {
   int32_t depth;   // 0 for a leaf
   int32_t parent;  // -1 for the root
-  int32_t start;   // its first Gaussian: count_leafs of them, then count_merged
+  int32_t start;   // its first Gaussian; count_leafs leaves, then count_merged merged ones
   int32_t count_leafs, count_merged;
   int32_t start_children, count_children;
 };
@@ -40,9 +41,9 @@ struct HierBox {
 };
 static_assert(sizeof(HierBox) == 32);
 
-inline constexpr size_t kHalfHierBoxBytes = 16;  // the same in binary16
+inline constexpr size_t kHalfHierBoxBytes = 16;  // a HierBox in binary16
 
-// Where each array starts, for so many Gaussians and nodes.
+// Where each array starts in a file, in bytes.
 struct HierLayout {
   HierLayout(uint64_t gaussians, uint64_t node_rows, bool in_halves = false)
       : value(in_halves ? 2 : 4),

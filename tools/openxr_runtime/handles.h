@@ -1,6 +1,6 @@
 #pragma once
-// What the application holds handles of. A handle is never used twice, so that a stale one is
-// told. Destroying an object destroys its children first. Under the runtime's lock.
+// The objects to which the application holds handles. A handle is never used twice, so that a
+// handle of a destroyed object is recognised. Call everything with the runtime's lock held.
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -29,6 +29,7 @@ class Handles {
     return handle_of<Handle>(next_ - 0x10);
   }
 
+  // The live object of type T with this handle. `name` stands in the refusal if there is none.
   template <class T, class Handle>
   T& find(Handle handle, const char* name) const {
     const auto found = objects_.find(number_of(handle));
@@ -39,8 +40,10 @@ class Handles {
     return *object;
   }
 
+  // Destroys the object's children first, the youngest of them at the start. Does nothing for a
+  // handle without an object.
   void destroy(uint64_t handle);
-  size_t children(const Object& object) const;
+  size_t children(const Object& object) const;  // live ones, without theirs
 
   template <class T, class Visit>
   void each(const Visit& visit) const {

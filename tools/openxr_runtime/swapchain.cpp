@@ -6,8 +6,8 @@ namespace test_runtime {
 namespace {
 
 VkImageUsageFlags usage_of(const XrSwapchainCreateInfo& info, const Format& format) {
-  // No more than was asked for, but for what the runtime itself does: it promises an attachment's
-  // layout, and reads back what is captured.
+  // Only the usages that were asked for, and two that the runtime itself needs: attachment, because
+  // it hands out images in that layout, and transfer source, because it captures pictures.
   VkImageUsageFlags usage = format.depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                          : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   if (!run().script.output.empty()) usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
@@ -122,13 +122,13 @@ void Swapchain::initialise(SwapchainImage& image) const {
 }
 
 uint32_t Swapchain::next_image() {
-  std::vector<uint32_t> free;  // in the order of turns
+  std::vector<uint32_t> free;  // in the order in which they would be handed out
   const auto count = static_cast<uint32_t>(images.size());
   for (uint32_t i = 0; i < count; ++i) {
     const auto turn = static_cast<uint32_t>((acquisitions + i) % count);
     const uint32_t index =
         run().script.image_order == ImageOrder::descending ? count - 1 - turn : turn;
-    // The image that is displayed is kept while there is another.
+    // The displayed image comes last, below: it is handed out only if no other image is free.
     if (!images[index].acquired && (count == 1 || index != last_released)) free.push_back(index);
   }
   if (free.empty() && last_released >= 0 && !images[static_cast<size_t>(last_released)].acquired)

@@ -13,7 +13,7 @@ namespace {
 
 struct Box {
   std::array<double, 3> least;
-  double side;  // the longest
+  double side;  // length of the longest
 };
 
 Box box_of(std::span<const float> positions) {
@@ -28,7 +28,8 @@ Box box_of(std::span<const float> positions) {
   return box;
 }
 
-// Cells are cubes: a chunk is then as small as can be in every direction.
+// `side` is the same for all axes, so cells are cubes. A chunk of a .compressed.ply is then short
+// along every axis, which keeps its position errors small.
 uint32_t cell(double offset, double side) {
   constexpr double kLast = (1 << kMortonBits) - 1;
   return side > 0 ? static_cast<uint32_t>(std::fmin(std::fmax(offset / side, 0.0), 1.0) * kLast)

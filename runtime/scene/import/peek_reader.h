@@ -1,5 +1,5 @@
 #pragma once
-// A stream whose next bytes can be looked at before they are taken.
+// A stream whose next bytes can be read without consuming them.
 #include <vector>
 
 #include "runtime/base/file.h"
@@ -11,7 +11,7 @@ class PeekReader final : public ByteReader {
   // `inner` must outlive the reader.
   explicit PeekReader(ByteReader& inner) : inner_(inner) {}
 
-  // The next `count` bytes, fewer at the end; valid until the next call.
+  // The next `count` bytes, or fewer at the end of the stream. They stay valid until the next call.
   std::span<const std::byte> peek(size_t count);
 
   const std::string& name() const override { return inner_.name(); }
@@ -25,7 +25,7 @@ class PeekReader final : public ByteReader {
 
   ByteReader& inner_;
   std::vector<std::byte> buffer_;
-  size_t taken_ = 0;  // of buffer_, already delivered
+  size_t taken_ = 0;  // bytes of buffer_ that read() or skip() has consumed
 };
 
 }  // namespace voyager
