@@ -9,7 +9,6 @@ namespace voyager::cuda {
 
 inline constexpr int kPartWidth = 8;               // pixels of a warp's part: a lane a column, and
 inline constexpr int kLaneRows = 32 / kPartWidth;  // rows that lie so far apart
-inline constexpr int kRows = 2;                    // pixels a lane, of most lists
 
 // What a kernel is compiled for.
 template <Exponential E, bool kFilterOn, bool kSiblingsIn, bool kDepthOut, bool kCounting,
