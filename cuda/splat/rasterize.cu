@@ -15,7 +15,7 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kAll = 0xffffffffu;
-constexpr int kWarps = 4;
+constexpr int kWarps = 4;  // a tile's, or those of one of its halves
 constexpr unsigned kThreads = 32 * kWarps;
 
 // The splats that a warp blends, in the order of the list.

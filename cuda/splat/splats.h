@@ -68,10 +68,11 @@ inline constexpr uint32_t kShortList = 511, kMediumList = 2047;
 
 // Thread blocks of rasterize.cu that are resident on a multiprocessor: a block has a tile.
 inline constexpr unsigned kRasterBlocks = 8;
-// Twice as many warps blend tiles whose lists are so much longer than what each resident block has
-// on average that they would end last; bench/NOTES.md has other shares. No more tiles than that.
+// Twice as many warps blend a tile whose list is longer than this share of what a resident block
+// has of all pairs on average: it would end last. bench/NOTES.md has other shares.
 inline constexpr float kHalvedShare = 0.5f;
-inline constexpr uint32_t kLeastHalved = 64, kMaxHalvedLists = 1024;
+inline constexpr uint32_t kLeastHalved = 64;       // a list's length
+inline constexpr uint32_t kMaxHalvedLists = 1024;  // in a frame
 
 // A splat in one row of tiles.
 struct alignas(16) TileStrip {
