@@ -42,11 +42,46 @@ def cells(row):
             f"{255 * same['max_abs']:.2f}", "–" if all_leaves["popping"] is None else f"{all_leaves['popping']:.2f}"]
 
 
-def print_report(folder):
+def read_report(folder):
     with open(os.path.join(folder, "report.json"), encoding="utf-8") as file:
-        report = json.load(file)
+        return json.load(file)
+
+
+def name_of(folder):
+    return os.path.basename(os.path.normpath(folder))
+
+
+def only(rows, wanted):
+    """The one row that is wanted; None where a report has none."""
+    return next((row for row in rows if wanted(row)), None)
+
+
+def frame_ms(row):
+    return "–" if row is None else f"{row['ms']['frame']['median']:.3f} / {row['ms']['frame']['p99']:.3f}"
+
+
+def truth_db(row):
+    return "–" if row is None else decibels(row["total_error"]["psnr_db"])
+
+
+def print_first_page(folders):
+    """What a reader wants first: of each report a frame's time, its quality, and a leaf's bytes."""
+    print("| | ms a frame, median / p99: default | every leaf | every leaf as 3DGS splats | PSNR to the truth: default | every leaf | bytes a leaf, file |")
+    print("|---|---|---|---|---|---|---|")
+    for folder in folders:
+        report = read_report(folder)
+        rows = report["rows"]
+        default = only(rows, lambda row: row["group"] == "default")
+        leaves = default if default["lod"] == "off" else only(rows, lambda row: row["group"] == "tau" and row["lod"] == "off")
+        splat = only(rows, lambda row: row["group"] == "splat" and row["lod"] == "off")
+        size = "–" if leaves is None else f"{report['provenance']['scene']['bytes'] / leaves['cut']:.0f}"
+        print(f"| {name_of(folder)} | {frame_ms(default)} | {frame_ms(leaves)} | {frame_ms(splat)} | {truth_db(default)} | {truth_db(leaves)} | {size} |")
+
+
+def print_report(folder):
+    report = read_report(folder)
     rows = report["rows"]
-    print(f"\n### {os.path.basename(os.path.normpath(folder))}\n\n{report['method']} {report['recommendation']}\n")
+    print(f"\n### {name_of(folder)}\n\n{report['method']} {report['recommendation']}\n")
     print(f"| {' | '.join(HEADS)} |\n|{'---|' * len(HEADS)}")
     groups = [("default", "tau")] + [(group,) for group in ("select", "exp", "filter", "splat", "sh", "quality", "search", "time budget")]
     for group in groups:
@@ -54,5 +89,6 @@ def print_report(folder):
             print(f"| {' | '.join(cells(row))} |")
 
 
+print_first_page(sys.argv[1:])
 for each in sys.argv[1:]:
     print_report(each)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What each kernel of a frame takes on a CUDA device, by Nsight Compute: time, bytes of device
-# memory and the time that these alone would take, how many warps are resident, and how long
-# multiprocessors idle while the last blocks end.
+# memory and the time that these alone would take, bytes through the L2 cache, instructions, how
+# many warps are resident, and how long multiprocessors idle while the last blocks end; and what
+# a Jetson AGX Orin would take by its rates.
 #   scripts/profile.sh SCENE.voy CAMERAS.json [options of `voyager bench`]
 # Each launch runs several times and much slower than alone: a path of a few frames is enough.
 # VOYAGER names another command line than this build's. The program needs the right to read the
@@ -10,7 +11,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 voyager=${VOYAGER:-$here/../build/release/bin/voyager}
 if (($# < 2)); then
-  sed -n '2,8s/^# \?//p' "$0"
+  sed -n '2,9s/^# \?//p' "$0"
   exit 2
 fi
 command -v ncu >/dev/null || {
@@ -20,7 +21,7 @@ command -v ncu >/dev/null || {
 rows=$(mktemp)
 trap 'rm -f "$rows" "$rows.json"' EXIT
 metrics=gpu__time_duration.sum,dram__bytes.sum,dram__bytes.sum.per_second,\
-dram__bytes.sum.peak_sustained,dram__cycles_elapsed.avg.per_second,\
+dram__bytes.sum.peak_sustained,dram__cycles_elapsed.avg.per_second,lts__t_bytes.sum,smsp__inst_executed.sum,\
 sm__warps_active.avg.pct_of_peak_sustained_active,sm__cycles_active.avg,sm__cycles_elapsed.max
 ncu --csv --page raw --print-units base --nvtx --metrics "$metrics" --nvtx-include 'voyager@search/' \
   --nvtx-include 'voyager@project/' --nvtx-include 'voyager@bin/' --nvtx-include 'voyager@sort/' \

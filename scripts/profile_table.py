@@ -13,6 +13,13 @@ CLOCK = "dram__cycles_elapsed.avg.per_second"
 WARPS = "sm__warps_active.avg.pct_of_peak_sustained_active"
 ACTIVE = "sm__cycles_active.avg"
 ELAPSED = "sm__cycles_elapsed.max"
+L2_BYTES = "lts__t_bytes.sum"
+INSTRUCTIONS = "smsp__inst_executed.sum"  # of warps
+
+# A Jetson AGX Orin: bytes a second of its memory; instructions of warps a second, 16
+# multiprocessors of four schedulers at 1.3 GHz.
+ORIN_BYTES = 204.8e9
+ORIN_INSTRUCTIONS = 16 * 4 * 1.3e9
 
 
 def number(row, name):
@@ -43,6 +50,11 @@ def median(rows, value):
     return statistics.median(found) if found else None
 
 
+def millions(rows, name):
+    found = median(rows, lambda row: number(row, name))
+    return None if found is None else found / 1e6
+
+
 def floor_us(row):
     """Microseconds that the bytes alone take at the memory's peak rate."""
     moved, per_cycle, clock = (number(row, name) for name in (BYTES, PER_CYCLE, CLOCK))
@@ -54,6 +66,25 @@ def floor_us(row):
 def idle_share(row):
     active, elapsed = number(row, ACTIVE), number(row, ELAPSED)
     return None if active is None or not elapsed else 100 * (1 - active / elapsed)
+
+
+def orin_us(row, of_bytes):
+    """What bytes or instructions, whichever takes longer, would take on an Orin."""
+    moved, instructions = number(row, of_bytes), number(row, INSTRUCTIONS)
+    if moved is None or instructions is None:
+        return None
+    return 1e6 * max(moved / ORIN_BYTES, instructions / ORIN_INSTRUCTIONS)
+
+
+def print_orin(rows):
+    """The sum over kernels. Of its bytes, an Orin's smaller cache lets more through than this one's."""
+    frames = sum(short_name(row["Kernel Name"]).startswith("rasterize_tiles") for row in rows)
+    sums = [[orin_us(row, name) for row in rows] for name in (BYTES, L2_BYTES)]
+    if not frames or any(us is None for us in sums[0] + sums[1]):
+        return
+    least, most = (sum(of) / frames / 1e3 for of in sums)
+    print("on an AGX Orin, by its rates: %.2f ms a frame if its cache held as much as this one's, "
+          "%.2f if it held nothing (%d frames)" % (least, most, frames))
 
 
 def text(value, form):
@@ -68,16 +99,19 @@ def main():
     for row in rows:
         kernels.setdefault(short_name(row["Kernel Name"]), []).append(row)
     print("median of each kernel's launches; floor: its bytes at the memory's peak rate")
-    print("%-18s %8s %10s %10s %10s %8s %8s" % ("kernel", "launches", "us", "MB", "floor us", "warps %", "idle %"))
+    print("%-20s %8s %9s %9s %9s %9s %9s %8s %8s" % (
+        "kernel", "launches", "us", "MB", "floor us", "L2 MB", "Minstr", "warps %", "idle %"))
     for name, of in kernels.items():
-        moved = median(of, lambda row: number(row, BYTES))
-        print("%-18s %8d %10s %10s %10s %8s %8s" % (
+        print("%-20s %8d %9s %9s %9s %9s %9s %8s %8s" % (
             name, len(of),
             text(median(of, lambda row: number(row, TIME) / 1e3), ".1f"),
-            text(None if moved is None else moved / 1e6, ".2f"),
+            text(millions(of, BYTES), ".2f"),
             text(median(of, floor_us), ".1f"),
+            text(millions(of, L2_BYTES), ".2f"),
+            text(millions(of, INSTRUCTIONS), ".2f"),
             text(median(of, lambda row: number(row, WARPS)), ".0f"),
             text(median(of, idle_share), ".0f")))
+    print_orin(rows)
 
 
 main()

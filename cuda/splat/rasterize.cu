@@ -3,6 +3,7 @@
 // each, drops those that miss its part, and blends the others one after the other. Warps wait for
 // nobody.
 #include <algorithm>
+#include <array>
 
 #include "cuda/device/grid.h"
 #include "cuda/splat/occlusion.cuh"
@@ -338,33 +339,57 @@ void launch_open(const SplatFrame& f, const RasterParams& params) {
       <<<f.multiprocessors * resident, kThreads, lut_bytes<M>(params), f.stream>>>(params);
 }
 
+// What a frame asks of its kernel, beside an exponential and the filter.
+enum Needs : size_t {
+  kColour,
+  kColourDepth,
+  kSiblings,
+  kSiblingsDepth,
+  kLimits,  // those kernels find depth, wanted or not
+  kSiblingsLimits,
+  kOpenTiles,
+  kCounted,
+  kNeedsCount
+};
+using Launch = void(const SplatFrame&, const RasterParams&);
+constexpr size_t kExponentials = static_cast<size_t>(Exponential::half2) + 1;
+using LaunchTable = std::array<std::array<std::array<Launch*, kNeedsCount>, 2>, kExponentials>;
+
+// By Needs. What a kernel can do beyond what a frame asks for changes nothing of the frame.
 template <Exponential E, bool kFilter>
-void launch_for(const SplatFrame& f, bool siblings, const RasterParams& params) {
-  // What its kernel can do beyond what the frame asks for changes nothing of it.
-  if (f.splats.open_parts != nullptr)
-    return launch_open<Mode<E, kFilter, true, true, false, true>>(f, params);
+constexpr std::array<Launch*, kNeedsCount> launches() {
+  //                      siblings, depth, counts, limits
+  return {launch<Mode<E, kFilter, false, false, false, false>>,
+          launch<Mode<E, kFilter, false, true, false, false>>,
+          launch<Mode<E, kFilter, true, false, false, false>>,
+          launch<Mode<E, kFilter, true, true, false, false>>,
+          launch<Mode<E, kFilter, false, true, false, true>>,
+          launch<Mode<E, kFilter, true, true, false, true>>,
+          launch_open<Mode<E, kFilter, true, true, false, true>>,
+          launch<Mode<E, kFilter, true, true, true, false>>};
+}
+
+template <Exponential E>
+constexpr std::array<std::array<Launch*, kNeedsCount>, 2> launches_of() {
+  return {launches<E, false>(), launches<E, true>()};
+}
+
+// Every kernel of this file: [exponential][filter][needs].
+constexpr LaunchTable kLaunches = {launches_of<Exponential::exact>(),
+                                   launches_of<Exponential::ex2>(), launches_of<Exponential::lut>(),
+                                   launches_of<Exponential::half2>()};
+
+Needs needs_of(const SplatFrame& f, const RasterChoices& choices, const RasterParams& params) {
+  if (choices.count_pixels) return kCounted;
+  if (f.splats.open_parts != nullptr) return kOpenTiles;
   bool depth = false, limits = false;
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye) {
     depth = depth || params.eyes[eye].target.has_depth();
     limits = limits || params.eyes[eye].limits.values != nullptr;
   }
-  if (limits) {  // those kernels find depth, wanted or not
-    if (siblings) return launch<Mode<E, kFilter, true, true, false, true>>(f, params);
-    return launch<Mode<E, kFilter, false, true, false, true>>(f, params);
-  }
-  if (siblings && depth) return launch<Mode<E, kFilter, true, true, false>>(f, params);
-  if (siblings) return launch<Mode<E, kFilter, true, false, false>>(f, params);
-  if (depth) return launch<Mode<E, kFilter, false, true, false>>(f, params);
-  launch<Mode<E, kFilter, false, false, false>>(f, params);
-}
-
-template <Exponential E>
-void launch_for(const SplatFrame& f, const RasterChoices& choices, const RasterParams& params) {
-  if (choices.count_pixels && choices.alpha_filter)
-    return launch<Mode<E, true, true, true, true>>(f, params);
-  if (choices.count_pixels) return launch<Mode<E, false, true, true, true>>(f, params);
-  if (choices.alpha_filter) return launch_for<E, true>(f, choices.siblings, params);
-  launch_for<E, false>(f, choices.siblings, params);
+  if (limits) return choices.siblings ? kSiblingsLimits : kLimits;
+  if (choices.siblings) return depth ? kSiblingsDepth : kSiblings;
+  return depth ? kColourDepth : kColour;
 }
 
 }  // namespace
@@ -373,20 +398,9 @@ void launch_rasterize(const SplatFrame& f, const RasterChoices& choices, const R
   const float base = is_base_2(choices.exponential) ? kLog2e : 1.0f;
   RasterParams params{f.splats, {}, choices.lut, choices.lut_size, choices.log_threshold * base};
   std::copy_n(eyes, f.splats.frame.eyes, params.eyes);
-  switch (choices.exponential) {
-    case Exponential::exact:
-      launch_for<Exponential::exact>(f, choices, params);
-      break;
-    case Exponential::ex2:
-      launch_for<Exponential::ex2>(f, choices, params);
-      break;
-    case Exponential::lut:
-      launch_for<Exponential::lut>(f, choices, params);
-      break;
-    case Exponential::half2:
-      launch_for<Exponential::half2>(f, choices, params);
-      break;
-  }
+  const auto& by_needs =
+      kLaunches[static_cast<size_t>(choices.exponential)][choices.alpha_filter ? 1 : 0];
+  by_needs[needs_of(f, choices, params)](f, params);
   check(cudaGetLastError(), "rasterize_tiles");
 }
 

@@ -1,0 +1,214 @@
+// A random flight through a streamed scene: what frames took, and which took longer than those
+// around them, with what they did.
+//   stream_flight SCENE CAMERAS.json MEGABYTES [FRAMES] [WxH] [TAU] [SEED] [FPS]
+// From a camera of the file towards the next one, drawn at random, at 1 to 15 m a second, with a
+// head that turns; now and then a jump. The same arguments fly the same way.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "tools/cameras.h"
+#include "voyager/voyager.hpp"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using voyager::Vec3d;
+using voyager::tools::Camera;
+
+constexpr size_t kAround = 50;        // frames on either side that a frame is compared with
+constexpr double kLate = 2;           // times their median
+constexpr size_t kJumpEvery = 1'000;  // frames
+constexpr size_t kListed = 40;
+
+class Flight {
+ public:
+  Flight(const std::vector<Camera>& cameras, uint64_t seed, double fps, unsigned width,
+         unsigned height)
+      : random_(seed), cameras_(cameras), step_(1 / fps), width_(width), height_(height) {
+    at_ = goal_ = place();
+  }
+
+  bool jumps(size_t frame) const { return frame % kJumpEvery == 0; }
+
+  Camera next(size_t frame) {
+    if (jumps(frame)) at_ = goal_ = place();
+    Vec3d way = goal_ - at_;
+    if (std::sqrt(dot(way, way)) < 1) {
+      goal_ = place();
+      speed_ = uniform(1, 15);
+      turn_ = uniform(-1.5, 1.5);
+      way = goal_ - at_;
+    }
+    const double left = std::sqrt(dot(way, way));
+    const double metres = std::min(left, speed_ * step_);
+    if (left > 0) at_ = at_ + (metres / left) * way;
+    yaw_ += turn_ * step_;
+    const double pitch = 0.3 * std::sin(0.7 * yaw_);
+    const Vec3d forward{std::cos(yaw_) * std::cos(pitch), std::sin(pitch),
+                        std::sin(yaw_) * std::cos(pitch)};
+    const Vec3d right{-std::sin(yaw_), 0, std::cos(yaw_)};
+    return voyager::tools::looking(at_, right, forward, width_, height_, 0.6 * width_);
+  }
+
+ private:
+  double uniform(double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random_);
+  }
+  Vec3d place() {
+    const size_t i = std::uniform_int_distribution<size_t>(0, cameras_.size() - 1)(random_);
+    const double* p = cameras_[i].pose.position;
+    return {p[0], p[1], p[2]};
+  }
+
+  std::mt19937_64 random_;
+  const std::vector<Camera>& cameras_;
+  double step_, speed_ = 1.4, yaw_ = 0, turn_ = 0.3;
+  unsigned width_, height_;
+  Vec3d at_{}, goal_{};
+};
+
+struct Taken {
+  double device, call;  // milliseconds
+  double stages[VOY_MAX_STAGES];
+  uint64_t entered, arrived;
+  size_t since_jump;
+};
+
+double quantile(std::vector<double> values, double q) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<size_t>(q * static_cast<double>(values.size() - 1))];
+}
+
+double median_around(const std::vector<Taken>& frames, size_t frame) {
+  std::vector<double> around;
+  for (size_t i = frame - std::min(frame, kAround); i < std::min(frames.size(), frame + kAround);
+       ++i)
+    around.push_back(frames[i].device);
+  return quantile(around, 0.5);
+}
+
+long resident_kilobytes() {
+  long found = 0;
+  if (FILE* status = std::fopen("/proc/self/status", "r")) {
+    char line[256];
+    while (std::fgets(line, sizeof line, status))
+      if (std::sscanf(line, "VmRSS: %ld", &found) == 1) break;
+    std::fclose(status);
+  }
+  return found;
+}
+
+void print(const std::vector<Taken>& frames) {
+  std::vector<double> device, call;
+  for (const Taken& frame : frames) device.push_back(frame.device), call.push_back(frame.call);
+  std::printf(
+      "frames %zu, device p50 %.3f p99 %.3f p99.9 %.3f max %.3f ms, call p50 %.3f p99 %.3f max "
+      "%.3f ms\n",
+      frames.size(), quantile(device, 0.5), quantile(device, 0.99), quantile(device, 0.999),
+      quantile(device, 1), quantile(call, 0.5), quantile(call, 0.99), quantile(call, 1));
+  size_t late = 0, after_jumps = 0;
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const double usual = median_around(frames, i);
+    if (frames[i].device <= kLate * usual) continue;
+    ++late;
+    after_jumps += frames[i].since_jump < 3;
+    if (late > kListed) continue;
+    std::printf(
+        "late: frame %zu, %zu after a jump, %.3f ms of %.3f around, entered %llu, chunks %llu,", i,
+        frames[i].since_jump, frames[i].device, usual,
+        static_cast<unsigned long long>(frames[i].entered),
+        static_cast<unsigned long long>(frames[i].arrived));
+    for (int s = 0; voyStageName(static_cast<VoyStage>(s)) != nullptr; ++s)
+      std::printf(" %s %.3f", voyStageName(static_cast<VoyStage>(s)), frames[i].stages[s]);
+    std::printf("\n");
+  }
+  std::printf("late frames %zu, of which within two frames after a jump %zu\n", late, after_jumps);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc < 4) {
+    std::fprintf(stderr,
+                 "stream_flight SCENE CAMERAS.json MEGABYTES [FRAMES] [WxH] [TAU] [SEED] [FPS]\n");
+    return 1;
+  }
+  const auto number = [&](int i, double otherwise) {
+    return argc > i ? std::atof(argv[i]) : otherwise;
+  };
+  const double megabytes = number(3, 0), tau = number(6, 3), fps = number(8, 60);
+  const auto count = static_cast<size_t>(number(4, 10'000));
+  unsigned width = 1920, height = 1080;
+  if (argc > 5) std::sscanf(argv[5], "%ux%u", &width, &height);
+  const std::vector<Camera> cameras = voyager::tools::read_cameras(argv[2]);
+  Flight flight(cameras, static_cast<uint64_t>(number(7, 1)), fps, width, height);
+
+  VoyDeviceDesc device_desc = VOY_DEVICE_DESC_INIT;
+  device_desc.deviceMemoryBudget = static_cast<uint64_t>(megabytes * 1e6);
+  const voy::Device device = voy::Device::create(device_desc);
+  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+  streaming.memoryBudget = device_desc.deviceMemoryBudget;
+  VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
+  scene_desc.next = &streaming;
+  scene_desc.path = argv[1];
+  const voy::Scene scene = device.open_scene(scene_desc);
+  VoyScene handle = scene.get();
+  VoyViewDesc view_desc = VOY_VIEW_DESC_INIT;
+  view_desc.instanceCount = 1;
+  view_desc.scenes = &handle;
+  view_desc.maxWidth = width;
+  view_desc.maxHeight = height;
+  view_desc.tau = tau;
+  voy::View view = device.create_view(view_desc);
+  std::vector<uint8_t> pixels(size_t{4} * width * height);
+  VoyTargetDesc target_desc = VOY_TARGET_DESC_INIT;
+  target_desc.width = width;
+  target_desc.height = height;
+  target_desc.color = pixels.data();
+  const voy::Target target = device.create_target(target_desc);
+
+  std::vector<Taken> frames;
+  uint64_t arrived = 0;
+  long early_kilobytes = 0;
+  size_t since_jump = 0;
+  auto next = Clock::now();
+  for (size_t i = 0; i < count; ++i) {
+    since_jump = flight.jumps(i) ? 0 : since_jump + 1;
+    const Camera camera = flight.next(i);
+    VoyFrameEye eye = VOY_FRAME_EYE_INIT;
+    eye.pose = camera.pose;
+    eye.frustum = camera.frustum();
+    eye.target = target.get();
+    VoyFrame frame = VOY_FRAME_INIT;
+    frame.eyeCount = 1;
+    frame.eyes = &eye;
+    const auto begun = Clock::now();
+    view.render(frame);
+    const std::chrono::duration<double, std::milli> call = Clock::now() - begun;
+    const VoyFrameStats stats = view.stats();
+    VoyStreamingStats streamed = VOY_STREAMING_STATS_INIT;
+    voyGetStreamingStats(handle, &streamed);
+    Taken taken{stats.millisecondsTotal,          call.count(), {}, stats.nodesEntered,
+                streamed.arrivedChunks - arrived, since_jump};
+    std::copy_n(stats.milliseconds, VOY_MAX_STAGES, taken.stages);
+    arrived = streamed.arrivedChunks;
+    frames.push_back(taken);
+    if (i == count / 10) early_kilobytes = resident_kilobytes();
+    next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps));
+    std::this_thread::sleep_until(next);
+  }
+  print(frames);
+  std::printf("host memory %.0f MB after a tenth, %.0f at the end\n",
+              static_cast<double>(early_kilobytes) / 1e3,
+              static_cast<double>(resident_kilobytes()) / 1e3);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "stream_flight: %s\n", error.what());
+  return 1;
+}
