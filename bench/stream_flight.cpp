@@ -74,7 +74,7 @@ class Flight {
 };
 
 struct Taken {
-  double device, call;  // milliseconds
+  double device, call;  // milliseconds; the device's without the copy to the host
   double stages[VOY_MAX_STAGES];
   uint64_t entered, arrived;
   size_t since_jump;
@@ -112,12 +112,14 @@ void print(const std::vector<Taken>& frames) {
       "%.3f ms\n",
       frames.size(), quantile(device, 0.5), quantile(device, 0.99), quantile(device, 0.999),
       quantile(device, 1), quantile(call, 0.5), quantile(call, 0.99), quantile(call, 1));
-  size_t late = 0, after_jumps = 0;
+  size_t late = 0, after_jumps = 0, with_chunks = 0;
   for (size_t i = 0; i < frames.size(); ++i) {
     const double usual = median_around(frames, i);
     if (frames[i].device <= kLate * usual) continue;
     ++late;
-    after_jumps += frames[i].since_jump < 3;
+    const bool jumped = frames[i].since_jump < 3;
+    after_jumps += jumped;
+    with_chunks += !jumped && frames[i].arrived != 0;
     if (late > kListed) continue;
     std::printf(
         "late: frame %zu, %zu after a jump, %.3f ms of %.3f around, entered %llu, chunks %llu,", i,
@@ -128,7 +130,10 @@ void print(const std::vector<Taken>& frames) {
       std::printf(" %s %.3f", voyStageName(static_cast<VoyStage>(s)), frames[i].stages[s]);
     std::printf("\n");
   }
-  std::printf("late frames %zu, of which within two frames after a jump %zu\n", late, after_jumps);
+  std::printf(
+      "late frames %zu: %zu within two frames after a jump, of the others %zu with chunks that "
+      "came\n",
+      late, after_jumps, with_chunks);
 }
 
 }  // namespace
@@ -175,7 +180,7 @@ int main(int argc, char** argv) try {
 
   std::vector<Taken> frames;
   uint64_t arrived = 0;
-  long early_kilobytes = 0;
+  std::vector<long> kilobytes;  // after each tenth
   size_t since_jump = 0;
   auto next = Clock::now();
   for (size_t i = 0; i < count; ++i) {
@@ -199,14 +204,14 @@ int main(int argc, char** argv) try {
     std::copy_n(stats.milliseconds, VOY_MAX_STAGES, taken.stages);
     arrived = streamed.arrivedChunks;
     frames.push_back(taken);
-    if (i == count / 10) early_kilobytes = resident_kilobytes();
+    if ((i + 1) % std::max<size_t>(1, count / 10) == 0) kilobytes.push_back(resident_kilobytes());
     next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps));
     std::this_thread::sleep_until(next);
   }
   print(frames);
-  std::printf("host memory %.0f MB after a tenth, %.0f at the end\n",
-              static_cast<double>(early_kilobytes) / 1e3,
-              static_cast<double>(resident_kilobytes()) / 1e3);
+  std::printf("host memory after each tenth, MB:");
+  for (const long size : kilobytes) std::printf(" %.0f", static_cast<double>(size) / 1e3);
+  std::printf("\n");
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "stream_flight: %s\n", error.what());
