@@ -87,9 +87,9 @@ TEST_F(InteropSetInstances, AFrameInFlightShowsTheListOfItsCall) {
       if (step == 0) continue;
       const uint32_t drawn = step - 1;
       const Shot expected = alone(list_of(drawn), eye(targets[drawn % 2], 0.2 * drawn));
-      const Shot found = acquire(lines[drawn % 2], targets[drawn % 2], 0);
-      EXPECT_EQ(found.color, expected.color);
-      EXPECT_EQ(found.depth, expected.depth);
+      const Shot shown = acquire(lines[drawn % 2], targets[drawn % 2], 0);
+      EXPECT_EQ(shown.color, expected.color);
+      EXPECT_EQ(shown.depth, expected.depth);
     }
     for (const VoyTarget target : targets) EXPECT_EQ(voyDestroyTarget(target), VOY_SUCCESS);
   });
