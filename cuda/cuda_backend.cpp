@@ -57,11 +57,12 @@ class CudaBackend final : public Backend {
                                             std::pmr::memory_resource*, Workers& workers) override {
     require_exponential_for_truth(desc);
     device_->use();
-    std::vector<DeviceInstance> instances;
-    for (const auto& scene : scenes) instances.push_back(instance_of(scene, desc, workers));
+    MakeInstance make = [this, desc, &workers](const auto& scene) {
+      return instance_of(scene, desc, workers);
+    };
     if (desc.splatting == Splatting::baseline_3dgs)
-      return create_baseline_pipeline(device_, std::move(instances), desc);
-    return cuda::create_pipeline(device_, std::move(instances), desc);
+      return create_baseline_pipeline(device_, std::move(make), scenes, desc);
+    return cuda::create_pipeline(device_, std::move(make), scenes, desc);
   }
 
   std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, uint32_t slots) override {

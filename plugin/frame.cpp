@@ -63,7 +63,7 @@ VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame) {
     check_count(frame->eyeCount, object->eyes, object->eyes, "frame.eyeCount");
     check_pointer(frame->eyes, "frame.eyes");
     const auto targets = checked_targets(call, *frame, vulkan, *object);
-    FrameInput input = frame_input(*frame, object->instances);
+    FrameInput input = frame_input(*frame);
     for (uint32_t i = 0; i < frame->eyeCount; ++i) {
       const TargetObject& target = *targets[i].object;
       FrameEye eye = frame_eye(*frame, frame->eyes[i], target.image, eye_name(i));
@@ -72,6 +72,10 @@ VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame) {
     }
 
     const auto view_lock = claim(*object);
+    input.instances = frame->instances == nullptr
+                          ? object->poses
+                          : frame_poses(frame->instances, object->scenes.size());
+    input.looks = object->looks;
     const auto target_locks = claim(targets);
     input.tau = object->view->next_tau(object->tau);
     if (streaming != nullptr) {

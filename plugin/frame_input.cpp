@@ -30,14 +30,6 @@ Quatd checked_orientation(const double (&q)[4], const std::string& field) {
   return normalise(Quatd{q[3] / largest, q[0] / largest, q[1] / largest, q[2] / largest});
 }
 
-InstancePose checked_instance(const VoyInstancePose& instance, const std::string& field) {
-  check_structure(&instance, VOY_STRUCTURE_TYPE_INSTANCE_POSE, field.c_str());
-  if (!(instance.scale >= kMinInstanceScale && instance.scale <= kMaxInstanceScale))
-    refuse_number(field + ".scale", instance.scale, "1e-9 to 1e9");
-  return {rotation(checked_orientation(instance.pose.orientation, field + ".pose")),
-          checked_position(instance.pose.position, field + ".pose"), instance.scale};
-}
-
 bool is_identity(const InstancePose& pose) {
   const InstancePose identity;
   bool same = pose.scale == identity.scale;
@@ -49,22 +41,31 @@ bool is_identity(const InstancePose& pose) {
   return same;
 }
 
-// None where all are the identity, which then costs what no poses cost.
-std::vector<InstancePose> checked_instances(const VoyInstancePose* instances, uint32_t count) {
-  std::vector<InstancePose> poses;
-  if (instances == nullptr) return poses;
-  bool identity = true;
-  for (uint32_t i = 0; i < count; ++i) {
-    poses.push_back(checked_instance(instances[i], "frame.instances[" + std::to_string(i) + "]"));
-    identity = identity && is_identity(poses[i]);
-  }
-  if (identity) poses.clear();
+}  // namespace
+
+InstancePose instance_pose(const VoyPose& pose, double scale, const std::string& field) {
+  if (!(scale >= kMinInstanceScale && scale <= kMaxInstanceScale))
+    refuse_number(field + ".scale", scale, "1e-9 to 1e9");
+  return {rotation(checked_orientation(pose.orientation, field + ".pose")),
+          checked_position(pose.position, field + ".pose"), scale};
+}
+
+std::vector<InstancePose> without_identities(std::vector<InstancePose> poses) {
+  if (std::all_of(poses.begin(), poses.end(), is_identity)) poses.clear();
   return poses;
 }
 
-}  // namespace
+std::vector<InstancePose> frame_poses(const VoyInstancePose* instances, size_t count) {
+  std::vector<InstancePose> poses;
+  for (size_t i = 0; i < count; ++i) {
+    const std::string field = "frame.instances[" + std::to_string(i) + "]";
+    check_structure(&instances[i], VOY_STRUCTURE_TYPE_INSTANCE_POSE, field.c_str());
+    poses.push_back(instance_pose(instances[i].pose, instances[i].scale, field));
+  }
+  return without_identities(std::move(poses));
+}
 
-FrameInput frame_input(const VoyFrame& frame, uint32_t instances) {
+FrameInput frame_input(const VoyFrame& frame) {
   FrameInput input;
   if (!(frame.nearZ > 0) || !std::isfinite(frame.nearZ))
     refuse_number("frame.nearZ", frame.nearZ, "a finite number of metres, > 0");
@@ -75,7 +76,6 @@ FrameInput frame_input(const VoyFrame& frame, uint32_t instances) {
     input.background[i] = frame.background[i];
   }
   check_count(frame.reserved, 0, 0, "frame.reserved");
-  input.instances = checked_instances(frame.instances, instances);
   input.eyes.clear();
   return input;
 }

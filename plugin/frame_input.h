@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "runtime/frame/backend.h"
 #include "runtime/math/reprojection.h"
@@ -11,8 +12,14 @@ namespace voyager {
 // and in the runtime's terms. Throws ApiError naming the field, what was found and
 // what was expected.
 
-// All but the eyes and tau, which is the view's. `instances` is how many the view has.
-FrameInput frame_input(const VoyFrame& frame, uint32_t instances);
+// All but the eyes, and but tau and the instances, which are the view's.
+FrameInput frame_input(const VoyFrame& frame);
+// Of as many instances as the view has.
+std::vector<InstancePose> frame_poses(const VoyInstancePose* instances, size_t count);
+// field: what messages call the structure that both are in.
+InstancePose instance_pose(const VoyPose& pose, double scale, const std::string& field);
+// None where all are the identity, which then costs what no poses cost.
+std::vector<InstancePose> without_identities(std::vector<InstancePose> poses);
 // Where an eye is and how far it sees, for a reprojection. field: what messages call it.
 EyeView eye_view(const VoyPose& pose, const std::string& pose_field, const VoyFrustum& frustum,
                  const std::string& frustum_field);

@@ -42,19 +42,49 @@ bool SceneObject::stays_at_unload() noexcept {
   return true;
 }
 
-void ViewObject::drop_view() noexcept {
+bool ViewObject::finish_frames() noexcept {
   for (const auto& used : rings)
     if (const auto ring = used.lock()) finish(*ring, device());
+  return !device().abandoned;
+}
+
+void ViewObject::drop_view() noexcept {
+  if (!finish_frames()) static_cast<void>(view.release());
   rings.clear();
-  if (device().abandoned) static_cast<void>(view.release());
   view.reset();
   scenes.clear();
 }
 
+void ViewObject::lose(const std::shared_ptr<Object>& scene) noexcept {
+  if (std::find(scenes.begin(), scenes.end(), scene) == scenes.end()) return;
+  scene_lost = true;
+  if (!finish_frames()) return drop_view();
+  try {
+    auto kept = scenes;
+    std::erase(kept, scene);
+    set_scenes(std::move(kept));
+  } catch (const std::exception&) {
+    drop_view();
+  }
+}
+
+void ViewObject::set_scenes(std::vector<std::shared_ptr<SceneObject>> next) {
+  std::vector<const Object*> drawn;
+  Scenes of_view;
+  for (const auto& scene : next) {
+    drawn.push_back(scene.get());
+    of_view.push_back(scene->scene);
+  }
+  view->set_scenes(std::move(of_view));
+  // From here on nothing fails.
+  const std::lock_guard lock(listing_);
+  drawn_.swap(drawn);
+  scenes.swap(next);
+}
+
 bool ViewObject::draws(const std::shared_ptr<Object>& scene) const {
-  return std::any_of(drawn_.begin(), drawn_.end(), [&](const auto& drawn) {
-    return !drawn.owner_before(scene) && !scene.owner_before(drawn);
-  });
+  const std::lock_guard lock(listing_);
+  return std::find(drawn_.begin(), drawn_.end(), scene.get()) != drawn_.end();
 }
 
 TargetObject::~TargetObject() {

@@ -96,32 +96,40 @@ struct ViewObject final : Child {
   static constexpr Kind kKind = Kind::view;
   ViewObject(std::shared_ptr<DeviceObject> owner, std::vector<std::shared_ptr<SceneObject>> drawn,
              uint32_t drawn_eyes)
-      : Child(kKind, std::move(owner)),
-        eyes(drawn_eyes),
-        instances(static_cast<uint32_t>(drawn.size())),
-        scenes(std::move(drawn)),
-        drawn_(scenes.begin(), scenes.end()) {}
+      : Child(kKind, std::move(owner)), eyes(drawn_eyes), scenes(std::move(drawn)) {
+    for (const auto& scene : scenes) drawn_.push_back(scene.get());
+  }
 
   ~ViewObject() override { drop_view(); }
   // A view waits for its frames under way, which may wait for the host: so rings first see
-  // to it that they end.
+  // to it that they end. False, and the device is abandoned, where they do not.
+  bool finish_frames() noexcept;
   void drop_view() noexcept;
-  // Whether it was made to draw the scene. Any thread, without a lock.
+  // The scene was closed: the view draws no instance of it any more. Under `state`.
+  void lose(const std::shared_ptr<Object>& scene) noexcept;
+  // As View has it; the frames under way are finished. Under `state`.
+  void set_scenes(std::vector<std::shared_ptr<SceneObject>> next);
+  // Whether it draws the scene. Any thread, without a lock.
   bool draws(const std::shared_ptr<Object>& scene) const;
 
-  const uint32_t eyes, instances;
+  const uint32_t eyes;
   uint32_t max_width = 0, max_height = 0;
   std::mutex busy;                                 // held by a call of the host's
   std::mutex state;                                // guards what follows; taken after `busy`
   std::vector<std::weak_ptr<vulkan::Ring>> rings;  // that it has drawn into
   double tau = 0;                                  // without a time budget
-  // One an instance. None, and no view, once one of them was destroyed. The view reads the
-  // scenes' memory, so is declared after them.
+  bool scene_lost = false;                         // one was closed, and no list came since
+  // Of the host's list, as FrameInput has them.
+  std::vector<InstancePose> poses;
+  std::vector<InstanceLook> looks;
+  // One an instance. The view reads the scenes' memory, so is declared after them. It is missing
+  // where closing a scene went wrong.
   std::vector<std::shared_ptr<SceneObject>> scenes;
   std::unique_ptr<View> view;
 
  private:
-  const std::vector<std::weak_ptr<SceneObject>> drawn_;
+  mutable std::mutex listing_;  // guards what follows
+  std::vector<const Object*> drawn_;
 };
 
 struct TargetObject final : Child {

@@ -147,7 +147,7 @@ VoyResult VOY_CALL voyCloseScene(VoyScene scene) {
         auto& view = static_cast<ViewObject&>(*child);
         if (!view.draws(object)) continue;
         const std::lock_guard frame(view.state);
-        view.drop_view();
+        view.lose(object);
       }
     }
     return VOY_SUCCESS;

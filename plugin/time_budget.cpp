@@ -3,17 +3,6 @@
 #include "plugin/structs.h"
 
 namespace voyager {
-namespace {
-
-// τ changes nothing in a view that draws every leaf of all its instances.
-bool draws_any_cut(const ViewObject& view) {
-  for (uint32_t i = 0; i < view.instances; ++i)
-    if (view.view->draws_cut(i)) return true;
-  return false;
-}
-
-}  // namespace
-
 void check_time_budget(const VoyTimeBudget& budget) {
   const auto check = [](const char* field, double found, bool right, const std::string& expected) {
     if (!std::isfinite(found) || !right)
@@ -26,7 +15,7 @@ void check_time_budget(const VoyTimeBudget& budget) {
 }
 
 void set_time_budget(ViewObject& view, const VoyTimeBudget& budget) {
-  if (!draws_any_cut(view))
+  if (!view.view->may_draw_cut())
     throw ApiError(VOY_ERROR_UNSUPPORTED,
                    "VoyTimeBudget: found a view that draws every leaf, where tau has no effect; "
                    "expected a view that draws a cut");

@@ -3,6 +3,7 @@
 #include "plugin/call.h"
 #include "plugin/claim.h"
 #include "plugin/experiment.h"
+#include "plugin/instances.h"
 #include "plugin/structs.h"
 #include "plugin/time_budget.h"
 
@@ -12,18 +13,13 @@ namespace {
 
 // Counts come first: the arrays of a count that is refused are never read.
 void check_counts(const VoyViewDesc& desc) {
-  check_count(desc.instanceCount, 1, UINT32_MAX, "desc.instanceCount");
-  if (desc.instanceCount > kMaxInstances)
-    throw ApiError(VOY_ERROR_UNSUPPORTED,
-                   "desc.instanceCount: found " + std::to_string(desc.instanceCount) +
-                       ", this version draws up to " + std::to_string(kMaxInstances) +
-                       " instances in a view");
+  check_instance_count(desc.instanceCount, "desc.instanceCount");
   check_count(desc.eyeCount, 1, UINT32_MAX, "desc.eyeCount");
   if (desc.eyeCount > kMaxEyes)
     throw ApiError(VOY_ERROR_UNSUPPORTED, "desc.eyeCount: found " + std::to_string(desc.eyeCount) +
                                               ", this version draws up to " +
                                               std::to_string(kMaxEyes) + " eyes in a view");
-  check_pointer(desc.scenes, "desc.scenes");
+  if (desc.instanceCount > 0) check_pointer(desc.scenes, "desc.scenes");
   check_count(desc.maxWidth, 1, kMaxImageSide, "desc.maxWidth");
   check_count(desc.maxHeight, 1, kMaxImageSide, "desc.maxHeight");
 }
@@ -42,15 +38,17 @@ PipelineDesc checked_choices(const VoyViewDesc& desc, const VoyExperiment* exper
   return choices;
 }
 
+void check_instance(uint32_t instance, size_t count) {
+  if (count == 0) refuse("instance: found a view without instances, expected one that has some");
+  check_count(instance, 0, count - 1, "instance");
+}
+
 std::vector<std::shared_ptr<SceneObject>> checked_scenes(Call& call, const VoyViewDesc& desc,
                                                          const DeviceObject& owner) {
   std::vector<std::shared_ptr<SceneObject>> scenes;
-  for (uint32_t i = 0; i < desc.instanceCount; ++i) {
-    scenes.push_back(call.use<SceneObject>(desc.scenes[i]));
-    if (scenes[i]->parent().get() != &owner)
-      refuse("desc.scenes[" + std::to_string(i) +
-             "]: found a scene of another device, expected one of this device");
-  }
+  for (uint32_t i = 0; i < desc.instanceCount; ++i)
+    scenes.push_back(
+        instance_scene(call, desc.scenes[i], owner, "desc.scenes[" + std::to_string(i) + "]"));
   return scenes;
 }
 
@@ -116,15 +114,19 @@ VoyResult VOY_CALL voyGetViewCut(VoyView view, uint32_t instance, uint32_t capac
                                  uint32_t* nodes, uint32_t* count) {
   return guarded("voyGetViewCut", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
-    check_count(instance, 0, object->instances - 1, "instance");
     check_pointer(count, "count");
     if (capacity > 0) check_pointer(nodes, "nodes");
     const auto frame = claim(*object);
+    check_instance(instance, object->scenes.size());
     if (!object->view->draws_cut(instance))
       throw ApiError(VOY_ERROR_UNSUPPORTED,
                      "instance: found an instance of which the view draws every leaf, expected "
                      "one of which it draws a cut");
     check_has_frame(*object);
+    if (!object->view->has_cuts())
+      refuse(
+          "view: found that voySetViewInstances has changed the scenes since the last frame, "
+          "expected voyRenderFrame before this call");
     const auto& cut = object->view->cut(instance);
     const size_t written = std::min<size_t>(capacity, cut.size());
     std::copy_n(cut.begin(), written, nodes);

@@ -6,6 +6,7 @@
 
 #include "runtime/base/error.h"
 #include "runtime/frame/frame_search.h"
+#include "runtime/frame/match_instances.h"
 
 namespace voyager::cuda {
 namespace {
@@ -24,14 +25,27 @@ GaussianView DeviceInstance::view() const {
   return all;
 }
 
-DeviceInstances::DeviceInstances(std::vector<DeviceInstance> all, uint32_t eyes)
-    : all_(std::move(all)) {
+DeviceInstances::DeviceInstances(MakeInstance make, const Scenes& scenes, uint32_t eyes)
+    : make_(std::move(make)), eyes_(eyes) {
+  set_scenes(scenes, match_instances({}, scenes));
+}
+
+void DeviceInstances::set_scenes(const Scenes& scenes, std::span<const size_t> from) {
+  std::vector<DeviceInstance> next(scenes.size());
   uint64_t room = 0;
-  for (const DeviceInstance& instance : all_) room += instance.draws->view().list.room;
-  if (room * eyes > UINT32_MAX)
+  for (size_t i = 0; i < scenes.size(); ++i) {
+    const bool is_new = from[i] == kNewInstance;
+    if (is_new) next[i] = make_(scenes[i]);
+    room += (is_new ? next[i] : all_[from[i]]).draws->view().list.room;
+  }
+  if (room * eyes_ > UINT32_MAX)
     throw Error(ErrorCode::unsupported, "instances: found lists of up to " + std::to_string(room) +
-                                            " Gaussians for each of " + std::to_string(eyes) +
+                                            " Gaussians for each of " + std::to_string(eyes_) +
                                             " eyes, expected fewer than 2^32 in all");
+  // From here on nothing fails.
+  for (size_t i = 0; i < scenes.size(); ++i)
+    if (from[i] != kNewInstance) next[i] = std::move(all_[from[i]]);
+  all_.swap(next);
 }
 
 void DeviceInstances::update(const FrameInput& frame, cudaStream_t stream) {

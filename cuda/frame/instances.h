@@ -1,5 +1,7 @@
 #pragma once
 // A view's instances on the device.
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "cuda/frame/draws.h"
@@ -18,12 +20,17 @@ struct DeviceInstance {
   GaussianView view() const;
 };
 
+// The backend's: a new instance of a scene.
+using MakeInstance = std::function<DeviceInstance(const std::shared_ptr<const Scene>&)>;
+
 class DeviceInstances {
  public:
-  // Throws Error(unsupported) where their lists together, for each eye, could outgrow 32-bit
-  // slots.
-  DeviceInstances(std::vector<DeviceInstance> all, uint32_t eyes);
+  // As set_scenes().
+  DeviceInstances(MakeInstance make, const Scenes& scenes, uint32_t eyes);
 
+  // As Pipeline has it. Throws Error(unsupported) where their lists together, for each eye, could
+  // outgrow 32-bit slots, and what `make` throws.
+  void set_scenes(const Scenes& scenes, std::span<const size_t> from);
   // Each instance's draws, in its scene's coordinates. Throws as Draws does.
   void update(const FrameInput& frame, cudaStream_t stream);
   // What reads the scenes' arrays in this frame has been launched, or has failed to be.
@@ -46,6 +53,8 @@ class DeviceInstances {
   void collect(const unsigned char* report, FrameStats& stats) const;
 
  private:
+  MakeInstance make_;
+  uint32_t eyes_;
   std::vector<DeviceInstance> all_;
 };
 

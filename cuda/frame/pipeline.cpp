@@ -37,10 +37,10 @@ void run_stage(Stage stage, FrameReport& report, const Work& work) {
 
 class SplatPipeline final : public Pipeline {
  public:
-  SplatPipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances,
+  SplatPipeline(std::shared_ptr<const Device> device, MakeInstance make, const Scenes& scenes,
                 const PipelineDesc& desc)
       : device_(std::move(device)),
-        instances_(std::move(instances), desc.eyes),
+        instances_(std::move(make), scenes, desc.eyes),
         desc_(desc),
         lut_(upload_lut(desc)),
         splats_(bin_blocks(device_->multiprocessors()), desc.eyes),
@@ -54,6 +54,7 @@ class SplatPipeline final : public Pipeline {
     cudaStreamSynchronize(stream_.get());
   }
 
+  void set_scenes(const Scenes& scenes, std::span<const size_t> from) override;
   void draw(const FrameInput& frame, FrameStats& stats) override;
   void resolve(const FrameInput& frame, FrameStats& stats) override {
     for (size_t eye = 0; eye < images_.size(); ++eye)
@@ -109,6 +110,15 @@ class SplatPipeline final : public Pipeline {
   SplatRoom wanted_;              // by what frames that were under way have used
 };
 
+// A frame that failed may still run, and read what is freed here. Reports have the room that the
+// instances need, so they are made anew.
+void SplatPipeline::set_scenes(const Scenes& scenes, std::span<const size_t> from) {
+  device_->use();
+  stream_.wait();
+  instances_.set_scenes(scenes, from);
+  free_.clear();
+}
+
 // One instance after the other, so that each finds on the device where its slots begin.
 void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work) {
   for (size_t i = 0; i < instances_.all().size(); ++i) {
@@ -116,8 +126,8 @@ void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work
     work.gaussians = instance.view();
     work.draws = instance.draws->view();
     for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
-      work.params[eye] =
-          project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i), desc_);
+      work.params[eye] = project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i),
+                                        desc_, instance_look(frame, i));
     work.rows = launch_rows(work);
     // Where no rows are told apart, the first pass has weighed all.
     if (work.splats.open_parts == nullptr || work.rows.rows != nullptr)
@@ -417,10 +427,9 @@ std::vector<Omission> SplatPipeline::omissions() const {
 
 }  // namespace
 
-std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Device> device,
-                                          std::vector<DeviceInstance> instances,
-                                          const PipelineDesc& desc) {
-  return std::make_unique<SplatPipeline>(std::move(device), std::move(instances), desc);
+std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Device> device, MakeInstance make,
+                                          const Scenes& scenes, const PipelineDesc& desc) {
+  return std::make_unique<SplatPipeline>(std::move(device), std::move(make), scenes, desc);
 }
 
 }  // namespace voyager::cuda

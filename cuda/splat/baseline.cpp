@@ -1,5 +1,7 @@
 #include "cuda/splat/baseline.h"
 
+#include <optional>
+
 #include "cuda/device/stage_timer.h"
 #include "cuda/frame/frame_image.h"
 #include "cuda/splat/baseline_launch.h"
@@ -12,16 +14,17 @@ namespace {
 
 class BaselinePipeline final : public Pipeline {
  public:
-  BaselinePipeline(std::shared_ptr<const Device> device, std::vector<DeviceInstance> instances,
+  BaselinePipeline(std::shared_ptr<const Device> device, MakeInstance make, const Scenes& scenes,
                    const PipelineDesc& desc)
       : device_(std::move(device)),
         desc_(desc),
-        instances_(std::move(instances), 1),
-        places_(instances_.all().size()) {}
+        instances_(std::move(make), scenes, 1),
+        places_(scenes.size()) {}
 
   // What it frees belongs to the device's context.
   ~BaselinePipeline() override { device_->use_quietly(); }
 
+  void set_scenes(const Scenes& scenes, std::span<const size_t> from) override;
   void draw(const FrameInput& frame, FrameStats& stats) override;
   void resolve(const FrameInput& frame, FrameStats& stats) override {
     image_.resolve(frame.eyes[0].image, stats);
@@ -55,10 +58,20 @@ class BaselinePipeline final : public Pipeline {
   Buffer<uint32_t> splat_count_{1};
   Buffer<char> scratch_;
   FrameImage image_;
-  PinnedMemory report_{instances_.report_bytes()};
+  std::optional<PinnedMemory> report_;  // made for the instances
   Stream stream_;
   StageTimer timer_{stream_};
 };
+
+// A frame that failed may still run, and read what is freed here.
+void BaselinePipeline::set_scenes(const Scenes& scenes, std::span<const size_t> from) {
+  std::vector<uint32_t> places(scenes.size());
+  device_->use();
+  stream_.wait();
+  instances_.set_scenes(scenes, from);
+  places_.swap(places);
+  report_.reset();
+}
 
 template <class T>
 void fit(Buffer<T>& buffer, size_t count) {
@@ -126,7 +139,8 @@ void BaselinePipeline::launch_projections(const FrameInput& frame, BaselineFrame
     work.places = places_[i];
     work.gaussians = instance.view();
     work.draws = instance.draws->view();
-    work.params = project_params(*instance.scene, instance_camera(frame, frame.eyes[0], i), desc_);
+    work.params = project_params(*instance.scene, instance_camera(frame, frame.eyes[0], i), desc_,
+                                 instance_look(frame, i));
     launch_baseline_project(work);
     work.first += work.places;
   }
@@ -138,6 +152,7 @@ void BaselinePipeline::draw(const FrameInput& frame, FrameStats& stats) {
     throw Error(ErrorCode::unsupported,
                 "depth limits: found some with 3dgs splatting, expected none");
   device_->use();
+  if (!report_) report_.emplace(instances_.report_bytes());
   const TileGrid grid = tile_grid(eye.camera.width, eye.camera.height);
   fit(tiles_, static_cast<size_t>(grid.columns) * static_cast<size_t>(grid.rows));
   const RasterTarget target = image_.target(eye, frame.background);
@@ -170,14 +185,14 @@ void BaselinePipeline::draw(const FrameInput& frame, FrameStats& stats) {
   launch_baseline_rasterize(work, instances_.siblings(), target);
   timer_.end(kRasterize);
   launch_baseline_count(work);
-  instances_.report(report_.data(), stream);
+  instances_.report(report_->data(), stream);
   stats.splats = read_value(splat_count_.data(), stream);
   stats.gaussian_bytes = instances_.bytes_a_gaussian();
   collect(pairs, stats);
 }
 
 void BaselinePipeline::collect(unsigned long long pairs, FrameStats& stats) const {
-  instances_.collect(report_.data(), stats);
+  instances_.collect(report_->data(), stats);
   stats.pairs_before = stats.pairs_after = pairs;
   timer_.collect(stats);
 }
@@ -185,7 +200,7 @@ void BaselinePipeline::collect(unsigned long long pairs, FrameStats& stats) cons
 }  // namespace
 
 std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device> device,
-                                                   std::vector<DeviceInstance> instances,
+                                                   MakeInstance make, const Scenes& scenes,
                                                    const PipelineDesc& desc) {
   if (desc.eyes != 1)
     throw Error(ErrorCode::unsupported,
@@ -196,7 +211,7 @@ std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device>
   if (desc.antialias == Antialias::truth)
     throw Error(ErrorCode::unsupported,
                 "antialias: found the truth's samples with 3dgs splatting, expected on or off");
-  return std::make_unique<BaselinePipeline>(std::move(device), std::move(instances), desc);
+  return std::make_unique<BaselinePipeline>(std::move(device), std::move(make), scenes, desc);
 }
 
 }  // namespace voyager::cuda

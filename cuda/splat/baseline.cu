@@ -40,10 +40,13 @@ __device__ bool baseline_splat(const BaselineFrame& f, uint32_t place) {
   const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
   if (item.gaussian == kNoNode) return false;
   const DeviceArrays<Sh> arrays{f.gaussians};
-  const Vec3f d = camera_relative(interpolated_mean(arrays, item), f.params.origin, f.params.eye);
+  const Vec3f mean = interpolated_mean(arrays, item);
+  if (!is_inside(f.params.clip, mean)) return false;
+  const Vec3f d = camera_relative(mean, f.params.origin, f.params.eye);
   const Vec3f view = detail::to_view(f.params, d);
   if (!(view.z > f.params.near_z)) return false;
   Shape<float> shape = interpolated_shape<float>(arrays, item);
+  fade(shape, f.params.opacity, f.params.log_opacity);
   const PixelFilter<float>& filter = f.params.filter;
   if (filter.footprint > 0.0f)
     shape.scale = widened(shape.scale, interpolated_footprint(arrays, item, filter.footprint));

@@ -10,7 +10,7 @@ namespace voyager::cuda {
 
 // Throws Error(unsupported) for an exponential other than exact.
 std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device> device,
-                                                   std::vector<DeviceInstance> instances,
+                                                   MakeInstance make, const Scenes& scenes,
                                                    const PipelineDesc& desc);
 
 }  // namespace voyager::cuda

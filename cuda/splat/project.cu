@@ -29,6 +29,7 @@ __device__ bool project_may_show(const SplatFrame& f, const DrawItem& item) {
     hull = {lerp_rn(parent.mean, hull.mean, item.t), fmaxf(parent.max_scale, hull.max_scale),
             fmaxf(parent.radius, hull.radius)};
   }
+  if (!is_inside(f.params[0].clip, hull.mean)) return false;
   const float radius = radius_above(hull.radius, f.params[0].log_threshold);
   bool reaches = false;
   for (int eye = 0; eye < kEyes; ++eye)

@@ -40,7 +40,10 @@ class CpuPipeline final : public HostPipeline {
     fill_alpha_lut(desc.lut_size, lut_.data());
   }
 
-  void search(const FrameInput& frame) override { instances_.update(frame, workers_); }
+  void set_scenes(const Scenes& scenes, std::span<const size_t> from) override {
+    instances_.set_scenes(scenes, from);
+  }
+  void search(const FrameInput& frame) override { instances_.update(frame); }
   void project(const FrameInput& frame) override;
   void sort(size_t eye) override;
   void bin(const FrameInput& frame, size_t eye) override;
@@ -96,8 +99,8 @@ void CpuPipeline::project(const FrameInput&) {
     if (eye.splats.size() < places) eye.splats.resize(places);
     eye.visible.assign((places + kProjectBlock - 1) / kProjectBlock, 0);
   }
-  for (const HostInstance& instance : instances_.all())
-    eyes_.size() == 1 ? project_instance<1>(instance) : project_instance<2>(instance);
+  for (const auto& instance : instances_.all())
+    eyes_.size() == 1 ? project_instance<1>(*instance) : project_instance<2>(*instance);
 }
 
 template <int kEyes>
@@ -105,7 +108,7 @@ void CpuPipeline::project_instance(const HostInstance& instance) {
   const auto& items = instance.draws.items();
   ProjectParams params[kEyes];
   for (size_t eye = 0; eye < kEyes; ++eye)
-    params[eye] = project_params(*instance.scene, instance.cameras[eye], desc_);
+    params[eye] = project_params(*instance.scene, instance.cameras[eye], desc_, instance.look);
   const GaussianArrays arrays = gaussian_arrays(*instance.scene);
   workers_.for_blocks(items.size(), kProjectBlock, [&](size_t begin, size_t end) {
     const size_t first = instance.first + begin;
@@ -114,6 +117,7 @@ void CpuPipeline::project_instance(const HostInstance& instance) {
     for (size_t i = begin; i < end; ++i) {
       const DrawItem item = drawn_item(items[i], arrays.doubles);
       const Vec3f mean = interpolated_mean(arrays, item);
+      if (!is_inside(params[0].clip, mean)) continue;
       // Restoring codes is most of what one outside the image would cost.
       const bool bounds = arrays.coded() && item.t == 1.0f;
       const float scale = bounds ? arrays.largest_scale(item.gaussian) : 0.0f;

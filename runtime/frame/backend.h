@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <memory_resource>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include "runtime/frame/omission.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
+#include "runtime/math/clip_box.h"
 #include "runtime/math/host_depth.h"
 #include "runtime/math/vec.h"
 
@@ -71,6 +73,12 @@ struct InstancePose {
   double scale = 1;
 };
 
+// What else is told of an instance.
+struct InstanceLook {
+  float opacity = 1;               // times that of each Gaussian; 0 to 1
+  ClipBox<double> clip = kNoClip;  // in its scene's axes, the scene's origin included
+};
+
 struct FrameEye {
   Camera camera;
   Image image;  // of the camera's size
@@ -83,6 +91,7 @@ struct FrameEye {
 struct FrameInput {
   std::vector<FrameEye> eyes{1};        // as many as the view has
   std::vector<InstancePose> instances;  // one an instance of the view; none: all at the identity
+  std::vector<InstanceLook> looks;      // as many; none: all whole and as opaque as stored
   double tau = 3;
   Vec3f background{0, 0, 0};
   // Of streamed scenes: what is seen is waited for, as far as it can come. stand_in: what cannot
@@ -145,6 +154,10 @@ class Pipeline {
   // Adds what is known of the oldest frame under way. False, and untouched stats, where
   // there is none or, without `wait`, it has not ended.
   virtual bool finish(bool, FrameStats&) { return false; }
+  // The instances from now on; no frame is under way. from: of each the one so far whose state it
+  // takes over (match_instances.h). The state of the others is freed. Where it throws, nothing has
+  // changed.
+  virtual void set_scenes(const Scenes& scenes, std::span<const size_t> from) = 0;
   // The search's own entered and left are right for each frame.
   virtual bool counts_changes() const { return false; }
   // An instance's of the last frame, ascending; none where it draws no cut.
@@ -181,7 +194,7 @@ class Backend {
   virtual ExternalSupport external_support() const { return {}; }
   // Only where external_support() has images. Memory and semaphores are the result's.
   virtual std::unique_ptr<ExternalRing> import_ring(ExternalRingDesc&&) const { return nullptr; }
-  // scenes: one an instance, from one to kMaxInstances; a scene may be several. Throws
+  // scenes: one an instance, up to kMaxInstances; a scene may be several. Throws
   // Error(unsupported) for a choice that the backend lacks.
   virtual std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                                     std::pmr::memory_resource* memory,

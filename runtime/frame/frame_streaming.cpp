@@ -7,6 +7,7 @@
 
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/instance.h"
+#include "runtime/frame/match_instances.h"
 
 namespace voyager {
 namespace {
@@ -45,8 +46,8 @@ Wedge wedge_of(const Camera& camera, const Vec3d& origin, double margin) {
 
 }  // namespace
 
-FrameStreaming::FrameStreaming(const Scenes& scenes, Clock clock)
-    : scenes_(scenes), clock_(std::move(clock)) {
+FrameStreaming::FrameStreaming(const Scenes& scenes, Clock clock) : clock_(std::move(clock)) {
+  for (const auto& scene : scenes) instances_.push_back({scene, std::make_unique<const char>()});
   for (const auto& scene : scenes)
     if (scene->streamed() &&
         std::find(streamed_.begin(), streamed_.end(), scene.get()) == streamed_.end())
@@ -62,8 +63,22 @@ FrameStreaming::FrameStreaming(const Scenes& scenes, Clock clock)
 }
 
 FrameStreaming::~FrameStreaming() {
-  for (size_t i = 0; i < scenes_.size(); ++i)
-    if (scenes_[i]->streamed()) scenes_[i]->stream->look(&scenes_[i], {});
+  for (const Instance& instance : instances_)
+    if (instance.scene->streamed()) instance.scene->stream->look(instance.name.get(), {});
+}
+
+void FrameStreaming::take_over(FrameStreaming& before, std::span<const size_t> from) noexcept {
+  for (size_t i = 0; i < instances_.size(); ++i)
+    if (from[i] != kNewInstance) instances_[i].name.swap(before.instances_[from[i]].name);
+  for (size_t i = 0; i < streamed_.size(); ++i) {
+    const auto same = std::find(before.streamed_.begin(), before.streamed_.end(), streamed_[i]);
+    if (same == before.streamed_.end()) continue;
+    bytes_read_[i] = before.bytes_read_[static_cast<size_t>(same - before.streamed_.begin())];
+  }
+  clock_.swap(before.clock_);
+  velocity_ = before.velocity_;
+  eye_ = before.eye_;
+  time_ = before.time_;
 }
 
 // Of the first eye, in the world. Instances that move are not foreseen.
@@ -85,8 +100,8 @@ std::optional<Vec3d> FrameStreaming::velocity(const FrameInput& frame) {
 }
 
 Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance) {
-  const Vec3d& origin = scenes_[instance]->origin;
-  const double footprint = scenes_[instance]->native.footprint();
+  const Vec3d& origin = instances_[instance].scene->origin;
+  const double footprint = instances_[instance].scene->native.footprint();
   Viewer viewer{
       cut_query(frame, instance, origin), {}, false, static_cast<float>(std::sqrt(footprint))};
   for (const FrameEye& eye : frame.eyes)
@@ -102,8 +117,8 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
   if (!frame.wait_resident)
     for (const Scene* scene : streamed_) scene->stream->commit();
   const std::optional<Vec3d> way = velocity(frame);
-  for (size_t i = 0; i < scenes_.size(); ++i) {
-    if (!scenes_[i]->streamed()) continue;
+  for (size_t i = 0; i < instances_.size(); ++i) {
+    if (!instances_[i].scene->streamed()) continue;
     std::vector<Viewer> viewers = {viewer_of(frame, i)};
     for (const double horizon : kHorizons) {
       if (!way) break;
@@ -112,7 +127,7 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
       viewers.push_back(viewer_of(later, i));
       viewers.back().ahead = true;
     }
-    scenes_[i]->stream->look(&scenes_[i], std::move(viewers));
+    instances_[i].scene->stream->look(instances_[i].name.get(), std::move(viewers));
   }
   if (!frame.wait_resident) return hold_all();
   // While one is waited for, another may get a budget, and lose what it had; not for ever.

@@ -1,8 +1,10 @@
 #pragma once
 // A view's part in streaming: says where it looks, and is going, and takes what has come.
 #include <functional>
+#include <memory>
 #include <optional>
 #include <shared_mutex>
+#include <span>
 #include <vector>
 
 #include "runtime/frame/backend.h"
@@ -18,6 +20,9 @@ class FrameStreaming {
   ~FrameStreaming();
   FrameStreaming(const FrameStreaming&) = delete;
   FrameStreaming& operator=(const FrameStreaming&) = delete;
+  // Goes on as the one before did. from: of each instance, the one of `before` that it was
+  // (match_instances.h).
+  void take_over(FrameStreaming& before, std::span<const size_t> from) noexcept;
 
   // While these live, what is resident stays as the frame has found it.
   using Holds = std::vector<std::shared_lock<std::shared_mutex>>;
@@ -28,11 +33,16 @@ class FrameStreaming {
   void collect(FrameStats& stats);
 
  private:
+  struct Instance {
+    std::shared_ptr<const Scene> scene;
+    std::unique_ptr<const char> name;  // its address is what the scene's stream knows it by
+  };
+
   Holds hold_all() const;
   Viewer viewer_of(const FrameInput& frame, size_t instance);
   std::optional<Vec3d> velocity(const FrameInput& frame);
 
-  const Scenes& scenes_;
+  std::vector<Instance> instances_;
   std::vector<const Scene*> streamed_;  // each once
   std::vector<uint64_t> bytes_read_;    // of each, as of the frame before
   Clock clock_;

@@ -28,4 +28,8 @@ inline Camera instance_camera(const FrameInput& frame, const FrameEye& eye, size
   return camera_in_scene(eye.camera, frame.instances[instance]);
 }
 
+inline InstanceLook instance_look(const FrameInput& frame, size_t instance) {
+  return frame.looks.empty() ? InstanceLook{} : frame.looks[instance];
+}
+
 }  // namespace voyager

@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "runtime/frame/backend.h"
 #include "runtime/frame/scene.h"
 #include "runtime/stages/project.h"
@@ -26,9 +28,9 @@ inline void require_exponential_for_truth(const PipelineDesc& desc) {
                 "exponential: found lut or half2 with the truth's samples, expected exact or ex2");
 }
 
-// camera: in the scene's coordinates.
+// camera: in the scene's coordinates. look: the instance's.
 inline ProjectParams project_params(const Scene& scene, const Camera& camera,
-                                    const PipelineDesc& desc) {
+                                    const PipelineDesc& desc, const InstanceLook& look = {}) {
   ProjectParams params;
   params.origin = scene.origin;
   params.eye = camera.eye;
@@ -42,6 +44,9 @@ inline ProjectParams project_params(const Scene& scene, const Camera& camera,
   params.log_scale = is_base_2(desc.exponential) ? kLog2e : 1.0f;
   params.log_threshold = log_threshold(desc.antialias);
   params.half = 0.5f * params.log_scale;
+  params.opacity = look.opacity;
+  params.log_opacity = std::log(look.opacity);
+  params.clip = local_clip(look.clip, scene.origin);
   return params;
 }
 

@@ -8,6 +8,7 @@
 #include "runtime/base/error.h"
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/instance.h"
+#include "runtime/frame/match_instances.h"
 #include "runtime/scene/sanitise.h"
 
 namespace voyager {
@@ -39,11 +40,35 @@ uint64_t count_missing(const std::pmr::vector<uint32_t>& from,
 View::View(Scenes scenes, Backend& backend, const PipelineDesc& desc,
            std::pmr::memory_resource* memory, Workers& workers, Clock clock)
     : scenes_(std::move(scenes)),
-      streaming_(scenes_, std::move(clock)),
+      memory_(memory),
+      streaming_(std::make_unique<FrameStreaming>(scenes_, std::move(clock))),
       desc_(desc),
       pipeline_(backend.create_pipeline(scenes_, desc, memory, workers)) {
   cuts_.reserve(scenes_.size());
   for (size_t i = 0; i < scenes_.size(); ++i) cuts_.emplace_back(memory);
+}
+
+void View::set_scenes(Scenes scenes) {
+  while (finish_one(true)) continue;
+  const std::vector<size_t> from = match_instances(scenes_, scenes);
+  auto streaming = std::make_unique<FrameStreaming>(scenes);
+  std::vector<InstanceCut> cuts;
+  cuts.reserve(scenes.size());
+  pipeline_->set_scenes(scenes, from);
+  // From here on nothing fails.
+  for (const size_t of : from)
+    cuts.push_back(of == kNewInstance ? InstanceCut(memory_) : std::move(cuts_[of]));
+  cuts_.swap(cuts);
+  streaming->take_over(*streaming_, from);
+  streaming_.swap(streaming);
+  scenes_.swap(scenes);
+  drawn_ = false;
+}
+
+bool View::may_draw_cut() const {
+  const auto has_tree = [](const auto& scene) { return !scene->flat(); };
+  return voyager::draws_cut(desc_.lod) &&
+         (scenes_.empty() || std::any_of(scenes_.begin(), scenes_.end(), has_tree));
 }
 
 // A search that does not count what entered and left has its cuts compared. A cut that
@@ -64,6 +89,7 @@ bool View::read_changes(bool follows, FrameStats& stats) {
 }
 
 void View::keep_cuts(bool read) {
+  drawn_ = true;
   for (InstanceCut& of : cuts_) {
     if (read) of.last.swap(of.cut);
     of.read = read;
@@ -72,13 +98,14 @@ void View::keep_cuts(bool read) {
 
 FrameStats View::known_stats(const FrameInput& frame) {
   FrameStats stats;
-  streaming_.collect(stats);
+  streaming_->collect(stats);
   for (const auto& scene : scenes_) stats.nodes_total += scene->node_count;
   stats.tau = frame.tau;
   if (budget_) {
     stats.time_budget = budget_->desc().milliseconds;
     stats.tau_is_greatest = frame.tau >= budget_->desc().greatest_tau;
   }
+  if (scenes_.empty()) return stats;
   const CutQuery query = cut_query(frame, 0, scenes_[0]->origin);
   stats.tau_star = query.target_size;
   stats.cut_centre = query.centre;
@@ -123,7 +150,7 @@ void View::submit(const FrameInput& frame, bool follows) {
   under_way_.push_back({known_stats(frame), !counted});
   UnderWay& now = under_way_.back();
   try {
-    pipeline_->submit(frame, frames_ == 0 || !counted);
+    pipeline_->submit(frame, !drawn_ || !counted);
   } catch (...) {
     under_way_.pop_back();
     throw;
@@ -155,12 +182,13 @@ bool View::finish_one(bool wait) {
 
 void View::render(const FrameInput& frame) {
   assert(frame.instances.empty() || frame.instances.size() == scenes_.size());
+  assert(frame.looks.empty() || frame.looks.size() == scenes_.size());
   assert(frame.eyes.size() == desc_.eyes);
   for (const FrameEye& eye : frame.eyes)
     for (size_t i = 0; i < scenes_.size(); ++i)
       check_camera(instance_camera(frame, eye, i), *scenes_[i],
                    frame.instances.empty() ? "" : " in instance " + std::to_string(i));
-  const auto holds = streaming_.begin(frame);
+  const auto holds = streaming_->begin(frame);
   const bool follows = follows_;  // the search's last run was the last frame's
   follows_ = false;
   if (frame.eyes[0].image.external.ring != nullptr)

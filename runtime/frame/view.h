@@ -13,7 +13,7 @@ namespace voyager {
 
 class View {
  public:
-  // scenes: one an instance, from one to kMaxInstances.
+  // scenes: one an instance, up to kMaxInstances.
   // clock: what a viewer's velocity is measured by; none: the machine's.
   View(Scenes scenes, Backend& backend, const PipelineDesc& desc, std::pmr::memory_resource* memory,
        Workers& workers, Clock clock = {});
@@ -21,10 +21,15 @@ class View {
        std::pmr::memory_resource* memory, Workers& workers, Clock clock = {})
       : View(Scenes{std::move(scene)}, backend, desc, memory, workers, std::move(clock)) {}
 
+  // The instances from the next frame on. Waits for the frames under way. The k-th instance of a
+  // scene goes on with what the k-th of this scene has kept, and what nobody goes on with is freed.
+  // Where it throws, as the constructor may, nothing has changed.
+  void set_scenes(Scenes scenes);
+
   // Runs the stages and fills the images, all in host memory or all of another API. The frame
-  // has no pose, or one an instance. Throws Error(damaged_chunk) where the frame needs one,
-  // Error(invalid_argument) for a camera that METHOD §3 excludes in any scene's coordinates;
-  // the images are untouched then.
+  // has no pose, or one an instance, and no look, or one an instance. Throws Error(damaged_chunk)
+  // where the frame needs one, Error(invalid_argument) for a camera that METHOD §3 excludes in any
+  // scene's coordinates; the images are untouched then.
   void render(const FrameInput& frame);
   // Of one eye.
   void render(FrameInput frame, const Image& image) {
@@ -42,15 +47,19 @@ class View {
   bool draws_cut(size_t instance) const {
     return !scenes_[instance]->flat() && voyager::draws_cut(desc_.lod);
   }
+  // Whether it is of any use to change τ: also where scenes with trees may come.
+  bool may_draw_cut() const;
   bool has_frame() const { return frames_ > 0; }
+  // Whether a frame has been drawn since the instances are what they are.
+  bool has_cuts() const { return drawn_; }
   // Of the last frame that has ended; a frame into another API's image may still be under way.
   // Waits where none has.
   const FrameStats& stats();
   // What the view does without, its scenes' own omissions first; each scene's once. As far as the
   // frames so far tell.
   std::vector<Omission> omissions() const;
-  // An instance's of the last frame that was drawn, for which it waits. A frame that threw
-  // leaves both.
+  // An instance's of the last frame that was drawn, for which it waits; has_cuts(). A frame that
+  // threw leaves both.
   // Throws Error(unsupported) where the cut was on a device and a later frame threw.
   const std::pmr::vector<uint32_t>& cut(size_t instance = 0);
 
@@ -80,7 +89,8 @@ class View {
   void keep_cuts(bool read);
 
   Scenes scenes_;
-  FrameStreaming streaming_;
+  std::pmr::memory_resource* memory_;
+  std::unique_ptr<FrameStreaming> streaming_;
   PipelineDesc desc_;
   std::unique_ptr<Pipeline> pipeline_;
   std::vector<InstanceCut> cuts_;
@@ -89,6 +99,7 @@ class View {
   std::deque<UnderWay> under_way_;  // the oldest first
   bool ended_ = false;              // stats_ is a frame's
   uint64_t frames_ = 0;
+  bool drawn_ = false;   // a frame of these instances
   bool follows_ = true;  // no frame has failed since the last that succeeded
 };
 

@@ -18,15 +18,17 @@ Vec3f to_float(const Vec3d& v) {
 }  // namespace
 
 std::optional<Splat> project(const Scene& scene, const Camera& camera, const PipelineDesc& desc,
-                             const DrawItem& cut_item) {
+                             const InstanceLook& look, const DrawItem& cut_item) {
   const GaussianArrays arrays = gaussian_arrays(scene);
   const DrawItem item = drawn_item(cut_item, arrays.doubles);
   const Vec3f mean = interpolated_mean(arrays, item);
+  if (!is_inside(local_clip(look.clip, scene.origin), mean)) return std::nullopt;
   const Vec3f key = camera_relative(mean, scene.origin, camera.eye);
   const float z = view_depth(key, to_float(camera.world_to_view.row[2]));
   if (!(z > static_cast<float>(camera.near_z))) return std::nullopt;
 
   Shape<double> shape = interpolated_shape<double>(arrays, item);
+  fade(shape, double{look.opacity}, std::log(double{look.opacity}));
   const auto filter = pixel_filter<double>(scene, desc.antialias);
   if (filter.footprint > 0)
     shape.scale = widened(shape.scale, interpolated_footprint(arrays, item, filter.footprint));

@@ -1,5 +1,5 @@
 #pragma once
-// METHOD §5 and §12 in float64. The order of splats, the near plane and the
+// METHOD §5 and §12 in float64. The order of splats, the near plane, clip boxes and the
 // interpolated mean are binary32 by contract (§6).
 #include <optional>
 
@@ -19,8 +19,8 @@ struct Splat {
   float depth;
 };
 
-// camera: in the scene's coordinates.
+// camera: in the scene's coordinates. look: the instance's.
 std::optional<Splat> project(const Scene& scene, const Camera& camera, const PipelineDesc& desc,
-                             const DrawItem& cut_item);
+                             const InstanceLook& look, const DrawItem& cut_item);
 
 }  // namespace voyager::reference

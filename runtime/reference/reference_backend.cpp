@@ -59,13 +59,16 @@ class ReferencePipeline final : public HostPipeline {
     for (uint32_t eye = 0; eye < desc.eyes; ++eye) eyes_.emplace_back(memory);
   }
 
-  void search(const FrameInput& frame) override { instances_.update(frame, workers_); }
+  void set_scenes(const Scenes& scenes, std::span<const size_t> from) override {
+    instances_.set_scenes(scenes, from);
+  }
+  void search(const FrameInput& frame) override { instances_.update(frame); }
 
   void project(const FrameInput&) override {
     for (size_t eye = 0; eye < eyes_.size(); ++eye) {
       eyes_[eye].splats.resize(instances_.places());
       eyes_[eye].visible.assign(instances_.places(), 0);
-      for (const HostInstance& instance : instances_.all()) project(instance, eye);
+      for (const auto& instance : instances_.all()) project(*instance, eye);
     }
   }
 
@@ -131,8 +134,8 @@ class ReferencePipeline final : public HostPipeline {
     const auto& items = instance.draws.items();
     workers_.for_blocks(items.size(), kBlock, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i)
-        if (const auto splat =
-                reference::project(*instance.scene, instance.cameras[eye], desc_, items[i])) {
+        if (const auto splat = reference::project(*instance.scene, instance.cameras[eye], desc_,
+                                                  instance.look, items[i])) {
           of.splats[instance.first + i] = *splat;
           of.visible[instance.first + i] = 1;
         }

@@ -146,6 +146,14 @@ VOYAGER_HD Shape<T> interpolated_shape(const Arrays& arrays, const DrawItem& ite
   return shape;
 }
 
+// METHOD §6: what an instance's opacity makes of the Gaussian's. 1 changes no bit, 0 leaves
+// nothing.
+template <class T>
+VOYAGER_HD void fade(Shape<T>& shape, T opacity, T log_opacity) {
+  shape.opacity *= opacity;
+  shape.log_opacity += log_opacity;
+}
+
 // METHOD §12; largest: the scene's of level 0. Where all have that one, no code is read.
 template <class T, class Arrays>
 VOYAGER_HD T interpolated_footprint(const Arrays& arrays, const DrawItem& item, T largest) {

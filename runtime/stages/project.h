@@ -1,6 +1,7 @@
 #pragma once
 // METHOD §5–7 and §12 as a stage: one Gaussian to one splat, or to nothing.
 #include "runtime/math/alpha.h"
+#include "runtime/math/clip_box.h"
 #include "runtime/math/projection.h"
 #include "runtime/math/sort_key.h"
 #include "runtime/stages/interpolate.h"
@@ -17,6 +18,9 @@ struct ProjectParams {
   float half;           // ½, or ½·log2(e) for a base-2 exponential
   float log_scale;      // what turns natural logarithms into the conic's: 1 or log2(e)
   float log_threshold;  // log α*, natural
+  // The instance's. Who draws an item asks is_inside() first: it needs no more than the mean.
+  float opacity, log_opacity;  // natural
+  ClipBox<float> clip;         // scene-local
 };
 
 // A Gaussian in the image.
@@ -147,6 +151,7 @@ VOYAGER_HD bool read_gaussian(const ProjectParams& params, const Arrays& arrays,
                               const DrawItem& item, DrawnGaussian& drawn) {
   drawn.mean = interpolated_mean(arrays, item);
   drawn.shape = interpolated_shape<float>(arrays, item);
+  fade(drawn.shape, params.opacity, params.log_opacity);
   if (params.filter.footprint > 0.0f)
     drawn.shape.scale =
         widened(drawn.shape.scale, interpolated_footprint(arrays, item, params.filter.footprint));

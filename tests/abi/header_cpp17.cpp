@@ -48,6 +48,7 @@ VOY_TEST_TYPE(voyRecordVulkanRelease);
 VOY_TEST_TYPE(voyRenderFrame);
 VOY_TEST_TYPE(voyResultName);
 VOY_TEST_TYPE(voySetSceneMemoryBudget);
+VOY_TEST_TYPE(voySetViewInstances);
 VOY_TEST_TYPE(voySetViewTau);
 VOY_TEST_TYPE(voySetViewTimeBudget);
 VOY_TEST_TYPE(voyStageName);

@@ -88,7 +88,8 @@ TEST(Results, StructureTypesArePinned) {
                                   VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION,
                                   VOY_STRUCTURE_TYPE_EXPERIMENT,
                                   VOY_STRUCTURE_TYPE_EXPERIMENT_CAPABILITIES,
-                                  VOY_STRUCTURE_TYPE_EXPERIMENT_STATS};
+                                  VOY_STRUCTURE_TYPE_EXPERIMENT_STATS,
+                                  VOY_STRUCTURE_TYPE_INSTANCE};
   int number = 0;
   for (const VoyStructureType type : all) EXPECT_EQ(int{type}, ++number);
 }

@@ -140,6 +140,13 @@ TEST_F(StuckFrame, ASceneMayGo) {
   expect_abandoned();
 }
 
+TEST_F(StuckFrame, AListOfInstancesMayChange) {
+  module->idle = false;
+  EXPECT_EQ(voy.SetViewInstances(host->view, 0, nullptr), VOY_ERROR_DEVICE_LOST) << voy.message();
+  EXPECT_NE(voy.message().find("a frame in flight that never finishes"), std::string::npos);
+  expect_abandoned();
+}
+
 TEST_F(StuckFrame, ADeviceMayGoWithAll) {
   module->idle = false;
   expect_gone();

@@ -35,6 +35,9 @@ class Counted {
 class StuckPipeline final : public Pipeline {
  public:
   explicit StuckPipeline(std::unique_ptr<Pipeline> inner) : inner_(std::move(inner)) {}
+  void set_scenes(const Scenes& scenes, std::span<const size_t> from) override {
+    inner_->set_scenes(scenes, from);
+  }
   void draw(const FrameInput& frame, FrameStats& stats) override { inner_->draw(frame, stats); }
   void resolve(const FrameInput& frame, FrameStats& stats) override {
     inner_->resolve(frame, stats);

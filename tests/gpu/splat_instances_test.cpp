@@ -80,6 +80,110 @@ TEST_F(SplatInstances, PosedInstancesAreWhatTheOthersDraw) {
   against_reference.expect();
 }
 
+TEST_F(SplatInstances, FadedAndClippedOnesAreWhatTheOthersDraw) {
+  const auto tree = baked_scene(random_cloud(8000, 5, 3)),
+             compact = baked_scene(random_cloud(5000, 6, 1), Quality::compact);
+  const std::shared_ptr<const Scene> flat = flat_scene(random_cloud(3000, 7, 2));
+  const Scenes scenes{tree, flat, compact, tree};
+  Agreement against_cpu("looks, CUDA against the CPU"),
+      against_reference("looks, CUDA against the reference");
+  const auto own = view_of(*cuda, scenes), host = view_of(*cpu, scenes),
+             judge = view_of(*reference, scenes);
+  for (FrameInput input : varied_frames()) {
+    input.instances = {pose_of({0, 0, 0}), pose_of({2, 0, 1}, 30), pose_of({-3, 1, 0}, 40, 0.8),
+                       pose_of({0, 4, 2}, 50, 1.2)};
+    input.looks = {{0.4f, kNoClip},
+                   {1, {{-2, -1, -kNoLimit}, {3, kNoLimit, kNoLimit}}},
+                   {0.8f, {{-kNoLimit, -2, -3}, {kNoLimit, 2, 3}}},
+                   {0, kNoClip}};
+    const Frame found = render(*own, input);
+    against_cpu.add(found, render(*host, input));
+    against_reference.add(found, render(*judge, input));
+    expect_same_bits(found, draw_all(scenes, {}, input));
+  }
+  against_cpu.expect();
+  against_reference.expect();
+}
+
+// To the bit: a box of a flat scene against the scene of what is inside, opacity 1 and no box
+// against nothing said, opacity 0 against the others alone. With either splatting, one eye or two,
+// and whether or not tiles hide.
+TEST_F(SplatInstances, LooksThatChangeNothingChangeNoBit) {
+  const GaussianCloud cloud = random_cloud(20000, 8, 2);
+  const std::shared_ptr<const Scene> flat = flat_scene(cloud), tree = baked_scene(cloud);
+  const ClipBox<double> box{{-3, -kNoLimit, -2}, {4, 2, kNoLimit}};
+  const auto inside = flat_scene(cloud);
+  size_t kept = 0;
+  const size_t each = 3 * static_cast<size_t>(inside->coefficients());
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    if (!is_inside(local_clip(box, inside->origin), inside->gaussians[i].mean)) continue;
+    inside->gaussians[kept] = inside->gaussians[i];
+    for (size_t k = 0; k < each; ++k) inside->sh[kept * each + k] = inside->sh[i * each + k];
+    ++kept;
+  }
+  inside->gaussians.resize(kept), inside->sh.resize(kept * each);
+  ASSERT_LT(kept, cloud.size());
+  for (const PipelineDesc& desc :
+       {PipelineDesc{.occlusion = Occlusion::off}, PipelineDesc{.occlusion = Occlusion::on},
+        PipelineDesc{.splatting = Splatting::baseline_3dgs}}) {
+    const auto clipped = view_of(*cuda, {flat}, desc), made = view_of(*cuda, {inside}, desc),
+               two = view_of(*cuda, {tree, flat}, desc), one = view_of(*cuda, {flat}, desc);
+    for (const FrameInput& input : varied_frames()) {
+      FrameInput looks = input;
+      looks.looks = {{1, box}};
+      expect_same_bits(render(*made, input), render(*clipped, looks));
+      const Frame plain = render(*two, input);
+      looks.looks = {{}, {}};
+      expect_same_bits(plain, render(*two, looks));
+      looks.looks[0].opacity = 0;
+      expect_same_bits(render(*one, input), render(*two, looks));
+    }
+  }
+}
+
+// An instance goes on with its search; what comes is searched anew.
+TEST_F(SplatInstances, ListsThatChangeDrawAsViewsMadeOfThem) {
+  const auto a = baked_scene(random_cloud(50000, 13, 0)),
+             b = baked_scene(random_cloud(3000, 14, 1));
+  const std::shared_ptr<const Scene> flat = flat_scene(random_cloud(700, 15, 0));
+  const Scenes lists[] = {{a}, {flat, a, b}, {b, a}, {}, {a, a}, {a}};
+  for (const PipelineDesc& desc :
+       {PipelineDesc{}, PipelineDesc{.search = Search::exhaustive},
+        PipelineDesc{.search = Search::fastest}, PipelineDesc{.occlusion = Occlusion::on},
+        PipelineDesc{.splatting = Splatting::baseline_3dgs}}) {
+    const auto view = view_of(*cuda, {a, b}, desc);
+    const FrameInput input = varied_frames()[1];
+    render(*view, input);
+    const std::vector<uint32_t> of_a = cut_of(*view, 0), of_b = cut_of(*view, 1);
+    const uint64_t entered[] = {0, of_b.size(), 0, 0, 2 * of_a.size(), 0};
+    for (size_t i = 0; i < std::size(lists); ++i) {
+      view->set_scenes(lists[i]);
+      const Frame found = render(*view, input);
+      EXPECT_EQ(found.stats.entered, entered[i]) << i;
+      expect_same_bits(draw_all(lists[i], desc, input), found);
+      for (size_t k = 0; k < lists[i].size(); ++k)
+        if (lists[i][k] == a) {
+          EXPECT_EQ(cut_of(*view, k), of_a) << i;
+        }
+    }
+  }
+}
+
+TEST_F(SplatInstances, WhatGoesGivesBackItsMemory) {
+  const auto a = baked_scene(random_cloud(20000, 13, 0));
+  const FrameInput input = varied_frames()[2];
+  const auto view = view_of(*cuda, {a});
+  render(*view, input);
+  const auto bytes_of = [&](size_t count) {
+    view->set_scenes(Scenes(count, a));
+    render(*view, input);
+    return static_cast<double>(cuda::buffer_bytes);
+  };
+  const double one = bytes_of(1), eight = bytes_of(8), after = bytes_of(1);
+  EXPECT_GT(eight, one);
+  EXPECT_LT(after, one + (eight - one) / 4);
+}
+
 TEST_F(SplatInstances, APosedInstanceIsTheInverseCameraMove) {
   const Scenes scene{baked_scene(random_cloud(20000, 8, 3))};
   for (const Splatting splatting : kSplattings) {

@@ -44,7 +44,8 @@ TEST_F(Hostile, ViewSizesAndChoices) {
     return create_view(desc);
   };
   EXPECT_EQ(with([](VoyViewDesc&) {}), VOY_SUCCESS) << voy.message();
-  expect_invalid(with([](VoyViewDesc& d) { d.instanceCount = 0; }), "instanceCount");
+  EXPECT_EQ(with([](VoyViewDesc& d) { d.instanceCount = 0, d.scenes = nullptr; }), VOY_SUCCESS)
+      << voy.message();
   expect_invalid(with([](VoyViewDesc& d) { d.scenes = nullptr; }), "scenes");
   for (const uint32_t count : {65u, UINT32_MAX})
     expect_refused(with([&](VoyViewDesc& d) { d.instanceCount = count, d.scenes = nullptr; }),
@@ -214,6 +215,63 @@ TEST_F(Hostile, Frames) {
   instance.scale = 1e-9;
   instance.pose.position[1] = 1e17;
   expect_invalid(with_instance(), "in instance 0");
+}
+
+TEST_F(Hostile, Instances) {
+  ASSERT_EQ(host.render(), VOY_SUCCESS);
+  const std::vector<float> image = host.pixels;
+  const auto with = [&](auto&& change) {
+    VoyInstance instance = VOY_INSTANCE_INIT;
+    instance.scene = host.scene;
+    change(instance);
+    return voy.SetViewInstances(host.view, 1, &instance);
+  };
+  using I = VoyInstance;
+  EXPECT_EQ(with([](I&) {}), VOY_SUCCESS) << voy.message();
+  for (const double scale : {0.0, -1.0, 9e-10, 1.1e9, kNan, kInf})
+    expect_invalid(with([&](I& i) { i.scale = scale; }), "instances[0].scale: found");
+  for (const double bad : {kNan, kInf, -1e18})
+    expect_invalid(with([&](I& i) { i.pose.position[1] = bad; }), "instances[0].pose.position");
+  for (const double bad : {kNan, kInf})
+    expect_invalid(with([&](I& i) { i.pose.orientation[2] = bad; }), "pose.orientation");
+  expect_invalid(with([](I& i) { i.pose.orientation[3] = 0; }), "found zero, expected a rotation");
+  for (const double bad : {-1e-6, 1.000001, kNan, kInf, -kInf})
+    expect_invalid(with([&](I& i) { i.opacity = static_cast<float>(bad); }),
+                   "instances[0].opacity: found");
+  for (int axis = 0; axis < 3; ++axis) {
+    expect_invalid(with([&](I& i) { i.clipMin[axis] = kNan; }), "instances[0].clipMin[");
+    expect_invalid(with([&](I& i) { i.clipMax[axis] = kNan; }), "instances[0].clipMax[");
+    expect_invalid(with([&](I& i) { i.clipMin[axis] = 2, i.clipMax[axis] = 1.999999; }),
+                   "found 1.999999, expected a number >= clipMin[");
+    expect_invalid(with([&](I& i) { i.clipMin[axis] = kInf; }), "clipMax");
+  }
+  expect_invalid(with([](I& i) { i.reserved = 1; }), "instances[0].reserved");
+  for (const int type : {0, 13, 39, 41, -1, INT32_MAX})
+    expect_refused(with([&](I& i) { i.type = bad_enum<VoyStructureType>(type); }),
+                   VOY_ERROR_INVALID_STRUCTURE, "instances[0].type");
+  expect_refused(with([&](I& i) { i.next = &i; }), VOY_ERROR_INVALID_STRUCTURE, "next");
+  expect_refused(with([](I& i) { i.scene = nullptr; }), VOY_ERROR_INVALID_HANDLE, "");
+  expect_invalid(voy.SetViewInstances(host.view, 1, nullptr), "instances");
+  for (const uint32_t count : {65u, UINT32_MAX})
+    expect_refused(voy.SetViewInstances(host.view, count, nullptr), VOY_ERROR_UNSUPPORTED,
+                   "count: found");
+  EXPECT_EQ(voy.SetViewInstances(nullptr, 0, nullptr), VOY_ERROR_INVALID_HANDLE);
+  Host other(voy);
+  expect_invalid(with([&](I& i) { i.scene = other.scene; }),
+                 "instances[0].scene: found a scene of another device");
+  ASSERT_EQ(host.render(), VOY_SUCCESS);
+  EXPECT_EQ(host.pixels, image) << "a refused list changed the view";
+  // What is allowed, to its ends.
+  EXPECT_EQ(with([](I& i) { i.opacity = 0; }), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(with([](I& i) { i.opacity = 1e-45f; }), VOY_SUCCESS) << voy.message();
+  EXPECT_EQ(host.render(), VOY_SUCCESS) << voy.message();
+  for (const double limit : {-kInf, -DBL_MAX, 0.0, DBL_MAX, kInf}) {
+    EXPECT_EQ(with([&](I& i) { i.clipMin[0] = i.clipMax[0] = limit; }), VOY_SUCCESS);
+    EXPECT_EQ(host.render(), VOY_SUCCESS) << voy.message();
+  }
+  EXPECT_EQ(with([](I& i) { i.clipMin[1] = -DBL_MAX, i.clipMax[1] = kInf; }), VOY_SUCCESS);
+  ASSERT_EQ(host.render(), VOY_SUCCESS);
+  EXPECT_EQ(host.pixels, image);
 }
 
 TEST_F(Hostile, TargetLargerThanTheView) {

@@ -14,6 +14,7 @@
   X(CreateDevice) X(DestroyDevice) X(GetCapabilities) X(OpenScene) \
   X(CloseScene) X(GetSceneInfo) X(GetSceneNotes) X(CreateTarget) \
   X(DestroyTarget) X(CreateView) X(DestroyView) X(SetViewTau) X(SetViewTimeBudget) \
+  X(SetViewInstances) \
   X(FrustumFromAngles) X(FrustumFromIntrinsics) X(FrustumFromProjection) \
   X(PoseFromWorldMatrix) X(PoseFromViewMatrix) X(RenderFrame) X(GetViewCut) \
   X(GetFrameStats) X(StageName) X(SetSceneMemoryBudget) X(GetStreamingStats) \

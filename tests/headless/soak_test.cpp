@@ -119,6 +119,7 @@ class Viewer {
     if (dice_.one_in(40)) return make_anew();
     if (dice_.one_in(20)) jump();
     if (dice_.one_in(30)) set_level_of_detail();
+    if (dice_.one_in(15)) change_instances();
     if (dice_.one_in(60)) return stand_still();
     position_[0] += dice_.between(-0.3, 0.3);
     yaw_ += dice_.between(-0.05, 0.05);
@@ -128,7 +129,33 @@ class Viewer {
   int compared() const { return compared_; }
 
  private:
+  // Other scenes, or the same ones looking different. A view whose scene was closed goes on.
+  void change_instances() {
+    if (dice_.one_in(2)) {
+      count_ = dice_.below(shown_.size() + 1);
+      for (size_t& shown : shown_) shown = dice_.below(kGaussians.size());
+    }
+    for (VoyInstance& look : looks_) {
+      look = VOY_INSTANCE_INIT;
+      look.pose.position[1] = dice_.between(-2, 2);
+      if (dice_.one_in(2)) look.opacity = static_cast<float>(dice_.between(0, 1));
+      if (dice_.one_in(2)) look.clipMin[0] = dice_.between(-20, 0);
+    }
+    VoyResult result = VOY_ERROR_INVALID_HANDLE;  // a scene may be closed between the two calls
+    while (result == VOY_ERROR_INVALID_HANDLE) {
+      std::array<VoyScene, 2> shown{};
+      for (size_t i = 0; i < count_; ++i) shown[i] = scenes_.streamed(shown_[i]);
+      result = set_instances(view_, shown);
+    }
+    EXPECT_EQ(result, VOY_SUCCESS) << voy_.message();
+  }
+  VoyResult set_instances(VoyView view, const std::array<VoyScene, 2>& shown) const {
+    std::array<VoyInstance, 2> list = looks_;
+    for (size_t i = 0; i < count_; ++i) list[i].scene = shown[i];
+    return voy_.SetViewInstances(view, static_cast<uint32_t>(count_), list.data());
+  }
   void make_view() {
+    looks_.fill(VoyInstance VOY_INSTANCE_INIT);
     EXPECT_EQ(voy_.DestroyView(view_), VOY_SUCCESS) << voy_.message();
     view_ = nullptr;
     // A scene may be closed between the two calls.
@@ -202,6 +229,7 @@ class Viewer {
     const VoyTarget target = target_of(expected);
     VoyView view = nullptr;
     ASSERT_EQ(create_view(shown, view), VOY_SUCCESS) << voy_.message();
+    ASSERT_EQ(set_instances(view, shown), VOY_SUCCESS) << voy_.message();
     EXPECT_EQ(draw(view, target, 0), VOY_SUCCESS);
     EXPECT_TRUE(pixels_ == expected) << width_ << "x" << height_ << ", tau " << tau_;
     EXPECT_EQ(voy_.DestroyView(view), VOY_SUCCESS) << voy_.message();
@@ -219,6 +247,7 @@ class Viewer {
   uint32_t width_ = 0, height_ = 0;
   size_t count_ = 0;
   std::array<size_t, 2> shown_{};  // of Scenes
+  std::array<VoyInstance, 2> looks_{};
   std::array<double, 3> position_{0, 0, 12};
   double yaw_ = 0, tau_ = 1;
   int drawn_ = 0, compared_ = 0;

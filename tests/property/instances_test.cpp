@@ -227,6 +227,101 @@ TEST_F(Instances, EachHasTheCutThatItHasByItself) {
   }
 }
 
+// A flat scene whose Gaussians have the opacity, and lack those outside the box.
+std::shared_ptr<Scene> made_as(const GaussianCloud& cloud, const InstanceLook& look) {
+  const auto scene = test::flat_scene(cloud);
+  const ClipBox<float> box = local_clip(look.clip, scene->origin);
+  const size_t each = 3 * static_cast<size_t>(scene->coefficients());
+  size_t kept = 0;
+  for (size_t i = 0; i < scene->gaussians.size(); ++i) {
+    Gaussian g = scene->gaussians[i];
+    if (!is_inside(box, g.mean)) continue;
+    g.opacity *= look.opacity, g.log_opacity += std::log(look.opacity);
+    scene->gaussians[kept] = g;
+    std::copy_n(scene->sh.begin() + static_cast<std::ptrdiff_t>(i * each), each,
+                scene->sh.begin() + static_cast<std::ptrdiff_t>(kept++ * each));
+  }
+  scene->gaussians.resize(kept), scene->sh.resize(kept * each);
+  return scene;
+}
+
+TEST_F(Instances, AFadedAndClippedSceneIsOneMadeSo) {
+  const GaussianCloud cloud = test::random_cloud(5000, 30, 2);
+  const Scenes whole{test::flat_scene(cloud)};
+  InstanceLook looks[] = {
+      {0.5f, kNoClip}, {1, {{-2, -1, -kNoLimit}, {4, kNoLimit, 3}}}, {0.07f, {}}};
+  looks[2].clip = {{-9, -9, -9}, {9, 9, 2}};
+  for (const Antialias antialias : {Antialias::on, Antialias::off})
+    for (const InstanceLook& look : looks)
+      for (FrameInput input : {kOutside, kInside}) {
+        const PipelineDesc desc{.antialias = antialias};
+        const Scenes made{made_as(cloud, look)};
+        ASSERT_LE(made[0]->gaussians.size(), cloud.size());
+        const Frame expected = render(*cpu, made, desc, input),
+                    judged = render(*reference, made, desc, input);
+        input.looks = {look};
+        expect_same_bits(expected, render(*cpu, whole, desc, input));
+        // The reference multiplies in double what is rounded in the other scene.
+        EXPECT_GE(compare(judged, render(*reference, whole, desc, input)).psnr, 100);
+      }
+}
+
+// Nodes and blended nodes, compact and not.
+TEST_F(Instances, FadedAndClippedTreesAgreeWithTheReference) {
+  const GaussianCloud cloud = test::random_cloud(3000, 31, 1);
+  for (const Quality quality : {Quality::lossless, Quality::compact}) {
+    const Scenes scenes(2, test::baked_scene(cloud, quality));
+    View host = view(*cpu, scenes), judge = view(*reference, scenes);
+    for (const double tau : {0.5, 4.0, 12.0}) {
+      FrameInput input = kOutside;
+      input.tau = tau;
+      const Frame plain = render(host, input);
+      input.instances = {pose_of({1, 0, 0}, 20), pose_of({-1, 2, 0}, 70, 1.3)};
+      input.looks = {{0.45f, {{-3, -kNoLimit, -2}, {2, 1, kNoLimit}}}, {0.8f, kNoClip}};
+      const Frame found = render(host, input);
+      EXPECT_GE(compare(found, render(judge, input)).psnr, 60) << tau;
+      EXPECT_EQ(cut_of(host, 0), cut_of(judge, 0));
+      EXPECT_GT(compare(found, plain).largest, 0.1);
+      // With 1, 0 and no box: as it is, and not at all.
+      input.looks.assign(2, {});
+      FrameInput none = input, gone = input;
+      none.looks.clear(), gone.looks[0].opacity = 0;
+      expect_same_bits(render(host, none), render(host, input));
+      const Frame without = render(host, gone);
+      FrameInput other = gone;
+      other.instances = {gone.instances[1]}, other.looks = {gone.looks[1]};
+      expect_same_bits(render(*cpu, Scenes{scenes[1]}, {}, other), without);
+    }
+  }
+}
+
+// An instance goes on with its search, whatever comes, goes and changes its place.
+TEST_F(Instances, ListsThatChangeKeepWhatTheirSearchesKnow) {
+  const auto a = test::baked_scene(test::random_cloud(5000, 13, 0)),
+             b = test::baked_scene(test::random_cloud(3000, 14, 1));
+  const std::shared_ptr<const Scene> flat = test::flat_scene(test::random_cloud(700, 15, 0));
+  const Scenes lists[] = {{a}, {flat, a, b}, {b, a}, {}, {a, a}, {a}};
+  const FrameInput input = frame_input(look({3, -6, -24}, {0.5, 0, 0}, 60, 40), 10);
+  for (const auto* backend : backends) {
+    View view = this->view(**backend, {a, b});
+    render(view, input);
+    const std::vector<uint32_t> of_a = cut_of(view, 0), of_b = cut_of(view, 1);
+    const uint64_t entered[] = {0, of_b.size(), 0, 0, 2 * of_a.size(), 0};
+    for (size_t i = 0; i < std::size(lists); ++i) {
+      view.set_scenes(lists[i]);
+      EXPECT_FALSE(view.has_cuts());
+      const Frame found = render(view, input);
+      expect_same_bits(render(**backend, lists[i], {}, input), found);
+      EXPECT_EQ(found.stats.entered, entered[i]) << i;
+      EXPECT_EQ(found.stats.frame_index, i + 1);
+      for (size_t k = 0; k < lists[i].size(); ++k)
+        if (lists[i][k] == a) {
+          EXPECT_EQ(cut_of(view, k), of_a) << i;
+        }
+    }
+  }
+}
+
 TEST_F(Instances, DoNotDependOnThreadsOrEarlierFrames) {
   const Scenes scenes{test::baked_scene(test::random_cloud(12000, 16, 1)),
                       test::flat_scene(test::random_cloud(5000, 17, 2))};

@@ -109,7 +109,7 @@ inline Frame render(View& view, const FrameInput& input) {
   image.depth_pitch = size_t{4} * frame.width;
   view.render(input, image);
   frame.stats = view.stats();
-  frame.cut.assign(view.cut().begin(), view.cut().end());
+  if (view.instances() > 0) frame.cut.assign(view.cut().begin(), view.cut().end());
   return frame;
 }
 

@@ -168,6 +168,11 @@ class View : public Handle<VoyView, voyDestroyView> {
   Done set_time_budget(const VoyTimeBudget& budget) {
     return detail::done(voySetViewTimeBudget(get(), &budget));
   }
+  // Elements start as VoyInstance VOY_INSTANCE_INIT.
+  Done set_instances(const std::vector<VoyInstance>& instances) {
+    return detail::done(voySetViewInstances(get(), static_cast<uint32_t>(instances.size()),
+                                            instances.empty() ? nullptr : instances.data()));
+  }
   Done render(const VoyFrame& frame) { return detail::done(voyRenderFrame(get(), &frame)); }
   // The node ids of the instance's cut in the last frame, in ascending order.
   Returned<std::vector<uint32_t>> cut(uint32_t instance = 0) const {

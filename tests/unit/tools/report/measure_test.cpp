@@ -28,6 +28,9 @@ class ScriptedPipeline final : public Pipeline {
  public:
   ScriptedPipeline(std::unique_ptr<Pipeline> inner, Script& script)
       : inner_(std::move(inner)), script_(script) {}
+  void set_scenes(const Scenes& scenes, std::span<const size_t> from) override {
+    inner_->set_scenes(scenes, from);
+  }
   void draw(const FrameInput& frame, FrameStats& stats) override { inner_->draw(frame, stats); }
   void resolve(const FrameInput& frame, FrameStats& stats) override {
     inner_->resolve(frame, stats);
