@@ -19,13 +19,14 @@ struct InstanceList {
 
 ClipBox<double> clip_box(const VoyInstance& instance, const std::string& field) {
   ClipBox<double> box;
+  const auto check = [&](const char* limit, int axis, double found, bool right,
+                         const std::string& expected) {
+    if (!right) refuse_number(field + limit + "[" + std::to_string(axis) + "]", found, expected);
+  };
   for (int i = 0; i < 3; ++i) {
-    const std::string axis = "[" + std::to_string(i) + "]";
     const double least = instance.clipMin[i], greatest = instance.clipMax[i];
-    if (std::isnan(least))
-      refuse_number(field + ".clipMin" + axis, least, "a number or an infinity");
-    if (!(greatest >= least))
-      refuse_number(field + ".clipMax" + axis, greatest, "a number >= clipMin" + axis);
+    check(".clipMin", i, least, !std::isnan(least), "a number or an infinity");
+    check(".clipMax", i, greatest, greatest >= least, "a number >= clipMin");
     box.least[i] = least;
     box.greatest[i] = greatest;
   }

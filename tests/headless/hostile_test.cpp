@@ -242,7 +242,7 @@ TEST_F(Hostile, Instances) {
     expect_invalid(with([&](I& i) { i.clipMin[axis] = kNan; }), "instances[0].clipMin[");
     expect_invalid(with([&](I& i) { i.clipMax[axis] = kNan; }), "instances[0].clipMax[");
     expect_invalid(with([&](I& i) { i.clipMin[axis] = 2, i.clipMax[axis] = 1.999999; }),
-                   "found 1.999999, expected a number >= clipMin[");
+                   "found 1.999999, expected a number >= clipMin");
     expect_invalid(with([&](I& i) { i.clipMin[axis] = kInf; }), "clipMax");
   }
   expect_invalid(with([](I& i) { i.reserved = 1; }), "instances[0].reserved");
