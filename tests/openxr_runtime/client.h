@@ -133,8 +133,7 @@ class Client {
   }
 
   XrResult begin_session() {
-    const XrSessionBeginInfo info = {XR_TYPE_SESSION_BEGIN_INFO, nullptr,
-                                     XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
+    const XrSessionBeginInfo info = {XR_TYPE_SESSION_BEGIN_INFO, nullptr, configuration};
     return xrBeginSession(session, &info);
   }
   // Every event that waits.
@@ -154,13 +153,12 @@ class Client {
   }
   XrResult begin() { return xrBeginFrame(session, nullptr); }
   XrResult locate() {
-    const XrViewLocateInfo info = {XR_TYPE_VIEW_LOCATE_INFO, nullptr,
-                                   XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO,
+    const XrViewLocateInfo info = {XR_TYPE_VIEW_LOCATE_INFO, nullptr, configuration,
                                    frame.predictedDisplayTime, space};
     view_state = typed<XrViewState>(XR_TYPE_VIEW_STATE);
-    views[0] = views[1] = typed<XrView>(XR_TYPE_VIEW);
+    for (XrView& view : views) view = typed<XrView>(XR_TYPE_VIEW);
     uint32_t count = 0;
-    return xrLocateViews(session, &info, &view_state, 2, &count, views);
+    return xrLocateViews(session, &info, &view_state, view_count(), &count, views);
   }
 
   XrResult acquire(XrSwapchain swapchain, uint32_t& index) {
@@ -207,24 +205,27 @@ class Client {
     ASSERT_EQ(release(depth), XR_SUCCESS);
   }
 
+  uint32_t view_count() const {
+    return configuration == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO ? 4 : 2;
+  }
   // The layer of the views located last; tests alter it before end().
   void make_layer() {
-    for (uint32_t eye = 0; eye < 2; ++eye) {
+    for (uint32_t i = 0; i < view_count(); ++i) {
       const XrRect2Di whole = {{0, 0}, {int32_t{kWidth}, int32_t{kHeight}}};
-      depth_info[eye] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR,
-                         nullptr,
-                         {depth, whole, eye},
-                         0,
-                         1,
-                         0.1f,
-                         INFINITY};
-      layer_views[eye] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
-                          with_depth ? &depth_info[eye] : nullptr,
-                          views[eye].pose,
-                          views[eye].fov,
-                          {colour, whole, eye}};
+      depth_info[i] = {XR_TYPE_COMPOSITION_LAYER_DEPTH_INFO_KHR,
+                       nullptr,
+                       {depth, whole, i % 2},
+                       0,
+                       1,
+                       0.1f,
+                       INFINITY};
+      layer_views[i] = {XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW,
+                        with_depth ? &depth_info[i] : nullptr,
+                        views[i].pose,
+                        views[i].fov,
+                        {colour, whole, i % 2}};
     }
-    layer = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, 2, layer_views};
+    layer = {XR_TYPE_COMPOSITION_LAYER_PROJECTION, nullptr, 0, space, view_count(), layer_views};
   }
   XrResult end(bool with_layer) {
     const XrCompositionLayerBaseHeader* layers[] = {
@@ -273,14 +274,15 @@ class Client {
   XrSwapchain colour = XR_NULL_HANDLE, depth = XR_NULL_HANDLE;
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
   bool running = false;
+  XrViewConfigurationType configuration = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
   std::vector<XrStructureType> events;
   XrFrameState frame = {};
   XrViewState view_state = {};
-  XrView views[2] = {};
+  XrView views[4] = {};
   VkClearColorValue paint[2] = {{{0.2f, 0.4f, 0.6f, 1}}, {{1, 0, 0.8f, 1}}};
   bool with_depth = true;
-  XrCompositionLayerDepthInfoKHR depth_info[2] = {};
-  XrCompositionLayerProjectionView layer_views[2] = {};
+  XrCompositionLayerDepthInfoKHR depth_info[4] = {};
+  XrCompositionLayerProjectionView layer_views[4] = {};
   XrCompositionLayerProjection layer = {};
 };
 

@@ -38,6 +38,8 @@ constexpr BadScript kBad[] = {
     {"NoSize", R"({"recommended": [0, 5]})", "recommended: found an array of 2, expected [width"},
     {"TooLarge", R"({"recommended": [5000, 5]})",
      "recommended: found an array of 2, expected no more"},
+    {"ThreeSizes", R"({"recommended": [[9, 9], [9, 9], [9, 9]]})",
+     "recommended: found an array of 3, expected one size, or those of 2 or 4 views"},
     {"Format", R"({"formats": ["RGB"]})",
      "formats: found an array of 1, expected an array of R8G8B8A8"},
     {"Vulkan", R"({"vulkan": [1, 0, 1, 0.5]})", "vulkan: found an array of 4, expected [major"},

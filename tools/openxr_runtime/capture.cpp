@@ -32,13 +32,14 @@ nlohmann::ordered_json Capture::camera(const ViewImage& view, const std::string&
           {"cy", up * fy}};
 }
 
-nlohmann::ordered_json Capture::add(const std::array<ViewImage, 2>& views, int64_t frame,
+nlohmann::ordered_json Capture::add(const std::vector<ViewImage>& views, int64_t frame,
                                     XrTime time) {
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
-  for (size_t eye = 0; eye < 2; ++eye) {
-    const ViewImage& view = views[eye];
+  constexpr const char* kViews[] = {"L", "R", "L_inner", "R_inner"};
+  for (size_t i = 0; i < views.size(); ++i) {
+    const ViewImage& view = views[i];
     char name[32];
-    std::snprintf(name, sizeof name, "%04d_%c", count_, eye == 0 ? 'L' : 'R');
+    std::snprintf(name, sizeof name, "%04d_%s", count_, kViews[i]);
     const std::string path = folder_ + "/" + name;
     write_png(path + ".png", static_cast<uint32_t>(view.extent.width),
               static_cast<uint32_t>(view.extent.height), view.rgb);

@@ -1,7 +1,7 @@
 #pragma once
-// The frames that the application showed, as files: NNNN_L.png, NNNN_R.png, depth where it gave
-// some, and a cameras.json of the poses and fields of view that it showed them with.
-#include <array>
+// The frames that the application showed, as files: NNNN_L.png, NNNN_R.png, with quad views
+// NNNN_L_inner.png and NNNN_R_inner.png, depth where it gave some, and a cameras.json of the poses
+// and fields of view that it showed them with.
 #include <string>
 #include <vector>
 
@@ -25,7 +25,7 @@ class Capture {
 
   bool wants(int64_t frame) const { return !folder_.empty() && contains(frames_, frame); }
   // Writes the images, and gives the report's entry.
-  nlohmann::ordered_json add(const std::array<ViewImage, 2>& views, int64_t frame, XrTime time);
+  nlohmann::ordered_json add(const std::vector<ViewImage>& views, int64_t frame, XrTime time);
   void write_cameras() const;
 
  private:

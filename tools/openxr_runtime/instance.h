@@ -36,7 +36,10 @@ struct Instance final : Object {
 // The live one of this handle; refused once it is lost.
 Instance& find_instance(XrInstance handle);
 void check_system(XrSystemId system);
-void check_view_configuration(XrViewConfigurationType type);
+// Of those that the instance's extensions allow.
+void check_view_configuration(const Instance& instance, XrViewConfigurationType type);
+// How many views it has, in the order left, right, left inner, right inner.
+uint32_t view_count(XrViewConfigurationType type);
 
 template <class Data>
 void queue_event(Instance& instance, const Data& data) {

@@ -67,13 +67,15 @@ const XrCompositionLayerDepthInfoKHR* check_depth(const Session& session, const 
 
 void check_projection(const Session& session, const XrCompositionLayerProjection& layer,
                       const std::string& name) {
-  if (layer.viewCount != 2)
-    violation(XR_ERROR_VALIDATION_FAILURE,
-              name + ".viewCount: found " + std::to_string(layer.viewCount) + ", expected 2");
+  const uint32_t count = view_count(session.configuration);
+  if (layer.viewCount != count)
+    violation(XR_ERROR_VALIDATION_FAILURE, name + ".viewCount: found " +
+                                               std::to_string(layer.viewCount) + ", expected " +
+                                               std::to_string(count));
   checked_pointer(layer.views, (name + ".views").c_str());
-  for (uint32_t eye = 0; eye < 2; ++eye) {
-    const XrCompositionLayerProjectionView& view = layer.views[eye];
-    const std::string view_name = name + ".views[" + std::to_string(eye) + "]";
+  for (uint32_t i = 0; i < count; ++i) {
+    const XrCompositionLayerProjectionView& view = layer.views[i];
+    const std::string view_name = name + ".views[" + std::to_string(i) + "]";
     checked(&view, XR_TYPE_COMPOSITION_LAYER_PROJECTION_VIEW, view_name.c_str());
     check_pose(view.pose, view_name + ".pose");
     check_fov(view.fov, view_name + ".fov");
@@ -110,17 +112,17 @@ const XrCompositionLayerProjection* check_layer(const Session& session,
 }
 
 // One release, one frame: else the same picture is shown under another pose.
-void use_release(const XrSwapchainSubImage& sub, uint32_t eye) {
+void use_release(const XrSwapchainSubImage& sub, uint32_t view) {
   Swapchain& swapchain = context().handles.find<Swapchain>(sub.swapchain, "swapchain");
-  if (swapchain.releases == swapchain.used_release && eye == 0 &&
+  if (swapchain.releases == swapchain.used_release && view == 0 &&
       !(swapchain.info.createFlags & XR_SWAPCHAIN_CREATE_STATIC_IMAGE_BIT))
     remark("an image released for an earlier frame is shown again");
   swapchain.used_release = swapchain.releases;
 }
 
-ViewImage read_view(const Session& session, const XrCompositionLayerProjection& layer, uint32_t eye,
-                    XrTime time) {
-  const XrCompositionLayerProjectionView& view = layer.views[eye];
+ViewImage read_view(const Session& session, const XrCompositionLayerProjection& layer,
+                    uint32_t index, XrTime time) {
+  const XrCompositionLayerProjectionView& view = layer.views[index];
   ViewImage image;
   image.in_root = locate(find_space(layer.space, "space"), time).in_root * from_xr(view.pose);
   image.fov = view.fov;
@@ -145,12 +147,12 @@ void end_with_layers(Session& session, const Frame& frame, const XrFrameEndInfo&
   }
   if (!first) return;
   run().report.count("frames_with_projection");
-  for (uint32_t eye = 0; eye < 2; ++eye) use_release(first->views[eye].subImage, eye);
+  for (uint32_t i = 0; i < first->viewCount; ++i) use_release(first->views[i].subImage, i);
   if (!run().capture.wants(frame.number)) return;
-  const ViewImage left = read_view(session, *first, 0, info.displayTime);
-  const ViewImage right = read_view(session, *first, 1, info.displayTime);
-  run().report.add_to("captures",
-                      run().capture.add({left, right}, frame.number, frame.display_time));
+  std::vector<ViewImage> views;
+  for (uint32_t i = 0; i < first->viewCount; ++i)
+    views.push_back(read_view(session, *first, i, info.displayTime));
+  run().report.add_to("captures", run().capture.add(views, frame.number, frame.display_time));
 }
 
 }  // namespace test_runtime

@@ -45,6 +45,13 @@ Pose Head::centre() const {
   return {eyes[0].pose.orientation, (eyes[0].pose.position + eyes[1].pose.position) / 2};
 }
 
+Eye Head::view(size_t index) const {
+  Eye eye = eyes[index % 2];
+  if (index < 2) return eye;
+  for (double* tangent : {&eye.left, &eye.right, &eye.up, &eye.down}) *tangent *= kInner;
+  return eye;
+}
+
 Motion built_in_motion() {
   Motion motion;
   for (int i = 0; i < kPairs; ++i) {

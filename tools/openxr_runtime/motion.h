@@ -15,9 +15,14 @@ struct Eye {
   XrFovf fov() const;
 };
 
+inline constexpr double kInner = 0.375;
+
 struct Head {
   std::array<Eye, 2> eyes;
   Pose centre() const;  // what VIEW is: between the eyes, turned as the left one
+  // Of left, right, left inner, right inner: an inner view is its eye, and sees kInner of each
+  // tangent.
+  Eye view(size_t index) const;
 };
 
 using Motion = std::vector<Head>;

@@ -59,9 +59,12 @@ void read_sizes(const Reader& json, Script& script) {
   if (json.has("maximum")) script.maximum = extent(json, "maximum", json.field("maximum"));
   if (json.has("recommended")) {
     const Json& value = json.field("recommended");
-    const bool each = value.is_array() && value.size() == 2 && value[0].is_array();
-    for (size_t eye = 0; eye < 2; ++eye)
-      script.recommended[eye] = extent(json, "recommended", each ? value[eye] : value);
+    const bool each = value.is_array() && !value.empty() && value[0].is_array();
+    if (each && value.size() != 2 && value.size() != 4)
+      json.refuse("recommended", "one size, or those of 2 or 4 views");
+    for (size_t view = 0; view < 4; ++view)
+      script.recommended[view] =
+          extent(json, "recommended", each ? value[view % value.size()] : value);
   }
   for (const XrExtent2Di& size : script.recommended)
     if (size.width > script.maximum.width || size.height > script.maximum.height)

@@ -43,7 +43,8 @@ struct Script {
   std::string path;  // "" without one
   Motion motion;     // in LOCAL, as it is before any recentring
   Pose local_in_scene;
-  XrExtent2Di recommended[2] = {{512, 544}, {512, 544}};
+  // Left, right, left inner, right inner.
+  XrExtent2Di recommended[4] = {{512, 544}, {512, 544}, {512, 544}, {512, 544}};
   XrExtent2Di maximum = {4096, 4096};
   std::vector<int64_t> formats;
   std::vector<std::string> extensions;

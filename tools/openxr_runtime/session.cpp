@@ -87,12 +87,13 @@ XrResult xrBeginSession(XrSession handle, const XrSessionBeginInfo* info) {
   return call(__func__, [&](auto&) {
     Session& session = find_session(handle);
     checked(info, XR_TYPE_SESSION_BEGIN_INFO, "beginInfo");
-    check_view_configuration(info->primaryViewConfigurationType);
+    check_view_configuration(session.instance, info->primaryViewConfigurationType);
     if (session.running) violation(XR_ERROR_SESSION_RUNNING, "the session is running already");
     if (session.state != XR_SESSION_STATE_READY)
       violation(XR_ERROR_SESSION_NOT_READY,
                 "found " + name_of(session.state) + ", expected XR_SESSION_STATE_READY");
     session.running = true;
+    session.configuration = info->primaryViewConfigurationType;
     session.waited.reset();
     session.begun.reset();
     run().report.count("sessions_begun");

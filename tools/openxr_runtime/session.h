@@ -37,6 +37,8 @@ struct Session final : Object {
   XrSessionState state = XR_SESSION_STATE_UNKNOWN;
   XrSessionState wanted = XR_SESSION_STATE_FOCUSED;  // what the script has it climb to
   bool running = false;
+  // That it was begun with last.
+  XrViewConfigurationType configuration = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO;
   bool exit_requested = false;
   bool lost = false;
   int64_t polls_to_ready = -1;   // after a stop; below 0: does not come back

@@ -17,11 +17,10 @@ void recentre(Session& session, const Event& event) {
 
 void mask_changed(Session& session) {
   if (!session.instance.enabled(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME)) return;
-  for (uint32_t eye = 0; eye < 2; ++eye)
-    queue_event(session.instance,
-                XrEventDataVisibilityMaskChangedKHR{
-                    XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, nullptr, session.xr(),
-                    XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO, eye});
+  for (uint32_t view = 0; view < view_count(session.configuration); ++view)
+    queue_event(session.instance, XrEventDataVisibilityMaskChangedKHR{
+                                      XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR, nullptr,
+                                      session.xr(), session.configuration, view});
 }
 
 void lose_session(Session& session, int64_t frames) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 
 #include "instance.h"
@@ -11,10 +12,28 @@ void check_system(XrSystemId system) {
     violation(XR_ERROR_SYSTEM_INVALID, "systemId: expected what xrGetSystem gave");
 }
 
-void check_view_configuration(XrViewConfigurationType type) {
-  if (type != XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO)
+namespace {
+
+// The one that it likes best first.
+std::vector<XrViewConfigurationType> view_configurations(const Instance& instance) {
+  if (!instance.enabled(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME))
+    return {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
+  return {XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO, XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO};
+}
+
+}  // namespace
+
+void check_view_configuration(const Instance& instance, XrViewConfigurationType type) {
+  const auto known = view_configurations(instance);
+  if (std::find(known.begin(), known.end(), type) == known.end())
     violation(XR_ERROR_VIEW_CONFIGURATION_TYPE_UNSUPPORTED,
-              "expected XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO");
+              "found view configuration " + std::to_string(type) +
+                  ", expected XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO" +
+                  (known.size() > 1 ? " or PRIMARY_QUAD_VARJO" : ""));
+}
+
+uint32_t view_count(XrViewConfigurationType type) {
+  return type == XR_VIEW_CONFIGURATION_TYPE_PRIMARY_QUAD_VARJO ? 4 : 2;
 }
 
 }  // namespace test_runtime
@@ -53,9 +72,9 @@ XrResult xrEnumerateEnvironmentBlendModes(XrInstance handle, XrSystemId system,
                                           XrViewConfigurationType type, uint32_t capacity,
                                           uint32_t* count, XrEnvironmentBlendMode* modes) {
   return call(__func__, [&](auto&) {
-    find_instance(handle);
+    const Instance& instance = find_instance(handle);
     check_system(system);
-    check_view_configuration(type);
+    check_view_configuration(instance, type);
     return enumerate(1, capacity, count, modes,
                      [](size_t, auto& mode) { mode = XR_ENVIRONMENT_BLEND_MODE_OPAQUE; });
   });
@@ -64,10 +83,10 @@ XrResult xrEnumerateEnvironmentBlendModes(XrInstance handle, XrSystemId system,
 XrResult xrEnumerateViewConfigurations(XrInstance handle, XrSystemId system, uint32_t capacity,
                                        uint32_t* count, XrViewConfigurationType* types) {
   return call(__func__, [&](auto&) {
-    find_instance(handle);
+    const auto known = view_configurations(find_instance(handle));
     check_system(system);
-    return enumerate(1, capacity, count, types,
-                     [](size_t, auto& type) { type = XR_VIEW_CONFIGURATION_TYPE_PRIMARY_STEREO; });
+    return enumerate(known.size(), capacity, count, types,
+                     [&](size_t i, XrViewConfigurationType& type) { type = known[i]; });
   });
 }
 
@@ -75,9 +94,9 @@ XrResult xrGetViewConfigurationProperties(XrInstance handle, XrSystemId system,
                                           XrViewConfigurationType type,
                                           XrViewConfigurationProperties* properties) {
   return call(__func__, [&](auto&) {
-    find_instance(handle);
+    const Instance& instance = find_instance(handle);
     check_system(system);
-    check_view_configuration(type);
+    check_view_configuration(instance, type);
     checked(properties, XR_TYPE_VIEW_CONFIGURATION_PROPERTIES, "configurationProperties");
     properties->viewConfigurationType = type;
     properties->fovMutable = XR_TRUE;
@@ -89,12 +108,12 @@ XrResult xrEnumerateViewConfigurationViews(XrInstance handle, XrSystemId system,
                                            XrViewConfigurationType type, uint32_t capacity,
                                            uint32_t* count, XrViewConfigurationView* views) {
   return call(__func__, [&](auto&) {
-    find_instance(handle);
+    const Instance& instance = find_instance(handle);
     check_system(system);
-    check_view_configuration(type);
-    return enumerate(2, capacity, count, views, [](size_t eye, auto& view) {
+    check_view_configuration(instance, type);
+    return enumerate(view_count(type), capacity, count, views, [](size_t i, auto& view) {
       checked(&view, XR_TYPE_VIEW_CONFIGURATION_VIEW, "views");
-      const auto& size = run().script.recommended[eye];
+      const auto& size = run().script.recommended[i];
       const auto& maximum = run().script.maximum;
       view.recommendedImageRectWidth = static_cast<uint32_t>(size.width);
       view.recommendedImageRectHeight = static_cast<uint32_t>(size.height);

@@ -60,13 +60,16 @@ XrResult xrGetVisibilityMaskKHR(XrSession handle, XrViewConfigurationType config
                                 XrVisibilityMaskKHR* mask) {
   return call(__func__, [&](auto&) {
     const Session& session = find_session(handle);
-    check_view_configuration(configuration);
+    check_view_configuration(session.instance, configuration);
     checked(mask, XR_TYPE_VISIBILITY_MASK_KHR, "visibilityMask");
-    if (view > 1) violation(XR_ERROR_INDEX_OUT_OF_RANGE, "viewIndex: expected 0 or 1");
+    if (view >= view_count(configuration))
+      violation(XR_ERROR_INDEX_OUT_OF_RANGE, "viewIndex: found " + std::to_string(view) +
+                                                 ", expected below " +
+                                                 std::to_string(view_count(configuration)));
     if (type < XR_VISIBILITY_MASK_TYPE_HIDDEN_TRIANGLE_MESH_KHR ||
         type > XR_VISIBILITY_MASK_TYPE_LINE_LOOP_KHR)
       violation(XR_ERROR_VALIDATION_FAILURE, "visibilityMaskType: expected one of the three");
-    const Mesh made = mesh(view, type);
+    const Mesh made = view < 2 ? mesh(view, type) : Mesh();  // all of an inner view is seen
     const uint32_t vertex_capacity = mask->vertexCapacityInput;
     enumerate(made.vertices.size(), vertex_capacity, &mask->vertexCountOutput, mask->vertices,
               [&](size_t i, XrVector2f& vertex) { vertex = made.vertices[i]; });
