@@ -13,21 +13,29 @@ uint32_t clamped(uint32_t recommended, std::initializer_list<uint32_t> limits) {
   return side;
 }
 
-std::array<VkExtent2D, kEyes> recommended(const Runtime& runtime, const Graphics& graphics,
-                                          VkExtent2D largest) {
+std::vector<VkExtent2D> recommended(const Runtime& runtime, const Graphics& graphics,
+                                    VkExtent2D largest) {
   XrSystemProperties system = xr_struct<XrSystemProperties>(XR_TYPE_SYSTEM_PROPERTIES);
   check(xrGetSystemProperties(runtime.get(), runtime.system(), &system), "xrGetSystemProperties");
   const XrSystemGraphicsProperties& most = system.graphicsProperties;
-  const std::vector<XrViewConfigurationView> views = runtime.views();
-  std::array<VkExtent2D, kEyes> out = {};
-  for (size_t i = 0; i < kEyes; ++i)
-    out[i] = {clamped(views[i].recommendedImageRectWidth,
-                      {views[i].maxImageRectWidth, most.maxSwapchainImageWidth,
-                       graphics.largest_image(), largest.width}),
-              clamped(views[i].recommendedImageRectHeight,
-                      {views[i].maxImageRectHeight, most.maxSwapchainImageHeight,
-                       graphics.largest_image(), largest.height})};
+  std::vector<VkExtent2D> out;
+  for (const XrViewConfigurationView& view : runtime.views())
+    out.push_back({clamped(view.recommendedImageRectWidth,
+                           {view.maxImageRectWidth, most.maxSwapchainImageWidth,
+                            graphics.largest_image(), largest.width}),
+                   clamped(view.recommendedImageRectHeight,
+                           {view.maxImageRectHeight, most.maxSwapchainImageHeight,
+                            graphics.largest_image(), largest.height})});
   return out;
+}
+
+// Whether left and right are of one size, in each pair.
+bool alike(const std::vector<EyeImage>& views) {
+  for (size_t i = 0; i < views.size(); i += kEyes) {
+    const VkExtent2D &left = views[i].extent, &right = views[i + 1].extent;
+    if (left.width != right.width || left.height != right.height) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -35,22 +43,27 @@ std::array<VkExtent2D, kEyes> recommended(const Runtime& runtime, const Graphics
 EyeImages::EyeImages(const Session& session, const Runtime& runtime, const Graphics& graphics,
                      VkExtent2D largest, bool readable) {
   const std::vector<int64_t> formats = session.swapchain_formats();
-  const auto sizes = recommended(runtime, graphics, largest);
-  for (size_t i = 0; i < kEyes; ++i) eyes_[i].extent = sizes[i];
+  for (const VkExtent2D& size : recommended(runtime, graphics, largest))
+    views_.push_back({nullptr, nullptr, 0, size});
   create_colours(session, graphics, usable_colours(graphics, formats), readable);
   if (runtime.has_depth_layer()) create_depths(session, graphics, usable_depths(graphics, formats));
-  for (size_t i = 0; i < kEyes; ++i) {
-    eyes_[i].colour = &colours_[array_ ? 0 : i];
-    eyes_[i].depth = depth_format_ ? &depths_[array_ ? 0 : i] : nullptr;
-    eyes_[i].layer = array_ ? static_cast<uint32_t>(i) : 0;
+  for (size_t i = 0; i < views_.size(); ++i) {
+    const size_t swapchain = array_ ? i / kEyes : i;
+    views_[i].colour = &colours_[swapchain];
+    views_[i].depth = depth_format_ ? &depths_[swapchain] : nullptr;
+    views_[i].layer = array_ ? static_cast<uint32_t>(i % kEyes) : 0;
   }
+}
+
+std::vector<VkExtent2D> EyeImages::extents() const {
+  std::vector<VkExtent2D> extents;
+  for (const EyeImage& view : views_) extents.push_back(view.extent);
+  return extents;
 }
 
 // The first that the runtime makes: the better format before the better layout.
 void EyeImages::create_colours(const Session& session, const Graphics& graphics,
                                const std::vector<ColourFormat>& formats, bool readable) {
-  const VkExtent2D &left = eyes_[0].extent, &right = eyes_[1].extent;
-  const bool same = left.width == right.width && left.height == right.height;
   SwapchainDesc desc = {
       {}, XR_SWAPCHAIN_USAGE_COLOR_ATTACHMENT_BIT, VK_IMAGE_ASPECT_COLOR_BIT, {}, 1};
   if (readable) desc.usage |= XR_SWAPCHAIN_USAGE_TRANSFER_SRC_BIT;
@@ -60,7 +73,7 @@ void EyeImages::create_colours(const Session& session, const Graphics& graphics,
     desc.format = format.format;
     for (const bool array : {true, false}) {
       array_ = array;
-      if ((same || !array) && create(session, graphics, desc, colours_)) return;
+      if ((!array || alike(views_)) && create(session, graphics, desc, colours_)) return;
     }
     tried += (tried.empty() ? "" : ", ") + std::string(format.name);
   }
@@ -87,8 +100,8 @@ bool EyeImages::create(const Session& session, const Graphics& graphics, const S
   SwapchainDesc wanted = desc;
   wanted.layers = array_ ? kEyes : 1;
   into.clear();
-  for (size_t i = 0; i < (array_ ? 1 : kEyes); ++i) {
-    wanted.extent = eyes_[i].extent;
+  for (size_t i = 0; i < views_.size(); i += wanted.layers) {
+    wanted.extent = views_[i].extent;
     into.emplace_back(session.get(), graphics, wanted);
   }
   return true;

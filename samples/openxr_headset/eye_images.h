@@ -1,8 +1,9 @@
 #pragma once
-// The swapchains that both eyes are shown from: one with two layers where the eyes are of one
-// size, else one an eye; and the same for depth, where the compositor takes it.
-#include <array>
+// The swapchains that the eyes are shown from: for each pair of views, left and right, one with two
+// layers where the views of every pair are of one size, else one a view; and the same for depth,
+// where the compositor takes it.
 #include <optional>
+#include <vector>
 
 #include "formats.h"
 #include "session.h"
@@ -27,8 +28,9 @@ class EyeImages {
 
   ColourFormat colour_format() const { return colour_format_; }
   std::optional<VkFormat> depth_format() const { return depth_format_; }
-  const EyeImage& eye(size_t i) const { return eyes_[i]; }
-  std::array<VkExtent2D, kEyes> extents() const { return {eyes_[0].extent, eyes_[1].extent}; }
+  size_t view_count() const { return views_.size(); }
+  const EyeImage& view(size_t i) const { return views_[i]; }
+  std::vector<VkExtent2D> extents() const;
 
   bool ready(XrDuration patience);
   void release();
@@ -43,9 +45,9 @@ class EyeImages {
 
   ColourFormat colour_format_ = {};
   std::optional<VkFormat> depth_format_;
-  std::array<EyeImage, kEyes> eyes_ = {};
+  std::vector<EyeImage> views_;
   std::vector<Swapchain> colours_, depths_;
-  bool array_ = false;   // one swapchain, a layer an eye
+  bool array_ = false;   // a swapchain of two layers a pair
   std::string refusal_;  // why the last ones were not made
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The render pass that fills an eye's swapchain images from a layer of Voyager's: colour, and
+// The render pass that fills a view's swapchain images from a layer of Voyager's: colour, and
 // depth where the compositor takes it. Swapchain images come and go in the layouts of
 // attachments, as XR_KHR_vulkan_enable2 has it.
 #include <map>
@@ -19,19 +19,19 @@ class EyePass {
   EyePass(const Graphics& graphics, VkFormat colour, std::optional<VkFormat> depth,
           const VoyagerLayer& voyager, const DepthConvention& convention);
 
-  // Voyager's image of this slot is acquired, the eye's images are ready.
-  void record(VkCommandBuffer commands, uint32_t slot, size_t eye, const EyeImage& image,
+  // Voyager's image of this slot is acquired, the view's images are ready.
+  void record(VkCommandBuffer commands, uint32_t slot, size_t view, const EyeImage& image,
               const VisibleArea& area, const VoyFrustum& frustum);
 
  private:
   // Whatever pairs of images the two swapchains hand out.
-  VkFramebuffer framebuffer(size_t eye, const EyeImage& image);
+  VkFramebuffer framebuffer(size_t view, const EyeImage& image);
 
   const Graphics& graphics_;
   const VoyagerLayer& voyager_;
   const DepthConvention convention_;
   UniqueRenderPass pass_;
-  SampledImages sets_;  // slot by slot, eye by eye
+  SampledImages sets_;  // slot by slot, view by view
   UniquePipelineLayout layout_;
   UniquePipeline pipeline_;
   std::map<std::array<size_t, 3>, UniqueFramebuffer> framebuffers_;

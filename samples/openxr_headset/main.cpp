@@ -29,7 +29,8 @@ std::string say_what_runs(const Runtime& runtime, const Graphics& graphics,
   const VoyVulkanCapabilities& vulkan = voyager.vulkan_capabilities();
   std::string modes = std::string("backend ") + backend_name(voyager.capabilities().backend) +
                       ", sharing " + sharing_name(vulkan.sharing) + ", sync " +
-                      sync_name(vulkan.sync);
+                      sync_name(vulkan.sync) +
+                      (runtime.view_count() > kEyes ? ", two pictures an eye" : "");
   std::printf("%s, %s: %s%s%s\n", runtime.name().c_str(), graphics.name().c_str(), modes.c_str(),
               vulkan.why[0] ? ": " : "", vulkan.why);
   std::fflush(stdout);
@@ -38,8 +39,9 @@ std::string say_what_runs(const Runtime& runtime, const Graphics& graphics,
 
 VoyagerOptions voyager_options(const Journey& journey) {
   const Options& options = journey.options;
-  VoyagerOptions out = {options.scene, options.tau, options.time_budget,
-                        static_cast<uint64_t>(options.budget_megabytes * 1e6), std::nullopt};
+  VoyagerOptions out = {options.scene,       options.tau,
+                        options.time_budget, static_cast<uint64_t>(options.budget_megabytes * 1e6),
+                        std::nullopt,        options.quad_views ? 2u : 1u};
   if (!journey.cameras.empty()) out.first_frame = journey.cameras.front().pose;
   return out;
 }
@@ -52,7 +54,7 @@ Traveller start(const Journey& journey, const VoyagerLayer& voyager) {
 // Sessions of one instance, one after the other as they are lost. True: the last one ended well.
 // False: what hangs on the instance, or on its headset, is of no use any more.
 bool visit(Journey& journey, Validations* validations) try {
-  Runtime runtime(validations ? &validations->xr : nullptr);
+  Runtime runtime(journey.options.quad_views, validations ? &validations->xr : nullptr);
   const Graphics graphics(runtime, validations ? &validations->vulkan : nullptr);
   const auto opening = std::chrono::steady_clock::now();
   VoyagerLayer voyager(graphics, voyager_options(journey));

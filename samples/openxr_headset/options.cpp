@@ -16,6 +16,10 @@ std::optional<Options> parse_options(int argc, char** argv) {
   app.add_option("--camera-file", o.camera_file, "cameras.json: the start is its first camera")
       ->type_name("FILE");
   app.add_flag("--fixed-pose", o.fixed_pose, "The head stays at the start, wherever it is");
+  app.add_flag(
+      "--quad-views", o.quad_views,
+      "Two pictures an eye, a coarse one of everything and a sharp one of the middle; fails "
+      "where the runtime has none");
   app.add_option("--readback", o.readback,
                  "A PNG an eye and frame, 0000_L.png and so on, and their cameras.json")
       ->type_name("FOLDER");

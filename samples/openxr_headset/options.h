@@ -11,6 +11,7 @@ struct Options {
   std::string camera_file;  // or empty: the start is in the middle of the scene
   std::string readback;     // a folder, or empty
   bool fixed_pose = false;
+  bool quad_views = false;  // two pictures an eye; else one
   bool validation = false;
   uint64_t frames = 0;  // 0: until the player leaves
   double tau = 3;

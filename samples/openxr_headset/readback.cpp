@@ -49,39 +49,40 @@ void blit(VkCommandBuffer commands, const EyeImage& from, VkImage to) {
 
 }  // namespace
 
-Readback::Readback(const Graphics& graphics, const EyeImages& images) {
+Readback::Readback(const Graphics& graphics, const EyeImages& images)
+    : views_(images.view_count()) {
   const ColourFormat format = images.colour_format();
   VkFormatProperties properties;
   vkGetPhysicalDeviceFormatProperties(graphics.physical(), format.format, &properties);
   if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_BLIT_SRC_BIT))
     throw Failure(kMachine, std::string("--readback: found ") + format.name +
                                 ", which this device cannot blit from, expected one that it can");
-  for (size_t i = 0; i < kEyes; ++i) {
-    const VkExtent2D extent = images.eye(i).extent;
-    eyes_[i].extent = extent;
-    eyes_[i].encoded = Image(graphics, extent, kEncoded,
-                             VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                             VK_IMAGE_ASPECT_COLOR_BIT);
-    eyes_[i].buffer = Buffer(graphics, VkDeviceSize{4} * extent.width * extent.height,
-                             VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+  for (size_t i = 0; i < views_.size(); ++i) {
+    const VkExtent2D extent = images.view(i).extent;
+    views_[i].extent = extent;
+    views_[i].encoded = Image(graphics, extent, kEncoded,
+                              VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                              VK_IMAGE_ASPECT_COLOR_BIT);
+    views_[i].buffer = Buffer(graphics, VkDeviceSize{4} * extent.width * extent.height,
+                              VK_BUFFER_USAGE_TRANSFER_DST_BIT);
   }
 }
 
 void Readback::record(VkCommandBuffer commands, const EyeImages& images) const {
-  for (size_t i = 0; i < kEyes; ++i) {
-    const EyeImage& from = images.eye(i);
-    const VkImage encoded = eyes_[i].encoded.image.get();
+  for (size_t i = 0; i < views_.size(); ++i) {
+    const EyeImage& from = images.view(i);
+    const VkImage encoded = views_[i].encoded.image.get();
     change(commands, from.colour->image(), from.layer, kAttachment, kCopiedFrom);
     change(commands, encoded, 0, kNew, kCopiedTo);
     blit(commands, from, encoded);
     change(commands, from.colour->image(), from.layer, kCopiedFrom, kAttachment);
     change(commands, encoded, 0, kCopiedTo, kCopiedFrom);
-    copy_to_host(commands, encoded, VK_IMAGE_ASPECT_COLOR_BIT, eyes_[i].extent, eyes_[i].buffer);
+    copy_to_host(commands, encoded, VK_IMAGE_ASPECT_COLOR_BIT, views_[i].extent, views_[i].buffer);
   }
 }
 
-std::span<const uint8_t> Readback::rgba(size_t eye) const {
-  const Buffer& buffer = eyes_[eye].buffer;
+std::span<const uint8_t> Readback::rgba(size_t view) const {
+  const Buffer& buffer = views_[view].buffer;
   return {reinterpret_cast<const uint8_t*>(buffer.mapped), buffer.size};
 }
 

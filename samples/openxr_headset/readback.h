@@ -1,5 +1,5 @@
 #pragma once
-// Both eyes' swapchain images as code values, copied to where the host can read them.
+// Every view's swapchain image as code values, copied to where the host can read them.
 #include <span>
 
 #include "eye_images.h"
@@ -15,17 +15,17 @@ class Readback {
   // After the render passes; leaves the swapchain images in the layout of attachments.
   void record(VkCommandBuffer commands, const EyeImages& images) const;
   // Once the commands are done.
-  std::span<const uint8_t> rgba(size_t eye) const;
-  VkExtent2D extent(size_t eye) const { return eyes_[eye].extent; }
+  std::span<const uint8_t> rgba(size_t view) const;
+  VkExtent2D extent(size_t view) const { return views_[view].extent; }
 
  private:
   // Linear light is encoded on the way, by a blit into an _SRGB image.
-  struct Eye {
+  struct View {
     VkExtent2D extent = {0, 0};
     Image encoded;
     Buffer buffer;
   };
-  std::array<Eye, kEyes> eyes_;
+  std::vector<View> views_;
 };
 
 }  // namespace host

@@ -14,10 +14,11 @@
 namespace host {
 namespace {
 
-std::string picture_name(uint64_t frame, size_t eye) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%04llu_%c.png", static_cast<unsigned long long>(frame),
-                eye == 0 ? 'L' : 'R');
+std::string picture_name(uint64_t frame, size_t view) {
+  constexpr const char* kViews[kMostViews] = {"L", "R", "L_inner", "R_inner"};
+  char name[48];
+  std::snprintf(name, sizeof name, "%04llu_%s.png", static_cast<unsigned long long>(frame),
+                kViews[view]);
   return name;
 }
 
@@ -48,24 +49,30 @@ constexpr const char* kCameras = "cameras.json";
 bool is_picture(std::string_view name) {
   uint64_t frame = 0;
   std::from_chars(name.data(), name.data() + name.size(), frame);
-  return name == picture_name(frame, 0) || name == picture_name(frame, 1);
+  for (size_t view = 0; view < kMostViews; ++view)
+    if (name == picture_name(frame, view)) return true;
+  return false;
+}
+
+// With so many views a frame, each camera is that of the picture whose turn it is.
+bool is_recording(const nlohmann::json& cameras, size_t views) {
+  if (!cameras.is_array()) return false;
+  for (size_t i = 0; i < cameras.size(); ++i)
+    if (!cameras[i].is_object() ||
+        cameras[i].value("img_name", nlohmann::json()) != picture_name(i / views, i % views))
+      return false;
+  return true;
 }
 
 // The pictures of a recording, from its cameras.json; any other file of that name is somebody's
 // own.
 std::vector<std::string> pictures_of(const std::string& path) {
   const nlohmann::json cameras = read_json(path);
-  const auto refuse = [&] {
+  if (!is_recording(cameras, kEyes) && !is_recording(cameras, kMostViews))
     throw Failure(kBadUsage, "--readback: found " + path +
                                  ", which no recording has written, expected another folder");
-  };
-  if (!cameras.is_array()) refuse();
   std::vector<std::string> names;
-  for (size_t i = 0; i < cameras.size(); ++i) {
-    names.push_back(picture_name(i / kEyes, i % kEyes));
-    if (!cameras[i].is_object() || cameras[i].value("img_name", nlohmann::json()) != names.back())
-      refuse();
-  }
+  for (const nlohmann::json& camera : cameras) names.push_back(camera["img_name"]);
   return names;
 }
 
@@ -89,18 +96,18 @@ Recorder::Recorder(std::string folder, const std::vector<std::string>& inputs)
   require_writable(cameras);
 }
 
-void Recorder::add(uint64_t frame, const std::array<Camera, kEyes>& eyes) {
+void Recorder::add(uint64_t frame, const std::vector<Camera>& views) {
   std::error_code ignored;
   for (const std::string& name : earlier_) std::filesystem::remove(folder_ + "/" + name, ignored);
   earlier_.clear();
-  while (cameras_.size() > kEyes * frame) cameras_.erase(cameras_.size() - 1);
-  for (size_t i = 0; i < kEyes; ++i)
-    cameras_.push_back(to_json(eyes[i], cameras_.size(), picture_name(frame, i)));
+  while (cameras_.size() > views.size() * frame) cameras_.erase(cameras_.size() - 1);
+  for (size_t i = 0; i < views.size(); ++i)
+    cameras_.push_back(to_json(views[i], cameras_.size(), picture_name(frame, i)));
 }
 
-void Recorder::write_picture(uint64_t frame, size_t eye, VkExtent2D extent,
+void Recorder::write_picture(uint64_t frame, size_t view, VkExtent2D extent,
                              std::span<const uint8_t> rgba) const {
-  write_png(folder_ + "/" + picture_name(frame, eye), extent.width, extent.height, rgba);
+  write_png(folder_ + "/" + picture_name(frame, view), extent.width, extent.height, rgba);
 }
 
 void Recorder::write_cameras() const {

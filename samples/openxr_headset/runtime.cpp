@@ -57,7 +57,8 @@ void require_xr_validation_layer() {
 
 }  // namespace
 
-Runtime::Runtime(XrValidation* validation) {
+Runtime::Runtime(bool quad_views, XrValidation* validation)
+    : view_configuration_(quad_views ? kQuadViews : kStereo) {
   create(validation);
   XrInstanceProperties properties = xr_struct<XrInstanceProperties>(XR_TYPE_INSTANCE_PROPERTIES);
   check(xrGetInstanceProperties(instance_.get(), &properties), "xrGetInstanceProperties");
@@ -80,10 +81,17 @@ void Runtime::create(XrValidation* validation) {
   if (depth_layer_) extensions.push_back(XR_KHR_COMPOSITION_LAYER_DEPTH_EXTENSION_NAME);
   if (visibility_mask_) extensions.push_back(XR_KHR_VISIBILITY_MASK_EXTENSION_NAME);
 
+  // Where there is no extension, OpenXR 1.1 may have the configuration.
+  const bool quad_views = view_configuration_ == kQuadViews;
+  const bool without_extension =
+      quad_views && !contains(offered, XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
+  if (quad_views && !without_extension) extensions.push_back(XR_VARJO_QUAD_VIEWS_EXTENSION_NAME);
+
   XrInstanceCreateInfo info = xr_struct<XrInstanceCreateInfo>(XR_TYPE_INSTANCE_CREATE_INFO);
   std::strcpy(info.applicationInfo.applicationName, "openxr_headset");
   std::strcpy(info.applicationInfo.engineName, "Voyager");
-  info.applicationInfo.apiVersion = XR_MAKE_VERSION(1, 0, 0);
+  info.applicationInfo.apiVersion =
+      without_extension ? XR_MAKE_VERSION(1, 1, 0) : XR_MAKE_VERSION(1, 0, 0);
   if (validation) {
     require_xr_validation_layer();
     extensions.push_back(XR_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -96,6 +104,11 @@ void Runtime::create(XrValidation* validation) {
   XrInstance instance = XR_NULL_HANDLE;
   const XrResult result = xrCreateInstance(&info, &instance);
   if (result == XR_ERROR_RUNTIME_UNAVAILABLE) throw no_runtime(result);
+  if (result == XR_ERROR_API_VERSION_UNSUPPORTED && without_extension)
+    throw Failure(kMachine,
+                  "--quad-views: found an OpenXR runtime or loader without XR_VARJO_quad_views and "
+                  "without OpenXR 1.1, expected one of them: " +
+                      runtime_hint());
   if (XR_FAILED(result) && result != XR_ERROR_INSTANCE_LOST)
     throw Failure(kMachine, "xrCreateInstance: " + result_name(result) + ": " + runtime_hint());
   check(result, "xrCreateInstance");
@@ -124,13 +137,15 @@ void Runtime::find_headset() {
                                return xrEnumerateViewConfigurations(instance_.get(), system_,
                                                                     capacity, size, into);
                              });
-  if (std::find(kinds.begin(), kinds.end(), kStereo) == kinds.end())
-    throw Failure(kMachine, name_ + ": found no stereo view configuration, expected one");
-  const auto modes = xr_list("xrEnumerateEnvironmentBlendModes", XrEnvironmentBlendMode{},
-                             [&](uint32_t capacity, uint32_t* size, XrEnvironmentBlendMode* into) {
-                               return xrEnumerateEnvironmentBlendModes(
-                                   instance_.get(), system_, kStereo, capacity, size, into);
-                             });
+  if (std::find(kinds.begin(), kinds.end(), view_configuration_) == kinds.end())
+    throw Failure(kMachine, name_ + ": found no view configuration of " +
+                                std::to_string(view_count()) + " views, expected one");
+  const auto modes =
+      xr_list("xrEnumerateEnvironmentBlendModes", XrEnvironmentBlendMode{},
+              [&](uint32_t capacity, uint32_t* size, XrEnvironmentBlendMode* into) {
+                return xrEnumerateEnvironmentBlendModes(instance_.get(), system_,
+                                                        view_configuration_, capacity, size, into);
+              });
   if (modes.empty()) throw Failure(kMachine, name_ + ": found no blend mode, expected one");
   // A city is all there is to see: opaque, or else what the runtime likes best.
   blend_mode_ = XR_ENVIRONMENT_BLEND_MODE_OPAQUE;
@@ -153,12 +168,12 @@ std::vector<XrViewConfigurationView> Runtime::views() const {
   auto views = xr_list("xrEnumerateViewConfigurationViews",
                        xr_struct<XrViewConfigurationView>(XR_TYPE_VIEW_CONFIGURATION_VIEW),
                        [&](uint32_t capacity, uint32_t* size, XrViewConfigurationView* into) {
-                         return xrEnumerateViewConfigurationViews(instance_.get(), system_, kStereo,
-                                                                  capacity, size, into);
+                         return xrEnumerateViewConfigurationViews(
+                             instance_.get(), system_, view_configuration_, capacity, size, into);
                        });
-  if (views.size() != kEyes)
-    throw Failure(kMachine,
-                  name_ + ": found " + std::to_string(views.size()) + " stereo views, expected 2");
+  if (views.size() != view_count())
+    throw Failure(kMachine, name_ + ": found " + std::to_string(views.size()) +
+                                " views, expected " + std::to_string(view_count()));
   return views;
 }
 

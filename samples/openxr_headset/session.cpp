@@ -45,7 +45,7 @@ void Session::handle(const XrEventDataSessionStateChanged& event) {
   switch (state_) {
     case XR_SESSION_STATE_READY: {
       XrSessionBeginInfo info = xr_struct<XrSessionBeginInfo>(XR_TYPE_SESSION_BEGIN_INFO);
-      info.primaryViewConfigurationType = kStereo;
+      info.primaryViewConfigurationType = runtime_.view_configuration();
       check(xrBeginSession(get(), &info), "xrBeginSession");
       running_ = true;
       ++begun_;
@@ -90,15 +90,16 @@ void Session::end_frame(XrTime display_time, const XrCompositionLayerProjection*
 
 std::optional<Located> Session::locate(XrTime display_time) const {
   XrViewLocateInfo info = xr_struct<XrViewLocateInfo>(XR_TYPE_VIEW_LOCATE_INFO);
-  info.viewConfigurationType = kStereo;
+  info.viewConfigurationType = runtime_.view_configuration();
   info.displayTime = display_time;
   info.space = local();
   XrViewState state = xr_struct<XrViewState>(XR_TYPE_VIEW_STATE);
-  Views views;
-  views.fill(xr_struct<XrView>(XR_TYPE_VIEW));
+  Views views(runtime_.view_count(), xr_struct<XrView>(XR_TYPE_VIEW));
   uint32_t count = 0;
-  check(xrLocateViews(get(), &info, &state, kEyes, &count, views.data()), "xrLocateViews");
-  if (count != kEyes || !(state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT))
+  check(xrLocateViews(get(), &info, &state, runtime_.view_count(), &count, views.data()),
+        "xrLocateViews");
+  if (count != runtime_.view_count() ||
+      !(state.viewStateFlags & XR_VIEW_STATE_ORIENTATION_VALID_BIT))
     return std::nullopt;
   return Located{views, (state.viewStateFlags & XR_VIEW_STATE_POSITION_VALID_BIT) != 0};
 }

@@ -1,15 +1,15 @@
 #pragma once
 // An OpenXR session: its state as the runtime's events drive it, LOCAL space, frame calls.
-#include <array>
 #include <optional>
+#include <vector>
 
 #include "graphics.h"
 #include "input.h"
 
 namespace host {
 
-// Both eyes at one time, in LOCAL space.
-using Views = std::array<XrView, kEyes>;
+// All views at one time, in LOCAL space: left and right eye by turns, outer before inner.
+using Views = std::vector<XrView>;
 
 struct Located {
   Views views;

@@ -8,7 +8,7 @@ namespace {
 const std::vector<XrVector2f> kWhole = {{-1, -1}, {3, -1}, {-1, 3}};  // one triangle, in clip space
 
 // Triangle by triangle, in tangents of the view; none where the runtime has no mask.
-std::vector<XrVector2f> read_mask(const Runtime& runtime, XrSession session, uint32_t eye) {
+std::vector<XrVector2f> read_mask(const Runtime& runtime, XrSession session, uint32_t view) {
   const auto get = runtime.function<PFN_xrGetVisibilityMaskKHR>("xrGetVisibilityMaskKHR");
   std::vector<XrVector2f> vertices;
   std::vector<uint32_t> indices;
@@ -18,8 +18,8 @@ std::vector<XrVector2f> read_mask(const Runtime& runtime, XrSession session, uin
     mask.vertices = vertices.empty() ? nullptr : vertices.data();
     mask.indexCapacityInput = static_cast<uint32_t>(indices.size());
     mask.indices = indices.empty() ? nullptr : indices.data();
-    const XrResult result =
-        get(session, kStereo, eye, XR_VISIBILITY_MASK_TYPE_VISIBLE_TRIANGLE_MESH_KHR, &mask);
+    const XrResult result = get(session, runtime.view_configuration(), view,
+                                XR_VISIBILITY_MASK_TYPE_VISIBLE_TRIANGLE_MESH_KHR, &mask);
     if (result != XR_ERROR_SIZE_INSUFFICIENT) check(result, "xrGetVisibilityMaskKHR");
     if (mask.indexCountOutput == 0 || mask.vertexCountOutput == 0) return {};
     const bool complete = result != XR_ERROR_SIZE_INSUFFICIENT && !vertices.empty();
@@ -38,10 +38,10 @@ std::vector<XrVector2f> read_mask(const Runtime& runtime, XrSession session, uin
   return corners;
 }
 
-// An eye is as well shown whole: what goes wrong with a mask ends nothing.
-std::vector<XrVector2f> mask_or_whole(const Runtime& runtime, XrSession session, uint32_t eye) {
+// A view is as well shown whole: what goes wrong with a mask ends nothing.
+std::vector<XrVector2f> mask_or_whole(const Runtime& runtime, XrSession session, uint32_t view) {
   try {
-    return read_mask(runtime, session, eye);
+    return read_mask(runtime, session, view);
   } catch (const Failure& failure) {
     warn_once(std::string(failure.what()) + ": whole images are drawn");
     return {};
@@ -52,8 +52,8 @@ std::vector<XrVector2f> mask_or_whole(const Runtime& runtime, XrSession session,
 
 VisibleArea::VisibleArea(const Gpu& gpu) : VisibleArea(gpu, std::vector<XrVector2f>()) {}
 
-VisibleArea::VisibleArea(const Gpu& gpu, const Runtime& runtime, XrSession session, uint32_t eye)
-    : VisibleArea(gpu, mask_or_whole(runtime, session, eye)) {}
+VisibleArea::VisibleArea(const Gpu& gpu, const Runtime& runtime, XrSession session, uint32_t view)
+    : VisibleArea(gpu, mask_or_whole(runtime, session, view)) {}
 
 VisibleArea::VisibleArea(const Gpu& gpu, const std::vector<XrVector2f>& mask)
     : whole_(mask.empty()),

@@ -1,5 +1,5 @@
 #pragma once
-// What of an eye's image can be seen, as triangles: the runtime's visibility mask, or the whole.
+// What of a view's image can be seen, as triangles: the runtime's visibility mask, or the whole.
 // Pixels outside are not drawn; what no one sees is not missed.
 #include "camera.h"
 #include "resources.h"
@@ -16,9 +16,9 @@ class VisibleArea {
  public:
   // The whole image.
   explicit VisibleArea(const Gpu& gpu);
-  // What the runtime says of this eye; the whole where it says nothing, or fails
+  // What the runtime says of this view; the whole where it says nothing, or fails
   // (told on standard error).
-  VisibleArea(const Gpu& gpu, const Runtime& runtime, XrSession session, uint32_t eye);
+  VisibleArea(const Gpu& gpu, const Runtime& runtime, XrSession session, uint32_t view);
 
   void record(VkCommandBuffer commands) const;
   ToClip to_clip(const VoyFrustum& frustum) const;

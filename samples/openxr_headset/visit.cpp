@@ -32,7 +32,7 @@ bool finite(const XrPosef& p) {
 Views turned(const Views& from, Views to) {
   const Pose before = middle(from_xr(from[0].pose), from_xr(from[1].pose));
   const Pose head = {before.position, middle(from_xr(to[0].pose), from_xr(to[1].pose)).orientation};
-  for (size_t i = 0; i < kEyes; ++i)
+  for (size_t i = 0; i < to.size(); ++i)
     to[i].pose.position = to_xr((head * inverse(before) * from_xr(from[i].pose)).position);
   return to;
 }
@@ -50,13 +50,13 @@ Visit::Visit(const Runtime& runtime, const Graphics& graphics, const Input& inpu
       images_(session_, runtime, graphics, voyager.largest(), journey.recorder.has_value()),
       renderer_(graphics, voyager, images_, kDepth,
                 journey.recorder ? &*journey.recorder : nullptr) {
-  for (uint32_t eye = 0; eye < kEyes; ++eye) read_visible_area(eye);
+  for (uint32_t view = 0; view < runtime.view_count(); ++view) read_visible_area(view);
 }
 
 // Pictures that are compared are whole.
-void Visit::read_visible_area(uint32_t eye) {
+void Visit::read_visible_area(uint32_t view) {
   if (runtime_.has_visibility_mask() && !journey_.recorder)
-    renderer_.set_visible_area(eye, VisibleArea(graphics_, runtime_, session_.get(), eye));
+    renderer_.set_visible_area(view, VisibleArea(graphics_, runtime_, session_.get(), view));
 }
 
 void Visit::run() try {
@@ -116,8 +116,9 @@ void Visit::handle(const XrEventDataBuffer& event) {
     }
     case XR_TYPE_EVENT_DATA_VISIBILITY_MASK_CHANGED_KHR: {
       const auto& change = as<XrEventDataVisibilityMaskChangedKHR>(event);
-      if (change.session == session_.get() && change.viewConfigurationType == kStereo &&
-          change.viewIndex < kEyes)
+      if (change.session == session_.get() &&
+          change.viewConfigurationType == runtime_.view_configuration() &&
+          change.viewIndex < runtime_.view_count())
         read_visible_area(change.viewIndex);
       break;
     }
@@ -178,7 +179,9 @@ void Visit::look(XrTime display_time) {
     if (!views_) return;
     found->views = turned(*views_, found->views);
   }
-  if (finite(found->views[0].pose) && finite(found->views[1].pose)) views_ = found->views;
+  for (const XrView& view : found->views)
+    if (!finite(view.pose)) return;
+  views_ = found->views;
 }
 
 void Visit::steer(const XrFrameState& state, const Views& views) {
@@ -190,18 +193,18 @@ void Visit::steer(const XrFrameState& state, const Views& views) {
                             middle(from_xr(views[0].pose), from_xr(views[1].pose)), seconds);
 }
 
-// The eyes in the scene's world; none where the runtime's angles are those of no frustum.
-std::optional<std::array<Camera, kEyes>> Visit::cameras(const Views& views) const {
-  const Pose eyes[] = {from_xr(views[0].pose), from_xr(views[1].pose)};
+// The views in the scene's world; none where the runtime's angles are those of no frustum.
+std::optional<std::vector<Camera>> Visit::cameras(const Views& views) const {
   Pose world_from_local = journey_.traveller->world_from_local();
   if (journey_.options.fixed_pose)
-    world_from_local = journey_.traveller->start() * inverse(middle(eyes[0], eyes[1]));
-  std::array<Camera, kEyes> cameras = {};
-  for (size_t i = 0; i < kEyes; ++i) {
+    world_from_local = journey_.traveller->start() *
+                       inverse(middle(from_xr(views[0].pose), from_xr(views[1].pose)));
+  std::vector<Camera> cameras(views.size());
+  for (size_t i = 0; i < views.size(); ++i) {
     const XrFovf& fov = views[i].fov;
-    cameras[i].pose = to_voyager(world_from_local * eyes[i]);
-    cameras[i].width = images_.eye(i).extent.width;
-    cameras[i].height = images_.eye(i).extent.height;
+    cameras[i].pose = to_voyager(world_from_local * from_xr(views[i].pose));
+    cameras[i].width = images_.view(i).extent.width;
+    cameras[i].height = images_.view(i).extent.height;
     if (voyFrustumFromAngles(fov.angleLeft, fov.angleRight, fov.angleUp, fov.angleDown,
                              &cameras[i].frustum) != VOY_SUCCESS) {
       warn_once(
@@ -215,18 +218,18 @@ std::optional<std::array<Camera, kEyes>> Visit::cameras(const Views& views) cons
 
 // False: nothing was drawn, and nothing can be shown in this frame.
 bool Visit::draw(const Views& views) {
-  const std::optional<std::array<Camera, kEyes>> eyes = cameras(views);
-  if (!eyes || !images_.ready(kImagePatience)) return false;
-  renderer_.draw(*eyes, journey_.statistics.frames());
+  const std::optional<std::vector<Camera>> seen = cameras(views);
+  if (!seen || !images_.ready(kImagePatience)) return false;
+  renderer_.draw(*seen, journey_.statistics.frames());
   images_.release();
   return true;
 }
 
 void Visit::submit(const XrFrameState& state, const Views& views) {
-  XrCompositionLayerDepthInfoKHR depths[kEyes];
-  XrCompositionLayerProjectionView projections[kEyes];
-  for (size_t i = 0; i < kEyes; ++i) {
-    const EyeImage& image = images_.eye(i);
+  XrCompositionLayerDepthInfoKHR depths[kMostViews];
+  XrCompositionLayerProjectionView projections[kMostViews];
+  for (size_t i = 0; i < views.size(); ++i) {
+    const EyeImage& image = images_.view(i);
     const XrRect2Di rect = {
         {0, 0},
         {static_cast<int32_t>(image.extent.width), static_cast<int32_t>(image.extent.height)}};
@@ -246,7 +249,7 @@ void Visit::submit(const XrFrameState& state, const Views& views) {
   }
   auto layer = xr_struct<XrCompositionLayerProjection>(XR_TYPE_COMPOSITION_LAYER_PROJECTION);
   layer.space = session_.local();
-  layer.viewCount = kEyes;
+  layer.viewCount = static_cast<uint32_t>(views.size());
   layer.views = projections;
   session_.end_frame(state.predictedDisplayTime, &layer);
 }

@@ -17,7 +17,7 @@ class Visit {
  private:
   void handle_events();
   void handle(const XrEventDataBuffer& event);
-  void read_visible_area(uint32_t eye);
+  void read_visible_area(uint32_t view);
   void save_pictures() noexcept;
   void leave_when_finished();
   void frame();
@@ -25,7 +25,7 @@ class Visit {
   void hold_frame_time(XrDuration display_period);
   void steer(const XrFrameState& state, const Views& views);
   bool draw(const Views& views);
-  std::optional<std::array<Camera, kEyes>> cameras(const Views& views) const;
+  std::optional<std::vector<Camera>> cameras(const Views& views) const;
   void submit(const XrFrameState& state, const Views& views);
 
   const Runtime& runtime_;

@@ -1,25 +1,17 @@
 #include "voyager_layer.h"
 
-#include <algorithm>
 #include <cstdio>
 
 #include "failure.h"
 
 namespace host {
-namespace {
-
-VoyTimeBudget time_budget(double milliseconds) {
-  VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
-  budget.milliseconds = milliseconds;
-  return budget;
-}
-
-}  // namespace
 
 VoyagerLayer::VoyagerLayer(const Graphics& graphics, const VoyagerOptions& options)
-    : graphics_(graphics), tau_(options.tau), frame_time_(options.frame_time) {
+    : graphics_(graphics), frame_time_(options.frame_time) {
   create_device(options.memory_budget);
   open_scene(options);
+  for (uint32_t i = 0; i < options.pairs; ++i)
+    pairs_.emplace_back(graphics_, device_, scene_, options.tau);
 }
 
 void VoyagerLayer::create_device(uint64_t memory_budget) {
@@ -52,22 +44,29 @@ void VoyagerLayer::open_scene(const VoyagerOptions& options) {
 
 void VoyagerLayer::hold_frame_time(double milliseconds) {
   frame_time_ = milliseconds;
-  if (view_) view_.set_time_budget(time_budget(milliseconds));
+  share_frame_time();
+}
+
+// The pairs draw one after the other, so each has a part of the time: its part of the pixels. Of
+// the outer pair that is 0.43 to 0.74 where it took 0.51 to 0.63 of the time (bench/NOTES.md, "Two
+// pictures an eye").
+void VoyagerLayer::share_frame_time() {
+  if (frame_time_ <= 0) return;
+  for (size_t i = 0; i < pairs_.size(); ++i)
+    pairs_[i].hold_frame_time(frame_time_ * pixel_shares_[i]);
 }
 
 std::string VoyagerLayer::summary() const {
-  if (!has_drawn_) return {};
-  const VoyFrameStats frame = view_.stats();
-  char text[256];
-  std::snprintf(text, sizeof text, "tau %g", frame.tau);
-  std::string summary = text;
-  if (frame.millisecondsBudget > 0) {
-    std::snprintf(text, sizeof text, " to take %g ms", frame.millisecondsBudget);
-    summary += text;
+  std::string summary;
+  for (const EyePair& pair : pairs_) {
+    const std::string of_pair = pair.summary();
+    if (of_pair.empty()) return {};
+    summary += (summary.empty() ? "" : ", inner ") + of_pair;
   }
   if (!streams_) return summary;
   VoyStreamingStats streaming = VOY_STREAMING_STATS_INIT;
   voy::check(voyGetStreamingStats(scene_.get(), &streaming));
+  char text[256];
   std::snprintf(text, sizeof text, "; streamed: %llu of %llu chunks resident, %llu read, %.2f MB",
                 static_cast<unsigned long long>(streaming.residentChunks),
                 static_cast<unsigned long long>(scene_.info().chunkCount),
@@ -76,75 +75,43 @@ std::string VoyagerLayer::summary() const {
   return summary + text;
 }
 
-void VoyagerLayer::create_view(VkExtent2D largest) {
-  const VoyScene scenes[] = {scene_.get()};
-  VoyViewDesc desc = VOY_VIEW_DESC_INIT;
-  desc.instanceCount = 1;
-  desc.scenes = scenes;
-  desc.eyeCount = kEyes;
-  desc.maxWidth = largest.width;
-  desc.maxHeight = largest.height;
-  desc.tau = tau_;
-  const VoyTimeBudget budget = time_budget(frame_time_);
-  if (frame_time_ > 0) desc.next = &budget;
-  view_ = {};  // its buffers go before the new one's come
-  view_ = device_.create_view(desc);
-  view_extent_ = largest;
-  has_drawn_ = false;
-}
-
-void VoyagerLayer::resize(const std::array<VkExtent2D, kEyes>& extents, bool depth) {
-  rings_.clear();
-  const VkExtent2D largest = {
-      std::max({extents[0].width, extents[1].width, view_extent_.width}),
-      std::max({extents[0].height, extents[1].height, view_extent_.height})};
-  // A view keeps its cut: another is made only where an image outgrows it.
-  if (largest.width > view_extent_.width || largest.height > view_extent_.height)
-    create_view(largest);
-  const bool alike = extents[0].width == extents[1].width && extents[0].height == extents[1].height;
-  const uint32_t layers = alike ? kEyes : 1;
-  for (size_t i = 0; i < kEyes / layers; ++i)
-    rings_.emplace_back(graphics_, device_,
-                        RingDesc{extents[i], kFramesInFlight, depth, VK_FALSE, layers});
+void VoyagerLayer::resize(const std::vector<VkExtent2D>& extents, bool depth) {
+  double all = 0;
+  pixel_shares_.assign(pairs_.size(), 0);
+  for (size_t i = 0; i < extents.size(); ++i) {
+    const double pixels = static_cast<double>(extents[i].width) * extents[i].height;
+    pixel_shares_[i / kEyes] += pixels;
+    all += pixels;
+  }
+  for (double& share : pixel_shares_) share /= all;
+  share_frame_time();
+  for (size_t i = 0; i < pairs_.size(); ++i)
+    pairs_[i].resize(std::span(extents).subspan(i * kEyes, kEyes), depth);
 }
 
 void VoyagerLayer::begin_frame() {
-  for (VoyagerRing& ring : rings_) ring.begin_frame();
+  for (EyePair& pair : pairs_) pair.begin_frame();
 }
 
 void VoyagerLayer::record_release(VkCommandBuffer commands, uint32_t slot) const {
-  for (const VoyagerRing& ring : rings_) ring.record_release(commands, slot);
+  for (const EyePair& pair : pairs_) pair.record_release(commands, slot);
 }
 
-// The semaphores are NULL with VOY_VULKAN_SYNC_HOST.
 void VoyagerLayer::signal_released(Submission& submission, uint32_t slot) const {
-  for (const VoyagerRing& ring : rings_) submission.signal(ring.released(slot));
-}
-void VoyagerLayer::wait_for_rendered(Submission& submission, uint32_t slot) const {
-  for (const VoyagerRing& ring : rings_)
-    submission.wait(ring.rendered(slot), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+  for (const EyePair& pair : pairs_) pair.signal_released(submission, slot);
 }
 
-void VoyagerLayer::render(const std::array<Camera, kEyes>& cameras, double near_z, uint32_t slot) {
-  VoyFrameEye eyes[kEyes] = {VOY_FRAME_EYE_INIT, VOY_FRAME_EYE_INIT};
-  for (uint32_t i = 0; i < kEyes; ++i) {
-    eyes[i].pose = cameras[i].pose;
-    eyes[i].frustum = cameras[i].frustum;
-    eyes[i].target = ring(i).target();
-    eyes[i].layer = layer(i);
-  }
-  const VoyVulkanFrame vulkan = rings_[0].frame(slot);  // the rings are in step
-  VoyFrame frame = VOY_FRAME_INIT;
-  frame.next = &vulkan;
-  frame.eyeCount = kEyes;
-  frame.eyes = eyes;
-  frame.nearZ = near_z;
-  view_.render(frame);
-  has_drawn_ = true;
+void VoyagerLayer::render(const std::vector<Camera>& views, double near_z, uint32_t slot) {
+  for (size_t i = 0; i < pairs_.size(); ++i)
+    pairs_[i].render(std::span(views).subspan(i * kEyes, kEyes), near_z, slot);
 }
 
 void VoyagerLayer::record_acquire(VkCommandBuffer commands, uint32_t slot) const {
-  for (const VoyagerRing& ring : rings_) ring.record_acquire(commands, slot);
+  for (const EyePair& pair : pairs_) pair.record_acquire(commands, slot);
+}
+
+void VoyagerLayer::wait_for_rendered(Submission& submission, uint32_t slot) const {
+  for (const EyePair& pair : pairs_) pair.wait_for_rendered(submission, slot);
 }
 
 }  // namespace host

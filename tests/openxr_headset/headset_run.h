@@ -83,24 +83,30 @@ class Headset : public ::testing::Test {
     return read_json("report.json")["counts"].value(what, uint64_t{0});
   }
 
-  static Picture eye_picture(const std::string& name, int frame, char eye) {
+  // view: 0 left, 1 right, with quad views 2 left inner, 3 right inner.
+  static Picture view_picture(const std::string& name, int frame, int view) {
+    constexpr const char* kViews[] = {"L", "R", "L_inner", "R_inner"};
     char text[32];
-    std::snprintf(text, sizeof text, "/%04d_%c.png", frame, eye);
+    std::snprintf(text, sizeof text, "/%04d_%s.png", frame, kViews[view]);
     return read_png(file(name) + text);
   }
+  static Picture eye_picture(const std::string& name, int frame, char eye) {
+    return view_picture(name, frame, eye == 'L' ? 0 : 1);
+  }
 
-  // Each of these frames is what `voyager render` makes of the cameras that were written with
-  // them, within `most` of 255.
+  // Each of these frames, of 2 views or with quad views 4, is what `voyager render` makes of the
+  // cameras that were written with them, within `most` of 255.
   static void expect_rendered(const std::string& name, int frames, float most,
-                              const std::string& what) {
-    ASSERT_EQ(read_json(name + "/cameras.json").size(), 2 * static_cast<size_t>(frames)) << what;
+                              const std::string& what, int views = 2) {
+    ASSERT_EQ(read_json(name + "/cameras.json").size(), static_cast<size_t>(views * frames))
+        << what;
     const Outcome result = run("voyager render " + file("city.voy") + " --cameras " + file(name) +
                                "/cameras.json --stereo --all -o " + file("reference"));
     ASSERT_EQ(result.exit_code, 0) << what << result.output;
-    for (int i = 0; i < 2 * frames; ++i) {
+    for (int i = 0; i < views * frames; ++i) {
       char text[32];
       std::snprintf(text, sizeof text, "/%04d.png", i);
-      EXPECT_LE(largest_difference(eye_picture(name, i / 2, i % 2 == 0 ? 'L' : 'R'),
+      EXPECT_LE(largest_difference(view_picture(name, i / views, i % views),
                                    read_png(file("reference") + text)),
                 most)
           << what << ", image " << i;
