@@ -51,7 +51,7 @@ run python3 bench/psnr.py "$folder/0.pfm" "$folder/1.pfm"
 eyes=("$scene" "$cameras" -o "$folder/eyes" --voyager "$bin/voyager" --eye 40x44 --frames 1 --options "--backend cpu")
 run python3 bench/foveation.py time "${eyes[@]}"
 if python3 -c 'import numpy' 2>/dev/null; then
-  run python3 bench/foveation.py error "${eyes[@]}"
+  run python3 bench/foveation.py error "${eyes[@]}" --tiles 2
   run python3 bench/reprojection.py "$scene" "$cameras" -o "$folder/between" --voyager "$bin/voyager" --frames 1 --turn 30 \
     --options "--size 64x36 --backend cpu"
 else
