@@ -27,10 +27,9 @@ struct Validations {
 std::string say_what_runs(const Runtime& runtime, const Graphics& graphics,
                           const VoyagerLayer& voyager) {
   const VoyVulkanCapabilities& vulkan = voyager.vulkan_capabilities();
-  std::string modes = std::string("backend ") + backend_name(voyager.capabilities().backend) +
-                      ", sharing " + sharing_name(vulkan.sharing) + ", sync " +
-                      sync_name(vulkan.sync) +
-                      (runtime.view_count() > kEyes ? ", two pictures an eye" : "");
+  std::string modes = std::string(runtime.view_count() > kEyes ? "two pictures an eye, " : "") +
+                      "backend " + backend_name(voyager.capabilities().backend) + ", sharing " +
+                      sharing_name(vulkan.sharing) + ", sync " + sync_name(vulkan.sync);
   std::printf("%s, %s: %s%s%s\n", runtime.name().c_str(), graphics.name().c_str(), modes.c_str(),
               vulkan.why[0] ? ": " : "", vulkan.why);
   std::fflush(stdout);
