@@ -199,8 +199,12 @@ int main(int argc, char** argv) try {
     const VoyFrameStats stats = view.stats();
     VoyStreamingStats streamed = VOY_STREAMING_STATS_INIT;
     voyGetStreamingStats(handle, &streamed);
-    Taken taken{stats.millisecondsTotal,          call.count(), {}, stats.nodesEntered,
-                streamed.arrivedChunks - arrived, since_jump};
+    Taken taken{stats.millisecondsTotal - stats.milliseconds[VOY_STAGE_RESOLVE],
+                call.count(),
+                {},
+                stats.nodesEntered,
+                streamed.arrivedChunks - arrived,
+                since_jump};
     std::copy_n(stats.milliseconds, VOY_MAX_STAGES, taken.stages);
     arrived = streamed.arrivedChunks;
     frames.push_back(taken);

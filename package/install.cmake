@@ -32,12 +32,8 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/plugin/include/voyager
 install(EXPORT voyager NAMESPACE voyager:: FILE voyagerConfig.cmake
   DESTINATION ${cmake_folder} COMPONENT development)
 # What voyager.h says of VOY_API_VERSION.
-set(compatibility SameMajorVersion)
-if(PROJECT_VERSION_MAJOR EQUAL 0)
-  set(compatibility SameMinorVersion)
-endif()
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/voyagerConfigVersion.cmake
-  VERSION ${PROJECT_VERSION} COMPATIBILITY ${compatibility})
+  VERSION ${PROJECT_VERSION} COMPATIBILITY SameMajorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/voyagerConfigVersion.cmake
   DESTINATION ${cmake_folder} COMPONENT development)
 

@@ -13,9 +13,8 @@ constexpr uint32_t minor_version(uint32_t version) {
 // Whether a library of one API version serves a host of another: voyager.h,
 // VOY_MAKE_VERSION.
 constexpr bool serves(uint32_t library, uint32_t host) {
-  if (major_version(host) != major_version(library)) return false;
-  if (major_version(library) == 0) return minor_version(host) == minor_version(library);
-  return minor_version(host) <= minor_version(library);
+  return major_version(host) == major_version(library) &&
+         minor_version(host) <= minor_version(library);
 }
 
 }  // namespace voyager

@@ -33,8 +33,10 @@ static const char* draw(VoyDevice device, VoyScene scene) {
   VoyTargetDesc target_desc = VOY_TARGET_DESC_INIT;
   VoyFrameEye eye = VOY_FRAME_EYE_INIT;
   VoyInstancePose instance = VOY_INSTANCE_POSE_INIT;
+  VoyInstance listed = VOY_INSTANCE_INIT;
   VoyFrame frame = VOY_FRAME_INIT;
   VoyView view = NULL;
+  const char* problem;
   view_desc.instanceCount = 1;
   view_desc.scenes = &scene;
   view_desc.maxWidth = view_desc.maxHeight = kSide;
@@ -50,7 +52,16 @@ static const char* draw(VoyDevice device, VoyScene scene) {
   frame.eyes = &eye;
   frame.instances = &instance;
   if (voyRenderFrame(view, &frame) < 0) return voyGetLastErrorMessage();
-  return check_frame(view, color, depth);
+  problem = check_frame(view, color, depth);
+  if (problem != NULL) return problem;
+  listed.scene = scene;
+  listed.opacity = 0;
+  frame.instances = NULL;
+  if (voySetViewInstances(view, 1, &listed) < 0) return voyGetLastErrorMessage();
+  if (voyRenderFrame(view, &frame) < 0) return voyGetLastErrorMessage();
+  for (int i = 0; i < kSide * kSide; ++i)
+    if (color[4 * i + 3] != 0) return "an instance of opacity 0 was drawn";
+  return NULL;
 }
 
 static const char* open_and_draw(VoyDevice device, const char* path) {

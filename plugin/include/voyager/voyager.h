@@ -12,8 +12,8 @@
  * A structure never changes its size or a field: what a later version adds comes through `next`.
  * Fields named `reserved` must be 0.
  *
- * PROMISE. From 1.0 on, what this header and voyager_vulkan.h declare stays as it is until the
- * major version changes. voyager_experiment.h is for measurements. It is outside the promise.
+ * PROMISE. What this header and voyager_vulkan.h declare stays as it is until the major version
+ * changes. voyager_experiment.h is for measurements. It is outside the promise.
  *
  * RESULTS. Every call that can fail returns a VoyResult. 0 is success. A positive value is a
  * success with a remark. A negative value is an error, and voyGetLastErrorMessage explains it.
@@ -68,12 +68,11 @@ extern "C" {
 #endif
 
 /* A version is packed as major << 22 | minor << 12 | patch. VOY_API_VERSION is the version of this
- * header. While the major version is 0, a library accepts hosts that were built against the same
- * minor version only. From major version 1 on, it accepts hosts of the same major version and of
- * its own minor version or an older one. The patch version never matters. */
+ * header. A library accepts hosts that were built against the same major version and its own minor
+ * version or an older one. The patch version never matters. */
 #define VOY_MAKE_VERSION(major, minor, patch) \
   ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
-#define VOY_API_VERSION VOY_MAKE_VERSION(0, 5, 0)
+#define VOY_API_VERSION VOY_MAKE_VERSION(1, 0, 0)
 
 /* The numbers never change. docs/abi.md says what a host can do about each error. */
 typedef enum VoyResult {

@@ -12,8 +12,8 @@
  * A structure never changes its size or a field: what a later version adds comes through `next`.
  * Fields named `reserved` must be 0.
  *
- * PROMISE. From 1.0 on, what this header and voyager_vulkan.h declare stays as it is until the
- * major version changes. voyager_experiment.h is for measurements. It is outside the promise.
+ * PROMISE. What this header and voyager_vulkan.h declare stays as it is until the major version
+ * changes. voyager_experiment.h is for measurements. It is outside the promise.
  *
  * RESULTS. Every call that can fail returns a VoyResult. 0 is success. A positive value is a
  * success with a remark. A negative value is an error, and voyGetLastErrorMessage explains it.
@@ -68,12 +68,11 @@ extern "C" {
 #endif
 
 /* A version is packed as major << 22 | minor << 12 | patch. VOY_API_VERSION is the version of this
- * header. While the major version is 0, a library accepts hosts that were built against the same
- * minor version only. From major version 1 on, it accepts hosts of the same major version and of
- * its own minor version or an older one. The patch version never matters. */
+ * header. A library accepts hosts that were built against the same major version and its own minor
+ * version or an older one. The patch version never matters. */
 #define VOY_MAKE_VERSION(major, minor, patch) \
   ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
-#define VOY_API_VERSION VOY_MAKE_VERSION(0, 5, 0)
+#define VOY_API_VERSION VOY_MAKE_VERSION(1, 0, 0)
 
 /* The numbers never change. docs/abi.md says what a host can do about each error. */
 typedef enum VoyResult {
@@ -92,7 +91,7 @@ typedef enum VoyResult {
   VOY_ERROR_DAMAGED_CHUNK = -11,   /* this frame needs a damaged chunk; nothing was drawn */
   VOY_ERROR_NO_DEVICE = -12,       /* the backend finds no device that it can use */
   VOY_ERROR_BUSY = -13,            /* another thread uses the view or target */
-  VOY_ERROR_SCENE_DESTROYED = -14, /* a scene of the view was destroyed; destroy the view */
+  VOY_ERROR_SCENE_DESTROYED = -14, /* a scene of the view was closed; give it other instances */
   VOY_ERROR_INTERNAL = -15,        /* a bug in the library; please report the message */
   VOY_ERROR_DEVICE_LOST = -16,     /* a GPU stopped working; destroy the VoyDevice */
   VOY_ERROR_TIMEOUT = -17,         /* the host did not signal what the frame waits for */
@@ -141,6 +140,8 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_EXPERIMENT = 37,
   VOY_STRUCTURE_TYPE_EXPERIMENT_CAPABILITIES = 38,
   VOY_STRUCTURE_TYPE_EXPERIMENT_STATS = 39,
+  /* this header */
+  VOY_STRUCTURE_TYPE_INSTANCE = 40,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
@@ -375,8 +376,9 @@ VOY_API VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* de
 VOY_API VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes);
 
 /* Waits for frames that draw the scene, closes it and frees its memory. Closing NULL succeeds and
- * does nothing. From then on every call on a view
- * with an instance of it returns VOY_ERROR_SCENE_DESTROYED, except voyDestroyView. */
+ * does nothing. From then on every call on a view with an instance of it returns
+ * VOY_ERROR_SCENE_DESTROYED, until voySetViewInstances gives the view other instances. Only
+ * voyDestroyView succeeds before that. */
 VOY_API VoyResult VOY_CALL voyCloseScene(VoyScene scene);
 
 typedef enum VoySceneStorage {
@@ -600,8 +602,9 @@ typedef struct VoyTimeBudget {
   { VOY_STRUCTURE_TYPE_TIME_BUDGET, NULL, 0.0, 1.0, 60.0 }
 
 /* A view draws instances of scenes for one or two eyes, and keeps the cut of each instance between
- * frames. One scene may have several instances. The splats of all instances are sorted together,
- * so that overlapping instances hide one another correctly.
+ * frames. One scene may have several instances. voySetViewInstances changes them at any time. The
+ * splats of all instances are sorted together, so that overlapping instances hide one another
+ * correctly.
  *
  * Two eyes share one cut for each instance. It is the cut for the point midway between the eyes, as
  * fine as the more demanding eye needs. Covariance, colour, order and blending are computed for
@@ -609,8 +612,9 @@ typedef struct VoyTimeBudget {
 typedef struct VoyViewDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VIEW_DESC */
   const void* next; /* NULL or a chain of VoyTimeBudget and VoyExperiment (voyager_experiment.h) */
-  uint32_t instanceCount; /* 1 to VoyCapabilities.maxInstances; more is UNSUPPORTED */
-  const VoyScene* scenes; /* one for each instance, of the same device; copied */
+  uint32_t instanceCount; /* 0 to VoyCapabilities.maxInstances; more is UNSUPPORTED */
+  const VoyScene* scenes; /* one for each instance, of the same device; copied. All stand at the
+                             identity. NULL if there is none */
   uint32_t eyeCount;      /* of every frame; 1 to VoyCapabilities.maxEyes; more is UNSUPPORTED */
   uint32_t maxWidth, maxHeight; /* pixels; the largest target that frames will have */
   VoyLod lod;
@@ -622,8 +626,8 @@ typedef struct VoyViewDesc {
   { VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_AUTO, 3.0, VOY_ANTIALIAS_ON, 0 }
 
 /* Creates a view. The host destroys it with voyDestroyView.
- * Errors: INVALID_ARGUMENT, UNSUPPORTED (more than VoyCapabilities allows; a time budget
- * for a view that draws no cut, where tau has no effect), OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA:
+ * Errors: INVALID_ARGUMENT, UNSUPPORTED (more than VoyCapabilities allows; a time budget for a view
+ * whose instances have no cut, where tau has no effect), OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA:
  * the scene does not fit into the GPU's memory). */
 VOY_API VoyResult VOY_CALL voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
 
@@ -775,6 +779,60 @@ typedef struct VoyInstancePose {
 #define VOY_INSTANCE_POSE_INIT \
   { VOY_STRUCTURE_TYPE_INSTANCE_POSE, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, 1 }
 
+/* An instance of a view, for voySetViewInstances: a scene, where it stands, and what of it is
+ * drawn. It is an element of an array, so its size never changes.
+ *
+ * The opacity of each Gaussian is multiplied by `opacity` before anything is decided by it. With 1
+ * the image keeps every bit, with 0 nothing of the instance is drawn.
+ *
+ * A Gaussian is drawn if its centre lies inside the clip box or on its boundary. Where a node of a
+ * tree is drawn, its centre counts, and where it is blended with its parent, the blended centre.
+ * The box is in the scene's own axes and turns with the instance. Like VoySceneInfo.boundsMin it
+ * includes the scene's origin. Limits are rounded once to binary32, relative to that origin. A
+ * limit of 1e18 or more in magnitude, infinities included, cuts off nothing. Neither opacity nor
+ * box changes the cut, or what a streamed scene reads. */
+typedef struct VoyInstance {
+  VoyStructureType type; /* VOY_STRUCTURE_TYPE_INSTANCE */
+  const void* next;
+  VoyScene scene;                /* of the view's device */
+  VoyPose pose;                  /* as in VoyInstancePose, with its limit for the eye's distance */
+  double scale;                  /* the same for all axes, 1e-9 to 1e9 */
+  double clipMin[3], clipMax[3]; /* metres in the scene; not NaN; clipMin <= clipMax */
+  float opacity;                 /* 0 to 1 */
+  uint32_t reserved;             /* 0 */
+} VoyInstance;
+/* At the identity, whole, as opaque as it is stored. The host must set scene. */
+#define VOY_INSTANCE_INIT                                                  \
+  {                                                                        \
+    VOY_STRUCTURE_TYPE_INSTANCE, NULL, NULL, {{0, 0, 0}, {0, 0, 0, 1}}, 1, \
+        {-1e300, -1e300, -1e300}, {1e300, 1e300, 1e300}, 1, 0              \
+  }
+
+/* Sets the instances of a view from the next frame on: the whole list, in the order that breaks
+ * ties of depth. `count` is 0 to VoyCapabilities.maxInstances. With 0 the view draws the
+ * background, and `instances` may be NULL.
+ *
+ * If the scenes are the same in the same order, only poses, opacities and boxes change. The call is
+ * then cheap, waits for nothing and may be made every frame. Otherwise it waits for the view's
+ * frames in flight. The k-th instance of a scene in the new list then takes over the state of the
+ * k-th instance of that scene in the old one. The state of the others is freed, and new ones get
+ * theirs. New state is made before old state is freed, so a host that is short of memory removes
+ * first. No image or cut depends on what an instance takes over, only time does.
+ * VoyFrameStats.nodesExited does not count the nodes of instances that are gone.
+ *
+ * It also revives a view whose scene was closed, with a list without that scene.
+ *
+ * Errors; the view keeps its instances:
+ * - INVALID_ARGUMENT: a value out of range; a scene of another device.
+ * - INVALID_HANDLE: also a scene that was closed.
+ * - UNSUPPORTED: more than VoyCapabilities allows.
+ * - OUT_OF_HOST_MEMORY, OVER_BUDGET: as voyCreateView.
+ * - SCENE_DESTROYED: closing a scene failed to leave the view usable; destroy it.
+ * - BUSY: another thread uses the view.
+ * - DEVICE_LOST: the GPU stopped working, or a frame in flight never ends. */
+VOY_API VoyResult VOY_CALL voySetViewInstances(VoyView view, uint32_t count,
+                                               const VoyInstance* instances);
+
 /* In VoyFrame.next: for frames that must be complete, such as screenshots, loading screens and cuts
  * to another place. */
 typedef struct VoyFrameStreaming {
@@ -797,7 +855,10 @@ typedef struct VoyFrame {
   const void* next;      /* NULL or a chain of VoyFrameStreaming and VoyVulkanFrame */
   uint32_t eyeCount;     /* VoyViewDesc.eyeCount */
   const VoyFrameEye* eyes;
-  const VoyInstancePose* instances; /* one for each instance; NULL: all at the identity */
+  /* One for each instance: in this frame alone they stand in place of the poses and scales of
+   * voySetViewInstances, whose opacities and boxes stay. NULL: those poses and scales, which are
+   * the identity for the instances of VoyViewDesc. */
+  const VoyInstancePose* instances;
   double nearZ; /* world metres, finite, > 0: splats with view-space z <= nearZ are not drawn */
   float background[3]; /* code values behind the scene, finite */
   uint32_t reserved;   /* 0 */
@@ -809,7 +870,7 @@ typedef struct VoyFrame {
  * when Vulkan images are. After an error no target has changed.
  * Errors:
  * - INVALID_ARGUMENT: a value out of range.
- * - SCENE_DESTROYED: a scene of the view is gone.
+ * - SCENE_DESTROYED: a scene of the view was closed, and voySetViewInstances not called since.
  * - DAMAGED_CHUNK: the frame needs a chunk that is damaged.
  * - IO, FILE_NOT_FOUND, REFUSED_INPUT: the frame waits (VoyFrameStreaming) and a read failed.
  * - OUT_OF_HOST_MEMORY, OVER_BUDGET: the frame does not fit into host memory, into a budget, or
@@ -820,11 +881,12 @@ typedef struct VoyFrame {
 VOY_API VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame);
 
 /* Returns the last frame's cut of one instance: node ids in ascending order. `instance` is the
- * index in VoyViewDesc.scenes. On CUDA the call copies the cut from the GPU and waits for it.
+ * index in the view's list. On CUDA the call copies the cut from the GPU and waits for it.
  * With capacity 0 the call only sets *count. Otherwise it writes up to `capacity` ids and sets
  * *count to the size of the cut. It returns VOY_INCOMPLETE if that is more than `capacity`.
- * Errors: INVALID_ARGUMENT (before the first frame; no such instance), UNSUPPORTED (the view draws
- * no cut of this instance; on CUDA also after a frame failed, until the next one succeeds). */
+ * Errors: INVALID_ARGUMENT (no such instance; no frame yet, or none since voySetViewInstances
+ * changed the scenes), UNSUPPORTED (the view draws no cut of this instance; on CUDA also after a
+ * frame failed, until the next one succeeds). */
 VOY_API VoyResult VOY_CALL voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity,
                                          uint32_t* nodes, uint32_t* count);
 
@@ -960,6 +1022,8 @@ typedef VoyResult(VOY_CALL* PFN_voyPoseFromWorldMatrix)(const double* matrix, Vo
                                                         VoyPose* pose);
 typedef VoyResult(VOY_CALL* PFN_voyPoseFromViewMatrix)(const double* matrix, VoyHand worldHand,
                                                        VoyPose* pose);
+typedef VoyResult(VOY_CALL* PFN_voySetViewInstances)(VoyView view, uint32_t count,
+                                                     const VoyInstance* instances);
 typedef VoyResult(VOY_CALL* PFN_voyRenderFrame)(VoyView view, const VoyFrame* frame);
 typedef VoyResult(VOY_CALL* PFN_voyGetViewCut)(VoyView view, uint32_t instance, uint32_t capacity,
                                                uint32_t* nodes, uint32_t* count);

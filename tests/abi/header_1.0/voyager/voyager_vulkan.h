@@ -286,10 +286,11 @@ VOY_API VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacit
  * anything but DEVICE_LOST, it signals nothing and consumes no wait.
  *
  * With DEVICE sharing the call returns while the frame is in flight; it takes about 0.1 ms of host
- * time. It waits for the device in the first frame of a view, after a failure, when buffers must
- * grow, and in every frame of a scene with damaged chunks. A frame in flight cannot be drawn again
- * with larger buffers. So if the view turns to far more splats at once, a frame may lack some of
- * them. VoyFrameStats.pairsDropped counts them, and the next frame has larger buffers.
+ * time. It waits for the device in the first frame of a view and of a list of scenes
+ * (voySetViewInstances), after a failure, when buffers must grow, and in every frame of a scene
+ * with damaged chunks. A frame in flight cannot be drawn again with larger buffers. So if the view
+ * turns to far more splats at once, a frame may lack some of them. VoyFrameStats.pairsDropped
+ * counts them, and the next frame has larger buffers.
  *
  * Two eyes draw into two layers of one image, or into one image of two targets each. imageIndex and
  * the values then apply to both targets. A target has a fixed size: to resize, create another. */
