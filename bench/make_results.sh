@@ -31,6 +31,8 @@ measure() {
     [ $part = all ] || sms=(--sms "$part")
     "$voyager" report "$scene" --cameras "$cameras" --quick "${size[@]}" --backend cuda "${sms[@]}" \
       -o "$out/${name}_$part"
+    "$voyager" bench "$scene" --cameras "$cameras" --stages all "${size[@]}" --repeat 1 --backend cuda \
+      "${sms[@]}" --json "$out/${name}_$part/steps.json" >/dev/null
   done
   "$voyager" report "$scene" --cameras "$cameras" --curve --quick "${size[@]}" --backend cuda \
     -o "$out/${name}_curve"

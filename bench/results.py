@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reports of `voyager report`, side by side, as Markdown tables: results.py FOLDER ...
 
-Each FOLDER holds a report.json; what comes out is what docs/results/README.md has of it."""
+Each FOLDER holds a report.json, and may hold a steps.json of `voyager bench --stages all`."""
 import json
 import os
 import sys
@@ -78,6 +78,25 @@ def print_first_page(folders):
         print(f"| {name_of(folder)} | {frame_ms(default)} | {frame_ms(leaves)} | {frame_ms(splat)} | {truth_db(default)} | {truth_db(leaves)} | {size} |")
 
 
+STEPS = ["3dgs", "base", "+ streaming", "+ temporal", "+ alpha-filter", "+ lut", "ours"]
+
+
+def print_steps(folders):
+    """The paper's steps, from 3DGS to ours: milliseconds a frame, median."""
+    print(f"\n| | {' | '.join(STEPS)} | base / ours | 3dgs / ours |\n|{'---|' * (len(STEPS) + 3)}")
+    for folder in folders:
+        path = os.path.join(folder, "steps.json")
+        if not os.path.exists(path):
+            continue
+        with open(path, encoding="utf-8") as file:
+            rows = json.load(file)["rows"]
+        ms = {row["name"]: row["ms"]["frame"]["median"] for row in rows}
+        times = [ms.get(step) for step in STEPS]
+        ratios = [ms[step] / ms["ours"] if step in ms and "ours" in ms else None for step in ("base", "3dgs")]
+        texts = ["–" if t is None else f"{t:.3f}" for t in times] + ["–" if r is None else f"{r:.1f}" for r in ratios]
+        print(f"| {name_of(folder)} | {' | '.join(texts)} |")
+
+
 def print_report(folder):
     report = read_report(folder)
     rows = report["rows"]
@@ -90,5 +109,6 @@ def print_report(folder):
 
 
 print_first_page(sys.argv[1:])
+print_steps(sys.argv[1:])
 for each in sys.argv[1:]:
     print_report(each)

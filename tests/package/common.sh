@@ -2,8 +2,7 @@
 # LIB (the libraries' folder in a prefix), CUDA, HTTP, SOG and TOOLS (ON or OFF), CC and CXX.
 set -euo pipefail
 source=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-series=${VERSION%.*}  # of hosts that are served: MAJOR.MINOR while MAJOR is 0, then MAJOR
-[ "${VERSION%%.*}" = 0 ] || series=${VERSION%%.*}
+series=${VERSION%%.*}  # of hosts that are served
 scene=$source/tests/fuzz/corpus/ply/degree0.ply
 unset CMAKE_C_COMPILER_LAUNCHER CMAKE_CXX_COMPILER_LAUNCHER LD_LIBRARY_PATH
 rm -rf "$WORK"
