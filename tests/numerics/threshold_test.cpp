@@ -73,7 +73,7 @@ Edge measure(uint32_t image, double pixels) {
   Edge edge;
   for (uint32_t i = 0; i < scene->gaussians.size(); ++i) {
     const DrawItem item{i, kNoNode, 1.0f, 1.0f};
-    const auto exact = reference::project(*scene, camera, desc, item);
+    const auto exact = reference::project(*scene, camera, desc, {}, item);
     DrawnGaussian drawn;
     Splat splat;
     if (exact && read_gaussian(params, arrays, item, drawn) &&
