@@ -46,6 +46,11 @@ class Headset : public ::testing::Test {
     write_script({});
   }
 
+  // Megabytes that hold the top of the city's tree and not all of it. A GPU's slots are larger.
+  static double small_budget() {
+    return probe_.output.find("backend cuda") != std::string::npos ? 1.5 : 0.5;
+  }
+
   static std::string file(const std::string& name) { return folder_->file(name); }
   static std::string headset(const std::string& rest) {
     return "openxr_headset " + file("city.voy") + " --camera-file " + file("city.cameras.json") +

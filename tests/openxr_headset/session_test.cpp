@@ -133,8 +133,8 @@ TEST_F(Headset, TheGranularityFollowsATimeBudget) {
 // Three quarters of the period that the runtime tells, which is less than a frame takes here: τ
 // rises.
 TEST_F(Headset, WithoutAChoiceTheDisplayGivesTheTimeBudget) {
-  const std::string output = expect_well_behaved({{"period_ns", 1000000}}, "--frames 40");
-  EXPECT_NE(output.find(" to take 0.75 ms;"), std::string::npos) << output;
+  const std::string output = expect_well_behaved({{"period_ns", 100000}}, "--frames 40");
+  EXPECT_NE(output.find(" to take 0.075 ms;"), std::string::npos) << output;
   const size_t at = output.find("tau ");
   ASSERT_NE(at, std::string::npos) << output;
   EXPECT_GT(std::atof(output.c_str() + at + 4), 3) << output;
@@ -142,7 +142,8 @@ TEST_F(Headset, WithoutAChoiceTheDisplayGivesTheTimeBudget) {
 
 // With less memory than the scene takes, chunks come and go within the budget.
 TEST_F(Headset, ABudgetBelowTheSceneStreams) {
-  const std::string output = expect_well_behaved({}, "--frames 20 --tau 0.5 --budget 0.5");
+  const std::string output =
+      expect_well_behaved({}, "--frames 20 --tau 0.5 --budget " + std::to_string(small_budget()));
   const size_t at = output.find("streamed: ");
   ASSERT_NE(at, std::string::npos) << output;
   unsigned resident = 0, chunks = 0, read = 0;
@@ -153,7 +154,7 @@ TEST_F(Headset, ABudgetBelowTheSceneStreams) {
       << output;
   EXPECT_GT(resident, 0u);
   EXPECT_LT(resident, chunks);
-  EXPECT_LE(megabytes, 0.5);
+  EXPECT_LE(megabytes, small_budget());
 }
 
 // With the exit code, on one line that names what is wrong.
