@@ -31,6 +31,9 @@ ProjectParams picture_params(const Viewpoint& view, const NativeScale& native) {
   params.half = 0.5f;
   params.log_scale = 1;
   params.log_threshold = kLogAlphaThreshold;
+  params.opacity = 1;
+  params.log_opacity = 0;
+  params.clip = local_clip(kNoClip, params.origin);
   return params;
 }
 

@@ -46,7 +46,7 @@ if [ "$TOOLS" = ON ]; then quietly "$WORK/moved/bin/voyager" info "$scene"; fi
 
 # A version that the library does not serve is not found.
 cat >"$WORK/version.cmake" <<EOF
-foreach(version 0.2 0.999 1.0)
+foreach(version 0.2 1.999 2.0)
   find_package(voyager \${version} CONFIG QUIET PATHS "$WORK/moved/$LIB/cmake/voyager" NO_DEFAULT_PATH)
   if(voyager_FOUND OR NOT voyager_CONSIDERED_VERSIONS STREQUAL "$VERSION")
     message(FATAL_ERROR "version \${version} was found, or $VERSION was not looked at: \${voyager_CONSIDERED_VERSIONS}")
