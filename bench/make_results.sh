@@ -3,8 +3,8 @@
 #   bench/make_results.sh OUT [NAME SCENE.voy CAMERAS.json]...
 # A synthetic city of VOYAGER_RESULTS_GAUSSIANS (6,000,000) is made and baked; other scenes come as
 # NAME, a baked scene and its cameras. Each is measured on the whole device and on 16 of its
-# multiprocessors, and has the curve of its tree. OUT/tables.md is what docs/results/tables.md is
-# made from. VOYAGER names another command line than this build's. What is there is not made again.
+# multiprocessors, and has the curve of its tree. OUT/tables.md becomes docs/results/tables.md.
+# VOYAGER names another command line than this build's. A city that is there is not made again.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 voyager=${VOYAGER:-$here/../build/release/bin/voyager}
