@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Sets up, builds the release with warnings as errors, and runs every test that states a property of the
-# product. About 11 minutes on two cores, after the packages. Safe to run again. scripts/check.sh has the longer checks.
+# product. About 16 minutes on two cores, after the packages. Safe to run again. scripts/check.sh has the longer checks.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/steps.sh
