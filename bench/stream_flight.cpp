@@ -24,7 +24,6 @@ using voyager::tools::Camera;
 constexpr size_t kAround = 50;        // frames on either side that a frame is compared with
 constexpr double kLate = 2;           // times their median
 constexpr size_t kJumpEvery = 1'000;  // frames
-constexpr size_t kListed = 40;
 
 class Flight {
  public:
@@ -85,12 +84,28 @@ double quantile(std::vector<double> values, double q) {
   return values[static_cast<size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
-double median_around(const std::vector<Taken>& frames, size_t frame) {
+// Of the frames around one, of what `of` reads.
+template <class Of>
+double median_around(const std::vector<Taken>& frames, size_t frame, const Of& of) {
   std::vector<double> around;
   for (size_t i = frame - std::min(frame, kAround); i < std::min(frames.size(), frame + kAround);
        ++i)
-    around.push_back(frames[i].device);
+    around.push_back(of(frames[i]));
   return quantile(around, 0.5);
+}
+
+// What made a frame late: the stage that grew most. Buffers that grow count as project's.
+int longer_stage(const std::vector<Taken>& frames, size_t frame) {
+  int most = 0;
+  double by = -1;
+  for (int stage = 0; stage < VOY_STAGE_RESOLVE; ++stage) {
+    const double usual =
+        median_around(frames, frame, [&](const Taken& of) { return of.stages[stage]; });
+    if (frames[frame].stages[stage] - usual <= by) continue;
+    by = frames[frame].stages[stage] - usual;
+    most = stage;
+  }
+  return most;
 }
 
 long resident_kilobytes() {
@@ -112,34 +127,30 @@ void print(const std::vector<Taken>& frames) {
       "%.3f ms\n",
       frames.size(), quantile(device, 0.5), quantile(device, 0.99), quantile(device, 0.999),
       quantile(device, 1), quantile(call, 0.5), quantile(call, 0.99), quantile(call, 1));
-  size_t late = 0, after_jumps = 0, with_chunks = 0;
+  size_t late = 0, after_jumps = 0, by_stage[VOY_STAGE_RESOLVE] = {}, with_chunks = 0;
   for (size_t i = 0; i < frames.size(); ++i) {
-    const double usual = median_around(frames, i);
+    const double usual = median_around(frames, i, [](const Taken& of) { return of.device; });
     if (frames[i].device <= kLate * usual) continue;
     ++late;
-    const bool jumped = frames[i].since_jump < 3;
-    after_jumps += jumped;
-    with_chunks += !jumped && frames[i].arrived != 0;
-    if (late > kListed) continue;
-    std::printf(
-        "late: frame %zu, %zu after a jump, %.3f ms of %.3f around, entered %llu, chunks %llu,", i,
-        frames[i].since_jump, frames[i].device, usual,
-        static_cast<unsigned long long>(frames[i].entered),
-        static_cast<unsigned long long>(frames[i].arrived));
-    for (int s = 0; voyStageName(static_cast<VoyStage>(s)) != nullptr; ++s)
-      std::printf(" %s %.3f", voyStageName(static_cast<VoyStage>(s)), frames[i].stages[s]);
-    std::printf("\n");
+    if (frames[i].since_jump < 3) {
+      ++after_jumps;
+      continue;
+    }
+    ++by_stage[longer_stage(frames, i)];
+    with_chunks += frames[i].arrived != 0;
   }
   std::printf(
-      "late frames %zu: %zu within two frames after a jump, of the others %zu with chunks that "
-      "came\n",
-      late, after_jumps, with_chunks);
+      "late %zu: %zu within two frames after a jump; of the others, by the stage that grew:", late,
+      after_jumps);
+  for (int s = 0; s < VOY_STAGE_RESOLVE; ++s)
+    std::printf(" %s %zu", voyStageName(static_cast<VoyStage>(s)), by_stage[s]);
+  std::printf("; %zu of them with chunks that came\n", with_chunks);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc < 4) {
+  if (argc < 4 || (argc > 4 && std::atof(argv[4]) < 1)) {
     std::fprintf(stderr,
                  "stream_flight SCENE CAMERAS.json MEGABYTES [FRAMES] [WxH] [TAU] [SEED] [FPS]\n");
     return 1;

@@ -77,14 +77,14 @@ def orin_us(row, of_bytes):
 
 
 def print_orin(rows):
-    """The sum over kernels. Of its bytes, an Orin's smaller cache lets more through than this one's."""
+    """The sum over kernels, each at least its bytes' or its instructions' time. Of the bytes, an
+    Orin's smaller cache lets more through than this one's."""
     frames = sum(short_name(row["Kernel Name"]).startswith("rasterize_tiles") for row in rows)
-    sums = [[orin_us(row, name) for row in rows] for name in (BYTES, L2_BYTES)]
-    if not frames or any(us is None for us in sums[0] + sums[1]):
-        return
-    least, most = (sum(of) / frames / 1e3 for of in sums)
-    print("on an AGX Orin, by its rates: %.2f ms a frame if its cache held as much as this one's, "
-          "%.2f if it held nothing (%d frames)" % (least, most, frames))
+    for name, holds in ((BYTES, "as much as this one's"), (L2_BYTES, "nothing")):
+        times = [orin_us(row, name) for row in rows]
+        if frames and None not in times:
+            print("an AGX Orin takes at least %.2f ms a frame by its rates, if its cache holds %s (%d frames)" %
+                  (sum(times) / frames / 1e3, holds, frames))
 
 
 def text(value, form):

@@ -379,6 +379,14 @@ constexpr LaunchTable kLaunches = {launches_of<Exponential::exact>(),
                                    launches_of<Exponential::ex2>(), launches_of<Exponential::lut>(),
                                    launches_of<Exponential::half2>()};
 
+static_assert([] {
+  for (const auto& by_filter : kLaunches)
+    for (const auto& by_needs : by_filter)
+      for (Launch* of : by_needs)
+        if (of == nullptr) return false;
+  return true;
+}());
+
 Needs needs_of(const SplatFrame& f, const RasterChoices& choices, const RasterParams& params) {
   if (choices.count_pixels) return kCounted;
   if (f.splats.open_parts != nullptr) return kOpenTiles;
@@ -401,7 +409,7 @@ void launch_rasterize(const SplatFrame& f, const RasterChoices& choices, const R
   const auto& by_needs =
       kLaunches[static_cast<size_t>(choices.exponential)][choices.alpha_filter ? 1 : 0];
   by_needs[needs_of(f, choices, params)](f, params);
-  check(cudaGetLastError(), "rasterize_tiles");
+  check(cudaGetLastError(), "rasterize");
 }
 
 }  // namespace voyager::cuda

@@ -125,10 +125,14 @@ double View::next_tau(double chosen) {
   return budget_ ? budget_->next_tau() : chosen;
 }
 
-// Of a frame that has ended, in the frames' order.
+// Of a frame that has ended, in the frames' order. That one was incomplete is not forgotten before
+// somebody has heard of it.
 void View::keep_stats(const FrameStats& stats) {
+  const uint64_t unheard = heard_ ? 0 : stats_.pairs_dropped;
   stats_ = stats;
+  stats_.pairs_dropped += unheard;
   ended_ = true;
+  heard_ = false;
   if (budget_) budget_->measure(stats.tau, stats.total_milliseconds);
 }
 
@@ -201,6 +205,7 @@ void View::render(const FrameInput& frame) {
 const FrameStats& View::stats() {
   while (finish_one(false)) continue;
   if (!ended_) finish_one(true);
+  heard_ = true;
   return stats_;
 }
 

@@ -53,7 +53,7 @@ class View {
   // Whether a frame has been drawn since the instances are what they are.
   bool has_cuts() const { return drawn_; }
   // Of the last frame that has ended; a frame into another API's image may still be under way.
-  // Waits where none has.
+  // Waits where none has. pairs_dropped is also that of frames before it that nobody asked about.
   const FrameStats& stats();
   // What the view does without, its scenes' own omissions first; each scene's once. As far as the
   // frames so far tell.
@@ -98,6 +98,7 @@ class View {
   FrameStats stats_;
   std::deque<UnderWay> under_way_;  // the oldest first
   bool ended_ = false;              // stats_ is a frame's
+  bool heard_ = true;               // stats_ was asked for
   uint64_t frames_ = 0;
   bool drawn_ = false;   // a frame of these instances
   bool follows_ = true;  // no frame has failed since the last that succeeded

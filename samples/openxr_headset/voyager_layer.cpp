@@ -47,9 +47,10 @@ void VoyagerLayer::hold_frame_time(double milliseconds) {
   share_frame_time();
 }
 
-// The pairs draw one after the other, so each has a part of the time: its part of the pixels. Of
-// the outer pair that is 0.43 to 0.74 where it took 0.51 to 0.63 of the time (bench/NOTES.md, "Two
-// pictures an eye").
+// Each pair has a part of the time: its part of the pixels. Of the outer pair that is 0.43 to 0.74
+// where, drawn alone, it took 0.51 to 0.63 of the time (bench/NOTES.md, "Two pictures an eye").
+// Where a GPU draws both at once, each is measured with some of the other's work in it, so that τ
+// is coarser than it would have to be.
 void VoyagerLayer::share_frame_time() {
   if (frame_time_ <= 0) return;
   for (size_t i = 0; i < pairs_.size(); ++i)

@@ -1,6 +1,6 @@
 // Mapped memory: what kernels read of it is what the host wrote, and a piece is nobody else's
-// until the device has read it. On a device that shares the host's memory nothing else stands
-// between a chunk and its slot.
+// until the device has read it. All chunks come this way, on devices that share the host's memory
+// and on others.
 #include <atomic>
 #include <thread>
 #include <vector>

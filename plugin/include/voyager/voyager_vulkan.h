@@ -289,8 +289,9 @@ VOY_API VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacit
  * time. It waits for the device in the first frame of a view and of a list of scenes
  * (voySetViewInstances), after a failure, when buffers must grow, and in every frame of a scene
  * with damaged chunks. A frame in flight cannot be drawn again with larger buffers. So if the view
- * turns to far more splats at once, a frame may lack some of them. VoyFrameStats.pairsDropped
- * counts them, and the next frame has larger buffers.
+ * turns to far more splats at once, frames may lack some of them. VoyFrameStats.pairsDropped
+ * counts them, and the frames that are drawn after the first of these has ended have larger
+ * buffers.
  *
  * Two eyes draw into two layers of one image, or into one image of two targets each. imageIndex and
  * the values then apply to both targets. A target has a fixed size: to resize, create another. */

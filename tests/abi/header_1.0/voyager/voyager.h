@@ -959,7 +959,8 @@ typedef struct VoyFrameStats {
   uint64_t pairsAfterFilter; /* (tile, splat) pairs by ellipses at the α threshold; on CUDA without
                           those that the view's last frame showed to be hidden, as are splats */
   uint64_t pairsDropped;     /* pairs, strips and Gaussians that were not drawn because buffers
-                                were too small; 0 in a complete image */
+                                were too small, also in frames before this one whose statistics
+                                nobody read; 0: all those images are complete */
   uint64_t bytesStreamed;    /* read for streamed scenes since the view's last frame */
   uint64_t bytesNeeded;      /* size in the file of needed chunks that are not resident */
   uint64_t nodesUnrefined;   /* cut nodes of size >= tau* whose children are not resident */
