@@ -24,7 +24,7 @@ void check_version(uint32_t host) {
   throw ApiError(VOY_ERROR_INCOMPATIBLE_VERSION,
                  "desc.apiVersion: found " + version_text(host) +
                      ", expected the major version of " + version_text(VOY_API_VERSION) +
-                     " and its minor version, or a lower one where the major version is not 0");
+                     " and its minor version or a lower one");
 }
 
 void check_backend(const VoyBackend& wanted) {

@@ -72,9 +72,11 @@ VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame) {
     }
 
     const auto view_lock = claim(*object);
-    input.instances = frame->instances == nullptr
-                          ? object->poses
-                          : frame_poses(frame->instances, object->scenes.size());
+    const auto posed =
+        static_cast<uint32_t>(frame->instances == nullptr ? 0 : object->scenes.size());
+    check_count(frame->instanceCount, posed, posed, "frame.instanceCount");
+    input.instances =
+        frame->instances == nullptr ? object->poses : frame_poses(frame->instances, posed);
     input.looks = object->looks;
     const auto target_locks = claim(targets);
     input.tau = object->view->next_tau(object->tau);

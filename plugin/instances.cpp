@@ -57,10 +57,11 @@ InstanceList checked_list(Call& call, uint32_t count, const VoyInstance* instanc
 
 // Frames in flight read what goes, so they end first.
 void change_scenes(ViewObject& view, std::vector<std::shared_ptr<SceneObject>> scenes) {
-  if (!view.finish_frames())
-    throw ApiError(VOY_ERROR_DEVICE_LOST,
-                   "view: found a frame in flight that never finishes, expected the host to signal "
-                   "what it waits for");
+  if (!view.wait_frames())
+    throw ApiError(
+        VOY_ERROR_TIMEOUT,
+        "view: found a frame in flight that did not finish in time, expected the host to "
+        "signal what it waits for");
   view.set_scenes(std::move(scenes));
 }
 

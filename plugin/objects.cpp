@@ -35,11 +35,22 @@ void SceneObject::removed() noexcept {
   if (scene != nullptr && scene->streamed()) scene->stream->abandon();
 }
 
+void SceneObject::stop_reading() noexcept {
+  if (scene != nullptr && scene->streamed()) scene->stream->stop();
+}
+
 // Threads of ours must leave the library's code, whatever else stays.
 bool SceneObject::stays_at_unload() noexcept {
   if (!Child::stays_at_unload()) return false;
-  if (scene != nullptr && scene->streamed()) scene->stream->stop();
+  stop_reading();
   return true;
+}
+
+bool ViewObject::wait_frames() const noexcept {
+  return std::all_of(rings.begin(), rings.end(), [](const auto& used) {
+    const auto ring = used.lock();
+    return ring == nullptr || ring->wait_idle();
+  });
 }
 
 bool ViewObject::finish_frames() noexcept {
@@ -76,10 +87,12 @@ void ViewObject::set_scenes(std::vector<std::shared_ptr<SceneObject>> next) {
     of_view.push_back(scene->scene);
   }
   view->set_scenes(std::move(of_view));
-  // From here on nothing fails.
+  // From here on nothing fails. Who closes a scene that is listed waits for `state`, so what is
+  // gone goes first.
+  scenes.swap(next);
+  next.clear();
   const std::lock_guard lock(listing_);
   drawn_.swap(drawn);
-  scenes.swap(next);
 }
 
 bool ViewObject::draws(const std::shared_ptr<Object>& scene) const {

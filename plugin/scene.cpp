@@ -149,6 +149,8 @@ VoyResult VOY_CALL voyCloseScene(VoyScene scene) {
         const std::lock_guard frame(view.state);
         view.lose(object);
       }
+      // A view that another thread destroys holds the scene a while longer.
+      static_cast<SceneObject&>(*object).stop_reading();
     }
     return VOY_SUCCESS;
   });

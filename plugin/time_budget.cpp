@@ -17,8 +17,8 @@ void check_time_budget(const VoyTimeBudget& budget) {
 void set_time_budget(ViewObject& view, const VoyTimeBudget& budget) {
   if (!view.view->may_draw_cut())
     throw ApiError(VOY_ERROR_UNSUPPORTED,
-                   "VoyTimeBudget: found a view that draws every leaf, where tau has no effect; "
-                   "expected a view that draws a cut");
+                   "VoyTimeBudget: found a view of every leaf, where tau has no effect; expected a "
+                   "view that draws cuts");
   view.view->set_time_budget({budget.milliseconds, budget.minTau, budget.maxTau}, view.tau);
 }
 

@@ -123,6 +123,16 @@ bool Ring::release_in_the_hosts_stead() const noexcept {
   return vk.SignalSemaphore(device_->handle(), &info) == VK_SUCCESS;
 }
 
+bool Ring::wait_idle() const noexcept {
+  if (!external_) return true;
+  const auto start = std::chrono::steady_clock::now();
+  while (!external_->idle()) {
+    if (std::chrono::steady_clock::now() - start >= 5 * external_->patience_at_end()) return false;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  return true;
+}
+
 bool Ring::finish() noexcept {
   if (!external_) return true;
   const auto start = std::chrono::steady_clock::now();

@@ -65,10 +65,10 @@ void View::set_scenes(Scenes scenes) {
   drawn_ = false;
 }
 
-bool View::may_draw_cut() const {
-  const auto has_tree = [](const auto& scene) { return !scene->flat(); };
-  return voyager::draws_cut(desc_.lod) &&
-         (scenes_.empty() || std::any_of(scenes_.begin(), scenes_.end(), has_tree));
+bool View::draws_any_cut() const {
+  for (size_t i = 0; i < scenes_.size(); ++i)
+    if (draws_cut(i)) return true;
+  return false;
 }
 
 // A search that does not count what entered and left has its cuts compared. A cut that
@@ -133,7 +133,7 @@ void View::keep_stats(const FrameStats& stats) {
   stats_.pairs_dropped += unheard;
   ended_ = true;
   heard_ = false;
-  if (budget_) budget_->measure(stats.tau, stats.total_milliseconds);
+  if (budget_ && draws_any_cut()) budget_->measure(stats.tau, stats.total_milliseconds);
 }
 
 void View::draw(const FrameInput& frame, bool follows) {

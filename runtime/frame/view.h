@@ -47,8 +47,9 @@ class View {
   bool draws_cut(size_t instance) const {
     return !scenes_[instance]->flat() && voyager::draws_cut(desc_.lod);
   }
-  // Whether it is of any use to change τ: also where scenes with trees may come.
-  bool may_draw_cut() const;
+  // Whether τ may come to matter: scenes with trees may come.
+  bool may_draw_cut() const { return voyager::draws_cut(desc_.lod); }
+  bool draws_any_cut() const;
   bool has_frame() const { return frames_ > 0; }
   // Whether a frame has been drawn since the instances are what they are.
   bool has_cuts() const { return drawn_; }

@@ -51,12 +51,14 @@ static const char* draw(VoyDevice device, VoyScene scene) {
   frame.eyeCount = 1;
   frame.eyes = &eye;
   frame.instances = &instance;
+  frame.instanceCount = 1;
   if (voyRenderFrame(view, &frame) < 0) return voyGetLastErrorMessage();
   problem = check_frame(view, color, depth);
   if (problem != NULL) return problem;
   listed.scene = scene;
   listed.opacity = 0;
   frame.instances = NULL;
+  frame.instanceCount = 0;
   if (voySetViewInstances(view, 1, &listed) < 0) return voyGetLastErrorMessage();
   if (voyRenderFrame(view, &frame) < 0) return voyGetLastErrorMessage();
   for (int i = 0; i < kSide * kSide; ++i)

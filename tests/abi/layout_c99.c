@@ -218,6 +218,7 @@ const struct LayoutRow kLayout[] = {
     FIELD(VoyFrame, type),
     FIELD(VoyFrame, next),
     FIELD(VoyFrame, eyeCount),
+    FIELD(VoyFrame, instanceCount),
     FIELD(VoyFrame, eyes),
     FIELD(VoyFrame, instances),
     FIELD(VoyFrame, nearZ),

@@ -82,6 +82,7 @@ TEST_F(Hostile, ElementsOfArraysAreStructuresToo) {
   VoyInstancePose instance = VOY_INSTANCE_POSE_INIT;
   VoyFrame frame = Host::frame(eye);
   frame.instances = &instance;
+  frame.instanceCount = 1;
   const auto expect_wrong = [&](const char* part) {
     expect_refused(voy.RenderFrame(host.view, &frame), VOY_ERROR_INVALID_STRUCTURE, part);
   };

@@ -190,7 +190,9 @@ TEST_F(Hostile, Frames) {
 
   VoyInstancePose instance = VOY_INSTANCE_POSE_INIT;
   instance.pose.orientation[3] = -2;
-  const auto with_instance = [&] { return with([&](VoyFrame& f) { f.instances = &instance; }); };
+  const auto with_instance = [&] {
+    return with([&](VoyFrame& f) { f.instances = &instance, f.instanceCount = 1; });
+  };
   EXPECT_EQ(with_instance(), VOY_SUCCESS) << voy.message();
   for (const double scale : {0.0, -1.0, 9e-10, 1.1e9, kNan, kInf}) {
     instance.scale = scale;

@@ -69,7 +69,7 @@ TEST_P(Instances, ATurnedAndScaledInstanceIsTheInverseCameraMove) {
     for (const VoyInstancePose& pose :
          {pose_of(3, -2, 8), pose_of(0, 0, 0, 140), pose_of(0, 0, 0, 0, 0.02),
           pose_of(-500, 1000, 70, 250, 6.5)}) {
-      const Picture found = stage->draw(view, follow(eye, pose), &pose, 0.2 * pose.scale);
+      const Picture found = stage->draw(view, follow(eye, pose), {&pose, 1}, 0.2 * pose.scale);
       EXPECT_GE(psnr(expected, found), 60) << pose.scale;
       size_t apart = 0;
       for (size_t i = 0; i < found.depth.size(); ++i) {
@@ -78,7 +78,8 @@ TEST_P(Instances, ATurnedAndScaledInstanceIsTheInverseCameraMove) {
         apart += !(other == depth || std::fabs(other - depth) <= 1e-4 * depth);
       }
       EXPECT_LE(apart, found.depth.size() / 1000) << pose.scale;
-      EXPECT_LT(psnr(expected, stage->draw(view, eye, &pose)), 40) << "the pose changes nothing";
+      EXPECT_LT(psnr(expected, stage->draw(view, eye, {&pose, 1})), 40)
+          << "the pose changes nothing";
     }
   }
 }
@@ -88,7 +89,7 @@ TEST_P(Instances, TheIdentityIsNoPoseAtAll) {
                 two = stage->view_of({stage->scene, stage->open(ply_bytes(50))});
   const VoyInstancePose poses[2] = {pose_of(0, 0, 0), pose_of(0, 0, 0)};
   const VoyFrameEye eye = stage->eye(2, 0.1);
-  EXPECT_TRUE(stage->draw(one, eye) == stage->draw(one, eye, poses));
+  EXPECT_TRUE(stage->draw(one, eye) == stage->draw(one, eye, {poses, 1}));
   EXPECT_TRUE(stage->draw(two, eye) == stage->draw(two, eye, poses));
 }
 
@@ -115,7 +116,7 @@ TEST_P(Instances, OneSceneStandsInTwoPlaces) {
   const VoyFrameEye eye = stage->eye(0);
   EXPECT_GE(psnr(stage->draw(both, eye, poses), stage->draw(one, eye)), 60);
   const VoyFrameEye there = follow(eye, poses[1]);
-  EXPECT_GE(psnr(stage->draw(both, there, poses), stage->draw(one, there, poses + 1)), 60);
+  EXPECT_GE(psnr(stage->draw(both, there, poses), stage->draw(one, there, {poses + 1, 1})), 60);
   VoyFrameStats stats = VOY_FRAME_STATS_INIT;
   ASSERT_EQ(voy.GetFrameStats(both, &stats), VOY_SUCCESS);
   EXPECT_EQ(stats.cutSize, 2u * Stage::kGaussians);
@@ -129,7 +130,7 @@ TEST_P(Instances, AsManyAsTheCapabilitiesSay) {
   std::vector<VoyScene> scenes(capabilities.maxInstances, small);
   std::vector<VoyInstancePose> poses;
   for (uint32_t i = 0; i < capabilities.maxInstances; ++i) poses.push_back(pose_of(0, i, 0));
-  stage->draw(stage->view_of(scenes), stage->eye(), poses.data());
+  stage->draw(stage->view_of(scenes), stage->eye(), poses);
   scenes.push_back(small);
   VoyViewDesc desc = stage->view_desc();
   desc.instanceCount = static_cast<uint32_t>(scenes.size());
@@ -148,6 +149,7 @@ TEST_P(Instances, WhatIsWrongIsNamedByItsIndex) {
   VoyInstancePose poses[2] = {pose_of(0, 0, 0), pose_of(0, 0, 0)};
   VoyFrame frame = Host::frame(eye);
   frame.instances = poses;
+  frame.instanceCount = 2;
   const auto expect = [&](VoyResult expected, const char* part) {
     EXPECT_EQ(voy.RenderFrame(view, &frame), expected) << voy.message();
     EXPECT_NE(voy.message().find(part), std::string::npos) << voy.message();
@@ -164,6 +166,10 @@ TEST_P(Instances, WhatIsWrongIsNamedByItsIndex) {
   expect(VOY_ERROR_INVALID_STRUCTURE, "frame.instances[1].type");
   poses[1] = pose_of(1e17, 0, 0, 0, 1e-5);
   expect(VOY_ERROR_INVALID_ARGUMENT, "instance 1");
+  frame.instanceCount = 1;
+  expect(VOY_ERROR_INVALID_ARGUMENT, "frame.instanceCount: found 1, expected 2");
+  frame.instances = nullptr;
+  expect(VOY_ERROR_INVALID_ARGUMENT, "frame.instanceCount: found 1, expected 0");
   uint32_t count = 0;
   EXPECT_EQ(voy.GetViewCut(view, 1, 0, nullptr, &count), VOY_ERROR_UNSUPPORTED);
   EXPECT_EQ(voy.GetViewCut(view, 2, 0, nullptr, &count), VOY_ERROR_INVALID_ARGUMENT);

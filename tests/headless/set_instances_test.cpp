@@ -169,15 +169,20 @@ TEST_P(SetInstances, NoneDrawTheBackground) {
   expect_background();
 }
 
-// Its tau may come to matter. Where it never can, a budget is refused.
-TEST_P(SetInstances, AnEmptyViewMayHaveATimeBudget) {
+// Its tau may come to matter. Until it does, late frames leave it as it is. Where it never can, a
+// budget is refused.
+TEST_P(SetInstances, AViewWithoutATreeMayHaveATimeBudget) {
   VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
-  budget.milliseconds = 1000;
+  budget.milliseconds = 1e-6;
   const VoyView view = stage->view_of({});
   EXPECT_EQ(voy.SetViewTimeBudget(view, &budget), VOY_SUCCESS) << voy.message();
+  ASSERT_EQ(set(view, {instance_of(stage->scene)}), VOY_SUCCESS) << voy.message();
+  for (int i = 0; i < 12; ++i) draw(view, stage->eye());
+  EXPECT_EQ(stats(view).tau, stage->view_desc().tau);
   ASSERT_EQ(set(view, {instance_of(open_baked(1500, false))}), VOY_SUCCESS) << voy.message();
   draw(view, stage->eye());
-  EXPECT_EQ(stats(view).timeBudgetState, VOY_TIME_BUDGET_STATE_HELD);
+  EXPECT_EQ(stats(view).timeBudgetState, VOY_TIME_BUDGET_STATE_LATE);
+  EXPECT_EQ(stats(view).tau, stage->view_desc().tau);
   VoyViewDesc desc = stage->view_desc();
   desc.instanceCount = 0;
   desc.lod = VOY_LOD_ALL_LEAVES;
@@ -304,9 +309,9 @@ TEST_P(SetInstances, PosesOfAFrameStandInForThoseOfTheList) {
   const VoyView view = view_of({instance});
   const VoyFrameEye eye = stage->eye();
   const Picture expected = draw(view, eye);
-  const Picture moved = stage->draw(view, eye, &framed);
+  const Picture moved = stage->draw(view, eye, {&framed, 1});
   EXPECT_FALSE(moved == expected);
-  EXPECT_TRUE(stage->draw(view, eye, &listed) == expected);
+  EXPECT_TRUE(stage->draw(view, eye, {&listed, 1}) == expected);
   EXPECT_TRUE(draw(view, eye) == expected) << "the frame's pose stayed";
   instance.pose = framed.pose, instance.scale = framed.scale;
   EXPECT_TRUE(draw(view_of({instance}), eye) == moved);

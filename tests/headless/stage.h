@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "hostile.h"
 
@@ -76,10 +77,11 @@ struct Stage : Host {
     EXPECT_EQ(voy.CreateView(device, &desc, &made), VOY_SUCCESS) << voy.message();
     return made;
   }
-  Picture draw(VoyView drawn, const VoyFrameEye& from, const VoyInstancePose* poses = nullptr,
+  Picture draw(VoyView drawn, const VoyFrameEye& from, std::span<const VoyInstancePose> poses = {},
                double near = 0.2) {
     VoyFrame wanted = frame(from);
-    wanted.instances = poses;
+    wanted.instanceCount = static_cast<uint32_t>(poses.size());
+    wanted.instances = poses.empty() ? nullptr : poses.data();
     wanted.nearZ = near;
     EXPECT_EQ(voy.RenderFrame(drawn, &wanted), VOY_SUCCESS) << voy.message();
     return {pixels, depth};

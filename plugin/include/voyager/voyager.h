@@ -589,6 +589,7 @@ typedef enum VoyAntialias {
 /* In VoyViewDesc.next, or passed to voySetViewTimeBudget: the view chooses tau for each frame so
  * that VoyFrameStats.millisecondsTotal stays within the budget. It aims at nine tenths of it. On
  * CUDA this is GPU time, on the CPU the time of voyRenderFrame. What the host draws does not count.
+ * While no instance has a tree there is no tau to choose, and it stays as it is.
  * tau starts at VoyViewDesc.tau, clamped to the range below. It then depends only on the times of
  * the view's finished frames: equal times give equal taus. docs/time-budget.md has the rule. */
 typedef struct VoyTimeBudget {
@@ -626,9 +627,9 @@ typedef struct VoyViewDesc {
   { VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_AUTO, 3.0, VOY_ANTIALIAS_ON, 0 }
 
 /* Creates a view. The host destroys it with voyDestroyView.
- * Errors: INVALID_ARGUMENT, UNSUPPORTED (more than VoyCapabilities allows; a time budget for a view
- * whose instances have no cut, where tau has no effect), OUT_OF_HOST_MEMORY, OVER_BUDGET (CUDA:
- * the scene does not fit into the GPU's memory). */
+ * Errors: INVALID_ARGUMENT, UNSUPPORTED (more than VoyCapabilities allows; a time budget or a
+ * streamed scene for a view of every leaf; lists of 2^32 Gaussians or more), OUT_OF_HOST_MEMORY,
+ * OVER_BUDGET (CUDA: the scene does not fit into the GPU's memory). */
 VOY_API VoyResult VOY_CALL voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
 
 /* Waits for the view's frame in progress and destroys the view. */
@@ -789,8 +790,8 @@ typedef struct VoyInstancePose {
  * tree is drawn, its centre counts, and where it is blended with its parent, the blended centre.
  * The box is in the scene's own axes and turns with the instance. Like VoySceneInfo.boundsMin it
  * includes the scene's origin. Limits are rounded once to binary32, relative to that origin. A
- * limit of 1e18 or more in magnitude, infinities included, cuts off nothing. Neither opacity nor
- * box changes the cut, or what a streamed scene reads. */
+ * minimum of -1e18 or less and a maximum of 1e18 or more cut off nothing, and infinities may be
+ * given. Neither opacity nor box changes the cut, or what a streamed scene reads. */
 typedef struct VoyInstance {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_INSTANCE */
   const void* next;
@@ -825,11 +826,13 @@ typedef struct VoyInstance {
  * Errors; the view keeps its instances:
  * - INVALID_ARGUMENT: a value out of range; a scene of another device.
  * - INVALID_HANDLE: also a scene that was closed.
- * - UNSUPPORTED: more than VoyCapabilities allows.
+ * - UNSUPPORTED: more than VoyCapabilities allows; a streamed scene in a view of every leaf; lists
+ *   of 2^32 Gaussians or more.
  * - OUT_OF_HOST_MEMORY, OVER_BUDGET: as voyCreateView.
+ * - TIMEOUT: the host did not signal within 10 s what a frame in flight waits for.
  * - SCENE_DESTROYED: closing a scene failed to leave the view usable; destroy it.
  * - BUSY: another thread uses the view.
- * - DEVICE_LOST: the GPU stopped working, or a frame in flight never ends. */
+ * - DEVICE_LOST: the GPU stopped working. */
 VOY_API VoyResult VOY_CALL voySetViewInstances(VoyView view, uint32_t count,
                                                const VoyInstance* instances);
 
@@ -851,9 +854,10 @@ typedef struct VoyFrameStreaming {
   { VOY_STRUCTURE_TYPE_FRAME_STREAMING, NULL, 0, 0 }
 
 typedef struct VoyFrame {
-  VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME */
-  const void* next;      /* NULL or a chain of VoyFrameStreaming and VoyVulkanFrame */
-  uint32_t eyeCount;     /* VoyViewDesc.eyeCount */
+  VoyStructureType type;  /* VOY_STRUCTURE_TYPE_FRAME */
+  const void* next;       /* NULL or a chain of VoyFrameStreaming and VoyVulkanFrame */
+  uint32_t eyeCount;      /* VoyViewDesc.eyeCount */
+  uint32_t instanceCount; /* of `instances`: as many as the view has; 0 where that is NULL */
   const VoyFrameEye* eyes;
   /* One for each instance: in this frame alone they stand in place of the poses and scales of
    * voySetViewInstances, whose opacities and boxes stay. NULL: those poses and scales, which are
@@ -864,7 +868,7 @@ typedef struct VoyFrame {
   uint32_t reserved;   /* 0 */
 } VoyFrame;
 #define VOY_FRAME_INIT \
-  { VOY_STRUCTURE_TYPE_FRAME, NULL, 0, NULL, NULL, 0.2, {0, 0, 0}, 0 }
+  { VOY_STRUCTURE_TYPE_FRAME, NULL, 0, 0, NULL, NULL, 0.2, {0, 0, 0}, 0 }
 
 /* Draws a frame. Targets in host memory are complete when the call returns. VoyVulkanFrame says
  * when Vulkan images are. After an error no target has changed.

@@ -2,7 +2,8 @@
  * the library is compared with. An engine needs none of them.
  *
  * This header is outside the promise of voyager.h. Any minor version may change or remove what it
- * declares, so build such a program against the version of the library that it runs with. */
+ * declares, so build such a program against the version of the library that it runs with. A
+ * structure that changes gets another number, so that the old one is refused. */
 #ifndef VOYAGER_VOYAGER_EXPERIMENT_H_
 #define VOYAGER_VOYAGER_EXPERIMENT_H_
 
