@@ -2,8 +2,11 @@
 // wait and frames that do not, refusals.
 #include <voyager/voyager_experiment.h>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <thread>
 
 #include "baked_scene.h"
@@ -213,6 +216,90 @@ TEST(Streaming, Refusals) {
   ASSERT_EQ(voy.OpenScene(host.device, &desc, &scene), VOY_SUCCESS) << voy.message();
   EXPECT_EQ(voy.GetStreamingStats(scene, &stats), VOY_ERROR_UNSUPPORTED);
   EXPECT_EQ(voy.SetSceneMemoryBudget(scene, 1), VOY_ERROR_UNSUPPORTED);
+}
+
+// An allocator that holds one thread where it gives memory back.
+struct Gate {
+  std::atomic<bool> open{false}, reached{false};
+  static inline thread_local bool holds = false;
+
+  static void* allocate(void*, size_t size, size_t alignment) {
+    void* memory = nullptr;
+    return posix_memalign(&memory, std::max(alignment, sizeof(void*)), size) == 0 ? memory
+                                                                                  : nullptr;
+  }
+  static void release(void* user, void* memory, size_t, size_t) {
+    auto* self = static_cast<Gate*>(user);
+    if (holds) {
+      self->reached = true;
+      while (!self->open) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::free(memory);
+  }
+};
+
+// Bytes that take a while, once that is asked for.
+struct SlowBytes {
+  BytesHost bytes;
+  std::atomic<bool> slow{false}, closed{false};
+  std::atomic<int> late{0};  // reads that go on although the scene is closed
+
+  static VoyResult read(void* user, uint64_t offset, uint64_t size, void* into) {
+    auto* self = static_cast<SlowBytes*>(user);
+    if (self->slow) std::this_thread::sleep_for(std::chrono::milliseconds(40));
+    self->late += self->closed ? 1 : 0;
+    return BytesHost::read(&self->bytes, offset, size, into);
+  }
+};
+
+// While another thread is still about to destroy a view of it.
+TEST(Streaming, NothingIsReadOnceClosingHasReturned) {
+  const Library voy;
+  Gate gate;
+  SlowBytes slow;
+  slow.bytes.bytes = baked_bytes(6000);
+  const VoyAllocator allocator{VOY_STRUCTURE_TYPE_ALLOCATOR, nullptr, &gate, Gate::allocate,
+                               Gate::release};
+  VoyDeviceDesc desc = device_for(VOY_BACKEND_CPU);
+  desc.allocator = &allocator;
+  Host host(voy, desc);
+  VoyByteSource source = slow.bytes.source();
+  source.user = &slow;
+  source.read = SlowBytes::read;
+  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+  streaming.memoryBudget = 400'000;
+  VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
+  scene_desc.next = &streaming;
+  scene_desc.source = &source;
+  VoyScene scene = nullptr;
+  ASSERT_EQ(voy.OpenScene(host.device, &scene_desc, &scene), VOY_SUCCESS) << voy.message();
+  VoyViewDesc view_desc = host.view_desc();
+  view_desc.scenes = &scene;
+  view_desc.tau = 0;
+  VoyView view = nullptr;
+  ASSERT_EQ(voy.CreateView(host.device, &view_desc, &view), VOY_SUCCESS) << voy.message();
+  slow.slow = true;
+  VoyFrameEye eye = host.eye();
+  eye.target = host.target;
+  VoyFrame frame = VOY_FRAME_INIT;
+  frame.eyeCount = 1;
+  frame.eyes = &eye;
+  for (const double x : {0.0, 5.0, -5.0}) {
+    eye.pose.position[0] = x;
+    ASSERT_EQ(voy.RenderFrame(view, &frame), VOY_SUCCESS) << voy.message();
+  }
+  std::thread other([&] {
+    Gate::holds = true;
+    EXPECT_EQ(voy.DestroyView(view), VOY_SUCCESS);
+    Gate::holds = false;
+  });
+  while (!gate.reached) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(voy.CloseScene(scene), VOY_SUCCESS) << voy.message();
+  slow.closed = true;
+  std::this_thread::sleep_for(std::chrono::milliseconds(150));
+  EXPECT_EQ(slow.late, 0);
+  gate.open = true;
+  other.join();
 }
 
 }  // namespace
