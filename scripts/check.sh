@@ -5,12 +5,13 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/steps.sh
 
-parts=(asan tidy tsan package aarch64 parity fuzz searches cuda bench demo)
+parts=(asan tidy tsan package doxygen aarch64 parity fuzz searches cuda bench demo)
 declare -A about=(
   [asan]="every test under AddressSanitizer and UndefinedBehaviorSanitizer"
   [tidy]="clang-format and clang-tidy on everything that ships; headers of the library and of the tests' support compile alone"
   [tsan]="a minute of streaming on many threads under ThreadSanitizer"
   [package]="the library alone, built, installed and used where nothing else is found; the tools alone configured"
+  [doxygen]="the C API as pages, without a warning"
   [aarch64]="exact results on 64-bit Arm under qemu-user: tests, bakes and cuts to the byte"
   [parity]="the CPU stages with contraction off, against the float64 reference"
   [fuzz]="each target of tests/fuzz under libFuzzer for a minute, from the kept corpus"
@@ -45,6 +46,12 @@ check_tsan() {
 }
 
 check_package() { scripts/check_package.sh; }
+
+# The pages are in build/doxygen/html.
+check_doxygen() {
+  mkdir -p build
+  doxygen docs/Doxyfile
+}
 
 check_aarch64() {
   if [ "$(uname -m)" = aarch64 ]; then

@@ -4,7 +4,7 @@
 #   view    beside it: `voyager view`, and a software Vulkan for machines without a GPU
 #   samples beside view: the samples for Vulkan and OpenXR
 #   tests   beside main: the samples, `voyager report`, a software Vulkan, a browser, a web server
-#   checks  beside main and tests: git, clang with its sanitizers, clang-format, clang-tidy, libabigail
+#   checks  beside main and tests: git, clang with its sanitizers, clang-format, clang-tidy, libabigail, Doxygen
 #   bench   beside main: the benchmarks and the plots of bench/
 # scripts/setup_aarch64.sh is for the check of 64-bit Arm. No service is left running. Safe to run
 # again; root or sudo.
@@ -28,7 +28,7 @@ packages[tests]="${packages[samples]} ${packages[report]}
   libgtest-dev binutils python3 dpkg-dev file
   vulkan-validationlayers openxr-layer-corevalidation xvfb
   openssl ca-certificates chromium-headless-shell"
-packages[checks]="${packages[tests]} git clang libclang-rt-dev clang-format clang-tidy abigail-tools"
+packages[checks]="${packages[tests]} git clang libclang-rt-dev clang-format clang-tidy abigail-tools doxygen"
 packages[bench]="libbenchmark-dev python3 python3-matplotlib"
 
 wanted=${packages[main]}
