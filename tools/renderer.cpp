@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/base/error.h"
 #include "tools/backend_name.h"
 #include "tools/console.h"
 #include "tools/supersample.h"
@@ -49,11 +50,16 @@ voy::Scene open_scene(const voy::Device& device, const std::string& path,
   return device.open_scene(desc);
 }
 
-voy::View create_view(const voy::Device& device, VoyScene scene, const RenderChoices& choices,
-                      uint32_t max_width, uint32_t max_height) {
+voy::View create_view(const voy::Device& device, const voy::Scene& scene,
+                      const RenderChoices& choices, uint32_t max_width, uint32_t max_height) {
+  if (choices.time_budget > 0 && scene.info().nodeCount == 0)
+    throw Error(ErrorCode::invalid_argument,
+                "--time-budget: found a scene without a tree, which draws every leaf whatever tau "
+                "is; expected one that was baked");
+  const VoyScene handle = scene.get();
   VoyViewDesc desc = VOY_VIEW_DESC_INIT;
   desc.instanceCount = 1;
-  desc.scenes = &scene;
+  desc.scenes = &handle;
   desc.eyeCount = choices.eyes;
   desc.maxWidth = max_width * choices.supersample;
   desc.maxHeight = max_height * choices.supersample;
@@ -78,7 +84,7 @@ Renderer::Renderer(const std::string& scene, const RenderChoices& choices, uint3
     : choices_(choices),
       device_(create_device(choices, *log_)),
       scene_(open_scene(device_, scene, choices)),
-      view_(create_view(device_, scene_.get(), choices, max_width, max_height)),
+      view_(create_view(device_, scene_, choices, max_width, max_height)),
       images_(choices.eyes) {}
 
 VoySearch Renderer::search() const {

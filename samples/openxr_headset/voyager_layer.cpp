@@ -39,6 +39,11 @@ void VoyagerLayer::open_scene(const VoyagerOptions& options) {
   if (options.memory_budget > 0) desc.next = &streaming;
   scene_ = device_.open_scene(desc);
   has_tree_ = scene_.info().nodeCount > 0;
+  if (frame_time_ > 0 && !has_tree_)
+    throw Failure(
+        kBadUsage,
+        "--time-budget: found a scene without a tree, which draws every leaf whatever tau "
+        "is; expected one that was baked");
   streams_ = scene_.profile().streamed != 0;  // a flat file is loaded whole
 }
 

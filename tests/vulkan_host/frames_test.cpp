@@ -164,7 +164,7 @@ TEST_F(VulkanHost, RefusalsAreOneLine) {
       {host("--frames 1 --time-budget 8 --tau 3" + out), 1, "--time-budget"},
       {"vulkan_host " + file("city.ply") +
            " --offscreen --frames 1 --time-budget 8 --camera-file " + file("cameras.json") + out,
-       1, "VoyTimeBudget"},
+       1, "without a tree"},
       {host("--frames 1 --mesh-at 0,0,0,0" + out), 1, "--mesh-at"},
       {host("--frames 1 --mesh-at 0,0,1" + out), 1, "--mesh-at"},
       {host("--frames 1 --mesh-at 0,0,x,1" + out), 1, "--mesh-at"},
