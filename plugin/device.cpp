@@ -21,10 +21,10 @@ std::string version_text(uint32_t version) {
 
 void check_version(uint32_t host) {
   if (serves(VOY_API_VERSION, host)) return;
-  throw ApiError(VOY_ERROR_INCOMPATIBLE_VERSION,
-                 "desc.apiVersion: found " + version_text(host) +
-                     ", expected the major version of " + version_text(VOY_API_VERSION) +
-                     " and its minor version or a lower one");
+  throw ApiError(VOY_ERROR_INCOMPATIBLE_VERSION, "desc.apiVersion: found " + version_text(host) +
+                                                     ", expected the major version of " +
+                                                     version_text(VOY_API_VERSION) +
+                                                     " and its minor version or a lower one");
 }
 
 void check_backend(const VoyBackend& wanted) {
