@@ -115,7 +115,7 @@ struct ViewObject final : Child {
   void lose(const std::shared_ptr<Object>& scene) noexcept;
   // As View has it; the frames under way are finished. Under `state`.
   void set_scenes(std::vector<std::shared_ptr<SceneObject>> next);
-  // Whether it draws the scene. Any thread, without a lock.
+  // Whether it draws the scene. Any thread, without `state`.
   bool draws(const std::shared_ptr<Object>& scene) const;
 
   const uint32_t eyes;
