@@ -3,6 +3,7 @@
 #include "plugin/structs.h"
 
 namespace voyager {
+
 void check_time_budget(const VoyTimeBudget& budget) {
   const auto check = [](const char* field, double found, bool right, const std::string& expected) {
     if (!std::isfinite(found) || !right)
