@@ -24,7 +24,7 @@ class Call {
   // Throws ApiError(VOY_ERROR_INVALID_HANDLE), ApiError(VOY_ERROR_DEVICE_LOST).
   template <class T>
   std::shared_ptr<T> use(typename T::Handle handle) {
-    in_use_.reserve(in_use_.size() + 1);
+    make_room();
     std::shared_ptr<Object> object = HandleTable::instance().begin_call(handle, T::kKind);
     in_use_.push_back(object.get());
     if (device_of(*object).abandoned)
@@ -40,7 +40,7 @@ class Call {
   template <class T>
   std::vector<std::shared_ptr<Object>> remove(typename T::Handle handle) {
     if (handle == nullptr) return {};
-    in_use_.reserve(in_use_.size() + 1);
+    make_room();
     auto removed = HandleTable::instance().remove(handle, T::kKind);
     if (Object* device = removed.back()->parent().get()) in_use_.push_back(device);
     enter(*removed.back());
@@ -54,6 +54,10 @@ class Call {
   }
 
  private:
+  // For one object more, so that noting it cannot fail once it is in use.
+  void make_room() {
+    if (in_use_.size() == in_use_.capacity()) in_use_.reserve(2 * in_use_.size() + 4);
+  }
   static DeviceObject& device_of(Object& object) {
     return static_cast<DeviceObject&>(object.parent() ? *object.parent() : object);
   }

@@ -2,18 +2,18 @@
 // A view, or a target, serves one thread at a time.
 #include <mutex>
 
+#include "plugin/field_name.h"
 #include "plugin/objects.h"
 #include "plugin/result.h"
 
 namespace voyager {
 
 template <class T>
-std::unique_lock<std::mutex> claim_object(T& object, const char* name) {
+std::unique_lock<std::mutex> claim_object(T& object, const FieldName& name) {
   std::unique_lock lock(object.busy, std::try_to_lock);
   if (!lock)
-    throw ApiError(
-        VOY_ERROR_BUSY,
-        std::string(name) + ": found it in use by another thread, expected it to be free");
+    throw ApiError(VOY_ERROR_BUSY,
+                   name.str() + ": found it in use by another thread, expected it to be free");
   return lock;
 }
 

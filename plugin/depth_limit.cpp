@@ -23,8 +23,8 @@ DepthForm form_of(VoyDepthEncoding encoding) {
 }  // namespace
 
 DepthEncoding checked_encoding(const VoyDepthEncoding& encoding, double near_z, double far_z,
-                               const std::string& name) {
-  check_enum(encoding, VOY_DEPTH_ENCODING_REVERSED, (name + ".depthEncoding").c_str());
+                               const FieldName& name) {
+  check_enum(encoding, VOY_DEPTH_ENCODING_REVERSED, name + ".depthEncoding");
   if (encoding == VOY_DEPTH_ENCODING_METERS) return {};
   if (!(near_z >= kLeastNear && near_z <= kMostNear))
     refuse_number(name + ".nearZ", near_z, "metres from 1e-18 to 1e18");

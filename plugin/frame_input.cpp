@@ -14,19 +14,19 @@ namespace {
 // Of an instance: depths in coordinates of METHOD §3 stay finite in binary32.
 constexpr double kMinInstanceScale = 1e-9, kMaxInstanceScale = 1e9;
 
-Vec3d checked_position(const double (&p)[3], const std::string& field) {
+Vec3d checked_position(const double (&p)[3], const FieldName& field) {
   for (const double x : p) check_coordinate(x, field + ".position");
   return {p[0], p[1], p[2]};
 }
 
 // (x, y, z, w) of any length, to the runtime's unit (w, x, y, z).
-Quatd checked_orientation(const double (&q)[4], const std::string& field) {
+Quatd checked_orientation(const double (&q)[4], const FieldName& field) {
   double largest = 0;
   for (const double x : q) {
     if (!std::isfinite(x)) refuse_number(field + ".orientation", x, "a finite number");
     largest = std::max(largest, std::fabs(x));
   }
-  if (largest == 0) refuse(field + ".orientation: found zero, expected a rotation");
+  if (largest == 0) refuse(field.str() + ".orientation: found zero, expected a rotation");
   return normalise(Quatd{q[3] / largest, q[0] / largest, q[1] / largest, q[2] / largest});
 }
 
@@ -43,7 +43,7 @@ bool is_identity(const InstancePose& pose) {
 
 }  // namespace
 
-InstancePose instance_pose(const VoyPose& pose, double scale, const std::string& field) {
+InstancePose instance_pose(const VoyPose& pose, double scale, const FieldName& field) {
   if (!(scale >= kMinInstanceScale && scale <= kMaxInstanceScale))
     refuse_number(field + ".scale", scale, "1e-9 to 1e9");
   return {rotation(checked_orientation(pose.orientation, field + ".pose")),
@@ -58,8 +58,8 @@ std::vector<InstancePose> without_identities(std::vector<InstancePose> poses) {
 std::vector<InstancePose> frame_poses(const VoyInstancePose* instances, size_t count) {
   std::vector<InstancePose> poses;
   for (size_t i = 0; i < count; ++i) {
-    const std::string field = "frame.instances[" + std::to_string(i) + "]";
-    check_structure(&instances[i], VOY_STRUCTURE_TYPE_INSTANCE_POSE, field.c_str());
+    const FieldName field("frame.instances", i);
+    check_structure(&instances[i], VOY_STRUCTURE_TYPE_INSTANCE_POSE, field);
     poses.push_back(instance_pose(instances[i].pose, instances[i].scale, field));
   }
   return without_identities(std::move(poses));
@@ -80,8 +80,8 @@ FrameInput frame_input(const VoyFrame& frame) {
   return input;
 }
 
-EyeView eye_view(const VoyPose& pose, const std::string& pose_field, const VoyFrustum& frustum,
-                 const std::string& frustum_field) {
+EyeView eye_view(const VoyPose& pose, const FieldName& pose_field, const VoyFrustum& frustum,
+                 const FieldName& frustum_field) {
   check_frustum(frustum, frustum_field);
   return {world_to_view(checked_orientation(pose.orientation, pose_field)),
           checked_position(pose.position, pose_field),
@@ -92,8 +92,8 @@ EyeView eye_view(const VoyPose& pose, const std::string& pose_field, const VoyFr
 }
 
 FrameEye frame_eye(const VoyFrame& frame, const VoyFrameEye& eye, const Image& image,
-                   const std::string& field) {
-  check_count(eye.reserved, 0, 0, (field + ".reserved").c_str());
+                   const FieldName& field) {
+  check_count(eye.reserved, 0, 0, field + ".reserved");
   FrameEye out;
   out.image = image;
   out.depth_wanted = image.depth != nullptr;

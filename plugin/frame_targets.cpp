@@ -8,34 +8,34 @@
 namespace voyager {
 namespace {
 
-void check_size(const Image& image, const ViewObject& view, const std::string& eye) {
+void check_size(const Image& image, const ViewObject& view, const FieldName& eye) {
   if (image.width > view.max_width || image.height > view.max_height)
-    refuse(eye + ".target: found " + std::to_string(image.width) + " x " +
+    refuse(eye.str() + ".target: found " + std::to_string(image.width) + " x " +
            std::to_string(image.height) + " pixels, expected at most the view's " +
            std::to_string(view.max_width) + " x " + std::to_string(view.max_height));
 }
 
 EyeTarget checked_target(Call& call, const VoyFrameEye& eye, const ViewObject& view,
-                         const std::string& name) {
+                         const FieldName& name) {
   EyeTarget out;
-  check_structure(&eye, VOY_STRUCTURE_TYPE_FRAME_EYE, name.c_str(),
+  check_structure(&eye, VOY_STRUCTURE_TYPE_FRAME_EYE, name,
                   Extension{VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, out.limit});
   out.object = call.use<TargetObject>(eye.target);
   if (out.object->parent() != view.parent())
-    refuse(name + ".target: found a target of another device, expected the view's");
+    refuse(name.str() + ".target: found a target of another device, expected the view's");
   check_size(out.object->image, view, name);
   const uint32_t layers = out.object->ring == nullptr ? 1 : out.object->ring->desc().layers;
-  check_count(eye.layer, 0, layers - 1, (name + ".layer").c_str());
+  check_count(eye.layer, 0, layers - 1, name + ".layer");
   out.layer = eye.layer;
   return out;
 }
 
-void check_other(const EyeTarget& target, const EyeTarget& before, const std::string& name) {
+void check_other(const EyeTarget& target, const EyeTarget& before, const FieldName& name) {
   if ((target.object->ring == nullptr) != (before.object->ring == nullptr))
-    refuse(name +
+    refuse(name.str() +
            ".target: found a target of another kind than the first eye's, expected the same kind");
   if (target.object == before.object && target.layer == before.layer)
-    refuse(name + ": found the target and layer of the first eye, expected another image");
+    refuse(name.str() + ": found the target and layer of the first eye, expected another image");
 }
 
 void check_vulkan(const EyeTarget& target, const VoyVulkanFrame* frame) {
@@ -72,8 +72,8 @@ void begin_eye(const EyeTarget& target, uint32_t image, const vulkan::FrameSync&
 
 }  // namespace
 
-std::string eye_name(size_t eye) {
-  return "frame.eyes[" + std::to_string(eye) + "]";
+FieldName eye_name(size_t eye) {
+  return {"frame.eyes", eye};
 }
 
 std::vector<EyeTarget> checked_targets(Call& call, const VoyFrame& frame,
@@ -91,7 +91,7 @@ std::vector<std::unique_lock<std::mutex>> claim(const std::vector<EyeTarget>& ta
   std::vector<std::unique_lock<std::mutex>> locks;
   for (size_t eye = 0; eye < targets.size(); ++eye)
     if (eye == 0 || targets[eye].object != targets[0].object)
-      locks.push_back(claim_object(*targets[eye].object, (eye_name(eye) + ".target").c_str()));
+      locks.push_back(claim_object(*targets[eye].object, eye_name(eye) + ".target"));
   return locks;
 }
 

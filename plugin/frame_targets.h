@@ -1,10 +1,10 @@
 #pragma once
 // Where the eyes of a frame go, and what the host's Vulkan and the frame wait for.
 #include <mutex>
-#include <string>
 #include <vector>
 
 #include "plugin/call.h"
+#include "plugin/field_name.h"
 #include "plugin/objects.h"
 
 namespace voyager {
@@ -16,7 +16,7 @@ struct EyeTarget {
 };
 
 // What messages call an eye.
-std::string eye_name(size_t eye);
+FieldName eye_name(size_t eye);
 
 // One an eye, checked: of the view's device and no larger than the view, all of one kind, no
 // two the same image, and with `vulkan` exactly where they are Vulkan's. Throws ApiError.

@@ -1,11 +1,10 @@
 #pragma once
-#include <string>
-
+#include "plugin/field_name.h"
 #include "voyager/voyager.h"
 
 namespace voyager {
 
 // Throws ApiError, naming the side of `name`, for tangents that VoyFrustum excludes.
-void check_frustum(const VoyFrustum& frustum, const std::string& name);
+void check_frustum(const VoyFrustum& frustum, const FieldName& name);
 
 }  // namespace voyager

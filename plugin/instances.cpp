@@ -17,11 +17,12 @@ struct InstanceList {
   std::vector<InstanceLook> looks;
 };
 
-ClipBox<double> clip_box(const VoyInstance& instance, const std::string& field) {
+ClipBox<double> clip_box(const VoyInstance& instance, const FieldName& field) {
   ClipBox<double> box;
   const auto check = [&](const char* limit, int axis, double found, bool right,
-                         const std::string& expected) {
-    if (!right) refuse_number(field + limit + "[" + std::to_string(axis) + "]", found, expected);
+                         const char* expected) {
+    if (!right)
+      refuse_number((field + limit).str() + "[" + std::to_string(axis) + "]", found, expected);
   };
   for (int i = 0; i < 3; ++i) {
     const double least = instance.clipMin[i], greatest = instance.clipMax[i];
@@ -33,10 +34,10 @@ ClipBox<double> clip_box(const VoyInstance& instance, const std::string& field) 
   return box;
 }
 
-InstanceLook look_of(const VoyInstance& instance, const std::string& field) {
+InstanceLook look_of(const VoyInstance& instance, const FieldName& field) {
   if (!(instance.opacity >= 0 && instance.opacity <= 1))
     refuse_number(field + ".opacity", static_cast<double>(instance.opacity), "0 to 1");
-  check_count(instance.reserved, 0, 0, (field + ".reserved").c_str());
+  check_count(instance.reserved, 0, 0, field + ".reserved");
   return {instance.opacity, clip_box(instance, field)};
 }
 
@@ -45,14 +46,22 @@ InstanceList checked_list(Call& call, uint32_t count, const VoyInstance* instanc
   InstanceList list;
   for (uint32_t i = 0; i < count; ++i) {
     const VoyInstance& instance = instances[i];
-    const std::string field = "instances[" + std::to_string(i) + "]";
-    check_structure(&instance, VOY_STRUCTURE_TYPE_INSTANCE, field.c_str());
+    const FieldName field("instances", i);
+    check_structure(&instance, VOY_STRUCTURE_TYPE_INSTANCE, field);
     list.scenes.push_back(instance_scene(call, instance.scene, device, field + ".scene"));
     list.poses.push_back(instance_pose(instance.pose, instance.scale, field));
     list.looks.push_back(look_of(instance, field));
   }
   list.poses = without_identities(std::move(list.poses));
   return list;
+}
+
+std::shared_ptr<SceneObject> used_scene(Call& call, VoyScene scene, const FieldName& field) {
+  try {
+    return call.use<SceneObject>(scene);
+  } catch (const ApiError& error) {
+    throw ApiError(error.result(), field.str() + ": " + error.what());
+  }
 }
 
 // Frames in flight read what goes, so they end first.
@@ -69,19 +78,19 @@ void change_scenes(ViewObject& view, std::vector<std::shared_ptr<SceneObject>> s
 
 namespace voyager {
 
-void check_instance_count(uint32_t count, const char* field) {
+void check_instance_count(uint32_t count, const FieldName& field) {
   if (count > kMaxInstances)
-    throw ApiError(VOY_ERROR_UNSUPPORTED, std::string(field) + ": found " + std::to_string(count) +
+    throw ApiError(VOY_ERROR_UNSUPPORTED, field.str() + ": found " + std::to_string(count) +
                                               ", this version draws up to " +
                                               std::to_string(kMaxInstances) +
                                               " instances in a view");
 }
 
 std::shared_ptr<SceneObject> instance_scene(Call& call, VoyScene scene, const DeviceObject& device,
-                                            const std::string& field) {
-  auto object = call.use<SceneObject>(scene);
+                                            const FieldName& field) {
+  auto object = used_scene(call, scene, field);
   if (object->parent().get() != &device)
-    refuse(field + ": found a scene of another device, expected one of this device");
+    refuse(field.str() + ": found a scene of another device, expected one of this device");
   return object;
 }
 

@@ -18,8 +18,8 @@ constexpr Mat3d kMirror{
 enum { kX = 0, kY = 5, kW = 11 };         // the elements that a perspective projection must have
 constexpr int kCenterX = 8, kCenterY = 9;
 
-std::string element(int i) {
-  return "matrix[" + std::to_string(i) + "]";
+FieldName element(int i) {
+  return {"matrix", static_cast<size_t>(i)};
 }
 
 void check_matrix(const double* matrix) {

@@ -47,8 +47,7 @@ std::vector<std::shared_ptr<SceneObject>> checked_scenes(Call& call, const VoyVi
                                                          const DeviceObject& owner) {
   std::vector<std::shared_ptr<SceneObject>> scenes;
   for (uint32_t i = 0; i < desc.instanceCount; ++i)
-    scenes.push_back(
-        instance_scene(call, desc.scenes[i], owner, "desc.scenes[" + std::to_string(i) + "]"));
+    scenes.push_back(instance_scene(call, desc.scenes[i], owner, {"desc.scenes", i}));
   return scenes;
 }
 

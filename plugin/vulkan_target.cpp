@@ -22,10 +22,10 @@ void check_no_memory(const VoyTargetDesc& desc) {
 }
 
 // Whether the host passed an image where the target has one, and only there.
-void check_image(bool wanted, bool passed, const std::string& field) {
+void check_image(bool wanted, bool passed, const FieldName& field) {
   if (wanted != passed)
-    refuse(field + (wanted ? ": found VK_NULL_HANDLE, expected an image"
-                           : ": found an image, expected VK_NULL_HANDLE"));
+    refuse(field.str() + (wanted ? ": found VK_NULL_HANDLE, expected an image"
+                                 : ": found an image, expected VK_NULL_HANDLE"));
 }
 
 vulkan::ImportedMemory memory_of(const VoyVulkanMemory& memory) {
@@ -33,28 +33,28 @@ vulkan::ImportedMemory memory_of(const VoyVulkanMemory& memory) {
 }
 
 // What is passed is the library's to close: so it must be a descriptor, wanted or not.
-void check_descriptor(int fd, bool wanted, const std::string& field) {
+void check_descriptor(int fd, bool wanted, const FieldName& field) {
   const bool is_open = fd >= 0 && ::fcntl(fd, F_GETFD) >= 0;
   if (is_open || (!wanted && fd == -1)) return;
-  refuse(field + ": found " + std::to_string(fd) + ", expected an open file descriptor" +
+  refuse(field.str() + ": found " + std::to_string(fd) + ", expected an open file descriptor" +
          (wanted ? "" : " or -1"));
 }
 
 // Which member of a handle is set. There is one answer so far.
 void check_handle_type(uint32_t found, uint32_t expected, const char* name,
-                       const std::string& field) {
+                       const FieldName& field) {
   if (found == expected) return;
-  refuse(field + ".handleType: found " + std::to_string(found) + ", expected " + name + " (" +
+  refuse(field.str() + ".handleType: found " + std::to_string(found) + ", expected " + name + " (" +
          std::to_string(expected) + ")");
 }
 
-void check_memory(const VoyVulkanMemory& memory, bool shared, const std::string& field) {
+void check_memory(const VoyVulkanMemory& memory, bool shared, const FieldName& field) {
   check_handle_type(memory.handleType, VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT,
                     "VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT", field);
   check_descriptor(memory.handle.fd, shared, field + ".handle.fd");
   if (memory.handle.fd == -1) return;
   if (memory.size == 0 || memory.offset >= memory.size)
-    refuse(field + ": found offset " + std::to_string(memory.offset) + " in " +
+    refuse(field.str() + ": found offset " + std::to_string(memory.offset) + " in " +
            std::to_string(memory.size) + " bytes, expected an image within the memory" +
            (shared ? "" : ", or handle.fd -1"));
 }
@@ -64,8 +64,8 @@ void read_images(const VoyVulkanTargetDesc& from, bool shared, vulkan::RingDesc&
   std::set<VkImage> seen;
   for (uint32_t i = 0; i < from.imageCount; ++i) {
     const VoyVulkanImportedImage& image = from.images[i];
-    const std::string field = "images[" + std::to_string(i) + "]";
-    check_structure(&image, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE, field.c_str());
+    const FieldName field("images", i);
+    check_structure(&image, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE, field);
     const bool color = into.format != ColorFormat::none;
     check_image(color, image.color != VK_NULL_HANDLE, field + ".color");
     check_image(into.depth, image.depth != VK_NULL_HANDLE, field + ".depth");
@@ -73,7 +73,7 @@ void read_images(const VoyVulkanTargetDesc& from, bool shared, vulkan::RingDesc&
     if (into.depth) check_memory(image.depthMemory, shared, field + ".depthMemory");
     for (const VkImage each : {image.color, image.depth})
       if (each != VK_NULL_HANDLE && !seen.insert(each).second)
-        refuse(field + ": found an image that was passed before, expected each image once");
+        refuse(field.str() + ": found an image that was passed before, expected each image once");
     into.imported.push_back({image.color, image.depth, memory_of(image.colorMemory),
                              memory_of(image.depthMemory), image.colorUsage, image.depthUsage});
   }
@@ -92,18 +92,19 @@ void read_semaphores(const VoyVulkanTargetDesc& from, const vulkan::Device& devi
   check_pointer(from.semaphores, "semaphores");
   for (uint32_t i = 0; i < from.semaphoreCount; ++i) {
     const VoyVulkanImportedSemaphores& pair = from.semaphores[i];
-    const std::string field = "semaphores[" + std::to_string(i) + "]";
-    check_structure(&pair, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES, field.c_str());
+    const FieldName field("semaphores", i);
+    check_structure(&pair, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES, field);
     check_image(true, pair.released != VK_NULL_HANDLE && pair.rendered != VK_NULL_HANDLE, field);
     const bool shared = device.sharing() == vulkan::Sharing::device;
     check_handle_type(pair.handleType, VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT,
                       "VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT", field);
-    check_count(pair.reserved, 0, 0, (field + ".reserved").c_str());
+    check_count(pair.reserved, 0, 0, field + ".reserved");
     const int released = pair.releasedHandle.fd, rendered = pair.renderedHandle.fd;
     check_descriptor(released, shared, field + ".releasedHandle.fd");
     check_descriptor(rendered, shared, field + ".renderedHandle.fd");
     if (pair.released == pair.rendered || (released == rendered && released != -1))
-      refuse(field + ": found one semaphore or handle for released and rendered, expected two");
+      refuse(field.str() +
+             ": found one semaphore or handle for released and rendered, expected two");
     into.semaphores.push_back({pair.released, pair.rendered, released, rendered});
   }
 }

@@ -252,7 +252,8 @@ TEST_F(Hostile, Instances) {
     expect_refused(with([&](I& i) { i.type = bad_enum<VoyStructureType>(type); }),
                    VOY_ERROR_INVALID_STRUCTURE, "instances[0].type");
   expect_refused(with([&](I& i) { i.next = &i; }), VOY_ERROR_INVALID_STRUCTURE, "next");
-  expect_refused(with([](I& i) { i.scene = nullptr; }), VOY_ERROR_INVALID_HANDLE, "");
+  expect_refused(with([](I& i) { i.scene = nullptr; }), VOY_ERROR_INVALID_HANDLE,
+                 "instances[0].scene: scene: found NULL");
   expect_invalid(voy.SetViewInstances(host.view, 1, nullptr), "instances");
   for (const uint32_t count : {65u, UINT32_MAX})
     expect_refused(voy.SetViewInstances(host.view, count, nullptr), VOY_ERROR_UNSUPPORTED,

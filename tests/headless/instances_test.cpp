@@ -189,6 +189,8 @@ TEST_P(Instances, AreOfTheViewsDeviceAndLiveAsLongAsTheirScenes) {
       << voy.message();
   scenes[1] = nullptr;
   EXPECT_EQ(voy.CreateView(stage->device, &desc, &view), VOY_ERROR_INVALID_HANDLE);
+  EXPECT_NE(voy.message().find("desc.scenes[1]: scene: found NULL"), std::string::npos)
+      << voy.message();
 
   const VoyScene second = stage->open(ply_bytes(100));
   const VoyView alone = stage->view_of({stage->scene}),

@@ -327,7 +327,8 @@ TEST_P(SetInstances, AViewWhoseSceneWasClosedDrawsAgain) {
   const VoyFrame frame = Host::frame(eye);
   expect_refused(voy.RenderFrame(view, &frame), VOY_ERROR_SCENE_DESTROYED,
                  "expected voySetViewInstances");
-  EXPECT_EQ(set(view, {instance_of(stage->scene), instance_of(second)}), VOY_ERROR_INVALID_HANDLE);
+  expect_refused(set(view, {instance_of(stage->scene), instance_of(second)}),
+                 VOY_ERROR_INVALID_HANDLE, "instances[1].scene: scene: found");
   EXPECT_EQ(voy.RenderFrame(view, &frame), VOY_ERROR_SCENE_DESTROYED)
       << "a refused list changed it";
   ASSERT_EQ(voy.CloseScene(third), VOY_SUCCESS);
