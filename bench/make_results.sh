@@ -4,7 +4,7 @@
 # A synthetic city of VOYAGER_RESULTS_GAUSSIANS (6,000,000) is made and baked; other scenes come as
 # NAME, a baked scene and its cameras. Each is measured on the whole device and on 16 of its
 # multiprocessors, and has the curve of its tree. OUT/tables.md becomes docs/results/tables.md.
-# VOYAGER names another command line than this build's. A city that is there is not made again.
+# VOYAGER names another command line than this build's. Safe to run again: what OUT holds is not made again.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 voyager=${VOYAGER:-$here/../build/release/bin/voyager}
@@ -29,11 +29,13 @@ measure() {
   for part in all 16; do
     local sms=()
     [ $part = all ] || sms=(--sms "$part")
+    [ -e "$out/${name}_$part/steps.json" ] && continue
     "$voyager" report "$scene" --cameras "$cameras" --quick "${size[@]}" --backend cuda "${sms[@]}" \
       -o "$out/${name}_$part"
     "$voyager" bench "$scene" --cameras "$cameras" --stages all "${size[@]}" --repeat 1 --backend cuda \
       "${sms[@]}" --json "$out/${name}_$part/steps.json" >/dev/null
   done
+  [ -e "$out/${name}_curve/curve.html" ] && return
   "$voyager" report "$scene" --cameras "$cameras" --curve --quick "${size[@]}" --backend cuda \
     -o "$out/${name}_curve"
 }
