@@ -3,19 +3,13 @@
 #include <cub/block/block_scan.cuh>
 
 #include "cuda/device/grid.h"
-#include "cuda/search/cut_visit.cuh"
+#include "cuda/search/cut_lanes.cuh"
 #include "cuda/search/search_launch.h"
 
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kEmitThreads = 1024;
-constexpr unsigned kItems = kBlockSubtrees / kEmitThreads;
-constexpr unsigned kEmitGroups = kEmitThreads / kGroupLanes;
-// Thread blocks that share a block's subtrees where so many would have nothing to do. Each counts
-// all of them, so that it does not pay where all have enough.
-constexpr uint32_t kShares = 4;
-static_assert(kBlockSubtrees / kShares % kEmitGroups == 0);
+constexpr unsigned kEmitThreads = kBlockSubtrees;  // a subtree a lane
 using LevelScan = cub::BlockScan<uint64_t, kEmitThreads, cub::BLOCK_SCAN_WARP_SCANS>;
 
 // Counts of the three levels in one word: at most 1024 · 31 each.
@@ -29,77 +23,45 @@ __device__ uint64_t count_levels(uint32_t cut, uint32_t child_count) {
   return counts;
 }
 
-struct EmitShared {
-  LevelScan::TempStorage storage;
-  uint64_t before[kBlockSubtrees];  // cut nodes of the block's earlier subtrees, by level
-  uint32_t cut[kBlockSubtrees];
-};
-
-__device__ void count_block(const TreeView& tree, const StateView& state, const Block& block,
-                            EmitShared& shared) {
-  uint64_t counts[kItems], before[kItems];
-  for (unsigned k = 0; k < kItems; ++k) {
-    const uint32_t i = threadIdx.x * kItems + k, subtree = block.first + i;
-    const uint32_t cut = subtree < block.last ? state.cut[subtree] : 0;
-    shared.cut[i] = cut;
-    counts[k] = cut == 0 ? 0 : count_levels(cut, tree.subtrees[subtree].child_count);
-  }
-  LevelScan(shared.storage).ExclusiveSum(counts, before);
-  for (unsigned k = 0; k < kItems; ++k) shared.before[threadIdx.x * kItems + k] = before[k];
-  __syncthreads();
-}
-
-// Records of the parents of a lane's slots above the children's, by round.
-struct Parents {
-  uint32_t record[kSlotRounds];
-};
-
-__device__ void find_parents(const TreeView& tree, const SearchSubtree& s, uint32_t interior,
-                             Parents& parents) {
-  for (uint32_t& record : parents.record) record = s.first_record;  // the root's
-  // Each interior child claims its slots.
-  uint32_t left = interior & level_mask(1, s.child_count);
-  while (__any_sync(kAllLanes, left != 0)) {
-    const uint32_t record = left == 0 ? 0 : record_of(s, __ffs(left) - 1);
-    const uint32_t slots = left == 0 ? 0 : __ldg(&tree.records[record].children);
-#pragma unroll
-    for (unsigned round = 0; round < kSlotRounds; ++round)
-      if (slots >> (kGroupLanes * round + lane_in_group()) & 1) parents.record[round] = record;
-    left &= left - 1;
-  }
-}
-
 // Places of a subtree's first cut node of each level.
 struct Places {
   uint32_t of[kLevels];
 };
+
+// By a lane alone. parent: the record of the slot's parent.
+template <bool kOrigin>
+__device__ void put_node(const TreeView& tree, const StateView& state, const SearchSubtree& s,
+                         uint32_t slot, uint32_t place, uint32_t parent) {
+  const uint32_t node = s.node(slot);
+  state.nodes[place] = node;
+  if (state.ids != nullptr) state.ids[place] = __ldg(tree.node_ids + node);
+  if (kOrigin)
+    state.origin[place] = {s.interior >> slot & 1 ? record_of(s, slot) : kNoRecord, parent};
+}
 
 template <bool kOrigin>
 __device__ void emit_subtree(const TreeView& tree, const StateView& state, const SearchSubtree& s,
                              uint32_t cut, const Places& places) {
   const uint32_t children = cut & level_mask(1, s.child_count);
   const uint32_t grandchildren = cut & level_mask(2, s.child_count);
-  Parents parents;
-  if (kOrigin) find_parents(tree, s, grandchildren == 0 ? 0 : s.interior, parents);
-#pragma unroll
-  for (unsigned round = 0; round < kSlotRounds; ++round) {
-    const uint32_t slot = kGroupLanes * round + lane_in_group();
-    if ((cut >> slot & 1) == 0) continue;
-    const uint32_t lower = (1u << slot) - 1;
-    uint32_t node = s.root, place = places.of[0], parent = s.entry;
-    if (slot > s.child_count) {
-      node = s.first_grandchild + (slot - 1 - s.child_count);
-      place = places.of[2] + __popc(grandchildren & lower);
-      parent = parents.record[round];
-    } else if (slot != 0) {
-      node = s.first_child + (slot - 1);
-      place = places.of[1] + __popc(children & lower);
-      parent = s.first_record;
+  const auto put = [&](uint32_t slots, uint32_t of_level, uint32_t first_place, uint32_t parent) {
+    for (; slots != 0; slots &= slots - 1) {
+      const uint32_t slot = __ffs(slots) - 1;
+      put_node<kOrigin>(tree, state, s, slot, first_place + __popc(of_level & ((1u << slot) - 1)),
+                        parent);
     }
-    state.nodes[place] = node;
-    if (state.ids != nullptr) state.ids[place] = __ldg(tree.node_ids + node);
-    if (kOrigin)
-      state.origin[place] = {s.interior >> slot & 1 ? record_of(s, slot) : kNoRecord, parent};
+  };
+  put(cut & 1, 1, places.of[0], s.entry);
+  put(children, children, places.of[1], s.first_record);
+  if (!kOrigin) {
+    put(grandchildren, grandchildren, places.of[2], kNoRecord);
+    return;
+  }
+  // Each interior child knows its slots.
+  uint32_t left = grandchildren == 0 ? 0 : s.interior & level_mask(1, s.child_count);
+  for (; left != 0; left &= left - 1) {
+    const uint32_t record = record_of(s, __ffs(left) - 1);
+    put(grandchildren & __ldg(&tree.records[record].children), grandchildren, places.of[2], record);
   }
 }
 
@@ -117,31 +79,22 @@ __device__ void clear_rest(const StateView& state, const Block& block) {
 // The blocks in which nodes entered or left. Nothing else of the list moves.
 template <bool kOrigin>
 __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, StateView state) {
-  __shared__ EmitShared shared;
+  __shared__ LevelScan::TempStorage storage;
   const uint32_t dirty = state.work[1].dirty_count;
-  const uint32_t shares = kShares * dirty <= gridDim.x ? kShares : 1;
-  for (uint32_t i = blockIdx.x; i < shares * dirty; i += gridDim.x) {
-    const Block block = state.blocks[state.dirty[i / shares]];
-    const uint32_t begin = i % shares * (kBlockSubtrees / shares);
-    const uint32_t end = min(begin + kBlockSubtrees / shares, block.last - block.first);
-    __syncthreads();
-    count_block(tree, state, block, shared);
-    uint32_t first[kLevels];
+  for (uint32_t i = blockIdx.x; i < dirty; i += gridDim.x) {
+    const Block block = state.blocks[state.dirty[i]];
+    const uint32_t subtree = block.first + threadIdx.x;
+    const uint32_t cut = subtree < block.last ? state.cut[subtree] : 0;
+    const SearchSubtree s = cut == 0 ? kUnlinkedSubtree : load_own_subtree(tree, subtree);
+    uint64_t before;
+    LevelScan(storage).ExclusiveSum(count_levels(cut, s.child_count), before);
+    Places places;
     for (unsigned level = 0; level < kLevels; ++level)
-      first[level] = state.segments[block.first_segment + level * block.stride].first;
-    for (uint32_t base = begin; base < end; base += kEmitGroups) {
-      const uint32_t k = base + threadIdx.x / kGroupLanes;
-      const uint32_t cut = shared.cut[k];
-      if (!__any_sync(kAllLanes, cut != 0)) continue;
-      const uint64_t before = shared.before[k];
-      Places places;
-      for (unsigned level = 0; level < kLevels; ++level)
-        places.of[level] =
-            first[level] + static_cast<uint32_t>(before >> (kCountBits * level) & 0xfffff);
-      const SearchSubtree s = load_subtree(tree, min(block.first + k, block.last - 1));
-      emit_subtree<kOrigin>(tree, state, s, cut, places);
-    }
-    if (begin == 0) clear_rest(state, block);
+      places.of[level] = state.segments[block.first_segment + level * block.stride].first +
+                         static_cast<uint32_t>(before >> (kCountBits * level) & 0xfffff);
+    emit_subtree<kOrigin>(tree, state, s, cut, places);
+    clear_rest(state, block);
+    __syncthreads();
   }
 }
 
@@ -150,7 +103,7 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
 void launch_emit(const SearchFrame& f, bool weights) {
   const auto kernel = weights ? search_emit<true> : search_emit<false>;
   const unsigned resident = resident_blocks<search_emit<true>>(kEmitThreads);
-  kernel<<<std::min(kShares * f.state.block_count, f.multiprocessors * resident), kEmitThreads, 0,
+  kernel<<<std::min(f.state.block_count, f.multiprocessors * resident), kEmitThreads, 0,
            f.stream>>>(f.tree, f.state);
   check(cudaGetLastError(), "search_emit");
 }

@@ -1,6 +1,6 @@
 #pragma once
 // The fully streaming search, as a warp runs it (METHOD §9).
-#include "cuda/search/cut_visit.cuh"
+#include "cuda/search/cut_lanes.cuh"
 
 namespace voyager::cuda {
 
@@ -40,18 +40,24 @@ __device__ inline uint32_t subtree_of(const Ticket& ticket, uint32_t k) {
   return subtree;
 }
 
+// reached: of chunks that may hold part of the cut. In others what was open is closed.
 __device__ inline void read_subtrees(const TreeView& tree, const StateView& state,
                                      const Sight& sight, uint32_t reference, const Ticket& ticket,
-                                     Tally& tally) {
-  for (uint32_t base = 0; base < ticket.total; base += kGroups) {
-    const bool there = base + group_in_warp() < ticket.total;
-    const uint32_t subtree = subtree_of(ticket, there ? base + group_in_warp() : base);
-    const Known known = load_known(state, subtree);
-    const SearchSubtree s = load_subtree(tree, subtree);
-    const bool open = there && is_reached(tree, s, sight, tally);
-    const Visit v = visit_group(tree, s, sight, open, tally);
-    settle(state, s, subtree, known, v, reference, open, tally);
-    if (there && !open) close_subtree(state, subtree, s.child_count, known, tally);
+                                     bool reached, Tally& tally) {
+  for (uint32_t base = 0; base < ticket.total; base += 32) {
+    const bool there = base + lane_in_warp() < ticket.total;
+    const uint32_t subtree = subtree_of(ticket, there ? base + lane_in_warp() : base);
+    SearchSubtree s = kUnlinkedSubtree;
+    Change change;
+    if (there) {
+      const Known known = load_known(state, subtree);
+      s = load_own_subtree(tree, subtree);
+      change = reached && is_own_reached(tree, s, sight, tally)
+                   ? settle_own(state, subtree, known, visit_own(tree, s, sight, tally), reference,
+                                tally)
+                   : close_own(state, subtree, known, tally);
+    }
+    count_changes(state, subtree, s.child_count, change, tally);
   }
 }
 
@@ -60,18 +66,6 @@ __device__ inline bool has_open(const StateView& state, uint32_t first, uint32_t
   for (uint32_t b = block_of(state, first); b <= block_of(state, last - 1); ++b)
     open |= state.open_counts[b] != 0;
   return open;
-}
-
-// Closes what was open in chunks that nothing leads to any more.
-__device__ inline void close_subtrees(const TreeView& tree, const StateView& state,
-                                      const Ticket& ticket, Tally& tally) {
-  for (uint32_t base = 0; base < ticket.total; base += kGroups) {
-    const bool there = base + group_in_warp() < ticket.total;
-    const uint32_t subtree = subtree_of(ticket, there ? base + group_in_warp() : base);
-    const Known known = load_known(state, subtree);
-    __syncwarp();
-    if (there) close_subtree(state, subtree, tree.subtrees[subtree].child_count, known, tally);
-  }
 }
 
 // Dynamic dispatch: a warp takes a ticket of chunks, tests the hull of each on a lane,
@@ -97,9 +91,11 @@ __device__ inline void stream_chunks(const TreeView& tree, const StateView& stat
       tally.chunks += reached;
     }
     if (__any_sync(kAllLanes, reached))
-      read_subtrees(tree, state, sight, reference, make_ticket(first, reached ? count : 0), tally);
+      read_subtrees(tree, state, sight, reference, make_ticket(first, reached ? count : 0), true,
+                    tally);
     if (__any_sync(kAllLanes, stale))
-      close_subtrees(tree, state, make_ticket(first, stale ? count : 0), tally);
+      read_subtrees(tree, state, sight, reference, make_ticket(first, stale ? count : 0), false,
+                    tally);
   }
 }
 

@@ -84,14 +84,66 @@ __device__ void send_signals(const StateView& state, uint32_t first, uint32_t la
 
 // BOTTOM for the subtrees below a node that became refined; for those below one that
 // no longer is, the end: their parent's subtree answers for that part again (TOP).
+__device__ void signal_change(const TreeView& tree, const StateView& state, const SearchSubtree& s,
+                              uint32_t slot, uint32_t refined) {
+  const uint32_t record = record_of(s, slot);
+  const uint32_t first = tree.opens[record].first, last = tree.opens[record].last;
+  if (first != last) send_signals(state, first, last, refined >> slot & 1 ? 0 : kClose);
+}
+
+// By the lanes of a group, which share the slots out.
 __device__ void signal_changes(const TreeView& tree, const StateView& state, const SearchSubtree& s,
                                uint32_t old_refined, uint32_t refined) {
   for (uint32_t left = (old_refined ^ refined) & s.interior; left != 0; left &= left - 1) {
     const uint32_t slot = __ffs(left) - 1;
-    if (slot % kGroupLanes != lane_in_group()) continue;
-    const uint32_t record = record_of(s, slot);
-    const uint32_t first = tree.opens[record].first, last = tree.opens[record].last;
-    if (first != last) send_signals(state, first, last, refined >> slot & 1 ? 0 : kClose);
+    if (slot % kGroupLanes == lane_in_group()) signal_change(tree, state, s, slot, refined);
+  }
+}
+
+// Of a subtree that is due. One that nothing reaches any more closes at once, before its parent,
+// which is due too, says so: what changed would enter the cut only to leave it again, and count as
+// both.
+__device__ void visit_due_groups(const TreeView& tree, const StateView& state, const Sight& sight,
+                                 uint32_t reference, uint32_t count, Tally& tally) {
+  const uint32_t warp = (blockIdx.x * kThreads + threadIdx.x) / 32;
+  const uint32_t warps = gridDim.x * kThreads / 32;
+  for (uint32_t base = warp * kGroups; base < count; base += warps * kGroups) {
+    const bool active = base + group_in_warp() < count;
+    const uint32_t subtree = state.due[active ? base + group_in_warp() : base];
+    const Known known = load_known(state, subtree);
+    const SearchSubtree s = load_subtree(tree, subtree);
+    const Visit v = visit_group(tree, s, sight, active, tally);
+    const bool open = active && (v.cut == known.cut || is_reached(tree, s, sight, tally));
+    settle(state, s, subtree, known, v, reference, open, tally);
+    if (active) signal_changes(tree, state, s, known.refined, v.refined);
+    if (active && !open) close_subtree(state, subtree, s.child_count, known, tally);
+  }
+}
+
+// The same, by a lane alone.
+__device__ Change visit_due(const TreeView& tree, const StateView& state, const Sight& sight,
+                            uint32_t reference, uint32_t subtree, const SearchSubtree& s,
+                            Tally& tally) {
+  const Known known = load_known(state, subtree);
+  const Visit v = visit_own(tree, s, sight, tally);
+  const bool open = v.cut == known.cut || is_own_reached(tree, s, sight, tally);
+  const Change change = open ? settle_own(state, subtree, known, v, reference, tally)
+                             : close_own(state, subtree, known, tally);
+  for (uint32_t left = (known.refined ^ v.refined) & s.interior; left != 0; left &= left - 1)
+    signal_change(tree, state, s, __ffs(left) - 1, v.refined);
+  return change;
+}
+
+__device__ void visit_due_lanes(const TreeView& tree, const StateView& state, const Sight& sight,
+                                uint32_t reference, uint32_t count, Tally& tally) {
+  const uint32_t first = (blockIdx.x * kThreads + threadIdx.x) / 32 * 32;
+  for (uint32_t base = first; base < count; base += gridDim.x * kThreads) {
+    const bool there = base + lane_in_warp() < count;
+    const uint32_t subtree = state.due[there ? base + lane_in_warp() : base];
+    const SearchSubtree s = load_own_subtree(tree, subtree);
+    Change change;
+    if (there) change = visit_due(tree, state, sight, reference, subtree, s, tally);
+    count_changes(state, subtree, s.child_count, change, tally);
   }
 }
 
@@ -101,21 +153,12 @@ __global__ void __launch_bounds__(kThreads)
   if (falls_back(state, max_due)) return;
   Tally tally;
   const uint32_t count = state.work->due_count;
-  const uint32_t warp = (blockIdx.x * kThreads + threadIdx.x) / 32;
-  const uint32_t warps = gridDim.x * kThreads / 32;
-  for (uint32_t base = warp * kGroups; base < count; base += warps * kGroups) {
-    const bool active = base + group_in_warp() < count;
-    const uint32_t subtree = state.due[active ? base + group_in_warp() : base];
-    const Known known = load_known(state, subtree);
-    const SearchSubtree s = load_subtree(tree, subtree);
-    const Visit v = visit_group(tree, s, sight, active, tally);
-    // One that nothing reaches any more closes at once, before its parent, which is due too, says
-    // so: what changed would enter the cut only to leave it again, and count as both.
-    const bool open = active && (v.cut == known.cut || is_reached(tree, s, sight, tally));
-    settle(state, s, subtree, known, v, reference, open, tally);
-    if (active) signal_changes(tree, state, s, known.refined, v.refined);
-    if (active && !open) close_subtree(state, subtree, s.child_count, known, tally);
-  }
+  // Eight lanes end a subtree sooner than one; where there is a subtree for each lane, they are
+  // mostly idle.
+  if (count < gridDim.x * kThreads)
+    visit_due_groups(tree, state, sight, reference, count, tally);
+  else
+    visit_due_lanes(tree, state, sight, reference, count, tally);
   tally.flush(state.work);
 }
 

@@ -10,10 +10,9 @@
 namespace voyager::cuda {
 namespace {
 
-// Streaming takes over where more than one in so many subtrees has run out of slack:
-// between where it begins to pay on a whole H200 (one in six) and on 16 of its
-// multiprocessors (one in three). bench/NOTES.md has the measurement.
-constexpr uint32_t kSubtreesADue = 4;
+// Streaming takes over where more than one in so many subtrees has run out of slack: on a whole
+// H100 and on 16 of its multiprocessors it pays by then. bench/NOTES.md has the measurement.
+constexpr uint32_t kSubtreesADue = 8;
 
 // What a search of a streamed scene follows.
 struct Streamed {

@@ -143,7 +143,9 @@ bool PartitionedSearch::mark_read(uint32_t chunk) {
 // Visits an open subtree. Gives the slots whose verdict is not what it was.
 uint32_t PartitionedSearch::look(uint32_t subtree, Tally& tally) {
   const SearchSubtree& s = tree_.subtrees[subtree];
-  const Visit found = visit(tree_, s, sight_);
+  const SearchRecord* records = tree_.records.data() + s.first_record;
+  const Visit found =
+      visit(s, sight_, [records](uint32_t i) -> const SearchRecord& { return records[i]; });
   ++tally.visited;
   tally.tested += found.tested;
   tally.bytes += sizeof s + found.tested * sizeof(SearchRecord) + 2 * sizeof(uint32_t);

@@ -56,15 +56,17 @@ struct Visit {
 };
 
 // The subtree is open and not missing. Nodes below one that is not refined are not tested:
-// they cannot be refined, and their slack cannot end before their parent's.
-inline Visit visit(const SearchTree& tree, const SearchSubtree& subtree, const Sight& sight) {
+// they cannot be refined, and their slack cannot end before their parent's. record(i): the i-th
+// of the subtree's records.
+template <class Record>
+VOYAGER_HD Visit visit(const SearchSubtree& subtree, const Sight& sight, const Record& record) {
   Visit v;
   uint32_t reached = 1;  // slots whose parent is refined
-  uint32_t record = subtree.first_record;
-  for (uint32_t left = subtree.interior; left != 0; left &= left - 1, ++record) {
+  uint32_t i = 0;
+  for (uint32_t left = subtree.interior; left != 0; left &= left - 1, ++i) {
     const uint32_t slot = left & (~left + 1);
     if ((reached & slot) == 0) continue;
-    const SearchRecord& r = tree.records[record];
+    const SearchRecord& r = record(i);
     const NodeVerdict verdict = judge(r, sight);
     ++v.tested;
     v.slack = verdict.slack < v.slack ? verdict.slack : v.slack;

@@ -206,6 +206,25 @@ TEST_F(SearchTest, EqualTheHostsOnAMillionNodes) {
   }
 }
 
+// A fast flight: more subtrees are due than a part of the device has lanes, and not yet so many
+// that streaming takes over.
+TEST_F(SearchTest, EqualTheHostsWhereEachLaneHasASubtree) {
+  const auto scene = scene_of(random_tree(TreeShape::recursive, 1500000, 21));
+  constexpr unsigned kMultiprocessors = 16, kMostLanes = 2048 * kMultiprocessors;
+  const auto search = create(scene, Search::temporal, kMultiprocessors);
+  Oracle oracle(*scene);
+  Vec3f centre{5, -3, 8};
+  float step = 1e-4f;
+  int frames = 0;
+  for (int i = 0; i < 40; ++i, step *= 1.35f) {
+    const CutQuery query{centre = centre + Vec3f{step, 0.3f * step, -0.2f * step}, 0.004f};
+    ASSERT_TRUE(same(run(*search, query), oracle.at(query))) << "frame " << i;
+    const SearchStats stats = search->stats();
+    frames += stats.ran == Search::temporal && stats.subtrees_visited > kMostLanes;
+  }
+  EXPECT_GT(frames, 0) << "no frame had so many due";
+}
+
 TEST_F(SearchTest, ASweepOfGranularityThereAndBackGivesTheSameCuts) {
   const auto scene = scene_of(random_tree(TreeShape::four_way, 200000, 3));
   std::vector<CutQuery> path;
