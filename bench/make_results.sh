@@ -23,12 +23,14 @@ gaussians=${VOYAGER_RESULTS_GAUSSIANS:-6000000} city=$out/scenes/city
   rm "$city.ply"
 }
 
+reports=()
 # Of one scene: reports on the whole device and on a part of it, and the curve.
 measure() {
   local name=$1 scene=$2 cameras=$3 size=(--size 1920x1080)
   for part in all 16; do
     local sms=()
     [ $part = all ] || sms=(--sms "$part")
+    reports+=("$out/${name}_$part")
     [ -e "$out/${name}_$part/steps.json" ] && continue
     "$voyager" report "$scene" --cameras "$cameras" --quick "${size[@]}" --backend cuda "${sms[@]}" \
       -o "$out/${name}_$part"
@@ -45,4 +47,4 @@ while (($# > 0)); do
   measure "$1" "$2" "$3"
   shift 3
 done
-python3 "$here/results.py" "$out"/*_all "$out"/*_16 >"$out/tables.md"
+python3 "$here/results.py" "${reports[@]}" >"$out/tables.md"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reports of `voyager report`, side by side, as Markdown tables: results.py FOLDER ...
+"""Reports of `voyager report`, side by side, as docs/results/tables.md: results.py FOLDER ...
 
 Each FOLDER holds a report.json, and may hold a steps.json of `voyager bench --stages all`."""
 import json
@@ -108,6 +108,10 @@ def print_report(folder):
             print(f"| {' | '.join(cells(row))} |")
 
 
+print("""# Tables
+
+Made by `bench/make_results.sh` from the reports in these folders ([what they say](README.md), [columns](../report.md#columns)). *All* is the whole GPU, *16* a part of it with 16 multiprocessors.
+""")
 print_first_page(sys.argv[1:])
 print_steps(sys.argv[1:])
 for each in sys.argv[1:]:
