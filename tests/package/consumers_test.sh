@@ -17,28 +17,6 @@ expect_all() {  # expect_all PREFIX NAME
 install_to "$WORK/here"
 expect_all "$WORK/here" here
 
-# README's own lines build and run.
-snippet() { sed -n "/^\`\`\`$1\$/,/^\`\`\`\$/p" "$source/README.md" | sed '1d;$d'; }
-mkdir -p "$WORK/readme"
-snippet cmake >"$WORK/readme/CMakeLists.txt"
-snippet c >"$WORK/readme/main.c"
-quietly cmake -G Ninja -S "$WORK/readme" -B "$WORK/readme/build" -DCMAKE_PREFIX_PATH="$WORK/here"
-quietly cmake --build "$WORK/readme/build"
-expect_equal "README's program" "$("$WORK/readme/build/engine" "$scene")" opened
-
-# The lines of docs/engines.md lead from an empty folder to a picture.
-if pkg-config --exists vulkan; then
-  mkdir "$WORK/own"
-  ln -s "$WORK/here" "$WORK/own/voyager"
-  sed -n '/^## An engine of your own/,$s/^    //p' "$source/docs/engines.md" |
-    sed "s:VOYAGER/:$source/:; s:scene\.ply:$scene:" >"$WORK/own/lines"
-  (cd "$WORK/own" && HOME=$WORK/own CMAKE_GENERATOR=Ninja bash -eu lines) >"$WORK/own/said" 2>&1 ||
-    grep -q 'found no Vulkan device' "$WORK/own/said" || fail "docs/engines.md: $(cat "$WORK/own/said")"
-  if ! grep -q 'found no Vulkan device' "$WORK/own/said"; then
-    expect_equal "own/out.ppm" "$(head -n 1 "$WORK/own/out.ppm")" "P6 640 360 255"
-  fi
-fi
-
 # Moved as a whole; the first place is no more.
 mv "$WORK/here" "$WORK/moved"
 expect_all "$WORK/moved" moved
