@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "cuda/device/check.h"
+#include "cuda/device/device_rates.h"
 #include "cuda/device/machine.h"
 #include "cuda/scene/code_tables.h"
 #include "runtime/base/error.h"
@@ -150,19 +151,17 @@ void Device::use_whole() const {
   check(cudaSetDevice(ordinal_), "device");
 }
 
-// Drivers of integrated devices may not tell the memory's clock: what is not known is 0.
 DeviceRates Device::rates() const {
-  const auto attribute = [&](cudaDeviceAttr name) {
+  return rates_of(multiprocessors_, [&](ClockQuery query) -> std::optional<int> {
+    const cudaDeviceAttr name = query == ClockQuery::memory_khz ? cudaDevAttrMemoryClockRate
+                                : query == ClockQuery::memory_bus_bits
+                                    ? cudaDevAttrGlobalMemoryBusWidth
+                                    : cudaDevAttrClockRate;
     int value = 0;
-    if (cudaDeviceGetAttribute(&value, name, ordinal_) == cudaSuccess)
-      return static_cast<double>(value);
+    if (cudaDeviceGetAttribute(&value, name, ordinal_) == cudaSuccess) return value;
     cudaGetLastError();
-    return 0.0;
-  };
-  constexpr double kLanes = 128, kHertz = 1e3;  // clocks are in kHz
-  const double memory_hertz = kHertz * attribute(cudaDevAttrMemoryClockRate);
-  return {kLanes * multiprocessors_ * kHertz * attribute(cudaDevAttrClockRate),
-          2 * memory_hertz * attribute(cudaDevAttrGlobalMemoryBusWidth) / 8};  // two a clock
+    return std::nullopt;
+  });
 }
 
 void Device::use_quietly() const noexcept {

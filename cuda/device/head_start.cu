@@ -1,6 +1,6 @@
 #include "cuda/device/head_start.h"
 
-#include "cuda/device/check.h"
+#include "cuda/device/launch.cuh"
 
 namespace voyager::cuda {
 namespace {
@@ -16,9 +16,8 @@ __global__ void head_start(unsigned long long nanoseconds) {
 
 }  // namespace
 
-void give_head_start(cudaStream_t stream) {
-  head_start<<<1, 1, 0, stream>>>(50'000);
-  check(cudaGetLastError(), "head_start");
+void give_head_start(cudaStream_t stream, unsigned long long nanoseconds) {
+  launch_kernel("head_start", head_start, {1, 1, stream}, nanoseconds);
 }
 
 }  // namespace voyager::cuda

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/scene/gaussian_hull.cuh"
 #include "cuda/search/search_launch.h"
 
@@ -60,7 +61,7 @@ constexpr uint32_t kShares = 8;
 __global__ void __launch_bounds__(kThreads)
     search_bound(StateView state, GaussianView gaussians, bool parents) {
   constexpr uint32_t kWarps = kThreads / 32;
-  const uint32_t dirty = state.work[1].dirty_count, lane = threadIdx.x % 32;
+  const uint32_t dirty = state.counted->dirty_count, lane = threadIdx.x % 32;
   const uint32_t shares = kShares * dirty <= gridDim.x ? kShares : 1;
   for (uint32_t i = blockIdx.x; i < shares * dirty; i += gridDim.x) {
     const Block block = state.blocks[state.dirty[i / shares]];
@@ -82,9 +83,10 @@ __global__ void __launch_bounds__(kThreads)
 void launch_bound(const StateView& state, const GaussianView& gaussians, bool weights,
                   unsigned multiprocessors, cudaStream_t stream) {
   const unsigned resident = resident_blocks<search_bound>(kThreads);
-  search_bound<<<std::min(kShares * state.block_count, multiprocessors * resident), kThreads, 0,
-                 stream>>>(state, gaussians, weights);
-  check(cudaGetLastError(), "search_bound");
+  launch_kernel(
+      "search_bound", search_bound,
+      {std::min(kShares * state.block_count, multiprocessors * resident), kThreads, stream}, state,
+      gaussians, weights);
 }
 
 }  // namespace voyager::cuda

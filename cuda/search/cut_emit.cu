@@ -3,6 +3,7 @@
 #include <cub/block/block_scan.cuh>
 
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/search/cut_lanes.cuh"
 #include "cuda/search/search_launch.h"
 
@@ -80,7 +81,7 @@ __device__ void clear_rest(const StateView& state, const Block& block) {
 template <bool kOrigin>
 __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, StateView state) {
   __shared__ LevelScan::TempStorage storage;
-  const uint32_t dirty = state.work[1].dirty_count;
+  const uint32_t dirty = state.counted->dirty_count;
   for (uint32_t i = blockIdx.x; i < dirty; i += gridDim.x) {
     const Block block = state.blocks[state.dirty[i]];
     const uint32_t subtree = block.first + threadIdx.x;
@@ -103,9 +104,10 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
 void launch_emit(const SearchFrame& f, bool weights) {
   const auto kernel = weights ? search_emit<true> : search_emit<false>;
   const unsigned resident = resident_blocks<search_emit<true>>(kEmitThreads);
-  kernel<<<std::min(f.state.block_count, f.multiprocessors * resident), kEmitThreads, 0,
-           f.stream>>>(f.tree, f.state);
-  check(cudaGetLastError(), "search_emit");
+  launch_kernel("search_emit", kernel,
+                {std::min(f.state.block_count, f.multiprocessors * resident), kEmitThreads,
+                 f.stream},
+                f.tree, f.state);
 }
 
 }  // namespace voyager::cuda

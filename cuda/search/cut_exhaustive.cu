@@ -3,6 +3,7 @@
 #include <thrust/iterator/counting_iterator.h>
 #include <cub/device/device_select.cuh>
 
+#include "cuda/device/launch.cuh"
 #include "cuda/search/search_launch.h"
 #include "runtime/math/lerp.h"
 
@@ -72,8 +73,8 @@ void launch_exhaustive(const ExhaustiveTree& tree, const Sight& sight, void* scr
 void launch_weights(const ExhaustiveTree& tree, const Sight& sight, const uint32_t* nodes,
                     const uint32_t* count, float* weights, unsigned multiprocessors,
                     cudaStream_t stream) {
-  search_weights<<<multiprocessors * 8, 256, 0, stream>>>(tree, sight, nodes, count, weights);
-  check(cudaGetLastError(), "search_weights");
+  launch_kernel("search_weights", search_weights, {multiprocessors * 8, 256, stream}, tree, sight,
+                nodes, count, weights);
 }
 
 }  // namespace voyager::cuda

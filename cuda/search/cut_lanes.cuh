@@ -59,7 +59,7 @@ __device__ inline void count_changes(const StateView& state, uint32_t subtree, u
     if (lane_in_warp() == kLevels && opened != 0) {
       const uint32_t before = atomicAdd(&state.open_counts[b], static_cast<uint32_t>(opened));
       if (before == 0 || before + static_cast<uint32_t>(opened) == 0)
-        state.work->open_blocks_changed = 1;
+        state.counting->open_blocks_changed = 1;
     }
     const bool moved = __any_sync(kAllLanes, old_cut != new_cut);
     if (lane_in_warp() == kLevels + 1 && moved) mark_dirty(state, b);

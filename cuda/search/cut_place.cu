@@ -2,6 +2,7 @@
 // blocks are to be written, and the frame's counters.
 #include <cub/block/block_scan.cuh>
 
+#include "cuda/device/launch.cuh"
 #include "cuda/search/search_launch.h"
 
 namespace voyager::cuda {
@@ -150,12 +151,12 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   __shared__ Outgrown outgrown;
   __shared__ Dirty dirty;
   __shared__ bool moves;
-  FrameCounters* work = state.work;
-  uint32_t list_size = work[1].list_size;
-  const bool open_changed = work[0].open_blocks_changed != 0;
+  FrameCounters &counting = *state.counting, &counted = *state.counted;
+  uint32_t list_size = counted.list_size;
+  const bool open_changed = counting.open_blocks_changed != 0;
   if (threadIdx.x == 0) {
     outgrown.count = 0;
-    dirty = {state.dirty, state.dirty_flags, work[0].dirty_count};
+    dirty = {state.dirty, state.dirty_flags, counting.dirty_count};
   }
   __syncthreads();
   for (uint32_t i = threadIdx.x; i < dirty.count; i += kScanThreads)
@@ -184,21 +185,20 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   }
   __syncthreads();
   if (threadIdx.x == 0) {
-    const uint32_t before = work[1].cut_size, stand_ins = work[1].stand_ins;
-    work[1] = work[0];
-    work[1].cut_size = static_cast<uint32_t>(before + work[0].entered - work[0].left);
-    work[1].stand_ins += stand_ins;
-    work[1].list_size = list_size;
-    work[1].dirty_count = dirty.count;
-    work[0] = FrameCounters{};
+    const uint32_t before = counted.cut_size, stand_ins = counted.stand_ins;
+    counted = counting;
+    counted.cut_size = static_cast<uint32_t>(before + counting.entered - counting.left);
+    counted.stand_ins += stand_ins;
+    counted.list_size = list_size;
+    counted.dirty_count = dirty.count;
+    counting = FrameCounters{};
   }
 }
 
 }  // namespace
 
 void launch_place(const SearchFrame& f) {
-  search_place<<<1, kScanThreads, 0, f.stream>>>(f.state);
-  check(cudaGetLastError(), "search_place");
+  launch_kernel("search_place", search_place, {1, kScanThreads, f.stream}, f.state);
 }
 
 }  // namespace voyager::cuda

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/search/cut_visit.cuh"
 #include "cuda/search/search_launch.h"
 
@@ -46,7 +47,7 @@ __global__ void __launch_bounds__(kThreads)
   for (uint32_t i = thread; i < relinked.changed_count; i += threads)
     follow_changed(tree, state, relinked.changed[i]);
   __syncwarp();
-  tally.flush(state.work);
+  tally.flush(state.counting);
 }
 
 // As CutState is made: the list is made anew with its segments.
@@ -62,7 +63,7 @@ __global__ void __launch_bounds__(kThreads) search_forget(uint32_t subtrees, Sta
     state.segments[i] = {0, 0, 0};
   if (thread != 0) return;
   *state.open_block_count = 0;
-  state.work[0] = state.work[1] = FrameCounters{};
+  *state.counting = *state.counted = FrameCounters{};
 }
 
 }  // namespace
@@ -71,16 +72,16 @@ void launch_relink(const SearchFrame& f, const Relinked& relinked) {
   const unsigned resident = resident_blocks<search_relink>(kThreads);
   const uint32_t threads = std::max(relinked.unlinked_count * kGroupLanes, relinked.changed_count);
   if (threads == 0) return;
-  search_relink<<<std::min((threads + kThreads - 1) / kThreads, f.multiprocessors * resident),
-                  kThreads, 0, f.stream>>>(f.tree, f.state, relinked);
-  check(cudaGetLastError(), "search_relink");
+  launch_kernel("search_relink", search_relink,
+                {std::min((threads + kThreads - 1) / kThreads, f.multiprocessors * resident),
+                 kThreads, f.stream},
+                f.tree, f.state, relinked);
 }
 
 void launch_forget(const SearchFrame& f) {
   const unsigned resident = resident_blocks<search_forget>(kThreads);
-  search_forget<<<f.multiprocessors * resident, kThreads, 0, f.stream>>>(f.tree.subtree_count,
-                                                                         f.state);
-  check(cudaGetLastError(), "search_forget");
+  launch_kernel("search_forget", search_forget, {f.multiprocessors * resident, kThreads, f.stream},
+                f.tree.subtree_count, f.state);
 }
 
 }  // namespace voyager::cuda

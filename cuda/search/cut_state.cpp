@@ -47,7 +47,7 @@ CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
   dirty_ = Buffer<uint32_t>(blocks);
   due_ = Buffer<uint32_t>(subtrees);
   signals_ = Buffer<uint32_t>(subtrees);
-  counters_ = Buffer<FrameCounters>(2);
+  counters_ = Buffer<FrameCounters>(2);  // counting, counted
   const size_t places = most + most / 8 + 64 * kLevels * blocks;
   nodes_ = Buffer<uint32_t>(places);
   origin_ = Buffer<CutOrigin>(weights ? places : 0);
@@ -83,6 +83,7 @@ StateView CutState::view() const {
           due_.data(),
           signals_.data(),
           counters_.data(),
+          counters_.data() + 1,
           nodes_.data(),
           origin_.data(),
           weights_.data(),

@@ -44,7 +44,7 @@ struct CutOrigin {
   uint32_t own, parent;
 };
 
-// Of one frame. The kernels add up work[0]; search_place moves it to work[1], where
+// Of one frame. The kernels add up StateView::counting; search_place moves it to `counted`, where
 // search_emit and the host find it, and clears it for the next frame.
 struct FrameCounters {
   unsigned long long nodes_tested, subtrees_visited, chunks_read, bytes_read;
@@ -76,7 +76,7 @@ struct StateView {
   uint32_t* dirty;        // blocks with nodes that entered or left
   uint32_t* due;          // subtrees to visit
   uint32_t* signals;      // to open or close a subtree; kNoSignal where not written yet
-  FrameCounters* work;
+  FrameCounters *counting, *counted;
   uint32_t* nodes;     // the cut list: ascending, with kNoNode in between
   CutOrigin* origin;   // of each place
   float* weights;      // of each place

@@ -74,7 +74,7 @@ __device__ inline void stream_chunks(const TreeView& tree, const StateView& stat
                                      const Sight& sight, uint32_t reference, Tally& tally) {
   for (;;) {
     uint32_t taken = 0;
-    if (lane_in_warp() == 0) taken = atomicAdd(&state.work->next_chunks, kTicketChunks);
+    if (lane_in_warp() == 0) taken = atomicAdd(&state.counting->next_chunks, kTicketChunks);
     taken = __shfl_sync(kAllLanes, taken, 0);
     if (taken >= tree.chunk_count) return;
     const uint32_t chunk = taken + lane_in_warp();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/search/search_launch.h"
 #include "runtime/math/lerp.h"
 
@@ -164,13 +165,15 @@ void launch_sweep(const SweepView& tree, const SweepState& state, const Sight& s
   const unsigned measure_blocks = resident_blocks<search_measure>(kThreads);
   const unsigned collect_blocks = resident_blocks<search_collect>(kThreads);
   const uint32_t records = std::max(tree.records, 1u);
-  search_measure<<<std::min((records + kThreads - 1) / kThreads, multiprocessors * measure_blocks),
-                   kThreads, 0, stream>>>(tree, state, sight);
-  check(cudaGetLastError(), "search_measure");
-  search_collect<<<std::min(static_cast<uint32_t>(sweep_tiles(tree.nodes)),
-                            multiprocessors * collect_blocks),
-                   kThreads, 0, stream>>>(tree, state, sight, run);
-  check(cudaGetLastError(), "search_collect");
+  launch_kernel("search_measure", search_measure,
+                {std::min((records + kThreads - 1) / kThreads, multiprocessors * measure_blocks),
+                 kThreads, stream},
+                tree, state, sight);
+  launch_kernel(
+      "search_collect", search_collect,
+      {std::min(static_cast<uint32_t>(sweep_tiles(tree.nodes)), multiprocessors * collect_blocks),
+       kThreads, stream},
+      tree, state, sight, run);
 }
 
 }  // namespace voyager::cuda

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/search/cut_streaming.cuh"
 #include "cuda/search/search_launch.h"
 
@@ -13,7 +14,7 @@ constexpr unsigned kThreads = 256;
 constexpr unsigned kRounds = kBlockSubtrees / kThreads;
 
 __device__ bool falls_back(const StateView& state, uint32_t max_due) {
-  return state.work->due_count > max_due;
+  return state.counting->due_count > max_due;
 }
 
 // A subtree whose reference is forgotten in this frame keeps what slack is left.
@@ -67,8 +68,8 @@ __global__ void __launch_bounds__(kThreads)
     }
     __syncthreads();
     if (threadIdx.x == 0) {
-      if (found_count != 0) place = atomicAdd(&state.work->due_count, found_count);
-      atomicAdd(&state.work->bytes_read,
+      if (found_count != 0) place = atomicAdd(&state.counting->due_count, found_count);
+      atomicAdd(&state.counting->bytes_read,
                 (block.last - block.first) * (kAll ? sizeof(uint32_t) : sizeof(Watch)));
     }
     __syncthreads();
@@ -78,7 +79,7 @@ __global__ void __launch_bounds__(kThreads)
 }
 
 __device__ void send_signals(const StateView& state, uint32_t first, uint32_t last, uint32_t kind) {
-  const uint32_t place = atomicAdd(&state.work->signal_tail, last - first);
+  const uint32_t place = atomicAdd(&state.counting->signal_tail, last - first);
   for (uint32_t i = first; i < last; ++i) atomicExch(&state.signals[place + (i - first)], i | kind);
 }
 
@@ -152,14 +153,14 @@ __global__ void __launch_bounds__(kThreads)
                  uint32_t max_due) {
   if (falls_back(state, max_due)) return;
   Tally tally;
-  const uint32_t count = state.work->due_count;
+  const uint32_t count = state.counting->due_count;
   // Eight lanes end a subtree sooner than one; where there is a subtree for each lane, they are
   // mostly idle.
   if (count < gridDim.x * kThreads)
     visit_due_groups(tree, state, sight, reference, count, tally);
   else
     visit_due_lanes(tree, state, sight, reference, count, tally);
-  tally.flush(state.work);
+  tally.flush(state.counting);
 }
 
 __device__ uint32_t read_now(const uint32_t* counter) {
@@ -168,12 +169,12 @@ __device__ uint32_t read_now(const uint32_t* counter) {
 
 // Done when as many signals are answered as were sent: `done` is read first, so that
 // it can only be too small.
-__device__ bool all_answered(const FrameCounters* work) {
+__device__ bool all_answered(const FrameCounters* counting) {
   bool all = false;
   if (lane_in_warp() == 0) {
-    const uint32_t done = read_now(&work->signals_done);
+    const uint32_t done = read_now(&counting->signals_done);
     __threadfence();
-    all = done == read_now(&work->signal_tail);
+    all = done == read_now(&counting->signal_tail);
   }
   return __shfl_sync(kAllLanes, all, 0);
 }
@@ -181,7 +182,7 @@ __device__ bool all_answered(const FrameCounters* work) {
 // The signal of a ticket, or kNoSignal where it has not come yet. A group that waits
 // for one must not hold up the others of its warp.
 __device__ uint32_t take_signal(const StateView& state, uint32_t ticket) {
-  if (ticket >= read_now(&state.work->signal_tail)) return kNoSignal;
+  if (ticket >= read_now(&state.counting->signal_tail)) return kNoSignal;
   return atomicExch(&state.signals[ticket], kNoSignal);
 }
 
@@ -199,17 +200,17 @@ __device__ void answer(const TreeView& tree, const StateView& state, const Sight
   if (any && !opens) close_subtree(state, subtree, s.child_count, known, tally);
   __threadfence();
   __syncwarp();
-  if (any && lane_in_group() == 0) atomicAdd(&state.work->signals_done, 1);
+  if (any && lane_in_group() == 0) atomicAdd(&state.counting->signals_done, 1);
 }
 
 __device__ void answer_signals(const TreeView& tree, const StateView& state, const Sight& sight,
                                uint32_t reference, Tally& tally) {
   bool holds_ticket = false;
   uint32_t ticket = 0;
-  while (!all_answered(state.work)) {
+  while (!all_answered(state.counting)) {
     uint32_t signal = kNoSignal;
     if (lane_in_group() == 0) {
-      if (!holds_ticket) ticket = atomicAdd(&state.work->signal_head, 1);
+      if (!holds_ticket) ticket = atomicAdd(&state.counting->signal_head, 1);
       signal = take_signal(state, ticket);
       holds_ticket = signal == kNoSignal;
     }
@@ -222,9 +223,9 @@ __device__ void answer_signals(const TreeView& tree, const StateView& state, con
 }
 
 // As many thread blocks as there is work for: those that wait only get in the way.
-__device__ bool helps(const FrameCounters* work) {
+__device__ bool helps(const FrameCounters* counting) {
   constexpr uint32_t kLeast = 4, kSignalsEach = 32;
-  return blockIdx.x < kLeast + read_now(&work->signal_tail) / kSignalsEach;
+  return blockIdx.x < kLeast + read_now(&counting->signal_tail) / kSignalsEach;
 }
 
 __global__ void __launch_bounds__(kThreads)
@@ -233,11 +234,11 @@ __global__ void __launch_bounds__(kThreads)
   Tally tally;
   if (falls_back(state, max_due)) {
     stream_chunks(tree, state, sight, reference, tally);
-    if (blockIdx.x == 0 && threadIdx.x == 0) state.work->streamed = 1;
-  } else if (helps(state.work)) {
+    if (blockIdx.x == 0 && threadIdx.x == 0) state.counting->streamed = 1;
+  } else if (helps(state.counting)) {
     answer_signals(tree, state, sight, reference, tally);
   }
-  tally.flush(state.work);
+  tally.flush(state.counting);
 }
 
 template <bool kAll>
@@ -245,16 +246,16 @@ void launch_stages(const SearchFrame& f, const Travels& travels, uint32_t max_du
   const unsigned check_blocks = resident_blocks<search_check<kAll>>(kThreads);
   const unsigned visit_blocks = resident_blocks<search_visit>(kThreads);
   const unsigned descend_blocks = resident_blocks<search_descend>(kThreads);
-  search_check<kAll>
-      <<<std::min(f.state.block_count, f.multiprocessors * check_blocks), kThreads, 0, f.stream>>>(
-          f.state, travels, f.reference);
-  check(cudaGetLastError(), "search_check");
-  search_visit<<<f.multiprocessors * visit_blocks, kThreads, 0, f.stream>>>(
-      f.tree, f.state, f.sight, f.reference, max_due);
-  check(cudaGetLastError(), "search_visit");
-  search_descend<<<f.multiprocessors * descend_blocks, kThreads, 0, f.stream>>>(
-      f.tree, f.state, f.sight, f.reference, max_due);
-  check(cudaGetLastError(), "search_descend");
+  launch_kernel(
+      "search_check", search_check<kAll>,
+      {std::min(f.state.block_count, f.multiprocessors * check_blocks), kThreads, f.stream},
+      f.state, travels, f.reference);
+  launch_kernel("search_visit", search_visit,
+                {f.multiprocessors * visit_blocks, kThreads, f.stream}, f.tree, f.state, f.sight,
+                f.reference, max_due);
+  launch_kernel("search_descend", search_descend,
+                {f.multiprocessors * descend_blocks, kThreads, f.stream}, f.tree, f.state, f.sight,
+                f.reference, max_due);
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
 // The block's nodes are to be written again.
 __device__ inline void mark_dirty(const StateView& state, uint32_t block) {
   if (state.dirty_flags[block] == 0 && atomicExch(&state.dirty_flags[block], 1) == 0)
-    state.dirty[atomicAdd(&state.work->dirty_count, 1)] = block;
+    state.dirty[atomicAdd(&state.counting->dirty_count, 1)] = block;
 }
 
 // By one lane of a subtree's group.
@@ -175,7 +175,7 @@ __device__ inline void count_change(const StateView& state, uint32_t subtree, ui
   }
   if (lane_in_group() == kLevels && opened != 0) {
     const uint32_t before = atomicAdd(&state.open_counts[b], static_cast<uint32_t>(opened));
-    if (before == (opened > 0 ? 0 : 1)) state.work->open_blocks_changed = 1;
+    if (before == (opened > 0 ? 0 : 1)) state.counting->open_blocks_changed = 1;
   }
   if (lane_in_group() == kLevels + 1 && new_cut != old_cut) mark_dirty(state, b);
   if (lane_in_group() == 0) {

@@ -149,20 +149,20 @@ void PartitionedSearch::weigh(const CutQuery& query, const RowList& rows, cudaSt
 
 CutList PartitionedSearch::list() const {
   const StateView state = state_->view();
-  return {state.nodes, weights_ ? state.weights : nullptr, &state.work[1].list_size,
+  return {state.nodes, weights_ ? state.weights : nullptr, &state.counted->list_size,
           state_->list_room(), state.bounds};
 }
 
 FrameCounters PartitionedSearch::counters() const {
   FrameCounters counters;
-  check(cudaMemcpy(&counters, state_->view().work + 1, sizeof counters, cudaMemcpyDeviceToHost),
+  check(cudaMemcpy(&counters, state_->view().counted, sizeof counters, cudaMemcpyDeviceToHost),
         "counters");
   return counters;
 }
 
 void PartitionedSearch::report(void* into, cudaStream_t stream) const {
-  check(cudaMemcpyAsync(into, state_->view().work + 1, sizeof(FrameCounters),
-                        cudaMemcpyDeviceToHost, stream),
+  check(cudaMemcpyAsync(into, state_->view().counted, sizeof(FrameCounters), cudaMemcpyDeviceToHost,
+                        stream),
         "counters");
 }
 

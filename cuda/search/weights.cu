@@ -1,5 +1,6 @@
 // The weights of a cut list (METHOD §4).
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/search/cut_visit.cuh"
 #include "cuda/search/search_launch.h"
 #include "runtime/math/lerp.h"
@@ -26,7 +27,7 @@ constexpr unsigned kWeightThreads = 256;
 __global__ void __launch_bounds__(kWeightThreads)
     search_weigh(TreeView tree, StateView state, Sight sight, RowList rows) {
   static_assert(kRowPlaces == 32);
-  const uint32_t all = state.work[1].list_size / kRowPlaces;
+  const uint32_t all = state.counted->list_size / kRowPlaces;
   const uint32_t count = rows.rows == nullptr ? all : *rows.count;
   const uint32_t warps = gridDim.x * kWeightThreads / 32;
   for (uint32_t k = (blockIdx.x * kWeightThreads + threadIdx.x) / 32; k < count; k += warps) {
@@ -47,9 +48,9 @@ __global__ void __launch_bounds__(kWeightThreads)
 
 void launch_weigh(const SearchFrame& f, const RowList& rows) {
   const unsigned resident = resident_blocks<search_weigh>(kWeightThreads);
-  search_weigh<<<f.multiprocessors * resident, kWeightThreads, 0, f.stream>>>(f.tree, f.state,
-                                                                              f.sight, rows);
-  check(cudaGetLastError(), "search_weigh");
+  launch_kernel("search_weigh", search_weigh,
+                {f.multiprocessors * resident, kWeightThreads, f.stream}, f.tree, f.state, f.sight,
+                rows);
 }
 
 }  // namespace voyager::cuda

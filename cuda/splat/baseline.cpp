@@ -52,8 +52,8 @@ class BaselinePipeline final : public Pipeline {
   Buffer<TileRange> rows_, columns_;
   Buffer<uint32_t> tile_counts_;
   Buffer<unsigned long long> pair_ends_;
-  Buffer<unsigned long long> keys_[2];
-  Buffer<uint32_t> values_[2];
+  Buffer<unsigned long long> keys_, sorted_keys_;
+  Buffer<uint32_t> values_, sorted_values_;
   Buffer<ulonglong2> tiles_;
   Buffer<uint32_t> splat_count_{1};
   Buffer<char> scratch_;
@@ -89,10 +89,10 @@ void BaselinePipeline::fit_places(uint32_t places) {
 }
 
 void BaselinePipeline::fit_pairs(unsigned long long pairs) {
-  for (int side = 0; side < 2; ++side) {
-    fit(keys_[side], pairs);
-    fit(values_[side], pairs);
-  }
+  fit(keys_, pairs);
+  fit(sorted_keys_, pairs);
+  fit(values_, pairs);
+  fit(sorted_values_, pairs);
 }
 
 void BaselinePipeline::fit_scratch(const BaselineView& of) {
@@ -106,8 +106,10 @@ BaselineView BaselinePipeline::view(const TileGrid& grid, uint32_t places,
           columns_.data(),
           tile_counts_.data(),
           pair_ends_.data(),
-          {keys_[0].data(), keys_[1].data()},
-          {values_[0].data(), values_[1].data()},
+          keys_.data(),
+          sorted_keys_.data(),
+          values_.data(),
+          sorted_values_.data(),
           tiles_.data(),
           splat_count_.data(),
           grid,

@@ -4,6 +4,7 @@
 #include <cub/device/device_radix_sort.cuh>
 #include <cub/device/device_scan.cuh>
 
+#include "cuda/device/launch.cuh"
 #include "cuda/scene/device_arrays.cuh"
 #include "cuda/splat/baseline_launch.h"
 #include "cuda/splat/draw_item.cuh"
@@ -98,8 +99,8 @@ __global__ void __launch_bounds__(kThreads) baseline_keys(BaselineView view) {
   for (int32_t row = rows.begin; row < rows.end; ++row)
     for (int32_t column = columns.begin; column < columns.end; ++column, ++at) {
       const auto tile = static_cast<unsigned long long>(row * view.grid.columns + column);
-      view.keys[0][at] = tile << 32 | depth;
-      view.values[0][at] = place;
+      view.keys[at] = tile << 32 | depth;
+      view.values[at] = place;
     }
 }
 
@@ -107,9 +108,9 @@ __global__ void __launch_bounds__(kThreads) baseline_ranges(BaselineView view) {
   const unsigned long long at =
       static_cast<unsigned long long>(blockIdx.x) * kThreads + threadIdx.x;
   if (at >= view.pairs) return;
-  const unsigned long long tile = view.keys[1][at] >> 32;
-  if (at == 0 || view.keys[1][at - 1] >> 32 != tile) view.tiles[tile].x = at;
-  if (at + 1 == view.pairs || view.keys[1][at + 1] >> 32 != tile) view.tiles[tile].y = at + 1;
+  const unsigned long long tile = view.sorted_keys[at] >> 32;
+  if (at == 0 || view.sorted_keys[at - 1] >> 32 != tile) view.tiles[tile].x = at;
+  if (at + 1 == view.pairs || view.sorted_keys[at + 1] >> 32 != tile) view.tiles[tile].y = at + 1;
 }
 
 __device__ bool ended(const RasterPixel& pixel) {
@@ -151,7 +152,7 @@ __global__ void __launch_bounds__(kThreads)
   for (unsigned long long first = list.x; first < list.y; first += kThreads) {
     if (__syncthreads_and(ended(pixel))) break;
     if (first + threadIdx.x < list.y)
-      batch[threadIdx.x] = view.splats[view.values[1][first + threadIdx.x]];
+      batch[threadIdx.x] = view.splats[view.sorted_values[first + threadIdx.x]];
     __syncthreads();
     const auto count = static_cast<unsigned>(min(list.y - first, 0ull + kThreads));
     for (unsigned i = 0; i < count && !ended(pixel); ++i)
@@ -173,9 +174,9 @@ template <class Sh>
 void launch_project(const BaselineFrame& f) {
   const unsigned blocks = blocks_for(f.places);
   if (f.draws.list.weights != nullptr)
-    baseline_project<Sh, true><<<blocks, kThreads, 0, f.stream>>>(f);
+    launch_kernel("baseline_project", baseline_project<Sh, true>, {blocks, kThreads, f.stream}, f);
   else
-    baseline_project<Sh, false><<<blocks, kThreads, 0, f.stream>>>(f);
+    launch_kernel("baseline_project", baseline_project<Sh, false>, {blocks, kThreads, f.stream}, f);
 }
 
 int key_bits(const TileGrid& grid) {
@@ -194,8 +195,8 @@ cudaError_t scan(void* scratch, size_t& bytes, const BaselineView& v, cudaStream
                                        v.pair_ends, v.places, stream);
 }
 cudaError_t sort(void* scratch, size_t& bytes, const BaselineView& v, cudaStream_t stream) {
-  return cub::DeviceRadixSort::SortPairs(scratch, bytes, v.keys[0], v.keys[1], v.values[0],
-                                         v.values[1], v.pairs, 0, key_bits(v.grid), stream);
+  return cub::DeviceRadixSort::SortPairs(scratch, bytes, v.keys, v.sorted_keys, v.values,
+                                         v.sorted_values, v.pairs, 0, key_bits(v.grid), stream);
 }
 
 }  // namespace
@@ -210,13 +211,11 @@ size_t baseline_scratch(const BaselineView& view) {
 void launch_baseline_project(const BaselineFrame& f) {
   if (f.places == 0) return;
   with_sh(f.gaussians, [&]<class Sh>() { launch_project<Sh>(f); });
-  check(cudaGetLastError(), "baseline_project");
 }
 
 void launch_baseline_count(const BaselineFrame& f) {
   check(cudaMemsetAsync(f.view.splat_count, 0, sizeof(uint32_t), f.stream), "baseline_count");
-  baseline_count<<<64, kThreads, 0, f.stream>>>(f.view);
-  check(cudaGetLastError(), "baseline_count");
+  launch_kernel("baseline_count", baseline_count, {64, kThreads, f.stream}, f.view);
 }
 
 void launch_baseline_scan(const BaselineFrame& f) {
@@ -226,8 +225,8 @@ void launch_baseline_scan(const BaselineFrame& f) {
 
 void launch_baseline_keys(const BaselineFrame& f) {
   if (f.view.pairs == 0) return;
-  baseline_keys<<<blocks_for(f.view.places), kThreads, 0, f.stream>>>(f.view);
-  check(cudaGetLastError(), "baseline_keys");
+  launch_kernel("baseline_keys", baseline_keys, {blocks_for(f.view.places), kThreads, f.stream},
+                f.view);
 }
 
 void launch_baseline_sort(const BaselineFrame& f) {
@@ -239,13 +238,14 @@ void launch_baseline_rasterize(const BaselineFrame& f, bool siblings, const Rast
   const BaselineView& v = f.view;
   const auto tiles = static_cast<unsigned>(v.grid.columns * v.grid.rows);
   check(cudaMemsetAsync(v.tiles, 0, tiles * sizeof(ulonglong2), f.stream), "baseline_ranges");
-  if (v.pairs != 0) baseline_ranges<<<blocks_for(v.pairs), kThreads, 0, f.stream>>>(v);
-  check(cudaGetLastError(), "baseline_ranges");
+  if (v.pairs != 0)
+    launch_kernel("baseline_ranges", baseline_ranges, {blocks_for(v.pairs), kThreads, f.stream}, v);
   if (siblings)
-    baseline_rasterize<true><<<tiles, kThreads, 0, f.stream>>>(v, target);
+    launch_kernel("baseline_rasterize", baseline_rasterize<true>, {tiles, kThreads, f.stream}, v,
+                  target);
   else
-    baseline_rasterize<false><<<tiles, kThreads, 0, f.stream>>>(v, target);
-  check(cudaGetLastError(), "baseline_rasterize");
+    launch_kernel("baseline_rasterize", baseline_rasterize<false>, {tiles, kThreads, f.stream}, v,
+                  target);
 }
 
 }  // namespace voyager::cuda

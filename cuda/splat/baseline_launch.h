@@ -18,10 +18,10 @@ struct BaselineView {
   TileRange* rows;  // of each splat's box; none where it is not drawn
   TileRange* columns;
   uint32_t* tile_counts;
-  unsigned long long* pair_ends;  // running sums of tile_counts
-  unsigned long long* keys[2];    // tile above depth; before and after they are sorted
-  uint32_t* values[2];            // places
-  ulonglong2* tiles;              // [first, last) of the sorted pairs
+  unsigned long long* pair_ends;           // running sums of tile_counts
+  unsigned long long *keys, *sorted_keys;  // tile above depth
+  uint32_t *values, *sorted_values;        // places
+  ulonglong2* tiles;                       // [first, last) of the sorted pairs
   uint32_t* splat_count;
   TileGrid grid;
   uint32_t places;  // of all instances

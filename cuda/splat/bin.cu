@@ -6,6 +6,8 @@
 #include <cub/block/block_scan.cuh>
 
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
+#include "cuda/splat/bin_bands.h"
 #include "cuda/splat/bin_order.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/splat_launch.h"
@@ -13,10 +15,8 @@
 namespace voyager::cuda {
 namespace {
 
-// Two blocks are all that a multiprocessor of Orin holds.
 constexpr unsigned kBinThreads = 768;
-constexpr unsigned kBinBlocks = 2;  // of a multiprocessor
-constexpr uint32_t kNarrow = 4;     // tiles of a strip that a lane places by itself
+constexpr uint32_t kNarrow = 4;  // tiles of a strip that a lane places by itself
 
 // The strips of a block, and the tiles that it sees to: a band of those of its region's eye.
 struct Share {
@@ -194,26 +194,18 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
   }
 }
 
-// What a block may count at once, so that kBinBlocks still fit a multiprocessor: 20,000 tiles on
-// Orin, where an eye of 2064x2208 pixels has 17,802.
-int most_shared_bytes() {
-  return static_cast<int>(shared_bytes_of_block(kBinBlocks));
-}
-uint32_t most_band_tiles() {
-  return static_cast<uint32_t>(most_shared_bytes()) / sizeof(uint32_t);
-}
-
+// most: shared memory that a block may have.
 template <bool kLimited>
-void launch(const SplatFrame& f, const dim3& blocks, uint32_t band) {
+void launch(const SplatFrame& f, const dim3& blocks, uint32_t band, size_t most) {
   const size_t bytes = band * sizeof(uint32_t);
-  allow_shared_bytes(bin_count<kLimited>, most_shared_bytes(), "bin_count");
-  bin_count<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
-  check(cudaGetLastError(), "bin_count");
-  bin_place<<<1, kPlaceThreads, 0, f.stream>>>(f.splats, kRasterBlocks * f.multiprocessors);
-  check(cudaGetLastError(), "bin_place");
-  allow_shared_bytes(bin_scatter<kLimited>, most_shared_bytes(), "bin_scatter");
-  bin_scatter<kLimited><<<blocks, kBinThreads, bytes, f.stream>>>(f.splats, band);
-  check(cudaGetLastError(), "bin_scatter");
+  allow_shared_bytes(bin_count<kLimited>, most, "bin_count");
+  launch_kernel("bin_count", bin_count<kLimited>, {blocks, kBinThreads, f.stream, bytes}, f.splats,
+                band);
+  launch_kernel("bin_place", bin_place, {1, kPlaceThreads, f.stream}, f.splats,
+                kRasterBlocks * f.multiprocessors);
+  allow_shared_bytes(bin_scatter<kLimited>, most, "bin_scatter");
+  launch_kernel("bin_scatter", bin_scatter<kLimited>, {blocks, kBinThreads, f.stream, bytes},
+                f.splats, band);
 }
 
 }  // namespace
@@ -227,13 +219,13 @@ void launch_bin(const SplatFrame& f) {
   uint32_t most = 0;  // tiles of an eye
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
     most = std::max(most, f.splats.frame.first[eye + 1] - f.splats.frame.first[eye]);
-  const uint32_t bands = (most + most_band_tiles() - 1) / most_band_tiles();
-  const uint32_t band = (most + bands - 1) / bands;
-  const dim3 blocks(bin_blocks(f.multiprocessors), bands);
+  const size_t bytes = shared_bytes_of_block(kBinBlocks);
+  const BinBands bands = bin_bands(most, bytes);
+  const dim3 blocks(bin_blocks(f.multiprocessors), bands.bands);
   if (f.splats.limits.bits == nullptr)
-    launch<false>(f, blocks, band);
+    launch<false>(f, blocks, bands.tiles, bytes);
   else
-    launch<true>(f, blocks, band);
+    launch<true>(f, blocks, bands.tiles, bytes);
 }
 
 }  // namespace voyager::cuda

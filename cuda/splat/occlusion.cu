@@ -4,6 +4,7 @@
 //
 // No bit depends on a limit: a tile's list is cut off behind one, in its order, and a part of the
 // tile whose pixels have all ended reads no further. Where they have not, the tile is drawn again.
+#include "cuda/device/launch.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/occlusion.h"
 #include "cuda/splat/splat_launch.h"
@@ -144,14 +145,13 @@ unsigned squares(const FrameTiles& tiles) {
 }  // namespace
 
 void launch_occlusion_guess(const OcclusionFrame& f, cudaStream_t stream) {
-  occlusion_guess<<<squares(f.tiles), kThreads, 0, stream>>>(f);
-  check(cudaGetLastError(), "occlusion_guess");
+  launch_kernel("occlusion_guess", occlusion_guess, {squares(f.tiles), kThreads, stream}, f);
 }
 
 void launch_occlusion_rest(const OcclusionFrame& f, const uint32_t* first,
                            const uint32_t* open_parts, cudaStream_t stream) {
-  occlusion_rest<<<squares(f.tiles), kThreads, 0, stream>>>(f, first, open_parts);
-  check(cudaGetLastError(), "occlusion_rest");
+  launch_kernel("occlusion_rest", occlusion_rest, {squares(f.tiles), kThreads, stream}, f, first,
+                open_parts);
 }
 
 }  // namespace voyager::cuda

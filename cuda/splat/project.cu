@@ -2,6 +2,7 @@
 // that may reach the image, where the search keeps bounds of them, and lists
 // those that may reach the image; project_splats reads the rest of these.
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/scene/device_arrays.cuh"
 #include "cuda/scene/gaussian_hull.cuh"
 #include "cuda/splat/draw_item.cuh"
@@ -181,15 +182,15 @@ template <class Sh, bool kLod, int kEyes>
 void launch(const SplatFrame& f, bool boxes) {
   constexpr auto kernel = project_splats<Sh, kLod, kEyes>;
   const unsigned resident = resident_blocks<kernel>(kProjectThreads);
-  kernel<<<f.multiprocessors * resident, kProjectThreads, 0, f.stream>>>(f, boxes);
+  launch_kernel("project_splats", kernel, {f.multiprocessors * resident, kProjectThreads, f.stream},
+                f, boxes);
 }
 
 template <bool kLod, int kEyes>
 void launch_for(const SplatFrame& f, bool boxes) {
   constexpr auto cull = project_cull<kLod, kEyes>;
   const unsigned resident = resident_blocks<cull>(kCullThreads);
-  cull<<<f.multiprocessors * resident, kCullThreads, 0, f.stream>>>(f);
-  check(cudaGetLastError(), "project_cull");
+  launch_kernel("project_cull", cull, {f.multiprocessors * resident, kCullThreads, f.stream}, f);
   with_sh(f.gaussians, [&]<class Sh>() { launch<Sh, kLod, kEyes>(f, boxes); });
 }
 
@@ -208,7 +209,6 @@ bool launch_project(const SplatFrame& frame, bool alpha_filter) {
     launch_for<1>(frame, !alpha_filter);
   else
     launch_for<2>(frame, !alpha_filter);
-  check(cudaGetLastError(), "project_splats");
   return true;
 }
 

@@ -1,6 +1,7 @@
 // METHOD §5, §7a for whole rows of a cut list: those of which a Gaussian may reach the image,
 // and is not hidden.
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/scene/gaussian_hull.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/splat_launch.h"
@@ -44,8 +45,8 @@ __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
 RowList launch_rows(const SplatFrame& f) {
   if (f.draws.list.bounds == nullptr || f.draws.list.room == 0) return {};
   const unsigned resident = resident_blocks<project_rows>(kThreads);
-  project_rows<<<f.multiprocessors * resident, kThreads, 0, f.stream>>>(f);
-  check(cudaGetLastError(), "project_rows");
+  launch_kernel("project_rows", project_rows, {f.multiprocessors * resident, kThreads, f.stream},
+                f);
   return {f.splats.rows, &f.splats.counters->instances[f.instance].rows};
 }
 

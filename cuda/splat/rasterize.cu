@@ -6,6 +6,7 @@
 #include <array>
 
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/raster_lane.cuh"
 #include "cuda/splat/raster_output.cuh"
@@ -329,14 +330,15 @@ template <class M>
 void launch(const SplatFrame& f, const RasterParams& params) {
   const uint32_t most = f.splats.frame.count();
   const uint32_t blocks = most + (kHalves<M> ? std::min(most, kMaxHalvedLists) : 0);
-  rasterize_tiles<M><<<blocks, kThreads, lut_bytes<M>(params), f.stream>>>(params);
+  launch_kernel("rasterize_tiles", rasterize_tiles<M>,
+                {blocks, kThreads, f.stream, lut_bytes<M>(params)}, params);
 }
 
 template <class M>
 void launch_open(const SplatFrame& f, const RasterParams& params) {
   const unsigned resident = resident_blocks<rasterize_open_tiles<M>>(kThreads);
-  rasterize_open_tiles<M>
-      <<<f.multiprocessors * resident, kThreads, lut_bytes<M>(params), f.stream>>>(params);
+  launch_kernel("rasterize_open_tiles", rasterize_open_tiles<M>,
+                {f.multiprocessors * resident, kThreads, f.stream, lut_bytes<M>(params)}, params);
 }
 
 // What a frame asks of its kernel, beside an exponential and the filter.
@@ -409,7 +411,6 @@ void launch_rasterize(const SplatFrame& f, const RasterChoices& choices, const R
   const auto& by_needs =
       kLaunches[static_cast<size_t>(choices.exponential)][choices.alpha_filter ? 1 : 0];
   by_needs[needs_of(f, choices, params)](f, params);
-  check(cudaGetLastError(), "rasterize");
 }
 
 }  // namespace voyager::cuda

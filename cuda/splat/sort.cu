@@ -5,6 +5,7 @@
 #include <cub/warp/warp_merge_sort.cuh>
 
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/splat_launch.h"
 
@@ -174,12 +175,12 @@ __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) 
 void launch_sort(const SplatFrame& f) {
   constexpr size_t kBytes = sizeof(LargeLists::Storage);
   static_assert(kBytes <= kLeastSharedBytes);
-  allow_shared_bytes(sort_large, static_cast<int>(kBytes), "sort_large");
-  sort_large<<<2 * f.multiprocessors, kLargeThreads, kBytes, f.stream>>>(f.splats);
-  check(cudaGetLastError(), "sort_large");
+  allow_shared_bytes(sort_large, kBytes, "sort_large");
+  launch_kernel("sort_large", sort_large, {2 * f.multiprocessors, kLargeThreads, f.stream, kBytes},
+                f.splats);
   const unsigned resident = resident_blocks<sort_tiles>(kSortThreads);
-  sort_tiles<<<f.multiprocessors * resident, kSortThreads, 0, f.stream>>>(f.splats);
-  check(cudaGetLastError(), "sort_tiles");
+  launch_kernel("sort_tiles", sort_tiles, {f.multiprocessors * resident, kSortThreads, f.stream},
+                f.splats);
 }
 
 }  // namespace voyager::cuda

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "cuda/device/launch.cuh"
 #include "cuda/stream/pool_launch.h"
 
 namespace voyager::cuda {
@@ -73,25 +74,23 @@ __global__ void __launch_bounds__(kThreads)
 void launch_fill(const PoolFill& fill, cudaStream_t stream) {
   uint32_t most = 0;
   for (const PoolCopy& copy : fill.copies) most = std::max(most, copy.words);
-  pool_fill<<<dim3(blocks_for(most), kFilledArrays), kThreads, 0, stream>>>(fill);
-  check(cudaGetLastError(), "pool_fill");
+  launch_kernel("pool_fill", pool_fill, {dim3(blocks_for(most), kFilledArrays), kThreads, stream},
+                fill);
 }
 
 void launch_patch(const PoolTables& tables, const PoolPatch& patch, cudaStream_t stream) {
   if (const uint32_t most = std::max(patch.cut_count, patch.unlinked_count); most != 0) {
-    pool_cut<<<blocks_for(most), kThreads, 0, stream>>>(tables, patch);
-    check(cudaGetLastError(), "pool_cut");
+    launch_kernel("pool_cut", pool_cut, {blocks_for(most), kThreads, stream}, tables, patch);
   }
   if (const uint32_t most = std::max({patch.tied_count, patch.linked_count, patch.parent_count});
       most != 0) {
-    pool_tie<<<blocks_for(most), kThreads, 0, stream>>>(tables, patch);
-    check(cudaGetLastError(), "pool_tie");
+    launch_kernel("pool_tie", pool_tie, {blocks_for(most), kThreads, stream}, tables, patch);
   }
 }
 
 void launch_unlink_all(SearchSubtree* subtrees, uint32_t count, cudaStream_t stream) {
-  pool_unlink_all<<<blocks_for(count), kThreads, 0, stream>>>(subtrees, count);
-  check(cudaGetLastError(), "pool_unlink_all");
+  launch_kernel("pool_unlink_all", pool_unlink_all, {blocks_for(count), kThreads, stream}, subtrees,
+                count);
 }
 
 }  // namespace voyager::cuda

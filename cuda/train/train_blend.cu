@@ -1,7 +1,7 @@
 // The adjoint of rasterize_tiles (runtime/stages/blend_gradient.h): each tile's list front to back
 // once more. A warp has a part of the tile, a lane one of its pixels; of each splat the warp adds
 // its pixels' shares up before it adds them to the splat's sums.
-#include "cuda/device/check.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/splat/raster_part.cuh"
 #include "cuda/train/fixed_sum.cuh"
 #include "runtime/stages/blend_gradient.h"
@@ -152,9 +152,8 @@ __global__ void __launch_bounds__(kThreads)
 
 void launch_train_blend(const SplatFrame& f, const TrainPictures& pictures, float log_threshold,
                         FixedSum* sums) {
-  train_blend<<<f.splats.frame.count(), kThreads, 0, f.stream>>>(
-      {f.splats, pictures, log_threshold * kLog2e, sums});
-  check(cudaGetLastError(), "train_blend");
+  launch_kernel("train_blend", train_blend, {f.splats.frame.count(), kThreads, f.stream},
+                BlendParams{f.splats, pictures, log_threshold * kLog2e, sums});
 }
 
 }  // namespace voyager::cuda

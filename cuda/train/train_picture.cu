@@ -1,5 +1,5 @@
 // The truth from its samples, and how far a picture is from it.
-#include "cuda/device/check.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/train/fixed_sum.cuh"
 #include "cuda/train/train_launch.h"
 
@@ -43,15 +43,13 @@ unsigned blocks_of(uint32_t pixels) {
 
 void launch_mean(const float4* fine, uint32_t samples, float4* mean, uint32_t width,
                  uint32_t height, cudaStream_t stream) {
-  train_mean<<<blocks_of(width * height), kThreads, 0, stream>>>(fine, samples, mean, width,
-                                                                 height);
-  check(cudaGetLastError(), "train_mean");
+  launch_kernel("train_mean", train_mean, {blocks_of(width * height), kThreads, stream}, fine,
+                samples, mean, width, height);
 }
 
 void launch_squares(const TrainPictures& pictures, FixedSum* squares, cudaStream_t stream) {
-  train_squares<<<blocks_of(pictures.width * pictures.height), kThreads, 0, stream>>>(pictures,
-                                                                                      squares);
-  check(cudaGetLastError(), "train_squares");
+  launch_kernel("train_squares", train_squares,
+                {blocks_of(pictures.width * pictures.height), kThreads, stream}, pictures, squares);
 }
 
 }  // namespace voyager::cuda

@@ -1,6 +1,6 @@
 // The adjoint of projection (runtime/stages/project_gradient.h), of each place of a list.
-#include "cuda/device/check.h"
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/scene/device_arrays.cuh"
 #include "cuda/splat/draw_item.cuh"
 #include "cuda/train/fixed_sum.cuh"
@@ -81,8 +81,8 @@ __global__ void __launch_bounds__(kThreads)
 
 void launch_train_project(const SplatFrame& f, const FixedSum* sums, float* gradients) {
   const unsigned resident = resident_blocks<train_project>(kThreads);
-  train_project<<<f.multiprocessors * resident, kThreads, 0, f.stream>>>(f, sums, gradients);
-  check(cudaGetLastError(), "train_project");
+  launch_kernel("train_project", train_project, {f.multiprocessors * resident, kThreads, f.stream},
+                f, sums, gradients);
 }
 
 }  // namespace voyager::cuda

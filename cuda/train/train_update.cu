@@ -1,7 +1,7 @@
 // Adam, of the merged nodes that a cut shows and of the parents that it blends with. A warp a
 // place: its lanes share the numbers of a row.
-#include "cuda/device/check.h"
 #include "cuda/device/grid.h"
+#include "cuda/device/launch.cuh"
 #include "cuda/scene/device_gaussian.h"
 #include "cuda/splat/draw_item.cuh"
 #include "cuda/train/train_launch.h"
@@ -120,8 +120,8 @@ void launch_train_update(const SplatFrame& f, const float* gradients, const Trai
   const unsigned resident = resident_blocks<train_update>(kThreads);
   const UpdateParams params{f.gaussians, f.draws.list, gradients, arrays, rates};
   for (const bool parents : {true, false}) {
-    train_update<<<f.multiprocessors * resident, kThreads, 0, f.stream>>>(params, parents);
-    check(cudaGetLastError(), "train_update");
+    launch_kernel("train_update", train_update, {f.multiprocessors * resident, kThreads, f.stream},
+                  params, parents);
   }
 }
 

@@ -1,0 +1,56 @@
+// What CUDA's sources must not do, and no test on one device would see.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace cuda_sources_test {
+namespace {
+
+struct Line {
+  std::string file;  // relative to the source folder
+  std::string text;  // without its comment
+};
+
+std::vector<Line> lines_below(const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path root = VOYAGER_SOURCE_DIR;
+  std::vector<Line> lines;
+  for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+    if (!entry.is_regular_file()) continue;
+    std::ifstream file(entry.path());
+    for (std::string text; std::getline(file, text);)
+      lines.push_back({fs::relative(entry.path(), root).string(), text.substr(0, text.find("//"))});
+  }
+  return lines;
+}
+
+TEST(CudaSources, KernelsAreLaunchedWhereLaunchesAreChecked) {
+  size_t launches = 0;
+  for (const Line& line : lines_below("cuda")) {
+    launches += line.text.find("launch_kernel(") != std::string::npos;
+    if (line.file == "cuda/device/launch.cuh") continue;
+    EXPECT_EQ(line.text.find("<<<"), std::string::npos) << line.file << ": " << line.text;
+    EXPECT_EQ(line.text.find("cudaLaunchKernel"), std::string::npos) << line.file;
+  }
+  EXPECT_GT(launches, 30u);
+}
+
+// What lives as long as the process is the same for all devices, or is kept for each.
+TEST(CudaSources, NoStaticIsOneDevices) {
+  const std::regex variable(R"(^\s*(inline\s+)?static\s+(?!constexpr)[^()]*(;|=|\{))");
+  const std::regex known(R"(PerDevice<|= driver_function<|= nvtxDomainCreateA)");
+  size_t seen = 0;
+  for (const Line& line : lines_below("cuda")) {
+    if (!std::regex_search(line.text, variable)) continue;
+    ++seen;
+    EXPECT_TRUE(std::regex_search(line.text, known)) << line.file << ": " << line.text;
+  }
+  EXPECT_GE(seen, 3u);
+}
+
+}  // namespace
+}  // namespace cuda_sources_test
