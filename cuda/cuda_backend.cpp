@@ -61,8 +61,8 @@ class CudaBackend final : public Backend {
       return instance_of(scene, desc, workers);
     };
     if (desc.splatting == Splatting::baseline_3dgs)
-      return create_baseline_pipeline(device_, std::move(make), scenes, desc);
-    return cuda::create_pipeline(device_, std::move(make), scenes, desc);
+      return create_baseline_pipeline(device_, std::move(make), scenes, desc, workers);
+    return cuda::create_pipeline(device_, std::move(make), scenes, desc, workers);
   }
 
   std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, uint32_t slots) override {

@@ -31,8 +31,8 @@ class Buffer {
   }
   ~Buffer() {
     if (data_ == nullptr) return;
+    buffer_bytes -= bytes();  // first: cudaFree() waits for the device
     cudaFree(data_);
-    buffer_bytes -= bytes();
   }
 
   T* data() const { return static_cast<T*>(data_); }

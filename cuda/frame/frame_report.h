@@ -36,8 +36,7 @@ class FrameReport {
  private:
   static_assert(sizeof(PassCounters) % alignof(std::max_align_t) == 0);
   PinnedMemory memory_;
-  // A host that waits for a frame sleeps meanwhile: a headset has no core to spin on.
-  Event copied_{cudaEventDisableTiming | cudaEventBlockingSync};
+  Event copied_{kWaitedFor};
 };
 
 }  // namespace voyager::cuda

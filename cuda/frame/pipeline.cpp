@@ -38,8 +38,9 @@ void run_stage(Stage stage, FrameReport& report, const Work& work) {
 class SplatPipeline final : public Pipeline {
  public:
   SplatPipeline(std::shared_ptr<const Device> device, MakeInstance make, const Scenes& scenes,
-                const PipelineDesc& desc)
+                const PipelineDesc& desc, Workers& workers)
       : device_(std::move(device)),
+        workers_(workers),
         instances_(std::move(make), scenes, desc.eyes),
         desc_(desc),
         lut_(upload_lut(desc)),
@@ -51,14 +52,14 @@ class SplatPipeline final : public Pipeline {
   // What it frees belongs to the device's context, and to frames that may be under way.
   ~SplatPipeline() override {
     device_->use_quietly();
-    cudaStreamSynchronize(stream_.get());
+    stream_.wait_quietly();
   }
 
   void set_scenes(const Scenes& scenes, std::span<const size_t> from) override;
   void draw(const FrameInput& frame, FrameStats& stats) override;
   void resolve(const FrameInput& frame, FrameStats& stats) override {
     for (size_t eye = 0; eye < images_.size(); ++eye)
-      images_[eye].resolve(frame.eyes[eye].image, stats);
+      images_[eye].resolve(frame.eyes[eye].image, workers_, stats);
   }
   void submit(const FrameInput& frame, bool checked) override;
   bool finish(bool wait, FrameStats& stats) override;
@@ -84,6 +85,7 @@ class SplatPipeline final : public Pipeline {
   void launch_projections(const FrameInput& frame, SplatFrame& work);
   static Eyes external_eyes(const FrameInput& frame);
   void launch_image(const FrameInput& frame, const Eyes& eyes, FrameReport& report);
+  void launch_fetch(const FrameInput& frame, FrameReport& report);
   void launch_second_pass(const FrameInput& frame, const RasterChoices& choices, const Eyes& eyes,
                           FrameReport& report);
   void copy(FrameReport& report) const {
@@ -96,6 +98,7 @@ class SplatPipeline final : public Pipeline {
   void count_bytes(const FrameReport& report, FrameStats& stats) const;
 
   std::shared_ptr<const Device> device_;
+  Workers& workers_;
   DeviceInstances instances_;
   PipelineDesc desc_;
   Buffer<float> lut_;
@@ -180,6 +183,15 @@ void SplatPipeline::launch_image(const FrameInput& frame, const Eyes& eyes, Fram
   });
 }
 
+// What resolve() hands on.
+void SplatPipeline::launch_fetch(const FrameInput& frame, FrameReport& report) {
+  const Range range(kStageNames[kResolve]);
+  bool fetches = false;
+  for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
+    fetches = images_[eye].fetch(frame.eyes[eye].image, stream_.get()) || fetches;
+  if (fetches) report.timer.end(kResolve);
+}
+
 // All stages, for the tiles that the first pass left open. Without any, each kernel ends at once.
 void SplatPipeline::launch_second_pass(const FrameInput& frame, const RasterChoices& choices,
                                        const Eyes& eyes, FrameReport& report) {
@@ -222,14 +234,17 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
 // To the frame's size. What is too small is replaced, and frames in flight still use it.
 void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
   bool fits = splats_.fits(tiles) && (!occlusion_choice_.possible() || occlusion_.fits(tiles));
-  for (size_t eye = 0; eye < limits_.size(); ++eye)
-    fits = fits && limits_[eye].fits(frame.eyes[eye]);
+  for (size_t eye = 0; eye < frame.eyes.size(); ++eye)
+    fits = fits && limits_[eye].fits(frame.eyes[eye]) && images_[eye].fits(frame.eyes[eye]);
   if (fits) return;
   stream_.wait();
+  if (!splats_.fits(tiles)) occlusion_.forget();  // the ends that it knows are in these
   splats_.fit(tiles);
   if (occlusion_choice_.possible()) occlusion_.fit(tiles);
-  occlusion_.forget();
-  for (size_t eye = 0; eye < limits_.size(); ++eye) limits_[eye].fit(frame.eyes[eye]);
+  for (size_t eye = 0; eye < frame.eyes.size(); ++eye) {
+    limits_[eye].fit(frame.eyes[eye]);
+    images_[eye].fit(frame.eyes[eye]);
+  }
 }
 
 void SplatPipeline::launch_search(const FrameInput& frame, FrameReport& report) {
@@ -258,6 +273,7 @@ void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
   for (;;) {
     launch_lists(frame, *report);
     launch_image(frame, eyes, *report);
+    launch_fetch(frame, *report);
     copy(*report);
     report->wait();
     if (!splats_.grow(room_for(report->counters()))) break;
@@ -428,8 +444,9 @@ std::vector<Omission> SplatPipeline::omissions() const {
 }  // namespace
 
 std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Device> device, MakeInstance make,
-                                          const Scenes& scenes, const PipelineDesc& desc) {
-  return std::make_unique<SplatPipeline>(std::move(device), std::move(make), scenes, desc);
+                                          const Scenes& scenes, const PipelineDesc& desc,
+                                          Workers& workers) {
+  return std::make_unique<SplatPipeline>(std::move(device), std::move(make), scenes, desc, workers);
 }
 
 }  // namespace voyager::cuda

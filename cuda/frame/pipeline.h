@@ -7,8 +7,10 @@
 namespace voyager::cuda {
 
 // A view's frames with our splatting: every stage on one stream, no wait for the host
-// before the end, no allocation once the buffers have grown to what the frames need.
+// before the end, no allocation once the buffers have grown to what the frames need. workers: hand
+// images on; they outlive it.
 std::unique_ptr<Pipeline> create_pipeline(std::shared_ptr<const Device> device, MakeInstance make,
-                                          const Scenes& scenes, const PipelineDesc& desc);
+                                          const Scenes& scenes, const PipelineDesc& desc,
+                                          Workers& workers);
 
 }  // namespace voyager::cuda

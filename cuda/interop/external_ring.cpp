@@ -158,7 +158,7 @@ class Ring final : public ExternalRing {
   std::shared_ptr<const Device> device_;
   ExternalRingDesc desc_;
   std::vector<Slot> slots_;
-  Event last_frame_{cudaEventDisableTiming};
+  Event last_frame_{kWaitedFor};
   std::optional<Bridge> bridge_;
 };
 

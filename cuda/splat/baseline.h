@@ -11,6 +11,6 @@ namespace voyager::cuda {
 // Throws Error(unsupported) for an exponential other than exact.
 std::unique_ptr<Pipeline> create_baseline_pipeline(std::shared_ptr<const Device> device,
                                                    MakeInstance make, const Scenes& scenes,
-                                                   const PipelineDesc& desc);
+                                                   const PipelineDesc& desc, Workers& workers);
 
 }  // namespace voyager::cuda

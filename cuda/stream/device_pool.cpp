@@ -93,7 +93,7 @@ void DevicePool::resize(uint32_t slots) {
 // What it frees belongs to the device's context, and to chunks that may be on their way.
 DevicePool::~DevicePool() {
   device_->use_quietly();
-  cudaStreamSynchronize(stream_.get());
+  stream_.wait_quietly();
 }
 
 GaussianView DevicePool::gaussians() const {

@@ -5,7 +5,7 @@ namespace voyager::cuda {
 UploadRing::UploadRing(size_t piece_bytes, size_t pieces)
     : piece_bytes_(piece_bytes), memory_(piece_bytes * pieces) {
   for (size_t i = 0; i < pieces; ++i) {
-    read_.emplace_back(cudaEventDisableTiming | cudaEventBlockingSync);
+    read_.emplace_back(kWaitedFor);
     free_.push_back(i);
   }
 }

@@ -52,5 +52,15 @@ TEST(CudaSources, NoStaticIsOneDevices) {
   EXPECT_GE(seen, 3u);
 }
 
+// By name, what spins or copies to memory that is not pinned. Events that a host waits for are
+// tested on a device.
+TEST(CudaSources, AFramesWaitsDoNotSpin) {
+  const std::regex spins(
+      R"(cuda(Stream|Device)Synchronize\(|cudaMemcpy(2D)?\(|DeviceScheduleSpin)");
+  for (const char* folder : {"cuda/frame", "cuda/interop"})
+    for (const Line& line : lines_below(folder))
+      EXPECT_FALSE(std::regex_search(line.text, spins)) << line.file << ": " << line.text;
+}
+
 }  // namespace
 }  // namespace cuda_sources_test
