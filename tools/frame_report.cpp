@@ -77,10 +77,14 @@ Json counters(const FrameRun& run) {
                {"pairs_after", mean(run.timed, &FrameStats::pairs_after)},
                {"pairs_dropped", mean(run.timed, &FrameStats::pairs_dropped)},
                {"pixels_evaluated", nullptr},
-               {"pixels_blended", nullptr}};
+               {"pixels_blended", nullptr},
+               {"list_places", nullptr},
+               {"list_places_read", nullptr}};
   if (!run.counted.empty()) {
     json["pixels_evaluated"] = mean(run.counted, &FrameStats::pixels_evaluated);
     json["pixels_blended"] = mean(run.counted, &FrameStats::pixels_blended);
+    json["list_places"] = mean(run.counted, &FrameStats::pairs_after);
+    json["list_places_read"] = mean(run.counted, &FrameStats::places_read);
   }
   return json;
 }

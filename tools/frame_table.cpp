@@ -94,7 +94,9 @@ void print_counters(const Json& rows) {
                                                           {"pairs", "pairs_after"},
                                                           {"dropped", "pairs_dropped"},
                                                           {"pixels evaluated", "pixels_evaluated"},
-                                                          {"blended", "pixels_blended"}};
+                                                          {"blended", "pixels_blended"},
+                                                          {"list places", "list_places"},
+                                                          {"read", "list_places_read"}};
   for (const auto& [title, counter] : counters)
     table.column(title,
                  [name = counter](const Json& row) { return cell(row["counters"][name], 0); });

@@ -367,6 +367,7 @@ void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const 
     stats.pairs_after += counted.pairs;
     stats.pixels_evaluated += counted.evaluated;
     stats.pixels_blended += counted.blended;
+    stats.places_read += counted.places_read;
   }
   stats.pairs_dropped = dropped(report.counters(), report.room);
   count_bytes(report, stats);

@@ -321,6 +321,33 @@ __global__ void __launch_bounds__(kThreads)
   }
 }
 
+// Places of a list that some part of its tile came to. By depth: places behind those that are no
+// deeper count with them.
+__device__ uint32_t places_read(const SplatView& splats, uint32_t tile) {
+  const TileList list = splats.tiles[tile];
+  const uint32_t end = splats.ends[tile];
+  uint32_t first = list.first, last = list.last;  // the first that is deeper is in [first, last]
+  while (first < last) {
+    const uint32_t middle = first + (last - first) / 2;
+    if (static_cast<uint32_t>(splats.keys[middle] >> 32) <= end)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  return first - list.first;
+}
+
+// Apart from what blends, which has no register to spare.
+__global__ void __launch_bounds__(kThreads) rasterize_count_places(SplatView splats) {
+  uint32_t read = 0;
+  for (uint32_t tile = blockIdx.x * kThreads + threadIdx.x; tile < splats.frame.count();
+       tile += gridDim.x * kThreads)
+    read += places_read(splats, tile);
+  read = __reduce_add_sync(kAll, read);
+  if (threadIdx.x % 32 == 0)
+    atomicAdd(&splats.counters->places_read, static_cast<unsigned long long>(read));
+}
+
 template <class M>
 size_t lut_bytes(const RasterParams& params) {
   return M::kExponential == Exponential::lut ? (params.lut_size + 1) * sizeof(float) : 0;
@@ -411,6 +438,9 @@ void launch_rasterize(const SplatFrame& f, const RasterChoices& choices, const R
   const auto& by_needs =
       kLaunches[static_cast<size_t>(choices.exponential)][choices.alpha_filter ? 1 : 0];
   by_needs[needs_of(f, choices, params)](f, params);
+  if (choices.count_pixels)
+    launch_kernel("rasterize_count_places", rasterize_count_places,
+                  {f.multiprocessors, kThreads, f.stream}, f.splats);
 }
 
 }  // namespace voyager::cuda

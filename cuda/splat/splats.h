@@ -52,6 +52,7 @@ struct SplatCounters {
   StripRegion regions[kStripRegions];
   unsigned long long pairs, pairs_boxed;          // of the ellipses, and of their boxes
   unsigned long long evaluated, blended;          // pixels, where they are counted
+  unsigned long long places_read;                 // of the lists, where pixels are counted
   InstanceCounters instances[kMaxInstances + 1];  // by SplatFrame::instance
   uint32_t places;                                // of the lists that are drawn
   uint32_t splats;                                // that reach the image

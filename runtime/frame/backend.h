@@ -124,6 +124,7 @@ struct FrameStats {
   uint64_t pairs_dropped = 0;
   // (pixel, splat) pairs: whose ρ was found, and that were blended.
   uint64_t pixels_evaluated = 0, pixels_blended = 0;
+  uint64_t places_read = 0;     // of pairs_after, that blending came to; counted with the pixels
   uint32_t gaussian_bytes = 0;  // stored, that a device reads of a visible Gaussian, at most
   // What each stage has to move through a device's memory, from its layouts and the counters
   // above; 0 on a host.

@@ -82,6 +82,22 @@ TEST_F(SplatLists, EqualDepthsGoByTheInputsOrder) {
   }
 }
 
+// A pixel is full behind 14 sheets of opacity 1/2, and a warp takes 32 at a time.
+TEST_F(SplatLists, PlacesThatNoPixelComesToAreNotCountedAsRead) {
+  const FrameInput input = frame_input(look({0, 0, 0}, {0, 0, 1}, 16, 16));
+  const auto read = [&](float opacity, size_t length, const PipelineDesc& desc) {
+    const auto scene = stack(length, Depths::shuffled);
+    for (Gaussian& g : scene->gaussians) g.opacity = opacity, g.log_opacity = std::log(opacity);
+    return draw(scene, desc, input).stats.places_read;
+  };
+  const PipelineDesc counting{.count_pixels = true};
+  for (const size_t length : {size_t{20}, size_t{1000}, size_t{9999}}) {
+    EXPECT_EQ(read(0.5f, length, counting), std::min<size_t>(length, 32)) << length;
+    EXPECT_EQ(read(0.5f, length, {}), 0u) << "it is counted unasked";
+  }
+  EXPECT_EQ(read(0.004f, 1000, counting), 1000u);
+}
+
 // Lists of every length side by side: a tile's length falls with its distance from the middle.
 TEST_F(SplatLists, ManyLengthsInOneImage) {
   auto scene = empty_scene();

@@ -37,6 +37,7 @@ FrameStats frame_of(double factor) {
   stats.pairs_after = 2000;
   stats.pixels_evaluated = 400'000'000;
   stats.pixels_blended = 100'000'000;
+  stats.places_read = 800;
   stats.bytes[kProject] = 138'000;
   stats.bytes[kRasterize] = 1'000'000;
   return stats;
@@ -90,11 +91,22 @@ TEST(FrameReport, ScoresAreFloorOverTime) {
   EXPECT_DOUBLE_EQ(row["orin"]["stage_ms"]["rasterize"], 100e6 * 11 / 2.66e9);
 }
 
+// A pass that counts draws other lists than a timed one, which leaves out what is hidden.
+TEST(FrameReport, PlacesReadAreThoseOfThePassThatCountsThem) {
+  FrameRun run = run_of_two();
+  for (FrameStats& stats : run.timed) stats.pairs_after = 500, stats.places_read = 0;
+  const Json counters = report(run)["counters"];
+  EXPECT_EQ(counters["pairs_after"], 500);
+  EXPECT_EQ(counters["list_places"], 2000);
+  EXPECT_EQ(counters["list_places_read"], 800);
+}
+
 TEST(FrameReport, WhatIsNotKnownIsNull) {
   FrameRun run = run_of_two();
   run.counted.clear();
   const Json row = report(run);
   EXPECT_TRUE(row["counters"]["pixels_blended"].is_null());
+  EXPECT_TRUE(row["counters"]["list_places_read"].is_null());
   EXPECT_TRUE(row["work_efficiency"].is_null());
   EXPECT_TRUE(row["floor"]["ms"]["blend"].is_null());
   EXPECT_TRUE(row["floor"]["score"]["frame"].is_null());
