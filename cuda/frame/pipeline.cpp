@@ -78,16 +78,19 @@ class SplatPipeline final : public Pipeline {
 
   Report begin_frame(const FrameInput& frame);
   void fit(const FrameInput& frame, const FrameTiles& tiles);
-  void launch_search(const FrameInput& frame, FrameReport& report);
+  // SceneReading: that of the frame, which has not ended.
+  void launch_search(const SceneReading&, const FrameInput& frame, FrameReport& report);
   SplatFrame work(const FrameTiles& tiles, int pass) const;
-  void launch_lists(const FrameInput& frame, FrameReport& report);
-  void launch_checked_lists(const FrameInput& frame, FrameReport& report);
-  void launch_projections(const FrameInput& frame, SplatFrame& work);
+  void launch_lists(const SceneReading& reading, const FrameInput& frame, FrameReport& report);
+  void launch_checked_lists(const SceneReading& reading, const FrameInput& frame,
+                            FrameReport& report);
+  void launch_projections(const SceneReading&, const FrameInput& frame, SplatFrame& work);
   static Eyes external_eyes(const FrameInput& frame);
-  void launch_image(const FrameInput& frame, const Eyes& eyes, FrameReport& report);
+  void launch_image(const SceneReading& reading, const FrameInput& frame, const Eyes& eyes,
+                    FrameReport& report);
   void launch_fetch(const FrameInput& frame, FrameReport& report);
-  void launch_second_pass(const FrameInput& frame, const RasterChoices& choices, const Eyes& eyes,
-                          FrameReport& report);
+  void launch_second_pass(const SceneReading& reading, const FrameInput& frame,
+                          const RasterChoices& choices, const Eyes& eyes, FrameReport& report);
   void copy(FrameReport& report) const {
     report.copy(splats_.counters(), instances_, stream_.get());
   }
@@ -123,7 +126,8 @@ void SplatPipeline::set_scenes(const Scenes& scenes, std::span<const size_t> fro
 }
 
 // One instance after the other, so that each finds on the device where its slots begin.
-void SplatPipeline::launch_projections(const FrameInput& frame, SplatFrame& work) {
+void SplatPipeline::launch_projections(const SceneReading&, const FrameInput& frame,
+                                       SplatFrame& work) {
   for (size_t i = 0; i < instances_.all().size(); ++i) {
     const DeviceInstance& instance = instances_.all()[i];
     work.gaussians = instance.view();
@@ -149,19 +153,21 @@ SplatFrame SplatPipeline::work(const FrameTiles& tiles, int pass) const {
 }
 
 // Up to the tiles' lists.
-void SplatPipeline::launch_lists(const FrameInput& frame, FrameReport& report) {
+void SplatPipeline::launch_lists(const SceneReading& reading, const FrameInput& frame,
+                                 FrameReport& report) {
   report.room = splats_.room();
   SplatFrame lists = work(report.tiles, 0);
   splats_.begin_frame(report.tiles, stream_.get());
-  run_stage(kProject, report, [&] { launch_projections(frame, lists); });
+  run_stage(kProject, report, [&] { launch_projections(reading, frame, lists); });
   run_stage(kBin, report, [&] { launch_bin(lists); });
   run_stage(kSort, report, [&] { launch_sort(lists); });
 }
 
 // Lists that found too little room are made again with more.
-void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& report) {
+void SplatPipeline::launch_checked_lists(const SceneReading& reading, const FrameInput& frame,
+                                         FrameReport& report) {
   for (;;) {
-    launch_lists(frame, report);
+    launch_lists(reading, frame, report);
     copy(report);
     report.wait();
     if (!splats_.grow(room_for(report.counters()))) return;
@@ -169,7 +175,8 @@ void SplatPipeline::launch_checked_lists(const FrameInput& frame, FrameReport& r
   }
 }
 
-void SplatPipeline::launch_image(const FrameInput& frame, const Eyes& eyes, FrameReport& report) {
+void SplatPipeline::launch_image(const SceneReading& reading, const FrameInput& frame,
+                                 const Eyes& eyes, FrameReport& report) {
   const RasterChoices choices{desc_.exponential,
                               desc_.alpha_filter,
                               desc_.count_pixels,
@@ -179,7 +186,7 @@ void SplatPipeline::launch_image(const FrameInput& frame, const Eyes& eyes, Fram
                               log_threshold(desc_.antialias)};
   run_stage(kRasterize, report, [&] {
     launch_rasterize(work(report.tiles, 0), choices, eyes.data());
-    if (occlusion_.limited()) launch_second_pass(frame, choices, eyes, report);
+    if (occlusion_.limited()) launch_second_pass(reading, frame, choices, eyes, report);
   });
 }
 
@@ -193,13 +200,14 @@ void SplatPipeline::launch_fetch(const FrameInput& frame, FrameReport& report) {
 }
 
 // All stages, for the tiles that the first pass left open. Without any, each kernel ends at once.
-void SplatPipeline::launch_second_pass(const FrameInput& frame, const RasterChoices& choices,
-                                       const Eyes& eyes, FrameReport& report) {
+void SplatPipeline::launch_second_pass(const SceneReading& reading, const FrameInput& frame,
+                                       const RasterChoices& choices, const Eyes& eyes,
+                                       FrameReport& report) {
   const Range range("second pass");
   SplatFrame rest = work(report.tiles, 1);
   rest.splats.limits =
       occlusion_.second(report.tiles, rest.splats.ends, rest.splats.open_parts, stream_.get());
-  launch_projections(frame, rest);
+  launch_projections(reading, frame, rest);
   launch_bin(rest);
   launch_sort(rest);
   launch_rasterize(rest, choices, eyes.data());
@@ -247,7 +255,8 @@ void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
   }
 }
 
-void SplatPipeline::launch_search(const FrameInput& frame, FrameReport& report) {
+void SplatPipeline::launch_search(const SceneReading&, const FrameInput& frame,
+                                  FrameReport& report) {
   report.timer.begin();
   run_stage(kSearch, report, [&] { instances_.update(frame, stream_.get()); });
 }
@@ -267,12 +276,12 @@ void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
   for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
     eyes[eye].target = images_[eye].target(frame.eyes[eye], frame.background);
   const SceneReading reading(instances_, stream_.get());
-  launch_search(frame, *report);
+  launch_search(reading, frame, *report);
   for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
     eyes[eye].limits = limits_[eye].upload(frame.eyes[eye], stream_.get());
   for (;;) {
-    launch_lists(frame, *report);
-    launch_image(frame, eyes, *report);
+    launch_lists(reading, frame, *report);
+    launch_image(reading, frame, eyes, *report);
     launch_fetch(frame, *report);
     copy(*report);
     report->wait();
@@ -325,11 +334,11 @@ void SplatPipeline::submit(const FrameInput& frame, bool checked) {
     if (!checked) each_ring(frame, wait);
     {
       const SceneReading reading(instances_, stream);
-      launch_search(frame, report);
-      checked ? launch_checked_lists(frame, report) : launch_lists(frame, report);
+      launch_search(reading, frame, report);
+      checked ? launch_checked_lists(reading, frame, report) : launch_lists(reading, frame, report);
+      if (checked) each_ring(frame, wait);
+      launch_image(reading, frame, external_eyes(frame), report);  // a second pass reads, too
     }
-    if (checked) each_ring(frame, wait);
-    launch_image(frame, external_eyes(frame), report);
     each_ring(frame, [&](const ExternalTarget& target) { signal_rendered(target, stream); });
     copy(report);  // the host that waits for the image does not wait for this
     each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
