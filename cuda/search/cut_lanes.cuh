@@ -75,6 +75,7 @@ __device__ inline Change settle_own(const StateView& state, uint32_t subtree, co
                                     const Visit& v, uint32_t reference, Tally& tally) {
   const bool was_open = (known.refined & kOpen) != 0;
   state.watch[subtree] = make_watch(v.slack, v.extent, reference);
+  wake_row(state, subtree);
   if (v.refined != known.refined) state.refined[subtree] = v.refined;
   if (v.cut != known.cut) state.cut[subtree] = v.cut;
   set_stand_ins(state, subtree, v.stand_ins, tally);

@@ -34,8 +34,9 @@ __device__ void follow_unlinked(const TreeView& tree, const StateView& state, ui
 // A record that is blocked now, or no longer is, changes its subtree's verdicts, however little
 // has moved. Nothing that is closed here is linked.
 __device__ void follow_changed(const TreeView& tree, const StateView& state, uint32_t subtree) {
-  if (tree.subtrees[subtree].entry != kNotLinked && (state.refined[subtree] & kOpen) != 0)
-    state.watch[subtree] = {-1.0f, 0};
+  if (tree.subtrees[subtree].entry == kNotLinked || (state.refined[subtree] & kOpen) == 0) return;
+  state.watch[subtree] = {-1.0f, 0};
+  wake_row(state, subtree);
 }
 
 __global__ void __launch_bounds__(kThreads)
@@ -59,6 +60,8 @@ __global__ void __launch_bounds__(kThreads) search_forget(uint32_t subtrees, Sta
   }
   for (uint32_t b = thread; b < state.block_count; b += threads)
     state.open_counts[b] = state.dirty_flags[b] = 0;
+  const uint32_t rows = state.block_count * (kBlockSubtrees / kRowSubtrees);
+  for (uint32_t i = thread; i < rows; i += threads) state.rows[i].way = 0;
   for (uint32_t i = thread; i < kLevels * state.block_count; i += threads)
     state.segments[i] = {0, 0, 0};
   if (thread != 0) return;

@@ -36,6 +36,7 @@ CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
   blocks_ = upload(std::span<const Block>(layout.blocks));
   tiers_ = upload(std::span<const Tier>(layout.tiers));
   watch_ = upload(std::span<const Watch>(std::vector<Watch>(subtrees, {INFINITY, 0})));
+  rows_ = Buffer<WatchRow>(blocks * (kBlockSubtrees / kRowSubtrees));
   refined_ = Buffer<uint32_t>(subtrees);
   cut_ = Buffer<uint32_t>(subtrees);
   stand_ins_ = Buffer<uint32_t>(tree.chunks_come_and_go ? subtrees : 0);
@@ -57,6 +58,7 @@ CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
   for (const Buffer<uint32_t>* zero : {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_,
                                        &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);
+  fill(rows_, 0);  // not known
   fill(segments_, 0);
   fill(weights_, 0);  // places that hold no node are read with the others
   fill(nodes_, 0xff);
@@ -67,6 +69,7 @@ CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
 
 StateView CutState::view() const {
   return {watch_.data(),
+          rows_.data(),
           refined_.data(),
           cut_.data(),
           stand_ins_.data(),

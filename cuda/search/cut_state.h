@@ -6,7 +6,7 @@
 #include "cuda/search/search.h"
 #include "runtime/lod/subtrees.h"
 #include "runtime/select/visit.h"
-#include "runtime/select/watch.h"
+#include "runtime/select/watch_row.h"
 #include "runtime/stages/reach.h"
 
 namespace voyager::cuda {
@@ -62,6 +62,7 @@ struct FrameCounters {
 // As kernels take it.
 struct StateView {
   Watch* watch;
+  WatchRow* rows;       // of each block, as many as a whole one has
   uint32_t* refined;    // bits of slots, and kOpen
   uint32_t* cut;        // bits of slots
   uint32_t* stand_ins;  // bits of slots; null where no record is ever blocked
@@ -97,6 +98,7 @@ class CutState {
 
  private:
   Buffer<Watch> watch_;
+  Buffer<WatchRow> rows_;
   Buffer<uint32_t> refined_, cut_, stand_ins_;
   Buffer<Block> blocks_;
   Buffer<Tier> tiers_;

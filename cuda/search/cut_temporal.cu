@@ -1,5 +1,5 @@
-// The temporal search (METHOD §9): check, visit, descend. Where too much has run
-// out of slack, the last of the three streams instead.
+// The temporal search (METHOD §9) of what cut_check.cu has listed: visit, descend. Where too much
+// has run out of slack, the last of the two streams instead.
 #include <algorithm>
 
 #include "cuda/device/grid.h"
@@ -11,71 +11,9 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kThreads = 256;
-constexpr unsigned kRounds = kBlockSubtrees / kThreads;
 
 __device__ bool falls_back(const StateView& state, uint32_t max_due) {
   return state.counting->due_count > max_due;
-}
-
-// A subtree whose reference is forgotten in this frame keeps what slack is left.
-__device__ bool renew(Watch& watch, uint32_t current, const Travel& retired) {
-  if (watch_reference(watch) != current) return false;
-  const float slack = slack_left(watch, retired);
-  if (slack > 0.0f) watch.slack = slack;
-  return slack > 0.0f;
-}
-
-__device__ bool expired(Watch& watch, const Travel* travel, uint32_t current,
-                        const Travel& retired) {
-  return due(watch, travel) && !renew(watch, current, retired);
-}
-
-// Lists the open subtrees to visit, a block of them at a time: those whose slack has run
-// out, or all.
-template <bool kAll>
-__global__ void __launch_bounds__(kThreads)
-    search_check(StateView state, Travels travels, uint32_t reference) {
-  __shared__ Travel travel[kReferences];
-  __shared__ uint32_t found[kBlockSubtrees];
-  __shared__ uint32_t found_count, place;
-  static_assert(kThreads == kReferences);
-  travel[threadIdx.x] = travels.of[threadIdx.x];
-  const uint32_t open_blocks = *state.open_block_count;
-  for (uint32_t i = blockIdx.x; i < open_blocks; i += gridDim.x) {
-    if (threadIdx.x == 0) found_count = 0;
-    __syncthreads();
-    const Block block = state.blocks[state.open_blocks[i]];
-    bool gone[kRounds];  // its verdicts are no longer certain, so it is to be visited
-#pragma unroll
-    for (unsigned k = 0; k < kRounds; ++k) {
-      const uint32_t subtree = block.first + k * kThreads + threadIdx.x;
-      const bool there = subtree < block.last;
-      if (kAll)
-        gone[k] = there && (state.refined[subtree] & kOpen) != 0;
-      else
-        gone[k] = there && expired(state.watch[subtree], travel, reference, travels.retired);
-    }
-#pragma unroll
-    for (unsigned k = 0; k < kRounds; ++k) {
-      const uint32_t votes = __ballot_sync(kAllLanes, gone[k]);
-      if (votes == 0) continue;
-      uint32_t at = 0;
-      if (lane_in_warp() == 0) at = atomicAdd(&found_count, __popc(votes));
-      at = __shfl_sync(kAllLanes, at, 0);
-      if (gone[k])
-        found[at + __popc(votes & ((1u << lane_in_warp()) - 1))] =
-            block.first + k * kThreads + threadIdx.x;
-    }
-    __syncthreads();
-    if (threadIdx.x == 0) {
-      if (found_count != 0) place = atomicAdd(&state.counting->due_count, found_count);
-      atomicAdd(&state.counting->bytes_read,
-                (block.last - block.first) * (kAll ? sizeof(uint32_t) : sizeof(Watch)));
-    }
-    __syncthreads();
-    for (uint32_t k = threadIdx.x; k < found_count; k += kThreads) state.due[place + k] = found[k];
-    __syncthreads();
-  }
 }
 
 __device__ void send_signals(const StateView& state, uint32_t first, uint32_t last, uint32_t kind) {
@@ -241,31 +179,17 @@ __global__ void __launch_bounds__(kThreads)
   tally.flush(state.counting);
 }
 
-template <bool kAll>
-void launch_stages(const SearchFrame& f, const Travels& travels, uint32_t max_due) {
-  const unsigned check_blocks = resident_blocks<search_check<kAll>>(kThreads);
+}  // namespace
+
+void launch_temporal(const SearchFrame& f, uint32_t max_due) {
   const unsigned visit_blocks = resident_blocks<search_visit>(kThreads);
   const unsigned descend_blocks = resident_blocks<search_descend>(kThreads);
-  launch_kernel(
-      "search_check", search_check<kAll>,
-      {std::min(f.state.block_count, f.multiprocessors * check_blocks), kThreads, f.stream},
-      f.state, travels, f.reference);
   launch_kernel("search_visit", search_visit,
                 {f.multiprocessors * visit_blocks, kThreads, f.stream}, f.tree, f.state, f.sight,
                 f.reference, max_due);
   launch_kernel("search_descend", search_descend,
                 {f.multiprocessors * descend_blocks, kThreads, f.stream}, f.tree, f.state, f.sight,
                 f.reference, max_due);
-}
-
-}  // namespace
-
-void launch_temporal(const SearchFrame& f, const Travels& travels, uint32_t max_due) {
-  launch_stages<false>(f, travels, max_due);
-}
-
-void launch_temporal_visit(const SearchFrame& f) {
-  launch_stages<true>(f, {}, UINT32_MAX);
 }
 
 }  // namespace voyager::cuda

@@ -74,6 +74,13 @@ __device__ inline uint32_t block_of(const StateView& state, uint32_t subtree) {
   return tier.first_block + (subtree - tier.begin) / kBlockSubtrees;
 }
 
+// The row of a subtree that gets another watch is to be looked at in the next frame.
+__device__ inline void wake_row(const StateView& state, uint32_t subtree) {
+  const uint32_t b = block_of(state, subtree);
+  const uint32_t row = (subtree - state.blocks[b].first) / kRowSubtrees;
+  state.rows[b * (kBlockSubtrees / kRowSubtrees) + row].way = 0;
+}
+
 // Of a visited subtree, besides its records: what it is and what was known of it.
 inline constexpr uint32_t kVisitBytes =
     sizeof(SearchSubtree) + sizeof(Watch) + 2 * sizeof(uint32_t);
@@ -201,6 +208,7 @@ __device__ inline void settle(const StateView& state, const SearchSubtree& s, ui
   const bool was_open = (known.refined & kOpen) != 0;
   if (lane_in_group() == 0) {
     state.watch[subtree] = make_watch(v.slack, v.extent, reference);
+    wake_row(state, subtree);
     if (v.refined != known.refined) state.refined[subtree] = v.refined;
     if (v.cut != known.cut) state.cut[subtree] = v.cut;
     set_stand_ins(state, subtree, v.stand_ins, tally);

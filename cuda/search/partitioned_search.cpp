@@ -125,12 +125,14 @@ void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
     if (kind_ == Search::streaming || !goes_on) {
       launch_streaming(now);
     } else if (kind_ == Search::temporal_visit) {
-      launch_temporal_visit(now);
+      launch_list_open(now);
+      launch_temporal(now, UINT32_MAX);
     } else {
       Travels travels;
       std::copy(references_.travel().begin(), references_.travel().end(), travels.of);
       travels.retired = references_.retired();
-      launch_temporal(now, travels, now.tree.subtree_count / kSubtreesADue);
+      launch_check(now, travels, references_.journey());
+      launch_temporal(now, now.tree.subtree_count / kSubtreesADue);
     }
     launch_place(now);
     launch_emit(now, weights_);

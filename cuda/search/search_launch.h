@@ -25,11 +25,12 @@ struct Travels {
   Travel retired;
 };
 
-// cut_temporal.cu. Visits the open subtrees whose slack has run out; where those are more
-// than max_due, streams in their stead, which is decided on the device.
-void launch_temporal(const SearchFrame& frame, const Travels& travels, uint32_t max_due);
-// Visits all open subtrees.
-void launch_temporal_visit(const SearchFrame& frame);
+// cut_check.cu. Lists the open subtrees whose slack has run out, or all. now: References'.
+void launch_check(const SearchFrame& frame, const Travels& travels, const Journey& now);
+void launch_list_open(const SearchFrame& frame);
+// cut_temporal.cu, after one of those. Visits what is listed; where that is more than max_due,
+// streams in its stead, which is decided on the device.
+void launch_temporal(const SearchFrame& frame, uint32_t max_due);
 // cut_relink.cu, before one of those. What linking has changed, by subtree; both where kernels
 // read them.
 struct Relinked {

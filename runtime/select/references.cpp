@@ -20,6 +20,11 @@ double distance(const Vec3f& a, const Vec3f& b) {
   return std::sqrt((x * x + y * y) + z * z);
 }
 
+// Not below the exact sum, where the step was rounded.
+double sum_up(double way, double step) {
+  return std::nextafter(way + step * (1 + 0x1p-48), std::numeric_limits<double>::infinity());
+}
+
 Travel travel_between(const CutQuery& a, const CutQuery& b) {
   return {rounded_up(distance(a.centre, b.centre)),
           rounded_up(
@@ -32,6 +37,11 @@ void References::begin_frame(const CutQuery& query) {
   const CutQuery& last = references_[current_];
   const bool moved = used_ == 0 || !(query == last);
   retired_ = {kUnknown, kUnknown};
+  if (moved) {
+    if (used_ != 0) journey_.way = sum_up(journey_.way, distance(query.centre, last.centre));
+    journey_.turns += used_ == 0 || query.target_size != last.target_size;
+    ++journey_.moves;
+  }
   const bool takes_over = moved && used_ == kReferences;
   if (moved) {
     current_ = used_ == 0 ? 0 : (current_ + 1) % kReferences;

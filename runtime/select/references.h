@@ -24,11 +24,14 @@ class References {
   const std::array<Travel, kReferences>& travel() const { return travel_; }
   // From the reference whose slot current() has taken over in this frame; +inf: none.
   const Travel& retired() const { return retired_; }
+  // How far all frames have gone, which no way between two of them exceeds.
+  const Journey& journey() const { return journey_; }
 
  private:
   std::array<CutQuery, kReferences> references_{};
   std::array<Travel, kReferences> travel_{};
   Travel retired_{};
+  Journey journey_{};
   uint32_t used_ = 0;  // slots in use
   uint32_t current_ = 0;
 };

@@ -25,6 +25,13 @@ struct Travel {
   float turn;  // |1/τ* − 1/τ₀*|
 };
 
+// All frames up to one.
+struct Journey {
+  double way = 0;      // metres; rounded up
+  uint32_t moves = 0;  // frames with a reference of their own, modulo 2^32
+  uint32_t turns = 0;  // changes of τ*, modulo 2^32
+};
+
 // 8 bytes. slack = +inf: never to be visited, because the subtree is closed or has
 // nothing to decide.
 struct Watch {
