@@ -18,10 +18,10 @@ class CutDraws final : public Draws {
     search_->bound(gaussians, stream);
     query_ = query;
   }
-  void weigh(const RowList& rows, cudaStream_t stream) override {
-    search_->weigh(weights_query(lod_, query_), rows, stream);
+  void weigh(cudaStream_t stream) override { search_->weigh(weights_query(lod_, query_), stream); }
+  DrawView view() const override {
+    return {search_->list(), nullptr, search_->weight_source(weights_query(lod_, query_))};
   }
-  DrawView view() const override { return {search_->list(), nullptr}; }
   void end_frame(cudaStream_t stream) noexcept override { search_->end_frame(stream); }
   size_t report_bytes() const override { return search_->report_bytes(); }
   void report(void* into, cudaStream_t stream) const override { search_->report(into, stream); }

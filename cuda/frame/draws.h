@@ -16,8 +16,8 @@ class Draws {
   virtual void update(const CutQuery& query, const GaussianView& gaussians,
                       cudaStream_t stream) = 0;
   virtual DrawView view() const = 0;
-  // Launches the weights of those rows, where there are any weights.
-  virtual void weigh(const RowList&, cudaStream_t) {}
+  // Launches the weights, where there are any and view() does not tell what to find them from.
+  virtual void weigh(cudaStream_t) {}
   // As CutSearch has it.
   virtual void end_frame(cudaStream_t) noexcept {}
   // What collect() needs of the last frame: report_bytes() in pinned memory, copied on the

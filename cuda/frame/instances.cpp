@@ -69,9 +69,10 @@ uint32_t DeviceInstances::bytes_a_gaussian() const {
 uint32_t DeviceInstances::bytes_a_place() const {
   uint32_t most = 0;
   for (const DeviceInstance& instance : all_) {
-    const CutList list = instance.draws->view().list;
-    const size_t bytes = sizeof(float4) + (list.nodes != nullptr ? sizeof(uint32_t) : 0) +
-                         (list.weights != nullptr ? sizeof(float) : 0);
+    const DrawView draws = instance.draws->view();
+    const size_t weight = draws.weights.origin != nullptr ? sizeof(CutOrigin) : sizeof(float);
+    const size_t bytes = sizeof(float4) + (draws.list.nodes != nullptr ? sizeof(uint32_t) : 0) +
+                         (draws.list.weights != nullptr ? weight : 0);
     most = std::max(most, static_cast<uint32_t>(bytes));
   }
   return most;

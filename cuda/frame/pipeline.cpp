@@ -136,9 +136,9 @@ void SplatPipeline::launch_projections(const SceneReading&, const FrameInput& fr
       work.params[eye] = project_params(*instance.scene, instance_camera(frame, frame.eyes[eye], i),
                                         desc_, instance_look(frame, i));
     work.rows = launch_rows(work);
-    // Where no rows are told apart, the first pass has weighed all.
-    if (work.splats.open_parts == nullptr || work.rows.rows != nullptr)
-      instance.draws->weigh(work.rows, stream_.get());
+    // All of them, so that a second pass has them, too.
+    if (work.draws.weights.origin == nullptr && work.splats.open_parts == nullptr)
+      instance.draws->weigh(stream_.get());
     if (launch_project(work, desc_.alpha_filter)) ++work.instance;
   }
 }

@@ -38,12 +38,6 @@ struct Segment {
   uint32_t size, first, room;
 };
 
-// The records that a cut node's weight depends on; kNoRecord for a leaf's own, and for
-// the parent of the tree's root.
-struct CutOrigin {
-  uint32_t own, parent;
-};
-
 // Of one frame. The kernels add up StateView::counting; search_place moves it to `counted`, where
 // search_emit and the host find it, and clears it for the next frame.
 struct FrameCounters {

@@ -28,7 +28,7 @@ class ExhaustiveSearch final : public CutSearch {
       launch_exhaustive(tree_, make_sight(query), scratch_.data(), scratch_.bytes(), nodes_.data(),
                         count_.data(), stream);
   }
-  void weigh(const CutQuery& query, const RowList&, cudaStream_t stream) override {
+  void weigh(const CutQuery& query, cudaStream_t stream) override {
     if (tree_.size != 0)
       launch_weights(tree_, make_sight(query), nodes_.data(), count_.data(), weights_.data(),
                      device_->multiprocessors(), stream);

@@ -24,7 +24,7 @@ class HostCutSearch final : public CutSearch {
     copy(weights_.data(), host_weights_.data(), cut.size(), stream);
     copy(size_.data(), &host_size_, 1, stream);
   }
-  void weigh(const CutQuery&, const RowList&, cudaStream_t) override {}  // found in the same pass
+  void weigh(const CutQuery&, cudaStream_t) override {}  // found in the same pass
   CutList list() const override {
     return {nodes_.data(), weights_.data(), size_.data(), static_cast<uint32_t>(nodes_.size())};
   }

@@ -42,7 +42,8 @@ class PartitionedSearch final : public CutSearch {
 
   void find(const CutQuery& query, cudaStream_t stream) override;
   void bound(const GaussianView& gaussians, cudaStream_t stream) override;
-  void weigh(const CutQuery& query, const RowList& rows, cudaStream_t stream) override;
+  void weigh(const CutQuery& query, cudaStream_t stream) override;
+  WeightSource weight_source(const CutQuery& query) const override;
   CutList list() const override;
   void end_frame(cudaStream_t stream) noexcept override {
     if (streamed_) streamed_->reader.end(stream);
@@ -145,9 +146,15 @@ void PartitionedSearch::bound(const GaussianView& gaussians, cudaStream_t stream
     launch_bound(state_->view(), gaussians, weights_, device_->multiprocessors(), stream);
 }
 
-void PartitionedSearch::weigh(const CutQuery& query, const RowList& rows, cudaStream_t stream) {
-  const SearchFrame now = frame(query, stream);
-  if (now.tree.subtree_count != 0) launch_weigh(now, rows);
+void PartitionedSearch::weigh(const CutQuery& query, cudaStream_t stream) {
+  if (tree_->view().subtree_count != 0)
+    launch_weigh(weight_source(query), state_->view(), device_->multiprocessors(), stream);
+}
+
+WeightSource PartitionedSearch::weight_source(const CutQuery& query) const {
+  if (!weights_) return {};
+  const StateView state = state_->view();
+  return {state.origin, tree_->view(), make_sight(query), state.weights};
 }
 
 CutList PartitionedSearch::list() const {

@@ -10,11 +10,12 @@
 #include "cuda/scene/sweep_tree.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
+#include "runtime/select/visit.h"
 #include "runtime/stages/reach.h"
 
 namespace voyager::cuda {
 
-// Places of a list that are left out, bounded and weighed together.
+// Places of a list that are left out and bounded together.
 inline constexpr uint32_t kRowPlaces = 32;
 
 // A cut on the device. Places that hold kNoNode are none.
@@ -33,6 +34,20 @@ struct RowList {
   const uint32_t* count = nullptr;
 };
 
+// The records that a cut node's weight depends on; kNoRecord for a leaf's own, and for
+// the parent of the tree's root.
+struct CutOrigin {
+  uint32_t own, parent;
+};
+
+// What the weights of a cut list are found from, by who draws it (cut_weight.cuh).
+struct WeightSource {
+  const CutOrigin* origin = nullptr;  // by place; null: the list has its weights
+  TreeView tree{};
+  Sight sight{};
+  float* weights = nullptr;  // the list's: for the places that are drawn
+};
+
 struct CutFound {
   SearchStats stats;
   uint32_t cut_size;  // nodes
@@ -45,8 +60,10 @@ class CutSearch {
   virtual void find(const CutQuery& query, cudaStream_t stream) = 0;
   // The bounds of the rows that the last find() wrote, where the search keeps them.
   virtual void bound(const GaussianView&, cudaStream_t) {}
-  // t of the cut just found, in those rows at least; only of a search that was made for weights.
-  virtual void weigh(const CutQuery& query, const RowList& rows, cudaStream_t stream) = 0;
+  // t of the cut just found; only of a search that was made for weights.
+  virtual void weigh(const CutQuery& query, cudaStream_t stream) = 0;
+  // The same for who draws the cut, in place of weigh(); none where it has to be called.
+  virtual WeightSource weight_source(const CutQuery&) const { return {}; }
   virtual CutList list() const = 0;
   // What reads the scene's arrays in this frame has been launched, or has failed to be.
   virtual void end_frame(cudaStream_t) noexcept {}

@@ -50,7 +50,8 @@ void launch_emit(const SearchFrame& frame, bool weights);
 void launch_bound(const StateView& state, const GaussianView& gaussians, bool weights,
                   unsigned multiprocessors, cudaStream_t stream);
 // weights.cu
-void launch_weigh(const SearchFrame& frame, const RowList& rows);
+void launch_weigh(const WeightSource& from, const StateView& state, unsigned multiprocessors,
+                  cudaStream_t stream);
 
 // cut_exhaustive.cu. Into nodes[] (room for every node) and *count; scratch as
 // exhaustive_scratch_bytes() says.

@@ -33,7 +33,7 @@ class SweepSearch final : public CutSearch {
     launch_sweep(tree_->view(), state(), make_sight(query), run_, device_->multiprocessors(),
                  stream);
   }
-  void weigh(const CutQuery&, const RowList&, cudaStream_t) override {}  // found with the cut
+  void weigh(const CutQuery&, cudaStream_t) override {}  // found with the cut
   CutList list() const override {
     return {nodes_.data(), weights_.data(), &counters_.data()->cut_size,
             static_cast<uint32_t>(nodes_.size())};

@@ -26,7 +26,7 @@ class TimedSearch final : public SceneSearch {
     timer_.mark(kBegin);
     search_->find(query, stream_.get());
     timer_.mark(kFound);
-    if (desc_.weights) search_->weigh(weights_query(desc_.lod, query), {}, stream_.get());
+    if (desc_.weights) search_->weigh(weights_query(desc_.lod, query), stream_.get());
     timer_.mark(kWeighed);
     search_->report(report_.data(), stream_.get());
     search_->end_frame(stream_.get());

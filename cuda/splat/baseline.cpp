@@ -166,7 +166,7 @@ void BaselinePipeline::draw(const FrameInput& frame, FrameStats& stats) {
   const SceneReading reading(instances_, stream);
   timer_.begin();
   instances_.update(frame, stream);
-  for (const DeviceInstance& instance : instances_.all()) instance.draws->weigh({}, stream);
+  for (const DeviceInstance& instance : instances_.all()) instance.draws->weigh(stream);
   const uint32_t places = read_places(stream);
   timer_.end(kSearch);
   fit_places(places);

@@ -5,17 +5,25 @@
 
 namespace voyager::cuda {
 
+// What a place of the list draws whose node has that weight.
+__device__ inline DrawItem item_of(const GaussianView& gaussians, uint32_t node, float t) {
+  DrawItem item{node, kNoNode, t, 1.0f};
+  if (t == 1.0f) return item;
+  item.parent = __ldg(gaussians.parents + node);
+  item.inverse_k = 1.0f / static_cast<float>(__ldg(gaussians.child_counts + item.parent));
+  return drawn_item(item, gaussians.doubles);
+}
+
+__device__ inline uint32_t node_at(const CutList& list, uint32_t place) {
+  return list.nodes == nullptr ? place : __ldg(list.nodes + place);
+}
+
 // What a place of the list draws; its Gaussian is kNoNode where it draws nothing.
 template <bool kLod>
 __device__ DrawItem item_at(const GaussianView& gaussians, const CutList& list, uint32_t place) {
-  const uint32_t gaussian = list.nodes == nullptr ? place : __ldg(list.nodes + place);
-  DrawItem item{gaussian, kNoNode, 1.0f, 1.0f};
-  if (!kLod || gaussian == kNoNode) return item;
-  item.t = __ldg(list.weights + place);
-  if (item.t == 1.0f) return item;
-  item.parent = __ldg(gaussians.parents + gaussian);
-  item.inverse_k = 1.0f / static_cast<float>(__ldg(gaussians.child_counts + item.parent));
-  return drawn_item(item, gaussians.doubles);
+  const uint32_t node = node_at(list, place);
+  if (!kLod || node == kNoNode) return {node, kNoNode, 1.0f, 1.0f};
+  return item_of(gaussians, node, __ldg(list.weights + place));
 }
 
 }  // namespace voyager::cuda

@@ -1,10 +1,11 @@
 // METHOD §5–7, §12: the Gaussians of a frame to splats. project_cull reads the hulls of the rows
-// that may reach the image, where the search keeps bounds of them, and lists
+// that may reach the image, where the search keeps bounds of them, weighs their nodes, and lists
 // those that may reach the image; project_splats reads the rest of these.
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
 #include "cuda/scene/device_arrays.cuh"
 #include "cuda/scene/gaussian_hull.cuh"
+#include "cuda/search/cut_weight.cuh"
 #include "cuda/splat/draw_item.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/splat_launch.h"
@@ -37,6 +38,17 @@ __device__ bool project_may_show(const SplatFrame& f, const DrawItem& item) {
     reaches = reaches || may_reach(f.params[eye], hull.mean, hull.max_scale, radius);
   return radius > 0.0f && reaches &&
          !hidden_in_all(f.splats, f.params, {hull.mean, hull.max_scale, hull.mean, radius});
+}
+
+// What a place draws, and `t` of its node where it is found here.
+template <bool kLod>
+__device__ DrawItem weighed_item(const SplatFrame& f, uint32_t place, float& t) {
+  const WeightSource& from = f.draws.weights;
+  if (!kLod || from.origin == nullptr) return item_at<kLod>(f.gaussians, f.draws.list, place);
+  const uint32_t node = node_at(f.draws.list, place);
+  if (node == kNoNode) return {node, kNoNode, 1.0f, 1.0f};
+  t = weight_of(from, place, node);
+  return item_of(f.gaussians, node, t);
 }
 
 // Lists the places of a block's threads that have a bit in their warp's `lanes`, in order within
@@ -87,9 +99,12 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
       const uint32_t place = places_of[k] = row * kRowPlaces + threadIdx.x % 32;
       bool reaches = false, blends = false;
       if (at < rows && place < end) {
-        const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
+        float t = 1.0f;
+        const DrawItem item = weighed_item<kLod>(f, place, t);
         reaches = project_may_show<kLod, kEyes>(f, item);
         blends = kLod && item.t != 1.0f;
+        if (kLod && reaches && f.draws.weights.origin != nullptr)
+          f.draws.weights.weights[place] = t;
       }
       whole[k] = __ballot_sync(kAll, reaches && !blends);
       blended[k] = kLod ? __ballot_sync(kAll, reaches && blends) : 0;

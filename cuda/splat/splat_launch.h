@@ -12,9 +12,10 @@ namespace voyager::cuda {
 
 // What a frame draws of an instance, in the order of ids.
 struct DrawView {
-  CutList list;         // its nodes null: every Gaussian, by its index
-  const uint32_t* ids;  // by place, what breaks ties of depth: 0 to the last place, each
-                        // once. Null: the places themselves.
+  CutList list;            // its nodes null: every Gaussian, by its index
+  const uint32_t* ids;     // by place, what breaks ties of depth: 0 to the last place, each
+                           // once. Null: the places themselves.
+  WeightSource weights{};  // where project_cull finds them
 };
 
 // What a frame's kernels share. The first five are an instance's, and projection's alone;

@@ -266,7 +266,7 @@ TrainingError CudaTrainer::compare(const TrainingView& view, bool leaves) {
   if (!leaves) {
     const CutQuery query{cut_centre(camera.eye, scene_->origin), target_size(view.tau, camera.fx)};
     search_->find(query, stream);
-    search_->weigh(query, {}, stream);
+    search_->weigh(query, stream);
   }
   const DrawView drawn = leaves ? leaves_->view() : DrawView{search_->list(), nullptr};
   for (;;) {

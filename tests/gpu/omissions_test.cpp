@@ -78,7 +78,7 @@ TEST_F(SplatOmissions, AViewOfEveryLeafLaunchesNoSearch) {
     const auto draws = cuda::create_draws(*of, lod, std::move(search));
     const auto update = [&](cudaStream_t stream) {
       draws->update({{3, -6, -24}, 0.05f}, {}, stream);
-      draws->weigh({}, stream);
+      draws->weigh(stream);
     };
     const cuda::Stream first;  // which loads the kernels
     update(first.get());

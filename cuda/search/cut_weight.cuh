@@ -1,0 +1,29 @@
+#pragma once
+// The weight of a place of a cut list, from the records that it depends on (METHOD §4).
+#include "cuda/search/cut_visit.cuh"
+#include "runtime/math/lerp.h"
+
+namespace voyager::cuda {
+
+__device__ inline float record_size(const WeightSource& from, uint32_t record) {
+  const SearchRecord r = load_record(from.tree.records + record);
+  return screen_size(from.sight.centre, r.box_min, r.box_max, r.extent);
+}
+
+__device__ inline float own_size(const WeightSource& from, uint32_t record, uint32_t node) {
+  if (record != kNoRecord) return record_size(from, record);
+  if (from.tree.leaves == nullptr) return 0.0f;
+  const NodeRecord& leaf = from.tree.leaves[node];
+  return screen_size(from.sight.centre, leaf.box_min, leaf.box_max, leaf.extent);
+}
+
+// t of the node there.
+__device__ inline float weight_of(const WeightSource& from, uint32_t place, uint32_t node) {
+  const CutOrigin origin = from.origin[place];
+  const bool has_parent = origin.parent != kNoRecord;
+  const float parent = has_parent ? record_size(from, origin.parent) : 0.0f;
+  return interpolation_weight(has_parent, parent, own_size(from, origin.own, node),
+                              from.sight.target_size, from.tree.blend_share);
+}
+
+}  // namespace voyager::cuda
