@@ -7,18 +7,17 @@ namespace voyager::cuda {
 DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree)
     : subtrees_(upload(std::span<const SearchSubtree>(search.subtrees))),
       records_(upload(std::span<const SearchRecord>(search.records))),
-      opens_(upload(std::span<const SubtreeSpan>(search.opens))),
       chunks_(upload(std::span<const SearchChunk>(search.chunks))) {
   if (search.leaves_have_extent) leaves_ = upload(std::span<const NodeRecord>(tree.records));
   view_ = {subtrees_.data(),
            records_.data(),
-           opens_.data(),
            chunks_.data(),
            leaves_.data(),
            search.subtree_count(),
            static_cast<uint32_t>(search.chunk_count()),
            tree.blend_share,
-           nullptr};
+           nullptr,
+           0};
 }
 
 TreeView DeviceTree::view() const {

@@ -3,6 +3,7 @@
 #include "cuda/device/buffer.h"
 #include "runtime/lod/tree.h"
 #include "runtime/select/search_tree.h"
+#include "runtime/stream/slot_ids.h"
 
 namespace voyager::cuda {
 
@@ -10,13 +11,16 @@ namespace voyager::cuda {
 struct TreeView {
   const SearchSubtree* subtrees;
   const SearchRecord* records;
-  const SubtreeSpan* opens;
   const SearchChunk* chunks;
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
   uint32_t subtree_count, chunk_count;
   float blend_share;  // LodTree's
-  // Of a streamed scene, whose nodes and records are addresses: the file's ids of nodes. Else null.
-  const uint32_t* node_ids;
+  // Of a streamed scene, whose nodes and records are addresses: the file's ids of nodes, by slot.
+  // Else null.
+  const SlotIds* slot_ids;
+  uint32_t slot_nodes;
+
+  VOYAGER_HD bool streamed() const { return slot_ids != nullptr; }
 };
 
 class DevicePool;
@@ -34,7 +38,6 @@ class DeviceTree {
  private:
   Buffer<SearchSubtree> subtrees_;
   Buffer<SearchRecord> records_;
-  Buffer<SubtreeSpan> opens_;
   Buffer<SearchChunk> chunks_;
   Buffer<NodeRecord> leaves_;
   TreeView view_{};

@@ -35,7 +35,8 @@ __device__ void put_node(const TreeView& tree, const StateView& state, const Sea
                          uint32_t slot, uint32_t place, uint32_t parent) {
   const uint32_t node = s.node(slot);
   state.nodes[place] = node;
-  if (state.ids != nullptr) state.ids[place] = __ldg(tree.node_ids + node);
+  if (state.ids != nullptr)
+    state.ids[place] = tree.slot_ids[node / tree.slot_nodes].id(node % tree.slot_nodes);
   if (kOrigin)
     state.origin[place] = {s.interior >> slot & 1 ? record_of(s, slot) : kNoRecord, parent};
 }
@@ -62,7 +63,8 @@ __device__ void emit_subtree(const TreeView& tree, const StateView& state, const
   uint32_t left = grandchildren == 0 ? 0 : s.interior & level_mask(1, s.child_count);
   for (; left != 0; left &= left - 1) {
     const uint32_t record = record_of(s, __ffs(left) - 1);
-    put(grandchildren & __ldg(&tree.records[record].children), grandchildren, places.of[2], record);
+    put(grandchildren & load_record(tree.records + record).child_slots(), grandchildren,
+        places.of[2], record);
   }
 }
 

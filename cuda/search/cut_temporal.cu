@@ -26,7 +26,8 @@ __device__ void send_signals(const StateView& state, uint32_t first, uint32_t la
 __device__ void signal_change(const TreeView& tree, const StateView& state, const SearchSubtree& s,
                               uint32_t slot, uint32_t refined) {
   const uint32_t record = record_of(s, slot);
-  const uint32_t first = tree.opens[record].first, last = tree.opens[record].last;
+  const auto [first, last] = subtrees_below(tree.subtrees, tree.subtree_count, record,
+                                            __ldg(&tree.records[record].children));
   if (first != last) send_signals(state, first, last, refined >> slot & 1 ? 0 : kClose);
 }
 

@@ -134,7 +134,7 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
       const NodeVerdict verdict = judge(r, sight);
       const bool blocked = r.children == kBlocked;
       refined = verdict.refined && !blocked;
-      if (refined) reached |= r.children;
+      if (refined) reached |= r.child_slots();
       if (verdict.refined && blocked) v.stand_ins |= 1u << slot;
       v.slack = fminf(v.slack, verdict.slack);
       if (slot == 0) v.extent = r.extent;
@@ -148,7 +148,7 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
   v.extent = __shfl_sync(kAllLanes, v.extent, 0, kGroupLanes);  // extents never grow downwards
   v.cut = reached & ~v.refined & s.owned;
   // A record that is blocked is of the tier's lowest level: nodes below it are in no slot here.
-  if (tree.node_ids != nullptr) v.stand_ins = group_or(v.stand_ins) & v.cut;
+  if (tree.streamed()) v.stand_ins = group_or(v.stand_ins) & v.cut;
   return v;
 }
 

@@ -74,8 +74,6 @@ void DevicePool::make_room(uint32_t slots) {
   check(cudaMemcpy(array<SearchChunk>(kChunks), chunks_.data(),
                    chunks_.size() * sizeof(SearchChunk), cudaMemcpyHostToDevice),
         "chunk hulls");
-  // Records that nothing hangs from open no subtrees, and no chunk says so again.
-  check(cudaMemset(array<SubtreeSpan>(kOpens), 0, slots * layout_.slot_bytes(kOpens)), "links");
   check(cudaStreamSynchronize(nullptr), "links");
   launch_unlink_all(array<SearchSubtree>(kSubtrees), chunks_.back().first_subtree, stream_.get());
   applied_.record(stream_.get());
@@ -117,13 +115,13 @@ GaussianView DevicePool::gaussians() const {
 TreeView DevicePool::tree() const {
   return {array<SearchSubtree>(kSubtrees),
           array<SearchRecord>(kRecords),
-          array<SubtreeSpan>(kOpens),
           array<SearchChunk>(kChunks),
           layout_.unit(kLeaves) == 0 ? nullptr : array<NodeRecord>(kLeaves),
           chunks_.back().first_subtree,
           static_cast<uint32_t>(chunks_.size() - 1),
           blend_share_,
-          array<uint32_t>(kNodeIds)};
+          array<SlotIds>(kSlotIds),
+          shape_.nodes};
 }
 
 // As pool_fill copies it into the slot.
@@ -131,51 +129,54 @@ void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* i
   const Chunk& chunk = staged.content;
   const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
   for (size_t i = 0; i < chunk.node.size(); ++i) {
-    const uint32_t parent = staged.parent[i];
-    put(at(kParents), i, parent == kNoNode ? kNoNode : slot * shape_.nodes + parent);
-    put(at(kChildCounts), i, chunk.record_of(i).child_count);
-    if (layout_.unit(kLeaves) != 0) put(at(kLeaves), i, chunk.record_of(i));
+    const uint32_t parent = staged.parent[i], place = staged.place[i];
+    put(at(kParents), place, parent == kNoNode ? kNoNode : slot * shape_.nodes + parent);
+    put(at(kChildCounts), place, chunk.record_of(i).child_count);
+    if (layout_.unit(kLeaves) != 0) put(at(kLeaves), place, chunk.record_of(i));
   }
   if (sh_form_ == ShForm::coded)
-    pack_codes(chunk, into);
+    pack_codes(staged, into);
   else
-    pack_floats(chunk, into);
-  std::memcpy(at(kNodeIds), chunk.node.data(), chunk.node.size() * sizeof(uint32_t));
+    pack_floats(staged, into);
+  put(at(kSlotIds), 0, staged.ids);
   std::memcpy(at(kRecords), staged.records.data(), staged.records.size() * sizeof(SearchRecord));
 }
 
-void DevicePool::pack_codes(const Chunk& chunk, unsigned char* into) const {
+void DevicePool::pack_codes(const StagedChunk& staged, unsigned char* into) const {
+  const Chunk& chunk = staged.content;
   const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
   const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const ShapeCode code = shape_code(chunk, i);
     Gaussian g = restored_shape(code, shape_tables());
     g.mean = chunk.words[i].mean;
-    put(at(kHulls), i, device_hull(g));
-    put(at(kShapes), i, code);
+    const uint32_t place = staged.place[i];
+    put(at(kHulls), place, device_hull(g));
+    put(at(kShapes), place, code);
     pack_sh(&chunk.sh[i * floats], sh_degree_, chunk.sh_scale,
-            at(kCoefficients) + i * layout_.unit(kCoefficients));
+            at(kCoefficients) + place * layout_.unit(kCoefficients));
   }
   put(at(kStepSizes), 0, step_sizes(chunk.sh_scale));
 }
 
-void DevicePool::pack_floats(const Chunk& chunk, unsigned char* into) const {
+void DevicePool::pack_floats(const StagedChunk& staged, unsigned char* into) const {
+  const Chunk& chunk = staged.content;
   const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
   const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const Gaussian g = activate(chunk.words[i], chunk.has_logit(i));
-    put(at(kHulls), i, device_hull(g));
-    put(at(kShapes), 2 * i, device_shape(g, 0));
-    put(at(kShapes), 2 * i + 1, device_shape(g, 1));
-    put(at(kOpacities), i, g.opacity);
-    put(at(kNodeCodes), i, chunk.node_code[i]);
+    const size_t place = staged.place[i];
+    put(at(kHulls), place, device_hull(g));
+    put(at(kShapes), 2 * place, device_shape(g, 0));
+    put(at(kShapes), 2 * place + 1, device_shape(g, 1));
+    put(at(kOpacities), place, g.opacity);
+    put(at(kNodeCodes), place, chunk.node_code[i]);
+    unsigned char* const sh = at(kCoefficients) + place * layout_.unit(kCoefficients);
     if (sh_form_ == ShForm::half)
-      put_half_coefficients(
-          &chunk.sh[i * floats], sh_degree_,
-          reinterpret_cast<__half*>(at(kCoefficients) + i * layout_.unit(kCoefficients)));
+      put_half_coefficients(&chunk.sh[i * floats], sh_degree_, reinterpret_cast<__half*>(sh));
+    else
+      std::memcpy(sh, &chunk.sh[i * floats], floats * sizeof(float));
   }
-  if (sh_form_ == ShForm::single)
-    std::memcpy(at(kCoefficients), chunk.sh.data(), chunk.sh.size() * sizeof(float));
 }
 
 PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
@@ -184,9 +185,9 @@ PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
   for (uint32_t a = 0; a < kFilledArrays; ++a) {
     const auto which = static_cast<PoolArray>(a);
     const size_t unit = layout_.unit(which);
-    const size_t count = which == kRecords     ? staged.records.size()
-                         : which == kStepSizes ? 1
-                                               : staged.content.node.size();
+    const size_t count = which == kRecords                          ? staged.records.size()
+                         : which == kStepSizes || which == kSlotIds ? 1
+                                                                    : staged.content.node.size();
     const size_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
     fill.copies[a] = {from + piece_layout_.begin(which),
                       array<unsigned char>(which) + slot * layout_.slot_bytes(which),
@@ -211,9 +212,9 @@ void DevicePool::apply(const LinkPatch& patch) {
   require_room();
   const PoolPatch copy = patches_.put(patch);
   wait_for_frames();
-  launch_patch({array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords),
-                array<SubtreeSpan>(kOpens), array<uint32_t>(kParents)},
-               copy, stream_.get());
+  launch_patch(
+      {array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords), array<uint32_t>(kParents)},
+      copy, stream_.get());
   patches_.read_by(stream_.get());
   applied_.record(stream_.get());
 }

@@ -51,8 +51,8 @@ class DevicePool final : public ChunkPool {
     return reinterpret_cast<T*>(memory_.data() + layout_.begin(which));
   }
   void pack(uint32_t slot, const StagedChunk& chunk, unsigned char* into) const;
-  void pack_codes(const Chunk& chunk, unsigned char* into) const;
-  void pack_floats(const Chunk& chunk, unsigned char* into) const;
+  void pack_codes(const StagedChunk& chunk, unsigned char* into) const;
+  void pack_floats(const StagedChunk& chunk, unsigned char* into) const;
   PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;
   // Throws Error(over_budget) where a resize has left no memory.
   void require_room() const;

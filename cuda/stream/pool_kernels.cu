@@ -44,7 +44,6 @@ __device__ void set_records(const PoolTables& tables, const LinkPatch::Record* r
   for (uint32_t i = first_index(); i < count; i += stride()) {
     const LinkPatch::Record r = records[i];
     tables.records[r.record].children = r.children;
-    tables.opens[r.record] = r.opens;
   }
 }
 

@@ -21,7 +21,6 @@ struct PoolFill {
 struct PoolTables {
   SearchSubtree* subtrees;
   SearchRecord* records;
-  SubtreeSpan* opens;
   uint32_t* parents;
 };
 

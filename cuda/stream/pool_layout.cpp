@@ -11,10 +11,6 @@ size_t aligned(size_t bytes) {
   return (bytes + kAlign - 1) / kAlign * kAlign;
 }
 
-bool by_record(uint32_t array) {
-  return array == kRecords || array == kOpens;
-}
-
 }  // namespace
 
 ShForm sh_form(const Scene& scene) {
@@ -32,21 +28,20 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots) {
            coded ? 0 : sizeof(float),
            sizeof(uint32_t),
            sizeof(uint32_t),
-           sizeof(uint32_t),
            coded ? 0 : sizeof(uint8_t),
            sizeof(SearchRecord),
            coded ? sizeof(ShStepSizes) : 0,
-           sizeof(SubtreeSpan),
+           sizeof(SlotIds),
            sizeof(SearchSubtree),
            sizeof(SearchChunk)};
   fixed_bytes_ = {};
   fixed_bytes_[kSubtrees] = scene.search.subtree_count() * unit_[kSubtrees];
   fixed_bytes_[kChunks] = scene.search.chunks.size() * unit_[kChunks];
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
-    const size_t places = a == kSubtrees || a == kChunks ? 0
-                          : a == kStepSizes              ? 1
-                          : by_record(a)                 ? shape.records
-                                                         : shape.nodes;
+    const size_t places = a == kSubtrees || a == kChunks     ? 0
+                          : a == kStepSizes || a == kSlotIds ? 1
+                          : a == kRecords                    ? shape.records
+                                                             : shape.nodes;
     slot_bytes_[a] = places * unit_[a];
   }
   set_slots(slots);

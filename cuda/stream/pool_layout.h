@@ -18,14 +18,13 @@ enum PoolArray : uint32_t {
   kOpacities,
   kParents,
   kChildCounts,
-  kNodeIds,
   kNodeCodes,
   kRecords,
   kStepSizes,  // one a slot
+  kSlotIds,    // the same
   kFilledArrays,
-  // What links chunks: by record, and two of the whole tree.
-  kOpens = kFilledArrays,
-  kSubtrees,
+  // Of the whole tree.
+  kSubtrees = kFilledArrays,
   kChunks,
   kPoolArrays
 };

@@ -15,26 +15,24 @@ class HostPool final : public ChunkPool {
   }
 
   void resize(uint32_t slots) override {
-    auto& opens = scene_.search.opens;
-    if (scene_.search.subtrees.empty() || opens.size() != size_t{slots} * shape_.records)
+    if (scene_.search.subtrees.empty() ||
+        scene_.search.records.size() != size_t{slots} * shape_.records)
       make_room(slots);
-    else
-      std::fill(opens.begin(), opens.end(), SubtreeSpan{});
     scene_.search.subtrees.assign(scene_.search.subtree_count(), kUnlinkedSubtree);
   }
 
   void fill(uint32_t slot, const StagedChunk& staged) override {
     const Chunk& chunk = staged.content;
     const size_t base = size_t{slot} * shape_.nodes;
+    scene_.slot_ids[slot] = staged.ids;
     if (is_coded(scene_)) scene_.sh_scales[slot] = chunk.sh_scale;
     for (size_t i = 0; i < chunk.node.size(); ++i) {
-      const size_t at = base + i;
+      const size_t at = base + staged.place[i];
       set_gaussian(chunk, i, at, scene_);
       if (scene_.search.leaves_have_extent) scene_.tree.records[at] = chunk.record_of(i);
       scene_.child_count[at] = chunk.record_of(i).child_count;
       scene_.tree.parent[at] =
           staged.parent[i] == kNoNode ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
-      scene_.node_ids[at] = chunk.node[i];
     }
     std::copy(
         staged.records.begin(), staged.records.end(),
@@ -46,7 +44,6 @@ class HostPool final : public ChunkPool {
     const auto set_records = [&](const std::vector<LinkPatch::Record>& records) {
       for (const LinkPatch::Record& r : records) {
         search.records[r.record].children = r.children;
-        search.opens[r.record] = r.opens;
       }
     };
     set_records(patch.cut.records);
@@ -69,9 +66,8 @@ class HostPool final : public ChunkPool {
       fit(scene_.tree.records, scene_.search.leaves_have_extent ? nodes : 0);
       fit(scene_.child_count, nodes);
       fit(scene_.tree.parent, nodes);
-      fit(scene_.node_ids, nodes);
+      fit(scene_.slot_ids, slots);
       fit(scene_.search.records, records);
-      fit(scene_.search.opens, records);
     }
   }
 
@@ -82,12 +78,12 @@ class HostPool final : public ChunkPool {
 }  // namespace
 
 PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
-  const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) + 3 * sizeof(uint32_t) +
+  const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) + 2 * sizeof(uint32_t) +
                         (scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0);
-  const uint64_t record = sizeof(SearchRecord) + sizeof(SubtreeSpan);
+  const uint64_t record = sizeof(SearchRecord);
   const SearchTree& search = scene.search;
   const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
-  return {shape.nodes * node + shape.records * record + scales,
+  return {shape.nodes * node + shape.records * record + scales + sizeof(SlotIds),
           search.subtree_count() * sizeof(SearchSubtree) +
               search.chunks.size() * sizeof(SearchChunk) +
               search.tier_begin.size() * sizeof(uint32_t)};

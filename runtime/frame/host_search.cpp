@@ -63,7 +63,8 @@ void HostSearch::follow_stream() {
 void HostSearch::read_cut(std::pmr::vector<uint32_t>& nodes) const {
   nodes = cut();
   if (!scene_->streamed()) return;
-  for (uint32_t& node : nodes) node = scene_->node_ids[node];
+  const uint32_t slot_nodes = scene_->slot_nodes;
+  for (uint32_t& node : nodes) node = scene_->slot_ids[node / slot_nodes].id(node % slot_nodes);
 }
 
 void HostSearch::weigh(const CutQuery& query, Workers& workers) {

@@ -23,6 +23,10 @@ namespace {
 }  // namespace
 
 void set_info(const SceneFileInfo& info, Scene& scene) {
+  if (info.subtree_count >= kLowest)
+    throw Error(ErrorCode::unsupported, scene.name + ": found " +
+                                            std::to_string(info.subtree_count) +
+                                            " subtrees, expected fewer than 2^31");
   scene.storage = info.quality == Quality::compact ? Storage::compact : Storage::lossless;
   scene.sh_degree = info.sh_degree;
   scene.profile.input_sh_degree = info.sh_degree + info.left_out_bands;

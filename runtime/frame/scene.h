@@ -68,7 +68,7 @@ struct Scene {
         search(memory),
         leaves(memory),
         partition(memory),
-        node_ids(memory) {}
+        slot_ids(memory) {}
 
   bool flat() const { return storage == Storage::flat; }
   bool streamed() const { return stream != nullptr; }
@@ -110,7 +110,7 @@ struct Scene {
   std::vector<DamagedChunk> damaged_chunks;  // by chunk
   std::vector<SceneNote> notes;
 
-  std::pmr::vector<uint32_t> node_ids;  // by address, of a streamed scene on the host
+  std::pmr::vector<SlotIds> slot_ids;  // of a streamed scene on the host
   std::unique_ptr<ChunkPool> pool;
   std::unique_ptr<SceneStream> stream;  // fills the pool, so goes before it
 };

@@ -49,7 +49,7 @@ class BlockWeights {
     uint32_t record = subtree.first_record + (subtree.interior & 1);
     for (uint32_t left = subtree.interior & subtree.level_slots(1); left != 0;
          left &= left - 1, ++record) {
-      const uint32_t own = search_tree_.records[record].children & slots;
+      const uint32_t own = search_tree_.records[record].child_slots() & slots;
       if (own == 0) continue;
       const uint32_t child = subtree.node(static_cast<uint32_t>(std::countr_zero(left)));
       out = weigh_slots(subtree, family(record, child, split), own, out);
@@ -82,7 +82,7 @@ class BlockWeights {
     const SearchRecord& r = search_tree_.records[record];
     const float size = size_of(r), target = query_.target_size;
     if (is_drawn_whole(size, target, links_.blend_share)) return {parent, size, true, 1.0f, 1.0f};
-    const uint32_t children = split ? links_.children(parent) : count_bits(r.children);
+    const uint32_t children = split ? links_.children(parent) : count_bits(r.child_slots());
     return {parent, size, false, interpolation_weight(true, size, 0.0f, target, links_.blend_share),
             1.0f / static_cast<float>(children)};
   }

@@ -105,7 +105,6 @@ class Builder {
       records += subtree.missing() ? 1 : count_bits(subtree.interior);
     }
     out_.records.resize(records);
-    out_.opens.resize(records);
   }
 
   void fill_records(uint32_t s) {
@@ -132,12 +131,11 @@ class Builder {
         const uint32_t node = subtree.node(slot);
         const uint32_t first = tree_.first_child[node];
         while (lowest && next < end && out_.subtrees[next].root < first) ++next;
-        out_.opens[record].first = out_.opens[record].last = next;
         if (!lowest) continue;
+        out_.records[record].children = kLowest | next;
         const uint32_t after = first + tree_.records[node].child_count;
         for (; next < end && out_.subtrees[next].root < after; ++next)
           out_.subtrees[next].entry = record;
-        out_.opens[record].last = next;
       }
     }
   }

@@ -18,16 +18,22 @@ inline constexpr uint32_t kNoRecord = 0xffffffffu;
 // In the place of an entry: nothing leads to the subtree now (runtime/stream/linker.h).
 inline constexpr uint32_t kNotLinked = 0xfffffffeu;
 
-// Alone in SearchRecord::children: the subtrees below are not there, so that the node
-// stands in for them, however large it is.
-inline constexpr uint32_t kBlocked = 0x80000000u;
+// In SearchRecord::children, of a node on the lowest level of a tier: beside it is the first of the
+// subtrees that have the node's children as their roots. No subtree has so high a number.
+inline constexpr uint32_t kLowest = 0x80000000u;
+// Of such a node, alone: the subtrees below are not there, so that the node stands in for them,
+// however large it is.
+inline constexpr uint32_t kBlocked = 0xffffffffu;
 
 // An interior node in its subtree.
 struct SearchRecord {
   Vec3f box_min;
   float extent;
   Vec3f box_max;
-  uint32_t children;  // the slots of its children; 0, or kBlocked, on the lowest level of a tier
+  uint32_t children;  // the slots of its children; kLowest or kBlocked on a tier's lowest level
+
+  // The slots of its children in its own subtree.
+  VOYAGER_HD uint32_t child_slots() const { return (children & kLowest) != 0 ? 0 : children; }
 };
 static_assert(sizeof(SearchRecord) == 32);
 
@@ -62,6 +68,16 @@ static_assert(sizeof(SearchSubtree) == 32);
 // Of a subtree that has not come yet.
 inline constexpr SearchSubtree kUnlinkedSubtree{kNoNode, 0, 0, 0, 0, 0, 0, kNotLinked};
 
+// The subtrees below a record, which `children` is of: consecutive, and each has it as its entry.
+VOYAGER_HD SubtreeSpan subtrees_below(const SearchSubtree* subtrees, uint32_t subtree_count,
+                                      uint32_t record, uint32_t children) {
+  if ((children & kLowest) == 0 || children == kBlocked) return {0, 0};
+  const uint32_t first = children & ~kLowest;
+  uint32_t last = first;
+  while (last < subtree_count && subtrees[last].entry == record) ++last;
+  return {first, last};
+}
+
 // Hull of the records that the roots of a chunk hang from: no root can be reached
 // where even the hull's size is under τ*, because every operation of size() is
 // monotone. Those of chunks with subtrees of the tree's root are never under it.
@@ -75,19 +91,17 @@ static_assert(sizeof(SearchChunk) == 32);
 
 struct SearchTree {
   explicit SearchTree(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : subtrees(memory), records(memory), opens(memory), chunks(memory), tier_begin(memory) {}
+      : subtrees(memory), records(memory), chunks(memory), tier_begin(memory) {}
 
   uint32_t subtree_count() const { return chunks.empty() ? 0 : chunks.back().first_subtree; }
   size_t chunk_count() const { return chunks.empty() ? 0 : chunks.size() - 1; }
   uint64_t bytes() const {
     return subtrees.size() * sizeof(SearchSubtree) + records.size() * sizeof(SearchRecord) +
-           opens.size() * sizeof(SubtreeSpan) + chunks.size() * sizeof(SearchChunk);
+           chunks.size() * sizeof(SearchChunk);
   }
 
   std::pmr::vector<SearchSubtree> subtrees;
   std::pmr::vector<SearchRecord> records;
-  // By record: the subtrees that have its children as their roots. Of a blocked one: no matter.
-  std::pmr::vector<SubtreeSpan> opens;
   std::pmr::vector<SearchChunk> chunks;   // and one with the end as its first subtree
   std::pmr::vector<uint32_t> tier_begin;  // first subtree of each tier, and the end
   bool leaves_have_extent = false;        // else a leaf's size is 0 wherever its weight matters

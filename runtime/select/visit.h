@@ -77,7 +77,7 @@ VOYAGER_HD Visit visit(const SearchSubtree& subtree, const Sight& sight, const R
       continue;
     }
     v.refined |= slot;
-    reached |= r.children;
+    reached |= r.child_slots();
   }
   v.cut = reached & ~v.refined & subtree.owned;
   return v;

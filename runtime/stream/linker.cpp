@@ -14,15 +14,12 @@ class Addresses {
 
   SearchSubtree of(const LinkTable& table, uint32_t index, uint32_t entry) {
     const StagedSubtree& s = table.subtrees[index];
-    uint32_t node = table.slot * shape_.nodes + s.first_node;
-    if (!s.ids.repeats_root) root_ = node++;
-    if (s.ids.child_count != 0 && !s.ids.repeats_child) {
-      first_child_ = node;
-      node += s.ids.child_count;
-    }
+    const uint32_t base = table.slot * shape_.nodes;
+    if (!s.ids.repeats_root) root_ = base + s.first_place[0];
+    if (s.ids.child_count != 0 && !s.ids.repeats_child) first_child_ = base + s.first_place[1];
     return {root_,
             first_child_,
-            node,
+            base + s.first_place[2],
             s.ids.child_count,
             table.slot * shape_.records + s.first_record,
             s.interior,
@@ -170,17 +167,17 @@ void Linker::link(Family first, LinkPatch& patch) {
     const uint32_t record = table.slot * shape_.records + node.record;
     const uint32_t parent = table.slot * shape_.nodes + node.node;
     Addresses addresses(shape_);
-    SubtreeSpan span{kNoNode, 0};
+    uint32_t first_below = kLowest;
     each_subtree(node, [&](LinkTable& of, uint32_t i) {
       const uint32_t subtree = of.first_subtree + i;
-      span = {std::min(span.first, subtree), subtree + 1};
+      first_below = std::min(first_below, subtree);
       const SearchSubtree linked = addresses.of(of, i, record);
       of.subtrees[i].linked = true;
       add_parents(of.subtrees[i], linked, parent, patch);
       patch.linked.emplace_back(subtree, linked);
       add_below(of, i, work_);
     });
-    patch.tied.records.push_back({record, 0, span});
+    patch.tied.records.push_back({record, kLowest | first_below});
     patch.tied.changed.push_back(table.first_subtree + node.subtree);
   }
 }
@@ -193,7 +190,7 @@ void Linker::unlink(Family first, LinkPatch& patch) {
     LinkTable& table = *tables_[family.chunk];
     NodeBelow& node = table.below[family.below];
     if (!std::exchange(node.linked, false)) continue;
-    patch.cut.records.push_back({table.slot * shape_.records + node.record, kBlocked, {0, 0}});
+    patch.cut.records.push_back({table.slot * shape_.records + node.record, kBlocked});
     patch.cut.changed.push_back(table.first_subtree + node.subtree);
     each_subtree(node, [&](LinkTable& of, uint32_t i) {
       of.subtrees[i].linked = false;

@@ -20,7 +20,6 @@ struct SlotShape {
 struct LinkPatch {
   struct Record {
     uint32_t record, children;  // SearchRecord::children
-    SubtreeSpan opens;
   };
   struct Parent {
     uint32_t node, parent;

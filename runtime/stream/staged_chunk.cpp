@@ -10,6 +10,12 @@
 namespace voyager {
 namespace {
 
+[[noreturn]] void refuse_runs(uint32_t chunk, const std::string& file) {
+  throw Error(ErrorCode::damaged_chunk,
+              file + ": chunk " + std::to_string(chunk) + ": found nodes of more than " +
+                  std::to_string(SlotIds::kRuns) + " runs of ids, expected a run a level");
+}
+
 class Stager {
  public:
   Stager(Chunk&& chunk, uint32_t index, const Tiers& tiers, const std::string& file)
@@ -21,6 +27,7 @@ class Stager {
 
   StagedChunk stage() {
     const Chunk& content = out_.content;
+    set_places();
     out_.parent.assign(content.node.size(), kNoNode);
     uint32_t record = 0;
     for (size_t i = 0; i < content.subtrees.size(); ++i) {
@@ -34,18 +41,37 @@ class Stager {
   }
 
  private:
+  void set_places() {
+    const std::vector<uint32_t>& node = out_.content.node;
+    std::vector<uint32_t> sorted(node);
+    std::sort(sorted.begin(), sorted.end());
+    out_.place.reserve(node.size());
+    for (const uint32_t id : node)
+      out_.place.push_back(static_cast<uint32_t>(
+          std::lower_bound(sorted.begin(), sorted.end(), id) - sorted.begin()));
+    if (!make_slot_ids(sorted, out_.ids)) refuse_runs(out_.links.chunk, file_);
+  }
+  // Of a node that the subtree at next_node_ owns: the k-th of them. Behind the last it has none.
+  uint32_t place_of_owned(uint32_t k) const {
+    const size_t i = next_node_ + k;
+    return i < out_.place.size() ? out_.place[i] : 0;
+  }
+
   // records: of the subtree, by slot.
   void add(const Subtree& subtree, uint32_t index, const NodeRecord* records) {
     LinkTable& links = out_.links;
     const uint32_t levels = index < tiers_.tier_begin[1] ? tiers_.first_tier_levels : kTierLevels;
     const auto record = [&](uint32_t slot) -> const NodeRecord& { return records[slot]; };
     check_repeats(subtree, records);
-    StagedSubtree staged{subtree,
-                         next_node_,
-                         static_cast<uint32_t>(out_.records.size()),
-                         static_cast<uint32_t>(links.below.size()),
-                         interior_slots(subtree, record),
-                         owned_slots(subtree)};
+    const uint32_t own_root = subtree.repeats_root ? 0 : 1,
+                   own_children = subtree.child_count - (subtree.repeats_child ? 1 : 0);
+    StagedSubtree staged{
+        subtree,
+        {place_of_owned(0), place_of_owned(own_root), place_of_owned(own_root + own_children)},
+        static_cast<uint32_t>(out_.records.size()),
+        static_cast<uint32_t>(links.below.size()),
+        interior_slots(subtree, record),
+        owned_slots(subtree)};
     out_.records.resize(out_.records.size() + static_cast<size_t>(std::popcount(staged.interior)));
     fill_search_records(subtree, levels, record, out_.records.data() + staged.first_record);
     set_parents(subtree, records);
@@ -55,8 +81,8 @@ class Stager {
       if ((staged.interior >> slot & 1) != 0) {
         if (is_lowest(slot, subtree.child_count, levels)) {
           out_.records[search_record].children = kBlocked;
-          links.below.push_back({next_node_, search_record, out_.content.first_child[next_node_],
-                                 records[slot].child_count,
+          links.below.push_back({out_.place[next_node_], search_record,
+                                 out_.content.first_child[next_node_], records[slot].child_count,
                                  static_cast<uint32_t>(links.subtrees.size()), records[slot]});
         }
         ++search_record;
@@ -75,7 +101,8 @@ class Stager {
     const uint32_t first_grandchild = first_child + subtree.child_count - own_child;
     for (uint32_t i = 0; i < subtree.child_count; ++i) {
       check_inside(subtree.first_child + i, records[1 + i], records[0]);
-      if (i >= own_child && own_root != 0) out_.parent[first_child + i - own_child] = next_node_;
+      if (i >= own_child && own_root != 0)
+        out_.parent[first_child + i - own_child] = out_.place[next_node_];
     }
     uint32_t grandchild = 0;
     for (uint32_t i = 0; i < subtree.child_count; ++i) {
@@ -86,7 +113,7 @@ class Stager {
         check_inside(subtree.first_grandchild + grandchild,
                      records[1 + subtree.child_count + grandchild], records[1 + i]);
         if (i >= own_child)
-          out_.parent[first_grandchild + grandchild] = first_child + i - own_child;
+          out_.parent[first_grandchild + grandchild] = out_.place[first_child + i - own_child];
       }
     }
   }

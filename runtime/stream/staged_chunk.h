@@ -1,18 +1,22 @@
 #pragma once
 // A chunk that was read, before it has a place: what its slot will hold, in numbers of its
-// own. Nodes and records are counted from the chunk's first.
+// own. Records are counted from the chunk's first; nodes by their places in the slot, which are
+// in the order of their ids.
+#include <array>
 #include <string>
 
 #include "runtime/format/chunk.h"
 #include "runtime/lod/nesting.h"
 #include "runtime/lod/subtree_cursor.h"
 #include "runtime/select/search_tree.h"
+#include "runtime/stream/slot_ids.h"
 
 namespace voyager {
 
 struct StagedSubtree {
-  Subtree ids;            // nodes as the file numbers them
-  uint32_t first_node;    // of those that it owns: root, children, grandchildren
+  Subtree ids;  // nodes as the file numbers them
+  // Places of the first that it owns of each level: root, children, grandchildren.
+  std::array<uint32_t, 3> first_place;
   uint32_t first_record;  // as in SearchSubtree
   uint32_t first_below;   // in LinkTable::below
   uint32_t interior, owned;
@@ -43,8 +47,10 @@ struct StagedChunk {
   Chunk content;
   std::vector<SearchRecord> records;  // those of the lowest level are blocked
   std::vector<NodeRecord> roots;      // of each subtree
-  // Of each owned node: its parent, or kNoNode where another chunk may own it.
-  std::vector<uint32_t> parent;
+  // Of each owned node, in the order of the content: its place, and its parent's, or kNoNode where
+  // another chunk may own that.
+  std::vector<uint32_t> place, parent;
+  SlotIds ids;
 };
 
 // tiers: the file's. Throws Error(damaged_chunk) naming `file`, the chunk and the node where

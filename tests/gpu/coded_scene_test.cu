@@ -117,10 +117,14 @@ TEST_F(CodedScene, StreamedGaussiansHaveTheHostsBits) {
     auto* pool = dynamic_cast<cuda::DevicePool*>(streamed->pool.get());
     ASSERT_NE(pool, nullptr);
     const cuda::GaussianView gaussians = pool->gaussians();
-    std::vector<uint32_t> ids(gaussians.count);
-    cuda::check(cudaMemcpy(ids.data(), pool->tree().node_ids, ids.size() * sizeof(uint32_t),
+    const uint32_t slot_nodes = pool->tree().slot_nodes;
+    std::vector<SlotIds> slots(gaussians.count / slot_nodes);
+    cuda::check(cudaMemcpy(slots.data(), pool->tree().slot_ids, slots.size() * sizeof(SlotIds),
                            cudaMemcpyDeviceToHost),
                 "download");
+    std::vector<uint32_t> ids(gaussians.count);
+    for (uint32_t at = 0; at < gaussians.count; ++at)
+      ids[at] = slots[at / slot_nodes].id(at % slot_nodes);
     const Restored found = restore_all(gaussians);
     const GaussianArrays arrays = gaussian_arrays(*scene);
     size_t there = 0;

@@ -51,7 +51,7 @@ class Omissions : public ::testing::Test {
 
 TEST_F(Omissions, AFlatSceneHasNoTreeAndNoSearchAndDrawsWhatTheTreesLeavesDraw) {
   EXPECT_EQ(flat->tree.size() + flat->search.bytes() + flat->node_code.size() +
-                flat->partition.subtrees.size() + flat->node_ids.size(),
+                flat->partition.subtrees.size() + flat->slot_ids.size(),
             0u);
   const Frame frame = draw(flat, {}, input);
   const size_t flat_view = used;
@@ -131,7 +131,7 @@ TEST_F(Omissions, AResidentSceneHasNoReadersAndNoTablesOfWhatIsThere) {
   const auto resident = load_scene(source_of(bytes), std::pmr::get_default_resource(), workers);
   const Frame frame = draw(resident, {}, input);
   EXPECT_EQ(threads(), before);
-  EXPECT_EQ(resident->node_ids.size(), 0u);
+  EXPECT_EQ(resident->slot_ids.size(), 0u);
   EXPECT_FALSE(resident->search.chunks_come_and_go);
   EXPECT_NE(find(listed, "residency"), nullptr);
 
@@ -140,7 +140,7 @@ TEST_F(Omissions, AResidentSceneHasNoReadersAndNoTablesOfWhatIsThere) {
   const auto streamed =
       open_streamed(source_of(bytes), desc, *cpu, std::pmr::get_default_resource(), workers);
   EXPECT_GE(threads(), before + 2);
-  EXPECT_GT(streamed->node_ids.size(), 0u);
+  EXPECT_GT(streamed->slot_ids.size(), 0u);
   FrameInput wait = input;
   wait.wait_resident = true;
   expect_same_bits(frame, draw(streamed, {}, wait));

@@ -48,7 +48,7 @@ TEST(SearchTree, OwnsEachNodeOnceAndHasARecordForEachInteriorSlot) {
         ASSERT_EQ(r.extent, n.extent);
         ASSERT_EQ(r.box_min.x, n.box_min.x);
         ASSERT_EQ(r.box_max.z, n.box_max.z);
-        for (uint32_t left = r.children; left != 0; left &= left - 1)
+        for (uint32_t left = r.child_slots(); left != 0; left &= left - 1)
           ASSERT_EQ(cut.tree.parent[s.node(static_cast<uint32_t>(std::countr_zero(left)))],
                     s.node(slot));
       }
@@ -66,10 +66,12 @@ TEST(SearchTree, LeadsToEveryChild) {
       uint32_t record = s.first_record;
       for (uint32_t left = s.interior; left != 0; left &= left - 1, ++record) {
         const uint32_t node = s.node(static_cast<uint32_t>(std::countr_zero(left)));
-        for (uint32_t slots = cut.search.records[record].children & s.owned; slots != 0;
-             slots &= slots - 1)
+        const SearchRecord& r = cut.search.records[record];
+        for (uint32_t slots = r.child_slots() & s.owned; slots != 0; slots &= slots - 1)
           ++reached[s.node(static_cast<uint32_t>(std::countr_zero(slots)))];
-        for (uint32_t i = cut.search.opens[record].first; i < cut.search.opens[record].last; ++i) {
+        const SubtreeSpan below = subtrees_below(cut.search.subtrees.data(),
+                                                 cut.search.subtree_count(), record, r.children);
+        for (uint32_t i = below.first; i < below.last; ++i) {
           ASSERT_EQ(cut.search.subtrees[i].entry, record);
           ASSERT_EQ(cut.tree.parent[cut.search.subtrees[i].root], node);
           reached[cut.search.subtrees[i].root] += cut.search.subtrees[i].owned & 1;
