@@ -139,7 +139,7 @@ struct DeviceArrays {
     code.rotation[0] = static_cast<uint16_t>(w.z);
     code.rotation[1] = static_cast<uint16_t>(w.z >> 16);
     code.rotation[2] = static_cast<uint16_t>(w.w);
-    code.node_code = static_cast<uint8_t>(w.w >> 16), code.leaf = static_cast<uint8_t>(w.w >> 24);
+    code.node_code = static_cast<uint8_t>(w.w >> 16), code.family = static_cast<uint8_t>(w.w >> 24);
     return code;
   }
 };

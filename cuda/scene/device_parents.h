@@ -17,10 +17,18 @@ class DeviceParents {
   static uint64_t bytes(const Scene& scene);
 
  private:
+  void set_families(const std::pmr::vector<uint32_t>& parent);
+
+  // A parent a family, and which family a node is of.
+  Buffer<uint32_t> parents_;
+  Buffer<RunBlock> families_;
   // A coded scene has these in its shapes.
   Buffer<float> opacities_;
   Buffer<uint8_t> node_codes_;
-  Buffer<uint32_t> parents_, child_counts_;
+  Buffer<uint32_t> child_counts_;
+  // Of a coded scene.
+  Buffer<LargeFamily> large_families_;
+  Buffer<uint32_t> large_family_count_;
 };
 
 }  // namespace voyager::cuda

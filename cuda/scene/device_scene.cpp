@@ -52,7 +52,7 @@ void DeviceScene::upload_codes(const Device& device, const Scene& scene) {
   shape_codes_ = upload(std::span<const ShapeCode>(scene.shapes));
   sh_rows_ = upload(std::span<const uint8_t>(scene.sh_rows));
   sh_steps_ = upload(std::span<const ShStepSizes>(steps));
-  sh_blocks_ = upload(std::span<const ShGroupBlock>(scene.sh_blocks));
+  sh_blocks_ = upload(std::span<const RunBlock>(scene.sh_blocks));
   tables_ = device.code_tables();
   view_.shapes = shape_codes_.data();
   view_.coefficients = sh_rows_.data();

@@ -42,7 +42,7 @@ class DeviceScene {
   Buffer<ShapeCode> shape_codes_;
   Buffer<uint8_t> sh_rows_;
   Buffer<ShStepSizes> sh_steps_;
-  Buffer<ShGroupBlock> sh_blocks_;
+  Buffer<RunBlock> sh_blocks_;
   std::shared_ptr<const CodeTables> tables_;
   GaussianView view_{};
   const DevicePool* pool_ = nullptr;

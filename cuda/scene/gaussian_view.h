@@ -10,6 +10,18 @@
 
 namespace voyager::cuda {
 
+// A node's parent, kNoNode of the root: by node, or by family, since siblings are consecutive.
+struct ParentView {
+  const uint32_t* parents;
+  const RunBlock* families;  // null: by node
+
+#if defined(__CUDACC__)
+  __device__ uint32_t operator()(uint32_t node) const {
+    return __ldg(parents + (families == nullptr ? node : run_of(families, node)));
+  }
+#endif
+};
+
 enum class ShForm { half, single, coded };
 
 // By Gaussian: by node id, or by address in a pool.
@@ -21,12 +33,14 @@ struct GaussianView {
   const float4* hulls;
   // Two each: scale and log o; rotation (w, x, y, z). Of a coded scene one ShapeCode each.
   const void* shapes;
-  // What interpolation reads; null where every leaf is drawn, but for codes of a scene whose
+  // What interpolation reads; none where every leaf is drawn, but for codes of a scene whose
   // footprints differ. A coded scene has opacities and node codes in its shapes.
   const float* opacities;
   const uint8_t* node_codes;
-  const uint32_t* parents;
-  const uint32_t* child_counts;
+  ParentView parents;
+  const uint32_t* child_counts;  // none of a coded scene, whose shapes say how many, but for large:
+  const LargeFamily* large_families;
+  const uint32_t* large_family_count;
   // SH coefficients [k][rgb]: binary16 padded to 16 bytes, binary32, or a coded scene's rows.
   const void* coefficients;
   int sh_degree;

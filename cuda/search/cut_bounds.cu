@@ -40,7 +40,7 @@ __device__ MeanBounds bounds_of(const GaussianView& gaussians, uint32_t node, bo
   MeanBounds bounds{{INFINITY, INFINITY, INFINITY}, 0, {-INFINITY, -INFINITY, -INFINITY}, 0};
   if (node == kNoNode) return bounds;
   add(bounds, hull_at(gaussians, node));
-  const uint32_t parent = parents ? __ldg(gaussians.parents + node) : kNoNode;
+  const uint32_t parent = parents ? gaussians.parents(node) : kNoNode;
   if (parent != kNoNode) add(bounds, hull_at(gaussians, parent));
   return bounds;
 }

@@ -5,12 +5,21 @@
 
 namespace voyager::cuda {
 
+// Of a node that has some.
+__device__ inline uint32_t child_count(const GaussianView& gaussians, uint32_t node) {
+  if (gaussians.sh_form != ShForm::coded) return __ldg(gaussians.child_counts + node);
+  const auto* shape = static_cast<const ShapeCode*>(gaussians.shapes) + node;
+  const uint32_t few = __ldg(&shape->family) & kManyChildren;
+  if (few != kManyChildren) return few;
+  return children_of(node, gaussians.large_families, *gaussians.large_family_count);
+}
+
 // What a place of the list draws whose node has that weight.
 __device__ inline DrawItem item_of(const GaussianView& gaussians, uint32_t node, float t) {
   DrawItem item{node, kNoNode, t, 1.0f};
   if (t == 1.0f) return item;
-  item.parent = __ldg(gaussians.parents + node);
-  item.inverse_k = 1.0f / static_cast<float>(__ldg(gaussians.child_counts + item.parent));
+  item.parent = gaussians.parents(node);
+  item.inverse_k = 1.0f / static_cast<float>(child_count(gaussians, item.parent));
   return drawn_item(item, gaussians.doubles);
 }
 

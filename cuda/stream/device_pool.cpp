@@ -74,6 +74,8 @@ void DevicePool::make_room(uint32_t slots) {
   check(cudaMemcpy(array<SearchChunk>(kChunks), chunks_.data(),
                    chunks_.size() * sizeof(SearchChunk), cudaMemcpyHostToDevice),
         "chunk hulls");
+  check(cudaMemset(array<uint32_t>(kLargeFamilyCount), 0, layout_.fixed_bytes(kLargeFamilyCount)),
+        "links");
   check(cudaStreamSynchronize(nullptr), "links");
   launch_unlink_all(array<SearchSubtree>(kSubtrees), chunks_.back().first_subtree, stream_.get());
   applied_.record(stream_.get());
@@ -99,8 +101,10 @@ GaussianView DevicePool::gaussians() const {
           array<unsigned char>(kShapes),
           array<float>(kOpacities),
           array<uint8_t>(kNodeCodes),
-          array<uint32_t>(kParents),
+          {array<uint32_t>(kParents), nullptr},
           array<uint32_t>(kChildCounts),
+          array<LargeFamily>(kLargeFamilies),
+          array<uint32_t>(kLargeFamilyCount),
           array<uint4>(kCoefficients),
           sh_degree_,
           sh_form_,
@@ -131,7 +135,6 @@ void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* i
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const uint32_t parent = staged.parent[i], place = staged.place[i];
     put(at(kParents), place, parent == kNoNode ? kNoNode : slot * shape_.nodes + parent);
-    put(at(kChildCounts), place, chunk.record_of(i).child_count);
     if (layout_.unit(kLeaves) != 0) put(at(kLeaves), place, chunk.record_of(i));
   }
   if (sh_form_ == ShForm::coded)
@@ -171,6 +174,7 @@ void DevicePool::pack_floats(const StagedChunk& staged, unsigned char* into) con
     put(at(kShapes), 2 * place + 1, device_shape(g, 1));
     put(at(kOpacities), place, g.opacity);
     put(at(kNodeCodes), place, chunk.node_code[i]);
+    put(at(kChildCounts), place, chunk.record_of(i).child_count);
     unsigned char* const sh = at(kCoefficients) + place * layout_.unit(kCoefficients);
     if (sh_form_ == ShForm::half)
       put_half_coefficients(&chunk.sh[i * floats], sh_degree_, reinterpret_cast<__half*>(sh));
@@ -210,10 +214,17 @@ void DevicePool::fill(uint32_t slot, const StagedChunk& chunk) {
 void DevicePool::apply(const LinkPatch& patch) {
   device_->use();
   require_room();
+  const size_t most = layout_.fixed_bytes(kLargeFamilies) / sizeof(LargeFamily);
+  if (patch.large && tables_ != nullptr && patch.large->size() > most)
+    throw Error(ErrorCode::internal, "streaming: found " + std::to_string(patch.large->size()) +
+                                         " large families, expected at most " +
+                                         std::to_string(most));
   const PoolPatch copy = patches_.put(patch);
   wait_for_frames();
   launch_patch(
-      {array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords), array<uint32_t>(kParents)},
+      {array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords), array<uint32_t>(kParents),
+       tables_ == nullptr ? nullptr : array<LargeFamily>(kLargeFamilies),
+       array<uint32_t>(kLargeFamilyCount)},
       copy, stream_.get());
   patches_.read_by(stream_.get());
   applied_.record(stream_.get());

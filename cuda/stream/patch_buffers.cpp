@@ -39,7 +39,8 @@ class Writer {
 size_t bytes_of(const LinkPatch& p) {
   return (p.cut.records.size() + p.tied.records.size()) * sizeof(LinkPatch::Record) +
          p.linked.size() * (sizeof(SearchSubtree) + sizeof(uint32_t)) +
-         p.parents.size() * sizeof(LinkPatch::Parent) + p.unlinked.size() * sizeof(uint32_t);
+         p.parents.size() * sizeof(LinkPatch::Parent) + p.unlinked.size() * sizeof(uint32_t) +
+         (p.large ? p.large->size() * sizeof(LargeFamily) : 0);
 }
 
 template <class T>
@@ -70,6 +71,11 @@ PoolPatch PatchBuffers::put(const LinkPatch& patch) {
   p.linked = writer.put<SearchSubtree>(patch.linked.size(),
                                        [&](size_t i) { return patch.linked[i].second; });
   p.parents = writer.put(patch.parents);
+  p.large_changed = patch.large.has_value();
+  if (p.large_changed) {
+    p.large = writer.put(*patch.large);
+    p.large_count = count_of(*patch.large);
+  }
   p.linked_subtrees =
       writer.put<uint32_t>(patch.linked.size(), [&](size_t i) { return patch.linked[i].first; });
   p.unlinked = writer.put(patch.unlinked);

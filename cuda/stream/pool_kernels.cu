@@ -61,6 +61,10 @@ __global__ void __launch_bounds__(kThreads) pool_tie(PoolTables tables, PoolPatc
     const LinkPatch::Parent p = patch.parents[i];
     tables.parents[p.node] = p.parent;
   }
+  if (!patch.large_changed || tables.large == nullptr) return;
+  for (uint32_t i = first_index(); i < patch.large_count; i += stride())
+    tables.large[i] = patch.large[i];
+  if (first_index() == 0) *tables.large_count = patch.large_count;
 }
 
 __global__ void __launch_bounds__(kThreads)
@@ -81,8 +85,9 @@ void launch_patch(const PoolTables& tables, const PoolPatch& patch, cudaStream_t
   if (const uint32_t most = std::max(patch.cut_count, patch.unlinked_count); most != 0) {
     launch_kernel("pool_cut", pool_cut, {blocks_for(most), kThreads, stream}, tables, patch);
   }
-  if (const uint32_t most = std::max({patch.tied_count, patch.linked_count, patch.parent_count});
-      most != 0) {
+  if (const uint32_t most =
+          std::max({patch.tied_count, patch.linked_count, patch.parent_count, patch.large_count});
+      most != 0 || patch.large_changed) {
     launch_kernel("pool_tie", pool_tie, {blocks_for(most), kThreads, stream}, tables, patch);
   }
 }

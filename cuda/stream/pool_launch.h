@@ -22,6 +22,8 @@ struct PoolTables {
   SearchSubtree* subtrees;
   SearchRecord* records;
   uint32_t* parents;
+  LargeFamily* large;  // null where they are not asked for
+  uint32_t* large_count;
 };
 
 // LinkPatch as kernels read it.
@@ -32,7 +34,9 @@ struct PoolPatch {
   const LinkPatch::Parent* parents;
   const uint32_t* linked_subtrees;  // of each of linked
   const uint32_t* unlinked;
-  uint32_t cut_count, tied_count, linked_count, parent_count, unlinked_count;
+  const LargeFamily* large;
+  uint32_t cut_count, tied_count, linked_count, parent_count, unlinked_count, large_count;
+  bool large_changed;
 };
 
 void launch_fill(const PoolFill& fill, cudaStream_t stream);

@@ -27,18 +27,24 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots) {
            scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0,
            coded ? 0 : sizeof(float),
            sizeof(uint32_t),
-           sizeof(uint32_t),
+           coded ? 0 : sizeof(uint32_t),
            coded ? 0 : sizeof(uint8_t),
            sizeof(SearchRecord),
            coded ? sizeof(ShStepSizes) : 0,
            sizeof(SlotIds),
            sizeof(SearchSubtree),
-           sizeof(SearchChunk)};
+           sizeof(SearchChunk),
+           sizeof(LargeFamily),
+           sizeof(uint32_t)};
   fixed_bytes_ = {};
   fixed_bytes_[kSubtrees] = scene.search.subtree_count() * unit_[kSubtrees];
   fixed_bytes_[kChunks] = scene.search.chunks.size() * unit_[kChunks];
+  if (coded) {
+    fixed_bytes_[kLargeFamilies] = most_large_families(scene.node_count) * unit_[kLargeFamilies];
+    fixed_bytes_[kLargeFamilyCount] = unit_[kLargeFamilyCount];
+  }
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
-    const size_t places = a == kSubtrees || a == kChunks     ? 0
+    const size_t places = a >= kFilledArrays                 ? 0
                           : a == kStepSizes || a == kSlotIds ? 1
                           : a == kRecords                    ? shape.records
                                                              : shape.nodes;

@@ -26,6 +26,9 @@ enum PoolArray : uint32_t {
   // Of the whole tree.
   kSubtrees = kFilledArrays,
   kChunks,
+  // Of a compact scene.
+  kLargeFamilies,
+  kLargeFamilyCount,
   kPoolArrays
 };
 
@@ -41,6 +44,8 @@ class PoolLayout {
   size_t unit(PoolArray array) const { return unit_[array]; }
   // Bytes that a slot takes of it; 0 of what is the whole tree's.
   size_t slot_bytes(PoolArray array) const { return slot_bytes_[array]; }
+  // What it takes beside the slots.
+  size_t fixed_bytes(PoolArray array) const { return fixed_bytes_[array]; }
   // From the allocation's start; multiples of 256.
   size_t begin(PoolArray array) const { return begin_[array]; }
   size_t bytes() const { return begin_[kPoolArrays]; }

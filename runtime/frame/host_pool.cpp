@@ -8,6 +8,11 @@
 namespace voyager {
 namespace {
 
+// Whether what a node has of children is in no other array.
+bool counts_children(const Scene& scene) {
+  return !is_coded(scene) && !scene.search.leaves_have_extent;
+}
+
 class HostPool final : public ChunkPool {
  public:
   HostPool(Scene& scene, SlotShape shape, uint32_t slots) : scene_(scene), shape_(shape) {
@@ -18,6 +23,7 @@ class HostPool final : public ChunkPool {
     if (scene_.search.subtrees.empty() ||
         scene_.search.records.size() != size_t{slots} * shape_.records)
       make_room(slots);
+    scene_.large_families.clear();
     scene_.search.subtrees.assign(scene_.search.subtree_count(), kUnlinkedSubtree);
   }
 
@@ -30,7 +36,7 @@ class HostPool final : public ChunkPool {
       const size_t at = base + staged.place[i];
       set_gaussian(chunk, i, at, scene_);
       if (scene_.search.leaves_have_extent) scene_.tree.records[at] = chunk.record_of(i);
-      scene_.child_count[at] = chunk.record_of(i).child_count;
+      if (counts_children(scene_)) scene_.child_count[at] = chunk.record_of(i).child_count;
       scene_.tree.parent[at] =
           staged.parent[i] == kNoNode ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
     }
@@ -51,6 +57,7 @@ class HostPool final : public ChunkPool {
     set_records(patch.tied.records);
     for (const auto& [subtree, linked] : patch.linked) search.subtrees[subtree] = linked;
     for (const LinkPatch::Parent& p : patch.parents) scene_.tree.parent[p.node] = p.parent;
+    if (patch.large) scene_.large_families.assign(patch.large->begin(), patch.large->end());
   }
 
  private:
@@ -64,7 +71,7 @@ class HostPool final : public ChunkPool {
       };
       make_gaussian_room(room ? nodes : 0, room ? slots : 0, scene_);
       fit(scene_.tree.records, scene_.search.leaves_have_extent ? nodes : 0);
-      fit(scene_.child_count, nodes);
+      fit(scene_.child_count, counts_children(scene_) ? nodes : 0);
       fit(scene_.tree.parent, nodes);
       fit(scene_.slot_ids, slots);
       fit(scene_.search.records, records);
@@ -78,7 +85,8 @@ class HostPool final : public ChunkPool {
 }  // namespace
 
 PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
-  const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) + 2 * sizeof(uint32_t) +
+  const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) + sizeof(uint32_t) +
+                        (counts_children(scene) ? sizeof(uint32_t) : 0) +
                         (scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0);
   const uint64_t record = sizeof(SearchRecord);
   const SearchTree& search = scene.search;
@@ -86,7 +94,8 @@ PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
   return {shape.nodes * node + shape.records * record + scales + sizeof(SlotIds),
           search.subtree_count() * sizeof(SearchSubtree) +
               search.chunks.size() * sizeof(SearchChunk) +
-              search.tier_begin.size() * sizeof(uint32_t)};
+              search.tier_begin.size() * sizeof(uint32_t) +
+              (is_coded(scene) ? most_large_families(scene.node_count) * sizeof(LargeFamily) : 0)};
 }
 
 std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, SlotShape shape, uint32_t slots) {

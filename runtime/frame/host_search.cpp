@@ -79,9 +79,7 @@ void HostSearch::weigh(const CutQuery& query, Workers& workers) {
 
 NodeLinks HostSearch::links() const {
   if (detail_) return links_of(detail_->tree);
-  NodeLinks links = links_of(scene_->tree);
-  if (!scene_->child_count.empty()) links.child_count = scene_->child_count.data();
-  return links;
+  return node_links(*scene_);
 }
 
 void HostSearch::refuse_damaged() const {

@@ -11,6 +11,7 @@
 #include "runtime/base/workers.h"
 #include "runtime/frame/scene_profile.h"
 #include "runtime/math/gaussian.h"
+#include "runtime/math/large_families.h"
 #include "runtime/math/sh_code.h"
 #include "runtime/math/shape_code.h"
 #include "runtime/scene/gaussian_cloud.h"
@@ -65,6 +66,7 @@ struct Scene {
         sh_blocks(memory),
         tree(memory),
         child_count(memory),
+        large_families(memory),
         search(memory),
         leaves(memory),
         partition(memory),
@@ -95,15 +97,16 @@ struct Scene {
   std::pmr::vector<uint8_t> node_code;  // of a lossless tree (runtime/math/node_code.h)
   std::pmr::vector<Vec3f> means;
   std::pmr::vector<ShapeCode> shapes;
-  std::pmr::vector<uint8_t> sh_rows;         // sh_row_bytes() each
-  std::pmr::vector<ShScales> sh_scales;      // by group
-  std::pmr::vector<ShGroupBlock> sh_blocks;  // empty where a slot is a group
-  uint32_t slot_nodes = 0;                   // of a pool on the host
-  // Empty for a flat scene. Where child_count is not empty, records and first_child are, and
-  // whole_tree() makes them (whole_tree.h).
+  std::pmr::vector<uint8_t> sh_rows;     // sh_row_bytes() each
+  std::pmr::vector<ShScales> sh_scales;  // by group
+  std::pmr::vector<RunBlock> sh_blocks;  // empty where a slot is a group
+  uint32_t slot_nodes = 0;               // of a pool on the host
+  // Empty for a flat scene. Its records and first_child may be left out: whole_tree() makes them
+  // (whole_tree.h), and node_links() says how many children a node has (node_links.h).
   LodTree tree;
-  std::pmr::vector<uint32_t> child_count;  // by node id
-  SearchTree search;                       // of the tree; empty for a flat scene
+  std::pmr::vector<uint32_t> child_count;        // by node id, of a lossless tree without records
+  std::pmr::vector<LargeFamily> large_families;  // of a compact scene
+  SearchTree search;                             // of the tree; empty for a flat scene
   std::pmr::vector<uint32_t> leaves;  // node ids of the leaves in the input's order; flat: empty
   Partition partition;                // of the tree; empty for a flat scene
   std::vector<DamagedNodes> damaged;  // by first, disjoint

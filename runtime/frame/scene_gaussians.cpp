@@ -28,10 +28,10 @@ void shorten_rows(size_t from, size_t to, std::pmr::vector<uint8_t>& rows) {
 ShapeCode shape_code(const Chunk& chunk, size_t i) {
   const GaussianWords& words = chunk.words[i];
   ShapeCode code{};
-  code.leaf = chunk.has_logit(i) ? 1 : 0;
+  code.family = family_code(chunk.has_logit(i), chunk.record_of(i).child_count);
   for (int axis = 0; axis < 3; ++axis) code.scale[axis] = quantise_log_scale(words.log_scale[axis]);
   code.opacity =
-      code.leaf != 0 ? quantise_leaf_opacity(words.opacity) : float_to_half(words.opacity);
+      chunk.has_logit(i) ? quantise_leaf_opacity(words.opacity) : float_to_half(words.opacity);
   std::copy_n(chunk.rotation_code[i].begin(), 3, code.rotation);
   code.node_code = chunk.node_code[i];
   return code;

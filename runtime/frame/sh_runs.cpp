@@ -18,16 +18,7 @@ void find_sh_runs(const SceneFile& file, Scene& scene) {
   for (uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk)
     each_run(file, chunk, scene,
              [&](uint32_t first) { scene.sh_blocks[first / 32].starts |= 1u << first % 32; });
-  uint32_t group = 0;
-  for (size_t i = 0; i < scene.sh_blocks.size(); ++i) {
-    ShGroupBlock& block = scene.sh_blocks[i];
-    // That a block's first begins a group is told by its number.
-    if (i != 0) group += block.starts & 1u;
-    block.starts &= ~1u;
-    block.first = group;
-    group += static_cast<uint32_t>(std::popcount(block.starts));
-  }
-  scene.sh_scales.assign(size_t{group} + 1, {});
+  scene.sh_scales.assign(number_runs(scene.sh_blocks), {});
 }
 
 void set_sh_scales(const SceneFile& file, uint32_t chunk, const ShScales& scales, Scene& scene) {

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "runtime/frame/node_links.h"
+#include "runtime/frame/scene_gaussians.h"
+
 namespace voyager {
 namespace {
 
@@ -21,34 +24,42 @@ void fill_interior(const SearchTree& search, LodTree& tree) {
 }  // namespace
 
 void leave_out_records(Scene& scene) {
+  const auto& records = scene.tree.records;
+  if (is_coded(scene))
+    for (size_t n = 0; n < records.size(); ++n)
+      if (records[n].child_count >= kManyChildren)
+        scene.large_families.push_back({static_cast<uint32_t>(n), records[n].child_count});
   if (scene.search.leaves_have_extent || !scene.damaged_chunks.empty()) return;
   const auto drop = [](auto& array) {
     std::decay_t<decltype(array)>(array.get_allocator()).swap(array);
   };
-  scene.child_count.resize(scene.tree.records.size());
-  std::transform(scene.tree.records.begin(), scene.tree.records.end(), scene.child_count.begin(),
-                 [](const NodeRecord& r) { return r.child_count; });
+  if (!is_coded(scene)) {
+    scene.child_count.resize(records.size());
+    std::transform(records.begin(), records.end(), scene.child_count.begin(),
+                   [](const NodeRecord& r) { return r.child_count; });
+  }
   drop(scene.tree.records);
   drop(scene.tree.first_child);
 }
 
 std::shared_ptr<const LodTree> whole_tree(const Scene& scene) {
-  if (scene.child_count.empty()) return {std::shared_ptr<void>(), &scene.tree};
+  const size_t nodes = scene.tree.parent.size();
+  if (scene.tree.records.size() == nodes) return {std::shared_ptr<void>(), &scene.tree};
   auto tree = std::make_shared<LodTree>();
-  const size_t nodes = scene.child_count.size();
+  const NodeLinks links = node_links(scene);
   tree->blend_share = scene.tree.blend_share;
   tree->parent.assign(scene.tree.parent.begin(), scene.tree.parent.end());
   tree->records.resize(nodes);
   tree->first_child.resize(nodes);
   uint32_t first_child = 1;
-  for (size_t n = 0; n < nodes; ++n) {
-    tree->records[n].child_count = scene.child_count[n];
+  for (uint32_t n = 0; n < nodes; ++n) {
+    tree->records[n].child_count = links.children(n);
     tree->first_child[n] = first_child;
-    first_child += scene.child_count[n];
+    first_child += tree->records[n].child_count;
   }
   fill_interior(scene.search, *tree);
   for (size_t n = 1; n < nodes; ++n)
-    if (scene.child_count[n] == 0) {
+    if (tree->records[n].child_count == 0) {
       NodeRecord& leaf = tree->records[n];
       const NodeRecord& parent = tree->records[tree->parent[n]];
       leaf.box_min = parent.box_min;

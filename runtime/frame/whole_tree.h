@@ -7,8 +7,8 @@
 
 namespace voyager {
 
-// Of a resident scene whose search is made. The counts of children stay, and so do the records
-// where leaves have extents or a chunk is damaged.
+// Of a resident scene whose search is made. How many children a node has is known still
+// (node_links.h). The records stay where leaves have extents or a chunk is damaged.
 void leave_out_records(Scene& scene);
 // The tree with a record for each node: the scene's, or made from the search's. A leaf then has its
 // parent's box, in which it lies, and an extent of 0: no search tells that from its own. The scene

@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "runtime/math/half.h"
+#include "runtime/math/run_index.h"
 #include "runtime/math/sh.h"
 
 namespace voyager {
@@ -120,23 +121,12 @@ inline void unpack_sh(const uint8_t* __restrict row, int degree, const ShScales&
 
 // Which group a Gaussian is of. In the order of node ids a chunk's come in several runs, each of
 // which is a group; in a pool a slot is one.
-struct ShGroupBlock {
-  uint32_t first;   // the group of the first of 32 Gaussians
-  uint32_t starts;  // a bit for each of the others that begins the next group
-};
 struct ShGroups {
-  const ShGroupBlock* blocks;  // by Gaussian / 32; null in a pool
-  uint32_t slot_nodes;         // of a pool
+  const RunBlock* blocks;  // by Gaussian / 32; null in a pool
+  uint32_t slot_nodes;     // of a pool
 
   VOYAGER_HD uint32_t operator()(uint32_t gaussian) const {
-    if (blocks == nullptr) return gaussian / slot_nodes;
-    const ShGroupBlock block = blocks[gaussian / 32];
-    const uint32_t up_to = (2u << gaussian % 32) - 1u;
-#if defined(__CUDA_ARCH__)
-    return block.first + static_cast<uint32_t>(__popc(block.starts & up_to));
-#else
-    return block.first + static_cast<uint32_t>(std::popcount(block.starts & up_to));
-#endif
+    return blocks == nullptr ? gaussian / slot_nodes : run_of(blocks, gaussian);
   }
 };
 

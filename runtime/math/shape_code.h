@@ -1,7 +1,8 @@
 #pragma once
 // The shape of a Gaussian as compact storage has it (docs/voy-format.md), and as projection reads
-// it: 16 bytes for scales, rotation and opacity. Host and device restore the same bits: what
-// exponentials and logarithms give is looked up in tables that the host makes.
+// it: 16 bytes for scales, rotation and opacity, and for how many children the node has. Host and
+// device restore the same bits: what exponentials and logarithms give is looked up in tables that
+// the host makes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,18 +11,28 @@
 #include "runtime/math/exact.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/math/half.h"
+#include "runtime/math/large_families.h"
 
 namespace voyager {
 
 // 16 bytes, so that a device reads it at once.
 struct alignas(16) ShapeCode {
   uint16_t scale[3];     // steps of 1/512 of its logarithm, from -21
-  uint16_t opacity;      // leaf: 65535 steps; merged: binary16
+  uint16_t opacity;      // with a logit: 65535 steps; else binary16
   uint16_t rotation[3];  // smaller_component() and which is the largest
   uint8_t node_code;     // runtime/math/node_code.h
-  uint8_t leaf;          // 0 or 1
+  uint8_t family;        // the node's children, at most kManyChildren; beside them kHasLogit
 };
 static_assert(sizeof(ShapeCode) == 16);
+
+inline constexpr uint32_t kHasLogit = 0x80;
+
+inline uint8_t family_code(bool has_logit, uint32_t children) {
+  return static_cast<uint8_t>((has_logit ? kHasLogit : 0) | std::min(children, kManyChildren));
+}
+VOYAGER_HD bool has_logit(const ShapeCode& code) {
+  return (code.family & kHasLogit) != 0;
+}
 
 inline float restore_log_scale(uint16_t q) {
   return static_cast<float>(q / 512.0 - 21.0);
@@ -117,11 +128,11 @@ struct ShapeTables {
 inline constexpr size_t kCodes = 65536;
 
 VOYAGER_HD float restored_opacity(const ShapeCode& code, const ShapeTables& tables) {
-  return code.leaf != 0 ? tables.leaf_opacity[code.opacity] : half_to_float(code.opacity);
+  return has_logit(code) ? tables.leaf_opacity[code.opacity] : half_to_float(code.opacity);
 }
 
 VOYAGER_HD float restored_log_opacity(const ShapeCode& code, const ShapeTables& tables) {
-  return tables.log_opacity[(code.leaf != 0 ? kCodes : 0) + code.opacity];
+  return tables.log_opacity[(has_logit(code) ? kCodes : 0) + code.opacity];
 }
 
 // Without its mean.

@@ -131,10 +131,28 @@ void Linker::check(const StagedChunk& chunk, const std::string& file) const {
     check_repeat(tables_[own.chunk + 1]->subtrees[0].ids, own, *tables_[own.chunk + 1]);
 }
 
+void Linker::add_large(const LinkTable& table, LinkPatch& patch) {
+  if (table.large.empty()) return;
+  for (const LargeFamily& family : table.large)
+    large_.push_back({table.slot * shape_.nodes + family.parent, family.children});
+  std::sort(large_.begin(), large_.end(),
+            [](const LargeFamily& a, const LargeFamily& b) { return a.parent < b.parent; });
+  patch.large = large_;
+}
+
+void Linker::remove_large(const LinkTable& table, LinkPatch& patch) {
+  if (table.large.empty()) return;
+  std::erase_if(large_, [&](const LargeFamily& family) {
+    return family.parent / shape_.nodes == table.slot;
+  });
+  patch.large = large_;
+}
+
 void Linker::arrive(LinkTable&& table, LinkPatch& patch) {
   const uint32_t chunk = table.chunk;
   tables_[chunk] = std::make_unique<LinkTable>(std::move(table));
   LinkTable& own = *tables_[chunk];
+  add_large(own, patch);
   for (uint32_t i = 0; i < own.subtrees.size() && own.subtrees[i].ids.root == 0; ++i)
     link_root(own, i, patch);
   each_family_of(own, [&](const Family& family) { link(family, patch); });
@@ -202,6 +220,7 @@ void Linker::unlink(Family first, LinkPatch& patch) {
 
 void Linker::evict(uint32_t chunk, LinkPatch& patch) {
   each_family_of(*tables_[chunk], [&](const Family& family) { unlink(family, patch); });
+  remove_large(*tables_[chunk], patch);
   tables_[chunk].reset();
 }
 

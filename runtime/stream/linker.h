@@ -3,6 +3,7 @@
 // of the next; a node does so only when all subtrees below it are there, and all that leads
 // to itself, so that whatever search follows the links finds a cut that is whole.
 #include <memory>
+#include <optional>
 
 #include "runtime/stream/chunk_graph.h"
 #include "runtime/stream/staged_chunk.h"
@@ -32,8 +33,10 @@ struct LinkPatch {
   std::vector<uint32_t> unlinked;  // subtrees to which nothing leads any more; for their entries
   std::vector<std::pair<uint32_t, SearchSubtree>> linked;
   std::vector<Parent> parents;
+  // All large families of nodes that are held, where those have changed.
+  std::optional<std::vector<LargeFamily>> large;
 
-  bool empty() const { return cut.records.empty() && unlinked.empty() && linked.empty(); }
+  bool empty() const { return cut.records.empty() && unlinked.empty() && linked.empty() && !large; }
 };
 
 class Linker {
@@ -69,12 +72,15 @@ class Linker {
   void each_family_of(const LinkTable& table, const Work& work) const;
   void link(Family family, LinkPatch& patch);
   void unlink(Family family, LinkPatch& patch);
+  void add_large(const LinkTable& table, LinkPatch& patch);
+  void remove_large(const LinkTable& table, LinkPatch& patch);
   void link_root(LinkTable& table, uint32_t subtree, LinkPatch& patch);
   void add_below(const LinkTable& table, uint32_t subtree, std::vector<Family>& out) const;
 
   const ChunkGraph* graph_;
   SlotShape shape_;
   std::vector<std::unique_ptr<LinkTable>> tables_;  // by chunk
+  std::vector<LargeFamily> large_;                  // of what is held, by address
   std::vector<Family> work_;
 };
 

@@ -35,6 +35,9 @@ class Stager {
           content.records.data() + record);
       record += content.subtrees[i].node_count();
     }
+    for (size_t i = 0; i < content.node.size(); ++i)
+      if (const uint32_t children = content.record_of(i).child_count; children >= kManyChildren)
+        out_.links.large.push_back({out_.place[i], children});
     out_.links.last_root = root_;
     out_.links.last_child = child_;
     return std::move(out_);

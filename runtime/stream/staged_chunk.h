@@ -8,6 +8,7 @@
 #include "runtime/format/chunk.h"
 #include "runtime/lod/nesting.h"
 #include "runtime/lod/subtree_cursor.h"
+#include "runtime/math/large_families.h"
 #include "runtime/select/search_tree.h"
 #include "runtime/stream/slot_ids.h"
 
@@ -38,6 +39,7 @@ struct LinkTable {
   uint32_t first_subtree = 0;
   std::vector<StagedSubtree> subtrees;
   std::vector<NodeBelow> below;
+  std::vector<LargeFamily> large;  // parents by place
   // The root and the first child of the first and of the last subtree: neighbours may repeat them.
   NodeRecord first_root{}, first_child{}, last_root{}, last_child{};
 };

@@ -60,7 +60,7 @@ TEST(ShCode, ALowerDegreeIsTheBeginningOfARow) {
 
 TEST(ShCode, GroupsBeginWhereTheirBitsAre) {
   std::mt19937 random(7);
-  std::vector<ShGroupBlock> blocks(40);
+  std::vector<RunBlock> blocks(40);
   std::vector<uint32_t> expected;
   uint32_t group = 0;
   for (size_t b = 0; b < blocks.size(); ++b)

@@ -22,16 +22,16 @@ TEST(ShapeCode, ItIsWhatActivationGives) {
     ShapeCode code{};
     for (uint16_t& s : code.scale) s = static_cast<uint16_t>(random());
     for (uint16_t& r : code.rotation) r = static_cast<uint16_t>(random());
-    code.leaf = i % 2;
+    code.family = family_code(i % 2 != 0, static_cast<uint32_t>(i));
     // Any opacity of a leaf; of a merged Gaussian any that is positive and finite.
-    code.opacity = static_cast<uint16_t>(code.leaf != 0 ? random() : random() % 0x7c00);
+    code.opacity = static_cast<uint16_t>(has_logit(code) ? random() : random() % 0x7c00);
     const GaussianWords words{
         {0, 0, 0},
         {restore_log_scale(code.scale[0]), restore_log_scale(code.scale[1]),
          restore_log_scale(code.scale[2])},
         restore_rotation(code.rotation),
-        code.leaf != 0 ? restore_leaf_opacity(code.opacity) : half_to_float(code.opacity)};
-    const Gaussian expected = activate(words, code.leaf != 0);
+        has_logit(code) ? restore_leaf_opacity(code.opacity) : half_to_float(code.opacity)};
+    const Gaussian expected = activate(words, has_logit(code));
     const Gaussian found = restored_shape(code, shape_tables());
     ASSERT_EQ(std::memcmp(&expected, &found, sizeof expected), 0) << i;
     expect_same_bits(restored_opacity(code, shape_tables()), expected.opacity);
