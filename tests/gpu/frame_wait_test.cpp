@@ -48,6 +48,7 @@ TEST_F(FrameWait, TheHostSleeps) {
   hold_back(*ring);
   drawn->submit(into(*ring, small), false);
   expect_asleep("a larger frame", [&] { drawn->submit(into(*ring, large), false); });
+  ring->wait();
 }
 
 TEST_F(FrameWait, AnImagesCopyIsTheDevices) {
