@@ -1,5 +1,5 @@
 #pragma once
-// What a run of frames comes to: times, counters, floors, scores.
+// Turns measured frames into rows of JSON: times, counters, floors, scores.
 #include <nlohmann/json.hpp>
 
 #include "tools/frame_bench.h"

@@ -24,14 +24,15 @@ struct ParentView {
 
 enum class ShForm { half, single, coded };
 
-// By Gaussian: by node id, or by address in a pool.
+// The arrays are indexed by node id, or by address in a pool.
 struct GaussianView {
-  // Mean, and what bounds the support before all else is read: the largest scale (upper
-  // 16 bits) and the radius of the support above the least α* there is, the truth's, in standard
-  // deviations, 0 where α never reaches it (lower 16), both rounded up to the upper half of a
+  // Mean, and a word that bounds the support before all else is read. Its upper 16 bits are the
+  // largest scale. Its lower 16 are the radius of the support in standard deviations, at the least
+  // α* there is, the truth's; 0 if α never reaches it. Both are rounded up to the upper half of a
   // binary32.
   const float4* hulls;
-  // Two each: scale and log o; rotation (w, x, y, z). Of a coded scene one ShapeCode each.
+  // Two words for each Gaussian: scale and log o, then rotation (w, x, y, z). A coded scene has one
+  // ShapeCode for each.
   const void* shapes;
   // What interpolation reads; none where every leaf is drawn, but for codes of a scene whose
   // footprints differ. A coded scene has opacities and node codes in its shapes.

@@ -8,15 +8,14 @@
 
 namespace voyager {
 
-// Of a view that was looked at with these τ, the least first: its PSNR with a cut of that share of
-// the leaves. Between two cuts by the logarithm of their shares; beyond the coarsest as it; of
-// all leaves with all of them.
+// The PSNR of view `view` for a cut with `share` of the leaves, interpolated in log(share).
+// `looked` is by ascending τ. A share below the coarsest cut's has the coarsest cut's PSNR.
 double psnr_with_share(std::span<const HeldOut> looked, size_t view, double share);
 
 class HeldOutViews {
  public:
-  // first: of so many views, far behind those that are learned from. looked_at: leaves, of which
-  // shares are; all_leaves: with those that are in every cut.
+  // The views are first to first + count - 1, which nothing learns from. Shares are shares of
+  // looked_at leaves. all_leaves also counts the leaves around them, which every cut has.
   HeldOutViews(const TrainingViews& views, uint32_t first, uint32_t count, size_t looked_at,
                size_t all_leaves)
       : views_(views),
@@ -25,12 +24,13 @@ class HeldOutViews {
         looked_at_(looked_at),
         around_(all_leaves - looked_at) {}
 
-  // At the default τ, twice and five times it.
+  // Looks at the default τ, twice and five times it.
   std::vector<HeldOut> look(NodeTrainer& trainer) const;
-  // The greatest τ, of a few a factor apart, at which a cut's pictures have in the mean half a dB
-  // less than every leaf's at most: those of the nearer half of the views, and of the farther half.
+  // Tries τ, each a factor above the one before. Returns the last one before the pictures of a cut
+  // have over half a dB less than every leaf's, on average over the nearer half of the views or
+  // over the farther half.
   double best_tau(NodeTrainer& trainer) const;
-  // Pictures that look() draws, and best_tau() at most.
+  // How many pictures look() draws, and how many best_tau() draws at most.
   uint32_t pictures_of_look() const;
   uint32_t pictures_of_best_tau() const;
 

@@ -10,10 +10,10 @@
 namespace voyager {
 namespace {
 
-// What lies around is at first as fine as this: a pixel of a training picture, as seen from the
-// part; then coarser by the factor until there is room.
+// Nodes around the part are at first no larger than this share of their distance, a pixel of a
+// training picture. The share grows by kCoarser until they fit.
 constexpr double kFinestAround = 1.0 / 175, kCoarser = 1.4142135623730951;
-// Of the part's diagonal, that what touches it is away at least.
+// Distances count at least this share of the part's diagonal.
 constexpr double kLeastAway = 0.02;
 
 std::vector<uint64_t> leaves_below(const LodTree& tree) {
@@ -55,8 +55,8 @@ Hull hull_of(const LodTree& tree, uint32_t first, uint32_t count) {
   return hull;
 }
 
-// Nodes that cover all but the part, each no larger than `finest` of its distance; none where they
-// are more than `most`.
+// The coarsest nodes that cover all but the part, each no larger than `finest` times its distance.
+// Returns none if they are more than `most`.
 std::vector<uint32_t> around(const LodTree& tree, const PartRoots& roots, double finest,
                              uint64_t most) {
   const Hull hull = hull_of(tree, roots.first, roots.count);
@@ -81,7 +81,7 @@ std::vector<uint32_t> around(const LodTree& tree, const PartRoots& roots, double
   return found;
 }
 
-// Those of which there are so many at most, or the coarsest there are.
+// The finest cover with at most `most` nodes, else the coarsest one.
 std::vector<uint32_t> finest_around(const LodTree& tree, const PartRoots& roots, uint64_t most) {
   if (roots.first == 0) return {};
   for (double finest = kFinestAround; finest < 1e6; finest *= kCoarser) {
@@ -108,7 +108,7 @@ class Taking {
     }
   }
 
-  // A root that only holds others together. Never in a cut: its size is infinite.
+  // Adds a root that only holds others together. Its size is infinite, so no cut has it.
   void add_root(const std::vector<uint32_t>& children) {
     NodeRecord root = whole_.tree.records[0];
     root.extent = std::numeric_limits<float>::infinity();
@@ -116,14 +116,14 @@ class Taking {
     add_merged(0);
     add_children(0, children);
   }
-  // Everything below the nodes that are there, or as far as those that stand as leaves.
-  void add_below(const std::vector<bool>& stands_as_leaf) {
+  // Adds all descendants of the nodes so far, down to leaves and to nodes that become leaves.
+  void add_below(const std::vector<bool>& becomes_leaf) {
     const LodTree& tree = whole_.tree;
     if (part_.whole.empty()) add(tree.records[0], kNoNode, 0);
     for (uint32_t p = 0; p < part_.whole.size(); ++p) {
       const uint32_t n = part_.whole[p];
       if (n == kNoNode || tree.is_leaf(n)) continue;
-      if (stands_as_leaf[n]) {
+      if (becomes_leaf[n]) {
         part_.scene.tree.records[p].child_count = 0;
         part_.scene.tree.records[p].extent = 0;
         continue;
@@ -134,7 +134,7 @@ class Taking {
       add_children(p, children);
     }
   }
-  // own: by node of the whole, whether it is among what views look at.
+  // own[n]: whether views look at node n of the whole.
   ScenePart finish(const std::vector<bool>& own) {
     for (const bool looked_at : {true, false}) {
       for (uint32_t p = 0; p < part_.whole.size(); ++p)

@@ -152,7 +152,7 @@ TEST_F(SplatLists, AllLeavesOfALargeTreeAreWholeInTheFirstFrame) {
   with_cpu.expect();
 }
 
-// All of the device's memory but so much, until it goes.
+// Holds all device memory but `left` bytes while it lives.
 class TakenMemory {
  public:
   explicit TakenMemory(size_t left) {
@@ -194,11 +194,9 @@ TEST_F(SplatLists, WithoutMemoryAFrameSaysWhatItLeftOutAndTheNextIsWhole) {
   expect_same_bits(found, whole);
 }
 
-// A list that is long beside all others is blended by more warps, a pixel a lane. What else is in
-// the image, and so which lists those are, changes nothing of it.
 constexpr uint32_t kSide = 800;
 
-// 600 small ones in the middle, and so many lines over the upper half.
+// 600 small Gaussians in the middle, and `lines` lines over the upper half.
 std::shared_ptr<Scene> heap_and_lines(int lines) {
   auto scene = empty_scene();
   std::mt19937 random(9);

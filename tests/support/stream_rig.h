@@ -12,7 +12,7 @@ namespace voyager::test {
 
 class StreamRig {
  public:
-  // share: of the memory that all chunks take; at least room for the top.
+  // share: the pool's share of the memory that all chunks take. It always has room for the top.
   StreamRig(const BakedScene& baked, double share, const PipelineDesc& desc = {},
             uint32_t chunk_bytes = kMinChunkBytes, Quality quality = Quality::lossless)
       : StreamRig(scene_bytes(baked, quality, 0, chunk_bytes), share, desc) {}
@@ -25,7 +25,7 @@ class StreamRig {
         whole(resident, *backend, desc, memory(), workers),
         part(streamed, *backend, desc, memory(), workers) {}
 
-  // first_bytes: of what is read beside the top; around `start`, where there is one.
+  // first_bytes: bytes to read at opening besides the top, around `start` if there is one.
   std::shared_ptr<Scene> open(const std::shared_ptr<const ByteSource>& source, double share,
                               uint64_t first_bytes = 0, std::optional<Vec3d> start = {}) {
     StreamingDesc desc;
@@ -43,7 +43,7 @@ class StreamRig {
     return open_streamed(source, desc, *backend, memory(), workers);
   }
 
-  // Room for so many chunks, or all that are pinned.
+  // Resizes the pool to `slots` chunks, but at least to the pinned ones.
   void give_room(Scene& scene, uint32_t slots) {
     const SceneFile& file = scene.stream->file();
     const PoolBytes pool = backend->pool_bytes(scene, SceneStream::slot_shape(file));
