@@ -113,7 +113,7 @@ TEST(Results, NumbersOfThePromisedHeadersAreTheBaseline) {
   EXPECT_EQ(VOY_MAX_STAGES, 16);
 }
 
-TEST(Results, StageNames) {
+TEST(Results, EachStageHasItsNameAndNoOtherNumberHasOne) {
   const char* names[] = {"search", "project", "sort", "bin", "rasterize", "resolve"};
   for (int i = 0; i < 6; ++i) EXPECT_STREQ(voyStageName(static_cast<VoyStage>(i)), names[i]);
   EXPECT_EQ(voyStageName(static_cast<VoyStage>(6)), nullptr);

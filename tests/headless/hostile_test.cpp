@@ -12,7 +12,7 @@
 namespace hostile_test {
 namespace {
 
-TEST_F(Hostile, DeviceChoices) {
+TEST_F(Hostile, ADeviceOfNoKnownChoiceIsRefused) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
   constexpr uint32_t kMinor = VOY_MAKE_VERSION(0, 1, 0), kMajor = VOY_MAKE_VERSION(1, 0, 0);
   const uint32_t own = voy.GetVersion();
@@ -37,7 +37,7 @@ TEST_F(Hostile, DeviceChoices) {
   expect_invalid(create_device(desc), "logLevel");
 }
 
-TEST_F(Hostile, ViewSizesAndChoices) {
+TEST_F(Hostile, AViewOutOfRangeIsRefusedAndItsFieldNamed) {
   const auto with = [&](auto&& change) {
     VoyViewDesc desc = host.view_desc();
     change(desc);
@@ -70,7 +70,7 @@ TEST_F(Hostile, ViewSizesAndChoices) {
   expect_invalid(with([](VoyViewDesc& d) { d.reserved = 1; }), "reserved");
 }
 
-TEST_F(Hostile, Experiments) {
+TEST_F(Hostile, AnExperimentOfNoKnownChoiceIsRefused) {
   VoyViewDesc desc = host.view_desc();
   const auto with = [&](auto&& change) {
     VoyExperiment experiment = VOY_EXPERIMENT_INIT;
@@ -98,7 +98,7 @@ TEST_F(Hostile, Experiments) {
   expect_invalid(with([](E& e) { e.selection = VOY_SELECTION_BLOCKS; }), "selection");
 }
 
-TEST_F(Hostile, TargetSizesAndPitches) {
+TEST_F(Hostile, ATargetOutOfRangeIsRefusedAndItsFieldNamed) {
   const auto with = [&](auto&& change) {
     VoyTargetDesc desc = host.target_desc();
     change(desc);
@@ -137,7 +137,7 @@ TEST_F(Hostile, TargetSizesAndPitches) {
   expect_invalid(with([](VoyTargetDesc& d) { d.kind = bad_enum<VoyTargetKind>(1); }), "kind");
 }
 
-TEST_F(Hostile, PosesAndFrusta) {
+TEST_F(Hostile, APoseOrFrustumOutOfRangeIsRefusedAndItsFieldNamed) {
   const std::vector<float> before = host.pixels;
   const auto with = [&](auto&& change) {
     VoyFrameEye eye = host.eye();
@@ -170,7 +170,7 @@ TEST_F(Hostile, PosesAndFrusta) {
   }
 }
 
-TEST_F(Hostile, Frames) {
+TEST_F(Hostile, AFrameOutOfRangeIsRefusedAndItsFieldNamed) {
   const VoyFrameEye eye = host.eye();
   const auto with = [&](auto&& change) {
     VoyFrame frame = Host::frame(eye);
@@ -219,7 +219,7 @@ TEST_F(Hostile, Frames) {
   expect_invalid(with_instance(), "in instance 0");
 }
 
-TEST_F(Hostile, Instances) {
+TEST_F(Hostile, AnInstanceOutOfRangeIsRefusedAndTheImageStays) {
   ASSERT_EQ(host.render(), VOY_SUCCESS);
   const std::vector<float> image = host.pixels;
   const auto with = [&](auto&& change) {
@@ -277,7 +277,7 @@ TEST_F(Hostile, Instances) {
   EXPECT_EQ(host.pixels, image);
 }
 
-TEST_F(Hostile, TargetLargerThanTheView) {
+TEST_F(Hostile, ATargetLargerThanTheViewIsRefused) {
   VoyViewDesc desc = host.view_desc();
   desc.maxWidth = Host::kWidth - 1;
   VoyView small = nullptr;
@@ -287,7 +287,7 @@ TEST_F(Hostile, TargetLargerThanTheView) {
   expect_invalid(voy.RenderFrame(small, &frame), "95 x 64");
 }
 
-TEST_F(Hostile, QueriesBeforeAnyFrameAndWithoutACut) {
+TEST_F(Hostile, QueriesWithoutAFrameOrACutAreRefused) {
   VoyFrameStats stats = VOY_FRAME_STATS_INIT;
   expect_invalid(voy.GetFrameStats(host.view, &stats), "without a rendered frame");
   uint32_t count = 77;
@@ -318,7 +318,7 @@ TEST_F(Hostile, WhatASceneDoesNotNeedHasNoCount) {
   EXPECT_EQ(omitted, 2) << "the tree, and the SH bands above degree 1";
 }
 
-TEST_F(Hostile, FrustumHelpers) {
+TEST_F(Hostile, FrustumHelpersRefuseWhatIsNoFrustum) {
   VoyFrustum f = {1, 2, 3, 4};
   for (const double bad : {kNan, kInf, 1.5707963267948968, -3.0}) {
     expect_invalid(voy.FrustumFromAngles(bad, 1, 1, -1, &f), "left");
@@ -343,7 +343,7 @@ TEST_F(Hostile, FrustumHelpers) {
   EXPECT_EQ(f.right, std::tan(0.6));
 }
 
-TEST_F(Hostile, EmptyAndNonsenseScenes) {
+TEST_F(Hostile, WhatIsNoSceneIsRefused) {
   VoyScene scene = nullptr;
   VoySceneDesc desc = VOY_SCENE_DESC_INIT;
   const auto open = [&] { return voy.OpenScene(host.device, &desc, &scene); };
@@ -368,8 +368,8 @@ TEST_F(Hostile, EmptyAndNonsenseScenes) {
   EXPECT_EQ(scene, nullptr);
 }
 
-// At once, though nobody will ever write to it.
-TEST_F(Hostile, AFifoForAScene) {
+// Nobody ever writes to it, so a reader would wait for ever.
+TEST_F(Hostile, AFifoIsRefusedAtOnce) {
   const std::string path = ::testing::TempDir() + "fifo-" + std::to_string(::getpid()) + ".voy";
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;

@@ -172,7 +172,7 @@ TEST(Streaming, AReadThatFailsIsToldOnceAndTriedAgain) {
   ASSERT_EQ(host.draw(1), VOY_SUCCESS) << voy.message();
 }
 
-TEST(Streaming, Refusals) {
+TEST(Streaming, WhatIsOutOfRangeIsRefused) {
   const Library voy;
   StreamedHost host(voy, 0);
   VoyStreamingStats stats = VOY_STREAMING_STATS_INIT;

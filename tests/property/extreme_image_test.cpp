@@ -39,7 +39,7 @@ Frame expect_sound(const ExtremeShot& shot) {
   return on;
 }
 
-TEST(ExtremeImage, Sizes) {
+TEST(ExtremeImage, EverySizeIsFiniteAndNearTheReference) {
   for (const ExtremeShot& shot : test::size_shots()) expect_sound(shot);
 }
 

@@ -46,7 +46,7 @@ void expect_caught(const std::string& says, const Edit& edit) {
   }
 }
 
-TEST(Validate, Topology) {
+TEST(Validate, ATreeWhoseLinksDisagreeIsCaught) {
   expect_caught("node 3, parent", [](BakedScene& b) { b.tree.parent[3] = 2; });
   expect_caught("node 3, parent", [](BakedScene& b) { b.tree.parent[3] = kNoNode; });
   expect_caught("node 0, parent", [](BakedScene& b) { b.tree.parent[0] = 0; });
@@ -60,7 +60,7 @@ TEST(Validate, Topology) {
   expect_caught("first children", [](BakedScene& b) { b.tree.first_child.clear(); });
 }
 
-TEST(Validate, Records) {
+TEST(Validate, ARecordOutOfItsRangeIsCaught) {
   expect_caught("node 5, box", [](BakedScene& b) { b.tree.records[5].box_min.y = NAN; });
   expect_caught("node 0, box", [](BakedScene& b) { b.tree.records[0].box_max.x = INFINITY; });
   expect_caught("node 0, box", [](BakedScene& b) { b.tree.records[0].box_min.z = -1e18f; });
@@ -78,7 +78,7 @@ TEST(Validate, Records) {
   });
 }
 
-TEST(Validate, LeafBoxesAndGaussians) {
+TEST(Validate, ALeafThatIsNotItsGaussiansIsCaught) {
   expect_caught("box of a leaf", [](BakedScene& b) {
     NodeRecord& r = b.tree.records[first_leaf(b.tree)];
     r.box_max.x = std::nextafter(r.box_max.x, -1e9f);
@@ -97,7 +97,7 @@ TEST(Validate, LeafBoxesAndGaussians) {
   expect_caught("SH degree", [](BakedScene& b) { b.leaves.sh_degree = -7; });
 }
 
-TEST(Validate, Moments) {
+TEST(Validate, AMergedGaussianThatIsNotItsChildrensMomentsIsCaught) {
   // Words off by more than their tolerance: node 0 draws merged Gaussian 0.
   expect_caught("node 0, mean", [](BakedScene& b) { b.merged.position[0] += 1e-3f; });
   expect_caught("node 0, covariance", [](BakedScene& b) { b.merged.log_scale[1] += 1e-3f; });
@@ -110,7 +110,7 @@ TEST(Validate, Moments) {
     expect_caught("node 0, opacity", [&](BakedScene& b) { b.merged.opacity[0] = opacity; });
 }
 
-TEST(Validate, AxisCodes) {
+TEST(Validate, ANodeCodeThatIsNotItsParentsIsCaught) {
   expect_caught("footprint level",
                 [](BakedScene& b) { b.node_code[first_leaf(b.tree)] += kAxisCodes; });
   expect_caught("node 0, footprint level", [](BakedScene& b) {

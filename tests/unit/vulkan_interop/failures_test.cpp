@@ -56,7 +56,7 @@ TEST(VulkanFailures, TheWatchSeesADescriptorThatIsClosedTwice) {
   EXPECT_EQ(open_descriptors().count(fd), 0u);
 }
 
-TEST(VulkanFailures, OfADevice) {
+TEST(VulkanFailures, ADeviceWhoseCallFailsLeaksNothing) {
   VulkanMock mock;
   for (const Mode& mode : kModes) {
     SCOPED_TRACE(mode.name);
@@ -65,7 +65,7 @@ TEST(VulkanFailures, OfADevice) {
 }
 
 // A device is refused where an entry point that is a must is missing, and the error names it.
-TEST(VulkanFailures, OfMissingEntryPoints) {
+TEST(VulkanFailures, ADeviceWithoutARequiredEntryPointIsRefusedByItsName) {
   for (const auto& [name, function] : mock::table()) {
     MockDevice lacking;
     lacking.missing = name;
@@ -118,7 +118,7 @@ uint32_t fail_each_call_of_a_ring(const Mode& mode, const Shape& shape) {
   return calls;
 }
 
-TEST(VulkanFailures, OfARing) {
+TEST(VulkanFailures, ARingWhoseCallFailsLeaksNothing) {
   for (const Mode& mode : kModes)
     for (const bool imported : {false, true})
       for (const bool host_pointers : {false, true})
@@ -300,7 +300,7 @@ TEST(VulkanFailures, ImportedMemoryThatHasNoRoomForItsImageIsRefused) {
   }
 }
 
-TEST(VulkanFailures, OfAComposite) {
+TEST(VulkanFailures, ACompositeWhoseCallFailsLeaksNothing) {
   VulkanMock mock;
   const auto device = make_device(mock, kModes[0]);
   for (const VkFormat depth : {VK_FORMAT_UNDEFINED, VK_FORMAT_D32_SFLOAT}) {
