@@ -4,15 +4,16 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 set(cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/voyager)
 
-# The library finds its modules beside itself, and what it needs of others there, too.
+# The library finds its modules beside itself, and what it needs of others there, too. Files of the build folder have
+# the installed ones' run path, because guides copy them from there.
 install(TARGETS voyager EXPORT voyager
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
   INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-set_target_properties(voyager PROPERTIES INSTALL_RPATH "$ORIGIN")
+set_target_properties(voyager PROPERTIES INSTALL_RPATH "$ORIGIN" BUILD_WITH_INSTALL_RPATH ON)
 foreach(module http sog cuda)
   if(TARGET voyager_${module})
     install(TARGETS voyager_${module} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${module})
-    set_target_properties(voyager_${module} PROPERTIES INSTALL_RPATH "$ORIGIN")
+    set_target_properties(voyager_${module} PROPERTIES INSTALL_RPATH "$ORIGIN" BUILD_WITH_INSTALL_RPATH ON)
   endif()
 endforeach()
 # As the SONAME, so that packages of two versions share no file.
@@ -21,7 +22,10 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE COMPONENT runtime
 
 if(VOYAGER_BUILD_TOOLS)
   file(RELATIVE_PATH library_folder ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
-  set_target_properties(voyager_tool PROPERTIES INSTALL_RPATH "$ORIGIN/${library_folder}")
+  # The build folder has libraries in lib, whatever the installed ones' folder is called.
+  set(run_path "$ORIGIN/${library_folder}" "$ORIGIN/../lib")
+  list(REMOVE_DUPLICATES run_path)
+  set_target_properties(voyager_tool PROPERTIES INSTALL_RPATH "${run_path}" BUILD_WITH_INSTALL_RPATH ON)
   install(TARGETS voyager_tool RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
 endif()
 

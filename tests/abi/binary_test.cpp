@@ -69,5 +69,25 @@ TEST(Binary, HostsThatLoadTheLibraryNeedNoneOfOurs) {
     expect_needs_none(VOYAGER_BIN_DIR "/" + host, {"libvoyager", "libtbb", "libcuda", "libcudart"});
 }
 
+std::vector<std::string> entries(const std::string& list) {
+  std::vector<std::string> found(1);
+  for (const char c : list)
+    if (c == ':')
+      found.emplace_back();
+    else
+      found.back() += c;
+  return found;
+}
+
+// An empty entry of a run path is the current folder, in which anybody may have put a libzstd.so.1.
+TEST(Binary, WhatIsShippedLooksForLibrariesBesideItselfAlone) {
+  for (const std::string& path : entries(VOYAGER_SHIPPED)) {
+    const std::vector<std::string> run_path = ElfFile(path).run_path();
+    ASSERT_EQ(run_path.size(), 1u) << path;
+    for (const std::string& entry : entries(run_path[0]))
+      EXPECT_EQ(entry.rfind("$ORIGIN", 0), 0u) << path << ": " << run_path[0];
+  }
+}
+
 }  // namespace
 }  // namespace binary_test

@@ -25,6 +25,11 @@ class ElfFile {
 
   std::vector<std::string> needed() const { return dynamic_strings(DT_NEEDED); }
   std::vector<std::string> soname() const { return dynamic_strings(DT_SONAME); }
+  std::vector<std::string> run_path() const {
+    std::vector<std::string> paths = dynamic_strings(DT_RUNPATH);
+    for (const std::string& path : dynamic_strings(DT_RPATH)) paths.push_back(path);
+    return paths;
+  }
 
   // Names of the symbols that others may bind to.
   std::vector<std::string> exports() const {
