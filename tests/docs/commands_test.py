@@ -6,6 +6,8 @@ block with other than ASCII outside of its comments is a drawing or a formula. T
 one shell, in a folder that has what readers bring (stand_ins), and shortened (SHORTER). What cannot run here is in
 not_run.txt, below its reason. FOLDER is made anew. ctest sets SOURCE, BUILD, and LEFT_OUT, a reason to skip, or nothing.
 """
+import functools
+import http.server
 import json
 import os
 import pathlib
@@ -14,6 +16,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import threading
 
 SOURCE = pathlib.Path(os.environ["SOURCE"])
 BUILD = pathlib.Path(os.environ["BUILD"])
@@ -27,6 +30,7 @@ PLACEHOLDERS = {"IN...": "scene.ply", "FILE": "scene.voy", "SCENE": "scene.voy",
 SHORTER = [(r"--gaussians \d+", "--gaussians 10000"), (r"--frames \d+", "--frames 2"),
            (r"--optimize \d+", "--optimize 0.01"),
            (r"^(voyager view.*)", r"\1 --frames 2"),
+           (r"^(openxr_headset (?!.*--frames).*)", r"\1 --frames 2"),
            (r"^(vulkan_host (?!.*--offscreen).*)",
             r"\1 --offscreen --camera-file city.cameras.json --frames 2 -o window"),
            (r"^ctest (--preset|--test-dir) \S+(.*)", rf"ctest --test-dir {BUILD}\2"),
@@ -80,6 +84,37 @@ def read_not_run():
     return {line.strip() for line in lines if line.startswith("    ")}
 
 
+class RangeServer(http.server.SimpleHTTPRequestHandler):
+    """http://host/ of the pages: what Voyager asks of any server, which Python's own does not have."""
+
+    def do_GET(self):
+        try:
+            content = pathlib.Path(self.translate_path(self.path)).read_bytes()
+        except OSError:
+            self.send_error(404)
+            return
+        asked = re.fullmatch(r"bytes=(\d+)-(\d+)", self.headers.get("Range", ""))
+        first, last = (int(asked[1]), min(int(asked[2]), len(content) - 1)) if asked else (0, len(content) - 1)
+        self.send_response(206 if asked else 200)
+        self.send_header("ETag", '"1"')
+        self.send_header("Content-Length", str(last + 1 - first))
+        if asked:
+            self.send_header("Content-Range", f"bytes {first}-{last}/{len(content)}")
+        self.end_headers()
+        self.wfile.write(content[first:last + 1])
+
+    def log_message(self, *_):
+        pass
+
+
+def serve(folder):
+    """Serves the folder's files until this process ends, and returns the address."""
+    server = http.server.ThreadingHTTPServer(
+        ("127.0.0.1", 0), functools.partial(RangeServer, directory=str(folder)))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    return f"127.0.0.1:{server.server_port}"
+
+
 def as_typed(command):
     command = re.sub(r"\[(--[^]]*|[A-Z]+)\]", r"\1", command)  # what may be left out is typed, too
     command = command.replace("VOYAGER/", f"{SOURCE}/").removeprefix("build/release/bin/")
@@ -94,7 +129,8 @@ def run(script, folder, home):
     variables = {name: value for name, value in os.environ.items()
                  if not re.match("CMAKE_|XR_|LD_LIBRARY_PATH|DISPLAY|WAYLAND_DISPLAY", name)}
     variables |= {"HOME": str(home), "PATH": f"{BUILD}/bin:{os.environ['PATH']}", "CMAKE_GENERATOR": "Ninja",
-                  "PKG_CONFIG_PATH": f"{home}/voyager/lib/pkgconfig"}
+                  "PKG_CONFIG_PATH": f"{home}/voyager/lib/pkgconfig",
+                  "XR_RUNTIME_JSON": f"{BUILD}/lib/voyager_test_runtime.json"}  # no headset
     done = subprocess.run(["bash", "-c", f"set -eo pipefail\n{script}"], cwd=folder, env=variables, text=True,
                           stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     return done.returncode, done.stdout
@@ -116,6 +152,10 @@ def stand_ins(folder, home):
         for copy in scene.voy a.voy b.voy; do cp city.voy $copy; done
         cp scene.hier x.hier
         cp {SOURCE}/tests/package/consumer/frame.c host.c
+        mkdir scripts plugin tests
+        cp {SOURCE}/scripts/check_abi.sh scripts
+        cp -r {SOURCE}/plugin/include plugin
+        cp -r {SOURCE}/tests/abi tests
         ln -s {BUILD}/bin {BUILD}/lib build/release
         ln -s {BUILD} build/library
         cmake --install {BUILD} --prefix ~/voyager""", folder, home)
@@ -130,7 +170,7 @@ def stand_ins(folder, home):
         (folder / name).write_text(json.dumps(cameras))
 
 
-def fault_of(name, commands, files, work):
+def fault_of(name, commands, files, work, host):
     """The command that failed and what it said, "" where none did."""
     place = work / name.replace("/", "_")
     shutil.copytree(work / "stand_ins", place, symlinks=True)
@@ -140,7 +180,8 @@ def fault_of(name, commands, files, work):
     for number, command in commands:
         if command.startswith(CHANGES_THE_MACHINE):
             return f"{name}:{number}: {command}\nexpected it in not_run.txt, because it changes the machine\n"
-        script += ["echo " + shlex.quote(f"@@ {name}:{number}: {as_typed(command)}"), as_typed(command)]
+        typed = as_typed(command).replace("http://host/", f"http://{host}/")
+        script += ["echo " + shlex.quote(f"@@ {name}:{number}: {typed}"), typed]
     code, said = run("\n".join(script), place, work / "home")
     return "" if code == 0 else f"{said.rpartition('@@ ')[2]}exit code {code}\n"
 
@@ -156,6 +197,7 @@ def main():
     if "found no Vulkan" in said and not os.environ.get("VOYAGER_REQUIRE_VULKAN"):
         print(said.strip().splitlines()[-1])
         return 77
+    host = serve(work / "stand_ins")
     not_run = read_not_run()
     faults, typed, met = [], 0, set()
     for path in sorted(SOURCE.rglob("*.md")):
@@ -166,7 +208,7 @@ def main():
         met |= {command for _, command in commands} & not_run
         commands = [(number, command) for number, command in commands if command not in not_run]
         if commands:
-            faults.append(fault_of(name, commands, files, work))
+            faults.append(fault_of(name, commands, files, work, host))
             typed += len(commands)
     faults += [f"not_run.txt: {command}: found on no page\n" for command in sorted(not_run - met)]
     faults = list(filter(None, faults))
