@@ -34,12 +34,13 @@ struct GaussianView {
   // Two words for each Gaussian: scale and log o, then rotation (w, x, y, z). A coded scene has one
   // ShapeCode for each.
   const void* shapes;
-  // What interpolation reads; none where every leaf is drawn, but for codes of a scene whose
-  // footprints differ. A coded scene has opacities and node codes in its shapes.
+  // What interpolation reads. Null if every leaf is drawn, except node_codes of scenes with
+  // differing footprints. A coded scene has opacities and node codes in its shapes.
   const float* opacities;
   const uint8_t* node_codes;
   ParentView parents;
-  const uint32_t* child_counts;  // none of a coded scene, whose shapes say how many, but for large:
+  // Null if the scene is coded: its shapes have the counts, except those of large families.
+  const uint32_t* child_counts;
   const LargeFamily* large_families;
   const uint32_t* large_family_count;
   // SH coefficients [k][rgb]: binary16 padded to 16 bytes, binary32, or a coded scene's rows.
