@@ -21,14 +21,14 @@ struct ViewClaim {
   std::unique_lock<std::mutex> call, state;
 };
 
-// The view's state is the caller's while the claim lives. A scene's destruction on another thread
-// is waited for: to the host, that is no use of the view.
+// The view's state is the caller's while the claim lives. The closing of a scene on another
+// thread is waited for: to the host, that is no use of the view.
 inline ViewClaim claim_for_instances(ViewObject& view) {
   ViewClaim claim;
   claim.call = claim_object(view, "view");
   claim.state = std::unique_lock(view.state);
   if (!view.view)
-    throw ApiError(VOY_ERROR_SCENE_DESTROYED,
+    throw ApiError(VOY_ERROR_SCENE_CLOSED,
                    "view: found a view that closing a scene has left unusable, expected it to be "
                    "destroyed");
   return claim;
@@ -38,8 +38,8 @@ inline ViewClaim claim_for_instances(ViewObject& view) {
 inline ViewClaim claim(ViewObject& view) {
   ViewClaim claim = claim_for_instances(view);
   if (view.scene_lost)
-    throw ApiError(VOY_ERROR_SCENE_DESTROYED,
-                   "view: found that a scene was destroyed, expected voySetViewInstances to set "
+    throw ApiError(VOY_ERROR_SCENE_CLOSED,
+                   "view: found that a scene was closed, expected voySetViewInstances to set "
                    "instances without it, or the view to be destroyed, too");
   return claim;
 }

@@ -34,10 +34,15 @@ const char* name(Kind kind) {
   return "object";
 }
 
+// What a call ends: what is opened is closed, what is created is destroyed.
+const char* ended(Kind kind) {
+  return kind == Kind::scene ? "closed" : "destroyed";
+}
+
 [[noreturn]] void fail(Kind expected, const std::string& found) {
   throw ApiError(VOY_ERROR_INVALID_HANDLE, std::string(name(expected)) + ": found " + found +
                                                ", expected a " + name(expected) +
-                                               " handle that is not destroyed");
+                                               " handle that is not " + ended(expected));
 }
 
 std::string hexadecimal(uint64_t value) {
@@ -76,7 +81,7 @@ size_t HandleTable::find(const void* handle, Kind kind) const {
     fail(kind, std::string("a ") + name(static_cast<Kind>(found_kind)) + " handle");
   const Slot& slot = slots_[index];
   if (generation != slot.generation || !slot.object)
-    fail(kind, std::string("the handle of a ") + name(kind) + " that was destroyed");
+    fail(kind, std::string("the handle of a ") + name(kind) + " that was " + ended(kind));
   if (slot.object->kind() != kind)
     fail(kind, hexadecimal(value) + ", which is no handle of this library");
   return index;

@@ -36,7 +36,7 @@ VoyResult result_of(ErrorCode code) {
     case ErrorCode::timeout:
       return VOY_ERROR_TIMEOUT;
     case ErrorCode::scene_destroyed:
-      return VOY_ERROR_SCENE_DESTROYED;
+      return VOY_ERROR_SCENE_CLOSED;
     case ErrorCode::internal:
       break;
   }

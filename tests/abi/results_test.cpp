@@ -36,7 +36,7 @@ TEST(Results, NumbersAndNamesArePinned) {
                         VOYAGER_PIN(-11, VOY_ERROR_DAMAGED_CHUNK),
                         VOYAGER_PIN(-12, VOY_ERROR_NO_DEVICE),
                         VOYAGER_PIN(-13, VOY_ERROR_BUSY),
-                        VOYAGER_PIN(-14, VOY_ERROR_SCENE_DESTROYED),
+                        VOYAGER_PIN(-14, VOY_ERROR_SCENE_CLOSED),
                         VOYAGER_PIN(-15, VOY_ERROR_INTERNAL),
                         VOYAGER_PIN(-16, VOY_ERROR_DEVICE_LOST),
                         VOYAGER_PIN(-17, VOY_ERROR_TIMEOUT)};

@@ -131,9 +131,10 @@ TEST_F(Hostile, ChildrenDoNotOutliveTheirParents) {
   ASSERT_EQ(other.render(), VOY_SUCCESS);
   ASSERT_EQ(voy.CloseScene(other.scene), VOY_SUCCESS);
   VoyFrameStats stats = VOY_FRAME_STATS_INIT;
-  expect_refused(other.render(), VOY_ERROR_SCENE_DESTROYED, "scene was destroyed");
-  EXPECT_EQ(voy.GetFrameStats(other.view, &stats), VOY_ERROR_SCENE_DESTROYED);
-  EXPECT_EQ(voy.SetViewTau(other.view, 1), VOY_ERROR_SCENE_DESTROYED);
+  expect_refused(other.render(), VOY_ERROR_SCENE_CLOSED, "scene was closed");
+  EXPECT_EQ(voy.GetFrameStats(other.view, &stats), VOY_ERROR_SCENE_CLOSED);
+  EXPECT_EQ(voy.SetViewTau(other.view, 1), VOY_ERROR_SCENE_CLOSED);
+  expect_refused(voy.CloseScene(other.scene), VOY_ERROR_INVALID_HANDLE, "a scene that was closed");
   const VoyViewDesc desc = other.view_desc();
   VoyView view = nullptr;
   EXPECT_EQ(voy.CreateView(other.device, &desc, &view), VOY_ERROR_INVALID_HANDLE);

@@ -200,11 +200,11 @@ TEST_P(Instances, AreOfTheViewsDeviceAndLiveAsLongAsTheirScenes) {
   stage->draw(both, eye);
   ASSERT_EQ(voy.CloseScene(second), VOY_SUCCESS);
   const VoyFrame frame = Host::frame(eye);
-  EXPECT_EQ(voy.RenderFrame(both, &frame), VOY_ERROR_SCENE_DESTROYED);
-  EXPECT_EQ(voy.SetViewTau(both, 1), VOY_ERROR_SCENE_DESTROYED);
+  EXPECT_EQ(voy.RenderFrame(both, &frame), VOY_ERROR_SCENE_CLOSED);
+  EXPECT_EQ(voy.SetViewTau(both, 1), VOY_ERROR_SCENE_CLOSED);
   EXPECT_TRUE(expected == stage->draw(alone, eye)) << "the other scene's views are as they were";
   ASSERT_EQ(voy.CloseScene(stage->scene), VOY_SUCCESS);
-  EXPECT_EQ(voy.RenderFrame(both, &frame), VOY_ERROR_SCENE_DESTROYED);
+  EXPECT_EQ(voy.RenderFrame(both, &frame), VOY_ERROR_SCENE_CLOSED);
   EXPECT_EQ(voy.DestroyView(both), VOY_SUCCESS);
 }
 

@@ -59,7 +59,7 @@ TEST_F(ListedOmissions, AreRefusedByNameWhereTheCallIsWrong) {
                  "omissions");
   Host other(voy);
   ASSERT_EQ(voy.CloseScene(other.scene), VOY_SUCCESS);
-  EXPECT_EQ(voy.GetViewOmissions(other.view, 0, nullptr, &count), VOY_ERROR_SCENE_DESTROYED);
+  EXPECT_EQ(voy.GetViewOmissions(other.view, 0, nullptr, &count), VOY_ERROR_SCENE_CLOSED);
 }
 
 }  // namespace

@@ -325,12 +325,11 @@ TEST_P(SetInstances, AViewWhoseSceneWasClosedDrawsAgain) {
   const Picture expected = draw(stage->view_of({stage->scene}), eye);
   ASSERT_EQ(voy.CloseScene(second), VOY_SUCCESS);
   const VoyFrame frame = Host::frame(eye);
-  expect_refused(voy.RenderFrame(view, &frame), VOY_ERROR_SCENE_DESTROYED,
+  expect_refused(voy.RenderFrame(view, &frame), VOY_ERROR_SCENE_CLOSED,
                  "expected voySetViewInstances");
   expect_refused(set(view, {instance_of(stage->scene), instance_of(second)}),
                  VOY_ERROR_INVALID_HANDLE, "instances[1].scene: scene: found");
-  EXPECT_EQ(voy.RenderFrame(view, &frame), VOY_ERROR_SCENE_DESTROYED)
-      << "a refused list changed it";
+  EXPECT_EQ(voy.RenderFrame(view, &frame), VOY_ERROR_SCENE_CLOSED) << "a refused list changed it";
   ASSERT_EQ(voy.CloseScene(third), VOY_SUCCESS);
   ASSERT_EQ(set(view, {instance_of(stage->scene)}), VOY_SUCCESS) << voy.message();
   EXPECT_TRUE(draw(view, eye) == expected);
@@ -342,7 +341,7 @@ TEST_P(SetInstances, AViewWhoseSceneWasClosedDrawsAgain) {
   ASSERT_EQ(voy.CloseScene(gone), VOY_SUCCESS);
   EXPECT_TRUE(draw(view, eye) == expected);
   ASSERT_EQ(voy.CloseScene(stage->scene), VOY_SUCCESS);
-  EXPECT_EQ(voy.SetViewTau(view, 2), VOY_ERROR_SCENE_DESTROYED);
+  EXPECT_EQ(voy.SetViewTau(view, 2), VOY_ERROR_SCENE_CLOSED);
   ASSERT_EQ(voy.SetViewInstances(view, 0, nullptr), VOY_SUCCESS) << voy.message();
   EXPECT_EQ(voy.RenderFrame(view, &frame), VOY_SUCCESS) << voy.message();
 }

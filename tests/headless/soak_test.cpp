@@ -160,7 +160,7 @@ class Viewer {
     view_ = nullptr;
     // A scene may be closed between the two calls.
     VoyResult result = VOY_ERROR_INVALID_HANDLE;
-    while (result == VOY_ERROR_INVALID_HANDLE || result == VOY_ERROR_SCENE_DESTROYED) {
+    while (result == VOY_ERROR_INVALID_HANDLE || result == VOY_ERROR_SCENE_CLOSED) {
       std::array<VoyScene, 2> shown{};
       for (size_t i = 0; i < count_; ++i) shown[i] = scenes_.streamed(shown_[i]);
       result = create_view(shown, view_);
@@ -196,7 +196,7 @@ class Viewer {
     tau_ = dice_.between(0, 20);
     const VoyResult result =
         dice_.one_in(2) ? voy_.SetViewTimeBudget(view_, &budget) : voy_.SetViewTau(view_, tau_);
-    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_DESTROYED) << voy_.message();
+    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_CLOSED) << voy_.message();
   }
   VoyResult draw(VoyView view, VoyTarget target, uint32_t wait) {
     VoyFrameStreaming streaming = VOY_FRAME_STREAMING_INIT;
@@ -212,16 +212,16 @@ class Viewer {
     frame.eyeCount = 1;
     frame.eyes = &eye;
     const VoyResult result = voy_.RenderFrame(view, &frame);
-    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_DESTROYED ||
+    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_CLOSED ||
                 (wait == 1 && result == VOY_ERROR_OVER_BUDGET))
         << voy_.message();
-    if (result == VOY_ERROR_SCENE_DESTROYED) make_view();
+    if (result == VOY_ERROR_SCENE_CLOSED) make_view();
     return result;
   }
   // What is streamed is, where the budget holds it, what is in memory as a whole, to the bit.
   void stand_still() {
     VoyResult result = voy_.SetViewTau(view_, tau_);
-    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_DESTROYED) << voy_.message();
+    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_CLOSED) << voy_.message();
     if (draw(view_, target_, 1) != VOY_SUCCESS) return;
     std::array<VoyScene, 2> shown{};
     for (size_t i = 0; i < count_; ++i) shown[i] = scenes_.whole(shown_[i]);

@@ -66,7 +66,7 @@ TEST(Threads, DestructionWaitsForCallsInFlight) {
         result = host.render();
         started = true;
       }
-      EXPECT_TRUE(result == VOY_ERROR_INVALID_HANDLE || result == VOY_ERROR_SCENE_DESTROYED)
+      EXPECT_TRUE(result == VOY_ERROR_INVALID_HANDLE || result == VOY_ERROR_SCENE_CLOSED)
           << voy.message();
     });
     while (!started) std::this_thread::yield();
@@ -102,10 +102,10 @@ TEST(Threads, AViewIsNotBusyWhileAnotherThreadDestroysScenes) {
   });
   while (!done) {
     const VoyResult result = voy.SetViewTau(host.view, 3);
-    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_DESTROYED) << voy.message();
+    EXPECT_TRUE(result == VOY_SUCCESS || result == VOY_ERROR_SCENE_CLOSED) << voy.message();
   }
   destroyer.join();
-  EXPECT_EQ(host.render(), VOY_ERROR_SCENE_DESTROYED);
+  EXPECT_EQ(host.render(), VOY_ERROR_SCENE_CLOSED);
 }
 
 // Whose release takes its time once told to, so that a destruction can be met halfway.

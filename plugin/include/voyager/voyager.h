@@ -86,15 +86,15 @@ typedef enum VoyResult {
   VOY_ERROR_OUT_OF_HOST_MEMORY = -6,
   VOY_ERROR_OVER_BUDGET = -7, /* a memory budget, or the memory of a GPU, is too small */
   VOY_ERROR_FILE_NOT_FOUND = -8,
-  VOY_ERROR_IO = -9,               /* reading failed */
-  VOY_ERROR_REFUSED_INPUT = -10,   /* a malformed file; the message says where and why */
-  VOY_ERROR_DAMAGED_CHUNK = -11,   /* this frame needs a damaged chunk; nothing was drawn */
-  VOY_ERROR_NO_DEVICE = -12,       /* the backend finds no device that it can use */
-  VOY_ERROR_BUSY = -13,            /* another thread uses the view or target */
-  VOY_ERROR_SCENE_DESTROYED = -14, /* a scene of the view was closed; give it other instances */
-  VOY_ERROR_INTERNAL = -15,        /* a bug in the library; please report the message */
-  VOY_ERROR_DEVICE_LOST = -16,     /* a GPU stopped working; destroy the VoyDevice */
-  VOY_ERROR_TIMEOUT = -17,         /* the host did not signal what the frame waits for */
+  VOY_ERROR_IO = -9,             /* reading failed */
+  VOY_ERROR_REFUSED_INPUT = -10, /* a malformed file; the message says where and why */
+  VOY_ERROR_DAMAGED_CHUNK = -11, /* this frame needs a damaged chunk; nothing was drawn */
+  VOY_ERROR_NO_DEVICE = -12,     /* the backend finds no device that it can use */
+  VOY_ERROR_BUSY = -13,          /* another thread uses the view or target */
+  VOY_ERROR_SCENE_CLOSED = -14,  /* a scene of the view was closed; give it other instances */
+  VOY_ERROR_INTERNAL = -15,      /* a bug in the library; please report the message */
+  VOY_ERROR_DEVICE_LOST = -16,   /* a GPU stopped working; destroy the VoyDevice */
+  VOY_ERROR_TIMEOUT = -17,       /* the host did not signal what the frame waits for */
   VOY_RESULT_MAX_ENUM = 0x7fffffff
 } VoyResult;
 
@@ -377,7 +377,7 @@ VOY_API VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t byte
 
 /* Waits for frames that draw the scene, closes it and frees its memory. Closing NULL succeeds and
  * does nothing. From then on every call on a view with an instance of it returns
- * VOY_ERROR_SCENE_DESTROYED, until voySetViewInstances gives the view other instances. Only
+ * VOY_ERROR_SCENE_CLOSED, until voySetViewInstances gives the view other instances. Only
  * voyDestroyView succeeds before that. */
 VOY_API VoyResult VOY_CALL voyCloseScene(VoyScene scene);
 
@@ -830,7 +830,7 @@ typedef struct VoyInstance {
  *   of 2^32 Gaussians or more.
  * - OUT_OF_HOST_MEMORY, OVER_BUDGET: as voyCreateView.
  * - TIMEOUT: the host did not signal within 10 s what a frame in flight waits for.
- * - SCENE_DESTROYED: closing a scene failed to leave the view usable; destroy it.
+ * - SCENE_CLOSED: closing a scene failed to leave the view usable; destroy it.
  * - BUSY: another thread uses the view.
  * - DEVICE_LOST: the GPU stopped working. */
 VOY_API VoyResult VOY_CALL voySetViewInstances(VoyView view, uint32_t count,
@@ -874,7 +874,7 @@ typedef struct VoyFrame {
  * when Vulkan images are. After an error no target has changed.
  * Errors:
  * - INVALID_ARGUMENT: a value out of range.
- * - SCENE_DESTROYED: a scene of the view was closed, and voySetViewInstances not called since.
+ * - SCENE_CLOSED: a scene of the view was closed, and voySetViewInstances not called since.
  * - DAMAGED_CHUNK: the frame needs a chunk that is damaged.
  * - IO, FILE_NOT_FOUND, REFUSED_INPUT: the frame waits (VoyFrameStreaming) and a read failed.
  * - OUT_OF_HOST_MEMORY, OVER_BUDGET: the frame does not fit into host memory, into a budget, or
