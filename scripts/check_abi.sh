@@ -27,8 +27,10 @@ trap 'rm -rf "$folder"' EXIT
 } >"$folder/types.c"
 gcc -std=c99 -g -O0 -shared -fPIC -fno-eliminate-unused-debug-types -Iplugin/include "$folder/types.c" -o "$folder/libvoyager_types.so"
 
+# The description has no places of declarations. With --headers-dir2 or --drop-private-types abidiff would take its
+# types for private ones, and pass over a field whose type changed.
 if [ -e "$recorded" ] &&
-  ! abidiff --headers-dir2 plugin/include --drop-private-types --no-added-syms --suppressions tests/abi/recorded/outside_the_promise.ini \
+  ! abidiff --no-added-syms --suppressions tests/abi/recorded/outside_the_promise.ini \
     "$recorded" "$folder/libvoyager_types.so"; then
   echo "check_abi.sh: the headers break what $recorded promises until the major version changes" >&2
   exit 1
