@@ -47,10 +47,11 @@ class Call {
     return removed;
   }
 
-  // To the log of the device whose objects the call uses, if any.
-  void log_error(const char* message) const {
+  // This thread's message, to the log of the device whose objects the call uses, if any.
+  void log_error() const noexcept {
     if (in_use_.empty()) return;
-    device_of(*in_use_.front()).log.write(VOY_LOG_LEVEL_ERROR, message);
+    const KeptMessage message;
+    device_of(*in_use_.front()).log.write(VOY_LOG_LEVEL_ERROR, message.text());
   }
 
  private:
@@ -79,7 +80,7 @@ VoyResult guarded(const char* function, const Body& body) noexcept {
     return body(call);
   } catch (...) {
     const VoyResult result = translate_exception(function);
-    call.log_error(last_message());
+    call.log_error();
     return result;
   }
 }

@@ -1,6 +1,7 @@
 #include "plugin/result.h"
 
 #include <cstdio>
+#include <cstring>
 #include <new>
 
 #include "runtime/base/error.h"
@@ -10,7 +11,7 @@ namespace {
 
 // Plain memory: a thread_local with a destructor would keep the library mapped
 // after dlclose for as long as the thread lives.
-thread_local char message[2048];
+thread_local char message[kMessageBytes];
 
 VoyResult result_of(ErrorCode code) {
   switch (code) {
@@ -69,6 +70,14 @@ VoyResult translate_exception(const char* function) noexcept {
 
 const char* last_message() noexcept {
   return message;
+}
+
+KeptMessage::KeptMessage() noexcept {
+  std::memcpy(text_, message, sizeof message);
+}
+
+KeptMessage::~KeptMessage() {
+  std::memcpy(message, text_, sizeof message);
 }
 
 void refuse(const std::string& what) {

@@ -1,5 +1,6 @@
 #pragma once
 // How failures leave the library: a VoyResult and this thread's message.
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -25,6 +26,22 @@ VoyResult translate_exception(const char* function) noexcept;
 
 // Never NULL; valid until this thread's next failure.
 const char* last_message() noexcept;
+
+inline constexpr size_t kMessageBytes = 2048;
+
+// This thread's message, which is the same again when this goes: a log that is told of it may
+// call functions that fail.
+class KeptMessage {
+ public:
+  KeptMessage() noexcept;
+  ~KeptMessage();
+  KeptMessage(const KeptMessage&) = delete;
+  KeptMessage& operator=(const KeptMessage&) = delete;
+  const char* text() const { return text_; }
+
+ private:
+  char text_[kMessageBytes];
+};
 
 [[noreturn]] void refuse(const std::string& message);  // VOY_ERROR_INVALID_ARGUMENT
 
