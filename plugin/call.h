@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "plugin/field_name.h"
 #include "plugin/handles.h"
 #include "plugin/objects.h"
 #include "plugin/result.h"
@@ -33,6 +34,16 @@ class Call {
                      "destroyed");
     enter(*object);
     return std::static_pointer_cast<T>(std::move(object));
+  }
+
+  // The same for a handle that is in a field, which the message then names.
+  template <class T>
+  std::shared_ptr<T> use(typename T::Handle handle, const FieldName& field) {
+    try {
+      return use<T>(handle);
+    } catch (const ApiError& error) {
+      throw ApiError(error.result(), field.str() + ": " + error.what());
+    }
   }
 
   // Makes the handle stale (HandleTable::remove); NULL is none. Whoever destroys the

@@ -33,28 +33,28 @@ DepthEncoding checked_encoding(const VoyDepthEncoding& encoding, double near_z, 
 }
 
 DepthLimits depth_limits(const VoyEyeDepthLimit* limit, const Image& image,
-                         const vulkan::Ring* ring) {
+                         const vulkan::Ring* ring, const FieldName& eye) {
   if (limit == nullptr) return {};
-  check_count(limit->reserved, 0, 0, "VoyEyeDepthLimit.reserved");
+  const FieldName name = eye + ".next", depth = name + ".depth";
+  check_count(limit->reserved, 0, 0, name + ".reserved");
   const DepthEncoding encoding =
-      checked_encoding(limit->depthEncoding, limit->nearZ, limit->farZ, "VoyEyeDepthLimit");
+      checked_encoding(limit->depthEncoding, limit->nearZ, limit->farZ, name);
   if (limit->depth == nullptr && ring != nullptr && ring->desc().depth_limit) {
-    check_count(limit->depthRowPitch, 0, 0, "VoyEyeDepthLimit.depthRowPitch");
+    check_count(limit->depthRowPitch, 0, 0, name + ".depthRowPitch");
     return {nullptr, 0, encoding};
   }
   if (limit->depth == nullptr && ring != nullptr)
-    refuse(
-        "VoyEyeDepthLimit.depth: found NULL for a target without depthLimit, expected "
-        "VoyVulkanTargetDesc.hasDepthLimit");
-  check_pointer(limit->depth, "VoyEyeDepthLimit.depth");
+    refuse(depth.str() +
+           ": found NULL for a target without VoyVulkanTargetDesc.hasDepthLimit, "
+           "expected a target with it");
+  check_pointer(limit->depth, depth);
   if (ring != nullptr && ring->device().sharing() == vulkan::Sharing::device)
-    throw ApiError(
-        VOY_ERROR_UNSUPPORTED,
-        "VoyEyeDepthLimit.depth: found host memory with DEVICE sharing, expected NULL and "
-        "voyRecordVulkanDepthLimit");
+    throw ApiError(VOY_ERROR_UNSUPPORTED,
+                   depth.str() +
+                       ": found host memory with DEVICE sharing, expected NULL and "
+                       "voyRecordVulkanDepthLimit");
   const size_t pitch =
-      checked_pitch({"VoyEyeDepthLimit.depth", limit->depth, limit->depthRowPitch, 4u}, image.width,
-                    image.height);
+      checked_pitch({depth, limit->depth, limit->depthRowPitch, 4u}, image.width, image.height);
   return {limit->depth, pitch, encoding};
 }
 

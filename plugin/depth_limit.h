@@ -11,8 +11,8 @@ DepthEncoding checked_encoding(const VoyDepthEncoding& encoding, double near_z, 
                                const FieldName& name);
 
 // What the host says of its own geometry's depth (NULL: nothing), checked. ring: of the
-// target, or NULL; where it has the depth, the result has no values.
+// target, or NULL; where it has the depth, the result has no values. eye: its name.
 DepthLimits depth_limits(const VoyEyeDepthLimit* limit, const Image& image,
-                         const vulkan::Ring* ring);
+                         const vulkan::Ring* ring, const FieldName& eye);
 
 }  // namespace voyager

@@ -67,7 +67,7 @@ VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame) {
     for (uint32_t i = 0; i < frame->eyeCount; ++i) {
       const TargetObject& target = *targets[i].object;
       FrameEye eye = frame_eye(*frame, frame->eyes[i], target.image, eye_name(i));
-      eye.limits = depth_limits(targets[i].limit, target.image, target.ring.get());
+      eye.limits = depth_limits(targets[i].limit, target.image, target.ring.get(), eye_name(i));
       input.eyes.push_back(eye);
     }
 

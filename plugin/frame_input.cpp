@@ -71,8 +71,8 @@ FrameInput frame_input(const VoyFrame& frame) {
     refuse_number("frame.nearZ", frame.nearZ, "a finite number of metres, > 0");
   for (int i = 0; i < 3; ++i) {
     if (!std::isfinite(frame.background[i]))
-      refuse_number("frame.background", static_cast<double>(frame.background[i]),
-                    "a finite number");
+      refuse_number(FieldName("frame.background", static_cast<size_t>(i)),
+                    static_cast<double>(frame.background[i]), "a finite number");
     input.background[i] = frame.background[i];
   }
   check_count(frame.reserved, 0, 0, "frame.reserved");

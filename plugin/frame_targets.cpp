@@ -20,7 +20,7 @@ EyeTarget checked_target(Call& call, const VoyFrameEye& eye, const ViewObject& v
   EyeTarget out;
   check_structure(&eye, VOY_STRUCTURE_TYPE_FRAME_EYE, name,
                   Extension{VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, out.limit});
-  out.object = call.use<TargetObject>(eye.target);
+  out.object = call.use<TargetObject>(eye.target, name + ".target");
   if (out.object->parent() != view.parent())
     refuse(name.str() + ".target: found a target of another device, expected the view's");
   check_size(out.object->image, view, name);

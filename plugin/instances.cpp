@@ -56,14 +56,6 @@ InstanceList checked_list(Call& call, uint32_t count, const VoyInstance* instanc
   return list;
 }
 
-std::shared_ptr<SceneObject> used_scene(Call& call, VoyScene scene, const FieldName& field) {
-  try {
-    return call.use<SceneObject>(scene);
-  } catch (const ApiError& error) {
-    throw ApiError(error.result(), field.str() + ": " + error.what());
-  }
-}
-
 // Frames in flight read what goes, so they end first.
 void change_scenes(ViewObject& view, std::vector<std::shared_ptr<SceneObject>> scenes) {
   if (!view.wait_frames())
@@ -88,7 +80,7 @@ void check_instance_count(uint32_t count, const FieldName& field) {
 
 std::shared_ptr<SceneObject> instance_scene(Call& call, VoyScene scene, const DeviceObject& device,
                                             const FieldName& field) {
-  auto object = used_scene(call, scene, field);
+  auto object = call.use<SceneObject>(scene, field);
   if (object->parent().get() != &device)
     refuse(field.str() + ": found a scene of another device, expected one of this device");
   return object;

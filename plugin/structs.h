@@ -116,8 +116,8 @@ inline void check_coordinate(double x, const FieldName& field) {
   if (!(std::fabs(x) < 1e18)) refuse_number(field, x, "metres below 1e18 in magnitude");
 }
 
-inline void check_tau(double tau) {
-  if (!std::isfinite(tau) || tau < 0) refuse_number("tau", tau, "a finite number of pixels, >= 0");
+inline void check_tau(double tau, const FieldName& field) {
+  if (!std::isfinite(tau) || tau < 0) refuse_number(field, tau, "a finite number of pixels, >= 0");
 }
 
 }  // namespace voyager

@@ -26,7 +26,7 @@ void check_counts(const VoyViewDesc& desc) {
 
 PipelineDesc checked_choices(const VoyViewDesc& desc, const VoyExperiment* experiment,
                              VoyBackend backend) {
-  check_tau(desc.tau);
+  check_tau(desc.tau, "desc.tau");
   check_enum(desc.lod, VOY_LOD_ALL_LEAVES, "desc.lod");
   check_enum(desc.antialias, VOY_ANTIALIAS_OFF, "desc.antialias");
   check_count(desc.reserved, 0, 0, "desc.reserved");
@@ -90,7 +90,7 @@ VoyResult VOY_CALL voyDestroyView(VoyView view) {
 VoyResult VOY_CALL voySetViewTau(VoyView view, double tau) {
   return guarded("voySetViewTau", [&](Call& call) {
     const auto object = call.use<ViewObject>(view);
-    check_tau(tau);
+    check_tau(tau, "tau");
     const auto frame = claim(*object);
     object->tau = tau;
     object->view->end_time_budget();

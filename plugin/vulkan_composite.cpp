@@ -86,7 +86,7 @@ VoyResult VOY_CALL voyRecordVulkanComposite(VoyVulkanComposite composite,
     const VoyVulkanReprojection* moved = nullptr;
     check_structure(draw, VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DRAW, "VoyVulkanCompositeDraw",
                     Extension{VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION, moved});
-    const auto target = call.use<TargetObject>(draw->target);
+    const auto target = call.use<TargetObject>(draw->target, "draw.target");
     if (target->parent() != object->parent())
       refuse("draw.target: found a target of another device, expected the composite's");
     const vulkan::Ring& ring = vulkan_ring(*target);

@@ -30,10 +30,11 @@ const char* const* extension_list(uint32_t subset) {
 }
 
 template <class Desc>
-void check_vulkan(const Desc& desc) {
-  check_pointer(reinterpret_cast<const void*>(desc.getInstanceProcAddr), "getInstanceProcAddr");
-  check_pointer(desc.instance, "instance");
-  check_pointer(desc.physicalDevice, "physicalDevice");
+void check_vulkan(const Desc& desc, const FieldName& name) {
+  check_pointer(reinterpret_cast<const void*>(desc.getInstanceProcAddr),
+                name + ".getInstanceProcAddr");
+  check_pointer(desc.instance, name + ".instance");
+  check_pointer(desc.physicalDevice, name + ".physicalDevice");
 }
 
 void describe(const VoyVulkanPhysicalDevice& desc, VoyVulkanRequirements& out) {
@@ -90,12 +91,14 @@ VoyVulkanSync sync_of(vulkan::Sync sync) {
 }  // namespace
 
 vulkan::DeviceDesc voyager::vulkan_device_desc(const VoyVulkanDeviceDesc& desc) {
-  check_vulkan(desc);
-  check_pointer(desc.device, "device");
-  check_enum(desc.sharing, VOY_VULKAN_SHARING_HOST, "sharing");
-  check_enum(desc.sync, VOY_VULKAN_SYNC_HOST, "sync");
-  check_count(desc.deviceExtensionCount, 0, 4096, "deviceExtensionCount");
-  if (desc.deviceExtensionCount > 0) check_pointer(desc.deviceExtensions, "deviceExtensions");
+  const FieldName name = "VoyVulkanDeviceDesc";
+  check_vulkan(desc, name);
+  check_pointer(desc.device, name + ".device");
+  check_enum(desc.sharing, VOY_VULKAN_SHARING_HOST, name + ".sharing");
+  check_enum(desc.sync, VOY_VULKAN_SYNC_HOST, name + ".sync");
+  check_count(desc.deviceExtensionCount, 0, 4096, name + ".deviceExtensionCount");
+  if (desc.deviceExtensionCount > 0)
+    check_pointer(desc.deviceExtensions, name + ".deviceExtensions");
   vulkan::DeviceDesc out;
   out.get = desc.getInstanceProcAddr;
   out.instance = desc.instance;
@@ -103,7 +106,7 @@ vulkan::DeviceDesc voyager::vulkan_device_desc(const VoyVulkanDeviceDesc& desc) 
   out.device = desc.device;
   out.version = desc.vulkanVersion;
   for (uint32_t i = 0; i < desc.deviceExtensionCount; ++i) {
-    check_pointer(desc.deviceExtensions[i], "deviceExtensions[]");
+    check_pointer(desc.deviceExtensions[i], {"VoyVulkanDeviceDesc.deviceExtensions", i});
     out.extensions.emplace_back(desc.deviceExtensions[i]);
   }
   out.timelines = desc.timelineSemaphore != VK_FALSE;
@@ -132,7 +135,7 @@ VoyResult VOY_CALL voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physi
     } else {
       check_structure(physicalDevice, VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE,
                       "VoyVulkanPhysicalDevice");
-      check_vulkan(*physicalDevice);
+      check_vulkan(*physicalDevice, "VoyVulkanPhysicalDevice");
       describe(*physicalDevice, found);
     }
     *requirements = found;

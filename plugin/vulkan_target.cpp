@@ -28,6 +28,11 @@ void check_image(bool wanted, bool passed, const FieldName& field) {
                                  : ": found an image, expected VK_NULL_HANDLE"));
 }
 
+void check_semaphore(VkSemaphore semaphore, const FieldName& field) {
+  if (semaphore == VK_NULL_HANDLE)
+    refuse(field.str() + ": found VK_NULL_HANDLE, expected a semaphore");
+}
+
 vulkan::ImportedMemory memory_of(const VoyVulkanMemory& memory) {
   return {memory.handle.fd, memory.size, memory.offset, memory.dedicated != VK_FALSE};
 }
@@ -94,7 +99,8 @@ void read_semaphores(const VoyVulkanTargetDesc& from, const vulkan::Device& devi
     const VoyVulkanImportedSemaphores& pair = from.semaphores[i];
     const FieldName field("semaphores", i);
     check_structure(&pair, VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES, field);
-    check_image(true, pair.released != VK_NULL_HANDLE && pair.rendered != VK_NULL_HANDLE, field);
+    check_semaphore(pair.released, field + ".released");
+    check_semaphore(pair.rendered, field + ".rendered");
     const bool shared = device.sharing() == vulkan::Sharing::device;
     check_handle_type(pair.handleType, VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT,
                       "VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT", field);

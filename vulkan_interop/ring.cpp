@@ -8,23 +8,23 @@
 namespace voyager::vulkan {
 namespace {
 
-void check_usage(VkImageUsageFlags usage, const char* field) {
+void check_usage(VkImageUsageFlags usage, const std::string& field) {
   if ((usage & VK_IMAGE_USAGE_TRANSFER_DST_BIT) == 0)
     throw Error(ErrorCode::invalid_argument,
-                std::string(field) + ": found " + std::to_string(usage) +
+                field + ": found " + std::to_string(usage) +
                     ", expected VK_IMAGE_USAGE_TRANSFER_DST_BIT among it for HOST sharing");
 }
 
 // That the image can lie where the host says that it does.
 void check_room(const Device& device, VkImage image, const ImportedMemory& memory,
-                const char* field) {
+                const std::string& field) {
   VkMemoryRequirements needs;
   device.functions().GetImageMemoryRequirements(device.handle(), image, &needs);
   if (memory.offset % needs.alignment == 0 && memory.offset <= memory.size &&
       needs.size <= memory.size - memory.offset)
     return;
   throw Error(ErrorCode::invalid_argument,
-              std::string(field) + ": found offset " + std::to_string(memory.offset) + " in " +
+              field + ": found offset " + std::to_string(memory.offset) + " in " +
                   std::to_string(memory.size) + " bytes, expected a multiple of " +
                   std::to_string(needs.alignment) + " with the image's " +
                   std::to_string(needs.size) + " bytes from there");
@@ -53,17 +53,20 @@ Ring::~Ring() {
 }
 
 void Ring::check_imported() const {
-  const auto check = [&](VkImage image, const ImportedMemory& memory, const char* memory_field,
-                         VkImageUsageFlags usage, const char* usage_field) {
+  // plane: "color" or "depth", as its fields' names begin.
+  const auto check = [&](VkImage image, const ImportedMemory& memory, VkImageUsageFlags usage,
+                         const std::string& plane) {
     if (image == VK_NULL_HANDLE) return;
     if (shared())
-      check_room(*device_, image, memory, memory_field);
+      check_room(*device_, image, memory, plane + "Memory");
     else
-      check_usage(usage, usage_field);
+      check_usage(usage, plane + "Usage");
   };
-  for (const ImportedImage& passed : desc_.imported) {
-    check(passed.color, passed.color_memory, "colorMemory", passed.color_usage, "colorUsage");
-    check(passed.depth, passed.depth_memory, "depthMemory", passed.depth_usage, "depthUsage");
+  for (size_t i = 0; i < desc_.imported.size(); ++i) {
+    const ImportedImage& passed = desc_.imported[i];
+    const std::string name = "images[" + std::to_string(i) + "].";
+    check(passed.color, passed.color_memory, passed.color_usage, name + "color");
+    check(passed.depth, passed.depth_memory, passed.depth_usage, name + "depth");
   }
 }
 

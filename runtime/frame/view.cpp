@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdio>
 #include <iterator>
 #include <set>
 
@@ -14,13 +15,21 @@
 namespace voyager {
 namespace {
 
-// camera: in the scene's coordinates. instance: by what messages call it.
-void check_camera(const Camera& camera, const Scene& scene, const std::string& instance) {
-  for (int i = 0; i < 3; ++i)
-    if (!(std::fabs(camera.eye[i] - scene.origin[i]) < kMaxCoordinate))
-      throw Error(ErrorCode::invalid_argument, "eye position" + instance + ": found " +
-                                                   std::to_string(camera.eye[i]) +
-                                                   ", expected a finite coordinate below 1e18 m");
+[[noreturn]] void refuse_eye(size_t eye, size_t instance, int axis, double found) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", found);
+  throw Error(ErrorCode::invalid_argument,
+              "frame.eyes[" + std::to_string(eye) + "].pose.position: found " + text + " on axis " +
+                  std::to_string(axis) + " from the scene's origin of instance " +
+                  std::to_string(instance) + ", expected less than 1e18 m in magnitude");
+}
+
+// camera: in the instance's scene, whose axes are meant.
+void check_camera(const Camera& camera, const Scene& scene, size_t eye, size_t instance) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double from_origin = camera.eye[axis] - scene.origin[axis];
+    if (!(std::fabs(from_origin) < kMaxCoordinate)) refuse_eye(eye, instance, axis, from_origin);
+  }
 }
 
 // Both ascending.
@@ -188,10 +197,9 @@ void View::render(const FrameInput& frame) {
   assert(frame.instances.empty() || frame.instances.size() == scenes_.size());
   assert(frame.looks.empty() || frame.looks.size() == scenes_.size());
   assert(frame.eyes.size() == desc_.eyes);
-  for (const FrameEye& eye : frame.eyes)
+  for (size_t eye = 0; eye < frame.eyes.size(); ++eye)
     for (size_t i = 0; i < scenes_.size(); ++i)
-      check_camera(instance_camera(frame, eye, i), *scenes_[i],
-                   frame.instances.empty() ? "" : " in instance " + std::to_string(i));
+      check_camera(instance_camera(frame, frame.eyes[eye], i), *scenes_[i], eye, i);
   const auto holds = streaming_->begin(frame);
   const bool follows = follows_;  // the search's last run was the last frame's
   follows_ = false;

@@ -156,6 +156,14 @@ TEST_F(VulkanTarget, RefusedDescriptionsLeaveTheDescriptorsToTheHost) {
   ring = good;
   images[1].colorUsage = VK_IMAGE_USAGE_SAMPLED_BIT;
   EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(voy.message().find("images[1].colorUsage: found"), std::string::npos) << voy.message();
+  images[1].colorUsage = images[0].colorUsage;
+  semaphores.rendered = VK_NULL_HANDLE;
+  EXPECT_EQ(create(), VOY_ERROR_INVALID_ARGUMENT);
+  EXPECT_NE(
+      voy.message().find("semaphores[0].rendered: found VK_NULL_HANDLE, expected a semaphore"),
+      std::string::npos)
+      << voy.message();
   EXPECT_EQ(still_open(), passed.size());
   EXPECT_EQ(mock.live(), of_host) << mock.live_kinds();
 }

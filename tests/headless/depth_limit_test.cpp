@@ -132,7 +132,7 @@ TEST_F(Hostile, DepthLimitsOutOfRange) {
   };
   ASSERT_EQ(with([](VoyEyeDepthLimit&) {}), VOY_SUCCESS) << voy.message();
   const std::vector<float> before = host.pixels;
-  expect_invalid(with([](VoyEyeDepthLimit& l) { l.depth = nullptr; }), "depth");
+  expect_invalid(with([](VoyEyeDepthLimit& l) { l.depth = nullptr; }), "frame.eyes[0].next.depth:");
   expect_invalid(with([](VoyEyeDepthLimit& l) {
                    l.depth =
                        reinterpret_cast<const float*>(reinterpret_cast<const char*>(l.depth) + 2);
@@ -140,7 +140,8 @@ TEST_F(Hostile, DepthLimitsOutOfRange) {
                  "aligned");
   const uint64_t packed = uint64_t{4} * Host::kWidth;
   for (const uint64_t pitch : {uint64_t{1}, packed - 4, packed + 2, UINT64_MAX - 3, UINT64_MAX})
-    expect_invalid(with([&](VoyEyeDepthLimit& l) { l.depthRowPitch = pitch; }), "depthRowPitch");
+    expect_invalid(with([&](VoyEyeDepthLimit& l) { l.depthRowPitch = pitch; }),
+                   "frame.eyes[0].next.depthRowPitch:");
   for (const int encoding : {-1, 3, INT32_MAX, INT32_MIN})
     expect_invalid(
         with([&](VoyEyeDepthLimit& l) { l.depthEncoding = bad_enum<VoyDepthEncoding>(encoding); }),
@@ -154,7 +155,7 @@ TEST_F(Hostile, DepthLimitsOutOfRange) {
       expect_invalid(with([&](VoyEyeDepthLimit& l) { l.depthEncoding = encoding, l.farZ = bad; }),
                      "farZ");
     }
-  expect_invalid(with([](VoyEyeDepthLimit& l) { l.farZ = l.nearZ; }), "farZ");
+  expect_invalid(with([](VoyEyeDepthLimit& l) { l.farZ = l.nearZ; }), "frame.eyes[0].next.farZ:");
   EXPECT_EQ(host.pixels, before) << "a refused frame wrote to the target";
   EXPECT_EQ(with([](VoyEyeDepthLimit& l) {
               l.depthEncoding = VOY_DEPTH_ENCODING_METERS;

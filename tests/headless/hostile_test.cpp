@@ -59,8 +59,8 @@ TEST_F(Hostile, AViewOutOfRangeIsRefusedAndItsFieldNamed) {
     expect_invalid(with([&](VoyViewDesc& d) { d.maxHeight = size; }), "maxHeight");
   }
   for (const double tau : {kNan, kInf, -kInf, -1e-9}) {
-    expect_invalid(with([&](VoyViewDesc& d) { d.tau = tau; }), "tau");
-    expect_invalid(voy.SetViewTau(host.view, tau), "tau");
+    expect_invalid(with([&](VoyViewDesc& d) { d.tau = tau; }), "desc.tau: found");
+    expect_invalid(voy.SetViewTau(host.view, tau), ": tau: found");
   }
   for (const int choice : {-1, 9, INT32_MAX}) {
     expect_invalid(with([&](VoyViewDesc& d) { d.lod = bad_enum<VoyLod>(choice); }), "lod");
@@ -158,6 +158,8 @@ TEST_F(Hostile, APoseOrFrustumOutOfRangeIsRefusedAndItsFieldNamed) {
   expect_invalid(with([](VoyFrameEye& e) { std::swap(e.frustum.left, e.frustum.right); }), "left");
   expect_invalid(with([](VoyFrameEye& e) { std::swap(e.frustum.up, e.frustum.down); }), "down");
   expect_invalid(with([](VoyFrameEye& e) { e.frustum.left = e.frustum.right; }), "left");
+  expect_refused(with([](VoyFrameEye& e) { e.target = nullptr; }), VOY_ERROR_INVALID_HANDLE,
+                 "frame.eyes[0].target: target: found NULL");
   expect_invalid(with([](VoyFrameEye& e) { e.layer = 1; }), "frame.eyes[0].layer");
   expect_invalid(with([](VoyFrameEye& e) { e.reserved = 1; }), "frame.eyes[0].reserved");
   EXPECT_EQ(host.pixels, before) << "a refused frame wrote to the target";
@@ -185,7 +187,7 @@ TEST_F(Hostile, AFrameOutOfRangeIsRefusedAndItsFieldNamed) {
   for (const double value : {kNan, kInf})
     for (int i = 0; i < 3; ++i)
       expect_invalid(with([&](VoyFrame& f) { f.background[i] = static_cast<float>(value); }),
-                     "background");
+                     ("frame.background[" + std::to_string(i) + "]").c_str());
   expect_invalid(with([](VoyFrame& f) { f.reserved = 1; }), "reserved");
 
   VoyInstancePose instance = VOY_INSTANCE_POSE_INIT;
@@ -216,7 +218,9 @@ TEST_F(Hostile, AFrameOutOfRangeIsRefusedAndItsFieldNamed) {
   // The eye would come to lie 1e26 m from the scene's middle.
   instance.scale = 1e-9;
   instance.pose.position[1] = 1e17;
-  expect_invalid(with_instance(), "in instance 0");
+  expect_invalid(with_instance(),
+                 "frame.eyes[0].pose.position: found -1e+26 on axis 1 from the scene's origin of "
+                 "instance 0");
 }
 
 TEST_F(Hostile, AnInstanceOutOfRangeIsRefusedAndTheImageStays) {

@@ -25,7 +25,7 @@ TEST_F(Interop, RequirementsBeforeAnInstanceNameWhatADeviceMayNeed) {
   for (const char* extension : host->extensions) EXPECT_EQ(named.count(extension), 1u) << extension;
   VoyVulkanPhysicalDevice none = VOY_VULKAN_PHYSICAL_DEVICE_INIT;
   expect_refused(voyGetVulkanRequirements(&none, &needs), VOY_ERROR_INVALID_ARGUMENT,
-                 "getInstanceProcAddr");
+                 "VoyVulkanPhysicalDevice.getInstanceProcAddr: found NULL");
 }
 
 TEST_F(Interop, ADeviceIsRefusedByWhatIsWrong) {
@@ -39,7 +39,7 @@ TEST_F(Interop, ADeviceIsRefusedByWhatIsWrong) {
     vulkan = host->desc();
   };
   vulkan.device = VK_NULL_HANDLE;
-  refused(VOY_ERROR_INVALID_ARGUMENT, "device");
+  refused(VOY_ERROR_INVALID_ARGUMENT, "VoyVulkanDeviceDesc.device: found NULL");
   vulkan.vulkanVersion = VK_API_VERSION_1_0;
   refused(VOY_ERROR_UNSUPPORTED, "1.1");
   vulkan.sync = static_cast<VoyVulkanSync>(9);
@@ -146,7 +146,9 @@ TEST_F(Interop, AFrameIsRefusedByWhatIsWrongAndTheNextIsRight) {
     }
     VoyEyeDepthLimit limit = VOY_EYE_DEPTH_LIMIT_INIT;
     at.next = &limit;
-    expect_refused(voyRenderFrame(view, &frame), VOY_ERROR_INVALID_ARGUMENT, "without depthLimit");
+    expect_refused(voyRenderFrame(view, &frame), VOY_ERROR_INVALID_ARGUMENT,
+                   "frame.eyes[0].next.depth: found NULL for a target without "
+                   "VoyVulkanTargetDesc.hasDepthLimit");
     EXPECT_EQ(shoot(line, target, 0, eye(target, 1), 4).color,
               expected(VOY_COLOR_FORMAT_RGBA8_UNORM, eye(target, 1), 4).color);
   });
