@@ -5,6 +5,7 @@
 #include "plugin/call.h"
 #include "plugin/experiment.h"
 #include "plugin/structs.h"
+#include "plugin/text.h"
 #include "plugin/version.h"
 #include "plugin/vulkan_device.h"
 
@@ -147,7 +148,7 @@ VoyResult VOY_CALL voyGetCapabilities(VoyDevice device, VoyCapabilities* capabil
     found.next = capabilities->next;
     found.backend = object->backend_kind;
     found.workerThreadCount = static_cast<uint32_t>(object->workers.count());
-    object->backend->device_name().copy(found.deviceName, sizeof found.deviceName - 1);
+    put_text(object->backend->device_name(), found.deviceName);
     const auto uuid = object->backend->device_uuid();
     std::copy(uuid.begin(), uuid.end(), found.deviceUuid);
     found.maxInstances = kMaxInstances;

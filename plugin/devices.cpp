@@ -5,6 +5,7 @@
 
 #include "plugin/call.h"
 #include "plugin/structs.h"
+#include "plugin/text.h"
 #include "runtime/cpu/cpu_backend.h"
 #include "runtime/frame/backend_module.h"
 #include "runtime/reference/reference_backend.h"
@@ -13,16 +14,11 @@ using namespace voyager;
 
 namespace {
 
-template <size_t size>
-void put(const std::string& text, char (&into)[size]) {
-  text.copy(into, size - 1);
-}
-
 VoyDeviceInfo device_info(VoyBackend backend, const std::string& needs) {
   VoyDeviceInfo info = {};
   info.type = VOY_STRUCTURE_TYPE_DEVICE_INFO;
   info.backend = backend;
-  put(needs, info.needs);
+  put_text(needs, info.needs);
   return info;
 }
 
@@ -32,7 +28,7 @@ VoyDeviceInfo host_info(VoyBackend kind, const Backend& backend) {
   info.memoryBytes = static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                      static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
   info.workerThreadCount = static_cast<uint32_t>(Workers().count());
-  put(backend.device_name(), info.deviceName);
+  put_text(backend.device_name(), info.deviceName);
   return info;
 }
 
@@ -48,9 +44,9 @@ VoyDeviceInfo cuda_info(const BackendDevice& device) {
   info.memoryBytes = device.memory_bytes;
   std::copy_n(device.capability, 2, info.computeCapability);
   info.cudaVersion = device.cuda_version;
-  put(device.driver, info.driver);
-  put(device.name, info.deviceName);
-  put(device.missing, info.why);
+  put_text(device.driver, info.driver);
+  put_text(device.name, info.deviceName);
+  put_text(device.missing, info.why);
   return info;
 }
 
@@ -60,7 +56,7 @@ void add_cuda(std::vector<VoyDeviceInfo>& all) {
     for (const BackendDevice& device : list_backend("cuda")) all.push_back(cuda_info(device));
   } catch (const Error& error) {
     VoyDeviceInfo info = device_info(VOY_BACKEND_CUDA, cuda_needs());
-    put(error.what(), info.why);
+    put_text(error.what(), info.why);
     all.push_back(info);
   }
 }

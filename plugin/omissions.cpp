@@ -5,6 +5,7 @@
 #include "plugin/claim.h"
 #include "plugin/objects.h"
 #include "plugin/structs.h"
+#include "plugin/text.h"
 
 using namespace voyager;
 
@@ -14,8 +15,8 @@ VoyOmission omission_of(const Omission& omission, double bytes_a_second) {
   VoyOmission out = {VOY_STRUCTURE_TYPE_OMISSION, nullptr, omission.bytes, 0, {}, {}};
   if (bytes_a_second > 0)
     out.milliseconds = static_cast<double>(omission.frame_bytes) / bytes_a_second * 1e3;
-  omission.what.copy(out.what, sizeof out.what - 1);
-  omission.why.copy(out.why, sizeof out.why - 1);
+  put_text(omission.what, out.what);
+  put_text(omission.why, out.why);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <new>
 
+#include "plugin/text.h"
 #include "runtime/base/error.h"
 
 namespace voyager {
@@ -45,7 +46,8 @@ VoyResult result_of(ErrorCode code) {
 }
 
 VoyResult record(const char* function, VoyResult result, const char* what) {
-  std::snprintf(message, sizeof message, "%s: %s", function, what);
+  const int length = std::snprintf(message, sizeof message, "%s: %s", function, what);
+  if (length >= static_cast<int>(sizeof message)) message[whole_characters(message)] = '\0';
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include "plugin/call.h"
 #include "plugin/streaming.h"
 #include "plugin/structs.h"
+#include "plugin/text.h"
 #include "runtime/base/open_source.h"
 
 using namespace voyager;
@@ -55,8 +56,8 @@ VoySceneNote note_of(const SceneNote& note) {
                       note.bytes,
                       {},
                       {}};
-  note.what.copy(out.what, sizeof out.what - 1);
-  note.why.copy(out.why, sizeof out.why - 1);
+  put_text(note.what, out.what);
+  put_text(note.why, out.why);
   return out;
 }
 

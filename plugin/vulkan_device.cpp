@@ -4,6 +4,7 @@
 
 #include "plugin/call.h"
 #include "plugin/structs.h"
+#include "plugin/text.h"
 
 using namespace voyager;
 
@@ -121,7 +122,7 @@ void voyager::fill(VoyVulkanCapabilities& out, const vulkan::Device& device) {
   out.sync = sync_of(device.sync());
   out.hostMemoryImport = device.imports_host_memory() ? VK_TRUE : VK_FALSE;
   std::fill(std::begin(out.why), std::end(out.why), '\0');
-  device.why().copy(out.why, sizeof out.why - 1);
+  put_text(device.why(), out.why);
 }
 
 VoyResult VOY_CALL voyGetVulkanRequirements(const VoyVulkanPhysicalDevice* physicalDevice,

@@ -37,5 +37,24 @@ TEST(Messages, ALogWhoseOwnCallFailsChangesNoMessage) {
   EXPECT_EQ(voy.message(), log.before);
 }
 
+// Wherever in a character of three bytes the room ends.
+TEST(Messages, OneThatIsTooLongEndsWithAWholeCharacter) {
+  const Library voy;
+  Host host(voy, device_for(VOY_BACKEND_CPU));
+  for (size_t before = 0; before < 3; ++before) {
+    std::string path(before, 'a');
+    for (int i = 0; i < 1000; ++i) path += "\u2030";
+    VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+    desc.path = path.c_str();
+    VoyScene scene = nullptr;
+    ASSERT_LT(voy.OpenScene(host.device, &desc, &scene), 0);
+    const std::string found = voy.message();
+    EXPECT_LE(found.size(), 2047u);
+    EXPECT_GE(found.size(), 2045u);
+    ASSERT_GE(found.size(), 3u);
+    EXPECT_EQ(found.substr(found.size() - 3), "\u2030") << before;
+  }
+}
+
 }  // namespace
 }  // namespace messages_test
