@@ -104,7 +104,7 @@ TEST(Results, NumbersOfThePromisedHeadersAreTheBaseline) {
   std::string found;
   for (const char* header : {"voyager.h", "voyager_vulkan.h"}) {
     const std::string text = text_of(std::string("/plugin/include/voyager/") + header);
-    const std::regex number(R"(\n +(VOY_\w+) = (-?\w+))");
+    const std::regex number(R"(\n +(VOY_\w+)\s*=\s*(-?\w+))");
     for (std::sregex_iterator at(text.begin(), text.end(), number), end; at != end; ++at)
       found += (*at)[1].str() + " " + (*at)[2].str() + "\n";
   }
