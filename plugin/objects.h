@@ -52,6 +52,9 @@ struct DeviceObject final : Object {
   VoyBackend backend_kind;
   std::unique_ptr<Backend> backend;
   std::atomic<bool> abandoned{false};
+  // Held while an open scene's pool changes its size, so that no two share out the same rest of a
+  // budget. Guards SceneObject::device_bytes.
+  std::mutex resizing;
   std::shared_ptr<const vulkan::Device> vulkan;  // or NULL
 
  private:
@@ -81,7 +84,6 @@ struct SceneObject final : Child {
   Budget& pool_budget() const;  // that a streamed scene's pool counts on
   // The pool in a device's own memory, which `memory` does not count.
   uint64_t device_bytes = 0;
-  std::mutex resizing;  // guards device_bytes, once the scene is open
 
   // Of a streamed scene: nothing calls its source any more. Whoever still holds it draws what is
   // there.

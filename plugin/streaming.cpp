@@ -21,7 +21,8 @@ bool is_on_device(const SceneObject& object) {
   return object.device().backend_kind == VOY_BACKEND_CUDA;
 }
 
-// What the pool takes on a device; its memory was found before it was counted.
+// What the pool takes on a device; its memory was found before it was counted. Under
+// DeviceObject::resizing.
 void count_device_bytes(SceneObject& object) {
   if (!is_on_device(object) || !object.scene->streamed()) return;
   const uint64_t bytes = object.scene->stream->pool_bytes();
@@ -54,6 +55,7 @@ void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>&
   desc.readers = streaming.readerThreadCount == 0 ? kDefaultReaders : streaming.readerThreadCount;
   object.scene = open_streamed(source, desc, *object.device().backend, &object.memory,
                                object.device().workers);
+  const std::lock_guard resizing(object.device().resizing);
   count_device_bytes(object);
 }
 
@@ -81,7 +83,7 @@ VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes) {
   return guarded("voySetSceneMemoryBudget", [&](Call& call) {
     const auto object = call.use<SceneObject>(scene);
     check_streamed(*object);
-    const std::lock_guard resizing(object->resizing);
+    const std::lock_guard resizing(object->device().resizing);
     const uint64_t own = object->scene->stream->pool_bytes(), left = object->pool_budget().left();
     resize_streamed(*object->scene,
                     allowed(bytes, left > UINT64_MAX - own ? UINT64_MAX : left + own),

@@ -1,10 +1,10 @@
 // Frames on a device that never end, because the host's signal does not come or a device is
 // lost: nothing that the host destroys then hangs.
 #include <chrono>
-#include <filesystem>
 #include <optional>
 
 #include "mock_vulkan_host.h"
+#include "stuck_folder.h"
 #include "stuck_module.h"
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/lsan_interface.h>
@@ -14,22 +14,6 @@ namespace stuck_frame_test {
 namespace {
 
 using namespace voyager::test;
-namespace fs = std::filesystem;
-
-// A copy of the library, in a folder with the module that it takes for CUDA's.
-struct Folder {
-  Folder() {
-    fs::create_directories(path);
-    fs::copy_file(VOYAGER_LIBRARY, library, fs::copy_options::overwrite_existing);
-    fs::create_symlink(VOYAGER_STUCK_MODULE, module);
-  }
-  ~Folder() { fs::remove_all(path); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  const fs::path path = fs::temp_directory_path() / ("voyager_stuck." + std::to_string(::getpid()));
-  const fs::path library = path / "libvoyager.so", module = path / "libvoyager_cuda.so";
-};
 
 struct StuckFrame : testing::Test {
   static constexpr const char* kExtensions[] = {VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME,
@@ -98,7 +82,7 @@ struct StuckFrame : testing::Test {
 #if defined(__SANITIZE_ADDRESS__)
   __lsan::ScopedDisabler what_is_left;  // on purpose
 #endif
-  Folder folder;
+  StuckFolder folder;
   VulkanMock mock;
   Library voy;
   VoyVulkanDeviceDesc vulkan;
