@@ -1,9 +1,16 @@
 /* A host in C99, compiled against the headers that header_MAJOR.MINOR keeps. */
 #include "kept_host.h"
 
+#include <string.h>
+
 #include <voyager/voyager_vulkan.h>
 
 enum { kSide = 16 };
+
+#define VOY_TEST_EXPECT(condition)       \
+  do {                                   \
+    if (!(condition)) return #condition; \
+  } while (0)
 
 static int64_t logged;
 
@@ -23,6 +30,72 @@ static const char* check_frame(VoyView view, const uint8_t* color, const float* 
   if (voyGetFrameStats(view, &stats) < 0) return voyGetLastErrorMessage();
   if (stats.splats == 0 || stats.tau != 5 || stats.millisecondsTotal <= 0 || stats.stageCount == 0)
     return "the statistics are not of this frame";
+  return NULL;
+}
+
+/* What needs no device. */
+static const char* ask_the_library(void) {
+  VoyDeviceInfo infos[8];
+  uint32_t count = 0;
+  for (int i = 0; i < 8; ++i) infos[i] = (VoyDeviceInfo)VOY_DEVICE_INFO_INIT;
+  VOY_TEST_EXPECT(voyGetVersion() >= VOY_API_VERSION);
+  VOY_TEST_EXPECT(strcmp(voyResultName(VOY_ERROR_SCENE_CLOSED), "VOY_ERROR_SCENE_CLOSED") == 0);
+  VOY_TEST_EXPECT(strcmp(voyStageName(VOY_STAGE_SORT), "sort") == 0);
+  VOY_TEST_EXPECT(voyQueryBackend(VOY_BACKEND_CPU) == VOY_SUCCESS);
+  VOY_TEST_EXPECT(voyEnumerateDevices(8, infos, &count) >= 0 && count >= 2);
+  VOY_TEST_EXPECT(infos[0].type == VOY_STRUCTURE_TYPE_DEVICE_INFO);
+  return NULL;
+}
+
+static const char* convert(void) {
+  const double world[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 2, 3, 4, 1};
+  const double projection[16] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, -1, -1, 0, 0, -1, 0};
+  VoyFrustum frustum = VOY_FRUSTUM_INIT;
+  VoyPose pose = VOY_POSE_INIT;
+  VOY_TEST_EXPECT(voyFrustumFromIntrinsics(8, 8, 8, 8, 16, 16, &frustum) == VOY_SUCCESS);
+  VOY_TEST_EXPECT(frustum.left == -1 && frustum.right == 1 && frustum.up == 1);
+  VOY_TEST_EXPECT(voyFrustumFromProjection(projection, VOY_CLIP_Y_UP, &frustum) == VOY_SUCCESS);
+  VOY_TEST_EXPECT(frustum.left == -0.5 && frustum.down == -0.5);
+  VOY_TEST_EXPECT(voyPoseFromWorldMatrix(world, VOY_HAND_RIGHT, &pose) == VOY_SUCCESS);
+  VOY_TEST_EXPECT(pose.position[0] == 2 && pose.position[2] == 4 && pose.orientation[3] == 1);
+  VOY_TEST_EXPECT(voyPoseFromViewMatrix(world, VOY_HAND_RIGHT, &pose) == VOY_SUCCESS);
+  VOY_TEST_EXPECT(pose.position[0] == -2);
+  return NULL;
+}
+
+/* Of a flat scene on a CPU. */
+static const char* ask(VoyScene scene, VoyView view) {
+  VoyTimeBudget budget = VOY_TIME_BUDGET_INIT;
+  VoyStreamingStats streaming = VOY_STREAMING_STATS_INIT;
+  uint32_t count = 0;
+  budget.milliseconds = 10;
+  VOY_TEST_EXPECT(voyGetSceneNotes(scene, 0, NULL, &count) == VOY_SUCCESS && count > 0);
+  VOY_TEST_EXPECT(voySetSceneMemoryBudget(scene, 1) == VOY_ERROR_UNSUPPORTED);
+  VOY_TEST_EXPECT(voyGetStreamingStats(scene, &streaming) == VOY_ERROR_UNSUPPORTED);
+  VOY_TEST_EXPECT(voyGetViewCut(view, 0, 0, NULL, &count) == VOY_ERROR_UNSUPPORTED);
+  VOY_TEST_EXPECT(voyGetViewOmissions(view, 0, NULL, &count) == VOY_SUCCESS && count > 0);
+  VOY_TEST_EXPECT(voySetViewTimeBudget(view, &budget) == VOY_SUCCESS);
+  VOY_TEST_EXPECT(voySetViewTau(view, 5) == VOY_SUCCESS);
+  return NULL;
+}
+
+/* A host without Vulkan is refused, whatever it calls. */
+static const char* ask_for_vulkan(VoyDevice device, VoyTarget target) {
+  VoyVulkanUse use = VOY_VULKAN_USE_INIT;
+  VoyVulkanCopy copy = VOY_VULKAN_COPY_INIT;
+  VoyVulkanDepthLimit limit = VOY_VULKAN_DEPTH_LIMIT_INIT;
+  VoyVulkanCompositeDesc desc = VOY_VULKAN_COMPOSITE_DESC_INIT;
+  VoyVulkanCompositeDraw drawn = VOY_VULKAN_COMPOSITE_DRAW_INIT;
+  VoyVulkanComposite composite = NULL;
+  uint32_t count = 0;
+  VOY_TEST_EXPECT(voyGetVulkanImages(target, 0, NULL, &count) < 0);
+  VOY_TEST_EXPECT(voyRecordVulkanRelease(target, &use) < 0);
+  VOY_TEST_EXPECT(voyRecordVulkanAcquire(target, &use) < 0);
+  VOY_TEST_EXPECT(voyRecordVulkanCopy(target, &copy) < 0);
+  VOY_TEST_EXPECT(voyRecordVulkanDepthLimit(target, &limit) < 0);
+  VOY_TEST_EXPECT(voyCreateVulkanComposite(device, &desc, &composite) < 0);
+  VOY_TEST_EXPECT(voyRecordVulkanComposite(composite, &drawn) == VOY_ERROR_INVALID_HANDLE);
+  VOY_TEST_EXPECT(voyDestroyVulkanComposite(composite) == VOY_SUCCESS);
   return NULL;
 }
 
@@ -54,6 +127,8 @@ static const char* draw(VoyDevice device, VoyScene scene) {
   frame.instanceCount = 1;
   if (voyRenderFrame(view, &frame) < 0) return voyGetLastErrorMessage();
   problem = check_frame(view, color, depth);
+  if (problem == NULL) problem = ask(scene, view);
+  if (problem == NULL) problem = ask_for_vulkan(device, eye.target);
   if (problem != NULL) return problem;
   listed.scene = scene;
   listed.opacity = 0;
@@ -63,6 +138,8 @@ static const char* draw(VoyDevice device, VoyScene scene) {
   if (voyRenderFrame(view, &frame) < 0) return voyGetLastErrorMessage();
   for (int i = 0; i < kSide * kSide; ++i)
     if (color[4 * i + 3] != 0) return "an instance of opacity 0 was drawn";
+  VOY_TEST_EXPECT(voyDestroyView(view) == VOY_SUCCESS);
+  VOY_TEST_EXPECT(voyDestroyTarget(eye.target) == VOY_SUCCESS);
   return NULL;
 }
 
@@ -95,7 +172,9 @@ const char* run_kept_host(const char* scene) {
   desc.log = count_message;
   desc.logUser = &logged;
   if (voyCreateDevice(&desc, &device) < 0) return voyGetLastErrorMessage();
-  problem = open_and_draw(device, scene);
+  problem = ask_the_library();
+  if (problem == NULL) problem = convert();
+  if (problem == NULL) problem = open_and_draw(device, scene);
   if (problem == NULL && logged == 0) problem = "no message was logged";
   if (problem == NULL && voyGetVulkanRequirements(&nothing, &needs) != VOY_ERROR_INVALID_ARGUMENT)
     problem = "a Vulkan host without vkGetInstanceProcAddr was not refused";

@@ -158,11 +158,18 @@ TEST_F(Hostile, APoseOrFrustumOutOfRangeIsRefusedAndItsFieldNamed) {
   expect_invalid(with([](VoyFrameEye& e) { std::swap(e.frustum.left, e.frustum.right); }), "left");
   expect_invalid(with([](VoyFrameEye& e) { std::swap(e.frustum.up, e.frustum.down); }), "down");
   expect_invalid(with([](VoyFrameEye& e) { e.frustum.left = e.frustum.right; }), "left");
+  expect_invalid(with([](VoyFrameEye& e) { e.frustum = {}; }), "frustum");
   expect_refused(with([](VoyFrameEye& e) { e.target = nullptr; }), VOY_ERROR_INVALID_HANDLE,
                  "frame.eyes[0].target: target: found NULL");
   expect_invalid(with([](VoyFrameEye& e) { e.layer = 1; }), "frame.eyes[0].layer");
   expect_invalid(with([](VoyFrameEye& e) { e.reserved = 1; }), "frame.eyes[0].reserved");
   EXPECT_EQ(host.pixels, before) << "a refused frame wrote to the target";
+  EXPECT_EQ(with([](VoyFrameEye& e) {
+              e.pose = VOY_POSE_INIT;
+              e.frustum = VOY_FRUSTUM_INIT;
+            }),
+            VOY_SUCCESS)
+      << voy.message();
   // Any length will do, down to the smallest and up to the largest.
   ASSERT_EQ(host.render(), VOY_SUCCESS);
   const std::vector<float> image = host.pixels;

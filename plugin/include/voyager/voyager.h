@@ -8,23 +8,30 @@
  * STRUCTS. Every struct starts with `type` and `next`. Start from its VOY_..._INIT macro, which
  * sets `type` and the defaults. `next` is NULL or points to an extension that the comment at
  * `next` names. A wrong `type` or an unknown `next` is VOY_ERROR_INVALID_STRUCTURE, so that a
- * request is never ignored silently. VoyPose and VoyFrustum are plain values without `type`.
+ * request is never ignored silently. VoyPose and VoyFrustum are plain values without `type`. A
+ * zeroed VoyPose or VoyFrustum is refused, so start from VOY_POSE_INIT and VOY_FRUSTUM_INIT.
  * A structure never changes its size or a field: what a later version adds comes through `next`.
  * Fields named `reserved` must be 0.
  *
  * PROMISE. What this header and voyager_vulkan.h declare stays as it is until the major version
- * changes. voyager_experiment.h is for measurements. It is outside the promise.
+ * changes. A later version may add enumerators, and a host may meet them in results and in other
+ * outputs, so give a switch over an enum a default. voyager_experiment.h is for measurements. It is
+ * outside the promise. voyager.hpp is compiled into the host and calls only what is promised, so a
+ * host that is built keeps running. The C++ names themselves are not promised: a host that is built
+ * again with a later version may have to change.
  *
  * RESULTS. Every call that can fail returns a VoyResult. 0 is success. A positive value is a
  * success with a remark. A negative value is an error, and voyGetLastErrorMessage explains it.
  * After an error the outputs are unchanged unless the function says otherwise. No call aborts the
  * process or throws an exception. The error lists at the functions leave out INVALID_ARGUMENT,
- * INVALID_STRUCTURE and INVALID_HANDLE where these need no explanation.
+ * INVALID_STRUCTURE and INVALID_HANDLE where these need no explanation. They also leave out
+ * DEVICE_LOST, which any call on a device and its objects may return once a GPU stopped working or
+ * a frame never finished. Calls that close or destroy an object still work then.
  *
  * HANDLES. A handle is a number, not an address. A NULL handle, a handle of a destroyed object and
  * a handle of another kind are VOY_ERROR_INVALID_HANDLE. Destroying a parent destroys its children
- * and makes their handles invalid, as in OpenXR. A device is the parent of its scenes, views and
- * targets.
+ * and makes their handles invalid, as in OpenXR. A device is the parent of its scenes, views,
+ * targets and composites (voyager_vulkan.h).
  *
  * OWNERSHIP. The library copies what a descriptor points to before the call returns, unless the
  * comment at the field says how long the host must keep it. Strings that functions return have
@@ -204,6 +211,7 @@ typedef struct VoyAllocator {
 #define VOY_ALLOCATOR_INIT \
   { VOY_STRUCTURE_TYPE_ALLOCATOR, NULL, NULL, NULL, NULL }
 
+/* What a device draws with and what it may use: backend, GPU, memory, threads, log, allocator. */
 typedef struct VoyDeviceDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_DEVICE_DESC */
   const void* next;      /* NULL or a VoyVulkanDeviceDesc (voyager_vulkan.h) */
@@ -337,9 +345,10 @@ typedef struct VoySceneStreaming {
    * VoyDeviceDesc.hostMemoryBudget, or of deviceMemoryBudget on CUDA. 0, or more than is left
    * there: all that is left there. */
   uint64_t memoryBudget;
-  /* NULL, or where the first frames look from: x, y, z in the scene's coordinates, metres, each
-   * below 1e18 in magnitude. voyOpenScene then reads what looks large from there as well as the
-   * top of the tree, up to 64 MB of the file. Copied. */
+  /* NULL, or where the first frames look from: x, y, z in the scene's own axes, metres, each below
+   * 1e18 in magnitude. Like VoySceneInfo.boundsMin, it includes the scene's origin. voyOpenScene
+   * then reads what looks large from there as well as the top of the tree, up to 64 MB of the file.
+   * Copied. */
   const double* startPosition;
   uint32_t readerThreadCount; /* threads that read and decode; 1 to 64, or 0 for 4 */
   uint32_t reserved;          /* 0 */
@@ -398,6 +407,7 @@ typedef enum VoyNativePixelSource {
   VOY_NATIVE_PIXEL_SOURCE_MAX_ENUM = 0x7fffffff
 } VoyNativePixelSource;
 
+/* The facts of a scene: its size, its bounds, and what happened to it at import. */
 typedef struct VoySceneInfo {
   VoyStructureType type;  /* VOY_STRUCTURE_TYPE_SCENE_INFO */
   void* next;             /* NULL or a VoySceneProfile */
@@ -462,6 +472,8 @@ typedef enum VoySceneNoteKind {
   VOY_SCENE_NOTE_KIND_MAX_ENUM = 0x7fffffff
 } VoySceneNoteKind;
 
+/* One thing that was omitted, repaired, dropped or damaged in a scene, and why. It is an element of
+ * an array, so its size never changes. */
 typedef struct VoySceneNote {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_NOTE */
   void* next;
@@ -617,7 +629,9 @@ typedef struct VoyViewDesc {
   const VoyScene* scenes; /* one for each instance, of the same device; copied. All stand at the
                              identity. NULL if there is none */
   uint32_t eyeCount;      /* of every frame; 1 to VoyCapabilities.maxEyes; more is UNSUPPORTED */
-  uint32_t maxWidth, maxHeight; /* pixels; the largest target that frames will have */
+  /* Pixels: the largest target that frames will have, 1 to the maxWidth and maxHeight of
+   * VoyCapabilities. The host must set them. */
+  uint32_t maxWidth, maxHeight;
   VoyLod lod;
   double tau; /* granularity in pixels, finite, >= 0: smaller is finer. METHOD §3 */
   VoyAntialias antialias;
@@ -652,6 +666,13 @@ typedef struct VoyPose {
   double position[3];
   double orientation[4];
 } VoyPose;
+/* The identity. */
+#define VOY_POSE_INIT \
+  {                   \
+    {0, 0, 0}, {      \
+      0, 0, 0, 1      \
+    }                 \
+  }
 
 /* Tangents of the half-angles of a field of view, each between -1e4 and 1e4. right and up are
  * positive to the right of the view axis and above it, so left and down are normally negative.
@@ -659,6 +680,9 @@ typedef struct VoyPose {
 typedef struct VoyFrustum {
   double left, right, up, down;
 } VoyFrustum;
+/* 90 degrees wide and 90 degrees high. */
+#define VOY_FRUSTUM_INIT \
+  { -1, 1, 1, -1 }
 
 /* Fills a frustum from angles in radians, as XrFovf has them, each inside ±π/2: the tangents of the
  * angles. Errors: INVALID_ARGUMENT (tangents that VoyFrustum does not allow). */
@@ -668,7 +692,8 @@ VOY_API VoyResult VOY_CALL voyFrustumFromAngles(double left, double right, doubl
 /* Fills a frustum from pinhole intrinsics, all in pixels. cx and cy are measured from the top left
  * corner of the image; pixel centres lie at +0.5. left = -cx / fx, right = (width - cx) / fx,
  * up = cy / fy, down = -(height - cy) / fy (docs/conventions.md).
- * Errors: INVALID_ARGUMENT (tangents that VoyFrustum does not allow). */
+ * Errors: INVALID_ARGUMENT (fx, fy, width or height that is not finite and > 0; tangents that
+ * VoyFrustum does not allow). */
 VOY_API VoyResult VOY_CALL voyFrustumFromIntrinsics(double fx, double fy, double cx, double cy,
                                                     double width, double height,
                                                     VoyFrustum* frustum);
@@ -748,7 +773,9 @@ typedef enum VoyDepthEncoding {
  * A splat whose centre has a greater view-space z than that is hidden: it is not blended in the
  * pixel and does not count for its depth. The image then holds what lies in front of the geometry,
  * and the host composites it over its own picture.
- * The memory belongs to the host and is read only during voyRenderFrame. */
+ * The memory belongs to the host and is read only during voyRenderFrame. With DEVICE sharing
+ * (voyager_vulkan.h) memory is UNSUPPORTED: set depth to NULL and record
+ * voyRecordVulkanDepthLimit. */
 typedef struct VoyEyeDepthLimit {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT */
   const void* next;
@@ -853,6 +880,8 @@ typedef struct VoyFrameStreaming {
 #define VOY_FRAME_STREAMING_INIT \
   { VOY_STRUCTURE_TYPE_FRAME_STREAMING, NULL, 0, 0 }
 
+/* A frame of a view: what each eye sees and where it is drawn. It is valid for one call; the next
+ * frame may differ in everything. */
 typedef struct VoyFrame {
   VoyStructureType type;  /* VOY_STRUCTURE_TYPE_FRAME */
   const void* next;       /* NULL or a chain of VoyFrameStreaming and VoyVulkanFrame */
@@ -874,6 +903,7 @@ typedef struct VoyFrame {
  * when Vulkan images are. After an error no target has changed.
  * Errors:
  * - INVALID_ARGUMENT: a value out of range.
+ * - UNSUPPORTED: a VoyEyeDepthLimit in memory for a Vulkan target with DEVICE sharing.
  * - SCENE_CLOSED: a scene of the view was closed, and voySetViewInstances not called since.
  * - DAMAGED_CHUNK: the frame needs a chunk that is damaged.
  * - IO, FILE_NOT_FOUND, REFUSED_INPUT: the frame waits (VoyFrameStreaming) and a read failed.

@@ -2,7 +2,7 @@
 // there is: every call goes to voyager.h, and no C++ type crosses the boundary of the library.
 // Each object closes or destroys its handle. An object may outlive its parent; it is then of no
 // use, like its handle. Objects are as thread-safe as their handles, except for moving and
-// destroying them.
+// destroying them. The head of voyager.h says what of this is promised.
 //
 // A call that fails throws voy::Error. Where the compiler has no exceptions, or
 // VOYAGER_NO_EXCEPTIONS is defined before this header is included, calls return what went wrong:
@@ -152,6 +152,16 @@ class Scene : public Handle<VoyScene, voyCloseScene> {
                           [&](uint32_t capacity, VoySceneNote* notes, uint32_t* count) {
                             return voyGetSceneNotes(get(), capacity, notes, count);
                           });
+  }
+  // Of a streamed scene.
+  Done set_memory_budget(uint64_t bytes) {
+    return detail::done(voySetSceneMemoryBudget(get(), bytes));
+  }
+  // Of a streamed scene.
+  Returned<VoyStreamingStats> streaming_stats() const {
+    VoyStreamingStats stats = VOY_STREAMING_STATS_INIT;
+    const VoyResult result = voyGetStreamingStats(get(), &stats);
+    return detail::returned(result, stats);
   }
 };
 

@@ -482,7 +482,9 @@ typedef struct VoyVulkanCompositeDraw {
   VoyTarget target;              /* of the composite's device */
   uint32_t imageIndex;           /* acquired in SHADER_READ_ONLY_OPTIMAL for FRAGMENT_SHADER */
   uint32_t layer;
-  VkRect2D area;       /* of the attachment, where the layer goes, pixel by pixel */
+  /* Of the attachment, where the layer goes, pixel by pixel: offset 0 or more, extent 1 to the
+   * target's size. A smaller extent shows the picture's top left part. */
+  VkRect2D area;
   VkBool32 upsideDown; /* VK_TRUE: the attachment's first row is the bottom of the picture, so
                           the layer's first row goes to the last row of `area` */
   VoyVulkanDepthUse depthUse;     /* TEST and WRITE need a target with depth and a depthFormat */
