@@ -51,6 +51,12 @@ check_package() { scripts/check_package.sh; }
 check_doxygen() {
   mkdir -p build
   doxygen docs/Doxyfile
+  # The rules at the head of a header are the file's, not its first macro's.
+  local page
+  for page in voyager_8h voyager__vulkan_8h; do
+    sed -n '/>Detailed Description</,/>Macro Definition Documentation</p' "build/doxygen/html/$page.html" |
+      grep THREAD-SAFETY >/dev/null || { echo "doxygen: $page.html: found no rules in the description of the file" >&2; return 1; }
+  done
 }
 
 check_aarch64() {
