@@ -25,7 +25,7 @@ trap 'rm -rf "$folder"' EXIT
   sed 's/.*/PFN_& type_of_&;/' tests/abi/exports.txt
   sed -n 's/^\(Voy[A-Za-z]*\) .*/\1 a_\1;/p' tests/abi/layout.txt
 } >"$folder/types.c"
-gcc -std=c99 -g -O0 -shared -fPIC -fno-eliminate-unused-debug-types -Iplugin/include "$folder/types.c" -o "$folder/libvoyager_types.so"
+gcc -std=c99 -g -O0 -shared -fPIC -fno-eliminate-unused-debug-types -ffile-prefix-map="$folder/=" -Iplugin/include "$folder/types.c" -o "$folder/libvoyager_types.so"
 
 # The description has no places of declarations. With --headers-dir2 or --drop-private-types abidiff would take its
 # types for private ones, and pass over a field whose type changed.
