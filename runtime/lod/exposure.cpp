@@ -156,40 +156,43 @@ class Exposures {
   }
 
   void paint(uint32_t i, const Direction& along) {
+    const float r = colour_[0][i], g = colour_[1][i], b = colour_[2][i];
     cover(i, along, [&](size_t first, int count) {
+      const float* alpha = alpha_;
       float* through = &transmittance_[first];
-      for (int k = 0; k < 3; ++k) {
-        const float colour = colour_[k][i];
-        float* plane = &behind_[k][first];
-        for (int x = 0; x < count; ++x) plane[x] += alpha_[x] * through[x] * colour;
+      float *red = &behind_[0][first], *green = &behind_[1][first], *blue = &behind_[2][first];
+      for (int x = 0; x < count; ++x) {
+        const float weight = alpha[x] * through[x];
+        red[x] += weight * r;
+        green[x] += weight * g;
+        blue[x] += weight * b;
+        through[x] *= 1 - alpha[x];
       }
-      for (int x = 0; x < count; ++x) through[x] *= 1 - alpha_[x];
     });
   }
 
   void measure(uint32_t i, const Direction& along) {
+    const float r = colour_[0][i], g = colour_[1][i], b = colour_[2][i];
     float covered = 0, seen = 0, contrast = 0;
     const bool inside = cover(i, along, [&](size_t first, int count) {
+      const float* alpha = alpha_;
       float* through = &transmittance_[first];
+      float *red = &behind_[0][first], *green = &behind_[1][first], *blue = &behind_[2][first];
+      float *shown = shown_, *differs = differs_;
       for (int x = 0; x < count; ++x) {
-        weight_[x] = alpha_[x] * through[x];
-        covered += alpha_[x];
-        seen += weight_[x] * through[x];
-        difference_[x] = 0;
-        after_[x] = through[x] * (1 - alpha_[x]);
-      }
-      for (int k = 0; k < 3; ++k) {
-        const float colour = colour_[k][i];
-        float* plane = &behind_[k][first];
-        for (int x = 0; x < count; ++x) {
-          plane[x] -= weight_[x] * colour;
-          const float d = colour - plane[x] / std::max(after_[x], kLeastBehind);
-          difference_[x] += d * d;
-        }
+        const float weight = alpha[x] * through[x], after = through[x] * (1 - alpha[x]);
+        const float least = std::max(after, kLeastBehind);
+        const float dr = r - (red[x] -= weight * r) / least,
+                    dg = g - (green[x] -= weight * g) / least,
+                    db = b - (blue[x] -= weight * b) / least;
+        shown[x] = weight * through[x];
+        differs[x] = shown[x] * std::min((dr * dr + dg * dg) + db * db, 3.0f);
+        through[x] = after;
       }
       for (int x = 0; x < count; ++x) {
-        contrast += weight_[x] * through[x] * std::min(difference_[x], 3.0f);
-        through[x] = after_[x];
+        covered += alpha[x];
+        seen += shown[x];
+        contrast += differs[x];
       }
     });
     if (!inside) seen_[i] += 1;  // beyond the picture: nothing is known to hide it
@@ -233,10 +236,11 @@ class Exposures {
     for (int y = begin_y; y < end_y; ++y) {
       const auto dy = static_cast<float>(y + 0.5 - v);
       const int count = end_x - begin_x;
+      float* alpha = alpha_;
       for (int x = 0; x < count; ++x) {
         const float dx = static_cast<float>(x) + from;
         const float d = (a * dx * dx + b * dx * dy) + c * dy * dy;
-        alpha_[x] = d < reach ? std::min(kLargest, opacity * falloff(d)) : 0.0f;
+        alpha[x] = d < reach ? std::min(kLargest, opacity * falloff(d)) : 0.0f;
       }
       row(static_cast<size_t>(y) * static_cast<size_t>(side_) + static_cast<size_t>(begin_x),
           count);
@@ -262,7 +266,7 @@ class Exposures {
   std::vector<uint32_t> order_;
   std::vector<float> transmittance_;
   std::vector<float> behind_[3];  // the picture without what is before
-  float alpha_[kMostSide], weight_[kMostSide], after_[kMostSide], difference_[kMostSide];
+  float alpha_[kMostSide], shown_[kMostSide], differs_[kMostSide];
   int most_side_, side_ = 0;
   double pixel_ = 0, left_ = 0, top_ = 0;
 };
