@@ -11,6 +11,7 @@ DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree)
   if (search.leaves_have_extent) leaves_ = upload(std::span<const NodeRecord>(tree.records));
   view_ = {subtrees_.data(),
            records_.data(),
+           nullptr,
            chunks_.data(),
            leaves_.data(),
            search.subtree_count(),

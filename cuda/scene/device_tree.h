@@ -11,6 +11,7 @@ namespace voyager::cuda {
 struct TreeView {
   const SearchSubtree* subtrees;
   const SearchRecord* records;
+  const uint32_t* next_block;  // of a streamed scene, as SearchTree's
   const SearchChunk* chunks;
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
   uint32_t subtree_count, chunk_count;

@@ -38,7 +38,7 @@ __device__ void put_node(const TreeView& tree, const StateView& state, const Sea
   if (state.ids != nullptr)
     state.ids[place] = tree.slot_ids[node / tree.slot_nodes].id(node % tree.slot_nodes);
   if (kOrigin)
-    state.origin[place] = {s.interior >> slot & 1 ? record_of(s, slot) : kNoRecord, parent};
+    state.origin[place] = {s.interior >> slot & 1 ? record_of(tree, s, slot) : kNoRecord, parent};
 }
 
 template <bool kOrigin>
@@ -62,7 +62,7 @@ __device__ void emit_subtree(const TreeView& tree, const StateView& state, const
   // Each interior child knows its slots.
   uint32_t left = grandchildren == 0 ? 0 : s.interior & level_mask(1, s.child_count);
   for (; left != 0; left &= left - 1) {
-    const uint32_t record = record_of(s, __ffs(left) - 1);
+    const uint32_t record = record_of(tree, s, __ffs(left) - 1);
     put(grandchildren & load_record(tree.records + record).child_slots(), grandchildren,
         places.of[2], record);
   }

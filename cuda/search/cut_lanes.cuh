@@ -23,8 +23,9 @@ __device__ inline bool is_own_reached(const TreeView& tree, const SearchSubtree&
 // By a lane alone.
 __device__ inline Visit visit_own(const TreeView& tree, const SearchSubtree& s, const Sight& sight,
                                   Tally& tally) {
-  const SearchRecord* records = tree.records + s.first_record;
-  Visit v = visit(s, sight, [records](uint32_t i) { return load_record(records + i); });
+  Visit v = visit(s, sight, [&](uint32_t i) {
+    return load_record(tree.records + s.record(i, tree.next_block));
+  });
   v.stand_ins &= v.cut;
   tally.tested += v.tested;
   return v;

@@ -25,7 +25,7 @@ __device__ void send_signals(const StateView& state, uint32_t first, uint32_t la
 // no longer is, the end: their parent's subtree answers for that part again (TOP).
 __device__ void signal_change(const TreeView& tree, const StateView& state, const SearchSubtree& s,
                               uint32_t slot, uint32_t refined) {
-  const uint32_t record = record_of(s, slot);
+  const uint32_t record = record_of(tree, s, slot);
   const auto [first, last] = subtrees_below(tree.subtrees, tree.subtree_count, record,
                                             __ldg(&tree.records[record].children));
   if (first != last) send_signals(state, first, last, refined >> slot & 1 ? 0 : kClose);

@@ -52,8 +52,8 @@ __device__ inline SearchSubtree load_subtree(const TreeView& tree, uint32_t subt
 }
 
 // The record of an interior slot.
-__device__ inline uint32_t record_of(const SearchSubtree& s, uint32_t slot) {
-  return s.first_record + __popc(s.interior & ((1u << slot) - 1));
+__device__ inline uint32_t record_of(const TreeView& tree, const SearchSubtree& s, uint32_t slot) {
+  return s.record(__popc(s.interior & ((1u << slot) - 1)), tree.next_block);
 }
 
 __device__ inline uint32_t level_mask(uint32_t level, uint32_t child_count) {
@@ -130,7 +130,7 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
     const uint32_t slot = kGroupLanes * round + lane_in_group();
     bool refined = false;
     if (interior >> slot & 1) {
-      const SearchRecord r = load_record(tree.records + record_of(s, slot));
+      const SearchRecord r = load_record(tree.records + record_of(tree, s, slot));
       const NodeVerdict verdict = judge(r, sight);
       const bool blocked = r.children == kBlocked;
       refined = verdict.refined && !blocked;

@@ -29,19 +29,24 @@ void put(unsigned char* into, size_t index, const T& value) {
   std::memcpy(into + index * sizeof(T), &value, sizeof(T));
 }
 
-void check_addresses(SlotShape shape, uint32_t slots) {
-  const uint64_t most = uint64_t{slots} * std::max(shape.nodes, shape.records);
-  if (most < kNotLinked) return;
-  throw Error(ErrorCode::unsupported, "streaming: found " + std::to_string(slots) +
-                                          " slots of up to " +
-                                          std::to_string(std::max(shape.nodes, shape.records)) +
-                                          " nodes, expected fewer than 2^32 - 2 in all");
+void check_addresses(SlotShape shape, PoolRoom room) {
+  const uint64_t nodes = uint64_t{room.slots} * shape.nodes,
+                 records = uint64_t{room.blocks} * kRecordBlock;
+  if (std::max(nodes, records) < kNotLinked) return;
+  throw Error(ErrorCode::unsupported, "streaming: found room for " + std::to_string(nodes) +
+                                          " nodes and " + std::to_string(records) +
+                                          " search records, expected fewer than 2^32 - 2");
+}
+
+// Of one chunk.
+PoolLayout piece_layout(const Scene& scene, SlotShape shape) {
+  return {scene, shape, {1, record_blocks(shape.records)}};
 }
 
 }  // namespace
 
 PoolBytes DevicePool::bytes(const Device& device, const Scene& scene, SlotShape shape) {
-  const PoolLayout piece(scene, shape, 1);
+  const PoolLayout piece = piece_layout(scene, shape);
   PoolBytes bytes = piece.pool_bytes();
   if (is_coded(scene)) bytes.fixed += CodeTables::kBytes;
   if (shares_memory(device)) bytes.fixed += pieces_of(piece) * piece.filled_bytes();
@@ -49,7 +54,7 @@ PoolBytes DevicePool::bytes(const Device& device, const Scene& scene, SlotShape 
 }
 
 DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
-                       uint32_t slots)
+                       PoolRoom room)
     : device_(std::move(device)),
       tables_(is_coded(scene) ? device_->code_tables() : nullptr),
       shape_(shape),
@@ -59,18 +64,18 @@ DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
       footprints_(footprints_differ(scene)),
       blend_share_(scene.tree.blend_share),
       chunks_(scene.search.chunks),
-      piece_layout_(scene, shape, 1),
+      piece_layout_(piece_layout(scene, shape)),
       layout_(piece_layout_),
       ring_(piece_layout_.filled_bytes(), pieces_of(piece_layout_)) {
-  make_room(slots);
+  make_room(room);
 }
 
 // There is none yet.
-void DevicePool::make_room(uint32_t slots) {
-  check_addresses(shape_, slots);
-  layout_.set_slots(slots);
+void DevicePool::make_room(PoolRoom room) {
+  check_addresses(shape_, room);
+  layout_.set_room(room);
   memory_ = Buffer<unsigned char>(layout_.bytes());
-  slots_ = slots;
+  slots_ = room.slots;
   check(cudaMemcpy(array<SearchChunk>(kChunks), chunks_.data(),
                    chunks_.size() * sizeof(SearchChunk), cudaMemcpyHostToDevice),
         "chunk hulls");
@@ -81,13 +86,13 @@ void DevicePool::make_room(uint32_t slots) {
   applied_.record(stream_.get());
 }
 
-void DevicePool::resize(uint32_t slots) {
+void DevicePool::resize(PoolRoom room) {
   device_->use();
   wait_for_frames();
   stream_.wait();
   slots_ = 0;
   memory_ = {};
-  make_room(slots);
+  make_room(room);
 }
 
 // What it frees belongs to the device's context, and to chunks that may be on their way.
@@ -119,6 +124,7 @@ GaussianView DevicePool::gaussians() const {
 TreeView DevicePool::tree() const {
   return {array<SearchSubtree>(kSubtrees),
           array<SearchRecord>(kRecords),
+          array<uint32_t>(kNextBlocks),
           array<SearchChunk>(kChunks),
           layout_.unit(kLeaves) == 0 ? nullptr : array<NodeRecord>(kLeaves),
           chunks_.back().first_subtree,
@@ -143,6 +149,8 @@ void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* i
     pack_floats(staged, into);
   put(at(kSlotIds), 0, staged.ids);
   std::memcpy(at(kRecords), staged.records.data(), staged.records.size() * sizeof(SearchRecord));
+  std::memcpy(at(kNextBlocks), staged.links.blocks.data(),
+              staged.links.blocks.size() * sizeof(uint32_t));
 }
 
 void DevicePool::pack_codes(const StagedChunk& staged, unsigned char* into) const {
@@ -190,6 +198,7 @@ PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
     const auto which = static_cast<PoolArray>(a);
     const size_t unit = layout_.unit(which);
     const size_t count = which == kRecords                          ? staged.records.size()
+                         : which == kNextBlocks                     ? staged.links.blocks.size()
                          : which == kStepSizes || which == kSlotIds ? 1
                                                                     : staged.content.node.size();
     const size_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;

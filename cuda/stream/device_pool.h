@@ -27,7 +27,7 @@ class DevicePool final : public ChunkPool {
   // chunks and tiers. Throws Error(over_budget) for want of memory, Error(unsupported) where there
   // are more addresses than 32 bits.
   DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
-             uint32_t slots);
+             PoolRoom room);
   ~DevicePool() override;
   DevicePool(const DevicePool&) = delete;
   DevicePool& operator=(const DevicePool&) = delete;
@@ -36,7 +36,7 @@ class DevicePool final : public ChunkPool {
   void fill(uint32_t slot, const StagedChunk& chunk) override;
   void apply(const LinkPatch& patch) override;
   // Waits for the device.
-  void resize(uint32_t slots) override;
+  void resize(PoolRoom room) override;
 
   const Device& device() const { return *device_; }
   // Until it is resized.
@@ -57,7 +57,7 @@ class DevicePool final : public ChunkPool {
   // Throws Error(over_budget) where a resize has left no memory.
   void require_room() const;
   void wait_for_frames();
-  void make_room(uint32_t slots);
+  void make_room(PoolRoom room);
 
   const std::shared_ptr<const Device> device_;
   const std::shared_ptr<const CodeTables> tables_;  // of a coded scene
@@ -67,7 +67,7 @@ class DevicePool final : public ChunkPool {
   const bool doubles_, footprints_;
   const float blend_share_;
   const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
-  const PoolLayout piece_layout_;                // of one slot
+  const PoolLayout piece_layout_;                // of one chunk
   PoolLayout layout_;
   uint32_t slots_ = 0;
   Buffer<unsigned char> memory_;

@@ -28,10 +28,31 @@ __device__ void copy_words(const PoolCopy& copy) {
   for (uint32_t i = first_index(); i < copy.words; i += stride()) to[i] = from[i];
 }
 
+// A chunk's records go to its blocks, of which each says which is next.
+__device__ void copy_records(const PoolFill& fill) {
+  constexpr uint32_t kWords = kRecordBlock * sizeof(SearchRecord) / sizeof(uint4);
+  const auto* blocks = static_cast<const uint32_t*>(fill.copies[kNextBlocks].from);
+  const PoolCopy& copy = fill.copies[kRecords];
+  const uint4* from = static_cast<const uint4*>(copy.from);
+  uint4* to = static_cast<uint4*>(copy.to);
+  for (uint32_t i = first_index(); i < copy.words; i += stride())
+    to[size_t{blocks[i / kWords]} * kWords + i % kWords] = from[i];
+}
+__device__ void chain_blocks(const PoolCopy& copy) {
+  const auto* blocks = static_cast<const uint32_t*>(copy.from);
+  uint32_t* next = static_cast<uint32_t*>(copy.to);
+  for (uint32_t i = first_index(); i + 1 < copy.words; i += stride())
+    next[blocks[i]] = blocks[i + 1];
+}
+
 // An array each row of thread blocks, so that none waits for another's reads.
 __global__ void __launch_bounds__(kThreads) pool_fill(PoolFill fill) {
   const PoolCopy& copy = fill.copies[blockIdx.y];
-  if (copy.word_bytes == sizeof(uint4))
+  if (blockIdx.y == kRecords)
+    copy_records(fill);
+  else if (blockIdx.y == kNextBlocks)
+    chain_blocks(copy);
+  else if (copy.word_bytes == sizeof(uint4))
     copy_words<uint4>(copy);
   else if (copy.word_bytes == sizeof(uint32_t))
     copy_words<uint32_t>(copy);

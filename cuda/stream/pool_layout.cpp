@@ -18,7 +18,7 @@ ShForm sh_form(const Scene& scene) {
   return scene.largest_sh <= kMaxHalfCoefficient ? ShForm::half : ShForm::single;
 }
 
-PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots) {
+PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
   const ShForm form = sh_form(scene);
   const bool coded = form == ShForm::coded;
   unit_ = {sizeof(float4),
@@ -30,6 +30,7 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots) {
            coded ? 0 : sizeof(uint32_t),
            coded ? 0 : sizeof(uint8_t),
            sizeof(SearchRecord),
+           sizeof(uint32_t),
            coded ? sizeof(ShStepSizes) : 0,
            sizeof(SlotIds),
            sizeof(SearchSubtree),
@@ -43,26 +44,30 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots) {
     fixed_bytes_[kLargeFamilies] = most_large_families(scene.node_count) * unit_[kLargeFamilies];
     fixed_bytes_[kLargeFamilyCount] = unit_[kLargeFamilyCount];
   }
+  block_bytes_ = {};
+  block_bytes_[kRecords] = kRecordBlock * unit_[kRecords];
+  block_bytes_[kNextBlocks] = unit_[kNextBlocks];
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
-    const size_t places = a >= kFilledArrays                 ? 0
-                          : a == kStepSizes || a == kSlotIds ? 1
-                          : a == kRecords                    ? shape.records
-                                                             : shape.nodes;
+    const size_t places = a >= kFilledArrays || block_bytes_[a] != 0 ? 0
+                          : a == kStepSizes || a == kSlotIds         ? 1
+                                                                     : shape.nodes;
     slot_bytes_[a] = places * unit_[a];
   }
-  set_slots(slots);
+  set_room(room);
 }
 
-void PoolLayout::set_slots(uint32_t slots) {
+void PoolLayout::set_room(PoolRoom room) {
   begin_[0] = 0;
   for (uint32_t a = 0; a < kPoolArrays; ++a)
-    begin_[a + 1] = begin_[a] + aligned(slots * slot_bytes_[a] + fixed_bytes_[a]);
+    begin_[a + 1] = begin_[a] + aligned(room.slots * slot_bytes_[a] +
+                                        room.blocks * block_bytes_[a] + fixed_bytes_[a]);
 }
 
 PoolBytes PoolLayout::pool_bytes() const {
-  PoolBytes bytes{0, kPoolArrays * kAlign};
+  PoolBytes bytes{0, 0, kPoolArrays * kAlign};
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
     bytes.slot += slot_bytes_[a];
+    bytes.block += block_bytes_[a];
     bytes.fixed += fixed_bytes_[a];
   }
   return bytes;

@@ -1,6 +1,6 @@
 #pragma once
 // Where a pool's arrays lie in its one allocation: as DeviceScene and DeviceTree have them,
-// but by address, slot by slot.
+// but by address, slot by slot and block by block. A chunk on its way has the same arrays.
 #include <array>
 #include <cstddef>
 
@@ -10,7 +10,7 @@
 namespace voyager::cuda {
 
 enum PoolArray : uint32_t {
-  // By node, then by record: what a chunk brings.
+  // What a chunk brings: by node, by block of records, by slot.
   kHulls,
   kShapes,
   kCoefficients,
@@ -19,9 +19,10 @@ enum PoolArray : uint32_t {
   kParents,
   kChildCounts,
   kNodeCodes,
-  kRecords,
-  kStepSizes,  // one a slot
-  kSlotIds,    // the same
+  kRecords,     // blocks
+  kNextBlocks,  // one a block; of a chunk on its way, its blocks
+  kStepSizes,   // one a slot
+  kSlotIds,     // the same
   kFilledArrays,
   // Of the whole tree.
   kSubtrees = kFilledArrays,
@@ -37,12 +38,12 @@ ShForm sh_form(const Scene& scene);
 
 class PoolLayout {
  public:
-  PoolLayout(const Scene& scene, SlotShape shape, uint32_t slots);
-  void set_slots(uint32_t slots);
+  PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room);
+  void set_room(PoolRoom room);
 
   // Bytes of an element.
   size_t unit(PoolArray array) const { return unit_[array]; }
-  // Bytes that a slot takes of it; 0 of what is the whole tree's.
+  // Bytes that a slot takes of it; 0 of records, and of what is the whole tree's.
   size_t slot_bytes(PoolArray array) const { return slot_bytes_[array]; }
   // What it takes beside the slots.
   size_t fixed_bytes(PoolArray array) const { return fixed_bytes_[array]; }
@@ -51,11 +52,11 @@ class PoolLayout {
   size_t bytes() const { return begin_[kPoolArrays]; }
   // Of the arrays that a chunk brings, which come first.
   size_t filled_bytes() const { return begin_[kFilledArrays]; }
-  // Together at least bytes(), whatever the slots.
+  // Together at least bytes(), whatever the room.
   PoolBytes pool_bytes() const;
 
  private:
-  std::array<size_t, kPoolArrays> unit_, slot_bytes_, fixed_bytes_;
+  std::array<size_t, kPoolArrays> unit_, slot_bytes_, block_bytes_, fixed_bytes_;
   std::array<size_t, kPoolArrays + 1> begin_;
 };
 

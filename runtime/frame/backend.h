@@ -175,11 +175,6 @@ struct DeviceRates {
   double bytes = 0;              // of its memory, a second
 };
 
-// Bytes of a pool.
-struct PoolBytes {
-  uint64_t slot, fixed;
-};
-
 class Backend {
  public:
   virtual ~Backend() = default;
@@ -200,10 +195,10 @@ class Backend {
   virtual std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                                     std::pmr::memory_resource* memory,
                                                     Workers& workers) = 0;
-  // Where the chunks of a streamed scene lie, whose description is complete: for so many slots.
-  // Throws Error(over_budget), std::bad_alloc.
-  virtual std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, uint32_t slots);
-  // What that takes of the memory that a budget for streaming bounds: a slot, and beside them.
+  // Where the chunks of a streamed scene lie, whose description is complete. Throws
+  // Error(over_budget), std::bad_alloc.
+  virtual std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, PoolRoom room);
+  // What that takes of the memory that a budget for streaming bounds.
   virtual PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const;
   // Of a resident scene with a tree, which stays as it is. Throws Error(unsupported) where the
   // backend has none, Error(over_budget).

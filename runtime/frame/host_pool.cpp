@@ -15,14 +15,14 @@ bool counts_children(const Scene& scene) {
 
 class HostPool final : public ChunkPool {
  public:
-  HostPool(Scene& scene, SlotShape shape, uint32_t slots) : scene_(scene), shape_(shape) {
-    resize(slots);
+  HostPool(Scene& scene, SlotShape shape, PoolRoom room) : scene_(scene), shape_(shape) {
+    resize(room);
   }
 
-  void resize(uint32_t slots) override {
-    if (scene_.search.subtrees.empty() ||
-        scene_.search.records.size() != size_t{slots} * shape_.records)
-      make_room(slots);
+  void resize(PoolRoom room) override {
+    if (scene_.search.subtrees.empty() || scene_.slot_ids.size() != room.slots ||
+        scene_.search.next_block.size() != room.blocks)
+      make_room(room);
     scene_.large_families.clear();
     scene_.search.subtrees.assign(scene_.search.subtree_count(), kUnlinkedSubtree);
   }
@@ -40,9 +40,10 @@ class HostPool final : public ChunkPool {
       scene_.tree.parent[at] =
           staged.parent[i] == kNoNode ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
     }
-    std::copy(
-        staged.records.begin(), staged.records.end(),
-        scene_.search.records.begin() + static_cast<std::ptrdiff_t>(size_t{slot} * shape_.records));
+    for (uint32_t i = 0; i < staged.records.size(); ++i)
+      scene_.search.records[staged.links.record(i)] = staged.records[i];
+    const std::vector<uint32_t>& blocks = staged.links.blocks;
+    for (size_t i = 1; i < blocks.size(); ++i) scene_.search.next_block[blocks[i - 1]] = blocks[i];
   }
 
   void apply(const LinkPatch& patch) override {
@@ -62,9 +63,9 @@ class HostPool final : public ChunkPool {
 
  private:
   // The old arrays go first, so that a budget holds at every moment.
-  void make_room(uint32_t slots) {
+  void make_room(PoolRoom room_for) {
     scene_.slot_nodes = shape_.nodes;
-    const size_t nodes = size_t{slots} * shape_.nodes, records = size_t{slots} * shape_.records;
+    const size_t slots = room_for.slots, nodes = slots * shape_.nodes;
     for (const bool room : {false, true}) {
       const auto fit = [room](auto& array, size_t size) {
         std::decay_t<decltype(array)>(room ? size : 0, array.get_allocator()).swap(array);
@@ -74,7 +75,8 @@ class HostPool final : public ChunkPool {
       fit(scene_.child_count, counts_children(scene_) ? nodes : 0);
       fit(scene_.tree.parent, nodes);
       fit(scene_.slot_ids, slots);
-      fit(scene_.search.records, records);
+      fit(scene_.search.records, size_t{room_for.blocks} * kRecordBlock);
+      fit(scene_.search.next_block, room_for.blocks);
     }
   }
 
@@ -88,22 +90,22 @@ PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
   const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) + sizeof(uint32_t) +
                         (counts_children(scene) ? sizeof(uint32_t) : 0) +
                         (scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0);
-  const uint64_t record = sizeof(SearchRecord);
+  const uint64_t block = kRecordBlock * sizeof(SearchRecord) + sizeof(uint32_t);
   const SearchTree& search = scene.search;
   const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
-  return {shape.nodes * node + shape.records * record + scales + sizeof(SlotIds),
+  return {shape.nodes * node + scales + sizeof(SlotIds), block,
           search.subtree_count() * sizeof(SearchSubtree) +
               search.chunks.size() * sizeof(SearchChunk) +
               search.tier_begin.size() * sizeof(uint32_t) +
               (is_coded(scene) ? most_large_families(scene.node_count) * sizeof(LargeFamily) : 0)};
 }
 
-std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, SlotShape shape, uint32_t slots) {
-  return std::make_unique<HostPool>(scene, shape, slots);
+std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, SlotShape shape, PoolRoom room) {
+  return std::make_unique<HostPool>(scene, shape, room);
 }
 
-std::unique_ptr<ChunkPool> Backend::create_pool(Scene& scene, SlotShape shape, uint32_t slots) {
-  return create_host_pool(scene, shape, slots);
+std::unique_ptr<ChunkPool> Backend::create_pool(Scene& scene, SlotShape shape, PoolRoom room) {
+  return create_host_pool(scene, shape, room);
 }
 
 PoolBytes Backend::pool_bytes(const Scene& scene, SlotShape shape) const {

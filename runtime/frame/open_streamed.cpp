@@ -44,22 +44,36 @@ uint64_t most_bytes(const SceneFile& file) {
   return kAnyScene + 2 * claimed_bytes(file);
 }
 
-uint32_t slots_for(const SceneFile& file, const PoolBytes& bytes, uint64_t wanted) {
-  const auto chunks = static_cast<uint32_t>(file.chunks().size());
+// The most that fits.
+PoolRoom room_for(const SceneFile& file, const PoolBytes& bytes, uint64_t wanted) {
+  const RecordRoom records(file);
   const uint64_t most = most_bytes(file), budget = wanted == 0 ? most : std::min(wanted, most);
-  const uint64_t room = budget < bytes.fixed ? 0 : (budget - bytes.fixed) / bytes.slot;
-  const uint32_t least = SceneStream::top_chunks(file);
-  if (room >= least) return static_cast<uint32_t>(std::min<uint64_t>(room, chunks));
-  throw Error(ErrorCode::over_budget, file.name() + ": the top of the tree takes " +
-                                          megabytes_text(bytes.fixed + least * bytes.slot) +
-                                          ", the memory budget allows " + megabytes_text(budget));
+  uint32_t fits = SceneStream::top_chunks(file);
+  if (const uint64_t least = bytes.of(records.of(fits)); least > budget)
+    throw Error(ErrorCode::over_budget, file.name() + ": the top of the tree takes " +
+                                            megabytes_text(least) + ", the memory budget allows " +
+                                            megabytes_text(budget));
+  auto last = static_cast<uint32_t>(file.chunks().size());
+  while (fits < last) {
+    const uint32_t middle = last - (last - fits) / 2;
+    if (bytes.of(records.of(middle)) <= budget)
+      fits = middle;
+    else
+      last = middle - 1;
+  }
+  return records.of(fits);
 }
 
+// Before they are read it is not known how many blocks they take.
 uint32_t first_of(const SceneFile& file, const StreamDesc& desc, uint64_t limit) {
-  uint64_t bytes = 0;
+  const RecordRoom records(file);
+  uint64_t bytes = 0, blocks = 0;
   uint32_t first = 0;
-  for (; first < desc.slots; ++first)
-    if ((bytes += file.chunks()[first].bytes) > limit) break;
+  for (; first < desc.room.slots; ++first) {
+    bytes += file.chunks()[first].bytes;
+    blocks += records.most_blocks(first);
+    if (bytes > limit || blocks > desc.room.blocks) break;
+  }
   return std::max(first, desc.pinned);
 }
 
@@ -82,14 +96,13 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   const SlotShape shape = SceneStream::slot_shape(*file);
   const PoolBytes bytes = backend.pool_bytes(*scene, shape);
   StreamDesc stream;
-  stream.slots = slots_for(*file, bytes, desc.budget);
-  stream.pinned = SceneStream::pinned_chunks(*file, stream.slots);
+  stream.room = room_for(*file, bytes, desc.budget);
+  stream.pinned = SceneStream::pinned_chunks(*file, stream.room.slots);
   stream.first = desc.start ? stream.pinned : first_of(*file, stream, desc.first_bytes);
   stream.readers = desc.readers;
-  stream.slot_bytes = bytes.slot;
-  stream.fixed_bytes = bytes.fixed;
+  stream.bytes = bytes;
   stream.clock = desc.clock;
-  scene->pool = backend.create_pool(*scene, shape, stream.slots);
+  scene->pool = backend.create_pool(*scene, shape, stream.room);
   scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
   scene->stream->read_top(workers);
   if (desc.start)
@@ -100,8 +113,8 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
 void resize_streamed(Scene& scene, uint64_t budget, Backend& backend, Workers& workers) {
   const SceneFile& file = scene.stream->file();
   const PoolBytes bytes = backend.pool_bytes(scene, SceneStream::slot_shape(file));
-  const uint32_t slots = slots_for(file, bytes, budget);
-  scene.stream->resize(slots, SceneStream::pinned_chunks(file, slots), workers);
+  const PoolRoom room = room_for(file, bytes, budget);
+  scene.stream->resize(room, SceneStream::pinned_chunks(file, room.slots), workers);
 }
 
 }  // namespace voyager

@@ -46,9 +46,10 @@ class BlockWeights {
     if (level == 1)
       return weigh_slots(subtree, family(subtree.first_record, subtree.root, split), slots, out);
     // Each child's own, in the order of the children.
-    uint32_t record = subtree.first_record + (subtree.interior & 1);
+    uint32_t k = subtree.interior & 1;
     for (uint32_t left = subtree.interior & subtree.level_slots(1); left != 0;
-         left &= left - 1, ++record) {
+         left &= left - 1, ++k) {
+      const uint32_t record = subtree.record(k, search_tree_.next_block.data());
       const uint32_t own = search_tree_.records[record].child_slots() & slots;
       if (own == 0) continue;
       const uint32_t child = subtree.node(static_cast<uint32_t>(std::countr_zero(left)));
@@ -96,7 +97,8 @@ class BlockWeights {
   float own_size(const SearchSubtree& subtree, uint32_t slot) const {
     if ((subtree.interior >> slot & 1) == 0) return leaf_size(links_.records[subtree.node(slot)]);
     const uint32_t below = subtree.interior & ((1u << slot) - 1);
-    return size_of(search_tree_.records[subtree.first_record + count_bits(below)]);
+    return size_of(
+        search_tree_.records[subtree.record(count_bits(below), search_tree_.next_block.data())]);
   }
 
   float leaf_size(const NodeRecord& r) const { return r.extent == 0.0f ? 0.0f : size_of(r); }

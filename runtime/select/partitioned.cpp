@@ -143,9 +143,9 @@ bool PartitionedSearch::mark_read(uint32_t chunk) {
 // Visits an open subtree. Gives the slots whose verdict is not what it was.
 uint32_t PartitionedSearch::look(uint32_t subtree, Tally& tally) {
   const SearchSubtree& s = tree_.subtrees[subtree];
-  const SearchRecord* records = tree_.records.data() + s.first_record;
-  const Visit found =
-      visit(s, sight_, [records](uint32_t i) -> const SearchRecord& { return records[i]; });
+  const Visit found = visit(s, sight_, [&](uint32_t i) -> const SearchRecord& {
+    return tree_.records[s.record(i, tree_.next_block.data())];
+  });
   ++tally.visited;
   tally.tested += found.tested;
   tally.bytes += sizeof s + found.tested * sizeof(SearchRecord) + 2 * sizeof(uint32_t);

@@ -42,7 +42,16 @@ struct SubtreeSpan {
   uint32_t first, last;
 };
 
-// Slots are those of Subtree. Record first_record + k is that of the k-th slot in `interior`.
+// Records lie in blocks. In a pool those of a chunk are anywhere, and each says which block is the
+// chunk's next.
+inline constexpr uint32_t kRecordBlock = 8;
+VOYAGER_HD constexpr uint32_t record_blocks(uint32_t records) {
+  return (records + kRecordBlock - 1) / kRecordBlock;
+}
+// In SearchSubtree::owned, beside slots: the subtree's records are not all consecutive.
+inline constexpr uint32_t kScattered = 0x80000000u;
+
+// Slots are those of Subtree. record(k) is that of the k-th slot in `interior`.
 struct SearchSubtree {
   uint32_t root, first_child, first_grandchild;  // node ids
   uint32_t child_count;                          // slots 1 to child_count are children
@@ -52,6 +61,13 @@ struct SearchSubtree {
   uint32_t entry;     // record of the root's parent; kNoRecord at the tree's root
 
   VOYAGER_HD bool missing() const { return owned == 0; }
+  // next_block: SearchTree's.
+  VOYAGER_HD uint32_t record(uint32_t k, const uint32_t* next_block) const {
+    if ((owned & kScattered) == 0) return first_record + k;
+    uint32_t block = first_record / kRecordBlock, place = first_record % kRecordBlock + k;
+    for (; place >= kRecordBlock; place -= kRecordBlock) block = next_block[block];
+    return block * kRecordBlock + place;
+  }
   VOYAGER_HD uint32_t node(uint32_t slot) const {
     if (slot == 0) return root;
     return slot <= child_count ? first_child + (slot - 1)
@@ -91,7 +107,7 @@ static_assert(sizeof(SearchChunk) == 32);
 
 struct SearchTree {
   explicit SearchTree(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : subtrees(memory), records(memory), chunks(memory), tier_begin(memory) {}
+      : subtrees(memory), records(memory), next_block(memory), chunks(memory), tier_begin(memory) {}
 
   uint32_t subtree_count() const { return chunks.empty() ? 0 : chunks.back().first_subtree; }
   size_t chunk_count() const { return chunks.empty() ? 0 : chunks.size() - 1; }
@@ -102,6 +118,7 @@ struct SearchTree {
 
   std::pmr::vector<SearchSubtree> subtrees;
   std::pmr::vector<SearchRecord> records;
+  std::pmr::vector<uint32_t> next_block;  // by block of records, of a pool
   std::pmr::vector<SearchChunk> chunks;   // and one with the end as its first subtree
   std::pmr::vector<uint32_t> tier_begin;  // first subtree of each tier, and the end
   bool leaves_have_extent = false;        // else a leaf's size is 0 wherever its weight matters

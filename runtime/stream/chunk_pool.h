@@ -4,19 +4,31 @@
 
 namespace voyager {
 
+// What a pool has room for: chunks, and blocks of search records.
+struct PoolRoom {
+  uint32_t slots, blocks;
+};
+
+// What a pool takes: each slot, each block, and beside them.
+struct PoolBytes {
+  uint64_t slot, block, fixed;
+
+  uint64_t of(PoolRoom room) const { return fixed + room.slots * slot + room.blocks * block; }
+};
+
 class ChunkPool {
  public:
   virtual ~ChunkPool() = default;
-  // Slots that no frame reads; several threads at once, each a slot of its own. Throws Error
-  // where the pool itself is at fault.
+  // Slots that no frame reads, and blocks that none reads, which chunk.links names; several threads
+  // at once, each a slot of its own. Throws Error where the pool itself is at fault.
   virtual void fill(uint32_t slot, const StagedChunk& chunk) = 0;
   // Between two frames: what was filled before and is linked now is there for the next one.
   virtual void apply(const LinkPatch& patch) = 0;
-  // Room for so many slots instead; what they held is lost, and nothing is linked. No frame
+  // Other room instead; what they held is lost, and nothing is linked. No frame
   // reads the pool and no slot is being filled. Throws Error(over_budget) or std::bad_alloc,
-  // and may then have any number of slots up to those it had; where there are as many already, a
-  // pool may keep its memory, and then throws nothing.
-  virtual void resize(uint32_t slots) = 0;
+  // and may then have any room up to what it had; where it has as much already, a pool may keep
+  // its memory, and then throws nothing.
+  virtual void resize(PoolRoom room) = 0;
 };
 
 }  // namespace voyager

@@ -1,6 +1,7 @@
 #include "runtime/stream/linker.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace voyager {
@@ -21,13 +22,21 @@ class Addresses {
             first_child_,
             base + s.first_place[2],
             s.ids.child_count,
-            table.slot * shape_.records + s.first_record,
+            s.interior == 0 ? 0 : table.record(s.first_record),
             s.interior,
-            s.owned,
+            s.owned | (is_scattered(table, s) ? kScattered : 0),
             entry};
   }
 
  private:
+  static bool is_scattered(const LinkTable& table, const StagedSubtree& s) {
+    const auto records = static_cast<uint32_t>(std::popcount(s.interior));
+    bool scattered = false;
+    for (uint32_t k = 1; k < records; ++k)
+      scattered |= table.record(s.first_record + k) != table.record(s.first_record) + k;
+    return scattered;
+  }
+
   SlotShape shape_;
   uint32_t root_ = 0, first_child_ = 0;
 };
@@ -182,7 +191,7 @@ void Linker::link(Family first, LinkPatch& patch) {
     NodeBelow& node = table.below[family.below];
     if (node.linked || !table.subtrees[node.subtree].linked || !complete(node)) continue;
     node.linked = true;
-    const uint32_t record = table.slot * shape_.records + node.record;
+    const uint32_t record = table.record(node.record);
     const uint32_t parent = table.slot * shape_.nodes + node.node;
     Addresses addresses(shape_);
     uint32_t first_below = kLowest;
@@ -208,7 +217,7 @@ void Linker::unlink(Family first, LinkPatch& patch) {
     LinkTable& table = *tables_[family.chunk];
     NodeBelow& node = table.below[family.below];
     if (!std::exchange(node.linked, false)) continue;
-    patch.cut.records.push_back({table.slot * shape_.records + node.record, kBlocked});
+    patch.cut.records.push_back({table.record(node.record), kBlocked});
     patch.cut.changed.push_back(table.first_subtree + node.subtree);
     each_subtree(node, [&](LinkTable& of, uint32_t i) {
       of.subtrees[i].linked = false;

@@ -10,7 +10,8 @@
 
 namespace voyager {
 
-// Places in a slot; addresses are slot * that + number in the chunk.
+// Places in a slot, where a node's address is slot * that + its place, and what a chunk has of
+// search records at most.
 struct SlotShape {
   uint32_t nodes, records;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 namespace voyager {
@@ -21,14 +22,17 @@ float error_of(uint32_t urgency) {
 
 }  // namespace
 
-Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks, uint32_t slots,
-                     uint32_t pinned)
+Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks,
+                     const RecordRoom& records, PoolRoom room, uint32_t pinned)
     : graph_(&graph),
       chunks_(chunks),
-      slots_(slots),
+      records_(&records),
+      room_(room),
       pinned_(pinned),
       state_(chunks.size()),
       slot_(chunks.size(), kNoSlot),
+      first_block_(chunks.size(), kNoBlock),
+      blocks_of_(chunks.size(), kUnknown),
       urgency_(chunks.size()),
       own_urgency_(chunks.size()),
       needed_plan_(chunks.size()),
@@ -36,10 +40,13 @@ Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks
       counted_(chunks.size()),
       target_(chunks.size()),
       children_there_(chunks.size()),
-      shares_family_(chunks.size()) {
-  assert(pinned <= slots);
-  free_slots_.reserve(slots);  // so that to free one throws nothing
-  for (uint32_t slot = slots; slot-- > 0;) free_slots_.push_back(slot);
+      shares_family_(chunks.size()),
+      next_block_(room.blocks, kNoBlock) {
+  assert(pinned <= room.slots);
+  free_slots_.reserve(room.slots);  // so that to free one throws nothing
+  for (uint32_t slot = room.slots; slot-- > 0;) free_slots_.push_back(slot);
+  free_blocks_.reserve(room.blocks);
+  for (uint32_t block = 0; block < room.blocks; ++block) free_blocks_.push_back(block);
   plan({});
 }
 
@@ -175,15 +182,29 @@ void Residency::choose_target() {
   extra_.clear();
   for (const Needed& needed : needed_)
     if (needed.chunk >= pinned_) extra_.push_back(needed);
-  const size_t room = slots_ - pinned_;
+  const size_t room = room_.slots - pinned_;
+  // Parents are at least as urgent as their children, and come before them.
+  const auto before = [](const Needed& a, const Needed& b) {
+    return a.urgency != b.urgency ? a.urgency > b.urgency : a.chunk < b.chunk;
+  };
   if (extra_.size() > room) {
-    // Parents are at least as urgent as their children, and come before them.
-    const auto before = [](const Needed& a, const Needed& b) {
-      return a.urgency != b.urgency ? a.urgency > b.urgency : a.chunk < b.chunk;
-    };
     std::nth_element(extra_.begin(), extra_.begin() + static_cast<std::ptrdiff_t>(room),
                      extra_.end(), before);
     extra_.resize(room);
+  }
+  const auto blocks_of = [&](uint64_t sum, const Needed& needed) {
+    return sum + known_blocks(needed.chunk);
+  };
+  target_blocks_ = pinned_blocks();
+  const uint64_t all = std::accumulate(extra_.begin(), extra_.end(), target_blocks_, blocks_of);
+  if (all > room_.blocks) {
+    std::sort(extra_.begin(), extra_.end(), before);
+    size_t last = 0;
+    for (; target_blocks_ + known_blocks(extra_[last].chunk) <= room_.blocks; ++last)
+      target_blocks_ += known_blocks(extra_[last].chunk);
+    extra_.resize(last);
+  } else {
+    target_blocks_ = all;
   }
   for (const Needed& needed : extra_) target_[needed.chunk] = plan_;
 }
@@ -212,7 +233,7 @@ void Residency::queue_requests() {
 // victim goes after it.
 void Residency::list_victims() {
   victims_.clear();
-  if (coming_ + requests_.size() <= free_slots_.size()) return;
+  if (!is_short(wanted(requests_.size()))) return;
   std::vector<std::pair<float, uint32_t>> scored;
   std::vector<float> score(graph_->size(), INFINITY);
   for (uint32_t chunk = graph_->size(); chunk-- > pinned_;) {
@@ -241,14 +262,24 @@ ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
   for (; fits(range.last); ++range.last) taken += chunks_[range.last].bytes;
   for (; range.first > 0 && fits(range.first - 1); --range.first)
     taken += chunks_[range.first - 1].bytes;
-  for (uint32_t chunk = range.first; chunk < range.last; ++chunk) state_[chunk] = State::on_its_way;
+  for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
+    state_[chunk] = State::on_its_way;
+    coming_blocks_ += most_blocks(chunk);
+  }
   counters_.requested += range.last - range.first;
   coming_ += range.last - range.first;
   return range;
 }
 
-bool Residency::read(uint32_t chunk) {
+void Residency::learn_blocks(uint32_t chunk, uint32_t blocks) {
+  coming_blocks_ += uint64_t{blocks} - most_blocks(chunk);
+  if (is_wanted(chunk)) target_blocks_ += uint64_t{blocks} - known_blocks(chunk);
+  blocks_of_[chunk] = blocks;
+}
+
+bool Residency::read(uint32_t chunk, uint32_t blocks) {
   assert(state_[chunk] == State::on_its_way);
+  learn_blocks(chunk, blocks);
   state_[chunk] = State::read;
   return keep(chunk);
 }
@@ -262,11 +293,14 @@ bool Residency::keep(uint32_t chunk) {
 
 // Its slot, or its claim to one.
 void Residency::give_up(uint32_t chunk, State now) {
-  if (slot_[chunk] == kNoSlot)
+  if (slot_[chunk] == kNoSlot) {
     --coming_;
-  else
-    free_slot(slot_[chunk]);
+    coming_blocks_ -= most_blocks(chunk);
+  } else {
+    free({chunk, slot_[chunk], first_block_[chunk]});
+  }
   slot_[chunk] = kNoSlot;
+  first_block_[chunk] = kNoBlock;
   state_[chunk] = now;
 }
 
@@ -277,19 +311,68 @@ void Residency::drop(uint32_t chunk) {
 
 uint32_t Residency::take_slot(uint32_t chunk) {
   assert(state_[chunk] == State::read && slot_[chunk] == kNoSlot);
-  if (free_slots_.empty()) return kNoSlot;
+  if (free_slots_.empty() || free_blocks_.size() < blocks_of_[chunk]) return kNoSlot;
   slot_[chunk] = free_slots_.back();
   free_slots_.pop_back();
   --coming_;
+  coming_blocks_ -= blocks_of_[chunk];
+  take_blocks(chunk);
   return slot_[chunk];
+}
+
+// The first that are free, so that most lie one behind another.
+void Residency::take_blocks(uint32_t chunk) {
+  uint32_t* last = &first_block_[chunk];
+  for (uint32_t i = 0; i < blocks_of_[chunk]; ++i) {
+    std::pop_heap(free_blocks_.begin(), free_blocks_.end(), std::greater<>());
+    *last = free_blocks_.back();
+    free_blocks_.pop_back();
+    last = &next_block_[*last];
+  }
+  *last = kNoBlock;
+}
+
+void Residency::free_blocks(uint32_t first) {
+  for (uint32_t block = first; block != kNoBlock; block = next_block_[block]) {
+    free_blocks_.push_back(block);
+    std::push_heap(free_blocks_.begin(), free_blocks_.end(), std::greater<>());
+  }
+}
+
+void Residency::free(const Evicted& evicted) {
+  free_slots_.push_back(evicted.slot);
+  free_blocks(evicted.first_block);
+}
+
+std::vector<uint32_t> Residency::blocks(uint32_t chunk) const {
+  std::vector<uint32_t> all;
+  for (uint32_t block = first_block_[chunk]; block != kNoBlock; block = next_block_[block])
+    all.push_back(block);
+  return all;
+}
+
+uint64_t Residency::pinned_blocks() const {
+  uint64_t blocks = 0;
+  for (uint32_t chunk = 0; chunk < pinned_; ++chunk) blocks += known_blocks(chunk);
+  return blocks;
 }
 
 void Residency::place(uint32_t chunk) {
   assert(state_[chunk] == State::absent);
   state_[chunk] = State::read;
   target_[chunk] = plan_;
+  blocks_of_[chunk] = 0;  // until place_records()
   ++coming_;
   take_slot(chunk);
+}
+
+bool Residency::place_records(uint32_t chunk, uint32_t blocks) {
+  assert(state_[chunk] == State::read && slot_[chunk] != kNoSlot);
+  if (blocks > free_blocks_.size()) return false;
+  blocks_of_[chunk] = blocks;
+  target_blocks_ += blocks;
+  take_blocks(chunk);
+  return true;
 }
 
 void Residency::filled(uint32_t chunk) {
@@ -358,25 +441,37 @@ Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accep
   return out;
 }
 
-size_t Residency::slots_wanted() const {
-  return coming_ + std::min(requests_.size(), kRoomAhead);
+// By what is coming, and by the most urgent requests.
+Residency::Wanted Residency::wanted(size_t requests) const {
+  Wanted wanted{coming_ + requests, coming_blocks_};
+  for (size_t i = requests_.size() - requests; i < requests_.size(); ++i)
+    wanted.blocks += most_blocks(requests_[i]);
+  return wanted;
+}
+
+bool Residency::is_short(const Wanted& wanted) const {
+  return free_slots_.size() < wanted.slots || free_blocks_.size() < wanted.blocks;
 }
 
 bool Residency::has_changes() const {
-  return !filled_.empty() || (!victims_.empty() && free_slots_.size() < slots_wanted());
+  return !filled_.empty() ||
+         (!victims_.empty() && is_short(wanted(std::min(requests_.size(), kRoomAhead))));
 }
 
 std::vector<Residency::Evicted> Residency::evict() {
   std::vector<Evicted> evicted;
-  const size_t wanted = slots_wanted();
-  while (free_slots_.size() + evicted.size() < wanted && !victims_.empty()) {
+  Wanted still = wanted(std::min(requests_.size(), kRoomAhead));
+  while (!victims_.empty() && is_short(still)) {
     const uint32_t chunk = victims_.back();
     victims_.pop_back();
     if (state_[chunk] != State::resident || is_wanted(chunk) || children_there_[chunk] != 0)
       continue;
     for (const uint32_t p : graph_->parents(chunk)) --children_there_[p];
-    evicted.push_back({chunk, slot_[chunk]});
+    evicted.push_back({chunk, slot_[chunk], first_block_[chunk]});
+    still.slots -= std::min<size_t>(still.slots, 1);
+    still.blocks -= std::min<uint64_t>(still.blocks, blocks_of_[chunk]);
     slot_[chunk] = kNoSlot;
+    first_block_[chunk] = kNoBlock;
     state_[chunk] = State::absent;
     count_missing(chunk, true);
     --resident_;
@@ -394,6 +489,10 @@ void Residency::count_need() {
     counted_[needed.chunk] = seen ? 2 : 1;
     ++need_.chunks;
     need_.seen += seen;
+    if (seen) {
+      need_.seen_blocks += known_blocks(needed.chunk);
+      need_.seen_unread_blocks += most_blocks(needed.chunk) - known_blocks(needed.chunk);
+    }
     if (state_[needed.chunk] != State::resident) count_missing(needed.chunk, true);
   }
   for (const Needed& needed : failed_) {

@@ -8,6 +8,10 @@
 // and of these what would be missed most, by the size of what stands in. A chunk is as urgent
 // as the most urgent that hangs from it. Once all of the target is there nothing moves.
 //
+// Beside its slot a chunk takes blocks of search records, as many as it is found to need when it
+// is read. The target takes no more of them than there are: what is not known yet counts as
+// nothing, and where it proves to be too much the least urgent are left out (overfull()).
+//
 //     absent -> on its way -> read -> filled -> resident -> absent
 #include <cstdint>
 #include <functional>
@@ -15,6 +19,7 @@
 #include <vector>
 
 #include "runtime/stream/chunk_graph.h"
+#include "runtime/stream/record_room.h"
 #include "runtime/stream/viewer.h"
 
 namespace voyager {
@@ -31,17 +36,19 @@ struct ResidencyCounters {
 struct ResidencyNeed {
   uint64_t chunks = 0, missing = 0, missing_bytes = 0;
   uint64_t seen = 0, seen_missing = 0;  // beside those that are pinned
-  std::vector<uint32_t> seen_failed;    // counted in all of these
+  // Blocks that those take which have not failed: of what was read; and at most, of the others.
+  uint64_t seen_blocks = 0, seen_unread_blocks = 0;
+  std::vector<uint32_t> seen_failed;  // counted in all of these
 };
 
 class Residency {
  public:
   static constexpr uint32_t kNoSlot = 0xffffffffu;
 
-  // Both outlive it. pinned: so many of the first chunks stay; all without parents at least,
-  // and no more than slots.
-  Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks, uint32_t slots,
-            uint32_t pinned);
+  // All outlive it. pinned: so many of the first chunks stay; all without parents at least,
+  // and no more than there is room for.
+  Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks, const RecordRoom& records,
+            PoolRoom room, uint32_t pinned);
 
   // Who looks now. What is no longer wanted is no longer requested.
   void plan(std::span<const Viewer> viewers);
@@ -49,15 +56,20 @@ class Residency {
   // The most urgent chunks that are to be read: consecutive, at most `most`, and of at most
   // `bytes` in the file unless one alone has more. They are on their way then.
   ChunkRange take_requests(uint32_t most, uint64_t bytes);
-  // A chunk that was on its way. False: nobody wants it any more, and it is absent.
-  bool read(uint32_t chunk);
+  // A chunk that was on its way, and takes so many blocks. False: nobody wants it any more, and it
+  // is absent.
+  bool read(uint32_t chunk, uint32_t blocks);
   // As read(), of one that was read before.
   bool keep(uint32_t chunk);
-  // A slot for a chunk that was read, to be filled; kNoSlot where none is free.
+  // A slot and blocks for a chunk that was read, to be filled; kNoSlot where they are not free.
   uint32_t take_slot(uint32_t chunk);
+  // Those that it has, in their order.
+  std::vector<uint32_t> blocks(uint32_t chunk) const;
   void filled(uint32_t chunk);
-  // An absent chunk takes a slot at once, as if it had been read; one must be free.
+  // An absent chunk takes a slot at once, as if it had been read; one must be free. Then its
+  // blocks; false where they are not free.
   void place(uint32_t chunk);
+  bool place_records(uint32_t chunk, uint32_t blocks);
   // A chunk that was on its way, or read, is not to be had, until retry().
   void failed(uint32_t chunk);
   void retry(uint32_t chunk);
@@ -69,14 +81,16 @@ class Residency {
   };
   Arrivals arrive(const std::function<bool(uint32_t)>& accept);
   struct Evicted {
-    uint32_t chunk, slot;
+    uint32_t chunk, slot, first_block;
   };
-  // Residents that make room for what is to come, children before parents. A slot is taken
-  // again only after free_slot(): when no frame reads it any more.
+  // Residents that make room for what is to come, children before parents. That is taken
+  // again only after free(): when no frame reads it any more.
   std::vector<Evicted> evict();
-  void free_slot(uint32_t slot) { free_slots_.push_back(slot); }
+  void free(const Evicted& evicted);
   // Whether arrive() or evict() has something to do.
   bool has_changes() const;
+  // The target takes more blocks than there are, which the next plan does something about.
+  bool overfull() const { return target_blocks_ > room_.blocks; }
 
   // One node leads to the chunk and to the one before; inside: and to the one behind.
   void set_shares_family(uint32_t chunk, bool inside) { shares_family_[chunk] = inside ? 2 : 1; }
@@ -87,7 +101,10 @@ class Residency {
     return state_[chunk] == State::read || state_[chunk] == State::filled;
   }
   bool is_wanted(uint32_t chunk) const { return target_[chunk] == plan_ || chunk < pinned_; }
-  uint32_t slots() const { return slots_; }
+  uint32_t slots() const { return room_.slots; }
+  PoolRoom room() const { return room_; }
+  // Of what is pinned and was read.
+  uint64_t pinned_blocks() const;
   uint32_t pinned() const { return pinned_; }
   uint32_t resident() const { return resident_; }
   const ResidencyNeed& need() const { return need_; }
@@ -118,20 +135,40 @@ class Residency {
   void choose_target();
   void queue_requests();
   void list_victims();
-  size_t slots_wanted() const;
+  struct Wanted {
+    size_t slots;
+    uint64_t blocks;
+  };
+  Wanted wanted(size_t requests) const;
+  bool is_short(const Wanted& wanted) const;
+  uint32_t known_blocks(uint32_t chunk) const {
+    return blocks_of_[chunk] == kUnknown ? 0 : blocks_of_[chunk];
+  }
+  uint32_t most_blocks(uint32_t chunk) const {
+    return blocks_of_[chunk] == kUnknown ? records_->most_blocks(chunk) : blocks_of_[chunk];
+  }
+  void learn_blocks(uint32_t chunk, uint32_t blocks);
+  void take_blocks(uint32_t chunk);
+  void free_blocks(uint32_t first);
   void drop_waiting();
   bool parents_there(uint32_t chunk) const;
   void count_missing(uint32_t chunk, bool missing);
   void give_up(uint32_t chunk, State now);
   void drop(uint32_t chunk);
 
+  static constexpr uint32_t kUnknown = 0xffffffffu, kNoBlock = 0xffffffffu;
+
   const ChunkGraph* graph_;
   std::span<const ChunkEntry> chunks_;
-  uint32_t slots_, pinned_, resident_ = 0;
+  const RecordRoom* records_;
+  PoolRoom room_;
+  uint32_t pinned_, resident_ = 0;
   uint32_t plan_ = 0;
   // By chunk.
   std::vector<State> state_;
   std::vector<uint32_t> slot_;
+  std::vector<uint32_t> first_block_;
+  std::vector<uint32_t> blocks_of_;    // how many it takes
   std::vector<uint32_t> urgency_;      // when it was last needed
   std::vector<uint32_t> own_urgency_;  // in the last plan that needed it; 0: for what hangs from it
   std::vector<uint32_t> needed_plan_;  // the last plan that needed it
@@ -149,7 +186,11 @@ class Residency {
   std::vector<uint32_t> filled_;              // since the last arrivals
   std::vector<uint32_t> waiting_;  // all that are filled before their parents are there, and others
   std::vector<uint32_t> free_slots_;
-  uint32_t coming_ = 0;  // on their way or read: each will want a slot
+  std::vector<uint32_t> free_blocks_;  // a heap, the least first
+  std::vector<uint32_t> next_block_;   // by block, of those that a chunk has
+  uint32_t coming_ = 0;                // on their way or read: each will want a slot
+  uint64_t coming_blocks_ = 0;         // that those will want at most
+  uint64_t target_blocks_ = 0;         // of what is wanted, as far as is known
   ResidencyNeed need_;
   ResidencyCounters counters_;
 };

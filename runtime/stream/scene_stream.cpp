@@ -20,6 +20,17 @@ ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) 
           a.flushed + b.flushed};
 }
 
+uint32_t blocks_of(const StagedChunk& staged) {
+  return record_blocks(static_cast<uint32_t>(staged.records.size()));
+}
+
+[[noreturn]] void refuse_records(const StagedChunk& staged, const std::string& file) {
+  throw Error(ErrorCode::damaged_chunk,
+              file + ": chunk " + std::to_string(staged.links.chunk) + ": found " +
+                  std::to_string(staged.records.size()) +
+                  " nodes with children, expected no more than the header and places allow");
+}
+
 // Chunk by chunk it would fail as well: a source that stalls, and a file that is gone.
 bool is_of_source(const Error& error) {
   return error.code() == ErrorCode::io_transient || error.code() == ErrorCode::file_not_found;
@@ -55,9 +66,10 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       tiers_(file_->tiers()),
       graph_(file_->chunks(), tiers_),
       shape_(slot_shape(*file_)),
+      records_(*file_),
       pool_(pool),
-      slots_(desc.slots),
-      residency_(graph_, file_->chunks(), desc.slots, desc.pinned),
+      pool_bytes_(desc.bytes.of(desc.room)),
+      residency_(graph_, file_->chunks(), records_, desc.room, desc.pinned),
       linker_(graph_, shape_) {}
 
 SceneStream::~SceneStream() {
@@ -137,13 +149,18 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
     coming[chunk] = &coming_[chunk];
   }
   std::vector<std::optional<Error>> damage(count);
+  std::mutex placing;
   workers.for_blocks(count, 16, [&](size_t begin, size_t end) {
     for (auto chunk = static_cast<uint32_t>(begin); chunk < end; ++chunk) {
       const auto bytes =
           stored.subspan(chunks[chunk].offset - chunks[0].offset, chunks[chunk].bytes);
       StagedChunk& staged = coming[chunk]->chunk;
       try {
-        staged = stage_chunk(file_->decode(chunk, bytes), chunk, tiers_, file_->name());
+        staged = decode(chunk, bytes);
+        const std::lock_guard lock(placing);
+        if (!residency_.place_records(chunk, blocks_of(staged)))
+          refuse_records(staged, file_->name());
+        staged.links.blocks = residency_.blocks(chunk);
       } catch (const Error& error) {
         if (error.code() != ErrorCode::damaged_chunk || chunk < residency_.pinned()) throw;
         damage[chunk] = error;
@@ -165,17 +182,17 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
     if (!residency_.is_resident(chunk)) failures_.rethrow(chunk);
 }
 
-void SceneStream::resize(uint32_t slots, uint32_t pinned, Workers& workers) {
+void SceneStream::resize(PoolRoom room, uint32_t pinned, Workers& workers) {
   const auto pool = hold_alone();
   Lock lock(mutex_);
   filled_.wait(lock, [&] { return filling_ == 0; });
-  const auto slots_before = static_cast<uint32_t>(slots_.load());
+  const PoolRoom room_before = residency_.room();
   const uint32_t pinned_before = residency_.pinned();
   try {
-    reset(slots, pinned, workers);
+    reset(room, pinned, workers);
   } catch (...) {
     try {
-      reset(slots_before, pinned_before, workers);
+      reset(room_before, pinned_before, workers);
     } catch (...) {
       if (unsound_) unsound_ = std::current_exception();
       lose(std::current_exception());
@@ -185,13 +202,13 @@ void SceneStream::resize(uint32_t slots, uint32_t pinned, Workers& workers) {
 }
 
 // All anew, with what is pinned in it. Where it throws, the pool is as it was, or unsound.
-void SceneStream::reset(uint32_t slots, uint32_t pinned, Workers& workers) {
-  Residency residency(graph_, file_->chunks(), slots, std::min(pinned, desc_.pinned));
+void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
+  Residency residency(graph_, file_->chunks(), records_, room, std::min(pinned, desc_.pinned));
   Linker linker(graph_, shape_);
   unsound_ = std::make_exception_ptr(Error(
       ErrorCode::internal,
       file_->name() + ": found memory that was only partly filled again, expected all of it"));
-  pool_.resize(slots);
+  pool_.resize(room);
   ++generation_;
   counted_ = total(counted_, residency_.counters());
   residency_ = std::move(residency);
@@ -200,15 +217,12 @@ void SceneStream::reset(uint32_t slots, uint32_t pinned, Workers& workers) {
   ready_.clear();
   failures_.forget_chunks();
   staged_bytes_ = 0;
-  slots_ = slots;
+  pool_bytes_ = desc_.bytes.of(room);
   lost_ = nullptr;
   // No search can go on from what it has.
   changes_.clear();
   version_ += kChangesKept;
-  {
-    const std::lock_guard small(small_mutex_);
-    look_again_ = true;
-  }
+  look_again();
   put_first(residency_.pinned(), top_, workers);
   unsound_ = nullptr;
   signal();
@@ -222,11 +236,11 @@ void SceneStream::lose(std::exception_ptr what) noexcept {
   signal();  // whoever rebuilds may be asleep
 }
 
-// Both locks are held. As many slots as before, and nothing in them but the top.
+// Both locks are held. As much room as before, and nothing in them but the top.
 void SceneStream::rebuild() {
   try {
     Workers workers(1);
-    reset(static_cast<uint32_t>(slots_.load()), residency_.pinned(), workers);
+    reset(residency_.room(), residency_.pinned(), workers);
   } catch (...) {
     if (unsound_) unsound_ = std::current_exception();
     lose(std::current_exception());
@@ -324,8 +338,7 @@ bool SceneStream::retry_due() {
   const std::vector<uint32_t> due = failures_.take_due(now());
   for (const uint32_t chunk : due) residency_.retry(chunk);
   if (due.empty()) return false;
-  const std::lock_guard small(small_mutex_);
-  look_again_ = true;
+  look_again();
   return true;
 }
 
@@ -343,6 +356,7 @@ bool SceneStream::fill_one(Lock& lock) {
   staged_bytes_ -= coming.stored_bytes;
   coming.stored_bytes = 0;
   coming.chunk.links.slot = slot;
+  coming.chunk.links.blocks = residency_.blocks(chunk);
   ++filling_;
   lock.unlock();
   std::exception_ptr failure;
@@ -428,6 +442,12 @@ void SceneStream::stage_range(ChunkRange range, const std::vector<std::byte>& by
   }
 }
 
+StagedChunk SceneStream::decode(uint32_t chunk, std::span<const std::byte> stored) const {
+  StagedChunk staged = stage_chunk(file_->decode(chunk, stored), chunk, tiers_, file_->name());
+  if (blocks_of(staged) > records_.most_blocks(chunk)) refuse_records(staged, file_->name());
+  return staged;
+}
+
 // The lock is let go while the chunk is decoded.
 void SceneStream::stage(uint32_t chunk, std::span<const std::byte> stored, Lock& lock) {
   StagedChunk staged;
@@ -435,7 +455,7 @@ void SceneStream::stage(uint32_t chunk, std::span<const std::byte> stored, Lock&
   const uint64_t generation = generation_;
   lock.unlock();
   try {
-    staged = stage_chunk(file_->decode(chunk, stored), chunk, tiers_, file_->name());
+    staged = decode(chunk, stored);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -449,7 +469,9 @@ void SceneStream::stage(uint32_t chunk, std::span<const std::byte> stored, Lock&
     }
     return;
   }
-  if (!residency_.read(chunk)) return;
+  const bool wanted = residency_.read(chunk, blocks_of(staged));
+  if (residency_.overfull()) look_again();
+  if (!wanted) return;
   const uint64_t bytes = file_->chunks()[chunk].bytes;
   coming_[chunk] = {std::move(staged), bytes};
   staged_bytes_ += bytes;
@@ -468,6 +490,10 @@ void SceneStream::fail(uint32_t chunk, const std::exception& error) {
 // What hangs from the chunk is no longer to be had either: that takes another plan.
 void SceneStream::add_failure(uint32_t chunk, const Error& error) {
   failures_.add(chunk, error, now());
+  look_again();
+}
+
+void SceneStream::look_again() {
   const std::lock_guard small(small_mutex_);
   look_again_ = true;
 }

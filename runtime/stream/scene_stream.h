@@ -23,15 +23,14 @@
 namespace voyager {
 
 struct StreamDesc {
-  uint32_t slots = 0;
+  PoolRoom room{};
   uint32_t pinned = 0;               // as Residency has it
-  uint32_t first = 0;                // chunks that read_top() reads, from pinned to slots
+  uint32_t first = 0;                // chunks that read_top() reads, from pinned to what fits
   unsigned readers = 2;              // threads; 0: step() does it all
   uint64_t read_bytes = 1 << 18;     // of one read, at most, unless one chunk has more
   uint64_t staged_bytes = 32 << 20;  // stored bytes of what was read and has no slot yet
-  // Of the pool's memory, for messages: of each slot, and beside them.
-  uint64_t slot_bytes = 0, fixed_bytes = 0;
-  std::function<double()> clock;  // seconds, for what is tried again; none: the machine's
+  PoolBytes bytes{};                 // of the pool, for messages
+  std::function<double()> clock;     // seconds, for what is tried again; none: the machine's
 };
 
 // Of the scene, since it was opened.
@@ -70,10 +69,10 @@ class SceneStream {
   // Then: what is large from a point, in the scene's own coordinates, until about so many stored
   // bytes of it are there, or five seconds have passed. What cannot be had is left out.
   void read_around(const Vec3f& centre, uint64_t bytes);
-  // Other slots, as StreamDesc has them, and no more pinned than at first: what was there goes,
+  // Other room, as StreamDesc has it, and no more pinned than at first: what was there goes,
   // but for what is pinned. Waits for frames that hold the pool, and for no source. Throws as
-  // ChunkPool::resize() does; the stream has then as many slots as before, if that was to be had.
-  void resize(uint32_t slots, uint32_t pinned, Workers& workers);
+  // ChunkPool::resize() does; the stream has then as much room as before, if that was to be had.
+  void resize(PoolRoom room, uint32_t pinned, Workers& workers);
   // Ends the threads; nothing comes any more. Also done when it is destroyed.
   void stop();
   // Nobody should wait for anything any more: wait() throws Error(scene_destroyed), and reads end.
@@ -104,7 +103,7 @@ class SceneStream {
   const SceneFile& file() const { return *file_; }
   uint32_t pinned() const { return desc_.pinned; }
   // What the pool takes.
-  uint64_t pool_bytes() const { return desc_.fixed_bytes + slots_ * desc_.slot_bytes; }
+  uint64_t pool_bytes() const { return pool_bytes_; }
   // As of the last step or commit. Any thread.
   StreamCounters counters() const;
   // What went wrong, each cause once. Any thread.
@@ -136,6 +135,7 @@ class SceneStream {
   void fail(uint32_t chunk, const std::exception& error);
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
+  void look_again();
   bool commit_all();
   std::shared_ptr<const StreamChange> change_of(const LinkPatch& patch) const;
   void lose(std::exception_ptr what) noexcept;
@@ -145,7 +145,8 @@ class SceneStream {
   void apply(const LinkPatch& patch);
   bool accept(uint32_t chunk, LinkPatch& patch);
   void learn_families(const LinkTable& table);
-  void reset(uint32_t slots, uint32_t pinned, Workers& workers);
+  void reset(PoolRoom room, uint32_t pinned, Workers& workers);
+  StagedChunk decode(uint32_t chunk, std::span<const std::byte> stored) const;
   template <class Done>
   void work_until(const Done& done);
   template <class Done>
@@ -167,8 +168,9 @@ class SceneStream {
   const Tiers tiers_;
   const ChunkGraph graph_;
   const SlotShape shape_;
+  const RecordRoom records_;
   ChunkPool& pool_;
-  std::atomic<uint64_t> slots_;
+  std::atomic<uint64_t> pool_bytes_;
 
   // The pool's: held alone while that changes, before mutex_. Whoever takes it passes the door, so
   // that frames that follow one another without end keep nobody out.

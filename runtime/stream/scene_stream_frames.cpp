@@ -92,7 +92,7 @@ bool SceneStream::commit_all() {
     ++version_;
     if (changes_.size() > kChangesKept) changes_.pop_front();
   }
-  for (const Residency::Evicted& e : evicted) residency_.free_slot(e.slot);
+  for (const Residency::Evicted& e : evicted) residency_.free(e);
   if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return false;
   publish();
   signal();
@@ -142,21 +142,19 @@ bool SceneStream::changes_since(uint64_t version,
 }
 
 void SceneStream::check_fits() const {
-  const uint64_t seen = residency_.need().seen - residency_.need().seen_failed.size();
-  if (seen + residency_.pinned() <= residency_.slots()) return;
-  // More slots would have more of the top among them.
-  uint64_t slots = seen + residency_.pinned();
-  while (slots < seen + pinned_chunks(*file_, static_cast<uint32_t>(slots)))
-    slots = seen + pinned_chunks(*file_, static_cast<uint32_t>(slots));
-  slots = std::min<uint64_t>(slots, file_->chunks().size());
-  const auto megabytes = [&](uint64_t of) {
-    return static_cast<double>(of * desc_.slot_bytes + desc_.fixed_bytes) / 1e6;
-  };
+  const ResidencyNeed& need = residency_.need();
+  const PoolRoom room = residency_.room();
+  const uint64_t seen = need.seen - need.seen_failed.size();
+  if (seen + residency_.pinned() <= room.slots &&
+      need.seen_blocks + residency_.pinned_blocks() <= room.blocks)
+    return;
+  const uint64_t blocks = need.seen_blocks + records_.likely_blocks(need.seen_unread_blocks);
+  const auto megabytes = [&](PoolRoom of) { return static_cast<double>(desc_.bytes.of(of)) / 1e6; };
   char message[160];
   std::snprintf(message, sizeof message,
                 ": what the view frustum needs takes %.3f MB, the memory budget has room for "
                 "%.3f MB",
-                std::ceil(1e3 * megabytes(slots)) / 1e3, megabytes(residency_.slots()));
+                std::ceil(1e3 * megabytes(records_.enough(seen, blocks))) / 1e3, megabytes(room));
   throw Error(ErrorCode::over_budget, file_->name() + message);
 }
 

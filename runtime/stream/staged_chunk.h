@@ -36,10 +36,16 @@ struct NodeBelow {
 // What stays on the host of a chunk that is resident.
 struct LinkTable {
   uint32_t chunk = 0, slot = 0;
+  std::vector<uint32_t> blocks;  // that its records lie in
   uint32_t first_subtree = 0;
   std::vector<StagedSubtree> subtrees;
   std::vector<NodeBelow> below;
   std::vector<LargeFamily> large;  // parents by place
+
+  // The address of a record.
+  uint32_t record(uint32_t number) const {
+    return blocks[number / kRecordBlock] * kRecordBlock + number % kRecordBlock;
+  }
   // The root and the first child of the first and of the last subtree: neighbours may repeat them.
   NodeRecord first_root{}, first_child{}, last_root{}, last_child{};
 };

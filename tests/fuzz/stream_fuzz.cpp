@@ -96,8 +96,8 @@ class Walk {
   bool leave_room(Scene& scene) {
     const SceneFile& file = scene.stream->file();
     const PoolBytes pool = backend_->pool_bytes(scene, SceneStream::slot_shape(file));
-    const uint64_t slots = SceneStream::top_chunks(file) + uint64_t{1};
-    resize_streamed(scene, pool.fixed + slots * pool.slot, *backend_, workers());
+    const uint32_t slots = SceneStream::top_chunks(file) + 1;
+    resize_streamed(scene, pool.of(RecordRoom(file).of(slots)), *backend_, workers());
     return true;
   }
 

@@ -37,8 +37,8 @@ class Streaming : public SplatTest {
     const SceneFile file(source_of(bytes));
     const PoolBytes pool = backend.pool_bytes(*resident(bytes), SceneStream::slot_shape(file));
     const auto chunks = static_cast<double>(file.chunks().size());
-    return pool.fixed + pool.slot * std::max<uint64_t>(SceneStream::top_chunks(file),
-                                                       static_cast<uint64_t>(share * chunks + 1));
+    return pool.of(RecordRoom(file).of(
+        std::max(SceneStream::top_chunks(file), static_cast<uint32_t>(share * chunks + 1))));
   }
 
   std::shared_ptr<const Scene> resident(const Bytes& bytes) {
@@ -412,6 +412,56 @@ TEST_F(Streaming, AnotherBudgetHoldsFromThenOn) {
   const Frame expected = render(*all, input);
   input.wait_resident = true;
   expect_same_frame(render(*part, input), expected);
+}
+
+// A slot for each chunk, and few blocks of records: then for all, scattered by what came and went.
+TEST_F(Streaming, RecordsMayRunOutBeforeSlots) {
+  const Bytes bytes = cloud_bytes(20000, 17, 3, Quality::compact);
+  const auto whole = resident(bytes);
+  const auto streamed = open(bytes, 1);
+  const auto all = view(whole), part = view(streamed);
+  const SceneFile& file = streamed->stream->file();
+  const RecordRoom records(file);
+  const uint32_t top = SceneStream::top_chunks(file);
+  const PoolRoom room = records.of(static_cast<uint32_t>(file.chunks().size()));
+  PoolRoom few = room;
+  few.blocks = std::max(room.blocks / 3, (top + 1) * records.most_blocks());
+  streamed->stream->resize(few, top, workers);
+  size_t missing = 0;
+  for (const FrameInput& input : walk(60, 4, 8)) {
+    const Frame frame = render(*part, input);
+    ASSERT_TRUE(is_cut(*whole_tree(*whole), frame.cut));
+    missing += frame.stats.missing;
+    while (streamed->stream->step()) continue;
+    EXPECT_LT(streamed->stream->counters().resident, few.slots);
+  }
+  EXPECT_GT(missing, 0u);
+  resize_streamed(*streamed, budget_of(*cuda, bytes, 0.6), *cuda, workers);
+  for (const FrameInput& input : walk(60, 12, 9)) {
+    const Frame expected = render(*all, input);
+    Frame frame;
+    do frame = render(*part, input);
+    while (streamed->stream->step());
+    if (frame.stats.missing == 0) expect_same_bits(frame, expected);
+  }
+}
+
+// Of more children than a shape has room to say.
+TEST_F(Streaming, LargeFamiliesBlendAsResidentOnes) {
+  for (const TreeShape shape : {TreeShape::star, TreeShape::star_of_stars}) {
+    SCOPED_TRACE(name_of(shape));
+    const Bytes bytes =
+        scene_bytes(baked_of(random_tree(shape, 20000, 18)), Quality::compact, 0, kMinChunkBytes);
+    const auto whole = resident(bytes);
+    ASSERT_FALSE(whole->large_families.empty());
+    const auto streamed = open(bytes, 1);
+    const auto all = view(whole), part = view(streamed);
+    for (FrameInput input : walk(20, 20, 10)) {
+      const Frame expected = render(*all, input);
+      input.wait_resident = true;
+      expect_same_frame(render(*part, input), expected);
+    }
+  }
 }
 
 TEST_F(Streaming, TooSmallABudgetIsRefused) {

@@ -51,7 +51,7 @@ class FailingPool final : public ChunkPool {
     if (fails || fails_once.exchange(false))
       throw Error(ErrorCode::device_lost, "pool: found no device");
   }
-  void resize(uint32_t) override {
+  void resize(PoolRoom) override {
     if (refuses_once.exchange(false)) throw Error(ErrorCode::over_budget, "pool: found no memory");
   }
   std::atomic<bool> fails{false}, fails_once{false}, refuses_once{false};
@@ -180,8 +180,9 @@ TEST(StreamingDisk, ABudgetMayShrinkAndGrowInMidFlight) {
   Vec3d eye{0, -3, -100};
   for (const double share : {0.05, 1.0, 0.02, 1.0}) {
     for (int i = 0; i < 30; ++i, eye.z += 0.5) flight.draw(ahead(eye, kForward));
-    const auto slots = static_cast<uint64_t>(share * static_cast<double>(chunks));
-    resize_streamed(flight.scene(), pool.fixed + slots * pool.slot, *rig.backend, rig.workers);
+    const auto slots = static_cast<uint32_t>(share * static_cast<double>(chunks));
+    const PoolRoom room = RecordRoom(flight.stream().file()).of(slots);
+    resize_streamed(flight.scene(), pool.of(room), *rig.backend, rig.workers);
     EXPECT_EQ(flight.draw(ahead(eye, kForward)).stats.missing > 0, true);
     ASSERT_EQ(flight.counters().slots, slots);
   }
@@ -313,7 +314,8 @@ TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
   const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
   const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
   StreamDesc desc;
-  desc.slots = static_cast<uint32_t>(file->chunks().size());
+  const auto chunks = static_cast<uint32_t>(file->chunks().size());
+  desc.room = RecordRoom(*file).of(chunks);
   desc.pinned = desc.first = SceneStream::top_chunks(*file);
   desc.readers = 0;
   double time = 0;
@@ -333,7 +335,7 @@ TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
     EXPECT_EQ(test::error_code(hold), ErrorCode::device_lost);
   };
   fail();
-  stream.resize(desc.slots, desc.pinned, workers);
+  stream.resize(desc.room, desc.pinned, workers);
   EXPECT_TRUE(stream.hold().owns_lock());
   // By itself, after a rest, and as often as that takes.
   fail();
@@ -346,7 +348,7 @@ TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
   while (stream.step()) time += 1e-3;
   EXPECT_TRUE(stream.hold().owns_lock());
   stream.commit();
-  EXPECT_EQ(stream.counters().resident, desc.slots);
+  EXPECT_EQ(stream.counters().resident, chunks);
 }
 
 // A pool on threads of its own that fails once: nobody else need move for all to come again.
@@ -355,14 +357,15 @@ TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
   const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
   const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
   StreamDesc desc;
-  desc.slots = static_cast<uint32_t>(file->chunks().size());
+  const auto chunks = static_cast<uint32_t>(file->chunks().size());
+  desc.room = RecordRoom(*file).of(chunks);
   desc.pinned = desc.first = SceneStream::top_chunks(*file);
   Workers workers(1);
   SceneStream stream(file, desc, pool);
   stream.read_top(workers);
   const std::vector<Viewer> viewers = {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}};
   const auto stand = [&] {
-    for (int i = 0; i < 500 && stream.counters().resident < desc.slots; ++i) {
+    for (int i = 0; i < 500 && stream.counters().resident < chunks; ++i) {
       stream.look(&pool, viewers);
       stream.commit();
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -370,11 +373,11 @@ TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
     return stream.counters().resident;
   };
   pool.fails_once = true;
-  EXPECT_EQ(stand(), desc.slots);
+  EXPECT_EQ(stand(), chunks);
   EXPECT_TRUE(stream.hold().owns_lock());
   pool.refuses_once = true;
-  EXPECT_THROW(stream.resize(desc.slots - 1, desc.pinned, workers), Error);
-  EXPECT_EQ(stand(), desc.slots);
+  EXPECT_THROW(stream.resize(RecordRoom(*file).of(chunks - 1), desc.pinned, workers), Error);
+  EXPECT_EQ(stand(), chunks);
 }
 
 // A source that stays away, slowly: frames that wait get to know, and chunks are not asked for one

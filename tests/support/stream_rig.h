@@ -37,9 +37,9 @@ class StreamRig {
     const SceneFile file(source);
     const PoolBytes pool = backend->pool_bytes(*resident, SceneStream::slot_shape(file));
     const double chunks = static_cast<double>(file.chunks().size());
-    const uint64_t least = std::max<uint64_t>(SceneStream::top_chunks(file),
-                                              static_cast<uint64_t>(std::ceil(share * chunks)));
-    desc.budget = pool.fixed + least * pool.slot;
+    const auto least =
+        std::max(SceneStream::top_chunks(file), static_cast<uint32_t>(std::ceil(share * chunks)));
+    desc.budget = pool.of(RecordRoom(file).of(least));
     return open_streamed(source, desc, *backend, memory(), workers);
   }
 
@@ -47,7 +47,7 @@ class StreamRig {
   void give_room(Scene& scene, uint32_t slots) {
     const SceneFile& file = scene.stream->file();
     const PoolBytes pool = backend->pool_bytes(scene, SceneStream::slot_shape(file));
-    resize_streamed(scene, pool.fixed + slots * pool.slot, *backend, workers);
+    resize_streamed(scene, pool.of(RecordRoom(file).of(slots)), *backend, workers);
   }
   void give_room(uint32_t slots) { give_room(*streamed, slots); }
 

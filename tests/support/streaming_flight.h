@@ -90,8 +90,8 @@ inline void fly_streamed(Backend& backend, const std::function<double()>& megaby
   const SceneFile file(source);
   const PoolBytes pool = backend.pool_bytes(*resident, SceneStream::slot_shape(file));
   const auto budget_of = [&](double share) {
-    return pool.fixed +
-           static_cast<uint64_t>(share * static_cast<double>(file.chunks().size())) * pool.slot;
+    return pool.of(RecordRoom(file).of(
+        static_cast<uint32_t>(share * static_cast<double>(file.chunks().size()))));
   };
   StreamingDesc desc;
   desc.budget = budget_of(0.5);

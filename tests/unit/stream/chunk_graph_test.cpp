@@ -69,7 +69,9 @@ TEST(ChunkGraph, ChunksThatArriveInAnyOrderAllBecomeResident) {
     const ChunkGraph graph(file.chunks(), file.tiers());
     uint32_t top = 1;
     while (top < graph.size() && graph.parents(top).empty()) ++top;
-    Residency residency(graph, file.chunks(), graph.size(), top);
+    const RecordRoom records(file);
+    Residency residency(graph, file.chunks(), records,
+                        PoolRoom{graph.size(), graph.size() * records.most_blocks()}, top);
     const Viewer everything{{{0, 0, 0}, 1e-30f}, {}, false};
     residency.plan({&everything, 1});
     std::vector<uint32_t> come;
@@ -80,7 +82,7 @@ TEST(ChunkGraph, ChunksThatArriveInAnyOrderAllBecomeResident) {
     }
     std::shuffle(come.begin(), come.end(), random);
     for (const uint32_t chunk : come) {
-      ASSERT_TRUE(residency.read(chunk));
+      ASSERT_TRUE(residency.read(chunk, records.most_blocks(chunk)));
       ASSERT_NE(residency.take_slot(chunk), Residency::kNoSlot);
       residency.filled(chunk);
       residency.arrive([](uint32_t) { return true; });

@@ -1,0 +1,67 @@
+#include "runtime/stream/record_room.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/stream/scene_stream.h"
+
+namespace voyager {
+
+// Of chunks in one tier of three levels; the few others are taken for all interior.
+uint32_t most_search_records(const ChunkEntry& chunk, const SubtreePlace& after,
+                             const Tiers& tiers) {
+  const auto& begin = tiers.tier_begin;
+  const uint32_t last = chunk.first_subtree + chunk.subtree_count - 1;
+  const auto tier_end = *std::upper_bound(begin.begin(), begin.end(), chunk.first_subtree);
+  if (chunk.first_subtree < begin[1] || last + 1 >= tier_end) return chunk.record_count;
+  const uint32_t grandchildren = after.next[2] - chunk.place.next[2],
+                 below = after.next[3] - chunk.place.next[3],
+                 children = chunk.record_count - chunk.subtree_count - grandchildren;
+  return std::min(chunk.subtree_count, children) + std::min(children, grandchildren) +
+         std::min(grandchildren, below);
+}
+
+RecordRoom::RecordRoom(const SceneFile& file) : file_(file) {
+  const auto& chunks = file.chunks();
+  const Tiers tiers = file.tiers();
+  uint64_t records = file.info().node_count - file.info().leaf_count;
+  most_.reserve(chunks.size());
+  for (size_t i = 0; i < chunks.size(); ++i) {
+    const SubtreePlace after =
+        i + 1 < chunks.size() ? chunks[i + 1].place : SubtreePlace::end_of(tiers);
+    most_.push_back(record_blocks(most_search_records(chunks[i], after, tiers)));
+    greatest_ = std::max(greatest_, most_.back());
+    sum_of_most_ += most_.back();
+    records += chunks[i].record_count - chunks[i].node_count;
+  }
+  // Each chunk leaves less than a block unused.
+  const uint64_t rounded = (records + (kRecordBlock - 1) * uint64_t{chunks.size()}) / kRecordBlock;
+  all_ = static_cast<uint32_t>(std::min(sum_of_most_, rounded));
+}
+
+uint64_t RecordRoom::likely_blocks(uint64_t most) const {
+  const double share = static_cast<double>(all_) / static_cast<double>(sum_of_most_);
+  return static_cast<uint64_t>(std::ceil(share * static_cast<double>(most)));
+}
+
+PoolRoom RecordRoom::of(uint32_t slots) const {
+  if (slots >= chunks()) return {slots, all_};
+  const double part = static_cast<double>(slots) / chunks();
+  const double share = std::ceil(all_ * part * (1.5 - 0.5 * part));
+  const double least = (SceneStream::pinned_chunks(file_, slots) + 1.0) * greatest_;
+  return {slots, static_cast<uint32_t>(std::min<double>(all_, std::max(share, least)))};
+}
+
+PoolRoom RecordRoom::enough(uint64_t chunks_needed, uint64_t blocks) const {
+  const auto has_room = [&](uint32_t slots) {
+    const PoolRoom room = of(slots);
+    const uint64_t pinned = SceneStream::pinned_chunks(file_, slots);
+    return slots >= chunks_needed + pinned &&
+           (room.blocks == all_ || room.blocks >= blocks + pinned * greatest_);
+  };
+  auto slots = static_cast<uint32_t>(std::min<uint64_t>(chunks_needed, chunks()));
+  while (slots < chunks() && !has_room(slots)) ++slots;
+  return of(slots);
+}
+
+}  // namespace voyager

@@ -1,0 +1,69 @@
+// How much room search records take, as the directory tells it and as chunks have it.
+#include <gtest/gtest.h>
+
+#include "runtime/stream/scene_stream.h"
+#include "tests/support/random_trees.h"
+#include "tests/support/scene_files.h"
+
+namespace voyager::record_room_test {
+namespace {
+
+using test::TreeShape;
+
+uint32_t records_of(const SceneFile& file, uint32_t chunk) {
+  const Tiers tiers = file.tiers();
+  return static_cast<uint32_t>(
+      stage_chunk(file.read_chunk(chunk), chunk, tiers, file.name()).records.size());
+}
+
+TEST(RecordRoom, BoundsWhatEveryChunkTakes) {
+  for (const TreeShape shape : test::kTreeShapes)
+    for (const uint32_t chunk_bytes : {kMinChunkBytes, kDefaultChunkBytes}) {
+      SCOPED_TRACE(test::name_of(shape));
+      const test::Bytes bytes = test::scene_bytes(test::baked_of(test::random_tree(shape, 6000, 3)),
+                                                  Quality::compact, 0, chunk_bytes);
+      const SceneFile file(test::source_of(bytes));
+      const RecordRoom room(file);
+      const auto chunks = static_cast<uint32_t>(file.chunks().size());
+      uint64_t taken = 0;
+      for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
+        const uint32_t blocks = record_blocks(records_of(file, chunk));
+        EXPECT_LE(blocks, room.most_blocks(chunk));
+        EXPECT_LE(room.most_blocks(chunk), room.most_blocks());
+        taken += blocks;
+      }
+      EXPECT_GE(room.of(chunks).blocks, taken);
+    }
+}
+
+// A tree of which few nodes are interior takes less than a record for each node.
+TEST(RecordRoom, IsLessThanARecordANode) {
+  const test::Bytes bytes =
+      test::scene_bytes(test::baked_of(test::random_tree(TreeShape::eight_way, 20000, 4)),
+                        Quality::compact, 0, kDefaultChunkBytes);
+  const SceneFile file(test::source_of(bytes));
+  const auto chunks = static_cast<uint32_t>(file.chunks().size());
+  const PoolRoom room = RecordRoom(file).of(chunks);
+  EXPECT_LT(room.blocks * kRecordBlock, file.info().node_count / 3);
+}
+
+TEST(RecordRoom, GrowsWithTheSlotsAndHoldsWhatIsPinned) {
+  const test::Bytes bytes =
+      test::scene_bytes(test::baked_of(test::random_tree(TreeShape::four_way, 20000, 5)),
+                        Quality::compact, 0, kMinChunkBytes);
+  const SceneFile file(test::source_of(bytes));
+  const RecordRoom room(file);
+  const auto chunks = static_cast<uint32_t>(file.chunks().size());
+  const uint32_t all = room.of(chunks).blocks;
+  uint32_t before = 0;
+  for (uint32_t slots = SceneStream::top_chunks(file); slots <= chunks; ++slots) {
+    const uint32_t blocks = room.of(slots).blocks;
+    EXPECT_GE(blocks, before);
+    const uint32_t pinned = SceneStream::pinned_chunks(file, slots);
+    EXPECT_GE(blocks, std::min(all, (pinned + 1) * room.most_blocks()));
+    before = blocks;
+  }
+}
+
+}  // namespace
+}  // namespace voyager::record_room_test
