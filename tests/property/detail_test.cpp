@@ -12,6 +12,7 @@
 #include "tests/support/render_scene.h"
 #include "tests/support/search_rig.h"
 #include "tests/support/stream_rig.h"
+#include "tests/support/tree_clouds.h"
 
 namespace voyager::detail_test {
 namespace {
@@ -172,7 +173,7 @@ class Entries final : public tbb::task_scheduler_observer {
 
 // A device's limit of threads binds what its views do, this as all else.
 TEST(Detail, ABaselinesTreeIsMadeByTheViewsWorkers) {
-  const auto scene = test::baked_scene(test::random_cloud(20000, 4, 0));
+  const auto scene = test::baked_scene(test::specks(20000, 4, 0));
   for (const Lod lod : kBaselines) {
     Workers workers(1);
     const Entries entries(workers);

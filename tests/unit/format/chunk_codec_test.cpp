@@ -14,6 +14,7 @@
 #include "runtime/format/reader.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_clouds.h"
 
 namespace voyager::chunk_codec_test {
 namespace {
@@ -429,7 +430,7 @@ TEST(ChunkCodec, ADoubleIsRestoredAsItsChild) {
 }
 
 TEST(ChunkCodec, CompactKeepsItsBoundsAndItsSizeOnRandomGaussians) {
-  const Sizes sizes = check_compact(test::random_cloud(20000, 11, 3));
+  const Sizes sizes = check_compact(test::specks(20000, 11, 3));
   EXPECT_LE(sizes.compact, 0.3 * sizes.lossless);
   for (const int degree : {0, 1, 2}) check_compact(test::random_cloud(3000, 12, degree));
 }

@@ -3,6 +3,7 @@
 #include "tests/support/mixed_footprints.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/tree_clouds.h"
 #include "tests/support/tree_rules.h"
 
 namespace voyager::scene_file_test {
@@ -75,7 +76,7 @@ TEST(SceneFile, CutsAreTheSameInBothQualities) {
 }
 
 TEST(SceneFile, BytesDoNotDependOnTheNumberOfThreads) {
-  const BakedScene baked = test::bake(test::random_cloud(40000, 10, 0));
+  const BakedScene baked = test::bake(test::specks(40000, 10, 0));
   for (const Quality quality : {Quality::lossless, Quality::compact})
     EXPECT_EQ(test::scene_bytes(baked, quality, 1), test::scene_bytes(baked, quality, 4));
 }

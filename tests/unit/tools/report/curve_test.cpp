@@ -23,7 +23,8 @@ namespace {
 TEST(ReportCurve, CutsAreCountedAsAnExhaustiveSearchFindsThem) {
   Workers workers;
   for (const size_t size : {1, 2, 3, 1000, 70000}) {
-    const BakedScene baked = build_tree(test::random_cloud(size, 11, 0), workers);
+    const TreeRule rule = size > 1000 ? test::kHierarchicalGs : TreeRule();  // which is quick
+    const BakedScene baked = build_tree(test::random_cloud(size, 11, 0), workers, {}, rule);
     CutCounts counts(baked.tree, workers);
     ExhaustiveSearch search;
     for (const Vec3f& centre : {Vec3f{0, 0, 0}, {1, 2, -3}, {100, -40, 7}}) {
