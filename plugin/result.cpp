@@ -37,7 +37,7 @@ VoyResult result_of(ErrorCode code) {
       return VOY_ERROR_DEVICE_LOST;
     case ErrorCode::timeout:
       return VOY_ERROR_TIMEOUT;
-    case ErrorCode::scene_destroyed:
+    case ErrorCode::scene_closed:
       return VOY_ERROR_SCENE_CLOSED;
     case ErrorCode::internal:
       break;

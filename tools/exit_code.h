@@ -24,7 +24,7 @@ inline ExitCode exit_code(ErrorCode code) {
     case ErrorCode::no_device:
     case ErrorCode::device_lost:
     case ErrorCode::timeout:
-    case ErrorCode::scene_destroyed:
+    case ErrorCode::scene_closed:
     case ErrorCode::internal:
       break;
   }

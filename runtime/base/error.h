@@ -20,7 +20,7 @@ enum class ErrorCode {
   no_device,
   device_lost,      // a device stopped working for good
   timeout,          // what the host promised did not come
-  scene_destroyed,  // while a frame waited for it
+  scene_closed,  // while a frame waited for it
   internal,
 };
 

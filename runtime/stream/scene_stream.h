@@ -75,7 +75,7 @@ class SceneStream {
   void resize(PoolRoom room, uint32_t pinned, Workers& workers);
   // Ends the threads; nothing comes any more. Also done when it is destroyed.
   void stop();
-  // Nobody should wait for anything any more: wait() throws Error(scene_destroyed), and reads end.
+  // Nobody should wait for anything any more: wait() throws Error(scene_closed), and reads end.
   // Any thread, also while others wait.
   void abandon() noexcept;
 

@@ -206,8 +206,8 @@ void SceneStream::work_until(const Done& done) {
       const std::lock_guard small(small_mutex_);
       if (abandoned_)
         throw Error(
-            ErrorCode::scene_destroyed,
-            file_->name() + ": found that the scene was destroyed while a frame waited for it");
+            ErrorCode::scene_closed,
+            file_->name() + ": found that the scene was closed while a frame waited for it");
       seen = signals_;
     }
     bool stepped = false;
