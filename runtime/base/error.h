@@ -18,8 +18,8 @@ enum class ErrorCode {
   damaged_chunk,  // a chunk that this frame needs failed its checksum or decoding
   over_budget,
   no_device,
-  device_lost,      // a device stopped working for good
-  timeout,          // what the host promised did not come
+  device_lost,   // a device stopped working for good
+  timeout,       // what the host promised did not come
   scene_closed,  // while a frame waited for it
   internal,
 };
