@@ -62,22 +62,6 @@ TEST(StreamingRecords, WhereTheyRunOutFramesAreCoarseAndNothingMoves) {
   EXPECT_EQ(few.rig.stream().counters().bytes_read, before.bytes_read);
 }
 
-// What was asked for, read, and given up until nothing moves is the same each time. (In between it
-// is not: how soon the next plan is made goes by the time that the last one took.)
-TEST(StreamingRecords, WhereTheyRunOutTheSameWayGivesTheSameCuts) {
-  FewRecords one(0.4), other(0.4);
-  const auto tree = whole_tree(*one.rig.resident);
-  std::mt19937 random(2);
-  for (int i = 0; i < 30; ++i) {
-    const Vec3d eye{40.0 * test::unit(random) - 20, -6, 40.0 * test::unit(random) - 20};
-    const auto draw = [&](StreamRig& rig) { return rig.settle(from(eye, 1 + i % 2)).cut; };
-    const std::vector<uint32_t> cut = draw(one.rig);
-    ASSERT_TRUE(is_cut(*tree, cut));
-    ASSERT_EQ(draw(other.rig), cut);
-  }
-  EXPECT_EQ(one.rig.stream().counters().bytes_read, other.rig.stream().counters().bytes_read);
-}
-
 // By what was read so far; of the rest the refusal says what is likely.
 TEST(StreamingRecords, AFrameThatWaitsSaysWhatIsEnough) {
   FewRecords few(0.4);
