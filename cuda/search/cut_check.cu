@@ -10,7 +10,7 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kThreads = 256, kWarps = kThreads / 32;
-static_assert(kBlockSubtrees == 32 * kRowSubtrees);  // a row a lane, then a subtree a lane
+static_assert(kBlockRows == 32 && kRowSubtrees == 32);  // a row a lane, then a subtree a lane
 
 // What a warp has found in a block, before it has places for it in due[].
 struct Found {
@@ -50,7 +50,7 @@ __global__ void __launch_bounds__(kThreads)
   for (uint32_t i = (blockIdx.x * kThreads + threadIdx.x) / 32; i < open_blocks; i += warps) {
     const uint32_t b = state.open_blocks[i];
     const Block block = state.blocks[b];
-    WatchRow* rows = state.rows + b * kBlockSubtrees / kRowSubtrees;
+    WatchRow* rows = state.rows + b * kBlockRows;
     const WatchRow own = rows[lane_in_warp()];
     const bool there = block.first + lane_in_warp() * kRowSubtrees < block.last;
     const bool ends = there && static_cast<int32_t>(own.moves - now.moves) <= 0;

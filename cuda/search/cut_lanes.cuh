@@ -75,12 +75,7 @@ __device__ inline void count_changes(const StateView& state, uint32_t subtree, u
 __device__ inline Change settle_own(const StateView& state, uint32_t subtree, const Known& known,
                                     const Visit& v, uint32_t reference, Tally& tally) {
   const bool was_open = (known.refined & kOpen) != 0;
-  state.watch[subtree] = make_watch(v.slack, v.extent, reference);
-  wake_row(state, subtree);
-  if (v.refined != known.refined) state.refined[subtree] = v.refined;
-  if (v.cut != known.cut) state.cut[subtree] = v.cut;
-  set_stand_ins(state, subtree, v.stand_ins, tally);
-  ++tally.visited;
+  keep_open(state, subtree, known, v, reference, tally);
   return {v.cut != known.cut || !was_open, known.cut, v.cut, was_open ? 0 : 1};
 }
 
@@ -88,10 +83,7 @@ __device__ inline Change settle_own(const StateView& state, uint32_t subtree, co
 __device__ inline Change close_own(const StateView& state, uint32_t subtree, const Known& known,
                                    Tally& tally) {
   if ((known.refined & kOpen) == 0) return {};
-  state.watch[subtree] = make_watch(INFINITY, 0.0f, 0);
-  state.refined[subtree] = 0;
-  state.cut[subtree] = 0;
-  set_stand_ins(state, subtree, 0, tally);
+  keep_closed(state, subtree, tally);
   return {true, known.cut, 0, -1};
 }
 

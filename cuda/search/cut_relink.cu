@@ -60,7 +60,7 @@ __global__ void __launch_bounds__(kThreads) search_forget(uint32_t subtrees, Sta
   }
   for (uint32_t b = thread; b < state.block_count; b += threads)
     state.open_counts[b] = state.dirty_flags[b] = 0;
-  const uint32_t rows = state.block_count * (kBlockSubtrees / kRowSubtrees);
+  const uint32_t rows = state.block_count * kBlockRows;
   for (uint32_t i = thread; i < rows; i += threads) state.rows[i].way = 0;
   for (uint32_t i = thread; i < kLevels * state.block_count; i += threads)
     state.segments[i] = {0, 0, 0};

@@ -36,7 +36,7 @@ CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
   blocks_ = upload(std::span<const Block>(layout.blocks));
   tiers_ = upload(std::span<const Tier>(layout.tiers));
   watch_ = upload(std::span<const Watch>(std::vector<Watch>(subtrees, {INFINITY, 0})));
-  rows_ = Buffer<WatchRow>(blocks * (kBlockSubtrees / kRowSubtrees));
+  rows_ = Buffer<WatchRow>(blocks * kBlockRows);
   refined_ = Buffer<uint32_t>(subtrees);
   cut_ = Buffer<uint32_t>(subtrees);
   stand_ins_ = Buffer<uint32_t>(tree.chunks_come_and_go ? subtrees : 0);

@@ -78,7 +78,7 @@ __device__ inline uint32_t block_of(const StateView& state, uint32_t subtree) {
 __device__ inline void wake_row(const StateView& state, uint32_t subtree) {
   const uint32_t b = block_of(state, subtree);
   const uint32_t row = (subtree - state.blocks[b].first) / kRowSubtrees;
-  state.rows[b * (kBlockSubtrees / kRowSubtrees) + row].way = 0;
+  state.rows[b * kBlockRows + row].way = 0;
 }
 
 // Of a visited subtree, besides its records: what it is and what was known of it.
@@ -199,6 +199,23 @@ __device__ inline Known load_known(const StateView& state, uint32_t subtree) {
   return {state.refined[subtree], state.cut[subtree]};
 }
 
+// By a lane alone: what is known of a subtree from now on, of an open one and of a closed one.
+__device__ inline void keep_open(const StateView& state, uint32_t subtree, const Known& known,
+                                 const Visit& v, uint32_t reference, Tally& tally) {
+  state.watch[subtree] = make_watch(v.slack, v.extent, reference);
+  wake_row(state, subtree);
+  if (v.refined != known.refined) state.refined[subtree] = v.refined;
+  if (v.cut != known.cut) state.cut[subtree] = v.cut;
+  set_stand_ins(state, subtree, v.stand_ins, tally);
+  ++tally.visited;
+}
+__device__ inline void keep_closed(const StateView& state, uint32_t subtree, Tally& tally) {
+  state.watch[subtree] = make_watch(INFINITY, 0.0f, 0);
+  state.refined[subtree] = 0;
+  state.cut[subtree] = 0;
+  set_stand_ins(state, subtree, 0, tally);
+}
+
 // An open subtree takes its new verdicts.
 __device__ inline void settle(const StateView& state, const SearchSubtree& s, uint32_t subtree,
                               const Known& known, const Visit& v, uint32_t reference, bool active,
@@ -206,14 +223,7 @@ __device__ inline void settle(const StateView& state, const SearchSubtree& s, ui
   __syncwarp();  // `known` was read by all lanes before one writes
   if (!active) return;
   const bool was_open = (known.refined & kOpen) != 0;
-  if (lane_in_group() == 0) {
-    state.watch[subtree] = make_watch(v.slack, v.extent, reference);
-    wake_row(state, subtree);
-    if (v.refined != known.refined) state.refined[subtree] = v.refined;
-    if (v.cut != known.cut) state.cut[subtree] = v.cut;
-    set_stand_ins(state, subtree, v.stand_ins, tally);
-    ++tally.visited;
-  }
+  if (lane_in_group() == 0) keep_open(state, subtree, known, v, reference, tally);
   if (v.cut != known.cut || !was_open)
     count_change(state, subtree, s.child_count, known.cut, v.cut, was_open ? 0 : 1, tally);
 }
@@ -222,12 +232,7 @@ __device__ inline void settle(const StateView& state, const SearchSubtree& s, ui
 __device__ inline void close_subtree(const StateView& state, uint32_t subtree, uint32_t child_count,
                                      const Known& known, Tally& tally) {
   if ((known.refined & kOpen) == 0) return;
-  if (lane_in_group() == 0) {
-    state.watch[subtree] = make_watch(INFINITY, 0.0f, 0);
-    state.refined[subtree] = 0;
-    state.cut[subtree] = 0;
-    set_stand_ins(state, subtree, 0, tally);
-  }
+  if (lane_in_group() == 0) keep_closed(state, subtree, tally);
   count_change(state, subtree, child_count, known.cut, 0, -1, tally);
 }
 
