@@ -12,8 +12,11 @@ namespace {
 // How many requests evictions make room for ahead of their reading.
 constexpr size_t kRoomAhead = 256;
 
+// The last bit says that it is a chunk's own, and not what its family has lent.
+constexpr uint32_t kOwn = 1;
+
 uint32_t make_urgency(uint32_t of_class, float error) {
-  return of_class << 30 | std::bit_cast<uint32_t>(error) >> 1;
+  return of_class << 30 | std::bit_cast<uint32_t>(error) >> 1 | kOwn;
 }
 
 float error_of(uint32_t urgency) {
@@ -60,6 +63,7 @@ void Residency::plan(std::span<const Viewer> viewers) {
   drop_waiting();
   queue_requests();
   list_victims();
+  list_leftovers();
 }
 
 Residency::Needed Residency::look_at(uint32_t chunk, std::span<const Viewer> viewers) const {
@@ -151,7 +155,9 @@ void Residency::find_needed(std::span<const Viewer> viewers) {
   std::sort(needed_.begin(), needed_.end(), by_chunk);
 }
 
-// A node is refined only when all that hangs from it is there.
+// A node is refined only when all that hangs from it is there. Which chunks hold a family is known
+// when the chunk of its parent has come. What a family lends is less than the parent's urgency: so
+// families of parents that have no room alter nothing in front of those, known or not.
 void Residency::share_in_families() {
   for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
   const auto follows = [&](size_t i) {
@@ -164,7 +170,8 @@ void Residency::share_in_families() {
     while (shares_family_[needed_[last].chunk] == 2 && follows(last + 1)) ++last;
     uint32_t most = 0;
     for (size_t k = i - 1; k <= last; ++k) most = std::max(most, urgency_[needed_[k].chunk]);
-    for (size_t k = i - 1; k <= last; ++k) needed_[k].urgency = std::max(needed_[k].urgency, most);
+    for (size_t k = i - 1; k <= last; ++k)
+      needed_[k].urgency = std::max(needed_[k].urgency, most & ~kOwn);
     i = last;
   }
 }
@@ -179,6 +186,7 @@ void Residency::share_with_parents() {
 }
 
 void Residency::choose_target() {
+  crowded_ = false;
   extra_.clear();
   for (const Needed& needed : needed_)
     if (needed.chunk >= pinned_) extra_.push_back(needed);
@@ -191,6 +199,7 @@ void Residency::choose_target() {
     std::nth_element(extra_.begin(), extra_.begin() + static_cast<std::ptrdiff_t>(room),
                      extra_.end(), before);
     extra_.resize(room);
+    crowded_ = true;
   }
   const auto blocks_of = [&](uint64_t sum, const Needed& needed) {
     return sum + known_blocks(needed.chunk);
@@ -203,6 +212,7 @@ void Residency::choose_target() {
     for (; target_blocks_ + known_blocks(extra_[last].chunk) <= room_.blocks; ++last)
       target_blocks_ += known_blocks(extra_[last].chunk);
     extra_.resize(last);
+    crowded_ = true;
   } else {
     target_blocks_ = all;
   }
@@ -224,8 +234,10 @@ void Residency::queue_requests() {
     if (needed.now && class_of(needed.urgency) == Class::seen &&
         state_[needed.chunk] != State::resident)
       missed_[needed.chunk] = 1;
+  // Families together, as no frame sees a part of one.
+  const auto urgency = [&](uint32_t chunk) { return urgency_[chunk] | kOwn; };
   std::sort(requests_.begin(), requests_.end(), [&](uint32_t a, uint32_t b) {
-    return urgency_[a] != urgency_[b] ? urgency_[a] < urgency_[b] : a > b;
+    return urgency(a) != urgency(b) ? urgency(a) < urgency(b) : a > b;
   });
 }
 
@@ -245,6 +257,22 @@ void Residency::list_victims() {
   }
   std::sort(scored.begin(), scored.end());
   for (const auto& [of, chunk] : scored) victims_.push_back(chunk);
+}
+
+// All of the target fits, so that nothing of this is a victim. Where some of what is needed does
+// not, what of it is there has come when others looked, and draws a cut that others would not see.
+// With it goes what hangs from it.
+void Residency::list_leftovers() {
+  leftovers_.clear();
+  if (!crowded_) return;
+  std::vector<bool> goes(graph_->size());
+  for (uint32_t chunk = pinned_; chunk < graph_->size(); ++chunk) {
+    if (state_[chunk] != State::resident || is_wanted(chunk)) continue;
+    const std::span<const uint32_t> parents = graph_->parents(chunk);
+    goes[chunk] = needed_plan_[chunk] == plan_ ||
+                  std::any_of(parents.begin(), parents.end(), [&](uint32_t p) { return goes[p]; });
+    if (goes[chunk]) leftovers_.push_back(chunk);
+  }
 }
 
 ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
@@ -454,30 +482,64 @@ bool Residency::is_short(const Wanted& wanted) const {
 }
 
 bool Residency::has_changes() const {
-  return !filled_.empty() ||
+  return !filled_.empty() || has_leftovers() ||
          (!victims_.empty() && is_short(wanted(std::min(requests_.size(), kRoomAhead))));
 }
 
 std::vector<Residency::Evicted> Residency::evict() {
   std::vector<Evicted> evicted;
   Wanted still = wanted(std::min(requests_.size(), kRoomAhead));
+  const auto may_go = [&](uint32_t chunk) {
+    return state_[chunk] == State::resident && !is_wanted(chunk) && children_there_[chunk] == 0;
+  };
   while (!victims_.empty() && is_short(still)) {
     const uint32_t chunk = victims_.back();
     victims_.pop_back();
-    if (state_[chunk] != State::resident || is_wanted(chunk) || children_there_[chunk] != 0)
-      continue;
-    for (const uint32_t p : graph_->parents(chunk)) --children_there_[p];
-    evicted.push_back({chunk, slot_[chunk], first_block_[chunk]});
+    if (!may_go(chunk)) continue;
     still.slots -= std::min<size_t>(still.slots, 1);
     still.blocks -= std::min<uint64_t>(still.blocks, blocks_of_[chunk]);
-    slot_[chunk] = kNoSlot;
-    first_block_[chunk] = kNoBlock;
-    state_[chunk] = State::absent;
-    count_missing(chunk, true);
-    --resident_;
-    ++counters_.evicted;
+    remove(chunk, evicted);
+  }
+  while (has_leftovers()) {
+    const uint32_t chunk = leftovers_.back();
+    leftovers_.pop_back();
+    if (may_go(chunk)) remove(chunk, evicted);
   }
   return evicted;
+}
+
+bool Residency::has_leftovers() const {
+  const auto is = [&](State state) {
+    return [this, state](uint32_t chunk) { return state_[chunk] == state; };
+  };
+  return !leftovers_.empty() && coming_ == 0 && filled_.empty() &&
+         std::none_of(waiting_.begin(), waiting_.end(), is(State::filled)) &&
+         std::none_of(requests_.begin(), requests_.end(), is(State::absent));
+}
+
+void Residency::remove(uint32_t chunk, std::vector<Evicted>& evicted) {
+  for (const uint32_t p : graph_->parents(chunk)) --children_there_[p];
+  evicted.push_back({chunk, slot_[chunk], first_block_[chunk]});
+  slot_[chunk] = kNoSlot;
+  first_block_[chunk] = kNoBlock;
+  state_[chunk] = State::absent;
+  count_missing(chunk, true);
+  --resident_;
+  ++counters_.evicted;
+}
+
+bool Residency::set_family(ChunkRange family) {
+  bool news = false, has_room = false, has_none = false;
+  for (uint32_t chunk = family.first; chunk < family.last; ++chunk) {
+    if (chunk != family.first) {
+      const uint8_t shares = chunk + 1 < family.last ? 2 : 1;
+      news = news || shares_family_[chunk] != shares;
+      shares_family_[chunk] = shares;
+    }
+    (is_wanted(chunk) ? has_room : has_none) |= needed_plan_[chunk] == plan_ || chunk < pinned_;
+  }
+  // Where all of them have room, or none has, others' places in the order stay.
+  return news && crowded_ && has_room && has_none;
 }
 
 void Residency::count_need() {
@@ -521,6 +583,7 @@ bool Residency::settled(const std::function<bool(uint32_t)>& hopeless) const {
     return is_wanted(chunk) && state_[chunk] != State::resident && state_[chunk] != State::failed &&
            !hopeless(chunk);
   };
+  if (has_leftovers()) return false;
   for (uint32_t chunk = 0; chunk < pinned_; ++chunk)
     if (to_come(chunk)) return false;
   return std::none_of(needed_.begin(), needed_.end(),

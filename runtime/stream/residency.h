@@ -1,12 +1,15 @@
 #pragma once
 // Which chunks are to be in a scene's slots: a function of who looks at it and of what is
 // there. No I/O, no threads, no clock; every decision is the same on every machine.
+// What is there once all of the target is, among what is needed, is a function of who looks and
+// of the room alone, whatever was there before (docs/streaming.md).
 //
 // A chunk is needed where its entry hull is at least τ* large (docs/lod-selection.md): only
 // then may the cut hold a node of it. Where there are more than there are slots, the most
 // urgent are the target: what is seen before what will be seen, that before what is around,
 // and of these what would be missed most, by the size of what stands in. A chunk is as urgent
-// as the most urgent that hangs from it. Once all of the target is there nothing moves.
+// as the most urgent that hangs from it. Once all of the target is there nothing moves, but that
+// what is needed and has no room goes: it was there by chance.
 //
 // Beside its slot a chunk takes blocks of search records, as many as it is found to need when it
 // is read. The target takes no more of them than there are: what is not known yet counts as
@@ -86,14 +89,17 @@ class Residency {
   // Residents that make room for what is to come, children before parents. That is taken
   // again only after free(): when no frame reads it any more.
   std::vector<Evicted> evict();
+  // Whether evict() has something to do once the target is there: what is needed and has no room.
+  bool has_leftovers() const;
   void free(const Evicted& evicted);
   // Whether arrive() or evict() has something to do.
   bool has_changes() const;
   // The target takes more blocks than there are, which the next plan does something about.
   bool overfull() const { return target_blocks_ > room_.blocks; }
 
-  // One node leads to the chunk and to the one before; inside: and to the one behind.
-  void set_shares_family(uint32_t chunk, bool inside) { shares_family_[chunk] = inside ? 2 : 1; }
+  // One node leads to all of these. True where the last plan has not known, and might have chosen
+  // otherwise.
+  bool set_family(ChunkRange family);
 
   uint32_t slot(uint32_t chunk) const { return slot_[chunk]; }
   bool is_resident(uint32_t chunk) const { return state_[chunk] == State::resident; }
@@ -151,6 +157,8 @@ class Residency {
   void take_blocks(uint32_t chunk);
   void free_blocks(uint32_t first);
   void drop_waiting();
+  void list_leftovers();
+  void remove(uint32_t chunk, std::vector<Evicted>& evicted);
   bool parents_there(uint32_t chunk) const;
   void count_missing(uint32_t chunk, bool missing);
   void give_up(uint32_t chunk, State now);
@@ -176,6 +184,7 @@ class Residency {
   std::vector<uint8_t> counted_;       // 1: in need_, if the last plan needed it; 2: as seen, too
   std::vector<uint32_t> target_;       // the last plan that had it in its target
   std::vector<uint32_t> children_there_;
+  // 1: a node that leads to it leads to the chunk before, too; 2: and to the one behind.
   std::vector<uint8_t> shares_family_;
 
   std::vector<Needed> needed_;                // of the last plan, ascending
@@ -183,6 +192,7 @@ class Residency {
   std::vector<Needed> extra_;                 // scratch
   std::vector<Climb> climb_;                  // scratch
   std::vector<uint32_t> requests_, victims_;  // the first to go last
+  std::vector<uint32_t> leftovers_;           // the same, and not because room is short
   std::vector<uint32_t> filled_;              // since the last arrivals
   std::vector<uint32_t> waiting_;  // all that are filled before their parents are there, and others
   std::vector<uint32_t> free_slots_;
@@ -191,6 +201,7 @@ class Residency {
   uint32_t coming_ = 0;                // on their way or read: each will want a slot
   uint64_t coming_blocks_ = 0;         // that those will want at most
   uint64_t target_blocks_ = 0;         // of what is wanted, as far as is known
+  bool crowded_ = false;               // not all that the last plan needed has room
   ResidencyNeed need_;
   ResidencyCounters counters_;
 };

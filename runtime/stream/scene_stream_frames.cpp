@@ -71,16 +71,25 @@ void SceneStream::apply(const LinkPatch& patch) {
   }
 }
 
-// Whether a chunk was given up, so that what is needed is not what the last plan found. What it
-// throws leaves the pool as it is, and what is known of it, or unsound.
+// Whether it takes another plan, since a chunk was given up, or because of what is known now. What
+// it throws leaves the pool as it is, and what is known of it, or unsound.
 bool SceneStream::commit_all() {
+  bool plan = commit_changes();
+  // What has come may be the last that leftovers waited for. Another patch, since what that links
+  // they may unlink.
+  if (residency_.has_leftovers()) plan |= commit_changes();
+  return plan;
+}
+
+bool SceneStream::commit_changes() {
   LinkPatch patch;
   put_off_ = -1;
   commit_due_ = false;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
   for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);
+  bool plan = false;
   const Residency::Arrivals arrived =
-      residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
+      residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch, plan); });
   for (const uint32_t chunk : arrived.resident) {
     coming_.erase(chunk);
     failures_.remove(chunk);
@@ -96,7 +105,8 @@ bool SceneStream::commit_all() {
   if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return false;
   publish();
   signal();
-  return !arrived.given_up.empty();
+  if (plan) look_again();
+  return plan || !arrived.given_up.empty();
 }
 
 // That which the next version will be.
@@ -110,7 +120,7 @@ std::shared_ptr<const StreamChange> SceneStream::change_of(const LinkPatch& patc
   return change;
 }
 
-bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
+bool SceneStream::accept(uint32_t chunk, LinkPatch& patch, bool& plan) {
   StagedChunk& staged = coming_.at(chunk).chunk;
   try {
     linker_.check(staged, file_->name());
@@ -118,17 +128,17 @@ bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
     add_failure(chunk, error);
     return false;
   }
-  learn_families(staged.links);
+  plan |= learn_families(staged.links);
   linker_.arrive(std::move(staged.links), patch);
   return true;
 }
 
-void SceneStream::learn_families(const LinkTable& table) {
-  for (const NodeBelow& node : table.below) {
-    const ChunkRange range = graph_.with_roots(node.first_child, node.child_count);
-    for (uint32_t chunk = range.first + 1; chunk < range.last; ++chunk)
-      residency_.set_shares_family(chunk, chunk + 1 < range.last);
-  }
+// Whether the plan would have to know.
+bool SceneStream::learn_families(const LinkTable& table) {
+  bool matters = false;
+  for (const NodeBelow& node : table.below)
+    matters |= residency_.set_family(graph_.with_roots(node.first_child, node.child_count));
+  return matters;
 }
 
 bool SceneStream::changes_since(uint64_t version,

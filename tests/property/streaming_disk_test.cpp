@@ -144,9 +144,11 @@ TEST_P(StreamingDiskOfTree, AJumpTakesBackWhatIsNoLongerWanted) {
   const uint64_t seen = flight.counters().need.seen + flight.stream().pinned();
   flight.rig().give_room(flight.scene(), static_cast<uint32_t>(seen / 2));
   for (int i = 0; i < 30; ++i) flight.draw(here);
-  ASSERT_EQ(flight.counters().chunks.flushed, 0u);
+  // Few, for families that were found to come together.
+  const uint64_t before = flight.counters().chunks.flushed;
+  ASSERT_LT(before, flight.counters().slots / 4);
   for (int i = 0; i < 30; ++i) flight.draw(there);
-  EXPECT_GT(flight.counters().chunks.flushed, 0u);
+  EXPECT_GT(flight.counters().chunks.flushed, before);
 }
 
 TEST(StreamingDisk, ZigzagThrashesNothing) {
