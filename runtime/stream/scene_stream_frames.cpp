@@ -90,6 +90,7 @@ bool SceneStream::commit_changes() {
   bool plan = false;
   const Residency::Arrivals arrived =
       residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch, plan); });
+  if (plan) look_again();
   for (const uint32_t chunk : arrived.resident) {
     coming_.erase(chunk);
     failures_.remove(chunk);
@@ -105,7 +106,6 @@ bool SceneStream::commit_changes() {
   if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return false;
   publish();
   signal();
-  if (plan) look_again();
   return plan || !arrived.given_up.empty();
 }
 
