@@ -126,6 +126,7 @@ class SceneStream {
   void run();
   bool step(Lock& lock);
   bool work(Lock& lock);
+  bool plan_is_asked();
   bool plan_if_asked();
   bool retry_due();
   bool fill_one(Lock& lock);
@@ -151,7 +152,7 @@ class SceneStream {
   template <class Done>
   void work_until(const Done& done);
   template <class Done>
-  bool work_once(const Done& done, bool& stepped);
+  bool work_once(const Done& done, bool first, bool& stepped);
   void check_fits() const;
   bool is_settled(double since) const;
   void check_seen() const;

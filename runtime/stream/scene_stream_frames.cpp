@@ -182,9 +182,15 @@ void SceneStream::check_seen() const {
   if (need.seen_missing != 0 && failures_.source_is_down()) failures_.rethrow_source();
 }
 
-// One turn; whether it is done. Both locks are held meanwhile.
+bool SceneStream::plan_is_asked() {
+  const std::lock_guard small(small_mutex_);
+  return look_again_;
+}
+
+// One turn; whether it is done. Both locks are held meanwhile. Only the first turn plans at once:
+// a plan after every arrival would keep those that read from reading.
 template <class Done>
-bool SceneStream::work_once(const Done& done, bool& stepped) {
+bool SceneStream::work_once(const Done& done, bool first, bool& stepped) {
   const auto pool = hold_alone();
   Lock lock(mutex_);
   if (lost_) {
@@ -193,11 +199,11 @@ bool SceneStream::work_once(const Done& done, bool& stepped) {
     if (lost_) std::rethrow_exception(lost_);
   }
   try {
-    next_plan_ = {};
+    if (first) next_plan_ = {};
     stepped = plan_if_asked();
     const bool changed = commit_all();
     publish();
-    if (!changed && done()) return true;
+    if (!changed && !plan_is_asked() && done()) return true;
   } catch (const Error&) {
     throw;
   } catch (...) {
@@ -210,7 +216,7 @@ bool SceneStream::work_once(const Done& done, bool& stepped) {
 
 template <class Done>
 void SceneStream::work_until(const Done& done) {
-  for (;;) {
+  for (bool first = true;; first = false) {
     uint64_t seen = 0;
     {
       const std::lock_guard small(small_mutex_);
@@ -221,7 +227,7 @@ void SceneStream::work_until(const Done& done) {
       seen = signals_;
     }
     bool stepped = false;
-    if (work_once(done, stepped)) return;
+    if (work_once(done, first, stepped)) return;
     if (stepped || desc_.readers == 0) continue;
     std::unique_lock small(small_mutex_);
     progress_.wait_for(small, std::chrono::milliseconds(100),
