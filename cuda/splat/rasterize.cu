@@ -283,7 +283,7 @@ __device__ const float* read_lut(const RasterParams& params) {
   return lut_entries;
 }
 
-// In halves the first tiles are drawn, whose lists are so long that they would end last. Not in
+// The first tiles have the longest lists and would end last, so they are drawn in halves. Not in
 // binary16, where a lane's two pixels are one number.
 template <class M>
 constexpr bool kHalves = M::kExponential != Exponential::half2;
@@ -305,7 +305,7 @@ __global__ void __launch_bounds__(kThreads, kRasterBlocks)
     rasterize_tile<M>(params, params.splats.tile_order[at], own, lut_entries);
 }
 
-// Of a second pass, which most often has no tile: those that it has come first. A kernel of its
+// For a second pass, which usually has no tiles. Those that it has come first. A kernel of its
 // own, because a loop over tiles takes registers that the loop over splats needs.
 template <class M>
 __global__ void __launch_bounds__(kThreads)
@@ -321,8 +321,8 @@ __global__ void __launch_bounds__(kThreads)
   }
 }
 
-// Places of a list that some part of its tile came to. By depth: places behind those that are no
-// deeper count with them.
+// Places of a list that some part of its tile came to. They are counted by depth, so that later
+// places of the same depth count, too.
 __device__ uint32_t places_read(const SplatView& splats, uint32_t tile) {
   const TileList list = splats.tiles[tile];
   const uint32_t end = splats.ends[tile];
@@ -384,7 +384,7 @@ using Launch = void(const SplatFrame&, const RasterParams&);
 constexpr size_t kExponentials = static_cast<size_t>(Exponential::half2) + 1;
 using LaunchTable = std::array<std::array<std::array<Launch*, kNeedsCount>, 2>, kExponentials>;
 
-// By Needs. What a kernel can do beyond what a frame asks for changes nothing of the frame.
+// By Needs. A kernel may do more than a frame needs: the frame is the same.
 template <Exponential E, bool kFilter>
 constexpr std::array<Launch*, kNeedsCount> launches() {
   //                      siblings, depth, counts, limits

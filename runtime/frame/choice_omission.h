@@ -11,7 +11,7 @@ struct ViewChoices {
   uint32_t limit_bytes = 0;  // a pixel, that the pipeline keeps of a host's limits
 };
 
-// Beside omissions_of(shape), which see.
+// What these choices leave out, in addition to omissions_of(shape).
 std::vector<Omission> omissions_of(const ViewChoices& choices, const ViewShape& shape);
 
 }  // namespace voyager

@@ -98,7 +98,7 @@ struct Choices {
   std::array<double, 3> origin{0, 0, 0};
 };
 
-// A field beyond the last takes the Gaussian as it is, some times over; the next starts from it.
+// A field number beyond the last appends some copies of the Gaussian. The next starts from it.
 GaussianCloud make_cloud(Input& input, const Choices& choices) {
   GaussianCloud cloud;
   cloud.sh_degree = choices.sh_degree;

@@ -24,9 +24,10 @@
  * success with a remark. A negative value is an error, and voyGetLastErrorMessage explains it.
  * After an error the outputs are unchanged unless the function says otherwise. No call aborts the
  * process or throws an exception. The error lists at the functions leave out INVALID_ARGUMENT,
- * INVALID_STRUCTURE and INVALID_HANDLE where these need no explanation. They also leave out
- * DEVICE_LOST, which any call on a device and its objects may return once a GPU stopped working or
- * a frame never finished. Calls that close or destroy an object still work then.
+ * INVALID_STRUCTURE and INVALID_HANDLE where these need no explanation. They also leave out BUSY
+ * and SCENE_CLOSED of calls on a view or target, and DEVICE_LOST, which any call on a device and
+ * its objects may return once a GPU stopped working or a frame never finished. Calls that close or
+ * destroy an object still work then.
  *
  * HANDLES. A handle is a number, not an address. A NULL handle, a handle of a destroyed object and
  * a handle of another kind are VOY_ERROR_INVALID_HANDLE. Destroying a parent destroys its children
@@ -39,8 +40,9 @@
  *
  * THREAD-SAFETY. Any function may be called from any thread. Calls on different objects run
  * concurrently. A view or a target works for one call at a time: a second call from another thread
- * returns VOY_ERROR_BUSY and changes nothing. Destroying an object waits for the calls in progress
- * that use it. A callback must therefore not destroy an object of its own device.
+ * returns VOY_ERROR_BUSY and changes nothing, unless the function says otherwise. Destroying an
+ * object waits for the calls in progress that use it. A callback must therefore not destroy an
+ * object of its own device.
  *
  * Where a comment writes METHOD and a section number, it means docs/method.md, which derives the
  * formula. */
@@ -99,7 +101,7 @@ typedef enum VoyResult {
   VOY_ERROR_NO_DEVICE = -12,     /* the backend finds no device that it can use */
   VOY_ERROR_BUSY = -13,          /* another thread uses the view or target */
   VOY_ERROR_SCENE_CLOSED = -14,  /* a scene of the view was closed; give it other instances */
-  VOY_ERROR_INTERNAL = -15,      /* a bug in the library; please report the message */
+  VOY_ERROR_INTERNAL = -15,      /* a bug, or a driver's call that failed: the message says which */
   VOY_ERROR_DEVICE_LOST = -16,   /* a GPU stopped working; destroy the VoyDevice */
   VOY_ERROR_TIMEOUT = -17,       /* the host did not signal what the frame waits for */
   VOY_RESULT_MAX_ENUM = 0x7fffffff
@@ -607,7 +609,7 @@ typedef enum VoyAntialias {
 typedef struct VoyTimeBudget {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_TIME_BUDGET */
   const void* next;
-  double milliseconds; /* for a frame, all eyes together; finite, > 0 */
+  double milliseconds; /* for a frame, all eyes together; finite, > 0; the host must set it */
   double minTau;       /* pixels, finite, >= 0: the finest tau, even if time is left */
   double maxTau;       /* pixels, finite, >= minTau: the coarsest, even if frames are late */
 } VoyTimeBudget;
@@ -706,9 +708,9 @@ typedef enum VoyClipY {
 } VoyClipY;
 
 /* Fills a frustum from a perspective projection: `matrix` is 16 numbers, column by column, that
- * take columns (x, y, z, 1) of the camera's space to clip space. Row by row is the same memory
- * where an engine multiplies rows from the left. The camera may look along -z or +z (the matrix
- * tells), and its y may point up or down. The third row is not read, so that depth from 0 to 1 or
+ * take columns (x, y, z, 1) of the camera's space to clip space. A row-major matrix for row
+ * vectors has the same layout in memory: pass it as it is. The camera may look along -z or +z (the
+ * matrix tells), and its y may point up or down. The third row is not read, so that depth from 0 to 1 or
  * from -1 to 1, reversed or not, with a finite far plane, an infinite one or an oblique near plane
  * give the same frustum. Errors: INVALID_ARGUMENT (a number that is not finite; an orthographic,
  * skewed or mirrored projection or one that moves the eye; tangents that VoyFrustum does not
@@ -716,10 +718,11 @@ typedef enum VoyClipY {
 VOY_API VoyResult VOY_CALL voyFrustumFromProjection(const double* matrix, VoyClipY clipY,
                                                     VoyFrustum* frustum);
 
-/* The hand of a world: what +z is where +x is right and +y is up. */
+/* The hand of a world: what +z is where +x is right and +y is up. Of a world whose z points up
+ * (Unreal), permute the axes first. */
 typedef enum VoyHand {
   VOY_HAND_RIGHT = 0, /* towards the viewer: OpenXR, glTF, Godot */
-  VOY_HAND_LEFT = 1,  /* away from the viewer: Unity, Unreal, Direct3D by habit */
+  VOY_HAND_LEFT = 1,  /* away from the viewer: Unity, Direct3D by habit */
   VOY_HAND_MAX_ENUM = 0x7fffffff
 } VoyHand;
 
@@ -728,8 +731,8 @@ typedef enum VoyHand {
  * The point (x, y, z) of a left-handed world is (x, y, -z) in Voyager's, so convert cameras and
  * instances alike. A right-handed world is taken as it is.
  * The own space has the world's hand, or the other one where the matrix mirrors, as Unity's
- * cameraToWorldMatrix does. Its z, too, changes the sign if it is left-handed. So the pose is right
- * for a camera that looks along +z of left-handed axes or along -z of right-handed ones.
+ * cameraToWorldMatrix does. If that space is left-handed, its z is negated, too. So the pose is
+ * right for a camera that looks along +z of left-handed axes or along -z of right-handed ones.
  * Errors: INVALID_ARGUMENT (a number that is not finite; a last row other than 0, 0, 0, 1; axes
  * that are scaled or sheared by more than 1e-4). */
 VOY_API VoyResult VOY_CALL voyPoseFromWorldMatrix(const double* matrix, VoyHand worldHand,

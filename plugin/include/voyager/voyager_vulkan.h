@@ -275,7 +275,7 @@ VOY_API VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacit
 /* In VoyFrame.next, for Vulkan targets: the image of the ring to draw into, and what the frame
  * waits for and signals.
  * - TIMELINE: drawing begins when `released` has reached waitValue (0: at once). When the image is
- *   written, `rendered` becomes signalValue. It must be greater than in the target's frame before.
+ *   written, `rendered` becomes signalValue, which must be greater than in the target's last frame.
  *   In the first frame it must be greater than the current value of an imported semaphore.
  * - BINARY: waitValue 1 waits for the image's `released`, 0 does not. signalValue 1 signals its
  *   `rendered`, 0 does not. If layers are drawn by separate frames, the last one signals.
@@ -490,7 +490,7 @@ typedef struct VoyVulkanCompositeDraw {
   VoyVulkanDepthUse depthUse;     /* TEST and WRITE need a target with depth and a depthFormat */
   VoyDepthEncoding depthEncoding; /* of the attachment; STANDARD or REVERSED */
   uint32_t reserved;              /* 0 */
-  double nearZ, farZ;             /* of the host's projection, metres; farZ may be infinite */
+  double nearZ, farZ; /* of the host's projection, metres; their range is VoyEyeDepthLimit's */
 } VoyVulkanCompositeDraw;
 #define VOY_VULKAN_COMPOSITE_DRAW_INIT                                                            \
   {                                                                                               \
