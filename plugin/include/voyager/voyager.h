@@ -710,11 +710,11 @@ typedef enum VoyClipY {
 /* Fills a frustum from a perspective projection: `matrix` is 16 numbers, column by column, that
  * take columns (x, y, z, 1) of the camera's space to clip space. A row-major matrix for row
  * vectors has the same layout in memory: pass it as it is. The camera may look along -z or +z (the
- * matrix tells), and its y may point up or down. The third row is not read, so that depth from 0 to 1 or
- * from -1 to 1, reversed or not, with a finite far plane, an infinite one or an oblique near plane
- * give the same frustum. Errors: INVALID_ARGUMENT (a number that is not finite; an orthographic,
- * skewed or mirrored projection or one that moves the eye; tangents that VoyFrustum does not
- * allow). */
+ * matrix tells), and its y may point up or down. The third row is not read, so that depth from 0 to
+ * 1 or from -1 to 1, reversed or not, with a finite far plane, an infinite one or an oblique near
+ * plane give the same frustum. Errors: INVALID_ARGUMENT (a number that is not finite; an
+ * orthographic, skewed or mirrored projection or one that moves the eye; tangents that VoyFrustum
+ * does not allow). */
 VOY_API VoyResult VOY_CALL voyFrustumFromProjection(const double* matrix, VoyClipY clipY,
                                                     VoyFrustum* frustum);
 
