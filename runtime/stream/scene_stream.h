@@ -137,16 +137,16 @@ class SceneStream {
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
   void look_again();
-  bool commit_all();
-  bool commit_changes();
+  void commit_all();
+  void commit_changes();
   std::shared_ptr<const StreamChange> change_of(const LinkPatch& patch) const;
   void lose(std::exception_ptr what) noexcept;
   bool rebuild_if_due(Lock& lock);
   void rebuild();
   std::unique_lock<std::shared_mutex> hold_alone() const;
   void apply(const LinkPatch& patch);
-  bool accept(uint32_t chunk, LinkPatch& patch, bool& plan);
-  bool learn_families(const LinkTable& table);
+  bool accept(uint32_t chunk, LinkPatch& patch);
+  void learn_families(const LinkTable& table);
   void reset(PoolRoom room, uint32_t pinned, Workers& workers);
   StagedChunk decode(uint32_t chunk, std::span<const std::byte> stored) const;
   template <class Done>

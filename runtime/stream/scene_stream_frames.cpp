@@ -71,26 +71,22 @@ void SceneStream::apply(const LinkPatch& patch) {
   }
 }
 
-// Whether it takes another plan, since a chunk was given up, or because of what is known now. What
-// it throws leaves the pool as it is, and what is known of it, or unsound.
-bool SceneStream::commit_all() {
-  bool plan = commit_changes();
+// What it throws leaves the pool as it is, and what is known of it, or unsound.
+void SceneStream::commit_all() {
+  commit_changes();
   // What has come may be the last that leftovers waited for. Another patch, since what that links
   // they may unlink.
-  if (residency_.has_leftovers()) plan |= commit_changes();
-  return plan;
+  if (residency_.has_leftovers()) commit_changes();
 }
 
-bool SceneStream::commit_changes() {
+void SceneStream::commit_changes() {
   LinkPatch patch;
   put_off_ = -1;
   commit_due_ = false;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
   for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);
-  bool plan = false;
   const Residency::Arrivals arrived =
-      residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch, plan); });
-  if (plan) look_again();
+      residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
   for (const uint32_t chunk : arrived.resident) {
     coming_.erase(chunk);
     failures_.remove(chunk);
@@ -103,10 +99,9 @@ bool SceneStream::commit_changes() {
     if (changes_.size() > kChangesKept) changes_.pop_front();
   }
   for (const Residency::Evicted& e : evicted) residency_.free(e);
-  if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return false;
+  if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return;
   publish();
   signal();
-  return plan || !arrived.given_up.empty();
 }
 
 // That which the next version will be.
@@ -120,7 +115,7 @@ std::shared_ptr<const StreamChange> SceneStream::change_of(const LinkPatch& patc
   return change;
 }
 
-bool SceneStream::accept(uint32_t chunk, LinkPatch& patch, bool& plan) {
+bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
   StagedChunk& staged = coming_.at(chunk).chunk;
   try {
     linker_.check(staged, file_->name());
@@ -128,17 +123,14 @@ bool SceneStream::accept(uint32_t chunk, LinkPatch& patch, bool& plan) {
     add_failure(chunk, error);
     return false;
   }
-  plan |= learn_families(staged.links);
+  learn_families(staged.links);
   linker_.arrive(std::move(staged.links), patch);
   return true;
 }
 
-// Whether the plan would have to know.
-bool SceneStream::learn_families(const LinkTable& table) {
-  bool matters = false;
+void SceneStream::learn_families(const LinkTable& table) {
   for (const NodeBelow& node : table.below)
-    matters |= residency_.set_family(graph_.with_roots(node.first_child, node.child_count));
-  return matters;
+    if (residency_.set_family(graph_.with_roots(node.first_child, node.child_count))) look_again();
 }
 
 bool SceneStream::changes_since(uint64_t version,
@@ -201,9 +193,9 @@ bool SceneStream::work_once(const Done& done, bool first, bool& stepped) {
   try {
     if (first) next_plan_ = {};
     stepped = plan_if_asked();
-    const bool changed = commit_all();
+    commit_all();
     publish();
-    if (!changed && !plan_is_asked() && done()) return true;
+    if (!plan_is_asked() && done()) return true;
   } catch (const Error&) {
     throw;
   } catch (...) {
