@@ -305,7 +305,7 @@ __global__ void __launch_bounds__(kThreads, kRasterBlocks)
     rasterize_tile<M>(params, params.splats.tile_order[at], own, lut_entries);
 }
 
-// For a second pass, which usually has no tiles. Those that it has come first. A kernel of its
+// For a second pass, which usually has no tiles; if it has some, they come first. A kernel of its
 // own, because a loop over tiles takes registers that the loop over splats needs.
 template <class M>
 __global__ void __launch_bounds__(kThreads)
