@@ -56,16 +56,6 @@ InstanceList checked_list(Call& call, uint32_t count, const VoyInstance* instanc
   return list;
 }
 
-// Frames in flight read what goes, so they end first.
-void change_scenes(ViewObject& view, std::vector<std::shared_ptr<SceneObject>> scenes) {
-  if (!view.wait_frames())
-    throw ApiError(
-        VOY_ERROR_TIMEOUT,
-        "view: found a frame in flight that did not finish in time, expected the host to "
-        "signal what it waits for");
-  view.set_scenes(std::move(scenes));
-}
-
 }  // namespace
 
 namespace voyager {
@@ -95,7 +85,7 @@ VoyResult VOY_CALL voySetViewInstances(VoyView view, uint32_t count, const VoyIn
     if (count > 0) check_pointer(instances, "instances");
     InstanceList list = checked_list(call, count, instances, object->device());
     const auto frame = claim_for_instances(*object);
-    if (list.scenes != object->scenes) change_scenes(*object, std::move(list.scenes));
+    if (list.scenes != object->scenes) object->set_scenes(std::move(list.scenes));
     object->poses.swap(list.poses);
     object->looks.swap(list.looks);
     object->scene_lost = false;

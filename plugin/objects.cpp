@@ -46,13 +46,6 @@ bool SceneObject::stays_at_unload() noexcept {
   return true;
 }
 
-bool ViewObject::wait_frames() const noexcept {
-  return std::all_of(rings.begin(), rings.end(), [](const auto& used) {
-    const auto ring = used.lock();
-    return ring == nullptr || ring->wait_idle();
-  });
-}
-
 bool ViewObject::finish_frames() noexcept {
   for (const auto& used : rings)
     if (const auto ring = used.lock()) finish(*ring, device());

@@ -110,8 +110,6 @@ struct ViewObject final : Child {
   // A view waits for its frames under way, which may wait for the host: so rings first see
   // to it that they end. False, and the device is abandoned, where they do not.
   bool finish_frames() noexcept;
-  // The same while the view stays: the host alone says when. False where that takes too long.
-  bool wait_frames() const noexcept;
   void drop_view() noexcept;
   // The scene was closed: the view draws no instance of it any more. Under `state`.
   void lose(const std::shared_ptr<Object>& scene) noexcept;

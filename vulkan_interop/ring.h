@@ -80,8 +80,6 @@ class Ring {
   // The backend's frames are done, or will be without the host.
   // False where they do not end within a few times the patience: a lost device, say.
   bool finish() noexcept;
-  // The same without a word to the host's semaphores, for a ring that stays.
-  bool wait_idle() const noexcept;
   // The ring goes without a wait, and leaves what frames may still write to.
   void abandon() noexcept { abandoned_ = true; }
 

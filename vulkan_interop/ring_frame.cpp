@@ -11,8 +11,7 @@
 namespace voyager::vulkan {
 namespace {
 
-constexpr uint64_t kNanoseconds = 1'000'000'000;
-constexpr uint64_t kPatience = 10 * kNanoseconds;  // with a signal that the host promised
+constexpr uint64_t kPatience = std::chrono::nanoseconds(kHostPatience).count();
 
 }  // namespace
 
@@ -121,16 +120,6 @@ bool Ring::release_in_the_hosts_stead() const noexcept {
   const VkSemaphoreSignalInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_SIGNAL_INFO, nullptr, released,
                                    wanted};
   return vk.SignalSemaphore(device_->handle(), &info) == VK_SUCCESS;
-}
-
-bool Ring::wait_idle() const noexcept {
-  if (!external_) return true;
-  const auto start = std::chrono::steady_clock::now();
-  while (!external_->idle()) {
-    if (std::chrono::steady_clock::now() - start >= 5 * external_->patience_at_end()) return false;
-    std::this_thread::sleep_for(std::chrono::microseconds(200));
-  }
-  return true;
 }
 
 bool Ring::finish() noexcept {

@@ -2,6 +2,7 @@
 // What the host learns of a frame once it has ended: its counters and times.
 #include "cuda/device/stage_timer.h"
 #include "cuda/frame/instances.h"
+#include "cuda/interop/external_ring.h"
 #include "cuda/splat/splat_state.h"
 
 namespace voyager::cuda {
@@ -21,6 +22,8 @@ class FrameReport {
   }
   bool passed() const { return copied_.passed(); }
   void wait() const { copied_.wait(); }
+  // Of a frame under way, which may wait for the host.
+  void wait_for_host() const { cuda::wait_for_host(copied_); }
 
   const PassCounters& counters() const {
     return *reinterpret_cast<const PassCounters*>(memory_.data());

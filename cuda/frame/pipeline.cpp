@@ -76,7 +76,8 @@ class SplatPipeline final : public Pipeline {
 
   using Eyes = std::array<RasterEye, kMaxEyes>;
 
-  Report begin_frame(const FrameInput& frame);
+  // awaited: the host will wait for the frame, and so for those before it.
+  Report begin_frame(const FrameInput& frame, bool awaited);
   void fit(const FrameInput& frame, const FrameTiles& tiles);
   // SceneReading: that of the frame, which has not ended.
   void launch_search(const SceneReading&, const FrameInput& frame, FrameReport& report);
@@ -120,7 +121,7 @@ class SplatPipeline final : public Pipeline {
 // instances need, so they are made anew.
 void SplatPipeline::set_scenes(const Scenes& scenes, std::span<const size_t> from) {
   device_->use();
-  stream_.wait();
+  wait_for_host(stream_);
   instances_.set_scenes(scenes, from);
   free_.clear();
 }
@@ -213,12 +214,13 @@ void SplatPipeline::launch_second_pass(const SceneReading& reading, const FrameI
   launch_rasterize(rest, choices, eyes.data());
 }
 
-SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
+SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, bool awaited) {
   for (const FrameEye& eye : frame.eyes)
     if (desc_.count_pixels && (eye.limits.values != nullptr || eye.image.external.limited))
       throw Error(ErrorCode::unsupported,
                   "depth limits: found some, pixels are counted of frames without");
   device_->use();
+  if (awaited) wait_for_host(stream_);
   make_room();
   Report report;
   if (free_.empty()) {
@@ -245,7 +247,7 @@ void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
   for (size_t eye = 0; eye < frame.eyes.size(); ++eye)
     fits = fits && limits_[eye].fits(frame.eyes[eye]) && images_[eye].fits(frame.eyes[eye]);
   if (fits) return;
-  stream_.wait();
+  wait_for_host(stream_);
   if (!splats_.fits(tiles)) occlusion_.forget();  // the ends that it knows are in these
   splats_.fit(tiles);
   if (occlusion_choice_.possible()) occlusion_.fit(tiles);
@@ -263,15 +265,16 @@ void SplatPipeline::launch_search(const SceneReading&, const FrameInput& frame,
 
 // Frames that are left under way cannot be drawn again: they get room before they need it.
 void SplatPipeline::make_room() {
-  const SplatRoom wanted = std::exchange(wanted_, {}), room = splats_.room();
-  if (wanted.places <= room.places && wanted.strips <= room.strips && wanted.pairs <= room.pairs)
-    return;
-  stream_.wait();
-  splats_.grow(wanted);
+  const SplatRoom wanted = wanted_, room = splats_.room();
+  if (wanted.places > room.places || wanted.strips > room.strips || wanted.pairs > room.pairs) {
+    wait_for_host(stream_);
+    splats_.grow(wanted);
+  }
+  wanted_ = {};
 }
 
 void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
-  Report report = begin_frame(frame);
+  Report report = begin_frame(frame, true);
   Eyes eyes{};
   for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
     eyes[eye].target = images_[eye].target(frame.eyes[eye], frame.background);
@@ -324,7 +327,7 @@ SplatPipeline::Eyes SplatPipeline::external_eyes(const FrameInput& frame) {
 }
 
 void SplatPipeline::submit(const FrameInput& frame, bool checked) {
-  under_way_.push_back(begin_frame(frame));
+  under_way_.push_back(begin_frame(frame, checked));
   const cudaStream_t stream = stream_.get();
   const auto wait = [&](const ExternalTarget& target) { wait_released(target, stream); };
   FrameReport& report = *under_way_.back();
@@ -353,7 +356,7 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   if (under_way_.empty()) return false;
   device_->use();
   FrameReport& oldest = *under_way_.front();
-  if (wait) oldest.wait();
+  if (wait) oldest.wait_for_host();
   if (!oldest.passed()) return false;
   collect(oldest, stats);
   learn(oldest);

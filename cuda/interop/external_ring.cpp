@@ -1,6 +1,9 @@
 #include "cuda/interop/external_ring.h"
 
+#include <chrono>
 #include <optional>
+#include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -211,6 +214,23 @@ std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
                                           ExternalRingDesc desc) {
   device->use_whole();
   return std::make_unique<Ring>(std::move(device), std::move(desc));
+}
+
+void wait_for_host(const Event& event) {
+  const auto start = std::chrono::steady_clock::now();
+  while (!event.passed()) {
+    if (std::chrono::steady_clock::now() - start >= kHostPatience)
+      throw Error(ErrorCode::timeout, "view: found a frame in flight that did not end within " +
+                                          std::to_string(kHostPatience.count()) +
+                                          " s, expected the host to signal what it waits for");
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+}
+
+void wait_for_host(const Stream& stream) {
+  const Event done(kWaitedFor);
+  done.record(stream.get());
+  wait_for_host(done);
 }
 
 RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background) {

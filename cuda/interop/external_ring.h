@@ -11,6 +11,11 @@ namespace voyager::cuda {
 std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
                                           ExternalRingDesc desc);
 
+// Until what the stream has so far is done, or the event has passed. Frames under way may wait for
+// the host: throws Error(timeout) after kHostPatience. Takes up to 0.2 ms longer than wait().
+void wait_for_host(const Event& event);
+void wait_for_host(const Stream& stream);
+
 // Of a ring that import_ring made.
 RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background);
 // The host's depth for the target, of a ring that has it.

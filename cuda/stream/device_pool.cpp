@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cuda/interop/external_ring.h"
 #include "cuda/scene/device_gaussian.h"
 #include "runtime/base/error.h"
 #include "runtime/frame/scene_gaussians.h"
@@ -86,9 +87,15 @@ void DevicePool::make_room(PoolRoom room) {
   applied_.record(stream_.get());
 }
 
+void DevicePool::await_frames() {
+  device_->use();
+  put_behind_frames();
+  wait_for_host(stream_);
+}
+
 void DevicePool::resize(PoolRoom room) {
   device_->use();
-  wait_for_frames();
+  put_behind_frames();
   stream_.wait();
   slots_ = 0;
   memory_ = {};
@@ -229,7 +236,7 @@ void DevicePool::apply(const LinkPatch& patch) {
                                          " large families, expected at most " +
                                          std::to_string(most));
   const PoolPatch copy = patches_.put(patch);
-  wait_for_frames();
+  put_behind_frames();
   launch_patch(
       {array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords), array<uint32_t>(kParents),
        tables_ == nullptr ? nullptr : array<LargeFamily>(kLargeFamilies),
@@ -245,8 +252,8 @@ void DevicePool::require_room() const {
                 "streaming: found no memory for any slot when a budget changed, expected some");
 }
 
-// On the device.
-void DevicePool::wait_for_frames() {
+// What comes on the stream from now on.
+void DevicePool::put_behind_frames() {
   const std::lock_guard lock(readers_mutex_);
   for (PoolReader* reader : readers_)
     if (std::exchange(reader->reading_, false))

@@ -32,9 +32,11 @@ class DevicePool final : public ChunkPool {
   DevicePool(const DevicePool&) = delete;
   DevicePool& operator=(const DevicePool&) = delete;
 
-  // May wait for a piece of the ring, which is to say for chunks that came before it.
+  // May wait for a piece of the ring, which is to say for chunks that came before it, and for the
+  // frames that those wait for: throws Error(timeout), too.
   void fill(uint32_t slot, const StagedChunk& chunk) override;
   void apply(const LinkPatch& patch) override;
+  void await_frames() override;
   // Waits for the device.
   void resize(PoolRoom room) override;
 
@@ -56,7 +58,7 @@ class DevicePool final : public ChunkPool {
   PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;
   // Throws Error(over_budget) where a resize has left no memory.
   void require_room() const;
-  void wait_for_frames();
+  void put_behind_frames();
   void make_room(PoolRoom room);
 
   const std::shared_ptr<const Device> device_;

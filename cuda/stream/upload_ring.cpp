@@ -1,5 +1,7 @@
 #include "cuda/stream/upload_ring.h"
 
+#include "cuda/interop/external_ring.h"
+
 namespace voyager::cuda {
 
 UploadRing::UploadRing(size_t piece_bytes, size_t pieces)
@@ -19,7 +21,7 @@ size_t UploadRing::take_index() {
     free_.pop_front();
   }
   try {
-    read_[index].wait();
+    wait_for_host(read_[index]);
   } catch (...) {
     give_back(index);
     throw;

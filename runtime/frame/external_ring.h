@@ -11,6 +11,9 @@ namespace voyager {
 
 enum class ColorFormat;
 
+// How long a call waits for a signal that the host promised.
+inline constexpr std::chrono::seconds kHostPatience{10};
+
 struct ExternalMemory {
   FileDescriptor fd;
   uint64_t size = 0, offset = 0;  // of the memory, of what is meant in it; bytes

@@ -24,6 +24,9 @@ class ChunkPool {
   virtual void fill(uint32_t slot, const StagedChunk& chunk) = 0;
   // Between two frames: what was filled before and is linked now is there for the next one.
   virtual void apply(const LinkPatch& patch) = 0;
+  // Until frames in flight that read the pool have ended, which may wait for the host; none begins
+  // meanwhile. Throws Error(timeout) where that takes too long.
+  virtual void await_frames() {}
   // Other room instead; what they held is lost, and nothing is linked. No frame
   // reads the pool and no slot is being filled. Throws Error(over_budget) or std::bad_alloc,
   // and may then have any room up to what it had; where it has as much already, a pool may keep

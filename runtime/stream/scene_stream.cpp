@@ -184,6 +184,7 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
 
 void SceneStream::resize(PoolRoom room, uint32_t pinned, Workers& workers) {
   const auto pool = hold_alone();
+  pool_.await_frames();
   Lock lock(mutex_);
   filled_.wait(lock, [&] { return filling_ == 0; });
   const PoolRoom room_before = residency_.room();

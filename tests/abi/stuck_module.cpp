@@ -42,7 +42,13 @@ class StuckPipeline final : public Pipeline {
   void resolve(const FrameInput& frame, FrameStats& stats) override {
     inner_->resolve(frame, stats);
   }
-  void submit(const FrameInput&, bool) override {}
+  void submit(const FrameInput&, bool) override { ++under_way_; }
+  bool finish(bool wait, FrameStats&) override {
+    if (under_way_ == 0) return false;
+    if (state().idle) return --under_way_, true;
+    if (wait) throw Error(ErrorCode::timeout, "view: found a frame in flight that did not end");
+    return false;
+  }
   bool counts_changes() const override { return true; }
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
     inner_->read_cut(instance, cut);
@@ -51,6 +57,7 @@ class StuckPipeline final : public Pipeline {
 
  private:
   std::unique_ptr<Pipeline> inner_;
+  int under_way_ = 0;
   Counted counted_{state().pipelines};
 };
 

@@ -34,8 +34,8 @@ class FramesInFlight : public SplatTest {
     return input;
   }
   // The device comes to frames into the ring that are submitted from now on only after that time.
-  void hold_back(ExternalRing& ring) const {
-    cuda::give_head_start(held_->get(), static_cast<unsigned long long>(kHeld * 1e6));
+  void hold_back(ExternalRing& ring, double milliseconds = kHeld) const {
+    cuda::give_head_start(held_->get(), static_cast<unsigned long long>(milliseconds * 1e6));
     ExternalTarget target;
     target.ring = &ring;
     cuda::mark_end(target, held_->get());

@@ -383,7 +383,7 @@ VOY_API VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* de
 /* Changes VoySceneStreaming.memoryBudget, in bytes. Everything but the top of the tree is dropped
  * and read again as frames need it. The call waits for frames that draw the scene.
  * Errors: UNSUPPORTED (a scene that is not streamed), OVER_BUDGET (as voyOpenScene; nothing has
- * changed). */
+ * changed), TIMEOUT (as voyRenderFrame; nothing has changed). */
 VOY_API VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes);
 
 /* Waits for frames that draw the scene, closes it and frees its memory. Closing NULL succeeds and
@@ -913,7 +913,8 @@ typedef struct VoyFrame {
  * - OUT_OF_HOST_MEMORY, OVER_BUDGET: the frame does not fit into host memory, into a budget, or
  *   into the GPU's memory.
  * - BUSY: another thread uses the view or a target.
- * - TIMEOUT: the host did not signal within 10 s what a Vulkan target waits for.
+ * - TIMEOUT: the host did not signal within 10 s what this frame waits for, or one in flight that
+ *   the call waits for.
  * - DEVICE_LOST: the CUDA or Vulkan device no longer works. */
 VOY_API VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame);
 
@@ -923,7 +924,7 @@ VOY_API VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame);
  * *count to the size of the cut. It returns VOY_INCOMPLETE if that is more than `capacity`.
  * Errors: INVALID_ARGUMENT (no such instance; no frame yet, or none since voySetViewInstances
  * changed the scenes), UNSUPPORTED (the view draws no cut of this instance; on CUDA also after a
- * frame failed, until the next one succeeds). */
+ * frame failed, until the next one succeeds), TIMEOUT (as voyRenderFrame). */
 VOY_API VoyResult VOY_CALL voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity,
                                          uint32_t* nodes, uint32_t* count);
 
@@ -1015,7 +1016,7 @@ typedef struct VoyFrameStats {
 /* Writes the statistics of the view's last successful frame. Frames into Vulkan images may still be
  * in flight; then it is the last frame that has finished, and frameIndex says which. The call waits
  * only for the view's first frame. The caller sets `type` and `next`; the call writes the rest.
- * Errors: INVALID_ARGUMENT (before the first frame). */
+ * Errors: INVALID_ARGUMENT (before the first frame), TIMEOUT (as voyRenderFrame). */
 VOY_API VoyResult VOY_CALL voyGetFrameStats(VoyView view, VoyFrameStats* stats);
 
 /* Returns the name of a stage, such as "search". NULL for any other number, so for stageCount too.
