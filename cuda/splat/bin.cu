@@ -98,50 +98,53 @@ __device__ void bin_strip_counts(const SplatView& splats) {
   splats.counters->strips_dropped = dropped;
 }
 
-constexpr unsigned kPlaceThreads = 1024, kPlaceItems = 4;
-constexpr unsigned kChunk = kPlaceThreads * kPlaceItems;
+constexpr unsigned kPlaceThreads = 1024;
 using PlaceScan = cub::BlockScan<unsigned long long, kPlaceThreads, cub::BLOCK_SCAN_WARP_SCANS>;
 
-// One block: where each tile's list begins and ends, and the order in which lists are worked
-// on. What is beyond the room is cut off. at_once: tiles that are rasterized at a time.
+// Adds a warp's values to `sum`, which is the block's.
+__device__ void bin_add(unsigned long long& sum, unsigned long long value) {
+  for (int step = 16; step != 0; step /= 2) value += __shfl_xor_sync(0xffffffffu, value, step);
+  if (threadIdx.x % 32 == 0) atomicAdd(&sum, value);
+}
+
+// Where each tile's list begins and ends, and the order in which lists are worked on: a tile a
+// thread. Each block counts all tiles for itself, and so waits for none. What is beyond the room is
+// cut off. at_once: tiles that are rasterized at a time.
 __global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats, uint32_t at_once) {
   if (!has_work(splats)) return;
   __shared__ PlaceScan::TempStorage storage;
-  __shared__ uint32_t counts[kChunk];
-  __shared__ uint32_t firsts[kChunk + 1];
+  __shared__ unsigned long long total, before;
   __shared__ BinOrder order;
-  const uint32_t tiles = splats.frame.count();
-  const auto room = static_cast<unsigned long long>(splats.pairs);
-  unsigned long long total = 0;
+  const uint32_t tiles = splats.frame.count(), base = blockIdx.x * kPlaceThreads;
+  const uint32_t tile = base + threadIdx.x;
+  if (threadIdx.x == 0) total = before = 0;
   order.clear();
-  for (uint32_t base = 0; base < tiles; base += kChunk) {
-    __syncthreads();
-    for (uint32_t i = threadIdx.x; i < kChunk; i += kPlaceThreads) {
-      const uint32_t count = base + i < tiles ? splats.tile_counts[base + i] : 0;
-      counts[i] = count;
-      if (base + i < tiles) order.count(count);
-    }
-    __syncthreads();
-    unsigned long long own[kPlaceItems], before[kPlaceItems], sum;
-#pragma unroll
-    for (unsigned k = 0; k < kPlaceItems; ++k) own[k] = counts[threadIdx.x * kPlaceItems + k];
-    PlaceScan(storage).ExclusiveSum(own, before, sum);
-#pragma unroll
-    for (unsigned k = 0; k < kPlaceItems; ++k)
-      firsts[threadIdx.x * kPlaceItems + k] = static_cast<uint32_t>(min(total + before[k], room));
-    total += sum;
-    if (threadIdx.x == 0) firsts[kChunk] = static_cast<uint32_t>(min(total, room));
-    __syncthreads();
-    for (uint32_t i = threadIdx.x; i < kChunk && base + i < tiles; i += kPlaceThreads)
-      splats.tiles[base + i] = {firsts[i], firsts[i + 1]};
+  unsigned long long all = 0, earlier = 0;
+#pragma unroll 4
+  for (uint32_t i = threadIdx.x; i < tiles; i += kPlaceThreads) {
+    const uint32_t count = splats.tile_counts[i];
+    order.count(count, i < base);
+    all += count;
+    if (i < base) earlier += count;
   }
+  bin_add(total, all);
+  bin_add(before, earlier);
+  const unsigned long long own = tile < tiles ? splats.tile_counts[tile] : 0;
+  unsigned long long first;
+  PlaceScan(storage).ExclusiveSum(own, first);
+  __syncthreads();
   const float share = static_cast<float>(total) / static_cast<float>(at_once);
   order.place(*splats.counters, max(kLeastHalved, static_cast<uint32_t>(kHalvedShare * share)));
-  for (uint32_t tile = threadIdx.x; tile < tiles; tile += kPlaceThreads)
-    splats.tile_order[order.take(splats.tile_counts[tile])] = tile;
+  if (tile < tiles) {
+    const auto room = static_cast<unsigned long long>(splats.pairs);
+    first += before;
+    splats.tiles[tile] = {static_cast<uint32_t>(min(first, room)),
+                          static_cast<uint32_t>(min(first + own, room))};
+    splats.tile_order[order.take(static_cast<uint32_t>(own))] = tile;
+  }
+  if (blockIdx.x != 0) return;
   if (threadIdx.x == 0) splats.counters->pairs = total;
-  if (threadIdx.x >= 32) return;
-  bin_strip_counts(splats);
+  if (threadIdx.x < 32) bin_strip_counts(splats);
 }
 
 __device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) {
@@ -185,10 +188,11 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
   for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads)
     cursors[i] = splats.tiles[share.first_tile + i].first + offsets[i];
   __syncthreads();
+  const auto strip_at = [&](uint32_t i) { return i < share.count ? share.strips[i] : TileStrip{}; };
+  TileStrip next = strip_at(threadIdx.x);
   for (uint32_t base = threadIdx.x / 32 * 32; base < share.count; base += kBinThreads) {
-    const uint32_t i = base + threadIdx.x % 32;
-    TileStrip strip{};
-    if (i < share.count) strip = share.strips[i];
+    const TileStrip strip = next;
+    next = strip_at(base + kBinThreads + threadIdx.x % 32);  // asked for before it is wanted
     const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
     bin_strip<kLimited>(splats, share, cursors, bin_band(strip, share), key);
   }
@@ -201,7 +205,8 @@ void launch(const SplatFrame& f, const dim3& blocks, uint32_t band, size_t most)
   allow_shared_bytes(bin_count<kLimited>, most, "bin_count");
   launch_kernel("bin_count", bin_count<kLimited>, {blocks, kBinThreads, f.stream, bytes}, f.splats,
                 band);
-  launch_kernel("bin_place", bin_place, {1, kPlaceThreads, f.stream}, f.splats,
+  const unsigned placed = (f.splats.frame.count() + kPlaceThreads - 1) / kPlaceThreads;
+  launch_kernel("bin_place", bin_place, {placed, kPlaceThreads, f.stream}, f.splats,
                 kRasterBlocks * f.multiprocessors);
   allow_shared_bytes(bin_scatter<kLimited>, most, "bin_scatter");
   launch_kernel("bin_scatter", bin_scatter<kLimited>, {blocks, kBinThreads, f.stream, bytes},

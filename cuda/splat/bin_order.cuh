@@ -5,11 +5,12 @@
 
 namespace voyager::cuda {
 
-// A counting sort by the leading bits of the length, in the shared memory of one block.
+// A counting sort by the leading bits of the length, in the shared memory of a block that counts
+// all tiles and places some of them.
 struct BinOrder {
   static constexpr unsigned kBits = 2;  // beside the highest that is set
   static constexpr unsigned kClasses = 33 << kBits;
-  uint32_t places[kClasses];
+  uint32_t places[kClasses], before[kClasses];
 
   static __device__ unsigned class_of(uint32_t count) {
     const unsigned bits = 32 - __clz(count);
@@ -19,20 +20,28 @@ struct BinOrder {
 
   // By all threads of the block together, as the others are.
   __device__ void clear() {
-    for (unsigned i = threadIdx.x; i < kClasses; i += blockDim.x) places[i] = 0;
+    for (unsigned i = threadIdx.x; i < kClasses; i += blockDim.x) places[i] = before[i] = 0;
+    __syncthreads();
   }
-  __device__ void count(uint32_t length) { atomicAdd(places + class_of(length), 1u); }
+  // is_before: the tile is placed by a block before this one.
+  __device__ void count(uint32_t length, bool is_before) {
+    const unsigned of = class_of(length);
+    atomicAdd(places + of, 1u);
+    if (is_before) atomicAdd(before + of, 1u);
+  }
 
   // From counts to first places. halved: the length from which on a tile is drawn in halves.
   __device__ void place(SplatCounters& counters, uint32_t halved) {
     __syncthreads();
     if (threadIdx.x < 32) sum_up();
     __syncthreads();
-    if (threadIdx.x == 0) {
+    if (blockIdx.x == 0 && threadIdx.x == 0) {
       counters.large_lists = places[class_of(kMediumList)];
       counters.long_lists = places[class_of(kShortList)];
       counters.halved_lists = min(places[class_of(halved)], kMaxHalvedLists);
     }
+    __syncthreads();
+    for (unsigned i = threadIdx.x; i < kClasses; i += blockDim.x) places[i] += before[i];
     __syncthreads();
   }
   __device__ uint32_t take(uint32_t length) { return atomicAdd(places + class_of(length), 1u); }

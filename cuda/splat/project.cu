@@ -21,11 +21,10 @@ constexpr unsigned kProjectThreads = 128;
 // registers, which costs more than the few that it then spills.
 constexpr unsigned kPairBlocks = 6;
 
-// In the image of any eye, before what hides it.
+// In the image of any eye, before what hides it. hull: of the item's Gaussian.
 template <bool kLod, int kEyes>
-__device__ bool project_may_show(const SplatFrame& f, const DrawItem& item) {
+__device__ bool project_may_show(const SplatFrame& f, const DrawItem& item, GaussianHull hull) {
   if (item.gaussian == kNoNode) return false;
-  GaussianHull hull = hull_at(f.gaussians, item.gaussian);
   if (kLod && item.t != 1.0f) {
     const GaussianHull parent = hull_at(f.gaussians, item.parent);
     hull = {lerp_rn(parent.mean, hull.mean, item.t), fmaxf(parent.max_scale, hull.max_scale),
@@ -40,15 +39,15 @@ __device__ bool project_may_show(const SplatFrame& f, const DrawItem& item) {
          !hidden_in_all(f.splats, f.params, {hull.mean, hull.max_scale, hull.mean, radius});
 }
 
-// What a place draws, and `t` of its node where it is found here.
+// What the place of a node draws, and `t` of the node where it is found here.
 template <bool kLod>
-__device__ DrawItem weighed_item(const SplatFrame& f, uint32_t place, float& t) {
+__device__ DrawItem weighed_item(const SplatFrame& f, uint32_t place, uint32_t node, float& t) {
   const WeightSource& from = f.draws.weights;
-  if (!kLod || from.origin == nullptr) return item_at<kLod>(f.gaussians, f.draws.list, place);
-  const uint32_t node = node_at(f.draws.list, place);
-  if (node == kNoNode) return {node, kNoNode, 1.0f, 1.0f};
-  t = weight_of(from, place, node);
-  return item_of(f.gaussians, node, t);
+  if (!kLod || node == kNoNode) return {node, kNoNode, 1.0f, 1.0f};
+  const float weight =
+      from.origin == nullptr ? __ldg(f.draws.list.weights + place) : weight_of(from, place, node);
+  if (from.origin != nullptr) t = weight;
+  return item_of(f.gaussians, node, weight);
 }
 
 // Lists the places of a block's threads that have a bit in their warp's `lanes`, in order within
@@ -91,21 +90,26 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
   const uint32_t rows = all ? (end + kRowPlaces - 1) / kRowPlaces : *f.rows.count;
   constexpr uint32_t kWarps = kCullThreads / 32, kRows = kWarps * kCullItems;
   for (uint32_t base = blockIdx.x * kRows; base < rows; base += gridDim.x * kRows) {
-    uint32_t places_of[kCullItems], whole[kCullItems], blended[kCullItems];
+    uint32_t places_of[kCullItems], whole[kCullItems], blended[kCullItems], nodes[kCullItems];
+    GaussianHull hulls[kCullItems];  // read together: one waits as long as all
 #pragma unroll
     for (unsigned k = 0; k < kCullItems; ++k) {
       const uint32_t at = base + k * kWarps + threadIdx.x / 32;
       const uint32_t row = all || at >= rows ? at : __ldg(f.rows.rows + at);
       const uint32_t place = places_of[k] = row * kRowPlaces + threadIdx.x % 32;
-      bool reaches = false, blends = false;
-      if (at < rows && place < end) {
-        float t = 1.0f;
-        const DrawItem item = weighed_item<kLod>(f, place, t);
-        reaches = project_may_show<kLod, kEyes>(f, item);
-        blends = kLod && item.t != 1.0f;
-        if (kLod && reaches && f.draws.weights.origin != nullptr)
-          f.draws.weights.weights[place] = t;
-      }
+      nodes[k] = at < rows && place < end ? node_at(f.draws.list, place) : kNoNode;
+    }
+#pragma unroll
+    for (unsigned k = 0; k < kCullItems; ++k)
+      hulls[k] = nodes[k] == kNoNode ? GaussianHull{} : hull_at(f.gaussians, nodes[k]);
+#pragma unroll
+    for (unsigned k = 0; k < kCullItems; ++k) {
+      const uint32_t place = places_of[k];
+      float t = 1.0f;
+      const DrawItem item = weighed_item<kLod>(f, place, nodes[k], t);
+      const bool reaches = project_may_show<kLod, kEyes>(f, item, hulls[k]);
+      const bool blends = kLod && item.t != 1.0f;
+      if (kLod && reaches && f.draws.weights.origin != nullptr) f.draws.weights.weights[place] = t;
       whole[k] = __ballot_sync(kAll, reaches && !blends);
       blended[k] = kLod ? __ballot_sync(kAll, reaches && blends) : 0;
     }
