@@ -41,6 +41,8 @@ class ImitatedGodot {
   bool has_device() const { return host_ && host_->exists(); }
   bool initialized() const { return initialized_; }
   bool has_method(const std::string& name) const { return methods_.count(name) == 1; }
+  // Of a method that there is.
+  size_t argument_count(const std::string& name) const { return methods_.at(name).argument_count; }
   GodotObject* rendering_device() { return &rendering_device_; }
 
   std::unique_ptr<GodotTexture> make_texture(VkFormat format, uint32_t width, uint32_t height);
