@@ -45,7 +45,10 @@ int parse_and_run(CLI::App& app, int argc, char** argv) {
     if (app.get_subcommands().empty()) return show_commands(app);
     return finish();
   } catch (const CLI::Success& request) {
-    app.exit(request);  // --help and --version
+    // --help and --version; CLI11 does not look at what else there is.
+    if (app.get_subcommands().empty() && !app.remaining().empty())
+      return fail(kBadUsage, usage_error(app, CLI::ExtrasError(app.remaining())));
+    app.exit(request);
     return finish();
   } catch (const CLI::ParseError& error) {
     return fail(kBadUsage, usage_error(app, error));

@@ -115,6 +115,7 @@ TEST_F(Messages, AWrongOptionNamesItselfAndWhatIsExpected) {
       {"repor S C -o o", "repor: not a command of this version, did you mean report?"},
       {"info S --json=3", "--json: found a value, expected none"},
       {"rendr S", "rendr: not a command of this version, did you mean render?"},
+      {"fly --help", "fly: not a command of this version, expected one of synth, bake"},
       {"fly S", "fly: not a command of this version, expected one of synth, bake"}};
   for (const Wrong& wrong : table) {
     std::string command = wrong.command;
