@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Compares what the headers promise with the recorded description of the last release: check_abi.sh
 # With --record it then writes the description of this tree in its place, for a release; one that breaks the
-# last is written only once that is deleted, with a new major version. Needs libabigail (abigail-tools);
-# without it that comparison is left out with a line that says so. Exports, sizes and offsets are pinned by
-# tests/abi as well; this also sees the type of a parameter or of a field change.
+# last is written only once that is deleted, with a new major version. Needs libabigail (scripts/setup.sh checks)
+# and fails without it. Exports, sizes and offsets are pinned by tests/abi as well; this also sees the type of a
+# parameter or of a field change.
 # The kept headers of 1.0 are compared with their checksums: they are what hosts were built with.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -13,7 +13,7 @@ recorded=tests/abi/recorded/voyager.abi
   exit 1
 }
 command -v abidiff >/dev/null && command -v abidw >/dev/null ||
-  { echo "check_abi.sh: left out: abidiff is not here, install abigail-tools (scripts/setup.sh checks)"; exit 0; }
+  { echo "check_abi.sh: found no abidiff or no abidw, expected both: scripts/setup.sh checks installs them (abigail-tools)" >&2; exit 1; }
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
