@@ -739,8 +739,9 @@ typedef enum VoyClipY {
 VOY_API VoyResult VOY_CALL voyFrustumFromProjection(const double* matrix, VoyClipY clipY,
                                                     VoyFrustum* frustum);
 
-/* The hand of a world: what +z is where +x is right and +y is up. Of a world whose z points up
- * (Unreal), permute the axes first. */
+/* The hand of a world: where +z points once the world is turned so that +x is right and +y is up. A
+ * right-handed world may have any axis up. Unreal's cameras look along +x and have z up: permute
+ * the axes of world and camera first (docs/abi.md). */
 typedef enum VoyHand {
   VOY_HAND_RIGHT = 0, /* towards the viewer: OpenXR, glTF, Godot */
   VOY_HAND_LEFT = 1,  /* away from the viewer: Unity, Direct3D by habit */
