@@ -19,7 +19,7 @@ namespace voyager {
 struct Segment {
   uint32_t tier;
   uint32_t cell;           // kTop for the top
-  uint32_t first_subtree;  // of the file
+  uint32_t first_subtree;  // its index in the file
   // Bytes of records in the chunk that subtrees before this segment left open; 0 before
   // the first subtree of all.
   uint32_t open_bytes;
@@ -49,10 +49,10 @@ class BakePlan {
   // Levels of the top: all above the cell tiers, and the cells' roots.
   uint32_t top_levels() const { return top_levels_; }
   uint32_t first_cell_tier() const { return first_cell_tier_; }
-  // Of the roots of a cell tier, in the cell's own tree.
+  // The level, in a cell's own tree, of the roots of a cell tier.
   uint32_t cell_level_of(uint32_t tier) const;
-  // The cell's first node on one of its own levels, or where it would be; of cell
-  // cells(): the end of the level.
+  // The id in the file of the cell's first node on one of its own levels, or where it would
+  // be. For cell == cells() it is the end of the level.
   uint32_t first_node(uint32_t cell, uint32_t level) const;
 
   // In the order of the file; those of a tier are consecutive.

@@ -10,7 +10,7 @@ struct Reach {
   float least_log_scale, most_log_scale, f_dc, sh;
 };
 
-// The largest absolute value. As integers, which compilers compare several at a time.
+// The largest absolute value. Compared as integers, because compilers then vectorise the loop.
 float farthest(std::span<const float> values) {
   int32_t most = 0;
   for (const float value : values) most = std::max(most, std::bit_cast<int32_t>(value) & INT32_MAX);

@@ -29,7 +29,8 @@ inline constexpr ValueRange kSplatRange = {-kAnyValue, kAnyValue, static_cast<fl
 inline constexpr ValueRange kCompressedPlyRange = {-kAnyValue, kAnyValue, kAnyValue, 4.0f,
                                                    "SH of degree 1 to 3 from -4 to 4"};
 
-// For each range the Gaussians of the batch with a value outside; a NaN is outside.
+// For each range, how many Gaussians of the batch have a value outside. All values are finite, as
+// importers and the reader of .voy make sure.
 std::vector<uint64_t> count_outside(std::span<const ValueRange> ranges, const GaussianCloud& batch);
 
 }  // namespace voyager
