@@ -164,12 +164,13 @@ typedef union VoyExternalHandle {
 #define VOY_VULKAN_MEMORY_HANDLE_TYPE VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_WIN32_BIT
 #define VOY_VULKAN_SEMAPHORE_HANDLE_TYPE VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_WIN32_BIT
 #else
-               /* No handle. */
+
+/* No handle. */
 #define VOY_EXTERNAL_HANDLE_NONE \
   { -1 }
-               /* The handle type of exported memory: VoyVulkanMemory.handleType. */
+/* The handle type of exported memory: VoyVulkanMemory.handleType. */
 #define VOY_VULKAN_MEMORY_HANDLE_TYPE VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT
-               /* The handle type of exported semaphores: VoyVulkanImportedSemaphores.handleType. */
+/* The handle type of exported semaphores: VoyVulkanImportedSemaphores.handleType. */
 #define VOY_VULKAN_SEMAPHORE_HANDLE_TYPE VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT
 #endif
 
