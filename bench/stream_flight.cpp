@@ -12,8 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "tools/cameras.h"
-#include "voyager/voyager.hpp"
+#include "streamed_view.h"
 
 namespace {
 
@@ -165,59 +164,30 @@ int main(int argc, char** argv) try {
   const std::vector<Camera> cameras = voyager::tools::read_cameras(argv[2]);
   Flight flight(cameras, static_cast<uint64_t>(number(7, 1)), fps, width, height);
 
-  VoyDeviceDesc device_desc = VOY_DEVICE_DESC_INIT;
-  device_desc.deviceMemoryBudget = static_cast<uint64_t>(megabytes * 1e6);
-  const voy::Device device = voy::Device::create(device_desc);
-  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
-  streaming.memoryBudget = device_desc.deviceMemoryBudget;
-  VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
-  scene_desc.next = &streaming;
-  scene_desc.path = argv[1];
-  const voy::Scene scene = device.open_scene(scene_desc);
-  VoyScene handle = scene.get();
-  VoyViewDesc view_desc = VOY_VIEW_DESC_INIT;
-  view_desc.instanceCount = 1;
-  view_desc.scenes = &handle;
-  view_desc.maxWidth = width;
-  view_desc.maxHeight = height;
-  view_desc.tau = tau;
-  voy::View view = device.create_view(view_desc);
-  std::vector<uint8_t> pixels(size_t{4} * width * height);
-  VoyTargetDesc target_desc = VOY_TARGET_DESC_INIT;
-  target_desc.width = width;
-  target_desc.height = height;
-  target_desc.color = pixels.data();
-  const voy::Target target = device.create_target(target_desc);
+  const voy::Device device = voyager::bench::streaming_device(megabytes);
+  voyager::bench::StreamedView streamed(device, argv[1], megabytes, nullptr, width, height, tau);
 
   std::vector<Taken> frames;
-  uint64_t arrived = 0;
+  uint64_t arrived_before = 0;
   std::vector<long> kilobytes;  // after each tenth
   size_t since_jump = 0;
   auto next = Clock::now();
   for (size_t i = 0; i < count; ++i) {
     since_jump = flight.jumps(i) ? 0 : since_jump + 1;
     const Camera camera = flight.next(i);
-    VoyFrameEye eye = VOY_FRAME_EYE_INIT;
-    eye.pose = camera.pose;
-    eye.frustum = camera.frustum();
-    eye.target = target.get();
-    VoyFrame frame = VOY_FRAME_INIT;
-    frame.eyeCount = 1;
-    frame.eyes = &eye;
     const auto begun = Clock::now();
-    view.render(frame);
+    streamed.render(camera);
     const std::chrono::duration<double, std::milli> call = Clock::now() - begun;
-    const VoyFrameStats stats = view.stats();
-    VoyStreamingStats streamed = VOY_STREAMING_STATS_INIT;
-    voyGetStreamingStats(handle, &streamed);
+    const VoyFrameStats stats = streamed.view.stats();
+    const uint64_t arrived = streamed.scene.streaming_stats().arrivedChunks;
     Taken taken{stats.millisecondsTotal - stats.milliseconds[VOY_STAGE_RESOLVE],
                 call.count(),
                 {},
                 stats.nodesEntered,
-                streamed.arrivedChunks - arrived,
+                arrived - arrived_before,
                 since_jump};
     std::copy_n(stats.milliseconds, VOY_MAX_STAGES, taken.stages);
-    arrived = streamed.arrivedChunks;
+    arrived_before = arrived;
     frames.push_back(taken);
     if ((i + 1) % std::max<size_t>(1, count / 10) == 0) kilobytes.push_back(resident_kilobytes());
     next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps));

@@ -11,8 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "tools/cameras.h"
-#include "voyager/voyager.hpp"
+#include "streamed_view.h"
 
 namespace {
 
@@ -92,33 +91,12 @@ int main(int argc, char** argv) try {
   const Path path(cameras);
 
   const auto start = Clock::now();
-  VoyDeviceDesc device_desc = VOY_DEVICE_DESC_INIT;
-  device_desc.deviceMemoryBudget = static_cast<uint64_t>(megabytes * 1e6);
-  const voy::Device device = voy::Device::create(device_desc);
+  const voy::Device device = voyager::bench::streaming_device(megabytes);
   const double device_made = seconds_since(start);
-  VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
-  streaming.memoryBudget = device_desc.deviceMemoryBudget;
   const Camera first = path.at(0);
-  streaming.startPosition = first.pose.position;
-  VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
-  scene_desc.next = &streaming;
-  scene_desc.path = argv[1];
-  const voy::Scene scene = device.open_scene(scene_desc);
+  voyager::bench::StreamedView streamed(device, argv[1], megabytes, first.pose.position, width,
+                                        height, tau);
   const double opened = seconds_since(start);
-  VoyScene handle = scene.get();
-  VoyViewDesc view_desc = VOY_VIEW_DESC_INIT;
-  view_desc.instanceCount = 1;
-  view_desc.scenes = &handle;
-  view_desc.maxWidth = width;
-  view_desc.maxHeight = height;
-  view_desc.tau = tau;
-  voy::View view = device.create_view(view_desc);
-  std::vector<uint8_t> pixels(size_t{4} * width * height);
-  VoyTargetDesc target_desc = VOY_TARGET_DESC_INIT;
-  target_desc.width = width;
-  target_desc.height = height;
-  target_desc.color = pixels.data();
-  const voy::Target target = device.create_target(target_desc);
 
   const auto frames = static_cast<size_t>(seconds * fps);
   std::vector<double> ms, wall, missing, cut, seen, unseen;
@@ -131,37 +109,28 @@ int main(int argc, char** argv) try {
   for (size_t i = 0; i < settling + frames; ++i) {
     const double metres = i < settling ? 0 : 1.4 * static_cast<double>(i - settling) / fps;
     const Camera camera = path.at(metres);
-    VoyFrameEye eye = VOY_FRAME_EYE_INIT;
-    eye.pose = camera.pose;
-    eye.frustum = camera.frustum();
-    eye.target = target.get();
-    VoyFrame frame = VOY_FRAME_INIT;
-    frame.eyeCount = 1;
-    frame.eyes = &eye;
     const auto begun = Clock::now();
-    view.render(frame);
-    const VoyFrameStats stats = view.stats();
+    streamed.render(camera);
+    const VoyFrameStats stats = streamed.view.stats();
     if (i == 0) first_image = seconds_since(start);
-    VoyStreamingStats streamed = VOY_STREAMING_STATS_INIT;
-    voyGetStreamingStats(handle, &streamed);
-    const bool whole = stats.nodesUnrefined == 0 || streamed.seenMissingChunks == 0;
+    const VoyStreamingStats now = streamed.scene.streaming_stats();
+    const bool whole = stats.nodesUnrefined == 0 || now.seenMissingChunks == 0;
     if (settled == 0 && i > 10 && whole) settled = seconds_since(start);
-    if (i == settling) voyGetStreamingStats(handle, &before);
+    if (i == settling) before = now;
     if (i >= settling) {
       wall.push_back(1e3 * seconds_since(begun));
       ms.push_back(stats.millisecondsTotal);
       missing.push_back(static_cast<double>(stats.nodesUnrefined));
       cut.push_back(static_cast<double>(stats.cutSize));
       coarse += !whole;
-      seen.push_back(static_cast<double>(streamed.seenChunks));
-      unseen.push_back(static_cast<double>(streamed.seenMissingChunks));
+      seen.push_back(static_cast<double>(now.seenChunks));
+      unseen.push_back(static_cast<double>(now.seenMissingChunks));
     }
     next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps));
     std::this_thread::sleep_until(next);
   }
-  VoyStreamingStats after = VOY_STREAMING_STATS_INIT;
-  voyGetStreamingStats(handle, &after);
-  const VoySceneInfo info = scene.info();
+  const VoyStreamingStats after = streamed.scene.streaming_stats();
+  const VoySceneInfo info = streamed.scene.info();
   const double metres = 1.4 * static_cast<double>(frames) / fps;
   std::printf(
       "{\"device\": \"%s\", \"gaussians\": %llu, \"sh_degree\": %u, \"budget_mb\": %g, "

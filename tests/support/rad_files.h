@@ -18,17 +18,7 @@
 namespace voyager::test {
 
 inline Bytes raw_deflate(const Bytes& plain) {
-  z_stream stream = {};
-  deflateInit2(&stream, 6, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
-  Bytes out(deflateBound(&stream, plain.size()) + 64), in = plain;
-  stream.next_in = reinterpret_cast<Bytef*>(in.data());
-  stream.avail_in = static_cast<uInt>(in.size());
-  stream.next_out = reinterpret_cast<Bytef*>(out.data());
-  stream.avail_out = static_cast<uInt>(out.size());
-  deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  return out;
+  return deflated(plain, -MAX_WBITS);
 }
 
 // A property as a chunk's JSON has it, and its plain bytes.

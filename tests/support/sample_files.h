@@ -118,9 +118,10 @@ inline void expect_flips_are_harmless(const Bytes& whole,
     }
 }
 
-inline Bytes gzip(const Bytes& plain) {
+// window_bits: zlib's, which say what stands around the compressed bytes.
+inline Bytes deflated(const Bytes& plain, int window_bits, int level = 6) {
   z_stream stream = {};
-  deflateInit2(&stream, 6, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY);
+  deflateInit2(&stream, level, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY);
   Bytes out(deflateBound(&stream, plain.size()) + 64), in = plain;
   stream.next_in = reinterpret_cast<Bytef*>(in.data());
   stream.avail_in = static_cast<uInt>(in.size());
@@ -130,6 +131,10 @@ inline Bytes gzip(const Bytes& plain) {
   out.resize(stream.total_out);
   deflateEnd(&stream);
   return out;
+}
+
+inline Bytes gzip(const Bytes& plain) {
+  return deflated(plain, 16 + MAX_WBITS);
 }
 
 // Version 1 to 3 without gzip: `count` Gaussians whose codes run through all bytes.

@@ -1,0 +1,72 @@
+#pragma once
+// A streamed scene and a view of it that draws into host memory, through the C ABI.
+#include <vector>
+
+#include "tools/cameras.h"
+#include "voyager/voyager.hpp"
+
+namespace voyager::bench {
+
+// The best device, with a budget for scene data in its memory.
+inline voy::Device streaming_device(double megabytes) {
+  VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
+  desc.deviceMemoryBudget = static_cast<uint64_t>(megabytes * 1e6);
+  return voy::Device::create(desc);
+}
+
+class StreamedView {
+ public:
+  // start: where to read first; none: at the top of the tree.
+  StreamedView(const voy::Device& device, const char* path, double megabytes, const double* start,
+               unsigned width, unsigned height, double tau)
+      : scene(open(device, path, megabytes, start)),
+        view(create(device, width, height, tau)),
+        pixels_(size_t{4} * width * height) {
+    VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
+    desc.width = width;
+    desc.height = height;
+    desc.color = pixels_.data();
+    target_ = device.create_target(desc);
+  }
+
+  void render(const tools::Camera& camera) {
+    VoyFrameEye eye = VOY_FRAME_EYE_INIT;
+    eye.pose = camera.pose;
+    eye.frustum = camera.frustum();
+    eye.target = target_.get();
+    VoyFrame frame = VOY_FRAME_INIT;
+    frame.eyeCount = 1;
+    frame.eyes = &eye;
+    view.render(frame);
+  }
+
+  const voy::Scene scene;
+  voy::View view;
+
+ private:
+  static voy::Scene open(const voy::Device& device, const char* path, double megabytes,
+                         const double* start) {
+    VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
+    streaming.memoryBudget = static_cast<uint64_t>(megabytes * 1e6);
+    streaming.startPosition = start;
+    VoySceneDesc desc = VOY_SCENE_DESC_INIT;
+    desc.next = &streaming;
+    desc.path = path;
+    return device.open_scene(desc);
+  }
+  voy::View create(const voy::Device& device, unsigned width, unsigned height, double tau) const {
+    const VoyScene handle = scene.get();
+    VoyViewDesc desc = VOY_VIEW_DESC_INIT;
+    desc.instanceCount = 1;
+    desc.scenes = &handle;
+    desc.maxWidth = width;
+    desc.maxHeight = height;
+    desc.tau = tau;
+    return device.create_view(desc);
+  }
+
+  std::vector<uint8_t> pixels_;
+  voy::Target target_;
+};
+
+}  // namespace voyager::bench
