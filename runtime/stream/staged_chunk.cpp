@@ -169,6 +169,13 @@ void refuse_gap(uint32_t chunk, const std::string& file) {
   refuse(chunk, 0, file, "more of its children, and not those of the chunk before", "both");
 }
 
+void refuse_records(const StagedChunk& staged, const std::string& file) {
+  throw Error(ErrorCode::damaged_chunk,
+              file + ": chunk " + std::to_string(staged.links.chunk) + ": found " +
+                  std::to_string(staged.records.size()) +
+                  " nodes with children, expected no more than the header and places allow");
+}
+
 StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers,
                         const std::string& file) {
   return Stager(std::move(chunk), index, tiers, file).stage();

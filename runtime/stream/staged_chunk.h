@@ -59,6 +59,10 @@ struct StagedChunk {
   // another chunk may own that.
   std::vector<uint32_t> place, parent;
   SlotIds ids;
+
+  uint32_t record_blocks() const {
+    return voyager::record_blocks(static_cast<uint32_t>(records.size()));
+  }
 };
 
 // tiers: the file's. Throws Error(damaged_chunk) naming `file`, the chunk and the node where
@@ -70,5 +74,7 @@ StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers, const
 [[noreturn]] void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file);
 [[noreturn]] void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file);
 [[noreturn]] void refuse_gap(uint32_t chunk, const std::string& file);
+// Naming file and chunk.
+[[noreturn]] void refuse_records(const StagedChunk& staged, const std::string& file);
 
 }  // namespace voyager
