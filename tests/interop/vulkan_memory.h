@@ -48,6 +48,20 @@ struct ImageDesc {
   bool exported = false;
 };
 
+// Of a texture that is drawn to, with depth where the format has it.
+inline ImageDesc attachment(VkFormat format, uint32_t width, uint32_t height) {
+  ImageDesc desc;
+  desc.format = format;
+  desc.width = width;
+  desc.height = height;
+  const bool is_depth = format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT;
+  if (is_depth) desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+  if (format == VK_FORMAT_D32_SFLOAT_S8_UINT) desc.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
+  desc.usage |=
+      is_depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+  return desc;
+}
+
 // Without memory.
 inline VkImage make_host_image(const VulkanHost& host, const ImageDesc& desc) {
   const VkExternalMemoryImageCreateInfo external{

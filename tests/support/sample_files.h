@@ -102,6 +102,26 @@ inline void expect_refused(const Bytes& bytes, const std::string& field, const s
   EXPECT_EQ(known.rfind("sample.bin", 0), 0u) << known;
 }
 
+// The same of every part of a file from its start, and of the file with one byte more.
+inline void expect_refused_in_part(const Bytes& whole) {
+  for (size_t size = 0; size < whole.size(); ++size)
+    expect_refused(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)), "",
+                   "cut to " + std::to_string(size));
+  Bytes longer = whole;
+  longer.push_back(std::byte{0});
+  expect_refused(longer, "bytes", "one byte more");
+}
+
+// Every number of each Gaussian; -0 is 0.
+inline void expect_same(const GaussianCloud& a, const GaussianCloud& b) {
+  EXPECT_EQ(a.sh_degree, b.sh_degree);
+  EXPECT_EQ(a.position, b.position);
+  EXPECT_EQ(a.log_scale, b.log_scale);
+  EXPECT_EQ(a.rotation, b.rotation);
+  EXPECT_EQ(a.opacity, b.opacity);
+  EXPECT_EQ(a.sh, b.sh);
+}
+
 // Expects of a file with any one byte changed a cloud, or a refusal.
 inline void expect_flips_are_harmless(const Bytes& whole,
                                       const std::function<GaussianCloud(const Bytes&)>& import) {

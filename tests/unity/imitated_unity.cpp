@@ -184,17 +184,9 @@ std::string ImitatedUnity::last_error() const {
 
 std::unique_ptr<UnityTexture> ImitatedUnity::make_texture(VkFormat format, uint32_t width,
                                                           uint32_t height) {
-  ImageDesc desc;
-  desc.format = format;
-  desc.width = width;
-  desc.height = height;
-  const bool is_depth = format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT;
-  if (is_depth) desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-  if (format == VK_FORMAT_D32_SFLOAT_S8_UINT) desc.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
-  desc.usage |=
-      is_depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-  return std::unique_ptr<UnityTexture>(
-      new UnityTexture{{*host_, desc}, VK_SAMPLE_COUNT_1_BIT, VK_IMAGE_LAYOUT_UNDEFINED});
+  return std::unique_ptr<UnityTexture>(new UnityTexture{{*host_, attachment(format, width, height)},
+                                                        VK_SAMPLE_COUNT_1_BIT,
+                                                        VK_IMAGE_LAYOUT_UNDEFINED});
 }
 
 // As AccessTexture does: a barrier against all that came before.

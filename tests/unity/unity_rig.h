@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../headless/scene_bytes.h"
-#include "tests/command_line/program.h"
+#include "tests/command_line/rendered.h"
 #include "tests/support/needs.h"
 #include "tests/support/pictures.h"
 #include "tests/support/test_support.h"
@@ -58,12 +58,7 @@ class UnityPlugin : public ::testing::Test {
 
   // By `voyager render`, in the axes of the scene.
   static Picture reference(const UnityCamera& camera, const std::string& scene = "scene.ply") {
-    write_bytes(file("cameras.json"), camera.cameras_json(kWidth, kHeight));
-    const Outcome result =
-        run("voyager render " + file(scene) + " --cameras " + file("cameras.json") +
-            " --backend cpu -o " + file("out.png") + " --depth " + file("depth.pfm"));
-    EXPECT_EQ(result.exit_code, 0) << result.output;
-    return read_png(file("out.png"));
+    return rendered(*folder_, scene, camera.cameras_json(kWidth, kHeight));
   }
 
   static inline TempFolder* folder_ = nullptr;

@@ -132,16 +132,8 @@ std::string ImitatedUnreal::last_error() const {
 
 std::unique_ptr<FRHITexture> ImitatedUnreal::make_texture(VkFormat format, uint32_t width,
                                                           uint32_t height) const {
-  ImageDesc desc;
-  desc.format = format;
-  desc.width = width;
-  desc.height = height;
-  const bool is_depth = format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT;
-  if (is_depth) desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-  if (format == VK_FORMAT_D32_SFLOAT_S8_UINT) desc.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
-  desc.usage |=
-      is_depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-  return std::unique_ptr<FRHITexture>(new FRHITexture{{*host_, desc}, VK_IMAGE_LAYOUT_UNDEFINED});
+  return std::unique_ptr<FRHITexture>(
+      new FRHITexture{{*host_, attachment(format, width, height)}, VK_IMAGE_LAYOUT_UNDEFINED});
 }
 
 void ImitatedUnreal::use(FRHITexture& texture, VkImageLayout layout) const {

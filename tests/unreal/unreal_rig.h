@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "../headless/scene_bytes.h"
-#include "tests/command_line/program.h"
+#include "tests/command_line/rendered.h"
 #include "tests/support/needs.h"
 #include "tests/support/pictures.h"
 #include "tests/support/test_support.h"
@@ -78,12 +78,7 @@ class UnrealModule : public ::testing::Test {
   }
 
   static Picture reference(const UnrealCamera& camera) {
-    write_bytes(file("cameras.json"), camera.cameras_json(kWidth, kHeight, origin()));
-    const Outcome result =
-        run("voyager render " + file("scene.ply") + " --cameras " + file("cameras.json") +
-            " --backend cpu -o " + file("out.png") + " --depth " + file("depth.pfm"));
-    EXPECT_EQ(result.exit_code, 0) << result.output;
-    return read_png(file("out.png"));
+    return rendered(*folder_, "scene.ply", camera.cameras_json(kWidth, kHeight, origin()));
   }
 
   static inline TempFolder* folder_ = nullptr;

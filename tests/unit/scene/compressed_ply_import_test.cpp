@@ -130,14 +130,6 @@ TEST(CompressedPlyImport, ShBandsAreChannelMajorWithTheirEndsExact) {
   }
 }
 
-void expect_same(const GaussianCloud& a, const GaussianCloud& b) {
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.log_scale, b.log_scale);
-  EXPECT_EQ(a.rotation, b.rotation);
-  EXPECT_EQ(a.opacity, b.opacity);
-  EXPECT_EQ(a.sh, b.sh);
-}
-
 // A pipe has the SH bands after all vertices; a file is read at both places at once.
 TEST(CompressedPlyImport, AFileAPipeAndBlocksAgreeAcrossChunks) {
   for (int degree = 0; degree <= 3; ++degree) {
@@ -145,7 +137,7 @@ TEST(CompressedPlyImport, AFileAPipeAndBlocksAgreeAcrossChunks) {
     const GaussianCloud whole = test::import_bytes(bytes);
     ASSERT_EQ(whole.size(), 600u);
     ASSERT_EQ(whole.sh_degree, degree);
-    expect_same(whole, test::import_piped(bytes));
+    test::expect_same(whole, test::import_piped(bytes));
     for (const size_t most : {1u, 100u, 1000u}) {
       const auto reader = open_blocks(std::make_shared<MemorySource>("sample.bin", bytes));
       GaussianCloud blocks;
@@ -159,7 +151,7 @@ TEST(CompressedPlyImport, AFileAPipeAndBlocksAgreeAcrossChunks) {
         add(blocks.rotation, part.rotation), add(blocks.opacity, part.opacity);
         add(blocks.sh, part.sh);
       }
-      expect_same(whole, blocks);
+      test::expect_same(whole, blocks);
     }
   }
 }
@@ -188,12 +180,7 @@ TEST(CompressedPlyImport, RefusesEveryTruncationAndTrailingBytes) {
   for (const int degree : {0, 1}) {
     const Bytes whole = file_of({.vertices = 3, .sh_degree = degree});
     EXPECT_EQ(test::import_bytes(whole).size(), 3u);
-    for (size_t size = 0; size < whole.size(); ++size)
-      test::expect_refused(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)),
-                           "", "cut to " + std::to_string(size));
-    Bytes longer = whole;
-    longer.push_back(std::byte{0});
-    test::expect_refused(longer, "bytes", "one byte more");
+    test::expect_refused_in_part(whole);
   }
 }
 

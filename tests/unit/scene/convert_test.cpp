@@ -18,13 +18,8 @@ FlatContents convert_bytes(const test::Bytes& bytes, const std::string& path) {
 }
 
 void expect_same_words(const GaussianCloud& a, const GaussianCloud& b) {
-  EXPECT_EQ(a.sh_degree, b.sh_degree);
   EXPECT_EQ(a.origin, b.origin);
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.log_scale, b.log_scale);
-  EXPECT_EQ(a.rotation, b.rotation);
-  EXPECT_EQ(a.opacity, b.opacity);
-  EXPECT_EQ(a.sh, b.sh);
+  test::expect_same(a, b);
 }
 
 // More than one block, so that a wrong order shows.

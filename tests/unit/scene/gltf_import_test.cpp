@@ -39,14 +39,6 @@ void expect_near(const GaussianCloud& found, const GaussianCloud& expected, doub
   near(found.opacity, expected.opacity, 1e-4);
 }
 
-void expect_same(const GaussianCloud& a, const GaussianCloud& b) {
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.log_scale, b.log_scale);
-  EXPECT_EQ(a.rotation, b.rotation);
-  EXPECT_EQ(a.opacity, b.opacity);
-  EXPECT_EQ(a.sh, b.sh);
-}
-
 void write_file(const std::string& path, const Bytes& bytes) {
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()),
@@ -61,11 +53,11 @@ TEST(GltfImport, KeepsTheNumbersOfEverySHDegree) {
     expect_near(read, cloud);
     EXPECT_EQ(read.report.read, 50u);
     EXPECT_EQ(read.report.repaired() + read.report.dropped(), 0u);
-    expect_same(test::import_source(file.gltf()), read);
+    test::expect_same(test::import_source(file.gltf()), read);
     Bytes spaced = test::bytes_of(" \n\t");
     const Bytes text = file.gltf();
     spaced.insert(spaced.end(), text.begin(), text.end());
-    expect_same(test::import_source(spaced), read);
+    test::expect_same(test::import_source(spaced), read);
   }
 }
 
@@ -75,7 +67,7 @@ TEST(GltfImport, ReadsBuffersBeside) {
   std::filesystem::create_directory(folder.file("sub"));
   write_file(folder.file("sub/a b.bin"), file.binary);
   write_file(folder.file("scene.gltf"), file.gltf("sub/a%20b.bin"));
-  expect_same(test::import_file(folder.file("scene.gltf")), test::import_source(file.glb()));
+  test::expect_same(test::import_file(folder.file("scene.gltf")), test::import_source(file.glb()));
 }
 
 TEST(GltfImport, ReadsNoFileElsewhere) {
@@ -293,7 +285,7 @@ TEST(GltfImport, NumbersOfASpzInsideAreInGltfsAxes) {
   const GaussianCloud cloud = test::random_cloud(70, 1, 3);
   const GaussianCloud alone = test::import_bytes(test::spz_v4(cloud));
   for (const char* name : {"KHR_gaussian_splatting_compression_spz", kSpz2})
-    expect_same(test::import_source(spz_file(cloud, name).glb()), turned(alone, kHalfTurnY));
+    test::expect_same(test::import_source(spz_file(cloud, name).glb()), turned(alone, kHalfTurnY));
   GltfFile wrong = spz_file(cloud);
   wrong.json["accessors"][0]["count"] = 71;
   const std::string message = test::refusal_of([&] { test::import_source(wrong.glb()); });
@@ -324,22 +316,22 @@ TEST(GltfImport, BoundsTellTheAxesOfASpzInside) {
     return test::import_source(file.glb());
   };
   for (const float off : {0.0f, 0.0004f}) {  // before the numbers were rounded
-    expect_same(with_bounds(kNoTurn, off), turned(alone, kHalfTurnY));
-    expect_same(with_bounds(kHalfTurnY, off), alone);
-    expect_same(with_bounds(kHalfTurnZ, off), turned(alone, kHalfTurnX));
+    test::expect_same(with_bounds(kNoTurn, off), turned(alone, kHalfTurnY));
+    test::expect_same(with_bounds(kHalfTurnY, off), alone);
+    test::expect_same(with_bounds(kHalfTurnZ, off), turned(alone, kHalfTurnX));
   }
   // Bounds that are no turn's.
-  expect_same(with_bounds(kHalfTurnX, 0), turned(alone, kHalfTurnY));
-  expect_same(with_bounds(kHalfTurnY, 1), turned(alone, kHalfTurnY));
+  test::expect_same(with_bounds(kHalfTurnX, 0), turned(alone, kHalfTurnY));
+  test::expect_same(with_bounds(kHalfTurnY, 1), turned(alone, kHalfTurnY));
 }
 
 TEST(GltfImport, ASpzInsideThatSaysItsAxesIsBelieved) {
   Bytes planar = test::planar_spz(3, 4, 1, 2), named = planar;
   for (const uint32_t word : {0xadbe0003u, 4u, 4u}) test::put(named, word);  // right, up, back
-  expect_same(test::import_source(spz_file(test::gzip(named), 4, kSpz2).glb()),
-              test::import_bytes(named));
-  expect_same(test::import_source(spz_file(test::gzip(planar), 4, kSpz2).glb()),
-              turned(test::import_bytes(planar), kHalfTurnY));
+  test::expect_same(test::import_source(spz_file(test::gzip(named), 4, kSpz2).glb()),
+                    test::import_bytes(named));
+  test::expect_same(test::import_source(spz_file(test::gzip(planar), 4, kSpz2).glb()),
+                    turned(test::import_bytes(planar), kHalfTurnY));
 }
 
 // 5,000 primitives of one SPZ of 60,000 Gaussians, a file of 400 kB: it is decompressed once, and

@@ -73,11 +73,7 @@ TEST(Importer, ReadsAPipeAsItReadsAFile) {
                              test::gzip(test::planar_spz(3, 5000, 2))}) {
     const GaussianCloud file = test::import_bytes(bytes), pipe = test::import_piped(bytes);
     EXPECT_GT(file.size(), 0u);
-    EXPECT_EQ(file.position, pipe.position);
-    EXPECT_EQ(file.log_scale, pipe.log_scale);
-    EXPECT_EQ(file.rotation, pipe.rotation);
-    EXPECT_EQ(file.opacity, pipe.opacity);
-    EXPECT_EQ(file.sh, pipe.sh);
+    test::expect_same(file, pipe);
   }
 }
 

@@ -246,12 +246,7 @@ TEST(PlyImport, RefusesMalformedHeaders) {
 
 TEST(PlyImport, RefusesEveryTruncationAndTrailingBytes) {
   const Bytes whole = test::ply_of(test::random_cloud(3, 11, 1));
-  for (size_t size = 0; size < whole.size(); ++size)
-    test::expect_refused(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)),
-                         "", "cut to " + std::to_string(size));
-  Bytes longer = whole;
-  longer.push_back(std::byte{0});
-  test::expect_refused(longer, "bytes", "one byte more");
+  test::expect_refused_in_part(whole);
 }
 
 TEST(PlyImport, NoFlippedByteCrashes) {

@@ -26,15 +26,6 @@ void expect_refused(const SogFiles& files, const std::string& part) {
     EXPECT_NE(message.find(expected), std::string::npos) << expected << " in: " << message;
 }
 
-void expect_same(const GaussianCloud& a, const GaussianCloud& b) {
-  EXPECT_EQ(a.sh_degree, b.sh_degree);
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.log_scale, b.log_scale);
-  EXPECT_EQ(a.rotation, b.rotation);
-  EXPECT_EQ(a.opacity, b.opacity);
-  EXPECT_EQ(a.sh, b.sh);
-}
-
 TEST(SogImport, DecodesPositionsFromTwoImages) {
   const GaussianCloud cloud = test::import_sog(test::zip(test::sog_files(8, 0)));
   ASSERT_EQ(cloud.size(), 8u);
@@ -139,7 +130,7 @@ TEST(SogImport, AZipAFolderAndBlocksAgree) {
   ASSERT_EQ(whole.size(), 40u);
   const test::TempFolder folder;
   test::write_files(folder.file(""), files);
-  expect_same(whole, test::import_file(folder.file("meta.json")));
+  test::expect_same(whole, test::import_file(folder.file("meta.json")));
   const auto reader = open_blocks(std::make_shared<MemorySource>("sample.sog", zip));
   EXPECT_EQ(reader->count(), 40u);
   for (size_t i = 0; i < 40; i += 8) {

@@ -45,22 +45,14 @@ class Tileset : public ::testing::Test {
   const GaussianCloud one = test::random_cloud(20, 1, 2), two = test::random_cloud(30, 2, 1);
 };
 
-void expect_same(const GaussianCloud& a, const GaussianCloud& b) {
-  EXPECT_EQ(a.position, b.position);
-  EXPECT_EQ(a.log_scale, b.log_scale);
-  EXPECT_EQ(a.rotation, b.rotation);
-  EXPECT_EQ(a.opacity, b.opacity);
-  EXPECT_EQ(a.sh, b.sh);
-}
-
 TEST_F(Tileset, ATileThatIsNotMovedIsItsFile) {
   const Bytes glb = test::gltf_of(one, {{"translation", {1, 2, 3}}}).glb();
   write("a.glb", glb);
-  expect_same(read(leaf("a.glb")), test::import_source(glb));
+  test::expect_same(read(leaf("a.glb")), test::import_source(glb));
   // Also with the file inside.
-  expect_same(test::import_source(test::bytes_of(
-                  tiles(leaf("data:model/gltf-binary;base64," + test::base64(glb))).dump())),
-              test::import_source(glb));
+  test::expect_same(test::import_source(test::bytes_of(
+                        tiles(leaf("data:model/gltf-binary;base64," + test::base64(glb))).dump())),
+                    test::import_source(glb));
 }
 
 TEST_F(Tileset, LeavesAloneAreReadUnlessChildrenAdd) {
