@@ -16,6 +16,11 @@ std::string cause_of(const std::string& message) {
   return cause;
 }
 
+// What a disk, a server or a host may mend.
+bool may_pass(ErrorCode code) {
+  return code == ErrorCode::io_transient || code == ErrorCode::timeout;
+}
+
 }  // namespace
 
 void Failures::add(uint32_t chunk, const Error& error, double now) {
@@ -24,8 +29,8 @@ void Failures::add(uint32_t chunk, const Error& error, double now) {
   failed.code = error.code();
   failed.message = error.what();
   ++failed.times;
-  failed.again = error.code() == ErrorCode::io_transient ||
-                 (error.code() == ErrorCode::damaged_chunk && failed.times == 1);
+  failed.again =
+      may_pass(error.code()) || (error.code() == ErrorCode::damaged_chunk && failed.times == 1);
   failed.last = now;
   failed.due = failed.again ? now + wait_after(failed.times) : -1;
   tell(failed.message);

@@ -9,9 +9,10 @@
 
 namespace voyager {
 
-// A read that failed for what may pass is tried again, later each time: a disk or a server may
-// come back. So is a chunk that was damaged, once: it may have been on its way only. What a file
-// says of itself stays wrong, and what is gone stays gone.
+// What failed for what may pass is tried again, later each time: a disk or a server may come back,
+// and a host may let the frames end that a slot waits for. So is a chunk that was damaged, once: it
+// may have been on its way only. What a file says of itself stays wrong, and what is gone stays
+// gone.
 //
 // The source as a whole is left alone for a while where a read failed, longer each time until one
 // succeeds: whatever it is that fails, asking for each of a thousand chunks makes it no better.

@@ -46,7 +46,10 @@ FrameInput ahead(const Vec3d& eye, const Vec3d& way, double tau = 3) {
 // Holds nothing; fails while `fails`, or once.
 class FailingPool final : public ChunkPool {
  public:
-  void fill(uint32_t, const StagedChunk&) override {}
+  void fill(uint32_t, const StagedChunk&) override {
+    if (late_once.exchange(false))
+      throw Error(ErrorCode::timeout, "view: found a frame in flight that did not end");
+  }
   void apply(const LinkPatch&) override {
     if (fails || fails_once.exchange(false))
       throw Error(ErrorCode::device_lost, "pool: found no device");
@@ -54,7 +57,7 @@ class FailingPool final : public ChunkPool {
   void resize(PoolRoom) override {
     if (refuses_once.exchange(false)) throw Error(ErrorCode::over_budget, "pool: found no memory");
   }
-  std::atomic<bool> fails{false}, fails_once{false}, refuses_once{false};
+  std::atomic<bool> fails{false}, fails_once{false}, late_once{false}, refuses_once{false};
 };
 
 // A scene on a disk, and a view of it that draws a frame each 1/60 s.
@@ -374,6 +377,8 @@ TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
     }
     return stream.counters().resident;
   };
+  pool.late_once = true;
+  EXPECT_EQ(stand(), chunks) << "what a frame in flight kept from its slot never came";
   pool.fails_once = true;
   EXPECT_EQ(stand(), chunks);
   EXPECT_TRUE(stream.hold().owns_lock());
