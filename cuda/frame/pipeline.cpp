@@ -12,6 +12,7 @@
 #include "cuda/interop/external_ring.h"
 #include "cuda/splat/occlusion.h"
 #include "cuda/splat/splat_state.h"
+#include "cuda/stream/device_pool.h"
 #include "runtime/base/error.h"
 #include "runtime/frame/choice_omission.h"
 #include "runtime/frame/instance.h"
@@ -76,8 +77,8 @@ class SplatPipeline final : public Pipeline {
 
   using Eyes = std::array<RasterEye, kMaxEyes>;
 
-  // awaited: the host will wait for the frame, and so for those before it.
-  Report begin_frame(const FrameInput& frame, bool awaited);
+  void wait_for_frames();
+  Report begin_frame(const FrameInput& frame);
   void fit(const FrameInput& frame, const FrameTiles& tiles);
   // SceneReading: that of the frame, which has not ended.
   void launch_search(const SceneReading&, const FrameInput& frame, FrameReport& report);
@@ -214,14 +215,24 @@ void SplatPipeline::launch_second_pass(const SceneReading& reading, const FrameI
   launch_rasterize(rest, choices, eyes.data());
 }
 
-SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, bool awaited) {
+// Before a frame that the host will wait for: frames under way may wait for the host, those of
+// other views too, behind which a pool's chunks were linked.
+void SplatPipeline::wait_for_frames() {
+  device_->use();
+  wait_for_host(stream_);
+  for (const DeviceInstance& instance : instances_.all())
+    if (instance.scene->streamed()) pool_of(*instance.scene, *device_).await_links();
+}
+
+SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
   for (const FrameEye& eye : frame.eyes)
     if (desc_.count_pixels && (eye.limits.values != nullptr || eye.image.external.limited))
       throw Error(ErrorCode::unsupported,
                   "depth limits: found some, pixels are counted of frames without");
   device_->use();
-  if (awaited) wait_for_host(stream_);
   make_room();
+  const FrameTiles tiles = frame_tiles(frame);
+  fit(frame, tiles);  // while nothing is taken that would be freed beside a frame under way
   Report report;
   if (free_.empty()) {
     report = std::make_unique<FrameReport>(stream_, instances_);
@@ -229,12 +240,11 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame, bool a
     report = std::move(free_.back());
     free_.pop_back();
   }
-  report->tiles = frame_tiles(frame);
+  report->tiles = tiles;
   report->target_bytes = 0;
   for (const FrameEye& eye : frame.eyes)
     report->target_bytes +=
         uint64_t{eye.image.width} * eye.image.height * pixel_bytes(eye.image.format);
-  fit(frame, report->tiles);
   occlusion_.begin(occlusion_choice_.next(), frame, report->tiles,
                    splats_.view(report->tiles, 0).ends, stream_.get());
   report->limited = occlusion_.limited();
@@ -274,7 +284,8 @@ void SplatPipeline::make_room() {
 }
 
 void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
-  Report report = begin_frame(frame, true);
+  wait_for_frames();
+  Report report = begin_frame(frame);
   Eyes eyes{};
   for (uint32_t eye = 0; eye < desc_.eyes; ++eye)
     eyes[eye].target = images_[eye].target(frame.eyes[eye], frame.background);
@@ -327,7 +338,8 @@ SplatPipeline::Eyes SplatPipeline::external_eyes(const FrameInput& frame) {
 }
 
 void SplatPipeline::submit(const FrameInput& frame, bool checked) {
-  under_way_.push_back(begin_frame(frame, checked));
+  if (checked) wait_for_frames();
+  under_way_.push_back(begin_frame(frame));
   const cudaStream_t stream = stream_.get();
   const auto wait = [&](const ExternalTarget& target) { wait_released(target, stream); };
   FrameReport& report = *under_way_.back();

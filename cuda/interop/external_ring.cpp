@@ -228,6 +228,9 @@ void wait_for_host(const Event& event) {
 }
 
 void wait_for_host(const Stream& stream) {
+  const cudaError_t status = cudaStreamQuery(stream.get());
+  if (status == cudaSuccess) return;
+  if (status != cudaErrorNotReady) check(status, "a frame");
   const Event done(kWaitedFor);
   done.record(stream.get());
   wait_for_host(done);

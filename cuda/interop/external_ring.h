@@ -12,7 +12,8 @@ std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
                                           ExternalRingDesc desc);
 
 // Until what the stream has so far is done, or the event has passed. Frames under way may wait for
-// the host: throws Error(timeout) after kHostPatience. Takes up to 0.2 ms longer than wait().
+// the host: throws Error(timeout) after kHostPatience. Takes up to
+// 0.3 ms longer than wait().
 void wait_for_host(const Event& event);
 void wait_for_host(const Stream& stream);
 

@@ -93,6 +93,10 @@ void DevicePool::await_frames() {
   wait_for_host(stream_);
 }
 
+void DevicePool::await_links() const {
+  wait_for_host(applied_);
+}
+
 void DevicePool::resize(PoolRoom room) {
   device_->use();
   put_behind_frames();

@@ -37,6 +37,8 @@ class DevicePool final : public ChunkPool {
   void fill(uint32_t slot, const StagedChunk& chunk) override;
   void apply(const LinkPatch& patch) override;
   void await_frames() override;
+  // Until the last links are the device's. Throws Error(timeout) as await_frames() does.
+  void await_links() const;
   // Waits for the device.
   void resize(PoolRoom room) override;
 

@@ -154,7 +154,8 @@ class Pipeline {
   }
   // Adds what is known of the oldest frame under way. False, and untouched stats, where
   // there is none or, without `wait`, it has not ended. A frame may wait for the host: so `wait`
-  // ends after kHostPatience, with Error(timeout), as does every other wait for frames under way.
+  // ends after kHostPatience, with Error(timeout), as do draw(), submit() and set_scenes() where
+  // they have to wait for frames under way.
   virtual bool finish(bool, FrameStats&) { return false; }
   // The instances from now on; no frame is under way. from: of each the one so far whose state it
   // takes over (match_instances.h). The state of the others is freed. Where it throws, nothing has

@@ -15,6 +15,9 @@
 namespace voyager {
 namespace {
 
+// More would fill a device's queue of launches, where a call waits without end.
+constexpr size_t kMostFramesUnderWay = 16;
+
 [[noreturn]] void refuse_eye(size_t eye, size_t instance, int axis, double found) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", found);
@@ -159,6 +162,7 @@ void View::draw(const FrameInput& frame, bool follows) {
 // A frame whose changes are not counted has its cut read, once its search has ended.
 void View::submit(const FrameInput& frame, bool follows) {
   while (finish_one(false)) continue;
+  if (under_way_.size() >= kMostFramesUnderWay) finish_one(true);
   const bool counted = follows && pipeline_->counts_changes();
   under_way_.push_back({known_stats(frame), !counted});
   UnderWay& now = under_way_.back();

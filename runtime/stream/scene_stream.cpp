@@ -164,7 +164,7 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
 
 void SceneStream::resize(PoolRoom room, uint32_t pinned, Workers& workers) {
   const auto pool = hold_alone();
-  pool_.await_frames();
+  pool_.await_frames();  // before `mutex_`, which others want
   Lock lock(mutex_);
   filled_.wait(lock, [&] { return filling_ == 0; });
   const PoolRoom room_before = residency_.room();
@@ -184,6 +184,7 @@ void SceneStream::resize(PoolRoom room, uint32_t pinned, Workers& workers) {
 
 // All anew, with what is pinned in it. Where it throws, the pool is as it was, or unsound.
 void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
+  pool_.await_frames();
   Residency residency(graph_, file_->chunks(), records_, room, std::min(pinned, desc_.pinned));
   Linker linker(graph_, shape_);
   unsound_ = std::make_exception_ptr(Error(

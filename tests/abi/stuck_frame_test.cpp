@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "mock_vulkan_host.h"
 #include "stuck_folder.h"
@@ -50,17 +51,23 @@ struct StuckFrame : testing::Test {
     desc.width = Host::kWidth;
     desc.height = Host::kHeight;
     ASSERT_EQ(voy.CreateTarget(host->device, &desc, &target), VOY_SUCCESS) << voy.message();
+    ASSERT_EQ(submit(), VOY_SUCCESS) << voy.message();
+  }
+  // Releases the image and draws into it.
+  VoyResult submit() {
     VoyVulkanUse use = VOY_VULKAN_USE_INIT;
     use.commandBuffer = VulkanMock::commands_at(0);
     const auto release = voy.find<decltype(&::voyRecordVulkanRelease)>("voyRecordVulkanRelease");
-    ASSERT_EQ(release(target, &use), VOY_SUCCESS) << voy.message();
+    if (!std::exchange(released, true)) {  // for good: it is never acquired
+      EXPECT_EQ(release(target, &use), VOY_SUCCESS) << voy.message();
+    }
     VoyVulkanFrame sync = VOY_VULKAN_FRAME_INIT;
     sync.waitValue = sync.signalValue = 1;
     VoyFrameEye eye = host->eye();
     eye.target = target;
     VoyFrame frame = Host::frame(eye);
     frame.next = &sync;
-    ASSERT_EQ(voy.RenderFrame(host->view, &frame), VOY_SUCCESS) << voy.message();
+    return voy.RenderFrame(host->view, &frame);
   }
   // The device takes part in nothing more, and goes with what is left on it.
   void expect_abandoned() {
@@ -91,6 +98,7 @@ struct StuckFrame : testing::Test {
   std::optional<Host> host;
   StuckModule* module = nullptr;
   VoyTarget target = nullptr;
+  bool released = false;
   const std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
@@ -143,6 +151,18 @@ TEST_F(StuckFrame, CallsThatWaitForItTimeOut) {
   }
   module->idle = true;
   for (const auto& call : calls) EXPECT_EQ(call(), VOY_SUCCESS) << voy.message();
+}
+
+// A host that releases images without the signal: frames do not pile up without end.
+TEST_F(StuckFrame, FramesInFlightAreCounted) {
+  module->idle = false;
+  VoyResult result = VOY_SUCCESS;
+  int frames = 1;  // the fixture's
+  for (; result == VOY_SUCCESS && frames < 100; ++frames) result = submit();
+  EXPECT_EQ(result, VOY_ERROR_TIMEOUT) << voy.message();
+  EXPECT_EQ(frames, 17);
+  module->idle = true;
+  EXPECT_EQ(submit(), VOY_SUCCESS) << voy.message();
 }
 
 TEST_F(StuckFrame, ADeviceMayGoWithAll) {

@@ -6,6 +6,7 @@
 
 #include "tests/command_line/program.h"
 #include "tests/godot/imitated_godot.h"
+#include "tests/support/count_arguments.h"
 
 namespace voyager::test {
 namespace godot_scripts_test {
@@ -22,19 +23,6 @@ std::set<std::string> all_of(const std::string& text, const std::string& pattern
   for (std::sregex_iterator at(text.begin(), text.end(), wanted), end; at != end; ++at)
     found.insert((*at)[1]);
   return found;
-}
-
-// Arguments of a call, whose parenthesis has been opened before `at`.
-size_t count_arguments(const std::string& text, size_t at) {
-  size_t commas = 0, depth = 1;
-  bool any = false;
-  for (; at < text.size() && depth > 0; ++at) {
-    depth += text[at] == '(' || text[at] == '[';
-    depth -= text[at] == ')' || text[at] == ']';
-    commas += depth == 1 && text[at] == ',';
-    any = any || (depth > 0 && text[at] != ' ');
-  }
-  return any ? commas + 1 : 0;
 }
 
 TEST(GodotScripts, CallWhatTheExtensionRegisters) {

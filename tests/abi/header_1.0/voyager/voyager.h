@@ -24,9 +24,10 @@
  * success with a remark. A negative value is an error, and voyGetLastErrorMessage explains it.
  * After an error the outputs are unchanged unless the function says otherwise. No call aborts the
  * process or throws an exception. The error lists at the functions leave out INVALID_ARGUMENT,
- * INVALID_STRUCTURE and INVALID_HANDLE where these need no explanation. They also leave out
- * DEVICE_LOST, which any call on a device and its objects may return once a GPU stopped working or
- * a frame never finished. Calls that close or destroy an object still work then.
+ * INVALID_STRUCTURE and INVALID_HANDLE where these need no explanation. They also leave out BUSY
+ * and SCENE_CLOSED of calls on a view or target, and DEVICE_LOST, which any call on a device and
+ * its objects may return once a GPU stopped working or a frame never finished. Calls that close or
+ * destroy an object still work then.
  *
  * HANDLES. A handle is a number, not an address. A NULL handle, a handle of a destroyed object and
  * a handle of another kind are VOY_ERROR_INVALID_HANDLE. Destroying a parent destroys its children
@@ -39,8 +40,9 @@
  *
  * THREAD-SAFETY. Any function may be called from any thread. Calls on different objects run
  * concurrently. A view or a target works for one call at a time: a second call from another thread
- * returns VOY_ERROR_BUSY and changes nothing. Destroying an object waits for the calls in progress
- * that use it. A callback must therefore not destroy an object of its own device.
+ * returns VOY_ERROR_BUSY and changes nothing, unless the function says otherwise. Destroying an
+ * object waits for the calls in progress that use it. A callback must therefore not destroy an
+ * object of its own device.
  *
  * Where a comment writes METHOD and a section number, it means docs/method.md, which derives the
  * formula. */
@@ -67,18 +69,18 @@
 #else
 #define VOY_API
 #endif
-#define VOY_CALL
+#define VOY_CALL /* nothing: the convention is the compiler's own here */
 #endif
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* A version is packed as major << 22 | minor << 12 | patch. VOY_API_VERSION is the version of this
- * header. A library accepts hosts that were built against the same major version and its own minor
- * version or an older one. The patch version never matters. */
+/* A version is packed as major << 22 | minor << 12 | patch. */
 #define VOY_MAKE_VERSION(major, minor, patch) \
   ((UINT32_C(0x400000) * (major)) | (UINT32_C(0x1000) * (minor)) | (UINT32_C(1) * (patch)))
+/* The version of this header. A library accepts hosts that were built against the same major
+ * version and its own minor version or an older one. The patch version never matters. */
 #define VOY_API_VERSION VOY_MAKE_VERSION(1, 0, 0)
 
 /* The numbers never change. docs/abi.md says what a host can do about each error. */
@@ -99,12 +101,15 @@ typedef enum VoyResult {
   VOY_ERROR_NO_DEVICE = -12,     /* the backend finds no device that it can use */
   VOY_ERROR_BUSY = -13,          /* another thread uses the view or target */
   VOY_ERROR_SCENE_CLOSED = -14,  /* a scene of the view was closed; give it other instances */
-  VOY_ERROR_INTERNAL = -15,      /* a bug in the library; please report the message */
+  VOY_ERROR_INTERNAL = -15,      /* a bug, or a driver's call that failed: the message says which */
   VOY_ERROR_DEVICE_LOST = -16,   /* a GPU stopped working; destroy the VoyDevice */
   VOY_ERROR_TIMEOUT = -17,       /* the host did not signal what the frame waits for */
   VOY_RESULT_MAX_ENUM = 0x7fffffff
 } VoyResult;
 
+/* The value that the field `type` of a structure has: VOY_STRUCTURE_TYPE_FRAME in a VoyFrame.
+ * Structures with VULKAN in the name are in voyager_vulkan.h, those with EXPERIMENT in
+ * voyager_experiment.h. */
 typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_DEVICE_DESC = 1,
   VOY_STRUCTURE_TYPE_CAPABILITIES = 2,
@@ -120,7 +125,6 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_FRAME_EYE = 12,
   VOY_STRUCTURE_TYPE_INSTANCE_POSE = 13,
   VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT = 14,
-  /* voyager_vulkan.h */
   VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE = 15,
   VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS = 16,
   VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC = 17,
@@ -143,18 +147,24 @@ typedef enum VoyStructureType {
   VOY_STRUCTURE_TYPE_OMISSION = 34,
   VOY_STRUCTURE_TYPE_DEVICE_INFO = 35,
   VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION = 36,
-  /* voyager_experiment.h */
   VOY_STRUCTURE_TYPE_EXPERIMENT = 37,
   VOY_STRUCTURE_TYPE_EXPERIMENT_CAPABILITIES = 38,
   VOY_STRUCTURE_TYPE_EXPERIMENT_STATS = 39,
-  /* this header */
   VOY_STRUCTURE_TYPE_INSTANCE = 40,
   VOY_STRUCTURE_TYPE_MAX_ENUM = 0x7fffffff
 } VoyStructureType;
 
+/* What draws: a backend on a GPU or on the CPU, with its memory budgets and threads. Everything
+ * else is created from one. voyCreateDevice makes it, voyDestroyDevice ends it. */
 typedef struct VoyDevice_T* VoyDevice;
+/* An open scene file, which any number of views of its device may draw. voyOpenScene makes it,
+ * voyCloseScene ends it. */
 typedef struct VoyScene_T* VoyScene;
+/* What draws instances of scenes frame after frame, and keeps what one frame can use of the last.
+ * voyCreateView makes it, voyDestroyView ends it. */
 typedef struct VoyView_T* VoyView;
+/* An image, or a ring of Vulkan images, that frames are drawn into. voyCreateTarget makes it,
+ * voyDestroyTarget ends it. */
 typedef struct VoyTarget_T* VoyTarget;
 
 /* ------------------------------------------------------------------ library */
@@ -172,6 +182,7 @@ VOY_API const char* VOY_CALL voyGetLastErrorMessage(void);
 
 /* ------------------------------------------------------------------- device */
 
+/* What computes the frames of a device. */
 typedef enum VoyBackend {
   VOY_BACKEND_AUTO = 0, /* CUDA where it can be had, else the CPU; the log says why (WARNING) */
   VOY_BACKEND_CPU = 1,
@@ -180,10 +191,11 @@ typedef enum VoyBackend {
   VOY_BACKEND_MAX_ENUM = 0x7fffffff
 } VoyBackend;
 
+/* How serious a log message is. A lower number is more serious. */
 typedef enum VoyLogLevel {
-  VOY_LOG_LEVEL_ERROR = 0,
-  VOY_LOG_LEVEL_WARNING = 1,
-  VOY_LOG_LEVEL_INFO = 2,
+  VOY_LOG_LEVEL_ERROR = 0,   /* a call failed; the message is that of voyGetLastErrorMessage */
+  VOY_LOG_LEVEL_WARNING = 1, /* it goes on, but not as asked: AUTO without CUDA, damaged data */
+  VOY_LOG_LEVEL_INFO = 2,    /* which device was chosen, which scene was opened */
   VOY_LOG_LEVEL_MAX_ENUM = 0x7fffffff
 } VoyLogLevel;
 
@@ -200,7 +212,7 @@ typedef void(VOY_CALL* VoyLogFunction)(void* user, VoyLogLevel level, const char
 typedef struct VoyAllocator {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_ALLOCATOR */
   const void* next;
-  void* user;
+  void* user; /* passed to both functions as it is; may be NULL */
   /* Returns `size` bytes aligned to `alignment`, a power of two. On NULL the call in progress
    * returns VOY_ERROR_OUT_OF_HOST_MEMORY. */
   void*(VOY_CALL* allocate)(void* user, size_t size, size_t alignment);
@@ -216,7 +228,7 @@ typedef struct VoyDeviceDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_DEVICE_DESC */
   const void* next;      /* NULL or a VoyVulkanDeviceDesc (voyager_vulkan.h) */
   uint32_t apiVersion;   /* VOY_API_VERSION, as the host was built */
-  VoyBackend backend;
+  VoyBackend backend;    /* AUTO, or one that voyQueryBackend finds here */
   /* NULL for any device, or 16 bytes as in VkPhysicalDeviceIDProperties.deviceUUID. Sixteen zeros
    * are the CPU. AUTO takes the CUDA device with this UUID, or the CPU if there is none, as with a
    * GPU of another vendor. The other backends return VOY_ERROR_NO_DEVICE if the UUID is not
@@ -227,10 +239,10 @@ typedef struct VoyDeviceDesc {
   /* Bytes of CUDA device memory that streamed scenes may take. 0: no limit. Scenes that are loaded
    * whole are copied to the device without counting here. Other backends ignore it. */
   uint64_t deviceMemoryBudget;
-  uint32_t workerThreadCount; /* 1 to 1024, capped at the number of processors; 0: one each */
-  VoyLogLevel logLevel;       /* the most verbose level to log */
-  VoyLogFunction log;         /* or NULL */
-  void* logUser;
+  uint32_t workerThreadCount;    /* 1 to 1024, capped at the number of processors; 0: one each */
+  VoyLogLevel logLevel;          /* the most verbose level to log */
+  VoyLogFunction log;            /* or NULL */
+  void* logUser;                 /* the `user` of each call of `log`; may be NULL */
   const VoyAllocator* allocator; /* NULL: the C++ heap. The struct is copied */
 } VoyDeviceDesc;
 #define VOY_DEVICE_DESC_INIT                                                                \
@@ -295,14 +307,15 @@ typedef struct VoyCapabilities {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_CAPABILITIES */
   void* next;         /* NULL or a chain of VoyVulkanCapabilities and VoyExperimentCapabilities */
   VoyBackend backend; /* CPU, CUDA or REFERENCE: with AUTO, the choice made */
-  uint32_t workerThreadCount;
-  char deviceName[256];         /* UTF-8, terminated */
-  uint8_t deviceUuid[16];       /* zero for a CPU */
-  uint32_t maxInstances;        /* in a view; 64 in this version */
-  uint32_t maxEyes;             /* in a view; 2 in this version */
-  uint32_t maxWidth, maxHeight; /* of a target, pixels */
-  uint32_t targetKinds;         /* bit mask of VoyTargetKind */
-  uint32_t colorFormats;        /* bit mask of VoyColorFormat */
+  uint32_t workerThreadCount; /* that draw on the host: VoyDeviceDesc's, after the cap */
+  char deviceName[256];       /* UTF-8, terminated */
+  uint8_t deviceUuid[16];     /* zero for a CPU */
+  uint32_t maxInstances;      /* in a view; 64 in this version */
+  uint32_t maxEyes;           /* in a view; 2 in this version */
+  uint32_t maxWidth,          /* of a target and of a view, pixels; 16384 in this version */
+      maxHeight;              /* as maxWidth */
+  uint32_t targetKinds;       /* bit mask of VoyTargetKind */
+  uint32_t colorFormats;      /* bit mask of VoyColorFormat */
 } VoyCapabilities;
 #define VOY_CAPABILITIES_INIT \
   { VOY_STRUCTURE_TYPE_CAPABILITIES, NULL, VOY_BACKEND_AUTO, 0, {0}, {0}, 0, 0, 0, 0, 0, 0 }
@@ -318,7 +331,7 @@ typedef struct VoyByteSource {
   const void* next;
   const char* name; /* how messages call the file; UTF-8, copied; may be NULL */
   uint64_t size;    /* of the file, bytes */
-  void* user;
+  void* user;       /* passed to `read` as it is; may be NULL */
   /* Copies `size` bytes from `offset` to `into`; the range always lies within the file. Returns
    * VOY_SUCCESS or an error. After an error the same read may be tried again, except after
    * VOY_ERROR_FILE_NOT_FOUND and VOY_ERROR_REFUSED_INPUT. The call in progress reports any error
@@ -381,7 +394,7 @@ VOY_API VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* de
 /* Changes VoySceneStreaming.memoryBudget, in bytes. Everything but the top of the tree is dropped
  * and read again as frames need it. The call waits for frames that draw the scene.
  * Errors: UNSUPPORTED (a scene that is not streamed), OVER_BUDGET (as voyOpenScene; nothing has
- * changed). */
+ * changed), TIMEOUT (as voyRenderFrame; nothing has changed). */
 VOY_API VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes);
 
 /* Waits for frames that draw the scene, closes it and frees its memory. Closing NULL succeeds and
@@ -390,10 +403,11 @@ VOY_API VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t byte
  * voyDestroyView succeeds before that. */
 VOY_API VoyResult VOY_CALL voyCloseScene(VoyScene scene);
 
+/* How a scene's file keeps its Gaussians (docs/voy-format.md). */
 typedef enum VoySceneStorage {
-  VOY_SCENE_STORAGE_FLAT = 0, /* no tree */
-  VOY_SCENE_STORAGE_LOSSLESS = 1,
-  VOY_SCENE_STORAGE_COMPACT = 2,
+  VOY_SCENE_STORAGE_FLAT = 0,     /* not a .voy file: no tree, every Gaussian is drawn */
+  VOY_SCENE_STORAGE_LOSSLESS = 1, /* a .voy file with every number as it was baked */
+  VOY_SCENE_STORAGE_COMPACT = 2,  /* a .voy file with quantised numbers, a quarter as large */
   VOY_SCENE_STORAGE_MAX_ENUM = 0x7fffffff
 } VoySceneStorage;
 
@@ -409,31 +423,31 @@ typedef enum VoyNativePixelSource {
 
 /* The facts of a scene: its size, its bounds, and what happened to it at import. */
 typedef struct VoySceneInfo {
-  VoyStructureType type;  /* VOY_STRUCTURE_TYPE_SCENE_INFO */
-  void* next;             /* NULL or a VoySceneProfile */
-  uint64_t gaussianCount; /* of the input; in a tree, its leaves */
-  uint64_t nodeCount;     /* 0 for a flat scene */
-  uint32_t treeDepth;     /* levels; 0 for a flat scene */
-  uint32_t chunkCount;
-  uint32_t damagedChunkCount;
-  uint32_t shDegree; /* 0 to 3, as kept: top bands that are all zero are left out */
-  VoySceneStorage storage;
+  VoyStructureType type;       /* VOY_STRUCTURE_TYPE_SCENE_INFO */
+  void* next;                  /* NULL or a VoySceneProfile */
+  uint64_t gaussianCount;      /* of the input; in a tree, its leaves */
+  uint64_t nodeCount;          /* 0 for a flat scene */
+  uint32_t treeDepth;          /* levels; 0 for a flat scene */
+  uint32_t chunkCount;         /* of the file (docs/lod-tree.md); 0 for a flat scene */
+  uint32_t damagedChunkCount;  /* of these; voyGetSceneNotes tells the causes */
+  uint32_t shDegree;           /* 0 to 3, as kept: top bands that are all zero are left out */
+  VoySceneStorage storage;     /* FLAT for every format but .voy */
   uint32_t trainedAntialiased; /* 1: trained with the antialiased low-pass, says the input */
   double origin[3];            /* world position of the zero of scene-local coordinates, metres */
-  double boundsMin[3];         /* world metres: means ± 3·(largest scale) */
-  double boundsMax[3];
-  uint64_t residentBytes;        /* of scene data, as VoyDeviceDesc.hostMemoryBudget counts it */
+  double boundsMin[3];         /* world metres: the least mean - 3·(largest scale) of a Gaussian */
+  double boundsMax[3];         /* world metres: the greatest mean + 3·(largest scale) of one */
+  uint64_t residentBytes;      /* of scene data, as VoyDeviceDesc.hostMemoryBudget counts it */
   uint64_t droppedGaussianCount; /* Gaussians left out at import: values no Gaussian can have */
   uint64_t repairCount;          /* repairs at import, counted for each Gaussian and attribute
                                       (scale, rotation, opacity, SH) */
   double maxPositionError;       /* compact storage: largest error of a mean, metres. Else 0 */
-  /* What VOY_ANTIALIAS_ON draws with (METHOD §12): the side of a training picture's pixel where the
-   * Gaussians are, metres, the largest where blocks of Gaussians have different ones, 0 where they
-   * get no footprint; and the pixel filter, square pixels. */
+  /* The side of a training picture's pixel where the Gaussians are, metres: VOY_ANTIALIAS_ON draws
+   * with it (METHOD §12). The largest where blocks of Gaussians have different ones, 0 where they
+   * get no footprint. */
   double nativePixel;
-  double pixelFilter;
-  VoyNativePixelSource nativePixelSource;
-  uint32_t reserved; /* 0 */
+  double pixelFilter; /* that VOY_ANTIALIAS_ON adds to a splat, square pixels (METHOD §12) */
+  VoyNativePixelSource nativePixelSource; /* of both */
+  uint32_t reserved;                      /* 0 */
 } VoySceneInfo;
 #define VOY_SCENE_INFO_INIT                                                                      \
   {                                                                                              \
@@ -455,8 +469,8 @@ typedef struct VoySceneProfile {
   uint32_t reserved;            /* 0 */
   uint64_t chunksByShDegree[4]; /* chunks that use SH degree 0, 1, 2, 3 */
   uint64_t opacitiesAboveOne;   /* Gaussians; only merged ones can exceed 1 */
-  /* Of the Gaussians: the longest axis over the shortest. 0 if there are none. */
-  float minAnisotropy, maxAnisotropy;
+  float minAnisotropy, /* longest axis over shortest: the least of a Gaussian; 0 without any */
+      maxAnisotropy;   /* the greatest of these ratios; 0 without Gaussians */
 } VoySceneProfile;
 #define VOY_SCENE_PROFILE_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_PROFILE, NULL, 0, 0, 0, 0, 0, 0, {0, 0, 0, 0}, 0, 0, 0 }
@@ -464,6 +478,7 @@ typedef struct VoySceneProfile {
 /* Writes the facts of a scene. The caller sets `type` and `next`. */
 VOY_API VoyResult VOY_CALL voyGetSceneInfo(VoyScene scene, VoySceneInfo* info);
 
+/* What a VoySceneNote tells of. */
 typedef enum VoySceneNoteKind {
   VOY_SCENE_NOTE_KIND_OMITTED = 0,  /* the scene does not need this, so it costs nothing */
   VOY_SCENE_NOTE_KIND_REPAIRED = 1, /* Gaussians of which one attribute was repaired at import */
@@ -477,12 +492,12 @@ typedef enum VoySceneNoteKind {
 typedef struct VoySceneNote {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_SCENE_NOTE */
   void* next;
-  VoySceneNoteKind kind;
-  uint32_t reserved;
-  uint64_t count; /* Gaussians (REPAIRED, DROPPED) or chunks (DAMAGED); 0 for OMITTED */
-  uint64_t bytes; /* that OMITTED saves; else 0 */
-  char what[64];  /* UTF-8, terminated */
-  char why[192];
+  VoySceneNoteKind kind; /* says what `count` and `bytes` mean */
+  uint32_t reserved;     /* 0 */
+  uint64_t count;        /* Gaussians (REPAIRED, DROPPED) or chunks (DAMAGED); 0 for OMITTED */
+  uint64_t bytes;        /* that OMITTED saves; else 0 */
+  char what[64];         /* UTF-8, terminated, as `why` */
+  char why[192];         /* the cause, in words */
 } VoySceneNote;
 #define VOY_SCENE_NOTE_INIT                                                           \
   {                                                                                   \
@@ -504,18 +519,21 @@ VOY_API VoyResult VOY_CALL voyGetSceneNotes(VoyScene scene, uint32_t capacity, V
 typedef struct VoyStreamingStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_STREAMING_STATS */
   void* next;
-  uint64_t budgetBytes;                /* the scene's part of its budget: slots and tables */
-  uint64_t chunkSlots, residentChunks; /* chunks that fit, and that are resident */
-  uint64_t neededChunks;               /* that the latest frames need, whatever the budget */
-  uint64_t missingChunks;              /* needed but not resident */
-  uint64_t missingBytes;               /* size of missingChunks in the file */
-  uint64_t seenChunks;                 /* needed and inside an eye's frustum plus the margin */
+  uint64_t budgetBytes;       /* the scene's part of its budget: slots and tables */
+  uint64_t chunkSlots,        /* chunks that fit into the budget at once */
+      residentChunks;         /* chunks in memory, which frames can draw */
+  uint64_t neededChunks;      /* that the latest frames need, whatever the budget */
+  uint64_t missingChunks;     /* needed but not resident */
+  uint64_t missingBytes;      /* size of missingChunks in the file */
+  uint64_t seenChunks;        /* needed and inside an eye's frustum plus the margin */
   uint64_t seenMissingChunks; /* seen but not resident; 0: nothing is shown coarser than asked */
-  uint64_t requestedChunks, arrivedChunks;
-  uint64_t lateChunks;    /* arrived after a frame had needed them */
-  uint64_t evictedChunks; /* removed to make room */
-  uint64_t flushedChunks; /* requests dropped because nothing needed them any more */
-  uint64_t reads, bytesRead;
+  uint64_t requestedChunks,   /* handed to the reader threads; one that comes again counts again */
+      arrivedChunks;          /* that became resident */
+  uint64_t lateChunks;        /* arrived after a frame had needed them */
+  uint64_t evictedChunks;     /* removed to make room */
+  uint64_t flushedChunks;     /* requests dropped because nothing needed them any more */
+  uint64_t reads,             /* of the file or the VoyByteSource; one may hold several chunks */
+      bytesRead;              /* by these reads */
   uint64_t failures; /* failed reads and damaged chunks. Reads that may succeed later are tried
                         again. The log names each cause once (WARNING) */
 } VoyStreamingStats;
@@ -528,9 +546,10 @@ VOY_API VoyResult VOY_CALL voyGetStreamingStats(VoyScene scene, VoyStreamingStat
 
 /* ------------------------------------------------------------------- target */
 
+/* Where the pixels of a target are. */
 typedef enum VoyTargetKind {
-  VOY_TARGET_KIND_HOST_MEMORY = 0,
-  VOY_TARGET_KIND_VULKAN = 1, /* images of a Vulkan host; see voyager_vulkan.h */
+  VOY_TARGET_KIND_HOST_MEMORY = 0, /* arrays of the host: VoyTargetDesc.color and depth */
+  VOY_TARGET_KIND_VULKAN = 1,      /* images of a Vulkan host; see voyager_vulkan.h */
   VOY_TARGET_KIND_MAX_ENUM = 0x7fffffff
 } VoyTargetKind;
 
@@ -552,15 +571,16 @@ typedef enum VoyColorFormat {
  * The memory belongs to the host and must stay valid until the target is destroyed. It is written
  * only during voyRenderFrame, and only inside width x height. */
 typedef struct VoyTargetDesc {
-  VoyStructureType type; /* VOY_STRUCTURE_TYPE_TARGET_DESC */
-  const void* next;      /* NULL, or a VoyVulkanTargetDesc with kind VULKAN */
-  VoyTargetKind kind;
-  VoyColorFormat colorFormat;
-  uint32_t width, height; /* pixels, 1 to VoyCapabilities.maxWidth/maxHeight */
-  void* color;            /* aligned to 4 bytes; NULL if and only if colorFormat is NONE */
-  uint64_t colorRowPitch; /* bytes, a multiple of 4; 0: rows follow without a gap */
-  float* depth;           /* NULL: no depth; one of color and depth must be set */
-  uint64_t depthRowPitch; /* bytes, a multiple of 4; 0: rows follow without a gap */
+  VoyStructureType type;      /* VOY_STRUCTURE_TYPE_TARGET_DESC */
+  const void* next;           /* NULL, or a VoyVulkanTargetDesc with kind VULKAN */
+  VoyTargetKind kind;         /* one of VoyCapabilities.targetKinds */
+  VoyColorFormat colorFormat; /* NONE: the target has only depth */
+  uint32_t width,             /* pixels, 1 to VoyCapabilities.maxWidth */
+      height;                 /* pixels, 1 to VoyCapabilities.maxHeight */
+  void* color;                /* aligned to 4 bytes; NULL if and only if colorFormat is NONE */
+  uint64_t colorRowPitch;     /* bytes, a multiple of 4; 0: rows follow without a gap */
+  float* depth;               /* NULL: no depth; one of color and depth must be set */
+  uint64_t depthRowPitch;     /* bytes, a multiple of 4; 0: rows follow without a gap */
 } VoyTargetDesc;
 #define VOY_TARGET_DESC_INIT                                           \
   {                                                                    \
@@ -607,7 +627,7 @@ typedef enum VoyAntialias {
 typedef struct VoyTimeBudget {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_TIME_BUDGET */
   const void* next;
-  double milliseconds; /* for a frame, all eyes together; finite, > 0 */
+  double milliseconds; /* for a frame, all eyes together; finite, > 0; the host must set it */
   double minTau;       /* pixels, finite, >= 0: the finest tau, even if time is left */
   double maxTau;       /* pixels, finite, >= minTau: the coarsest, even if frames are late */
 } VoyTimeBudget;
@@ -629,13 +649,13 @@ typedef struct VoyViewDesc {
   const VoyScene* scenes; /* one for each instance, of the same device; copied. All stand at the
                              identity. NULL if there is none */
   uint32_t eyeCount;      /* of every frame; 1 to VoyCapabilities.maxEyes; more is UNSUPPORTED */
-  /* Pixels: the largest target that frames will have, 1 to the maxWidth and maxHeight of
-   * VoyCapabilities. The host must set them. */
-  uint32_t maxWidth, maxHeight;
-  VoyLod lod;
-  double tau; /* granularity in pixels, finite, >= 0: smaller is finer. METHOD §3 */
-  VoyAntialias antialias;
-  uint32_t reserved; /* 0 */
+  uint32_t maxWidth, /* of the targets of its frames, pixels, 1 to VoyCapabilities.maxWidth; the
+                        host must set it */
+      maxHeight;     /* likewise, 1 to VoyCapabilities.maxHeight */
+  VoyLod lod;        /* which nodes of a tree are drawn; ignored for flat scenes */
+  double tau;        /* granularity in pixels, finite, >= 0: smaller is finer. METHOD §3 */
+  VoyAntialias antialias; /* for all instances */
+  uint32_t reserved;      /* 0 */
 } VoyViewDesc;
 #define VOY_VIEW_DESC_INIT \
   { VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_AUTO, 3.0, VOY_ANTIALIAS_ON, 0 }
@@ -659,11 +679,12 @@ VOY_API VoyResult VOY_CALL voySetViewTimeBudget(VoyView view, const VoyTimeBudge
 
 /* -------------------------------------------------------------------- frame */
 
-/* XrPosef in double. `position` is in metres. `orientation` is a quaternion (x, y, z, w) that
- * rotates the object's axes (x right, y up, -z forward) into the parent's. It need not have unit
- * length, because the call normalises it. A zero or non-finite quaternion is INVALID_ARGUMENT. */
+/* XrPosef in double: where an object stands in its parent's space. */
 typedef struct VoyPose {
-  double position[3];
+  double position[3]; /* x, y, z in metres, each below 1e18 in magnitude */
+  /* A quaternion (x, y, z, w) that rotates the object's axes (x right, y up, -z forward) into the
+   * parent's. It need not have unit length, because the call normalises it. A zero or non-finite
+   * quaternion is INVALID_ARGUMENT. */
   double orientation[4];
 } VoyPose;
 /* The identity. */
@@ -674,11 +695,13 @@ typedef struct VoyPose {
     }                 \
   }
 
-/* Tangents of the half-angles of a field of view, each between -1e4 and 1e4. right and up are
- * positive to the right of the view axis and above it, so left and down are normally negative.
- * right - left and up - down are at least 1e-6. */
+/* Tangents of the half-angles of a field of view, each between -1e4 and 1e4. right - left and
+ * up - down are at least 1e-6. */
 typedef struct VoyFrustum {
-  double left, right, up, down;
+  double left, /* of the left edge, measured from the view axis to the right: normally negative */
+      right,   /* of the right edge, measured in the same direction: normally positive */
+      up,      /* of the top edge, measured from the view axis upwards: normally positive */
+      down;    /* of the bottom edge, measured in the same direction: normally negative */
 } VoyFrustum;
 /* 90 degrees wide and 90 degrees high. */
 #define VOY_FRUSTUM_INIT \
@@ -706,20 +729,22 @@ typedef enum VoyClipY {
 } VoyClipY;
 
 /* Fills a frustum from a perspective projection: `matrix` is 16 numbers, column by column, that
- * take columns (x, y, z, 1) of the camera's space to clip space. Row by row is the same memory
- * where an engine multiplies rows from the left. The camera may look along -z or +z (the matrix
- * tells), and its y may point up or down. The third row is not read, so that depth from 0 to 1 or
- * from -1 to 1, reversed or not, with a finite far plane, an infinite one or an oblique near plane
- * give the same frustum. Errors: INVALID_ARGUMENT (a number that is not finite; an orthographic,
- * skewed or mirrored projection or one that moves the eye; tangents that VoyFrustum does not
- * allow). */
+ * take columns (x, y, z, 1) of the camera's space to clip space. A row-major matrix for row
+ * vectors has the same layout in memory: pass it as it is. The camera may look along -z or +z (the
+ * matrix tells), and its y may point up or down. The third row is not read, so that depth from 0 to
+ * 1 or from -1 to 1, reversed or not, with a finite far plane, an infinite one or an oblique near
+ * plane give the same frustum. Errors: INVALID_ARGUMENT (a number that is not finite; an
+ * orthographic, skewed or mirrored projection or one that moves the eye; tangents that VoyFrustum
+ * does not allow). */
 VOY_API VoyResult VOY_CALL voyFrustumFromProjection(const double* matrix, VoyClipY clipY,
                                                     VoyFrustum* frustum);
 
-/* The hand of a world: what +z is where +x is right and +y is up. */
+/* The hand of a world: where +z points once the world is turned so that +x is right and +y is up. A
+ * right-handed world may have any axis up. Unreal's cameras look along +x and have z up: permute
+ * the axes of world and camera first (docs/abi.md). */
 typedef enum VoyHand {
   VOY_HAND_RIGHT = 0, /* towards the viewer: OpenXR, glTF, Godot */
-  VOY_HAND_LEFT = 1,  /* away from the viewer: Unity, Unreal, Direct3D by habit */
+  VOY_HAND_LEFT = 1,  /* away from the viewer: Unity, Direct3D by habit */
   VOY_HAND_MAX_ENUM = 0x7fffffff
 } VoyHand;
 
@@ -728,8 +753,8 @@ typedef enum VoyHand {
  * The point (x, y, z) of a left-handed world is (x, y, -z) in Voyager's, so convert cameras and
  * instances alike. A right-handed world is taken as it is.
  * The own space has the world's hand, or the other one where the matrix mirrors, as Unity's
- * cameraToWorldMatrix does. Its z, too, changes the sign if it is left-handed. So the pose is right
- * for a camera that looks along +z of left-handed axes or along -z of right-handed ones.
+ * cameraToWorldMatrix does. If that space is left-handed, its z is negated, too. So the pose is
+ * right for a camera that looks along +z of left-handed axes or along -z of right-handed ones.
  * Errors: INVALID_ARGUMENT (a number that is not finite; a last row other than 0, 0, 0, 1; axes
  * that are scaled or sheared by more than 1e-4). */
 VOY_API VoyResult VOY_CALL voyPoseFromWorldMatrix(const double* matrix, VoyHand worldHand,
@@ -746,7 +771,7 @@ typedef struct VoyFrameEye {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_EYE */
   const void* next;      /* NULL or a VoyEyeDepthLimit */
   VoyPose pose;          /* in the world */
-  VoyFrustum frustum;
+  VoyFrustum frustum;    /* its edges are the edges of the target */
   VoyTarget target;  /* of the view's device. Its size is the size of the image. Two eyes need two
                         targets of the same kind, or two layers of one target */
   uint32_t layer;    /* layer of the target (voyager_vulkan.h); 0 for host memory */
@@ -782,10 +807,10 @@ typedef struct VoyEyeDepthLimit {
   const float* depth;     /* rows from top to bottom, of the target's size; aligned to 4 bytes.
                              NULL: what voyRecordVulkanDepthLimit copied into the target */
   uint64_t depthRowPitch; /* bytes, a multiple of 4; 0: rows follow without a gap */
-  VoyDepthEncoding depthEncoding;
-  uint32_t reserved;  /* 0 */
-  double nearZ, farZ; /* metres, of the host's projection; ignored for METERS.
-                         1e-18 <= nearZ <= 1e18; nearZ < farZ; farZ may be infinite */
+  VoyDepthEncoding depthEncoding; /* of the values in `depth`, or of the depth image copied */
+  uint32_t reserved;              /* 0 */
+  double nearZ, /* near plane of the host's projection, metres, 1e-18 to 1e18; ignored for METERS */
+      farZ;     /* its far plane, metres, > nearZ, may be infinite; ignored for METERS */
 } VoyEyeDepthLimit;
 #define VOY_EYE_DEPTH_LIMIT_INIT \
   { VOY_STRUCTURE_TYPE_EYE_DEPTH_LIMIT, NULL, NULL, 0, VOY_DEPTH_ENCODING_METERS, 0, 0.0, 0.0 }
@@ -800,7 +825,7 @@ typedef struct VoyEyeDepthLimit {
 typedef struct VoyInstancePose {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_INSTANCE_POSE */
   const void* next;
-  VoyPose pose;
+  VoyPose pose; /* of the scene's own axes in the world */
   double scale; /* the same for all axes, 1e-9 to 1e9 */
 } VoyInstancePose;
 /* The identity. */
@@ -822,12 +847,13 @@ typedef struct VoyInstancePose {
 typedef struct VoyInstance {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_INSTANCE */
   const void* next;
-  VoyScene scene;                /* of the view's device */
-  VoyPose pose;                  /* as in VoyInstancePose, with its limit for the eye's distance */
-  double scale;                  /* the same for all axes, 1e-9 to 1e9 */
-  double clipMin[3], clipMax[3]; /* metres in the scene; not NaN; clipMin <= clipMax */
-  float opacity;                 /* 0 to 1 */
-  uint32_t reserved;             /* 0 */
+  VoyScene scene;    /* of the view's device */
+  VoyPose pose;      /* as in VoyInstancePose, with its limit for the eye's distance */
+  double scale;      /* the same for all axes, 1e-9 to 1e9 */
+  double clipMin[3], /* low corner of the clip box, metres in the scene; not NaN */
+      clipMax[3];    /* high corner, likewise; clipMin <= clipMax */
+  float opacity;     /* 0 to 1 */
+  uint32_t reserved; /* 0 */
 } VoyInstance;
 /* At the identity, whole, as opaque as it is stored. The host must set scene. */
 #define VOY_INSTANCE_INIT                                                  \
@@ -883,11 +909,11 @@ typedef struct VoyFrameStreaming {
 /* A frame of a view: what each eye sees and where it is drawn. It is valid for one call; the next
  * frame may differ in everything. */
 typedef struct VoyFrame {
-  VoyStructureType type;  /* VOY_STRUCTURE_TYPE_FRAME */
-  const void* next;       /* NULL or a chain of VoyFrameStreaming and VoyVulkanFrame */
-  uint32_t eyeCount;      /* VoyViewDesc.eyeCount */
-  uint32_t instanceCount; /* of `instances`: as many as the view has; 0 where that is NULL */
-  const VoyFrameEye* eyes;
+  VoyStructureType type;   /* VOY_STRUCTURE_TYPE_FRAME */
+  const void* next;        /* NULL or a chain of VoyFrameStreaming and VoyVulkanFrame */
+  uint32_t eyeCount;       /* VoyViewDesc.eyeCount */
+  uint32_t instanceCount;  /* of `instances`: as many as the view has; 0 where that is NULL */
+  const VoyFrameEye* eyes; /* eyeCount of them */
   /* One for each instance: in this frame alone they stand in place of the poses and scales of
    * voySetViewInstances, whose opacities and boxes stay. NULL: those poses and scales, which are
    * the identity for the instances of VoyViewDesc. */
@@ -910,7 +936,8 @@ typedef struct VoyFrame {
  * - OUT_OF_HOST_MEMORY, OVER_BUDGET: the frame does not fit into host memory, into a budget, or
  *   into the GPU's memory.
  * - BUSY: another thread uses the view or a target.
- * - TIMEOUT: the host did not signal within 10 s what a Vulkan target waits for.
+ * - TIMEOUT: the host did not signal within 10 s what this frame waits for, or one in flight that
+ *   the call waits for.
  * - DEVICE_LOST: the CUDA or Vulkan device no longer works. */
 VOY_API VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame);
 
@@ -920,7 +947,7 @@ VOY_API VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame);
  * *count to the size of the cut. It returns VOY_INCOMPLETE if that is more than `capacity`.
  * Errors: INVALID_ARGUMENT (no such instance; no frame yet, or none since voySetViewInstances
  * changed the scenes), UNSUPPORTED (the view draws no cut of this instance; on CUDA also after a
- * frame failed, until the next one succeeds). */
+ * frame failed, until the next one succeeds), TIMEOUT (as voyRenderFrame). */
 VOY_API VoyResult VOY_CALL voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity,
                                          uint32_t* nodes, uint32_t* count);
 
@@ -933,8 +960,8 @@ typedef struct VoyOmission {
   /* A lower bound of the time that the last frame saved: the bytes that it did not move, divided by
    * the peak bandwidth of the device's memory. 0 if either is not known. */
   double milliseconds;
-  char what[64]; /* UTF-8, terminated */
-  char why[192];
+  char what[64]; /* UTF-8, terminated, as `why` */
+  char why[192]; /* the cause, in words */
 } VoyOmission;
 #define VOY_OMISSION_INIT                             \
   {                                                   \
@@ -949,16 +976,18 @@ typedef struct VoyOmission {
 VOY_API VoyResult VOY_CALL voyGetViewOmissions(VoyView view, uint32_t capacity,
                                                VoyOmission* omissions, uint32_t* count);
 
+/* The stages of a frame. CUDA bins before it sorts, the CPU after. */
 typedef enum VoyStage {
-  VOY_STAGE_SEARCH = 0,
-  VOY_STAGE_PROJECT = 1,
-  VOY_STAGE_SORT = 2,
-  VOY_STAGE_BIN = 3,
-  VOY_STAGE_RASTERIZE = 4,
-  VOY_STAGE_RESOLVE = 5,
+  VOY_STAGE_SEARCH = 0,    /* finds the cut of each instance */
+  VOY_STAGE_PROJECT = 1,   /* makes splats of the cut's Gaussians */
+  VOY_STAGE_SORT = 2,      /* orders splats front to back */
+  VOY_STAGE_BIN = 3,       /* lists for each tile of the image the splats that touch it */
+  VOY_STAGE_RASTERIZE = 4, /* blends the splats of each tile */
+  VOY_STAGE_RESOLVE = 5,   /* writes the image into the target's memory */
   VOY_STAGE_MAX_ENUM = 0x7fffffff
 } VoyStage;
 
+/* Whether a frame stayed within its view's time budget. */
 typedef enum VoyTimeBudgetState {
   VOY_TIME_BUDGET_STATE_NONE = 0,        /* the view has no time budget */
   VOY_TIME_BUDGET_STATE_HELD = 1,        /* millisecondsTotal <= millisecondsBudget */
@@ -973,23 +1002,23 @@ typedef enum VoyTimeBudgetState {
 /* Counters are sums over the view's instances. Those of splats and pairs are sums over the eyes as
  * well. */
 typedef struct VoyFrameStats {
-  VoyStructureType type; /* VOY_STRUCTURE_TYPE_FRAME_STATS */
-  void* next;            /* NULL or a VoyExperimentStats (voyager_experiment.h) */
-  uint64_t frameIndex;   /* frames of the view, counted from 0 */
-  VoyTimeBudgetState timeBudgetState;
-  float tauStar;        /* of instance 0: the target size of a node, METHOD §3 */
-  float cutCenter[3];   /* of instance 0: scene-local coordinates, metres */
-  uint32_t stageCount;  /* entries of `milliseconds` that are in use */
-  uint64_t nodesTotal;  /* of all instances */
-  uint64_t nodesTested; /* evaluations of the cut predicate */
-  uint64_t subtreesVisited;
-  uint64_t chunksRead;        /* chunks with a subtree that the search visited */
-  uint64_t bytesRead;         /* by the search: records, tables and kept state */
-  uint64_t cutSize;           /* nodes; Gaussians where there is no cut */
-  uint64_t nodesEntered;      /* nodes new in the cut since the last frame */
-  uint64_t nodesExited;       /* nodes gone from the cut since the last frame */
-  uint64_t splats;            /* that contribute to the image */
-  uint64_t pairsBeforeFilter; /* (tile, splat) pairs by bounding boxes */
+  VoyStructureType type;              /* VOY_STRUCTURE_TYPE_FRAME_STATS */
+  void* next;                         /* NULL or a VoyExperimentStats (voyager_experiment.h) */
+  uint64_t frameIndex;                /* frames of the view, counted from 0 */
+  VoyTimeBudgetState timeBudgetState; /* of this frame */
+  float tauStar;                      /* of instance 0: the target size of a node, METHOD §3 */
+  float cutCenter[3];                 /* of instance 0: scene-local coordinates, metres */
+  uint32_t stageCount;                /* entries of `milliseconds` that are in use */
+  uint64_t nodesTotal;                /* of all instances */
+  uint64_t nodesTested;               /* evaluations of the cut predicate */
+  uint64_t subtreesVisited;           /* subtrees (docs/lod-tree.md) whose nodes the search read */
+  uint64_t chunksRead;                /* chunks with a subtree that the search visited */
+  uint64_t bytesRead;                 /* by the search: records, tables and kept state */
+  uint64_t cutSize;                   /* nodes; Gaussians where there is no cut */
+  uint64_t nodesEntered;              /* nodes new in the cut since the last frame */
+  uint64_t nodesExited;               /* nodes gone from the cut since the last frame */
+  uint64_t splats;                    /* that contribute to the image */
+  uint64_t pairsBeforeFilter;         /* (tile, splat) pairs by bounding boxes */
   uint64_t pairsAfterFilter; /* (tile, splat) pairs by ellipses at the α threshold; on CUDA without
                           those that the view's last frame showed to be hidden, as are splats */
   uint64_t pairsDropped;     /* pairs, strips and Gaussians that were not drawn because buffers
@@ -999,6 +1028,7 @@ typedef struct VoyFrameStats {
   uint64_t bytesNeeded;      /* size in the file of needed chunks that are not resident */
   uint64_t nodesUnrefined;   /* cut nodes of size >= tau* whose children are not resident */
   double milliseconds[VOY_MAX_STAGES]; /* indexed by VoyStage; 0 from stageCount on */
+  /* Of the whole frame. On CUDA it is GPU time, and the time of the copy into host memory. */
   double millisecondsTotal;
   double tau; /* pixels, as used: voySetViewTau with it gives the same image, to the bit */
   double millisecondsBudget; /* the time budget when the frame was drawn; 0: none */
@@ -1012,7 +1042,7 @@ typedef struct VoyFrameStats {
 /* Writes the statistics of the view's last successful frame. Frames into Vulkan images may still be
  * in flight; then it is the last frame that has finished, and frameIndex says which. The call waits
  * only for the view's first frame. The caller sets `type` and `next`; the call writes the rest.
- * Errors: INVALID_ARGUMENT (before the first frame). */
+ * Errors: INVALID_ARGUMENT (before the first frame), TIMEOUT (as voyRenderFrame). */
 VOY_API VoyResult VOY_CALL voyGetFrameStats(VoyView view, VoyFrameStats* stats);
 
 /* Returns the name of a stage, such as "search". NULL for any other number, so for stageCount too.

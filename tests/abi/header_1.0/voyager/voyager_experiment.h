@@ -74,12 +74,12 @@ typedef enum VoySelection {
 typedef struct VoyExperiment {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_EXPERIMENT */
   const void* next;
-  VoySelection selection;
-  VoySearch search;
-  VoyAlphaFilter alphaFilter;
-  VoyExponential exponential;
-  uint32_t lutSize; /* intervals of VOY_EXPONENTIAL_LUT, 1 to 4096; 0: 32 */
-  VoySplatting splatting;
+  VoySelection selection;     /* with VOY_LOD_ALL_LEAVES only CUT */
+  VoySearch search;           /* one of VoyExperimentCapabilities.searches */
+  VoyAlphaFilter alphaFilter; /* of VOY_SPLATTING_OURS */
+  VoyExponential exponential; /* one of VoyExperimentCapabilities.exponentials */
+  uint32_t lutSize;           /* intervals of VOY_EXPONENTIAL_LUT, 1 to 4096; 0: 32 */
+  VoySplatting splatting;     /* one of VoyExperimentCapabilities.splattings */
   /* 1: an alpha threshold of 1e-4, for the samples of pictures that others are judged by. It needs
    * VOY_ANTIALIAS_ON and EXACT or EX2, and is slower. 0: 1/255 */
   uint32_t truth;

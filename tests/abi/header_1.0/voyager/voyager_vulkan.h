@@ -38,6 +38,7 @@ extern "C" {
 
 /* ------------------------------------------- before the host makes its device */
 
+/* How pixels get from what draws them into the host's images. */
 typedef enum VoyVulkanSharing {
   VOY_VULKAN_SHARING_AUTO = 0,   /* DEVICE if possible, else HOST */
   VOY_VULKAN_SHARING_DEVICE = 1, /* CUDA writes into the Vulkan images */
@@ -61,9 +62,9 @@ typedef enum VoyVulkanSync {
 typedef struct VoyVulkanPhysicalDevice {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE */
   const void* next;
-  PFN_vkGetInstanceProcAddr getInstanceProcAddr;
-  VkInstance instance;
-  VkPhysicalDevice physicalDevice;
+  PFN_vkGetInstanceProcAddr getInstanceProcAddr; /* the loader's; not NULL */
+  VkInstance instance;                           /* of Vulkan 1.1 or newer */
+  VkPhysicalDevice physicalDevice;               /* of this instance */
 } VoyVulkanPhysicalDevice;
 #define VOY_VULKAN_PHYSICAL_DEVICE_INIT \
   { VOY_STRUCTURE_TYPE_VULKAN_PHYSICAL_DEVICE, NULL, NULL, VK_NULL_HANDLE, VK_NULL_HANDLE }
@@ -73,12 +74,12 @@ typedef struct VoyVulkanPhysicalDevice {
 typedef struct VoyVulkanRequirements {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS */
   void* next;
-  uint32_t vulkanVersion;          /* the lowest VkApplicationInfo.apiVersion */
-  uint32_t instanceExtensionCount; /* 0 in this version: Vulkan 1.1 is enough */
-  const char* const* instanceExtensions;
-  uint32_t deviceExtensionCount;
-  const char* const* deviceExtensions;
-  VkBool32 timelineSemaphore; /* VK_TRUE: enable this feature */
+  uint32_t vulkanVersion;                /* the lowest VkApplicationInfo.apiVersion */
+  uint32_t instanceExtensionCount;       /* 0 in this version: Vulkan 1.1 is enough */
+  const char* const* instanceExtensions; /* instanceExtensionCount names, or NULL */
+  uint32_t deviceExtensionCount;         /* 0 if the device has none that Voyager uses */
+  const char* const* deviceExtensions;   /* deviceExtensionCount names for VkDeviceCreateInfo */
+  VkBool32 timelineSemaphore;            /* VK_TRUE: enable this feature */
 } VoyVulkanRequirements;
 #define VOY_VULKAN_REQUIREMENTS_INIT \
   { VOY_STRUCTURE_TYPE_VULKAN_REQUIREMENTS, NULL, 0, 0, NULL, 0, NULL, VK_FALSE }
@@ -106,16 +107,16 @@ VOY_API VoyResult VOY_CALL voyGetVulkanRequirements(const VoyVulkanPhysicalDevic
 typedef struct VoyVulkanDeviceDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_DEVICE_DESC */
   const void* next;
-  PFN_vkGetInstanceProcAddr getInstanceProcAddr;
-  VkInstance instance;
-  VkPhysicalDevice physicalDevice;
-  VkDevice device;
-  uint32_t vulkanVersion; /* VkApplicationInfo.apiVersion of the instance */
-  uint32_t deviceExtensionCount;
-  const char* const* deviceExtensions; /* all that the host enabled */
-  VkBool32 timelineSemaphore;          /* VK_TRUE: the host enabled the feature */
-  VoyVulkanSharing sharing;            /* AUTO, or a choice that fails if not possible */
-  VoyVulkanSync sync;                  /* AUTO, or a choice that fails if not possible */
+  PFN_vkGetInstanceProcAddr getInstanceProcAddr; /* the loader's; not NULL */
+  VkInstance instance;                           /* of Vulkan 1.1 or newer */
+  VkPhysicalDevice physicalDevice;               /* that `device` was created from */
+  VkDevice device;                               /* the host's; not NULL */
+  uint32_t vulkanVersion;                        /* VkApplicationInfo.apiVersion of the instance */
+  uint32_t deviceExtensionCount;                 /* of `deviceExtensions`, 0 to 4096 */
+  const char* const* deviceExtensions;           /* all that the host enabled */
+  VkBool32 timelineSemaphore;                    /* VK_TRUE: the host enabled the feature */
+  VoyVulkanSharing sharing;                      /* AUTO, or a choice that fails if not possible */
+  VoyVulkanSync sync;                            /* AUTO, or a choice that fails if not possible */
 } VoyVulkanDeviceDesc;
 #define VOY_VULKAN_DEVICE_DESC_INIT                                                         \
   {                                                                                         \
@@ -146,11 +147,12 @@ typedef struct VoyVulkanCapabilities {
 /* ------------------------------------------------------------------- target */
 
 /* A handle of the operating system to memory or to a semaphore. The `handleType` beside it says
- * which member is set. This version runs on POSIX systems only, where it is fd. */
+ * which member is set. This version runs on POSIX systems only, where it is fd. That member is the
+ * first, because an initialiser sets the first. */
 typedef union VoyExternalHandle {
-#if defined(_WIN32) /* first is what an initialiser sets */
-  void* win32;      /* a HANDLE; NULL is none */
-  int fd;           /* not used */
+#if defined(_WIN32)
+  void* win32; /* a HANDLE; NULL is none */
+  int fd;      /* not used */
 #else
   int fd;      /* a file descriptor; -1 is none */
   void* win32; /* not used */
@@ -162,9 +164,13 @@ typedef union VoyExternalHandle {
 #define VOY_VULKAN_MEMORY_HANDLE_TYPE VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_WIN32_BIT
 #define VOY_VULKAN_SEMAPHORE_HANDLE_TYPE VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_WIN32_BIT
 #else
+
+/* No handle. */
 #define VOY_EXTERNAL_HANDLE_NONE \
   { -1 }
+/* The handle type of exported memory: VoyVulkanMemory.handleType. */
 #define VOY_VULKAN_MEMORY_HANDLE_TYPE VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT
+/* The handle type of exported semaphores: VoyVulkanImportedSemaphores.handleType. */
 #define VOY_VULKAN_SEMAPHORE_HANDLE_TYPE VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT
 #endif
 
@@ -185,12 +191,12 @@ typedef struct VoyVulkanMemory {
 typedef struct VoyVulkanImportedImage {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_IMAGE */
   const void* next;
-  VkImage color; /* VK_NULL_HANDLE if and only if colorFormat is NONE. Each image is
-                    passed once */
-  VoyVulkanMemory colorMemory;
+  VkImage color;                /* VK_NULL_HANDLE if and only if colorFormat is NONE. Each image is
+                                   passed once */
+  VoyVulkanMemory colorMemory;  /* that `color` is bound to; ignored without it */
   VkImageUsageFlags colorUsage; /* as the image was created */
   VkImage depth; /* VK_FORMAT_R32_SFLOAT; VK_NULL_HANDLE if and only if the target has no depth */
-  VoyVulkanMemory depthMemory;
+  VoyVulkanMemory depthMemory;  /* that `depth` is bound to; ignored without it */
   VkImageUsageFlags depthUsage; /* as the image was created */
 } VoyVulkanImportedImage;
 #define VOY_VULKAN_IMPORTED_IMAGE_INIT                                                         \
@@ -204,10 +210,10 @@ typedef struct VoyVulkanImportedImage {
 typedef struct VoyVulkanImportedSemaphores {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_IMPORTED_SEMAPHORES */
   const void* next;
-  VkSemaphore released; /* the host signals it, Voyager waits */
-  VoyExternalHandle releasedHandle;
-  VkSemaphore rendered; /* Voyager signals it, the host waits */
-  VoyExternalHandle renderedHandle;
+  VkSemaphore released;             /* the host signals it, Voyager waits */
+  VoyExternalHandle releasedHandle; /* of `released`, open; another one than renderedHandle */
+  VkSemaphore rendered;             /* Voyager signals it, the host waits */
+  VoyExternalHandle renderedHandle; /* of `rendered`, open */
   VkExternalSemaphoreHandleTypeFlagBits handleType; /* of both; VOY_VULKAN_SEMAPHORE_HANDLE_TYPE */
   uint32_t reserved;                                /* 0 */
 } VoyVulkanImportedSemaphores;
@@ -217,8 +223,9 @@ typedef struct VoyVulkanImportedSemaphores {
         VK_NULL_HANDLE, VOY_EXTERNAL_HANDLE_NONE, VOY_VULKAN_SEMAPHORE_HANDLE_TYPE, 0              \
   }
 
-/* The most images of a ring, and layers of an image. */
+/* The most images of a ring. */
 #define VOY_MAX_VULKAN_IMAGES 8
+/* The most layers of an image. */
 #define VOY_MAX_VULKAN_LAYERS 8
 
 /* In VoyTargetDesc.next, with kind VULKAN and without host memory (color and depth NULL, pitches
@@ -239,7 +246,7 @@ typedef struct VoyVulkanTargetDesc {
   const VoyVulkanImportedImage* images; /* imageCount of them; NULL: Voyager creates them */
   uint32_t semaphoreCount;              /* 0: Voyager creates them. Else 1 for TIMELINE and
                                            imageCount for BINARY */
-  const VoyVulkanImportedSemaphores* semaphores;
+  const VoyVulkanImportedSemaphores* semaphores; /* semaphoreCount of them; NULL if that is 0 */
 } VoyVulkanTargetDesc;
 #define VOY_VULKAN_TARGET_DESC_INIT \
   { VOY_STRUCTURE_TYPE_VULKAN_TARGET_DESC, NULL, 2, 1, VK_FALSE, VK_FALSE, NULL, 0, NULL }
@@ -250,12 +257,14 @@ typedef struct VoyVulkanTargetDesc {
 typedef struct VoyVulkanImage {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_IMAGE */
   void* next;
-  VkImage color;
-  VkImageView colorView;
-  VkImage depth;
-  VkImageView depthView;
-  VkSemaphore released; /* TIMELINE: the same for all images. Sync HOST: VK_NULL_HANDLE */
-  VkSemaphore rendered;
+  VkImage color;         /* VK_NULL_HANDLE if colorFormat is NONE */
+  VkImageView colorView; /* VK_NULL_HANDLE also without `color` */
+  VkImage depth;         /* what Voyager writes; VK_NULL_HANDLE without hasDepth */
+  VkImageView depthView; /* VK_NULL_HANDLE also without `depth` */
+  /* The host signals it, Voyager waits. TIMELINE: the same for all images. Sync HOST:
+   * VK_NULL_HANDLE. */
+  VkSemaphore released;
+  VkSemaphore rendered; /* Voyager signals it, the host waits; else as `released` */
 } VoyVulkanImage;
 #define VOY_VULKAN_IMAGE_INIT                                                              \
   {                                                                                        \
@@ -275,7 +284,7 @@ VOY_API VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacit
 /* In VoyFrame.next, for Vulkan targets: the image of the ring to draw into, and what the frame
  * waits for and signals.
  * - TIMELINE: drawing begins when `released` has reached waitValue (0: at once). When the image is
- *   written, `rendered` becomes signalValue. It must be greater than in the target's frame before.
+ *   written, `rendered` becomes signalValue, which must be greater than in the target's last frame.
  *   In the first frame it must be greater than the current value of an imported semaphore.
  * - BINARY: waitValue 1 waits for the image's `released`, 0 does not. signalValue 1 signals its
  *   `rendered`, 0 does not. If layers are drawn by separate frames, the last one signals.
@@ -287,8 +296,9 @@ VOY_API VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacit
  *
  * With DEVICE sharing the call returns while the frame is in flight; it takes about 0.1 ms of host
  * time. It waits for the device in the first frame of a view and of a list of scenes
- * (voySetViewInstances), after a failure, when buffers must grow, and in every frame of a scene
- * with damaged chunks. A frame in flight cannot be drawn again with larger buffers. So if the view
+ * (voySetViewInstances), after a failure, when buffers must grow, when 16 frames of the view are in
+ * flight, and in every frame of a scene with damaged chunks. If what it waits for is a frame that
+ * the host does not let go on, it returns VOY_ERROR_TIMEOUT after 10 s. A frame in flight cannot be drawn again with larger buffers. So if the view
  * turns to far more splats at once, frames may lack some of them. VoyFrameStats.pairsDropped
  * counts them, and the frames that are drawn after the first of these has ended have larger
  * buffers.
@@ -298,10 +308,10 @@ VOY_API VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacit
 typedef struct VoyVulkanFrame {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_FRAME */
   const void* next;
-  uint32_t imageIndex; /* an image that was released and not acquired since */
-  uint32_t reserved;   /* 0 */
-  uint64_t waitValue;
-  uint64_t signalValue;
+  uint32_t imageIndex;  /* an image that was released and not acquired since */
+  uint32_t reserved;    /* 0 */
+  uint64_t waitValue;   /* for `released`, by the sync as above; 0: the frame waits for nothing */
+  uint64_t signalValue; /* for `rendered`, by the sync as above */
 } VoyVulkanFrame;
 #define VOY_VULKAN_FRAME_INIT \
   { VOY_STRUCTURE_TYPE_VULKAN_FRAME, NULL, 0, 0, 0, 0 }
@@ -315,11 +325,11 @@ typedef struct VoyVulkanUse {
   VkCommandBuffer commandBuffer; /* recording, outside a render pass. Its queue has graphics;
                                     compute is enough for `stages` of compute and transfer */
   uint32_t queueFamily;          /* of the queue that it will be submitted to */
-  uint32_t imageIndex;
-  VkImageLayout layout;        /* SHADER_READ_ONLY_OPTIMAL, TRANSFER_SRC_OPTIMAL or GENERAL. A
-                                  release names the layout of the acquire before it */
-  VkPipelineStageFlags stages; /* of the host's commands that use the image. An acquire needs at
-                                  least one that reads images: a shader, TRANSFER or ALL_... */
+  uint32_t imageIndex;           /* in the ring: 0 to imageCount - 1, as in voyGetVulkanImages */
+  VkImageLayout layout;          /* SHADER_READ_ONLY_OPTIMAL, TRANSFER_SRC_OPTIMAL or GENERAL. A
+                                    release names the layout of the acquire before it */
+  VkPipelineStageFlags stages;   /* of the host's commands that use the image. An acquire needs at
+                                    least one that reads images: a shader, TRANSFER or ALL_... */
 } VoyVulkanUse;
 #define VOY_VULKAN_USE_INIT                                                             \
   {                                                                                     \
@@ -353,12 +363,12 @@ typedef struct VoyVulkanCopy {
   VkCommandBuffer commandBuffer; /* recording, outside a render pass */
   uint32_t imageIndex;           /* acquired in TRANSFER_SRC_OPTIMAL or GENERAL */
   VkImageLayout layout;          /* the layout it was acquired in */
-  uint32_t layer;
-  VkImage into;             /* the host's: 2D, one sample, usage TRANSFER_DST */
-  VkFormat intoFormat;      /* see voyRecordVulkanCopy */
-  VkImageLayout intoLayout; /* TRANSFER_DST_OPTIMAL or GENERAL */
-  uint32_t intoLayer;
-  VkOffset2D intoOffset; /* >= 0; the whole layer must fit */
+  uint32_t layer;                /* of the target's image, 0 to layerCount - 1 */
+  VkImage into;                  /* the host's: 2D, one sample, usage TRANSFER_DST */
+  VkFormat intoFormat;           /* see voyRecordVulkanCopy */
+  VkImageLayout intoLayout;      /* TRANSFER_DST_OPTIMAL or GENERAL */
+  uint32_t intoLayer;            /* array layer of `into` */
+  VkOffset2D intoOffset;         /* >= 0; the whole layer must fit */
 } VoyVulkanCopy;
 #define VOY_VULKAN_COPY_INIT                                                                       \
   {                                                                                                \
@@ -383,14 +393,13 @@ typedef struct VoyVulkanDepthLimit {
   const void* next;
   VkCommandBuffer commandBuffer; /* recording, outside a render pass */
   uint32_t queueFamily;          /* of the queue that it will be submitted to */
-  uint32_t imageIndex;
-  uint32_t layer; /* of the target */
-  VkImage
-      depth; /* the host's: 2D, one sample, usage TRANSFER_SRC, as large as the target or larger */
+  uint32_t imageIndex;           /* of the ring, which the frame will be drawn into */
+  uint32_t layer;                /* of the target's image, which the frame will be drawn into */
+  VkImage depth; /* the host's: 2D, one sample, usage TRANSFER_SRC, no smaller than the target */
   VkFormat depthFormat;      /* D32_SFLOAT, D32_SFLOAT_S8_UINT or R32_SFLOAT */
   VkImageLayout depthLayout; /* TRANSFER_SRC_OPTIMAL or GENERAL */
-  uint32_t depthLayer;
-  VkOffset2D depthOffset; /* where the target's rectangle lies in it */
+  uint32_t depthLayer;       /* array layer of `depth` */
+  VkOffset2D depthOffset;    /* where the target's rectangle lies in it */
 } VoyVulkanDepthLimit;
 #define VOY_VULKAN_DEPTH_LIMIT_INIT                                                       \
   {                                                                                       \
@@ -407,6 +416,7 @@ VOY_API VoyResult VOY_CALL voyRecordVulkanDepthLimit(VoyTarget target,
 
 /* ---------------------------------------------------------------- composite */
 
+/* A handle, as those of voyager.h: a pipeline that VoyVulkanCompositeDesc describes. */
 typedef struct VoyVulkanComposite_T* VoyVulkanComposite;
 
 /* A pipeline that draws a target's image over the host's image, with one sample. It draws inside
@@ -418,8 +428,8 @@ typedef struct VoyVulkanComposite_T* VoyVulkanComposite;
 typedef struct VoyVulkanCompositeDesc {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_COMPOSITE_DESC */
   const void* next;
-  VkRenderPass renderPass;
-  uint32_t subpass;
+  VkRenderPass renderPass; /* compatible with the one drawn in; NULL: dynamic rendering */
+  uint32_t subpass;        /* index in renderPass; ignored without one */
   VkFormat colorFormat; /* of the first colour attachment of the subpass. UNSUPPORTED if the device
                            cannot blend it */
   VkFormat depthFormat; /* a depth format, or UNDEFINED without a depth attachment */
@@ -461,10 +471,10 @@ typedef enum VoyVulkanDepthUse {
 typedef struct VoyVulkanReprojection {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_VULKAN_REPROJECTION */
   const void* next;
-  VoyPose drawnPose; /* of the VoyFrameEye that the layer was drawn for */
-  VoyFrustum drawnFrustum;
-  VoyPose pose; /* of the eye that sees it now */
-  VoyFrustum frustum;
+  VoyPose drawnPose;       /* of the VoyFrameEye that the layer was drawn for */
+  VoyFrustum drawnFrustum; /* of the same VoyFrameEye */
+  VoyPose pose;            /* of the eye that sees it now */
+  VoyFrustum frustum;      /* of the eye that sees it now, over the whole layer, as drawnFrustum */
 } VoyVulkanReprojection;
 #define VOY_VULKAN_REPROJECTION_INIT                                                       \
   {                                                                                        \
@@ -481,7 +491,7 @@ typedef struct VoyVulkanCompositeDraw {
   VkCommandBuffer commandBuffer; /* recording, inside the render pass or dynamic rendering */
   VoyTarget target;              /* of the composite's device */
   uint32_t imageIndex;           /* acquired in SHADER_READ_ONLY_OPTIMAL for FRAGMENT_SHADER */
-  uint32_t layer;
+  uint32_t layer;                /* of the target's image, 0 to layerCount - 1 */
   /* Of the attachment, where the layer goes, pixel by pixel: offset 0 or more, extent 1 to the
    * target's size. A smaller extent shows the picture's top left part. */
   VkRect2D area;
@@ -490,7 +500,8 @@ typedef struct VoyVulkanCompositeDraw {
   VoyVulkanDepthUse depthUse;     /* TEST and WRITE need a target with depth and a depthFormat */
   VoyDepthEncoding depthEncoding; /* of the attachment; STANDARD or REVERSED */
   uint32_t reserved;              /* 0 */
-  double nearZ, farZ;             /* of the host's projection, metres; farZ may be infinite */
+  double nearZ, /* near plane of the host's projection, metres, as VoyEyeDepthLimit.nearZ */
+      farZ;     /* its far plane, as VoyEyeDepthLimit.farZ. Both are ignored with depthUse NONE */
 } VoyVulkanCompositeDraw;
 #define VOY_VULKAN_COMPOSITE_DRAW_INIT                                                            \
   {                                                                                               \
