@@ -359,6 +359,7 @@ void SplatPipeline::submit(const FrameInput& frame, bool checked) {
     each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
   } catch (...) {
     mark_end_quietly(frame, stream);
+    free_.push_back(std::move(under_way_.back()));  // to free it would be to wait for the host
     under_way_.pop_back();
     throw;
   }

@@ -227,12 +227,12 @@ void wait_for_host(const Event& event) {
   }
 }
 
-void wait_for_host(const Stream& stream) {
-  const cudaError_t status = cudaStreamQuery(stream.get());
+void wait_for_host(cudaStream_t stream) {
+  const cudaError_t status = cudaStreamQuery(stream);
   if (status == cudaSuccess) return;
   if (status != cudaErrorNotReady) check(status, "a frame");
   const Event done(kWaitedFor);
-  done.record(stream.get());
+  done.record(stream);
   wait_for_host(done);
 }
 

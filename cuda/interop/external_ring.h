@@ -12,10 +12,12 @@ std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
                                           ExternalRingDesc desc);
 
 // Until what the stream has so far is done, or the event has passed. Frames under way may wait for
-// the host: throws Error(timeout) after kHostPatience. Takes up to
-// 0.3 ms longer than wait().
+// the host: throws Error(timeout) after kHostPatience. It looks five times a millisecond.
 void wait_for_host(const Event& event);
-void wait_for_host(const Stream& stream);
+void wait_for_host(cudaStream_t stream);
+inline void wait_for_host(const Stream& stream) {
+  wait_for_host(stream.get());
+}
 
 // Of a ring that import_ring made.
 RasterTarget raster_target(const ExternalTarget& target, const Vec3f& background);

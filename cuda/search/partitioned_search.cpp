@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "cuda/device/stream.h"
+#include "cuda/interop/external_ring.h"
 #include "cuda/search/cut_state.h"
 #include "cuda/search/search.h"
 #include "cuda/stream/device_pool.h"
@@ -93,7 +93,7 @@ uint64_t PartitionedSearch::most_nodes() const {
 bool PartitionedSearch::fit_pool(cudaStream_t stream) {
   const uint64_t most = most_nodes();
   if (state_ && most <= most_) return true;
-  wait_for(stream);
+  wait_for_host(stream);
   state_.reset();
   state_ = std::make_unique<CutState>(scene_->search, most, weights_);
   most_ = most;
