@@ -40,6 +40,7 @@ class ImitatedGodot {
 
   bool has_device() const { return host_ && host_->exists(); }
   bool initialized() const { return initialized_; }
+  bool has_class(const std::string& name) const { return classes_.count(name) == 1; }
   bool has_method(const std::string& name) const { return methods_.count(name) == 1; }
   // Of a method that there is.
   size_t argument_count(const std::string& name) const { return methods_.at(name).argument_count; }
