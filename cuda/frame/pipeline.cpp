@@ -22,6 +22,11 @@
 namespace voyager::cuda {
 namespace {
 
+// A stream takes some thousand launches ahead of the device, and a frame has up to twenty for each
+// instance. In the next one the host would sleep until the device goes on, which may wait for the
+// host; so would every thread that wants memory of the device.
+constexpr size_t kInstancesAhead = 24;
+
 Buffer<float> upload_lut(const PipelineDesc& desc) {
   if (desc.exponential != Exponential::lut) return {};
   std::vector<float> lut(desc.lut_size + 1);
@@ -78,6 +83,7 @@ class SplatPipeline final : public Pipeline {
   using Eyes = std::array<RasterEye, kMaxEyes>;
 
   void wait_for_frames();
+  void bound_launches() const;
   Report begin_frame(const FrameInput& frame);
   void fit(const FrameInput& frame, const FrameTiles& tiles);
   // SceneReading: that of the frame, which has not ended.
@@ -115,6 +121,7 @@ class SplatPipeline final : public Pipeline {
   Stream stream_;
   std::vector<Report> free_;      // made as many as were under way at once
   std::deque<Report> under_way_;  // the oldest first
+  Event begun_{kWaitedFor};       // the last of these: the host has let go of its images
   SplatRoom wanted_;              // by what frames that were under way have used
 };
 
@@ -222,6 +229,12 @@ void SplatPipeline::wait_for_frames() {
   wait_for_host(stream_);
   for (const DeviceInstance& instance : instances_.all())
     if (instance.scene->streamed()) pool_of(*instance.scene, *device_).await_links();
+}
+
+// Frames under way may wait for the host, and with this one be more than the stream takes.
+void SplatPipeline::bound_launches() const {
+  const size_t frames = under_way_.size() + 1;
+  if (frames * instances_.all().size() > kInstancesAhead) wait_for_host(begun_);
 }
 
 SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
@@ -339,19 +352,25 @@ SplatPipeline::Eyes SplatPipeline::external_eyes(const FrameInput& frame) {
 
 void SplatPipeline::submit(const FrameInput& frame, bool checked) {
   if (checked) wait_for_frames();
+  bound_launches();
   under_way_.push_back(begin_frame(frame));
   const cudaStream_t stream = stream_.get();
-  const auto wait = [&](const ExternalTarget& target) { wait_released(target, stream); };
+  const auto wait = [&] {
+    each_ring(frame, [&](const ExternalTarget& target) { wait_released(target, stream); });
+    begun_.record(stream);
+  };
   FrameReport& report = *under_way_.back();
   try {
     // In front of the frame's own work, so that the two APIs take fewer turns on the device.
-    // Lists that the host waits for come first: it would wait for its own queue.
-    if (!checked) each_ring(frame, wait);
+    // Lists that the host waits for come first, or that the stream does not take: the host would
+    // wait for its own queue.
+    const bool lists_first = checked || instances_.all().size() > kInstancesAhead;
+    if (!lists_first) wait();
     {
       const SceneReading reading(instances_, stream);
       launch_search(reading, frame, report);
       checked ? launch_checked_lists(reading, frame, report) : launch_lists(reading, frame, report);
-      if (checked) each_ring(frame, wait);
+      if (lists_first) wait();
       launch_image(reading, frame, external_eyes(frame), report);  // a second pass reads, too
     }
     each_ring(frame, [&](const ExternalTarget& target) { signal_rendered(target, stream); });

@@ -1,4 +1,5 @@
 // Calls that wait for frames in flight, which a host does not let go on.
+#include <chrono>
 #include <functional>
 #include <thread>
 
@@ -35,8 +36,8 @@ struct Waiting {
   ErrorCode found = ErrorCode::internal;
 };
 
-// All at once, for each takes ten seconds.
-void expect_timeouts(std::vector<Waiting>& all) {
+// All at once, for each takes ten seconds. beside: what does not wait meanwhile.
+void expect_timeouts(std::vector<Waiting>& all, const std::function<void()>& beside) {
   std::vector<std::thread> hosts;
   for (Waiting& waiting : all)
     hosts.emplace_back([&waiting] {
@@ -46,7 +47,11 @@ void expect_timeouts(std::vector<Waiting>& all) {
         waiting.found = error.code();
       }
     });
+  const auto start = std::chrono::steady_clock::now();
+  beside();
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   for (std::thread& host : hosts) host.join();
+  EXPECT_LT(took.count(), 5.0) << "another view waited for the frame that is stuck";
   for (const Waiting& waiting : all) EXPECT_EQ(waiting.found, ErrorCode::timeout) << waiting.name;
 }
 
@@ -57,25 +62,35 @@ TEST_F(HostPatience, EndsAndWhatWasAskedForCanBeAskedForAgain) {
   const auto wide = make_ring(large.width, large.height);
   const auto whole = resident();
   const std::shared_ptr<Scene> part = streamed();
-  std::vector<Waiting> all(5);
-  auto add = [&, next = 0](const char* name, const std::shared_ptr<const Scene>& scene,
-                           auto call) mutable {
+  std::vector<Waiting> all(6);
+  auto add = [&, next = 0](const char* name, const Scenes& scenes, auto call) mutable {
     Waiting& waiting = all[static_cast<size_t>(next++)];
     waiting.name = name;
-    waiting.view = view(scene, {});
+    waiting.view = std::make_unique<View>(scenes, *cuda, PipelineDesc{}, memory(), workers);
     waiting.call = [&waiting, call] { call(*waiting.view); };
   };
-  add("the cut", whole, [](View& of) { of.cut(0); });
-  add("a frame in host memory", whole, [&](View& of) { render(of, frame_input(small, 3)); });
-  add("other scenes", whole, [](View& of) { of.set_scenes({}); });
-  add("a larger frame", whole, [&](View& of) { of.render(into(*wide, large)); });
-  add("a scene's budget", part,
+  add("the cut", {whole}, [](View& of) { of.cut(0); });
+  add("a frame in host memory", {whole}, [&](View& of) { render(of, frame_input(small, 3)); });
+  add("other scenes", {whole}, [](View& of) { of.set_scenes({}); });
+  add("a larger frame", {whole}, [&](View& of) { of.render(into(*wide, large)); });
+  add("a scene's budget", {part},
       [&](View&) { resize_streamed(*part, uint64_t{8} << 20, *cuda, workers); });
+  add("more launches than a stream takes", Scenes(kMaxInstances, whole),
+      [&](View& of) { of.render(into(*ring, small)); });
+  const auto other_of_whole = view(whole, {}), other_of_part = view(part, {});
+  const FrameInput in_memory = frame_input(small, 3);
+  const auto others = [&] {
+    render(*other_of_whole, in_memory);
+    render(*other_of_part, in_memory);
+  };
+  others();  // with all the room that they need
   for (Waiting& waiting : all) waiting.view->render(into(*ring, small));
   ring->wait();
   hold_back(*ring, kPatience + 1500);
   for (Waiting& waiting : all) waiting.view->render(into(*ring, small));
-  expect_timeouts(all);
+  expect_timeouts(all, [&] {
+    for (int i = 0; i < 5; ++i) others();
+  });
   ring->wait();
   for (Waiting& waiting : all) EXPECT_NO_THROW(waiting.call()) << waiting.name;
 }
