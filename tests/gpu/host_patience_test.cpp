@@ -1,5 +1,4 @@
 // Calls that wait for frames in flight, which a host does not let go on.
-#include <chrono>
 #include <functional>
 #include <thread>
 
@@ -36,8 +35,8 @@ struct Waiting {
   ErrorCode found = ErrorCode::internal;
 };
 
-// All at once, for each takes ten seconds. beside: what does not wait meanwhile.
-void expect_timeouts(std::vector<Waiting>& all, const std::function<void()>& beside) {
+// All at once, for each takes ten seconds.
+void expect_timeouts(std::vector<Waiting>& all) {
   std::vector<std::thread> hosts;
   for (Waiting& waiting : all)
     hosts.emplace_back([&waiting] {
@@ -47,11 +46,7 @@ void expect_timeouts(std::vector<Waiting>& all, const std::function<void()>& bes
         waiting.found = error.code();
       }
     });
-  const auto start = std::chrono::steady_clock::now();
-  beside();
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   for (std::thread& host : hosts) host.join();
-  EXPECT_LT(took.count(), 5.0) << "another view waited for the frame that is stuck";
   for (const Waiting& waiting : all) EXPECT_EQ(waiting.found, ErrorCode::timeout) << waiting.name;
 }
 
@@ -77,20 +72,13 @@ TEST_F(HostPatience, EndsAndWhatWasAskedForCanBeAskedForAgain) {
       [&](View&) { resize_streamed(*part, uint64_t{8} << 20, *cuda, workers); });
   add("more launches than a stream takes", Scenes(kMaxInstances, whole),
       [&](View& of) { of.render(into(*ring, small)); });
-  const auto other_of_whole = view(whole, {}), other_of_part = view(part, {});
-  const FrameInput in_memory = frame_input(small, 3);
-  const auto others = [&] {
-    render(*other_of_whole, in_memory);
-    render(*other_of_part, in_memory);
-  };
-  others();  // with all the room that they need
-  for (Waiting& waiting : all) waiting.view->render(into(*ring, small));
-  ring->wait();
+  for (int i = 0; i < 3; ++i) {  // after which none frees a buffer
+    for (Waiting& waiting : all) waiting.view->render(into(*ring, small));
+    ring->wait();
+  }
   hold_back(*ring, kPatience + 1500);
   for (Waiting& waiting : all) waiting.view->render(into(*ring, small));
-  expect_timeouts(all, [&] {
-    for (int i = 0; i < 5; ++i) others();
-  });
+  expect_timeouts(all);
   ring->wait();
   for (Waiting& waiting : all) EXPECT_NO_THROW(waiting.call()) << waiting.name;
 }
