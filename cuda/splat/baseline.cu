@@ -113,10 +113,6 @@ __global__ void __launch_bounds__(kThreads) baseline_ranges(BaselineView view) {
   if (at + 1 == view.pairs || view.sorted_keys[at + 1] >> 32 != tile) view.tiles[tile].y = at + 1;
 }
 
-__device__ bool ended(const RasterPixel& pixel) {
-  return pixel.limit == -kInfinity;
-}
-
 template <bool kLod>
 __device__ void baseline_blend(const BaselineSplat& s, float x, float y, RasterPixel& pixel) {
   const float dx = s.x - x, dy = s.y - y;
@@ -127,7 +123,7 @@ __device__ void baseline_blend(const BaselineSplat& s, float x, float y, RasterP
   if (alpha < kAlphaThreshold) return;
   const float after = pixel.transmittance * (1.0f - alpha);
   if (after < kTransmittanceEnd) {
-    pixel.limit = -kInfinity;
+    pixel.end();
     return;
   }
   const float weight = alpha * pixel.transmittance;
@@ -147,15 +143,15 @@ __global__ void __launch_bounds__(kThreads)
   const bool inside = x < target.width && y < target.height;
   const float centre_x = static_cast<float>(x) + 0.5f, centre_y = static_cast<float>(y) + 0.5f;
   RasterPixel pixel;
-  pixel.limit = inside ? 0.0f : -kInfinity;
+  if (!inside) pixel.end();
   const ulonglong2 list = view.tiles[blockIdx.x];
   for (unsigned long long first = list.x; first < list.y; first += kThreads) {
-    if (__syncthreads_and(ended(pixel))) break;
+    if (__syncthreads_and(pixel.ended())) break;
     if (first + threadIdx.x < list.y)
       batch[threadIdx.x] = view.splats[view.sorted_values[first + threadIdx.x]];
     __syncthreads();
     const auto count = static_cast<unsigned>(min(list.y - first, 0ull + kThreads));
-    for (unsigned i = 0; i < count && !ended(pixel); ++i)
+    for (unsigned i = 0; i < count && !pixel.ended(); ++i)
       baseline_blend<kLod>(batch[i], centre_x, centre_y, pixel);
   }
   if (inside) write_pixel(target, x, y, pixel);

@@ -57,45 +57,51 @@ template <class M, int kPixels>
 struct FloatLane {
   static constexpr int kRows = kPixels;
   float x, y, below;  // the centre of the first, and rows from y to it
+  float limit;        // splats contribute while their -log α is no more
   RasterPixel pixels[kRows];
 
-  __device__ FloatLane(float centre_x, float centre_y, int rows_below)
-      : x(centre_x), y(centre_y), below(static_cast<float>(rows_below)) {}
-  __device__ void set_limit(int row, float limit) { pixels[row].limit = limit; }
-  __device__ float limit(int row) const { return pixels[row].limit; }
+  __device__ FloatLane(float centre_x, float centre_y, int rows_below, float most)
+      : x(centre_x), y(centre_y), below(static_cast<float>(rows_below)), limit(most) {}
+  __device__ void end(int row) { pixels[row].end(); }
+  __device__ bool ended(int row) const { return pixels[row].ended(); }
   __device__ void set_farthest(int row, float z) { pixels[row].farthest = z; }
   __device__ float farthest(int row) const { return pixels[row].farthest; }
   __device__ RasterPixel pixel(int row) const { return pixels[row]; }
   static __device__ float4 prepare(const float4& colour) { return colour; }
 
-  // Without a branch but for many siblings, so that the splats of a loop overlap.
+  // Without a branch but for many siblings, so that the splats of a loop overlap. A splat that
+  // misses a pixel is blended into it with an α of 0.
   template <Siblings kMost>
   __device__ void blend(const float4& shape, const float4& middle, const float4& colour,
                         const Lut& lut, Counts& counts) {
     constexpr Exponential E = M::kExponential;
     float minus_log[kRows];
     lane_logarithms(x, y, below, shape, middle, minus_log);
+    float r = colour.x, g = colour.y, b = colour.z;
+    asm volatile("" : "+f"(r), "+f"(g), "+f"(b));  // read once, not in each pixel's branch
 #pragma unroll
     for (int row = 0; row < kRows; ++row) {
       RasterPixel& pixel = pixels[row];
-      bool hit = minus_log[row] <= pixel.limit;
+      bool hit = minus_log[row] <= limit;
       if constexpr (M::kLimits) hit = hit && middle.z <= pixel.farthest;
       float alpha = alpha_of<E>(-minus_log[row], lut.entries, lut.scale);
       alpha = blended_alpha<E, kMost>(alpha, middle.w, colour.w);
+      alpha = hit ? alpha : 0.0f;
       const float before = pixel.transmittance, after = fmaf(-alpha, before, before);
-      const bool ends = hit && after < kTransmittanceEnd, blends = hit && !ends;
-      const float weight = blends ? alpha * before : 0.0f;
-      pixel.limit = ends ? -kInfinity : pixel.limit;
-      pixel.transmittance = blends ? after : before;
-      pixel.r = fmaf(weight, colour.x, pixel.r);
-      pixel.g = fmaf(weight, colour.y, pixel.g);
-      pixel.b = fmaf(weight, colour.z, pixel.b);
+      const bool goes_on = after >= kTransmittanceEnd;  // false of what has ended
+      if (goes_on) {
+        const float weight = alpha * before;
+        pixel.r = fmaf(weight, r, pixel.r);
+        pixel.g = fmaf(weight, g, pixel.g);
+        pixel.b = fmaf(weight, b, pixel.b);
+      }
+      pixel.transmittance = goes_on ? after : -fabsf(before);
       if constexpr (M::kDepth) {
         const bool found = pixel.transmittance <= pixel.halfway;
         pixel.depth = found ? middle.z : pixel.depth;
         pixel.halfway = found ? -1.0f : pixel.halfway;
       }
-      if constexpr (M::kCount) counts.evaluated += 1, counts.blended += blends;
+      if constexpr (M::kCount) counts.evaluated += 1, counts.blended += hit && goes_on;
     }
   }
 };
@@ -107,13 +113,15 @@ struct HalfLane {
   static constexpr int kRows = 2;
   float x, y;
   __half2 r{}, g{}, b{}, transmittance;
-  float limits[kRows], depth[kRows] = {kInfinity, kInfinity}, halfway[kRows] = {0.5f, 0.5f};
+  // The -log α up to which splats contribute; -inf once the pixel has ended.
+  float limits[kRows];
+  float depth[kRows] = {kInfinity, kInfinity}, halfway[kRows] = {0.5f, 0.5f};
   float farthest_z[kRows];
 
-  __device__ HalfLane(float centre_x, float centre_y, int)
-      : x(centre_x), y(centre_y), transmittance(__float2half2_rn(1.0f)) {}
-  __device__ void set_limit(int row, float limit) { limits[row] = limit; }
-  __device__ float limit(int row) const { return limits[row]; }
+  __device__ HalfLane(float centre_x, float centre_y, int, float most)
+      : x(centre_x), y(centre_y), transmittance(__float2half2_rn(1.0f)), limits{most, most} {}
+  __device__ void end(int row) { limits[row] = -kInfinity; }
+  __device__ bool ended(int row) const { return limits[row] == -kInfinity; }
   __device__ void set_farthest(int row, float z) { farthest_z[row] = z; }
   __device__ float farthest(int row) const { return farthest_z[row]; }
   __device__ RasterPixel pixel(int row) const {
@@ -187,7 +195,7 @@ struct HalfLane {
                            ends[1] ? __high2half(transmittance) : __high2half(after));
 #pragma unroll
     for (int row = 0; row < kRows; ++row)
-      if (ends[row]) limits[row] = -kInfinity;
+      if (ends[row]) end(row);
   }
   __device__ void find_depth(float z) {
     const float now[kRows] = {__low2float(transmittance), __high2float(transmittance)};

@@ -40,10 +40,11 @@ __device__ void write_color(const RasterTarget& target, uint32_t x, uint32_t y, 
 
 __device__ inline void write_pixel(const RasterTarget& target, uint32_t x, uint32_t y,
                                    const RasterPixel& pixel) {
-  const float r = fmaf(pixel.transmittance, target.background.x, pixel.r);
-  const float g = fmaf(pixel.transmittance, target.background.y, pixel.g);
-  const float b = fmaf(pixel.transmittance, target.background.z, pixel.b);
-  const float a = 1.0f - pixel.transmittance;
+  const float through = fabsf(pixel.transmittance);
+  const float r = fmaf(through, target.background.x, pixel.r);
+  const float g = fmaf(through, target.background.y, pixel.g);
+  const float b = fmaf(through, target.background.z, pixel.b);
+  const float a = 1.0f - through;
   switch (target.format) {
     case ColorFormat::none:
       break;

@@ -63,11 +63,15 @@ __device__ inline float blended_alpha(float alpha, float t, float inverse_k) {
 
 // A pixel in progress.
 struct RasterPixel {
-  float r = 0.0f, g = 0.0f, b = 0.0f, transmittance = 1.0f;
+  float r = 0.0f, g = 0.0f, b = 0.0f;
+  float transmittance = 1.0f;  // negative once the pixel has ended
   float depth = kInfinity;
   float halfway = 0.5f;  // the T at which depth is found; below all T once it is
-  float limit;           // splats contribute while their -log α is no more; -inf once it has ended
-  float farthest;        // and, where depth is limited, their z
+  float farthest;        // the z up to which splats contribute, where depth is limited
+
+  // It then takes no more splats.
+  __device__ void end() { transmittance = -fabsf(transmittance); }
+  __device__ bool ended() const { return transmittance < 0.0f; }
 };
 
 }  // namespace voyager::cuda

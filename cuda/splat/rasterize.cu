@@ -68,7 +68,7 @@ template <class Lane>
 __device__ bool all_ended(const Lane& lane) {
   bool all = true;
 #pragma unroll
-  for (int row = 0; row < Lane::kRows; ++row) all &= lane.limit(row) == -kInfinity;
+  for (int row = 0; row < Lane::kRows; ++row) all &= lane.ended(row);
   return __all_sync(kAll, all);
 }
 
@@ -78,7 +78,7 @@ __device__ float farthest_of(const Lane& lane) {
   float z = -kInfinity;
 #pragma unroll
   for (int row = 0; row < Lane::kRows; ++row)
-    if (lane.limit(row) != -kInfinity) z = fmaxf(z, lane.farthest(row));
+    if (!lane.ended(row)) z = fmaxf(z, lane.farthest(row));
 #pragma unroll
   for (int other = 16; other > 0; other /= 2) z = fmaxf(z, __shfl_xor_sync(kAll, z, other));
   return z;
@@ -233,10 +233,11 @@ __device__ void rasterize_part(const RasterParams& params, const PartOfTile& of,
   const auto top = static_cast<float>(part_y + of.below);
   const Part part{static_cast<float>(part_x) + 0.5f, static_cast<float>(part_x + kPartWidth) - 0.5f,
                   top + 0.5f, top + static_cast<float>(Lane::kRows * kLaneRows) - 0.5f};
-  Lane lane(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, static_cast<int>(of.below));
+  Lane lane(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, static_cast<int>(of.below),
+            -params.log_threshold);
 #pragma unroll
   for (int row = 0; row < Lane::kRows; ++row)
-    lane.set_limit(row, inside(row) ? -params.log_threshold : -kInfinity);
+    if (!inside(row)) lane.end(row);
   if constexpr (M::kLimits)
     for (int row = 0; row < Lane::kRows; ++row)
       lane.set_farthest(row, inside(row) ? limit_at(eye.limits, x, row_of(row)) : -kInfinity);
