@@ -17,6 +17,7 @@ namespace {
 
 constexpr unsigned kBinThreads = 768;
 constexpr uint32_t kNarrow = 4;  // tiles of a strip that a lane places by itself
+constexpr uint32_t kWideLanes = 8, kWideGroups = 32 / kWideLanes;  // that place the others
 
 // The strips of a block, and the tiles that it sees to: a band of those of its region's eye.
 struct Share {
@@ -151,7 +152,7 @@ __device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) 
   if (place < splats.pairs) splats.keys[place] = key;
 }
 
-// A strip a lane; the rest of a wide one is the whole warp's.
+// A strip a lane; the rest of a wide one is for a quarter of the warp.
 template <bool kLimited>
 __device__ void bin_strip(const SplatView& splats, const Share& share, uint32_t* cursors,
                           const TileRange& range, DepthKey key) {
@@ -168,12 +169,18 @@ __device__ void bin_strip(const SplatView& splats, const Share& share, uint32_t*
 #pragma unroll
   for (uint32_t k = 0; k < kNarrow; ++k) bin_pair(splats, place[k], key);
   unsigned wide = __ballot_sync(0xffffffffu, tiles > kNarrow);
-  for (; wide != 0; wide &= wide - 1) {
-    const int owner = __ffs(wide) - 1;
+  while (wide != 0) {
+    unsigned own = wide;
+#pragma unroll
+    for (uint32_t group = 0; group < kWideGroups; ++group) {
+      if (group < lane / kWideLanes) own &= own - 1;
+      wide &= wide - 1;
+    }
+    const int owner = own == 0 ? 0 : __ffs(own) - 1;
     const DepthKey shared_key = __shfl_sync(0xffffffffu, key, owner);
     const uint32_t first = __shfl_sync(0xffffffffu, begin, owner);
     const uint32_t count = __shfl_sync(0xffffffffu, tiles, owner);
-    for (uint32_t k = kNarrow + lane; k < count; k += 32)
+    for (uint32_t k = kNarrow + lane % kWideLanes; own != 0 && k < count; k += kWideLanes)
       bin_pair(splats, take(first + k, shared_key), shared_key);
   }
 }

@@ -160,8 +160,12 @@ __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) 
     __syncthreads();
   }
   const uint32_t warp = threadIdx.x / 32;
-  for (uint32_t i = long_lists + blockIdx.x * kSortWarps + warp; i < tiles;
-       i += gridDim.x * kSortWarps) {
+  const uint32_t queue = (blockIdx.x * kSortWarps + warp) % kSortQueues;
+  for (;;) {
+    uint32_t taken = 0;
+    if (threadIdx.x % 32 == 0) taken = atomicAdd(&splats.counters->queues[queue].taken, 1u);
+    const uint32_t i = long_lists + __shfl_sync(0xffffffffu, taken, 0) * kSortQueues + queue;
+    if (i >= tiles) return;
     const TileList list = splats.tiles[splats.tile_order[i]];
     if (list.last - list.first > 1)
       ShortLists::sort(storage.warp[warp], splats.keys + list.first, list.last - list.first,

@@ -39,6 +39,13 @@ struct alignas(128) StripRegion {
   uint32_t strips;
 };
 
+// Warps take short lists from as many queues, each every so manyth list: whoever has sorted a long
+// one takes fewer.
+inline constexpr uint32_t kSortQueues = 32;
+struct alignas(128) SortQueue {
+  uint32_t taken;
+};
+
 struct InstanceCounters {
   uint32_t first_place;
   // Of its places, that may reach the image: those that are drawn untouched, and those that blend
@@ -50,6 +57,7 @@ struct InstanceCounters {
 // Of one frame.
 struct SplatCounters {
   StripRegion regions[kStripRegions];
+  SortQueue queues[kSortQueues];
   unsigned long long pairs, pairs_boxed;          // of the ellipses, and of their boxes
   unsigned long long evaluated, blended;          // pixels, where they are counted
   unsigned long long places_read;                 // of the lists, where pixels are counted
