@@ -1,7 +1,9 @@
 // METHOD §6: each tile's list by depth, ties by id. A warp sorts a short list in registers
 // and shared memory, a block a longer one; one that does not fit is sorted in parts, which
 // the block then merges in global memory.
+#include <cub/block/block_exchange.cuh>
 #include <cub/block/block_merge_sort.cuh>
+#include <cub/warp/warp_exchange.cuh>
 #include <cub/warp/warp_merge_sort.cuh>
 
 #include "cuda/device/grid.h"
@@ -25,58 +27,82 @@ struct Before {
   __device__ bool operator()(DepthKey a, DepthKey b) const { return a < b; }
 };
 
+// Who sorts a list together, kEach keys a thread.
+template <int kEach>
+struct WarpKeys {
+  static constexpr int kThreads = 32;
+  using Sort = cub::WarpMergeSort<DepthKey, kEach, kThreads>;
+  using Exchange = cub::WarpExchange<DepthKey, kEach, kThreads>;
+  static __device__ void sync() { __syncwarp(); }
+};
+template <int kOfBlock, int kEach>
+struct BlockKeys {
+  static constexpr int kThreads = kOfBlock;
+  using Sort = cub::BlockMergeSort<DepthKey, kThreads, kEach>;
+  using Exchange = cub::BlockExchange<DepthKey, kThreads, kEach>;
+  static __device__ void sync() { __syncthreads(); }
+};
+template <int kEach>
+using MediumKeys = BlockKeys<kSortThreads, kEach>;
+template <int kEach>
+using LargeKeys = BlockKeys<kLargeThreads, kEach>;
+
+template <class Keys>
+union KeysStorage {
+  typename Keys::Sort::TempStorage sort;
+  typename Keys::Exchange::TempStorage exchange;
+};
+
 // count ≤ kEach times the threads, which `thread` numbers.
-template <class Sort, int kEach, int kThreads>
-__device__ void sort_keys(typename Sort::TempStorage& storage, DepthKey* keys, uint32_t count,
+template <class Keys, int kEach>
+__device__ void sort_keys(KeysStorage<Keys>& storage, DepthKey* keys, uint32_t count,
                           uint32_t thread) {
+  constexpr int kThreads = Keys::kThreads;
   DepthKey own[kEach];
 #pragma unroll
   for (int k = 0; k < kEach; ++k) {
     const uint32_t at = k * kThreads + thread;
     own[k] = at < count ? keys[at] : kLast;
   }
-  Sort(storage).Sort(own, Before{});
+  typename Keys::Sort(storage.sort).Sort(own, Before{});
+  Keys::sync();
+  typename Keys::Exchange(storage.exchange)
+      .BlockedToStriped(own, own);  // neighbours write together
 #pragma unroll
   for (int k = 0; k < kEach; ++k) {
-    const uint32_t at = thread * kEach + k;
+    const uint32_t at = k * kThreads + thread;
     if (at < count) keys[at] = own[k];
   }
 }
 
 // The least of the odd numbers below that holds the list.
-template <template <int> class SortOf, int kThreads, int kEach, int... kMore>
+template <template <int> class KeysOf, int kEach, int... kMore>
 struct Sizes {
-  using Sort = SortOf<kEach>;
-  using Rest = Sizes<SortOf, kThreads, kMore...>;
+  using Keys = KeysOf<kEach>;
+  using Rest = Sizes<KeysOf, kMore...>;
   union Storage {
-    typename Sort::TempStorage own;
+    KeysStorage<Keys> own;
     typename Rest::Storage rest;
   };
   static __device__ void sort(Storage& storage, DepthKey* keys, uint32_t count, uint32_t thread) {
-    if (count <= kEach * kThreads)
-      sort_keys<Sort, kEach, kThreads>(storage.own, keys, count, thread);
+    if (count <= kEach * Keys::kThreads)
+      sort_keys<Keys, kEach>(storage.own, keys, count, thread);
     else
       Rest::sort(storage.rest, keys, count, thread);
   }
 };
-template <template <int> class SortOf, int kThreads, int kEach>
-struct Sizes<SortOf, kThreads, kEach> {
-  using Sort = SortOf<kEach>;
-  using Storage = typename Sort::TempStorage;
+template <template <int> class KeysOf, int kEach>
+struct Sizes<KeysOf, kEach> {
+  using Keys = KeysOf<kEach>;
+  using Storage = KeysStorage<Keys>;
   static __device__ void sort(Storage& storage, DepthKey* keys, uint32_t count, uint32_t thread) {
-    sort_keys<Sort, kEach, kThreads>(storage, keys, count, thread);
+    sort_keys<Keys, kEach>(storage, keys, count, thread);
   }
 };
 
-template <int kEach>
-using WarpSort = cub::WarpMergeSort<DepthKey, kEach, 32>;
-template <int kEach>
-using MediumSort = cub::BlockMergeSort<DepthKey, kSortThreads, kEach>;
-template <int kEach>
-using LargeSort = cub::BlockMergeSort<DepthKey, kLargeThreads, kEach>;
-using ShortLists = Sizes<WarpSort, 32, 3, 5, 7, 9, 13, kItems>;
-using MediumLists = Sizes<MediumSort, kSortThreads, 5, 9, 13, kItems>;
-using LargeLists = Sizes<LargeSort, kLargeThreads, 5, 9, kItems>;
+using ShortLists = Sizes<WarpKeys, 3, 5, 7, 9, 13, kItems>;
+using MediumLists = Sizes<MediumKeys, 5, 9, 13, kItems>;
+using LargeLists = Sizes<LargeKeys, 5, 9, kItems>;
 
 // How many of the first `diagonal` keys of the two sorted runs, merged, come from `a`.
 __device__ uint32_t merge_path(const DepthKey* a, uint32_t a_count, const DepthKey* b,
