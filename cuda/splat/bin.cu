@@ -24,6 +24,9 @@ struct Share {
   const TileStrip* strips;
   uint32_t count;
   uint32_t first_tile, tiles;
+
+  // Asked for before it is wanted.
+  __device__ TileStrip strip(uint32_t i) const { return i < count ? strips[i] : TileStrip{}; }
 };
 
 __device__ Share bin_share(const SplatView& splats, uint32_t band) {
@@ -65,10 +68,12 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
   if (!has_work(splats)) return;
   extern __shared__ uint32_t counts[];
   const Share share = bin_share(splats, band);
+  TileStrip next = share.strip(threadIdx.x);
   for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) counts[i] = 0;
   __syncthreads();
   for (uint32_t i = threadIdx.x; i < share.count; i += kBinThreads) {
-    const TileStrip strip = share.strips[i];
+    const TileStrip strip = next;
+    next = share.strip(i + kBinThreads);
     const TileRange range = bin_band(strip, share);
     for (int32_t tile = range.begin; tile < range.end; ++tile)
       if (bin_takes<kLimited>(splats, share.first_tile + tile, strip.depth))
@@ -76,9 +81,19 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
   }
   __syncthreads();
   uint32_t* offsets = bin_offsets(splats, share);
-  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) {
-    const uint32_t count = counts[i];
-    offsets[i] = count == 0 ? 0 : atomicAdd(splats.tile_counts + share.first_tile + i, count);
+  constexpr uint32_t kAtOnce = 4;  // so that their waits overlap
+  for (uint32_t base = threadIdx.x; base < share.tiles; base += kAtOnce * kBinThreads) {
+    uint32_t before[kAtOnce];
+#pragma unroll
+    for (uint32_t k = 0; k < kAtOnce; ++k) {
+      const uint32_t i = base + k * kBinThreads, count = i < share.tiles ? counts[i] : 0;
+      before[k] = count == 0 ? 0 : atomicAdd(splats.tile_counts + share.first_tile + i, count);
+    }
+#pragma unroll
+    for (uint32_t k = 0; k < kAtOnce; ++k) {
+      const uint32_t i = base + k * kBinThreads;
+      if (i < share.tiles) offsets[i] = before[k];
+    }
   }
 }
 
@@ -191,15 +206,14 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
   if (!has_work(splats)) return;
   extern __shared__ uint32_t cursors[];
   const Share share = bin_share(splats, band);
+  TileStrip next = share.strip(threadIdx.x);
   const uint32_t* offsets = bin_offsets(splats, share);
   for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads)
     cursors[i] = splats.tiles[share.first_tile + i].first + offsets[i];
   __syncthreads();
-  const auto strip_at = [&](uint32_t i) { return i < share.count ? share.strips[i] : TileStrip{}; };
-  TileStrip next = strip_at(threadIdx.x);
   for (uint32_t base = threadIdx.x / 32 * 32; base < share.count; base += kBinThreads) {
     const TileStrip strip = next;
-    next = strip_at(base + kBinThreads + threadIdx.x % 32);  // asked for before it is wanted
+    next = share.strip(base + kBinThreads + threadIdx.x % 32);
     const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
     bin_strip<kLimited>(splats, share, cursors, bin_band(strip, share), key);
   }
