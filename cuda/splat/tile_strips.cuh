@@ -28,16 +28,23 @@ __device__ inline TileExtent tile_extent(const SupportEllipse& ellipse, const Ti
 struct WarpExtents {
   TileExtent extent[32];
   uint32_t depth[32], slot[32];
+
+  __device__ void put(uint32_t lane, const TileExtent& own, float z, uint32_t at) {
+    extent[lane] = own;
+    depth[lane] = float_bits(z);
+    slot[lane] = at;
+  }
 };
 
-// Writes the strips of a whole warp's splats in the image of one eye, one splat a lane. boxes:
-// whole rows of each box, in place of what the ellipse touches.
+// Writes the strips of a whole warp's splats in the image of one eye, one splat a lane, which has
+// `own` of them and has put its extent, if there are any. boxes: whole rows of each box, in place
+// of what the ellipse touches.
 template <int kEyes>
-__device__ void write_strips(WarpExtents& shared, const TileExtent& own, const SplatView& splats,
-                             int eye, float depth, uint32_t slot, bool boxes) {
+__device__ void write_strips(const WarpExtents& shared, uint32_t own, const SplatView& splats,
+                             int eye, bool boxes) {
   constexpr unsigned kAll = 0xffffffffu;
   const uint32_t lane = threadIdx.x % 32;
-  const WarpShares shares(own.strips());
+  const WarpShares shares(own);
   const uint32_t strips = shares.total();
   if (strips == 0) return;
   const TileGrid& grid = splats.frame.grids[eye];
@@ -47,9 +54,6 @@ __device__ void write_strips(WarpExtents& shared, const TileExtent& own, const S
   uint32_t first = 0;
   if (lane == 0) first = atomicAdd(strip_count(splats, region), strips);
   first = __shfl_sync(kAll, first, 0);
-  shared.extent[lane] = own;
-  shared.depth[lane] = float_bits(depth);
-  shared.slot[lane] = slot;
   __syncwarp();
   for (uint32_t base = 0; base < strips; base += 32) {
     const uint32_t strip = base + lane;
