@@ -1,21 +1,19 @@
 // METHOD §7b: the (tile, splat) pairs, tile by tile. bin_count counts the pairs of each block's
-// strips in shared memory and adds them up over the blocks; bin_place turns the sums into
-// places; bin_scatter puts each block's pairs where its share of a list begins. A list's
-// order is sort_tiles' work.
+// strips in shared memory and adds them up over the blocks; bin_scatter puts each block's pairs
+// where its share of a list begins. Some more of its blocks tell where the lists lie, for those who
+// sort and draw them (bin_place.cuh). A list's order is sort_tiles' work.
 #include <algorithm>
-#include <cub/block/block_scan.cuh>
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
 #include "cuda/splat/bin_bands.h"
-#include "cuda/splat/bin_order.cuh"
+#include "cuda/splat/bin_place.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/splat_launch.h"
 
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kBinThreads = 768;
 constexpr uint32_t kNarrow = 4;  // tiles of a strip that a lane places by itself
 constexpr uint32_t kWideLanes = 8, kWideGroups = 32 / kWideLanes;  // that place the others
 
@@ -29,9 +27,10 @@ struct Share {
   __device__ TileStrip strip(uint32_t i) const { return i < count ? strips[i] : TileStrip{}; }
 };
 
-__device__ Share bin_share(const SplatView& splats, uint32_t band) {
+// blocks: of the grid, that have strips.
+__device__ Share bin_share(const SplatView& splats, uint32_t band, uint32_t blocks) {
   const uint32_t region = blockIdx.x % kStripRegions, room = splats.strip_room / kStripRegions;
-  const uint32_t part = blockIdx.x / kStripRegions, parts = gridDim.x / kStripRegions;
+  const uint32_t part = blockIdx.x / kStripRegions, parts = blocks / kStripRegions;
   const uint32_t count = min(*strip_count(splats, region), room);
   const uint32_t each = (count + parts - 1) / parts, first = min(part * each, count);
   const FrameTiles& frame = splats.frame;
@@ -67,7 +66,7 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
     bin_count(SplatView splats, uint32_t band) {
   if (!has_work(splats)) return;
   extern __shared__ uint32_t counts[];
-  const Share share = bin_share(splats, band);
+  const Share share = bin_share(splats, band, gridDim.x);
   TileStrip next = share.strip(threadIdx.x);
   for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) counts[i] = 0;
   __syncthreads();
@@ -95,72 +94,6 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
       if (i < share.tiles) offsets[i] = before[k];
     }
   }
-}
-
-// By one warp: a region of strips a lane.
-__device__ void bin_strip_counts(const SplatView& splats) {
-  static_assert(kStripRegions == 32);
-  const uint32_t strips = *strip_count(splats, threadIdx.x);
-  const uint32_t room = splats.strip_room / kStripRegions;
-  unsigned long long sum = strips, dropped = strips > room ? strips - room : 0;
-  for (int step = 16; step != 0; step /= 2) {
-    sum += __shfl_xor_sync(0xffffffffu, sum, step);
-    dropped += __shfl_xor_sync(0xffffffffu, dropped, step);
-  }
-  const unsigned long long most = __reduce_max_sync(0xffffffffu, strips);
-  if (threadIdx.x != 0) return;
-  splats.counters->strips = sum;
-  splats.counters->strip_room = most * kStripRegions;
-  splats.counters->strips_dropped = dropped;
-}
-
-constexpr unsigned kPlaceThreads = 1024;
-using PlaceScan = cub::BlockScan<unsigned long long, kPlaceThreads, cub::BLOCK_SCAN_WARP_SCANS>;
-
-// Adds a warp's values to `sum`, which is the block's.
-__device__ void bin_add(unsigned long long& sum, unsigned long long value) {
-  for (int step = 16; step != 0; step /= 2) value += __shfl_xor_sync(0xffffffffu, value, step);
-  if (threadIdx.x % 32 == 0) atomicAdd(&sum, value);
-}
-
-// Where each tile's list begins and ends, and the order in which lists are worked on: a tile a
-// thread. Each block counts all tiles for itself, and so waits for none. What is beyond the room is
-// cut off. at_once: tiles that are rasterized at a time.
-__global__ void __launch_bounds__(kPlaceThreads) bin_place(SplatView splats, uint32_t at_once) {
-  if (!has_work(splats)) return;
-  __shared__ PlaceScan::TempStorage storage;
-  __shared__ unsigned long long total, before;
-  __shared__ BinOrder order;
-  const uint32_t tiles = splats.frame.count(), base = blockIdx.x * kPlaceThreads;
-  const uint32_t tile = base + threadIdx.x;
-  if (threadIdx.x == 0) total = before = 0;
-  order.clear();
-  unsigned long long all = 0, earlier = 0;
-#pragma unroll 4
-  for (uint32_t i = threadIdx.x; i < tiles; i += kPlaceThreads) {
-    const uint32_t count = splats.tile_counts[i];
-    order.count(count, i < base);
-    all += count;
-    if (i < base) earlier += count;
-  }
-  bin_add(total, all);
-  bin_add(before, earlier);
-  const unsigned long long own = tile < tiles ? splats.tile_counts[tile] : 0;
-  unsigned long long first;
-  PlaceScan(storage).ExclusiveSum(own, first);
-  __syncthreads();
-  const float share = static_cast<float>(total) / static_cast<float>(at_once);
-  order.place(*splats.counters, max(kLeastHalved, static_cast<uint32_t>(kHalvedShare * share)));
-  if (tile < tiles) {
-    const auto room = static_cast<unsigned long long>(splats.pairs);
-    first += before;
-    splats.tiles[tile] = {static_cast<uint32_t>(min(first, room)),
-                          static_cast<uint32_t>(min(first + own, room))};
-    splats.tile_order[order.take(static_cast<uint32_t>(own))] = tile;
-  }
-  if (blockIdx.x != 0) return;
-  if (threadIdx.x == 0) splats.counters->pairs = total;
-  if (threadIdx.x < 32) bin_strip_counts(splats);
 }
 
 __device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) {
@@ -200,17 +133,65 @@ __device__ void bin_strip(const SplatView& splats, const Share& share, uint32_t*
   }
 }
 
+// What a block of bin_scatter needs beside its cursors.
+union BinScratch {
+  BinScan::TempStorage scan;
+  BinPlaces places;
+};
+
+// The pairs of all tiles before the band's, which are another eye's or another band's.
+__device__ unsigned long long bin_before(const SplatView& splats, const Share& share,
+                                         BinScratch& scratch) {
+  if (share.first_tile == 0) return 0;
+  unsigned long long own = 0, all;
+  for (uint32_t i = threadIdx.x; i < share.first_tile; i += kBinThreads)
+    own += splats.tile_counts[i];
+  BinScan(scratch.scan).ExclusiveSum(own, own, all);
+  __syncthreads();
+  return all;
+}
+
+// Where the block's pairs of each tile go. The lists lie one behind the other; what is beyond the
+// room is cut off.
+__device__ void bin_cursors(const SplatView& splats, const Share& share, BinScratch& scratch,
+                            uint32_t* cursors) {
+  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads)
+    cursors[i] = splats.tile_counts[share.first_tile + i];
+  const unsigned long long first = bin_before(splats, share, scratch);
+  __syncthreads();
+  // Each thread adds up tiles that lie together. Odd numbers of them: their banks differ.
+  const uint32_t each = (share.tiles + kBinThreads - 1) / kBinThreads | 1;
+  const uint32_t begin = min(threadIdx.x * each, share.tiles), end = min(begin + each, share.tiles);
+  unsigned long long own = 0, before;
+  for (uint32_t i = begin; i < end; ++i) own += cursors[i];
+  BinScan(scratch.scan).ExclusiveSum(own, before);
+  before += first;
+  for (uint32_t i = begin; i < end; ++i) {
+    const uint32_t count = cursors[i];
+    cursors[i] = static_cast<uint32_t>(min(before, 0ull + splats.pairs));
+    before += count;
+  }
+  __syncthreads();
+  const uint32_t* offsets = bin_offsets(splats, share);
+  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) cursors[i] += offsets[i];
+  __syncthreads();
+}
+
+// blocks: that scatter. at_once: tiles that are rasterized at a time.
 template <bool kLimited>
 __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
-    bin_scatter(SplatView splats, uint32_t band) {
+    bin_scatter(SplatView splats, uint32_t band, uint32_t blocks, uint32_t at_once) {
   if (!has_work(splats)) return;
-  extern __shared__ uint32_t cursors[];
-  const Share share = bin_share(splats, band);
+  extern __shared__ __align__(16) unsigned char memory[];
+  BinScratch& scratch = *reinterpret_cast<BinScratch*>(memory);
+  if (blockIdx.x >= blocks) {
+    if (blockIdx.y == 0) bin_place(splats, at_once, blockIdx.x - blocks, scratch.places);
+    return;
+  }
+  auto* const cursors = reinterpret_cast<uint32_t*>(memory + sizeof scratch);
+  const Share share = bin_share(splats, band, blocks);
   TileStrip next = share.strip(threadIdx.x);
-  const uint32_t* offsets = bin_offsets(splats, share);
-  for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads)
-    cursors[i] = splats.tiles[share.first_tile + i].first + offsets[i];
-  __syncthreads();
+  bin_cursors(splats, share, scratch, cursors);
   for (uint32_t base = threadIdx.x / 32 * 32; base < share.count; base += kBinThreads) {
     const TileStrip strip = next;
     next = share.strip(base + kBinThreads + threadIdx.x % 32);
@@ -221,17 +202,19 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
 
 // most: shared memory that a block may have.
 template <bool kLimited>
-void launch(const SplatFrame& f, const dim3& blocks, uint32_t band, size_t most) {
-  const size_t bytes = band * sizeof(uint32_t);
+void launch(const SplatFrame& f, const BinBands& bands, size_t most) {
+  const unsigned scattering = bin_blocks(f.multiprocessors);
+  const unsigned placing = (f.splats.frame.count() + kPlacedTiles - 1) / kPlacedTiles;
+  const size_t bytes = bands.tiles * sizeof(uint32_t);
   allow_shared_bytes(bin_count<kLimited>, most, "bin_count");
-  launch_kernel("bin_count", bin_count<kLimited>, {blocks, kBinThreads, f.stream, bytes}, f.splats,
-                band);
-  const unsigned placed = (f.splats.frame.count() + kPlaceThreads - 1) / kPlaceThreads;
-  launch_kernel("bin_place", bin_place, {placed, kPlaceThreads, f.stream}, f.splats,
-                kRasterBlocks * f.multiprocessors);
+  launch_kernel("bin_count", bin_count<kLimited>,
+                {dim3(scattering, bands.bands), kBinThreads, f.stream, bytes}, f.splats,
+                bands.tiles);
   allow_shared_bytes(bin_scatter<kLimited>, most, "bin_scatter");
-  launch_kernel("bin_scatter", bin_scatter<kLimited>, {blocks, kBinThreads, f.stream, bytes},
-                f.splats, band);
+  launch_kernel(
+      "bin_scatter", bin_scatter<kLimited>,
+      {dim3(scattering + placing, bands.bands), kBinThreads, f.stream, sizeof(BinScratch) + bytes},
+      f.splats, bands.tiles, scattering, kRasterBlocks * f.multiprocessors);
 }
 
 }  // namespace
@@ -246,12 +229,11 @@ void launch_bin(const SplatFrame& f) {
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
     most = std::max(most, f.splats.frame.first[eye + 1] - f.splats.frame.first[eye]);
   const size_t bytes = shared_bytes_of_block(kBinBlocks);
-  const BinBands bands = bin_bands(most, bytes);
-  const dim3 blocks(bin_blocks(f.multiprocessors), bands.bands);
+  const BinBands bands = bin_bands(most, bytes - sizeof(BinScratch));
   if (f.splats.limits.bits == nullptr)
-    launch<false>(f, blocks, bands.tiles, bytes);
+    launch<false>(f, bands, bytes);
   else
-    launch<true>(f, blocks, bands.tiles, bytes);
+    launch<true>(f, bands, bytes);
 }
 
 }  // namespace voyager::cuda

@@ -30,12 +30,13 @@ struct BinOrder {
     if (is_before) atomicAdd(before + of, 1u);
   }
 
-  // From counts to first places. halved: the length from which on a tile is drawn in halves.
-  __device__ void place(SplatCounters& counters, uint32_t halved) {
+  // From counts to first places. halved: the length from which on a tile is drawn in halves. tells:
+  // of the blocks one, which tells how many lists there are of which lengths.
+  __device__ void place(SplatCounters& counters, uint32_t halved, bool tells) {
     __syncthreads();
     if (threadIdx.x < 32) sum_up();
     __syncthreads();
-    if (blockIdx.x == 0 && threadIdx.x == 0) {
+    if (tells && threadIdx.x == 0) {
       counters.large_lists = places[class_of(kMediumList)];
       counters.long_lists = places[class_of(kShortList)];
       counters.halved_lists = min(places[class_of(halved)], kMaxHalvedLists);
