@@ -20,12 +20,12 @@ __device__ inline bool rasterize_touches(const RasterSplat& s, const Part& part,
   const float x = fminf(fmaxf(0.0f, x0), x1), y = fminf(fmaxf(0.0f, y0), y1);
   const float p1 = x * p_x, t1 = skew * x;
   const float q1 = (fminf(fmaxf(t1, y0), y1) - t1) * q_y;
-  // Where (p, q) is shortest on the row at y.
-  const float nearest = __fdividef(kq * q_y, fmaf(kq, kq, pp)) * y;
+  // Where (p, q) is shortest on the row at y. If the divisor underflows, that is anywhere.
+  const float nearest = kq * q_y * reciprocal(fmaf(kq, kq, pp)) * y;
   const float along = fminf(fmaxf(nearest, x0), x1);
   const float p2 = along * p_x, q2 = fmaf(-skew, along, y) * q_y;
   // Twice the growth of runtime/stages/project.h: this arithmetic rounds too.
-  const float growth = 1.0f + 1.2e-7f * (64.0f + __fdividef(16.0f * fabsf(kq), p_x));
+  const float growth = 1.0f + 1.2e-7f * (64.0f + 16.0f * fabsf(kq) * reciprocal(p_x));
   const float radius = (s.middle.y - log_threshold) + 2.0f * kRhoMargin;
   return fminf(fmaf(p1, p1, q1 * q1), fmaf(p2, p2, q2 * q2)) <= radius * (growth * growth);
 }

@@ -122,12 +122,13 @@ struct Gathered {
   bool many;          // and some of them for many
 };
 
-// Of the splats that the lanes hold, those that may touch the part.
+// Of the splats that the lanes hold, those that may touch the part. Without a branch: the warp
+// waits for its other lanes anyhow.
 template <class M, class Lane>
 __device__ Gathered gather(const RasterSplat& splat, bool within, const Part& part,
                            float log_threshold, WarpSplats& chosen) {
   const uint32_t self = threadIdx.x % 32;
-  const bool touches = within && (!M::kFilter || rasterize_touches(splat, part, log_threshold));
+  const bool touches = within & (!M::kFilter | rasterize_touches(splat, part, log_threshold));
   const unsigned lanes = __ballot_sync(kAll, touches);
   __syncwarp();
   const int at = __popc(lanes & ((1u << self) - 1));
@@ -289,13 +290,22 @@ __device__ const float* read_lut(const RasterParams& params) {
 template <class M>
 constexpr bool kHalves = M::kExponential != Exponential::half2;
 
+// The warp's splats by an address that is kept: the compiler would else find it anew for each use.
+__device__ WarpSplats& own_splats(WarpSplats (&of_block)[kWarps]) {
+  auto address = static_cast<uint32_t>(__cvta_generic_to_shared(of_block + threadIdx.x / 32));
+  asm volatile("" : "+r"(address));
+  auto* const own = static_cast<WarpSplats*>(__cvta_shared_to_generic(address));
+  __builtin_assume(__isShared(own));
+  return *own;
+}
+
 // A block a tile, or two.
 template <class M>
 __global__ void __launch_bounds__(kThreads, kRasterBlocks)
     rasterize_tiles(const __grid_constant__ RasterParams params) {
   __shared__ WarpSplats chosen[kWarps];
   const float* lut_entries = read_lut<M>(params);
-  WarpSplats& own = chosen[threadIdx.x / 32];
+  WarpSplats& own = own_splats(chosen);
   const uint32_t halved = kHalves<M> ? params.splats.counters->halved_lists : 0;
   if constexpr (kHalves<M>)
     if (blockIdx.x < 2 * halved)
@@ -314,10 +324,11 @@ __global__ void __launch_bounds__(kThreads)
   if (!has_work(params.splats)) return;
   __shared__ WarpSplats chosen[kWarps];
   const float* lut_entries = read_lut<M>(params);
+  WarpSplats& own = own_splats(chosen);
   for (uint32_t at = blockIdx.x; at < params.splats.frame.count(); at += gridDim.x) {
     const uint32_t tile = params.splats.tile_order[at];
     if (params.splats.limits.bits[tile] == kDrawNothing) return;
-    rasterize_tile<M>(params, tile, chosen[threadIdx.x / 32], lut_entries);
+    rasterize_tile<M>(params, tile, own, lut_entries);
     __syncwarp();
   }
 }
