@@ -83,6 +83,40 @@ VOYAGER_HD Rounded fabs(Rounded a) {
   return std::fabs(a.value);
 }
 
+// a / b rounded as divide_rn() rounds it, from a number within an ulp of 1 / b: step by step what a
+// device's division does where nothing overflows or is subnormal on the way. The number has to be
+// the nearest where b's mantissa is all ones and a's is 1.
+VOYAGER_HD float refined_quotient(float a, float b, float near_inverse) {
+  const float inverse = std::fma(near_inverse, std::fma(-b, near_inverse, 1.0f), near_inverse);
+  const float near_quotient = a * inverse;
+  return std::fma(std::fma(-b, near_quotient, a), inverse, near_quotient);
+}
+
+// What several numbers are divided by. On a device they share a reciprocal, and no quotient has a
+// slow path, so that it is divide_rn()'s only where the divisor and the quotient are from 2⁻¹⁰⁰ to
+// 2¹⁰⁰, or the quotient is +0. A smaller one is near it, a larger one may be NaN.
+class Divisor {
+ public:
+  VOYAGER_HD explicit Divisor(Rounded divisor) : divisor_(divisor.value) {
+#if defined(__CUDA_ARCH__)
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(near_inverse_) : "f"(divisor_));
+#endif
+  }
+  VOYAGER_HD Rounded quotient(Rounded a) const {
+#if defined(__CUDA_ARCH__)
+    return refined_quotient(a.value, divisor_, near_inverse_);
+#else
+    return a.value / divisor_;
+#endif
+  }
+
+ private:
+  float divisor_;
+#if defined(__CUDA_ARCH__)
+  float near_inverse_;
+#endif
+};
+
 // Within 2⁻²³ of the root, relatively; on a device cheaper than the rounded one.
 VOYAGER_HD float sqrt_near(float a) {
 #if defined(__CUDA_ARCH__)

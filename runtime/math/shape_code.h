@@ -135,6 +135,14 @@ VOYAGER_HD float restored_log_opacity(const ShapeCode& code, const ShapeTables& 
   return tables.log_opacity[(has_logit(code) ? kCodes : 0) + code.opacity];
 }
 
+// Of what restore_rotation() gives, by its largest component or its length: each component is 0 or
+// above 2⁻¹⁵, and the divisor is from 0.4 to 2.
+VOYAGER_HD Quat<Rounded> divided(const Quat<Rounded>& q, Rounded by) {
+  const Divisor divisor(by);
+  return {divisor.quotient(q.w), divisor.quotient(q.x), divisor.quotient(q.y),
+          divisor.quotient(q.z)};
+}
+
 // Without its mean.
 VOYAGER_HD Gaussian restored_shape(const ShapeCode& code, const ShapeTables& tables) {
   Gaussian g{};

@@ -57,6 +57,11 @@ struct Quat {
 using Quatf = Quat<float>;
 using Quatd = Quat<double>;
 
+template <class T>
+VOYAGER_HD Quat<T> divided(const Quat<T>& q, T by) {
+  return {q.w / by, q.x / by, q.y / by, q.z / by};
+}
+
 // Scales by the largest component first: no overflow or underflow on the way.
 // A zero or non-finite quaternion gives the identity.
 template <class T>
@@ -67,9 +72,9 @@ VOYAGER_HD Quat<T> normalise(const Quat<T>& q) {
   largest = fabs(q.y) > largest ? fabs(q.y) : largest;
   largest = fabs(q.z) > largest ? fabs(q.z) : largest;
   if (!(largest > T(0)) || !(T(3.0e38f) > largest)) return {T(1), T(0), T(0), T(0)};
-  const T w = q.w / largest, x = q.x / largest, y = q.y / largest, z = q.z / largest;
-  const T length = sqrt(((w * w + x * x) + y * y) + z * z);
-  return {w / length, x / length, y / length, z / length};
+  const Quat<T> u = divided(q, largest);
+  const T length = sqrt(((u.w * u.w + u.x * u.x) + u.y * u.y) + u.z * u.z);
+  return divided(u, length);
 }
 
 template <class T>

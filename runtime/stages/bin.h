@@ -39,12 +39,17 @@ VOYAGER_HD TileRange tiles_around(Rounded centre, Rounded before, Rounded after,
   int32_t first = low > 0.0f ? static_cast<int32_t>(low) : 0;
   first += static_cast<float>(first) < low;
   const int32_t last = static_cast<int32_t>(high < last_pixel ? high : last_pixel);
-  return last < first ? TileRange{0, 0} : TileRange{first / kTile, last / kTile + 1};
+  if (last < first) return {0, 0};
+  // Neither is negative: a division of such numbers is a shift.
+  const auto tile = [](int32_t pixel) {
+    return static_cast<int32_t>(static_cast<uint32_t>(pixel) / uint32_t{kTile});
+  };
+  return {tile(first), tile(last) + 1};
 }
 
-VOYAGER_HD Rounded right_edge(const SupportEllipse& e, Rounded dy) {
+VOYAGER_HD Rounded right_edge(const SupportEllipse& e, const Divisor& reach_y, Rounded dy) {
   // 1 - f² is wrong by up to 4ε, which its root magnifies near the tips.
-  const Rounded f = dy / e.reach_y, inside = Rounded(1.0f + 1e-6f) - f * f;
+  const Rounded f = reach_y.quotient(dy), inside = Rounded(1.0f + 1e-6f) - f * f;
   return Rounded(e.along) * dy + Rounded(e.across) * sqrt(inside > 0.0f ? inside : 0.0f);
 }
 VOYAGER_HD Rounded clamp(Rounded x, Rounded low, Rounded high) {
@@ -67,8 +72,9 @@ VOYAGER_HD TileRange strip_columns(const SupportEllipse& e, int32_t row, const T
   low = low < -e.reach_y ? -e.reach_y : low;
   high = high > e.reach_y ? e.reach_y : high;
   // The ellipse is its own mirror image through the centre.
-  const Rounded right = detail::right_edge(e, detail::clamp(e.top, low, high));
-  const Rounded left = detail::right_edge(e, detail::clamp(e.top, -high, -low));
+  const Divisor reach_y(e.reach_y);
+  const Rounded right = detail::right_edge(e, reach_y, detail::clamp(e.top, low, high));
+  const Rounded left = detail::right_edge(e, reach_y, detail::clamp(e.top, -high, -low));
   return detail::tiles_around(e.x, left, right, e.reach_x, grid.columns);
 }
 

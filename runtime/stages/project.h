@@ -41,10 +41,11 @@ struct Splat {
 // it is scaled; and |dx| ≤ R/p_x on the support. The sum of squares adds 2ε, a row
 // found from the one above it ε. 16ε covers what is proportional to R,
 // 4ε·q_y·|skew|/p_x the needles; both are doubled for the arithmetic that uses this.
-VOYAGER_HD Rounded support_growth(const Conic<float>& c) {
+VOYAGER_HD Rounded support_growth(const Conic<float>& c, const Divisor& p_x) {
   constexpr float epsilon = 1.0f / 16777216.0f;
-  return Rounded(1.0f) + Rounded(epsilon) * (Rounded(32.0f) + Rounded(8.0f * std::fabs(c.skew)) *
-                                                                  Rounded(c.q_y) / Rounded(c.p_x));
+  return Rounded(1.0f) +
+         Rounded(epsilon) *
+             (Rounded(32.0f) + p_x.quotient(Rounded(8.0f * std::fabs(c.skew)) * Rounded(c.q_y)));
 }
 
 // Of ρ itself, absolutely, where it is found as log α - log o (3ε·|log o| + 8ε): where o is
@@ -52,8 +53,8 @@ VOYAGER_HD Rounded support_growth(const Conic<float>& c) {
 inline constexpr float kRhoMargin = 4e-6f;
 
 // The radius in (p, q) of the grown support.
-VOYAGER_HD Rounded support_radius(const Conic<float>& conic, float rho_min) {
-  return sqrt(Rounded(kRhoMargin) - Rounded(rho_min)) * support_growth(conic);
+VOYAGER_HD Rounded support_radius(const Conic<float>& conic, const Divisor& p_x, float rho_min) {
+  return sqrt(Rounded(kRhoMargin) - Rounded(rho_min)) * support_growth(conic, p_x);
 }
 
 // The grown support, ready to be cut into strips: dx = along·dy ± across·√(1 - (dy/reach_y)²).
@@ -67,16 +68,18 @@ struct SupportEllipse {
 VOYAGER_HD SupportEllipse support_ellipse(float x, float y, const Conic<float>& conic,
                                           float rho_min) {
   const Rounded outwards = 1.000002f;
-  const Rounded radius = outwards * support_radius(conic, rho_min);
-  const Rounded width = radius / conic.p_x;  // half-width
+  const Divisor p_x(conic.p_x);
+  const Rounded radius = outwards * support_radius(conic, p_x, rho_min);
+  const Rounded width = p_x.quotient(radius);  // half-width
   const Rounded tilt = width * conic.skew, thickness = radius / conic.q_y;
   const Rounded height = sqrt(tilt * tilt + thickness * thickness);
+  const Divisor of_height(height);
   return {x,
           y,
           width.value,
           height.value,
-          (width / height * (tilt / height)).value,
-          (width * (thickness / height)).value,
+          (of_height.quotient(width) * of_height.quotient(tilt)).value,
+          (width * of_height.quotient(thickness)).value,
           tilt.value};
 }
 VOYAGER_HD SupportEllipse support_ellipse(const Splat& s) {
