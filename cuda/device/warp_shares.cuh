@@ -26,14 +26,6 @@ class WarpShares {
   __device__ uint32_t total() const {
     return total_;
   }
-  // The lane whose piece an item is in; some lane for an item that there is not.
-  __device__ unsigned owner(uint32_t item) const {
-    unsigned lane = 0;
-#pragma unroll
-    for (unsigned step = 16; step != 0; step /= 2)
-      if (__shfl_sync(kAll, before_, lane + step) <= item) lane += step;
-    return lane;
-  }
 
  private:
   static constexpr unsigned kAll = 0xffffffffu;

@@ -24,15 +24,25 @@ __device__ inline TileExtent tile_extent(const SupportEllipse& ellipse, const Ti
   return extent;
 }
 
-// The splats of a warp, in shared memory. Odd in words, so that lanes do not collide.
-struct WarpExtents {
-  TileExtent extent[32];
-  uint32_t depth[32], slot[32];
+// What a splat's strips are made of: three words of 16 bytes, of which eight lanes write theirs at
+// once without colliding.
+struct alignas(16) StripSource {
+  SupportEllipse ellipse;
+  int32_t first_row;
+  TileRange columns;
+  uint32_t depth, slot;
+};
+static_assert(sizeof(StripSource) == 48);
 
-  __device__ void put(uint32_t lane, const TileExtent& own, float z, uint32_t at) {
-    extent[lane] = own;
-    depth[lane] = float_bits(z);
-    slot[lane] = at;
+// Those of a warp, in shared memory.
+struct WarpExtents {
+  StripSource source[32];  // by lane
+  // Of the lanes that have strips, in their order: the lane, and above its five bits the strips of
+  // the lanes below.
+  uint32_t owners[32];
+
+  __device__ void put(uint32_t lane, const TileExtent& own, float depth, uint32_t slot) {
+    source[lane] = {own.ellipse, own.rows.begin, own.columns, float_bits(depth), slot};
   }
 };
 
@@ -40,13 +50,14 @@ struct WarpExtents {
 // `own` of them and has put its extent, if there are any. boxes: whole rows of each box, in place
 // of what the ellipse touches.
 template <int kEyes>
-__device__ void write_strips(const WarpExtents& shared, uint32_t own, const SplatView& splats,
-                             int eye, bool boxes) {
+__device__ void write_strips(WarpExtents& shared, uint32_t own, const SplatView& splats, int eye,
+                             bool boxes) {
   constexpr unsigned kAll = 0xffffffffu;
   const uint32_t lane = threadIdx.x % 32;
   const WarpShares shares(own);
   const uint32_t strips = shares.total();
   if (strips == 0) return;
+  const uint32_t before_own = shares.before(), at_most_own = (2u << lane) - 1u;
   const TileGrid& grid = splats.frame.grids[eye];
   constexpr uint32_t kRegions = kStripRegions / kEyes;
   const uint32_t region = eye * kRegions + blockIdx.x % kRegions;
@@ -54,18 +65,23 @@ __device__ void write_strips(const WarpExtents& shared, uint32_t own, const Spla
   uint32_t first = 0;
   if (lane == 0) first = atomicAdd(strip_count(splats, region), strips);
   first = __shfl_sync(kAll, first, 0);
+  const unsigned with_some = __ballot_sync(kAll, own != 0);
+  if (own != 0) shared.owners[__popc(with_some & at_most_own) - 1] = before_own << 5 | lane;
   __syncwarp();
+  int begun = 0;  // splats whose first strip is below base
   for (uint32_t base = 0; base < strips; base += 32) {
-    const uint32_t strip = base + lane;
-    const unsigned owner = shares.owner(strip);
-    const uint32_t owner_before = __shfl_sync(kAll, shares.before(), owner);
+    const uint32_t strip = base + lane, own_at = before_own - base;
+    const unsigned starts = __reduce_or_sync(kAll, own != 0 && own_at < 32 ? 1u << own_at : 0);
+    const int at = begun + __popc(starts & at_most_own) - 1;
+    begun += __popc(starts);
     if (strip >= strips) continue;
-    const TileExtent& extent = shared.extent[owner];
-    const int32_t row = extent.rows.begin + static_cast<int32_t>(strip - owner_before);
-    const TileRange columns = boxes ? extent.columns : strip_columns(extent.ellipse, row, grid);
+    const uint32_t owner = shared.owners[at];
+    const StripSource& source = shared.source[owner % 32];
+    const int32_t row = source.first_row + static_cast<int32_t>(strip - (owner >> 5));
+    const TileRange columns = boxes ? source.columns : strip_columns(source.ellipse, row, grid);
     if (first + strip < room)
       splats.strips[region * room + first + strip] = {
-          shared.slot[owner], shared.depth[owner],
+          source.slot, source.depth,
           splats.frame.first[eye] + static_cast<uint32_t>(row * grid.columns + columns.begin),
           static_cast<uint32_t>(columns.end - columns.begin)};
   }
