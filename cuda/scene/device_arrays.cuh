@@ -82,17 +82,21 @@ struct CodedSh {
       return __half2float(
           __ushort_as_half(static_cast<unsigned short>(at % 2 == 0 ? pair & 0xffffu : pair >> 16)));
     }
-    // An integer below 2^23 in the last bits of 2^23 is that much above it.
-    constexpr uint32_t kBase = 0x4b000000u;
+    // An integer in the last bits of 2^23 is that much above it, and one that is `up` bits higher
+    // is above 2^(23 - up), so that few steps need a shift.
     float step;
     if (k < kShBandStart[1]) {
       const int byte = kShBandOneAt + at - 3 * kShBandStart[0];
-      const uint32_t bits = words[byte / 4] >> 8 * (byte % 4) & 0xffu ^ 0x80u;
-      step = __uint_as_float(kBase | bits) - (0x1p23f + 128.0f);
+      const uint32_t bits =
+          __byte_perm(words[byte / 4] ^ 0x80808080u, 0x4b000000u, 0x7440u | byte % 4);
+      step = __uint_as_float(bits) - (0x1p23f + 128.0f);
     } else {
-      const int i = at - 3 * kShBandStart[1];
-      const uint32_t bits = words[kShSixBitsAt / 4 + i / kShOfWord] >> 6 * (i % kShOfWord) & 63u;
-      step = __uint_as_float(kBase | bits) - (0x1p23f + static_cast<float>(kShOffset));
+      constexpr int kUnshifted = 3;  // that lie within the 23 bits
+      const int i = at - 3 * kShBandStart[1], of_word = i % kShOfWord;
+      const int shift = of_word < kUnshifted ? 0 : 6 * kUnshifted, up = 6 * of_word - shift;
+      const uint32_t bits = words[kShSixBitsAt / 4 + i / kShOfWord] >> shift & 63u << up;
+      const uint32_t base = static_cast<uint32_t>(127 + 23 - up) << 23;
+      step = __uint_as_float(base | bits) - (__uint_as_float(base) + static_cast<float>(kShOffset));
     }
     const int band = k < kShBandStart[1] ? 0 : k < kShBandStart[2] ? 1 : 2;
     return __fmaf_rn(step, high[band], __fmul_rn(step, low[band]));
