@@ -58,8 +58,11 @@ template <class T>
 VOYAGER_HD ImageJacobian<T> image_jacobian(const ViewProjection<T>& v, const Vec3<T>& view) {
   const T inverse_z = T(1) / view.z;
   T x = view.x * inverse_z, y = view.y * inverse_z;
-  x = x < v.x_low ? v.x_low : (x > v.x_high ? v.x_high : x);
-  y = y < v.y_low ? v.y_low : (y > v.y_high ? v.y_high : y);
+  // One bound at a time, for which a device needs no branch.
+  x = x < v.x_low ? v.x_low : x;
+  x = x > v.x_high ? v.x_high : x;
+  y = y < v.y_low ? v.y_low : y;
+  y = y > v.y_high ? v.y_high : y;
   const Mat3<T>& w = v.world_to_view;
   return {(v.fx * inverse_z) * (w.row[0] - x * w.row[2]),
           (v.fy * inverse_z) * (w.row[1] - y * w.row[2])};

@@ -97,6 +97,11 @@ VOYAGER_HD float largest(const Vec3f& v) {
   return v.z > m ? v.z : m;
 }
 
+// What is centred there misses the image by no reach: whoever is, needs no bound on the support.
+VOYAGER_HD bool in_image(const ProjectParams& params, float x, float y) {
+  return x >= 0.0f && x <= params.width && y >= 0.0f && y <= params.height;
+}
+
 // A bound on the support before the covariance is known: no axis is longer than the
 // largest scale, footprint included. radius: of the support, in standard deviations. 1.01
 // covers the rounding of the sums behind it.
@@ -182,7 +187,8 @@ VOYAGER_HD bool project_shape(const ProjectParams& params, const DrawItem& item,
   const Shape<float>& shape = drawn.shape;
   const ImageJacobian<float> jacobian = image_jacobian(params.view, view);
   const float longest = detail::largest(shape.scale);
-  if (detail::surely_outside(params, jacobian, longest * longest,
+  if (!detail::in_image(params, splat.x, splat.y) &&
+      detail::surely_outside(params, jacobian, longest * longest,
                              std::sqrt(2.0f * (kRhoMargin - drawn.rho_min)), splat.x, splat.y))
     return false;
 
