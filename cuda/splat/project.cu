@@ -157,42 +157,38 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
   uint32_t visible = 0;
   unsigned long long boxed = 0;
   const uint32_t first = blockIdx.x * kProjectThreads + threadIdx.x / 32 * 32;
-  __shared__ WarpExtents extents[kProjectThreads / 32][kEyes];
-  WarpExtents(&own)[kEyes] = extents[threadIdx.x / 32];
-  const uint32_t lane = threadIdx.x % 32;
+  __shared__ WarpExtents extents[kProjectThreads / 32];
   // Whole warps together: they share the strips of their splats.
   for (uint32_t base = first; base < candidates.end(); base += gridDim.x * kProjectThreads) {
-    const uint32_t place = candidates(base + lane);
-    uint32_t strips[kEyes] = {};
+    const uint32_t place = candidates(base + threadIdx.x % 32);
+    TileExtent extent[kEyes] = {};
+    float depth[kEyes] = {};
+    uint32_t rank = 0;  // among the places of all instances
     if (place != kNoNode) {
       const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
-      // Among the places of all instances.
-      const uint32_t rank =
-          first_place + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
+      rank = first_place + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
       DrawnGaussian drawn;
       // A rank beyond the room is that of a place that is, too: counted there.
       if (rank < f.splats.places && read_gaussian(f.params[0], arrays, item, drawn)) {
 #pragma unroll
         for (int eye = 0; eye < kEyes; ++eye) {
           Splat splat;
-          SupportEllipse support;
-          Vec3f relative;
           const ProjectParams& params = f.params[eye];
-          if (!project_shape(params, item, drawn, splat, support, relative)) continue;
-          const uint32_t slot = rank * kEyes + eye;
-          const TileExtent extent = tile_extent(support, f.splats.frame.grids[eye]);
-          own[eye].put(lane, extent, splat.depth, slot);
-          strips[eye] = extent.strips();
+          if (!project(params, arrays, item, drawn, splat)) continue;
+          const SplatRecord record = record_of(splat, params.log_scale);
+          f.splats.records[rank * kEyes + eye] = record;
+          extent[eye] = tile_extent(support_of(record, params.log_scale, params.log_threshold),
+                                    f.splats.frame.grids[eye]);
+          depth[eye] = splat.depth;
           ++visible;
-          boxed += extent.boxed();
-          splat.colour = splat_colour(arrays, item, relative);
-          f.splats.records[slot] = record_of(splat, params.log_scale);
+          boxed += extent[eye].boxed();
         }
       }
     }
 #pragma unroll
     for (int eye = 0; eye < kEyes; ++eye)
-      write_strips<kEyes>(own[eye], strips[eye], f.splats, eye, boxes);
+      write_strips<kEyes>(extents[threadIdx.x / 32], extent[eye], f.splats, eye, depth[eye],
+                          rank * kEyes + eye, boxes);
   }
   visible = __reduce_add_sync(kAll, visible);
   for (int step = 16; step != 0; step /= 2) boxed += __shfl_xor_sync(kAll, boxed, step);

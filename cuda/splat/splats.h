@@ -17,6 +17,13 @@ struct alignas(16) SplatRecord {
 };
 static_assert(sizeof(SplatRecord) == 48);
 
+// The grown support of a splat from its record, in every stage alike.
+// log_threshold: of α*, natural.
+VOYAGER_HD SupportEllipse support_of(const SplatRecord& r, float log_scale, float log_threshold) {
+  const Rounded threshold = Rounded(log_threshold) * log_scale;
+  return support_ellipse(r.x, r.y, {r.p_x, r.skew, r.q_y}, (threshold - r.log_opacity).value);
+}
+
 // A (tile, splat) pair in its tile's list: the bits of z > 0 above the splat's slot. An eye's
 // slots ascend with (instance, id), so that keys are in the contract's order.
 using DepthKey = unsigned long long;

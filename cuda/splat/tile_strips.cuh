@@ -24,39 +24,32 @@ __device__ inline TileExtent tile_extent(const SupportEllipse& ellipse, const Ti
   return extent;
 }
 
-// What a splat's strips are made of: three words of 16 bytes, of which eight lanes write theirs at
-// once without colliding.
+// What a strip is made of, in shared memory: three words of 16 bytes, of which eight lanes write
+// theirs at once without colliding.
 struct alignas(16) StripSource {
   SupportEllipse ellipse;
-  int32_t first_row;
+  int32_t row_less_before;  // the first strip's row, less the strips of the lanes below
   TileRange columns;
   uint32_t depth, slot;
 };
 static_assert(sizeof(StripSource) == 48);
 
-// Those of a warp, in shared memory.
+// Of a warp's splats that have strips, in the order of lanes.
 struct WarpExtents {
-  StripSource source[32];  // by lane
-  // Of the lanes that have strips, in their order: the lane, and above its five bits the strips of
-  // the lanes below.
-  uint32_t owners[32];
-
-  __device__ void put(uint32_t lane, const TileExtent& own, float depth, uint32_t slot) {
-    source[lane] = {own.ellipse, own.rows.begin, own.columns, float_bits(depth), slot};
-  }
+  StripSource source[32];
 };
 
-// Writes the strips of a whole warp's splats in the image of one eye, one splat a lane, which has
-// `own` of them and has put its extent, if there are any. boxes: whole rows of each box, in place
-// of what the ellipse touches.
+// Writes the strips of a whole warp's splats in the image of one eye, one splat a lane. boxes:
+// whole rows of each box, in place of what the ellipse touches.
 template <int kEyes>
-__device__ void write_strips(WarpExtents& shared, uint32_t own, const SplatView& splats, int eye,
-                             bool boxes) {
+__device__ void write_strips(WarpExtents& shared, const TileExtent& own, const SplatView& splats,
+                             int eye, float depth, uint32_t slot, bool boxes) {
   constexpr unsigned kAll = 0xffffffffu;
   const uint32_t lane = threadIdx.x % 32;
-  const WarpShares shares(own);
+  const WarpShares shares(own.strips());
   const uint32_t strips = shares.total();
   if (strips == 0) return;
+  const bool some = own.strips() != 0;
   const uint32_t before_own = shares.before(), at_most_own = (2u << lane) - 1u;
   const TileGrid& grid = splats.frame.grids[eye];
   constexpr uint32_t kRegions = kStripRegions / kEyes;
@@ -65,19 +58,21 @@ __device__ void write_strips(WarpExtents& shared, uint32_t own, const SplatView&
   uint32_t first = 0;
   if (lane == 0) first = atomicAdd(strip_count(splats, region), strips);
   first = __shfl_sync(kAll, first, 0);
-  const unsigned with_some = __ballot_sync(kAll, own != 0);
-  if (own != 0) shared.owners[__popc(with_some & at_most_own) - 1] = before_own << 5 | lane;
+  const unsigned with_some = __ballot_sync(kAll, some);
+  if (some)
+    shared.source[__popc(with_some & at_most_own) - 1] = {
+        own.ellipse, own.rows.begin - static_cast<int32_t>(before_own), own.columns,
+        float_bits(depth), slot};
   __syncwarp();
   int begun = 0;  // splats whose first strip is below base
   for (uint32_t base = 0; base < strips; base += 32) {
     const uint32_t strip = base + lane, own_at = before_own - base;
-    const unsigned starts = __reduce_or_sync(kAll, own != 0 && own_at < 32 ? 1u << own_at : 0);
-    const int at = begun + __popc(starts & at_most_own) - 1;
+    const unsigned starts = __reduce_or_sync(kAll, some && own_at < 32 ? 1u << own_at : 0);
+    const int owner = begun + __popc(starts & at_most_own) - 1;
     begun += __popc(starts);
     if (strip >= strips) continue;
-    const uint32_t owner = shared.owners[at];
-    const StripSource& source = shared.source[owner % 32];
-    const int32_t row = source.first_row + static_cast<int32_t>(strip - (owner >> 5));
+    const StripSource& source = shared.source[owner];
+    const int32_t row = source.row_less_before + static_cast<int32_t>(strip);
     const TileRange columns = boxes ? source.columns : strip_columns(source.ellipse, row, grid);
     if (first + strip < room)
       splats.strips[region * room + first + strip] = {

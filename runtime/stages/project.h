@@ -174,10 +174,9 @@ VOYAGER_HD bool before_near_plane(const ProjectParams& params, const Vec3f& mean
 
 // All of the splat but its colour. False where nothing of it can reach the image: behind the
 // near plane, outside the image, or where the low-pass leaves no α above the threshold.
-// support: support_ellipse() of it. relative: where its mean is from the eye, in world axes.
+// relative: where its mean is from the eye, in world axes.
 VOYAGER_HD bool project_shape(const ProjectParams& params, const DrawItem& item,
-                              const DrawnGaussian& drawn, Splat& splat, SupportEllipse& support,
-                              Vec3f& relative) {
+                              const DrawnGaussian& drawn, Splat& splat, Vec3f& relative) {
   relative = camera_relative(drawn.mean, params.origin, params.eye);
   const Vec3f view = detail::to_view(params, relative);
   if (!(view.z > params.near_z)) return false;
@@ -205,7 +204,7 @@ VOYAGER_HD bool project_shape(const ProjectParams& params, const DrawItem& item,
   }
   splat.conic = conic(covariance, params.half);
   splat.rho_min = least * params.log_scale;
-  support = support_ellipse(splat);
+  const SupportEllipse support = support_ellipse(splat);
   splat.half_width = support.reach_x;
   splat.half_height = support.reach_y;
   splat.depth = sort_depth(view.z, params.depth_scale);
@@ -216,20 +215,13 @@ VOYAGER_HD bool project_shape(const ProjectParams& params, const DrawItem& item,
          !detail::misses(splat.y, splat.half_height, params.height);
 }
 
-// As project_shape() has found `relative`. SH are evaluated for each eye: what an eye sees does not
-// depend on the other.
-template <class Arrays>
-VOYAGER_HD Vec3f splat_colour(const Arrays& arrays, const DrawItem& item, const Vec3f& relative) {
-  return interpolated_colour(arrays, item, (1.0f / std::sqrt(dot(relative, relative))) * relative);
-}
-
+// SH are evaluated for each eye: what an eye sees does not depend on the other.
 template <class Arrays>
 VOYAGER_HD bool project(const ProjectParams& params, const Arrays& arrays, const DrawItem& item,
                         const DrawnGaussian& drawn, Splat& splat) {
-  SupportEllipse support;
-  Vec3f relative;
-  if (!project_shape(params, item, drawn, splat, support, relative)) return false;
-  splat.colour = splat_colour(arrays, item, relative);
+  Vec3f d;
+  if (!project_shape(params, item, drawn, splat, d)) return false;
+  splat.colour = interpolated_colour(arrays, item, (1.0f / std::sqrt(dot(d, d))) * d);
   return true;
 }
 

@@ -39,11 +39,10 @@ Counts count(const std::shared_ptr<const Scene>& scene, const Camera& camera, do
   for (const DrawItem& item : list.items()) {
     DrawnGaussian drawn;
     Splat splat;
-    SupportEllipse support;
     Vec3f relative;
     if (!read_gaussian(params, arrays, item, drawn)) continue;
-    if (!project_shape(whole, item, drawn, splat, support, relative)) continue;
-    ++(project_shape(params, item, drawn, splat, support, relative) ? counts.drawn : counts.lost);
+    if (!project_shape(whole, item, drawn, splat, relative)) continue;
+    ++(project_shape(params, item, drawn, splat, relative) ? counts.drawn : counts.lost);
   }
   return counts;
 }
