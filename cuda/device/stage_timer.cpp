@@ -7,6 +7,7 @@ namespace voyager::cuda {
 
 void StageTimer::begin() {
   count_ = 0;
+  left_out_before_ = kStageCount;
   timer_.mark(0);
 }
 
@@ -21,9 +22,18 @@ void StageTimer::go_back_to(Stage stage) {
   count_ = static_cast<size_t>(std::distance(ended_, last)) + 1;
 }
 
+void StageTimer::leave_out() {
+  left_out_before_ = count_;
+  timer_.mark(kLeftOut);
+}
+
 void StageTimer::collect(FrameStats& stats) const {
-  for (size_t i = 0; i < count_; ++i) stats.milliseconds[ended_[i]] = timer_.milliseconds(i, i + 1);
+  for (size_t i = 0; i < count_; ++i)
+    stats.milliseconds[ended_[i]] =
+        timer_.milliseconds(i == left_out_before_ ? kLeftOut : i, i + 1);
   stats.total_milliseconds = timer_.milliseconds(0, count_);
+  if (left_out_before_ < count_)
+    stats.total_milliseconds -= timer_.milliseconds(left_out_before_, kLeftOut);
 }
 
 }  // namespace voyager::cuda

@@ -22,9 +22,10 @@
 namespace voyager::cuda {
 namespace {
 
-// A stream takes some thousand launches ahead of the device, and a frame has up to twenty for each
-// instance. In the next one the host would sleep until the device goes on, which may wait for the
-// host; so would every thread that wants memory of the device.
+// A stream takes some thousand launches ahead of the device: in the next launch the host would
+// sleep until the device goes on, which may wait for the host. So would every thread that wants
+// memory of the device. A frame has up to twenty launches for each instance, so that these have
+// half of a thousand.
 constexpr size_t kInstancesAhead = 24;
 
 Buffer<float> upload_lut(const PipelineDesc& desc) {
@@ -83,6 +84,7 @@ class SplatPipeline final : public Pipeline {
   using Eyes = std::array<RasterEye, kMaxEyes>;
 
   void wait_for_frames();
+  void await_links() const;
   void bound_launches() const;
   Report begin_frame(const FrameInput& frame);
   void fit(const FrameInput& frame, const FrameTiles& tiles);
@@ -121,7 +123,7 @@ class SplatPipeline final : public Pipeline {
   Stream stream_;
   std::vector<Report> free_;      // made as many as were under way at once
   std::deque<Report> under_way_;  // the oldest first
-  Event begun_{kWaitedFor};       // the last of these: the host has let go of its images
+  Event begun_{kWaitedFor};       // passed once the host has let go of the last one's images
   SplatRoom wanted_;              // by what frames that were under way have used
 };
 
@@ -227,14 +229,22 @@ void SplatPipeline::launch_second_pass(const SceneReading& reading, const FrameI
 void SplatPipeline::wait_for_frames() {
   device_->use();
   wait_for_host(stream_);
+  await_links();
+}
+
+void SplatPipeline::await_links() const {
   for (const DeviceInstance& instance : instances_.all())
     if (instance.scene->streamed()) pool_of(*instance.scene, *device_).await_links();
 }
 
-// Frames under way may wait for the host, and with this one be more than the stream takes.
+// Of this frame and those under way, if they have more than kInstancesAhead together: none of them
+// waits for the host any more in front of its lists.
 void SplatPipeline::bound_launches() const {
   const size_t frames = under_way_.size() + 1;
-  if (frames * instances_.all().size() > kInstancesAhead) wait_for_host(begun_);
+  if (frames * instances_.all().size() <= kInstancesAhead) return;
+  device_->use();
+  wait_for_host(begun_);
+  await_links();
 }
 
 SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
@@ -370,7 +380,10 @@ void SplatPipeline::submit(const FrameInput& frame, bool checked) {
       const SceneReading reading(instances_, stream);
       launch_search(reading, frame, report);
       checked ? launch_checked_lists(reading, frame, report) : launch_lists(reading, frame, report);
-      if (lists_first) wait();
+      if (lists_first) {
+        wait();
+        report.timer.leave_out();
+      }
       launch_image(reading, frame, external_eyes(frame), report);  // a second pass reads, too
     }
     each_ring(frame, [&](const ExternalTarget& target) { signal_rendered(target, stream); });

@@ -219,7 +219,7 @@ void launch(const SplatFrame& f, const BinBands& bands, size_t most) {
 
 }  // namespace
 
-// As many as are resident, or the last would run alone.
+// That have strips: as many as are resident, or the last would run alone.
 unsigned bin_blocks(unsigned multiprocessors) {
   return std::max(kBinBlocks * multiprocessors / kStripRegions, 1u) * kStripRegions;
 }
@@ -229,7 +229,8 @@ void launch_bin(const SplatFrame& f) {
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
     most = std::max(most, f.splats.frame.first[eye + 1] - f.splats.frame.first[eye]);
   const size_t bytes = shared_bytes_of_block(kBinBlocks);
-  const BinBands bands = bin_bands(most, bytes - sizeof(BinScratch));
+  static_assert(sizeof(BinScratch) <= kBinScratchBytes);
+  const BinBands bands = bin_bands(most, bytes);
   if (f.splats.limits.bits == nullptr)
     launch<false>(f, bands, bytes);
   else

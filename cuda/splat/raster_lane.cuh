@@ -69,8 +69,9 @@ struct FloatLane {
   __device__ RasterPixel pixel(int row) const { return pixels[row]; }
   static __device__ float4 prepare(const float4& colour) { return colour; }
 
-  // Without a branch but for many siblings, so that the splats of a loop overlap. A splat that
-  // misses a pixel is blended into it with an α of 0.
+  // Without a branch but for many siblings, so that the splats of a loop overlap: the compiler
+  // makes predicates of what is conditional. A splat that misses a pixel is blended into it with an
+  // α of 0.
   template <Siblings kMost>
   __device__ void blend(const float4& shape, const float4& middle, const float4& colour,
                         const Lut& lut, Counts& counts) {
@@ -78,7 +79,7 @@ struct FloatLane {
     float minus_log[kRows];
     lane_logarithms(x, y, below, shape, middle, minus_log);
     float r = colour.x, g = colour.y, b = colour.z;
-    asm volatile("" : "+f"(r), "+f"(g), "+f"(b));  // read once, not in each pixel's branch
+    asm volatile("" : "+f"(r), "+f"(g), "+f"(b));  // read once, not for each pixel
 #pragma unroll
     for (int row = 0; row < kRows; ++row) {
       RasterPixel& pixel = pixels[row];
@@ -113,8 +114,7 @@ struct HalfLane {
   static constexpr int kRows = 2;
   float x, y;
   __half2 r{}, g{}, b{}, transmittance;
-  // The -log α up to which splats contribute; -inf once the pixel has ended.
-  float limits[kRows];
+  float limits[kRows];  // the -log α up to which splats contribute; -inf once the pixel has ended
   float depth[kRows] = {kInfinity, kInfinity}, halfway[kRows] = {0.5f, 0.5f};
   float farthest_z[kRows];
 

@@ -72,7 +72,7 @@ struct RasterPixel {
   float r = 0.0f, g = 0.0f, b = 0.0f;
   float transmittance = 1.0f;  // negative once the pixel has ended
   float depth = kInfinity;
-  float halfway = 0.5f;  // the T at which depth is found; below all T once it is
+  float halfway = 0.5f;  // the T at which depth is found; -1 once it is
   float farthest;        // the z up to which splats contribute, where depth is limited
 
   // It then takes no more splats.

@@ -39,7 +39,7 @@ struct Reader {
   const DepthKey* keys;
   uint32_t last;
   uint32_t next_slot;
-  RasterSplat next;
+  RasterSplat next{};  // also of lanes beyond the end, which are tested with the others
 
   __device__ Reader(const SplatView& splats, const TileList& list, uint32_t lane)
       : records(splats.records), keys(splats.keys), last(list.last) {

@@ -1,6 +1,7 @@
 // METHOD §6: each tile's list by depth, ties by id. A warp sorts a short list in registers
 // and shared memory, a block a longer one; one that does not fit is sorted in parts, which
 // the block then merges in global memory.
+#include <algorithm>
 #include <cub/block/block_exchange.cuh>
 #include <cub/block/block_merge_sort.cuh>
 #include <cub/warp/warp_exchange.cuh>
@@ -209,8 +210,9 @@ void launch_sort(const SplatFrame& f) {
   launch_kernel("sort_large", sort_large, {2 * f.multiprocessors, kLargeThreads, f.stream, kBytes},
                 f.splats);
   const unsigned resident = resident_blocks<sort_tiles>(kSortThreads);
-  launch_kernel("sort_tiles", sort_tiles, {f.multiprocessors * resident, kSortThreads, f.stream},
-                f.splats);
+  // Each queue has a warp.
+  const unsigned blocks = std::max(f.multiprocessors * resident, kSortQueues / kSortWarps);
+  launch_kernel("sort_tiles", sort_tiles, {blocks, kSortThreads, f.stream}, f.splats);
 }
 
 }  // namespace voyager::cuda

@@ -57,7 +57,7 @@ TEST_F(HostPatience, EndsAndWhatWasAskedForCanBeAskedForAgain) {
   const auto wide = make_ring(large.width, large.height);
   const auto whole = resident();
   const std::shared_ptr<Scene> part = streamed();
-  std::vector<Waiting> all(6);
+  std::vector<Waiting> all(7);
   auto add = [&, next = 0](const char* name, const Scenes& scenes, auto call) mutable {
     Waiting& waiting = all[static_cast<size_t>(next++)];
     waiting.name = name;
@@ -72,6 +72,9 @@ TEST_F(HostPatience, EndsAndWhatWasAskedForCanBeAskedForAgain) {
       [&](View&) { resize_streamed(*part, uint64_t{8} << 20, *cuda, workers); });
   add("more launches than a stream takes", Scenes(kMaxInstances, whole),
       [&](View& of) { of.render(into(*ring, small)); });
+  add("a third frame of twelve instances", Scenes(12, whole), [&](View& of) {
+    for (int i = 0; i < 2; ++i) of.render(into(*ring, small));
+  });
   for (int i = 0; i < 3; ++i) {  // after which none frees a buffer
     for (Waiting& waiting : all) waiting.view->render(into(*ring, small));
     ring->wait();

@@ -28,7 +28,7 @@ TEST(BinBands, HoldAllTilesAndFitTheMemory) {
     EXPECT_LE(kBinBlocks * (bytes + static_cast<size_t>(memory.reserved_of_block)),
               static_cast<size_t>(memory.of_multiprocessor));
     EXPECT_LE(bytes, static_cast<size_t>(memory.most_of_block));
-    const auto most = static_cast<uint32_t>(bytes / sizeof(uint32_t));
+    const auto most = static_cast<uint32_t>((bytes - kBinScratchBytes) / sizeof(uint32_t));
     for (const uint32_t tiles :
          {1u, 12'000u, most - 1, most, most + 1, kEyeTiles, 3 * most, 1u << 20}) {
       const BinBands bands = bin_bands(tiles, bytes);
