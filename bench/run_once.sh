@@ -30,6 +30,7 @@ run "$bin/read_bench" "$folder/city.ply" --benchmark_min_time=0.01
 run "$bin/search_scale" --gaussians 5000 --cameras "$cameras" --backend cpu --json "$folder/scale.json"
 run "$bin/stream_walk" "$scene" "$cameras" 4 60 64x36 3 1
 run "$bin/stream_flight" "$scene" "$cameras" 4 50 64x36
+run "$bin/stream_quality" "$scene" "$cameras" 4 0 64x36
 if [ -e /dev/nvidia0 ]; then
   run "$bin/handoff_bench" "$scene" "$cameras" 64x36
   run "$bin/turns_bench"

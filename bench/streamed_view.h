@@ -40,6 +40,9 @@ class StreamedView {
     view.render(frame);
   }
 
+  // RGBA8, row by row: of the last frame.
+  const std::vector<uint8_t>& pixels() const { return pixels_; }
+
   const voy::Scene scene;
   voy::View view;
 

@@ -1,0 +1,92 @@
+// What a viewer who stands still sees while a scene comes: seconds until its picture is, for good,
+// as near as that to the one with nothing missing.
+//   stream_quality SCENE CAMERAS.json MEGABYTES [CAMERA] [WxH] [TAU] [SECONDS]
+// SCENE may be a URL. Nothing is read before the start, and reading starts around the camera.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+#include "streamed_view.h"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct Shown {
+  double at, missing;  // seconds, chunks
+  std::vector<uint8_t> pixels;
+};
+
+double psnr(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+  double sum = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (i % 4 == 3) continue;
+    const double d = double{1} * a[i] - b[i];
+    sum += d * d;
+    ++count;
+  }
+  return sum == 0 ? std::numeric_limits<double>::infinity()
+                  : 10 * std::log10(255.0 * 255.0 * static_cast<double>(count) / sum);
+}
+
+// Until then some later picture is worse than `least`.
+double seconds_until(const std::vector<Shown>& shown, double least) {
+  size_t first = shown.size() - 1;
+  while (first > 0 && psnr(shown[first - 1].pixels, shown.back().pixels) >= least) --first;
+  return shown[first].at;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc < 4) {
+    std::fprintf(stderr,
+                 "stream_quality SCENE CAMERAS.json MEGABYTES [CAMERA] [WxH] [TAU] [SECONDS]\n");
+    return 1;
+  }
+  const double megabytes = std::atof(argv[3]);
+  const size_t index = argc > 4 ? static_cast<size_t>(std::atoi(argv[4])) : 0;
+  unsigned width = 480, height = 270;
+  if (argc > 5) std::sscanf(argv[5], "%ux%u", &width, &height);
+  const double tau = argc > 6 ? std::atof(argv[6]) : 3,
+               longest = argc > 7 ? std::atof(argv[7]) : 120;
+  const voyager::tools::Camera camera =
+      voyager::tools::read_cameras(argv[2]).at(index).resized(width, height);
+
+  const voy::Device device = voyager::bench::streaming_device(megabytes);
+  const auto start = Clock::now();
+  voyager::bench::StreamedView streamed(device, argv[1], megabytes, camera.pose.position, width,
+                                        height, tau);
+  const double opened = seconds_since(start);
+  std::vector<Shown> shown;
+  int whole = 0;
+  while (whole < 3 && seconds_since(start) < longest) {
+    streamed.render(camera);
+    const auto now = streamed.scene.streaming_stats();
+    const bool missing = streamed.view.stats().nodesUnrefined != 0 && now.seenMissingChunks != 0;
+    whole = missing ? 0 : whole + 1;
+    shown.push_back(
+        {seconds_since(start), static_cast<double>(now.seenMissingChunks), streamed.pixels()});
+  }
+  const VoyStreamingStats stats = streamed.scene.streaming_stats();
+  std::printf(
+      "{\"device\": \"%s\", \"opened_s\": %.2f, \"first_image_s\": %.2f, \"first_db\": %.1f",
+      device.capabilities().deviceName, opened, shown.front().at,
+      psnr(shown.front().pixels, shown.back().pixels));
+  for (const int least : {20, 25, 30, 35, 40, 50})
+    std::printf(", \"db_%d_s\": %.2f", least, seconds_until(shown, least));
+  std::printf(", \"whole_s\": %.2f, \"frames\": %zu, \"missing\": %.0f, \"read_mb\": %.1f}\n",
+              shown[shown.size() - std::min<size_t>(shown.size(), 3)].at, shown.size(),
+              shown.back().missing, static_cast<double>(stats.bytesRead) / 1e6);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "stream_quality: %s\n", error.what());
+  return 1;
+}
