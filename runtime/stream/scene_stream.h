@@ -67,7 +67,7 @@ class SceneStream {
   // source does, and where a chunk that is pinned is damaged: a scene without its top is nothing.
   void read_top(Workers& workers);
   // Then: what is large from a point, in the scene's own coordinates, until about so many stored
-  // bytes of it are there, or five seconds have passed. What cannot be had is left out.
+  // bytes of it are there, or a second has passed. What cannot be had is left out.
   void read_around(const Vec3f& centre, uint64_t bytes);
   // Other room, as StreamDesc has it, and no more pinned than at first: what was there goes,
   // but for what is pinned. Waits for frames that hold the pool, and for no source. Throws as

@@ -238,7 +238,7 @@ void SceneStream::wait(bool stand_in) {
 }
 
 void SceneStream::read_around(const Vec3f& centre, uint64_t bytes) {
-  constexpr double kPatience = 5;  // seconds
+  constexpr double kPatience = 1;  // seconds
   look(this, {{{centre, kStartTarget}, {}, false}});
   const auto& chunks = file_->chunks();
   const uint64_t stored = chunks.back().offset + chunks.back().bytes - chunks.front().offset;

@@ -276,6 +276,25 @@ TEST(StreamingDisk, ASceneOpensThoughWhatIsAroundItsStartIsDamaged) {
   EXPECT_TRUE(is_cut(*whole_tree(*flight.rig().resident), render(view, ahead(eye, kForward)).cut));
 }
 
+// A source that takes long to give what is around the start: the scene opens after a second.
+TEST(StreamingDisk, ASlowSourceDoesNotKeepASceneFromOpening) {
+  Flight flight(1.0);
+  double& time = flight.rig().time;
+  const uint64_t top = flight.stream().file().chunks()[flight.stream().pinned()].offset;
+  double first = -1;
+  const auto slow = std::make_shared<SimulatedDisk>(flight.rig().bytes, 0.002, 20e6);
+  slow->fault = [&](uint64_t offset, size_t) {
+    if (offset < top) return;
+    if (first < 0) first = time;
+    time += 0.3;
+  };
+  const auto scene = flight.rig().open(slow, 1.0, 32 << 20, Vec3d{0, -3, -60});
+  EXPECT_GE(time - first, 1.0);
+  EXPECT_LE(time - first, 1.4);
+  EXPECT_GT(scene->stream->counters().resident, scene->stream->pinned());
+  EXPECT_LT(scene->stream->counters().resident, flight.stream().file().chunks().size());
+}
+
 // A frame that waits fails where a damaged chunk is seen, and does not where it is stood in for,
 // or where nothing sees it.
 TEST(StreamingDisk, AFrameThatWaitsSaysWhatIsDamaged) {
