@@ -56,7 +56,8 @@ inline ImageDesc attachment(VkFormat format, uint32_t width, uint32_t height) {
   desc.height = height;
   const bool is_depth = format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT;
   if (is_depth) desc.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-  if (format == VK_FORMAT_D32_SFLOAT_S8_UINT) desc.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
+  if (format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT)
+    desc.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
   desc.usage |=
       is_depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
   return desc;

@@ -182,6 +182,12 @@ std::string ImitatedUnity::last_error() const {
   return text;
 }
 
+bool ImitatedUnity::has_depth(VkFormat format) const {
+  VkFormatProperties properties = {};
+  vkGetPhysicalDeviceFormatProperties(host_->physical, format, &properties);
+  return (properties.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT) != 0;
+}
+
 std::unique_ptr<UnityTexture> ImitatedUnity::make_texture(VkFormat format, uint32_t width,
                                                           uint32_t height) {
   return std::unique_ptr<UnityTexture>(new UnityTexture{{*host_, attachment(format, width, height)},

@@ -56,6 +56,8 @@ class ImitatedUnity {
   decltype(&voyUnityStatistics) statistics = nullptr;
   std::string last_error() const;
 
+  // Whether the device can have depth textures of that format.
+  bool has_depth(VkFormat format) const;
   std::unique_ptr<UnityTexture> make_texture(VkFormat format, uint32_t width, uint32_t height);
   // A frame of Unity's: each camera's textures are cleared, then the plugin's event runs for it.
   void frame(const std::vector<UnityCameraEvent>& events);
