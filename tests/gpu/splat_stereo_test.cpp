@@ -57,6 +57,14 @@ TEST_F(SplatStereo, EyesInOnePlaceAreToTheBitAsAloneWithATree) {
   }
 }
 
+// More tiles an eye than a block of bin counts at once.
+TEST_F(SplatStereo, EyesOfSeveralBandsAreToTheBitAsAlone) {
+  Camera wide = look({3, -6, -24}, {0, 0, 0}, 8192, 1024),
+         high = look({3.1, -6, -24}, {0, 0, 0}, 4096, 2048);
+  wide.fx = wide.fy = 5000, high.fx = high.fy = 3000;
+  expect_as_alone(flat_scene(random_cloud(6000, 66, 1)), {}, stereo_input(wide, high, 3));
+}
+
 TEST_F(SplatStereo, IsAsTheCpuAndTheReferenceDrawIt) {
   Agreement with_cpu("stereo, CUDA against the CPU"),
       with_reference("stereo, CUDA against the reference");
