@@ -1,7 +1,8 @@
 // What a viewer who stands still sees while a scene comes: seconds until its picture is, for good,
 // as near as that to the one with nothing missing.
 //   stream_quality SCENE CAMERAS.json MEGABYTES [CAMERA] [WxH] [TAU] [SECONDS]
-// SCENE may be a URL. Nothing is read before the start, and reading starts around the camera.
+// SCENE may be a URL. The clock starts before the scene is opened, with the camera as its start.
+// The last picture stands for the whole one: if it is not (SECONDS, 120), "missing" is not 0.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -19,7 +20,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 struct Shown {
-  double at, missing;  // seconds, chunks
+  double at;  // seconds
   std::vector<uint8_t> pixels;
 };
 
@@ -28,7 +29,7 @@ double psnr(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
   size_t count = 0;
   for (size_t i = 0; i < a.size(); ++i) {
     if (i % 4 == 3) continue;
-    const double d = double{1} * a[i] - b[i];
+    const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
     sum += d * d;
     ++count;
   }
@@ -36,7 +37,7 @@ double psnr(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
                   : 10 * std::log10(255.0 * 255.0 * static_cast<double>(count) / sum);
 }
 
-// Until then some later picture is worse than `least`.
+// From then on no picture is worse than `least`, in dB.
 double seconds_until(const std::vector<Shown>& shown, double least) {
   size_t first = shown.size() - 1;
   while (first > 0 && psnr(shown[first - 1].pixels, shown.back().pixels) >= least) --first;
@@ -67,14 +68,13 @@ int main(int argc, char** argv) try {
   const double opened = seconds_since(start);
   std::vector<Shown> shown;
   int whole = 0;
-  while (whole < 3 && seconds_since(start) < longest) {
+  do {
     streamed.render(camera);
     const auto now = streamed.scene.streaming_stats();
     const bool missing = streamed.view.stats().nodesUnrefined != 0 && now.seenMissingChunks != 0;
     whole = missing ? 0 : whole + 1;
-    shown.push_back(
-        {seconds_since(start), static_cast<double>(now.seenMissingChunks), streamed.pixels()});
-  }
+    shown.push_back({seconds_since(start), streamed.pixels()});
+  } while (whole < 3 && seconds_since(start) < longest);
   const VoyStreamingStats stats = streamed.scene.streaming_stats();
   std::printf(
       "{\"device\": \"%s\", \"opened_s\": %.2f, \"first_image_s\": %.2f, \"first_db\": %.1f",
@@ -82,9 +82,10 @@ int main(int argc, char** argv) try {
       psnr(shown.front().pixels, shown.back().pixels));
   for (const int least : {20, 25, 30, 35, 40, 50})
     std::printf(", \"db_%d_s\": %.2f", least, seconds_until(shown, least));
-  std::printf(", \"whole_s\": %.2f, \"frames\": %zu, \"missing\": %.0f, \"read_mb\": %.1f}\n",
+  std::printf(", \"whole_s\": %.2f, \"frames\": %zu, \"missing\": %llu, \"read_mb\": %.1f}\n",
               shown[shown.size() - std::min<size_t>(shown.size(), 3)].at, shown.size(),
-              shown.back().missing, static_cast<double>(stats.bytesRead) / 1e6);
+              static_cast<unsigned long long>(stats.seenMissingChunks),
+              static_cast<double>(stats.bytesRead) / 1e6);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "stream_quality: %s\n", error.what());

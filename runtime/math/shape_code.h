@@ -135,8 +135,8 @@ VOYAGER_HD float restored_log_opacity(const ShapeCode& code, const ShapeTables& 
   return tables.log_opacity[(has_logit(code) ? kCodes : 0) + code.opacity];
 }
 
-// Of what restore_rotation() gives, by its largest component or its length: each component is 0 or
-// above 2⁻¹⁵, and the divisor is from 0.4 to 2.
+// What normalise() calls for a restored rotation, by its largest component and by its length. Each
+// component is 0 or above 2⁻¹⁵, and the divisor is from 0.4 to 2, as a Divisor wants.
 VOYAGER_HD Quat<Rounded> divided(const Quat<Rounded>& q, Rounded by) {
   const Divisor divisor(by);
   return {divisor.quotient(q.w), divisor.quotient(q.x), divisor.quotient(q.y),
