@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "runtime/base/error.h"
 #include "runtime/frame/frame_search.h"
 #include "runtime/frame/instance.h"
 #include "runtime/frame/match_instances.h"
@@ -111,8 +112,7 @@ Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance) {
 }
 
 FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
-  Holds holds;
-  if (streamed_.empty()) return holds;
+  if (streamed_.empty()) return {};
   // Before the readers know of this frame: they hold what a commit needs while they plan for it.
   if (!frame.wait_resident)
     for (const Scene* scene : streamed_) scene->stream->commit();
@@ -129,23 +129,25 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
     }
     instances_[i].scene->stream->look(instances_[i].name.get(), std::move(viewers));
   }
-  if (!frame.wait_resident) return hold_all();
-  // While one is waited for, another may get a budget, and lose what it had; not for ever.
-  constexpr int kMostTries = 8;
-  for (int tries = 1;; ++tries) {
+  return frame.wait_resident ? hold_settled(frame.stand_in) : hold_all();
+}
+
+// Until the pools are held, others' frames and budgets may take what was waited for.
+FrameStreaming::Holds FrameStreaming::hold_settled(bool stand_in) const {
+  constexpr int kMostTries = 64;
+  for (int tries = 0; tries < kMostTries; ++tries) {
     std::vector<uint64_t> waited;
-    for (const Scene* scene : streamed_) {
-      waited.push_back(scene->stream->generation());
-      scene->stream->wait(frame.stand_in);
-    }
-    holds = hold_all();
-    const auto same = [](const Scene* scene, uint64_t generation) {
-      return scene->stream->generation() == generation;
+    for (const Scene* scene : streamed_) waited.push_back(scene->stream->wait(stand_in));
+    Holds holds = hold_all();
+    const auto same = [](const Scene* scene, uint64_t departures) {
+      return scene->stream->departures() == departures;
     };
-    if (std::equal(streamed_.begin(), streamed_.end(), waited.begin(), same) || tries == kMostTries)
-      return holds;
-    holds.clear();
+    if (std::equal(streamed_.begin(), streamed_.end(), waited.begin(), same)) return holds;
   }
+  throw Error(ErrorCode::over_budget,
+              streamed_[0]->stream->file().name() + ": found that other views took " +
+                  std::to_string(kMostTries) +
+                  " times what this frame had waited for, expected room for all of them");
 }
 
 FrameStreaming::Holds FrameStreaming::hold_all() const {

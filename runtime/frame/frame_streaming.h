@@ -39,6 +39,7 @@ class FrameStreaming {
   };
 
   Holds hold_all() const;
+  Holds hold_settled(bool stand_in) const;
   Viewer viewer_of(const FrameInput& frame, size_t instance);
   std::optional<Vec3d> velocity(const FrameInput& frame);
 

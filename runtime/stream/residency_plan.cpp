@@ -150,6 +150,8 @@ void Residency::share_with_parents() {
   for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
   for (size_t i = needed_.size(); i-- > 0;) {
     needed_[i].urgency = urgency_[needed_[i].chunk];
+    // What goes before others because something that is seen hangs on it counts as seen.
+    needed_[i].now = needed_[i].now || class_of(needed_[i].urgency) == Class::seen;
     for (const uint32_t p : graph_->parents(needed_[i].chunk))
       urgency_[p] = std::max(urgency_[p], needed_[i].urgency);
   }

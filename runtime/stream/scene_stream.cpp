@@ -192,6 +192,7 @@ void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
       file_->name() + ": found memory that was only partly filled again, expected all of it"));
   pool_.resize(room);
   ++generation_;
+  ++departures_;
   counted_ = total(counted_, residency_.counters());
   residency_ = std::move(residency);
   linker_ = std::move(linker);

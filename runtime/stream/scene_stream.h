@@ -87,10 +87,11 @@ class SceneStream {
   void commit();
   // The same until nothing more is to come. Throws Error(over_budget) where what is seen does
   // not fit, and unless `stand_in` what kept a chunk that is seen from coming: what failed for
-  // good, or often, or because the source as a whole has failed often.
-  void wait(bool stand_in);
-  // Another one where slots have been filled anew: what was waited for is gone.
-  uint64_t generation() const { return generation_; }
+  // good, or often, or because the source as a whole has failed often. Gives departures() as of the
+  // moment when all was there.
+  uint64_t wait(bool stand_in);
+  // How often chunks that were resident have gone. Under hold().
+  uint64_t departures() const { return departures_; }
 
   // Held while a frame reads the pool, and what changes with it. Of several streams, in the order
   // of their addresses. Throws what ChunkPool::apply() threw, until the pool has been filled anew:
@@ -181,7 +182,7 @@ class SceneStream {
   std::atomic<bool> commit_due_{false};
   std::atomic<double> put_off_{-1};  // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
-  uint64_t version_ = 0;
+  uint64_t version_ = 0, departures_ = 0;
   // What kept the pool from being what is linked. Changed under both locks, read under either.
   std::exception_ptr unsound_;
 

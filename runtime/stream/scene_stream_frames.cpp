@@ -99,6 +99,7 @@ void SceneStream::commit_changes() {
     if (changes_.size() > kChangesKept) changes_.pop_front();
   }
   for (const Residency::Evicted& e : evicted) residency_.free(e);
+  departures_ += !evicted.empty();
   if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return;
   publish();
   signal();
@@ -227,14 +228,17 @@ void SceneStream::work_until(const Done& done) {
   }
 }
 
-void SceneStream::wait(bool stand_in) {
+uint64_t SceneStream::wait(bool stand_in) {
   const double since = now();
+  uint64_t departures = 0;
   work_until([&] {
     check_fits();
     if (!is_settled(since)) return false;
     if (!stand_in) check_seen();
+    departures = departures_;
     return true;
   });
+  return departures;
 }
 
 void SceneStream::read_around(const Vec3f& centre, uint64_t bytes) {

@@ -120,7 +120,7 @@ class Viewer {
     if (dice_.one_in(20)) jump();
     if (dice_.one_in(30)) set_level_of_detail();
     if (dice_.one_in(15)) change_instances();
-    if (dice_.one_in(60)) return stand_still();
+    if (dice_.one_in(10)) return stand_still();
     position_[0] += dice_.between(-0.3, 0.3);
     yaw_ += dice_.between(-0.05, 0.05);
     drawn_ += draw(view_, target_, 0) == VOY_SUCCESS;

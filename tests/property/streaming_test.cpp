@@ -200,6 +200,49 @@ TEST_P(StreamingOfTree, RoomForWhatIsSeenIsRoomForTheResidentImage) {
   }
 }
 
+// What viewers will need takes no room from what one sees now, however families of nodes lie.
+TEST(Streaming, RoomForWhatIsSeenIsEnoughBesideViewersWhoMove) {
+  StreamRig rig(random_scene(8000, 12), 1.0);
+  const SceneFile& file = rig.stream().file();
+  const uint32_t top = SceneStream::top_chunks(file);
+  PoolRoom room = RecordRoom(file).of(static_cast<uint32_t>(file.chunks().size()));
+  const uint32_t chunks = room.slots;
+  std::mt19937 random(6);
+  const auto within = [&](double low, double high) {
+    return static_cast<float>(low + (high - low) * test::unit(random));
+  };
+  const std::array<char, 3> others{};
+  const auto look_anywhere = [&](const char& who) {
+    std::vector<Viewer> viewers;
+    for (const bool ahead : {false, true}) {
+      const Vec3f eye{within(-20, 20), -6, within(-20, 20)};
+      Wedge wedge{eye, {}};
+      for (Vec3f& normal : wedge.normals) normal = {within(-1, 1), within(-1, 1), within(-1, 1)};
+      viewers.push_back({{eye, ahead ? within(0.01, 0.05) : within(0.1, 0.5)}, {wedge}, ahead});
+    }
+    rig.stream().look(&who, std::move(viewers));
+  };
+  for (int i = 0; i < 24; ++i) {
+    SCOPED_TRACE(i);
+    for (const char& other : others) look_anywhere(other);
+    const Vec3d eye{within(-20, 20), -6, within(-20, 20)};
+    FrameInput input = frame_input(look(eye, {0, 0, 0}, 16, 12, 75), 1 + i % 4);
+    const Frame whole = render(rig.whole, input);
+    input.wait_resident = true;
+    room.slots = chunks;
+    rig.stream().resize(room, top, rig.workers);
+    render(rig.part, input);
+    // What a family of nodes needs is counted by the next plan.
+    rig.stream().look(&room, {Viewer{}});
+    rig.stream().look(&room, {});
+    render(rig.part, input);
+    room.slots = top + static_cast<uint32_t>(rig.stream().counters().need.seen);
+    rig.stream().resize(room, top, rig.workers);
+    expect_same_bits(render(rig.part, input), whole);
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
 // Whoever stands where a scene was said to be looked at first misses nothing that is large from
 // there, whichever way it turns; of a scene of which as much was read from the top, it does.
 TEST_P(StreamingOfTree, WhatIsLargeFromTheStartIsThereInTheFirstFrame) {
