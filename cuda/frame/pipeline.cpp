@@ -24,7 +24,7 @@ namespace {
 
 // A stream takes some thousand launches ahead of the device: in the next launch the host would
 // sleep until the device goes on, which may wait for the host. So would every thread that wants
-// memory of the device. A frame has up to twenty launches for each instance, so that these have
+// memory of the device. A frame has up to twenty launches for each instance, and 24 times 20 are
 // half of a thousand.
 constexpr size_t kInstancesAhead = 24;
 

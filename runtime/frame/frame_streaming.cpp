@@ -144,10 +144,11 @@ FrameStreaming::Holds FrameStreaming::hold_settled(bool stand_in) const {
     };
     if (std::equal(streamed_.begin(), streamed_.end(), waited.begin(), same)) return holds;
   }
-  throw Error(ErrorCode::over_budget,
-              streamed_[0]->stream->file().name() + ": found that other views took " +
-                  std::to_string(kMostTries) +
-                  " times what this frame had waited for, expected room for all of them");
+  throw Error(ErrorCode::over_budget, streamed_[0]->stream->file().name() +
+                                          ": found that chunks which this frame sees went " +
+                                          std::to_string(kMostTries) +
+                                          " times before it could draw them, expected a memory "
+                                          "budget for all that other views see, too");
 }
 
 FrameStreaming::Holds FrameStreaming::hold_all() const {

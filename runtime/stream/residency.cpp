@@ -313,7 +313,7 @@ void Residency::count_missing(uint32_t chunk, bool missing) {
   if (needed_plan_[chunk] != plan_ || counted_[chunk] == 0) return;
   const uint64_t one = missing ? 1 : -uint64_t{1};
   need_.missing += one;
-  if (counted_[chunk] == 2) need_.seen_missing += one;
+  if (counted_[chunk] == kSeen) need_.seen_missing += one;
   need_.missing_bytes += missing ? chunks_[chunk].bytes : -uint64_t{chunks_[chunk].bytes};
 }
 

@@ -106,6 +106,10 @@ class Residency {
   bool is_coming(uint32_t chunk) const {
     return state_[chunk] == State::read || state_[chunk] == State::filled;
   }
+  // Of the last plan: a viewer of now sees what it holds.
+  bool is_seen(uint32_t chunk) const {
+    return needed_plan_[chunk] == plan_ && counted_[chunk] == kSeen;
+  }
   bool is_wanted(uint32_t chunk) const { return target_[chunk] == plan_ || chunk < pinned_; }
   uint32_t slots() const { return room_.slots; }
   PoolRoom room() const { return room_; }
@@ -165,6 +169,7 @@ class Residency {
   void drop(uint32_t chunk);
 
   static constexpr uint32_t kUnknown = 0xffffffffu, kNoBlock = 0xffffffffu;
+  static constexpr uint8_t kSeen = 2;
 
   const ChunkGraph* graph_;
   std::span<const ChunkEntry> chunks_;
@@ -181,7 +186,7 @@ class Residency {
   std::vector<uint32_t> own_urgency_;  // in the last plan that needed it; 0: for what hangs from it
   std::vector<uint32_t> needed_plan_;  // the last plan that needed it
   std::vector<uint8_t> missed_;        // a viewer has seen that it was not there
-  std::vector<uint8_t> counted_;       // 1: in need_, if the last plan needed it; 2: as seen, too
+  std::vector<uint8_t> counted_;       // in need_, if the last plan needed it; kSeen: as seen, too
   std::vector<uint32_t> target_;       // the last plan that had it in its target
   std::vector<uint32_t> children_there_;
   // 1: a node that leads to it leads to the chunk before, too; 2: and to the one behind.

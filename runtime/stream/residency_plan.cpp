@@ -253,7 +253,7 @@ void Residency::count_need() {
     counted_[needed.chunk] = 0;
     if (!needed.now) continue;
     const bool seen = class_of(needed.urgency) == Class::seen && needed.chunk >= pinned_;
-    counted_[needed.chunk] = seen ? 2 : 1;
+    counted_[needed.chunk] = seen ? kSeen : 1;
     ++need_.chunks;
     need_.seen += seen;
     if (seen) {

@@ -90,7 +90,8 @@ class SceneStream {
   // good, or often, or because the source as a whole has failed often. Gives departures() as of the
   // moment when all was there.
   uint64_t wait(bool stand_in);
-  // How often chunks that were resident have gone. Under hold().
+  // How often chunks that are seen have gone: for others, or because slots were filled anew. Under
+  // hold().
   uint64_t departures() const { return departures_; }
 
   // Held while a frame reads the pool, and what changes with it. Of several streams, in the order

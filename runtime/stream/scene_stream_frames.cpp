@@ -99,7 +99,9 @@ void SceneStream::commit_changes() {
     if (changes_.size() > kChangesKept) changes_.pop_front();
   }
   for (const Residency::Evicted& e : evicted) residency_.free(e);
-  departures_ += !evicted.empty();
+  departures_ += std::any_of(evicted.begin(), evicted.end(), [&](const Residency::Evicted& e) {
+    return residency_.is_seen(e.chunk);
+  });
   if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return;
   publish();
   signal();

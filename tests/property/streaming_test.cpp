@@ -205,8 +205,11 @@ TEST(Streaming, RoomForWhatIsSeenIsEnoughBesideViewersWhoMove) {
   StreamRig rig(random_scene(8000, 12), 1.0);
   const SceneFile& file = rig.stream().file();
   const uint32_t top = SceneStream::top_chunks(file);
-  PoolRoom room = RecordRoom(file).of(static_cast<uint32_t>(file.chunks().size()));
-  const uint32_t chunks = room.slots;
+  const PoolRoom all = RecordRoom(file).of(static_cast<uint32_t>(file.chunks().size()));
+  uint32_t top_blocks = 0;
+  for (uint32_t chunk = 0; chunk < top; ++chunk)
+    top_blocks +=
+        stage_chunk(file.read_chunk(chunk), chunk, file.tiers(), file.name()).record_blocks();
   std::mt19937 random(6);
   const auto within = [&](double low, double high) {
     return static_cast<float>(low + (high - low) * test::unit(random));
@@ -229,16 +232,19 @@ TEST(Streaming, RoomForWhatIsSeenIsEnoughBesideViewersWhoMove) {
     FrameInput input = frame_input(look(eye, {0, 0, 0}, 16, 12, 75), 1 + i % 4);
     const Frame whole = render(rig.whole, input);
     input.wait_resident = true;
-    room.slots = chunks;
-    rig.stream().resize(room, top, rig.workers);
+    rig.stream().resize(all, top, rig.workers);
     render(rig.part, input);
     // What a family of nodes needs is counted by the next plan.
-    rig.stream().look(&room, {Viewer{}});
-    rig.stream().look(&room, {});
+    rig.stream().look(&all, {Viewer{}});
+    rig.stream().look(&all, {});
     render(rig.part, input);
-    room.slots = top + static_cast<uint32_t>(rig.stream().counters().need.seen);
-    rig.stream().resize(room, top, rig.workers);
-    expect_same_bits(render(rig.part, input), whole);
+    const ResidencyNeed need = rig.stream().counters().need;
+    for (const PoolRoom tight :
+         {PoolRoom{top + static_cast<uint32_t>(need.seen), all.blocks},
+          PoolRoom{all.slots, top_blocks + static_cast<uint32_t>(need.seen_blocks)}}) {
+      rig.stream().resize(tight, top, rig.workers);
+      expect_same_bits(render(rig.part, input), whole);
+    }
     ASSERT_FALSE(HasFailure());
   }
 }

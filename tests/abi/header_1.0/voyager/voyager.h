@@ -897,6 +897,7 @@ typedef struct VoyFrameStreaming {
   /* 1: the call waits until everything that the frame sees of its streamed scenes is resident, with
    * a margin (docs/streaming.md). The image then equals, to the bit, that of scenes loaded whole.
    * If a budget is too small, the frame is OVER_BUDGET and the message says how much is needed.
+   * It is OVER_BUDGET too if other views take what has come, 64 times in a row.
    * 0: the call does not wait. */
   uint32_t waitResident;
   /* Only for frames that wait. 1: data that is damaged or cannot be read is replaced by its nearest
