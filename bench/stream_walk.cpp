@@ -98,7 +98,7 @@ int main(int argc, char** argv) try {
                                         height, tau);
   const double opened = seconds_since(start);
 
-  const auto frames = static_cast<size_t>(seconds * fps);
+  const size_t frames = std::max(static_cast<size_t>(seconds * fps), size_t{1});
   std::vector<double> ms, wall, missing, cut, seen, unseen;
   double first_image = 0, settled = 0;
   size_t coarse = 0;

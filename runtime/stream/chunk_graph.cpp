@@ -68,25 +68,29 @@ uint32_t ChunkGraph::owner_of_parent(uint32_t root) const {
   return after == chunks_.begin() ? 0 : static_cast<uint32_t>(after - chunks_.begin() - 1);
 }
 
-ChunkRange ChunkGraph::with_roots(uint32_t first, uint32_t count) const {
-  uint32_t low = 0, high = size();
-  while (low < high) {
-    const uint32_t middle = (low + high) / 2;
-    if (last_root(middle) < first)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  const uint32_t begin = low;
-  high = size();
-  while (low < high) {
-    const uint32_t middle = (low + high) / 2;
-    if (first_root(middle) < first + count)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return {begin, low};
+ChunkRange ChunkGraph::with_roots(uint32_t first, uint32_t count, ChunkRange among) const {
+  // The first of them for which it holds.
+  const auto first_where = [&](uint32_t low, const auto& holds) {
+    for (uint32_t high = among.last; low < high;) {
+      const uint32_t middle = low + (high - low) / 2;
+      if (holds(middle))
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    return low;
+  };
+  const uint32_t begin =
+      first_where(among.first, [&](uint32_t chunk) { return last_root(chunk) >= first; });
+  return {begin,
+          first_where(begin, [&](uint32_t chunk) { return first_root(chunk) >= first + count; })};
+}
+
+ChunkRange ChunkGraph::with_family(uint32_t chunk, uint32_t first, uint32_t count) const {
+  ChunkRange among = children_[chunk];
+  if (among.empty()) return {chunk, chunk + 1};
+  if (last_root(chunk) >= first) among.first = chunk;
+  return with_roots(first, count, among);
 }
 
 }  // namespace voyager

@@ -34,11 +34,16 @@ class ChunkGraph {
   ChunkRange children(uint32_t chunk) const { return children_[chunk]; }
   // The chunks whose subtrees have these nodes as their roots: [first, first + count) on a level
   // of roots, but for the tree's. Of no nodes: the one that has roots on either side of first.
-  ChunkRange with_roots(uint32_t first, uint32_t count) const;
+  ChunkRange with_roots(uint32_t first, uint32_t count) const {
+    return with_roots(first, count, {0, size()});
+  }
+  // The same of the children of a node that `chunk` owns. Costs by how many chunks it leads to.
+  ChunkRange with_family(uint32_t chunk, uint32_t first, uint32_t count) const;
   // The chunk that owns the parent of a root, which is not the tree's.
   uint32_t owner_of_parent(uint32_t root) const;
 
  private:
+  ChunkRange with_roots(uint32_t first, uint32_t count, ChunkRange among) const;
   ChunkRange find_children(uint32_t chunk) const;
   ChunkRange among_parents(uint32_t chunk) const;
   uint32_t first_root(uint32_t chunk) const;

@@ -71,16 +71,22 @@ Linker::Family Linker::family_of(uint32_t root) const {
   return {chunk, find_below(tables_[chunk]->below, root)};
 }
 
-bool Linker::complete(const NodeBelow& node) const {
-  const ChunkRange range = graph_->with_roots(node.first_child, node.child_count);
+ChunkRange Linker::chunks_of(const Family& family) const {
+  const NodeBelow& node = below_of(family);
+  return graph_->with_family(family.chunk, node.first_child, node.child_count);
+}
+
+bool Linker::complete(const Family& family) const {
+  const ChunkRange range = chunks_of(family);
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk)
     if (!holds(chunk)) return false;
   return true;
 }
 
 template <class Visit>
-void Linker::each_subtree(const NodeBelow& node, const Visit& visit) const {
-  const ChunkRange range = graph_->with_roots(node.first_child, node.child_count);
+void Linker::each_subtree(const Family& family, const Visit& visit) const {
+  const ChunkRange range = chunks_of(family);
+  const NodeBelow& node = below_of(family);
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     if (!holds(chunk)) continue;
     LinkTable& table = *tables_[chunk];
@@ -189,13 +195,13 @@ void Linker::link(Family first, LinkPatch& patch) {
     work_.pop_back();
     LinkTable& table = *tables_[family.chunk];
     NodeBelow& node = table.below[family.below];
-    if (node.linked || !table.subtrees[node.subtree].linked || !complete(node)) continue;
+    if (node.linked || !table.subtrees[node.subtree].linked || !complete(family)) continue;
     node.linked = true;
     const uint32_t record = table.record(node.record);
     const uint32_t parent = table.slot * shape_.nodes + node.node;
     Addresses addresses(shape_);
     uint32_t first_below = kLowest;
-    each_subtree(node, [&](LinkTable& of, uint32_t i) {
+    each_subtree(family, [&](LinkTable& of, uint32_t i) {
       const uint32_t subtree = of.first_subtree + i;
       first_below = std::min(first_below, subtree);
       const SearchSubtree linked = addresses.of(of, i, record);
@@ -219,7 +225,7 @@ void Linker::unlink(Family first, LinkPatch& patch) {
     if (!std::exchange(node.linked, false)) continue;
     patch.cut.records.push_back({table.record(node.record), kBlocked});
     patch.cut.changed.push_back(table.first_subtree + node.subtree);
-    each_subtree(node, [&](LinkTable& of, uint32_t i) {
+    each_subtree(family, [&](LinkTable& of, uint32_t i) {
       of.subtrees[i].linked = false;
       patch.unlinked.push_back(of.first_subtree + i);
       add_below(of, i, work_);

@@ -65,10 +65,11 @@ class Linker {
     return tables_[family.chunk]->below[family.below];
   }
   Family family_of(uint32_t root) const;
-  bool complete(const NodeBelow& node) const;
+  ChunkRange chunks_of(const Family& family) const;
+  bool complete(const Family& family) const;
   // Each subtree of the family in turn: visit(table, index in it).
   template <class Visit>
-  void each_subtree(const NodeBelow& node, const Visit& visit) const;
+  void each_subtree(const Family& family, const Visit& visit) const;
   template <class Work>
   void each_family_of(const LinkTable& table, const Work& work) const;
   void link(Family family, LinkPatch& patch);

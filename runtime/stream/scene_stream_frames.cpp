@@ -133,7 +133,8 @@ bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
 
 void SceneStream::learn_families(const LinkTable& table) {
   for (const NodeBelow& node : table.below)
-    if (residency_.set_family(graph_.with_roots(node.first_child, node.child_count))) look_again();
+    if (residency_.set_family(graph_.with_family(table.chunk, node.first_child, node.child_count)))
+      look_again();
 }
 
 bool SceneStream::changes_since(uint64_t version,

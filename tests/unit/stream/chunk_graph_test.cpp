@@ -5,6 +5,7 @@
 #include <set>
 
 #include "runtime/stream/residency.h"
+#include "runtime/stream/staged_chunk.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
@@ -60,6 +61,20 @@ TEST(ChunkGraph, ParentsAndChildrenAreOneRelationWithAllThatNodesHangFrom) {
     for (const auto& [from, to] : up)
       if (leading.count(from) == 0) idle.insert(from);
     EXPECT_LE(idle.size(), file.tiers().tier_begin.size());
+  });
+}
+
+TEST(ChunkGraph, AFamilyIsWhereItsRootsAre) {
+  for_each_tree([](const SceneFile& file) {
+    const ChunkGraph graph(file.chunks(), file.tiers());
+    for (uint32_t chunk = 0; chunk < graph.size(); ++chunk)
+      for (const NodeBelow& node :
+           stage_chunk(file.read_chunk(chunk), chunk, file.tiers(), file.name()).links.below) {
+        const ChunkRange found = graph.with_family(chunk, node.first_child, node.child_count);
+        const ChunkRange expected = graph.with_roots(node.first_child, node.child_count);
+        ASSERT_EQ(found.first, expected.first) << chunk;
+        ASSERT_EQ(found.last, expected.last) << chunk;
+      }
   });
 }
 
