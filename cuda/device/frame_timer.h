@@ -11,7 +11,8 @@ class FrameTimer {
   FrameTimer(const Stream& stream, size_t marks) : stream_(stream.get()), events_(marks) {}
 
   void mark(size_t index) { events_[index].record(stream_); }
-  // Waits for both marks, spinning: what takes a frame's times has waited for its report before.
+  // Waits for the later mark, spinning: what takes a frame's times has waited for its report
+  // before.
   double milliseconds(size_t from, size_t to) const {
     events_[to].wait();
     float elapsed = 0;

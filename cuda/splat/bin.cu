@@ -1,7 +1,7 @@
 // METHOD §7b: the (tile, splat) pairs, tile by tile. bin_count counts the pairs of each block's
 // strips in shared memory and adds them up over the blocks; bin_scatter puts each block's pairs
 // where its share of a list begins. Some more of its blocks tell where the lists lie, for those who
-// sort and draw them (bin_place.cuh). A list's order is sort_tiles' work.
+// sort and draw them (bin_place.cuh). sort.cu orders each list.
 #include <algorithm>
 
 #include "cuda/device/grid.h"
@@ -14,7 +14,9 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr uint32_t kNarrow = 4;  // tiles of a strip that a lane places by itself
+// Tiles of a strip that a lane places by itself: few strips are wider, and they would hold up the
+// warp.
+constexpr uint32_t kNarrow = 4;
 constexpr uint32_t kWideLanes = 8, kWideGroups = 32 / kWideLanes;  // that place the others
 
 // The strips of a block, and the tiles that it sees to: a band of those of its region's eye.

@@ -7,6 +7,7 @@
 
 namespace voyager::cuda {
 
+// Two blocks fill a multiprocessor of 1536 threads (sm_86, sm_87, sm_89).
 inline constexpr unsigned kBinThreads = 768;
 using BinScan = cub::BlockScan<unsigned long long, kBinThreads, cub::BLOCK_SCAN_WARP_SCANS>;
 

@@ -62,6 +62,7 @@ bool OcclusionChoice::next() {
   if (setting_ == Occlusion::on) return true;
   // Fewer are sorted and blended faster than a second pass finds that it has nothing to do.
   constexpr uint64_t kLeastPairs = uint64_t{1} << 19;
+  // Frames until the other way is tried again: seldom enough that its cost is lost in the mean.
   constexpr unsigned kPlainAgain = 256, kTryAgain = 64;
   if (setting_ == Occlusion::off || plain_pairs_ < kLeastPairs) return false;
   return pays_ ? ++since_other_ % kPlainAgain != 0 : since_other_++ % kTryAgain == 0;

@@ -41,7 +41,7 @@ __device__ uint32_t limit_of(const EyeTiles& before, const EyeMotion& motion, in
   if (!(x >= 0.0f && x < columns && y >= 0.0f && y < rows)) return kDrawAll;
   const uint32_t own = before.at(static_cast<int32_t>(x), static_cast<int32_t>(y));
   if (own == kDrawAll) return kDrawAll;
-  const float z = fmaxf(bits_float(own), 1e-3f);
+  const float z = fmaxf(bits_float(own), 1e-3f);  // metres: parallax stays finite
   const float around = motion.around + motion.parallax / z;
   if (!(around <= kFarthest)) return kDrawAll;
   const auto first = [](float at) { return static_cast<int32_t>(fmaxf(floorf(at), 0.0f)); };
@@ -53,6 +53,7 @@ __device__ uint32_t limit_of(const EyeTiles& before, const EyeMotion& motion, in
     for (int32_t c = first(x - around); c <= last(x + around, columns); ++c)
       deepest = max(deepest, before.at(c, r));
   if (deepest == kDrawAll) return kDrawAll;
+  // Too deep a limit draws a little more, too near a one takes a second pass.
   constexpr float kBehind = 1.05f;
   return float_bits(bits_float(deepest) / w * kBehind + motion.moved);
 }

@@ -23,7 +23,7 @@ __device__ inline TileRange limit_cells(float low, float high, int side, int32_t
 // By the finest level that tells it in few cells; what is larger than those is not hidden.
 __device__ inline bool hidden(const SplatView& splats, uint32_t eye, const ImageBounds& image,
                               float depth_scale) {
-  constexpr int kMostCells = 3;  // a side
+  constexpr int kMostCells = 3;  // a side: nine reads at most, for what is tested for each splat
   const uint32_t depth = float_bits(sort_depth(image.nearest, depth_scale));
   const TileGrid& grid = splats.frame.grids[eye];
   int side = kTile;

@@ -15,8 +15,9 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kAll = 0xffffffffu;
+// A lane asks for the hulls of its places together, so that it waits for memory once.
 constexpr unsigned kCullThreads = 256, kCullItems = 4;
-constexpr unsigned kProjectThreads = 128;
+constexpr unsigned kProjectThreads = 128;  // small blocks: registers bound how many are resident
 // That a multiprocessor holds where there are two eyes: the compiler would rather have
 // registers, which costs more than the few that it then spills.
 constexpr unsigned kPairBlocks = 6;

@@ -316,8 +316,9 @@ __global__ void __launch_bounds__(kThreads, kRasterBlocks)
     rasterize_tile<M>(params, params.splats.tile_order[at], own, lut_entries);
 }
 
-// For a second pass, which usually has no tiles; if it has some, they come first. A kernel of its
-// own, because a loop over tiles takes registers that the loop over splats needs.
+// For a second pass, which usually has no tiles. Those that have a list come before all that are
+// closed; of those without one some may be left out, since nothing is drawn in them. A kernel of
+// its own, because a loop over tiles takes registers that the loop over splats needs.
 template <class M>
 __global__ void __launch_bounds__(kThreads)
     rasterize_open_tiles(const __grid_constant__ RasterParams params) {
@@ -415,7 +416,7 @@ constexpr std::array<std::array<Launch*, kNeedsCount>, 2> launches_of() {
   return {launches<E, false>(), launches<E, true>()};
 }
 
-// Every kernel of this file: [exponential][filter][needs].
+// Every kernel of this file that draws: [exponential][filter][needs].
 constexpr LaunchTable kLaunches = {launches_of<Exponential::exact>(),
                                    launches_of<Exponential::ex2>(), launches_of<Exponential::lut>(),
                                    launches_of<Exponential::half2>()};

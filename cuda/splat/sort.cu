@@ -119,7 +119,7 @@ __device__ uint32_t merge_path(const DepthKey* a, uint32_t a_count, const DepthK
   return low;
 }
 
-constexpr uint32_t kMergeKeys = 17;  // a thread's share at a time
+constexpr uint32_t kMergeKeys = 17;  // a thread's share at a time; odd, as kItems
 static_assert(kPart % kMergeKeys == 0);
 
 // Runs of `width` keys, two by two; width is a multiple of kMergeKeys.
@@ -207,6 +207,7 @@ void launch_sort(const SplatFrame& f) {
   constexpr size_t kBytes = sizeof(LargeLists::Storage);
   static_assert(kBytes <= kLeastSharedBytes);
   allow_shared_bytes(sort_large, kBytes, "sort_large");
+  // As many blocks as their shared memory leaves room for.
   launch_kernel("sort_large", sort_large, {2 * f.multiprocessors, kLargeThreads, f.stream, kBytes},
                 f.splats);
   const unsigned resident = resident_blocks<sort_tiles>(kSortThreads);

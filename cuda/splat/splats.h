@@ -54,7 +54,7 @@ struct InstanceCounters {
   uint32_t rows;  // of its list that may reach the image, where the list has bounds
 };
 
-// Of one frame.
+// Of one pass of a frame.
 struct SplatCounters {
   StripRegion regions[kStripRegions];
   SortQueue queues[kSortQueues];
@@ -75,13 +75,13 @@ struct SplatCounters {
 // under where bin_order's classes begin.
 inline constexpr uint32_t kShortList = 511, kMediumList = 2047;
 
-// Thread blocks of rasterize.cu that are resident on a multiprocessor: a block has a tile.
+// Thread blocks of rasterize.cu that are resident on a multiprocessor: a block has a tile, or half.
 inline constexpr unsigned kRasterBlocks = 8;
 // Twice as many warps blend a tile whose list is longer than this share of what a resident block
 // has of all pairs on average: it would end last. bench/NOTES.md has other shares.
 inline constexpr float kHalvedShare = 0.5f;
-inline constexpr uint32_t kLeastHalved = 64;       // a list's length
-inline constexpr uint32_t kMaxHalvedLists = 1024;  // in a frame
+inline constexpr uint32_t kLeastHalved = 64;       // a list's length: two of its groups of 32
+inline constexpr uint32_t kMaxHalvedLists = 1024;  // in a frame: so many blocks more are launched
 
 // A splat in one row of tiles.
 struct alignas(16) TileStrip {
