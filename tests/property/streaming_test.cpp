@@ -225,7 +225,7 @@ TEST(Streaming, RoomForWhatIsSeenIsEnoughBesideViewersWhoMove) {
     }
     rig.stream().look(&who, std::move(viewers));
   };
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < 20; ++i) {
     SCOPED_TRACE(i);
     for (const char& other : others) look_anywhere(other);
     const Vec3d eye{within(-20, 20), -6, within(-20, 20)};
@@ -253,20 +253,19 @@ TEST(Streaming, RoomForWhatIsSeenIsEnoughBesideViewersWhoMove) {
 // there, whichever way it turns; of a scene of which as much was read from the top, it does.
 TEST_P(StreamingOfTree, WhatIsLargeFromTheStartIsThereInTheFirstFrame) {
   const Vec3d origin{1000, 0, -2000};
-  GaussianCloud cloud = test::random_cloud(100000, 8, 1);
+  GaussianCloud cloud = test::random_cloud(60000, 8, 1);
   for (float& x : cloud.position) x *= 20;
   test::paint(cloud);
   cloud.origin = {origin.x, origin.y, origin.z};
-  const StreamRig rig(bake(cloud), 1.0);
+  StreamRig rig(bake(cloud), 1.0);
   const uint64_t first_bytes = rig.bytes.size() / 4;
   for (int i = 0; i < 4; ++i) {
     const Vec3d out{std::cos(1.5 * i), 0, std::sin(1.5 * i)};
     const Vec3d eye = origin + 40.0 * out;
     const FrameInput input = frame_input(look(eye, eye + out, 96, 64, 60), 20);
     const auto missing = [&](std::optional<Vec3d> start) {
-      StreamRig other(rig.bytes, 0.5);
-      const auto scene = other.open(test::source_of(rig.bytes), 0.5, first_bytes, start);
-      View view(scene, *other.backend, {}, other.memory(), other.workers);
+      const auto scene = rig.open(test::source_of(rig.bytes), 0.5, first_bytes, start);
+      View view(scene, *rig.backend, {}, rig.memory(), rig.workers);
       const Frame frame = render(view, input);
       EXPECT_TRUE(is_cut(*whole_tree(*rig.resident), frame.cut));
       const auto& chunks = scene->stream->file().chunks();
