@@ -15,6 +15,9 @@ namespace {
 
 // How far ahead chunks are asked for, in seconds: about what a disk, and a server, take.
 constexpr double kHorizons[] = {0.25, 1.0};
+// How far a head may have turned by then, in radians: at 100 degrees a second. bench/NOTES.md has
+// other angles.
+constexpr double kTurn = 0.44;
 // Faster than this, or longer between two frames, a viewer has jumped.
 constexpr double kFastest = 150;       // metres a second
 constexpr double kLongestFrame = 0.5;  // seconds
@@ -32,13 +35,19 @@ Vec3f unit_float(const Vec3d& v) {
   return {static_cast<float>(n.x), static_cast<float>(n.y), static_cast<float>(n.z)};
 }
 
-// What a camera sees, and by `margin` (tangents) more on each side.
-Wedge wedge_of(const Camera& camera, const Vec3d& origin, double margin) {
+// The tangent of an angle that is larger by `turn`, and short of a right one.
+double turned(double tangent, double turn) {
+  constexpr double kWidest = 1.5;
+  return turn == 0 ? tangent : std::tan(std::min(std::atan(tangent) + turn, kWidest));
+}
+
+// What a camera sees, and on each side by `margin` (tangents) and `turn` (radians) more.
+Wedge wedge_of(const Camera& camera, const Vec3d& origin, double margin, double turn) {
   const auto& [right, down, forward] = camera.world_to_view.row;
-  const double left = -camera.cx / camera.fx - margin;
-  const double to_right = (camera.width - camera.cx) / camera.fx + margin;
-  const double up = -camera.cy / camera.fy - margin;
-  const double to_down = (camera.height - camera.cy) / camera.fy + margin;
+  const double left = -turned(camera.cx / camera.fx + margin, turn);
+  const double to_right = turned((camera.width - camera.cx) / camera.fx + margin, turn);
+  const double up = -turned(camera.cy / camera.fy + margin, turn);
+  const double to_down = turned((camera.height - camera.cy) / camera.fy + margin, turn);
   return {
       cut_centre(camera.eye, origin),
       {unit_float(right - left * forward), unit_float(to_right * forward - right),
@@ -100,14 +109,14 @@ std::optional<Vec3d> FrameStreaming::velocity(const FrameInput& frame) {
   return velocity_ && length(*velocity_) > kSlowest ? velocity_ : std::nullopt;
 }
 
-Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance) {
+Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance, double turn) {
   const Vec3d& origin = instances_[instance].scene->origin;
   const double footprint = instances_[instance].scene->native.footprint();
   Viewer viewer{
       cut_query(frame, instance, origin), {}, false, static_cast<float>(std::sqrt(footprint))};
   for (const FrameEye& eye : frame.eyes)
     viewer.eyes.push_back(wedge_of(instance_camera(frame, eye, instance), origin,
-                                   kWedgeMargin * double{viewer.query.target_size}));
+                                   kWedgeMargin * double{viewer.query.target_size}, turn));
   return viewer;
 }
 
@@ -119,13 +128,17 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
   const std::optional<Vec3d> way = velocity(frame);
   for (size_t i = 0; i < instances_.size(); ++i) {
     if (!instances_[i].scene->streamed()) continue;
-    std::vector<Viewer> viewers = {viewer_of(frame, i)};
+    std::vector<Viewer> viewers = {viewer_of(frame, i, 0)};
+    const auto add_ahead = [&](const FrameInput& later) {
+      viewers.push_back(viewer_of(later, i, kTurn));
+      viewers.back().ahead = true;
+    };
+    add_ahead(frame);
     for (const double horizon : kHorizons) {
       if (!way) break;
       FrameInput later = frame;
       for (FrameEye& eye : later.eyes) eye.camera.eye = eye.camera.eye + horizon * *way;
-      viewers.push_back(viewer_of(later, i));
-      viewers.back().ahead = true;
+      add_ahead(later);
     }
     instances_[i].scene->stream->look(instances_[i].name.get(), std::move(viewers));
   }

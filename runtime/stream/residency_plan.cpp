@@ -1,5 +1,6 @@
 // A plan: what is needed, the target, what to ask for and what may go.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -127,7 +128,8 @@ void Residency::find_needed(std::span<const Viewer> viewers) {
 
 // A node is refined only when all that hangs from it is there. Which chunks hold a family is known
 // when the chunk of its parent has come. What a family lends is less than the parent's urgency: so
-// families of parents that have no room alter nothing in front of those, known or not.
+// families of parents that have no room alter nothing in front of those, known or not. Nor is it
+// of a higher class: a node that is seen and refined makes all chunks of its family seen.
 void Residency::share_in_families() {
   for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
   const auto follows = [&](size_t i) {
@@ -138,10 +140,15 @@ void Residency::share_in_families() {
     if (!follows(i)) continue;
     size_t last = i;
     while (shares_family_[needed_[last].chunk] == 2 && follows(last + 1)) ++last;
-    uint32_t most = 0;
-    for (size_t k = i - 1; k <= last; ++k) most = std::max(most, urgency_[needed_[k].chunk]);
-    for (size_t k = i - 1; k <= last; ++k)
-      needed_[k].urgency = std::max(needed_[k].urgency, most & ~kOwn);
+    std::array<uint32_t, 3> most{};
+    for (size_t k = i - 1; k <= last; ++k) {
+      uint32_t& of = most[static_cast<size_t>(class_of(urgency_[needed_[k].chunk]))];
+      of = std::max(of, urgency_[needed_[k].chunk]);
+    }
+    for (size_t k = i - 1; k <= last; ++k) {
+      const auto of = static_cast<size_t>(class_of(urgency_[needed_[k].chunk]));
+      needed_[k].urgency = std::max(needed_[k].urgency, most[of] & ~kOwn);
+    }
     i = last;
   }
 }

@@ -133,6 +133,26 @@ TEST(StreamingDisk, AnEvenFlightFindsMostOfItsWayThere) {
   EXPECT_LT(after.chunks.late - before.chunks.late, arrived / 4);
 }
 
+// A quick one, of 100 degrees a second, in a pool without room for what is all around.
+TEST(StreamingDisk, ATurnFindsMostOfWhatItShowsThere) {
+  Flight flight(1.0, 0.001, 100e6);
+  const auto turned = [](int frame) {
+    const double angle = 0.029 * frame;
+    return ahead({0, -3, 0}, {std::sin(angle), 0.02, std::cos(angle)}, 0.3);
+  };
+  flight.stand(turned(0));
+  const ResidencyNeed need = flight.counters().need;
+  const auto enough = static_cast<uint32_t>(need.seen + need.chunks + flight.stream().pinned()) / 2;
+  flight.rig().give_room(flight.scene(), enough);
+  flight.stand(turned(0), 60);
+  const StreamCounters before = flight.counters();
+  for (int i = 0; i < 200; ++i) flight.draw(turned(i));
+  const StreamCounters after = flight.counters();
+  const uint64_t arrived = after.chunks.arrived - before.chunks.arrived;
+  ASSERT_GT(arrived, 20u);
+  EXPECT_LT(after.chunks.late - before.chunks.late, arrived / 4);
+}
+
 class StreamingDiskOfTree : public ::testing::TestWithParam<test::NamedRule> {};
 INSTANTIATE_TEST_SUITE_P(Rules, StreamingDiskOfTree, ::testing::ValuesIn(test::all_rules()),
                          test::rule_name<::testing::TestParamInfo<test::NamedRule>>);

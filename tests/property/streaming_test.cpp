@@ -214,20 +214,22 @@ TEST(Streaming, RoomForWhatIsSeenIsEnoughBesideViewersWhoMove) {
   const auto within = [&](double low, double high) {
     return static_cast<float>(low + (high - low) * test::unit(random));
   };
-  const std::array<char, 3> others{};
-  const auto look_anywhere = [&](const char& who) {
-    std::vector<Viewer> viewers;
-    for (const bool ahead : {false, true}) {
-      const Vec3f eye{within(-20, 20), -6, within(-20, 20)};
-      Wedge wedge{eye, {}};
-      for (Vec3f& normal : wedge.normals) normal = {within(-1, 1), within(-1, 1), within(-1, 1)};
-      viewers.push_back({{eye, ahead ? within(0.01, 0.05) : within(0.1, 0.5)}, {wedge}, ahead});
-    }
-    rig.stream().look(&who, std::move(viewers));
+  struct Other {
+    Viewer now, ahead;
+  };
+  std::array<Other, 3> others;
+  const auto anywhere = [&](float target_size, bool ahead) {
+    const Vec3f eye{within(-20, 20), -6, within(-20, 20)};
+    Wedge wedge{eye, {}};
+    for (Vec3f& normal : wedge.normals) normal = {within(-1, 1), within(-1, 1), within(-1, 1)};
+    return Viewer{{eye, target_size}, {wedge}, ahead};
   };
   for (int i = 0; i < 20; ++i) {
     SCOPED_TRACE(i);
-    for (const char& other : others) look_anywhere(other);
+    for (Other& other : others) {
+      other = {anywhere(within(0.1, 0.5), false), anywhere(within(0.01, 0.05), true)};
+      rig.stream().look(&other, {other.now});
+    }
     const Vec3d eye{within(-20, 20), -6, within(-20, 20)};
     FrameInput input = frame_input(look(eye, {0, 0, 0}, 16, 12, 75), 1 + i % 4);
     const Frame whole = render(rig.whole, input);
@@ -239,6 +241,7 @@ TEST(Streaming, RoomForWhatIsSeenIsEnoughBesideViewersWhoMove) {
     rig.stream().look(&all, {});
     render(rig.part, input);
     const ResidencyNeed need = rig.stream().counters().need;
+    for (const Other& other : others) rig.stream().look(&other, {other.now, other.ahead});
     for (const PoolRoom tight :
          {PoolRoom{top + static_cast<uint32_t>(need.seen), all.blocks},
           PoolRoom{all.slots, top_blocks + static_cast<uint32_t>(need.seen_blocks)}}) {
