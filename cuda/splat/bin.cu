@@ -221,7 +221,7 @@ void launch(const SplatFrame& f, const BinBands& bands, size_t most) {
 
 }  // namespace
 
-// Of the blocks that have strips. As many as are resident: one more would run alone at the end.
+// How many blocks have strips: as many as are resident, since one more would run alone at the end.
 unsigned bin_blocks(unsigned multiprocessors) {
   return std::max(kBinBlocks * multiprocessors / kStripRegions, 1u) * kStripRegions;
 }

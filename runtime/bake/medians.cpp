@@ -6,6 +6,7 @@
 #include <atomic>
 #include <bit>
 
+#include "runtime/base/first_that.h"
 #include "runtime/lod/build.h"
 #include "runtime/lod/shape.h"
 
@@ -77,19 +78,6 @@ int64_t place_of(float value) {
 float float_at(int64_t place) {
   const auto bits = static_cast<uint32_t>(place < 0 ? -place : place);
   return std::bit_cast<float>(place < 0 ? bits | 0x80000000u : bits);
-}
-
-// The first of [least, most] that holds, which some does: those after it hold, too.
-template <class Holds>
-int64_t first_that(int64_t least, int64_t most, const Holds& holds) {
-  while (least < most) {
-    const int64_t middle = least + (most - least) / 2;
-    if (holds(middle))
-      most = middle;
-    else
-      least = middle + 1;
-  }
-  return least;
 }
 
 void Search::narrow_to(uint32_t chosen, uint32_t bins) {

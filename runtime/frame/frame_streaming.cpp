@@ -15,8 +15,8 @@ namespace {
 
 // How far ahead chunks are asked for, in seconds: about what a disk, and a server, take.
 constexpr double kHorizons[] = {0.25, 1.0};
-// How far a head may have turned by then, in radians: at 100 degrees a second. bench/NOTES.md has
-// other angles.
+// How far a head turns in a quarter of a second at 100 degrees a second, in radians. bench/NOTES.md
+// has other angles.
 constexpr double kTurn = 0.44;
 // Faster than this, or longer between two frames, a viewer has jumped.
 constexpr double kFastest = 150;       // metres a second
@@ -148,6 +148,7 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
 // Until the pools are held, others' frames and budgets may take what was waited for.
 FrameStreaming::Holds FrameStreaming::hold_settled(bool stand_in) const {
   constexpr int kMostTries = 64;
+  const Scene* lost = nullptr;
   for (int tries = 0; tries < kMostTries; ++tries) {
     std::vector<uint64_t> waited;
     for (const Scene* scene : streamed_) waited.push_back(scene->stream->wait(stand_in));
@@ -155,13 +156,15 @@ FrameStreaming::Holds FrameStreaming::hold_settled(bool stand_in) const {
     const auto same = [](const Scene* scene, uint64_t departures) {
       return scene->stream->departures() == departures;
     };
-    if (std::equal(streamed_.begin(), streamed_.end(), waited.begin(), same)) return holds;
+    const auto gone = std::mismatch(streamed_.begin(), streamed_.end(), waited.begin(), same).first;
+    if (gone == streamed_.end()) return holds;
+    lost = *gone;
   }
-  throw Error(ErrorCode::over_budget, streamed_[0]->stream->file().name() +
-                                          ": found that chunks which this frame sees went " +
-                                          std::to_string(kMostTries) +
-                                          " times before it could draw them, expected a memory "
-                                          "budget for all that other views see, too");
+  throw Error(ErrorCode::over_budget,
+              lost->stream->file().name() + ": found that chunks which this frame sees went " +
+                  std::to_string(kMostTries) +
+                  " times before it could draw them, expected a memory budget for all that other "
+                  "views see, too");
 }
 
 FrameStreaming::Holds FrameStreaming::hold_all() const {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/base/first_that.h"
+
 namespace voyager {
 
 ChunkGraph::ChunkGraph(std::span<const ChunkEntry> chunks, const Tiers& tiers)
@@ -69,21 +71,10 @@ uint32_t ChunkGraph::owner_of_parent(uint32_t root) const {
 }
 
 ChunkRange ChunkGraph::with_roots(uint32_t first, uint32_t count, ChunkRange among) const {
-  // The first of them for which it holds.
-  const auto first_where = [&](uint32_t low, const auto& holds) {
-    for (uint32_t high = among.last; low < high;) {
-      const uint32_t middle = low + (high - low) / 2;
-      if (holds(middle))
-        high = middle;
-      else
-        low = middle + 1;
-    }
-    return low;
-  };
-  const uint32_t begin =
-      first_where(among.first, [&](uint32_t chunk) { return last_root(chunk) >= first; });
-  return {begin,
-          first_where(begin, [&](uint32_t chunk) { return first_root(chunk) >= first + count; })};
+  const uint32_t begin = first_that(among.first, among.last,
+                                    [&](uint32_t chunk) { return last_root(chunk) >= first; });
+  return {begin, first_that(begin, among.last,
+                            [&](uint32_t chunk) { return first_root(chunk) >= first + count; })};
 }
 
 ChunkRange ChunkGraph::with_family(uint32_t chunk, uint32_t first, uint32_t count) const {

@@ -129,7 +129,7 @@ void Residency::find_needed(std::span<const Viewer> viewers) {
 // A node is refined only when all that hangs from it is there. Which chunks hold a family is known
 // when the chunk of its parent has come. What a family lends is less than the parent's urgency: so
 // families of parents that have no room alter nothing in front of those, known or not. Nor is it
-// of a higher class: a node that is seen and refined makes all chunks of its family seen.
+// lent to another class: a node that is seen and refined makes all chunks of its family seen.
 void Residency::share_in_families() {
   for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
   const auto follows = [&](size_t i) {
@@ -140,15 +140,14 @@ void Residency::share_in_families() {
     if (!follows(i)) continue;
     size_t last = i;
     while (shares_family_[needed_[last].chunk] == 2 && follows(last + 1)) ++last;
-    std::array<uint32_t, 3> most{};
-    for (size_t k = i - 1; k <= last; ++k) {
-      uint32_t& of = most[static_cast<size_t>(class_of(urgency_[needed_[k].chunk]))];
-      of = std::max(of, urgency_[needed_[k].chunk]);
-    }
-    for (size_t k = i - 1; k <= last; ++k) {
-      const auto of = static_cast<size_t>(class_of(urgency_[needed_[k].chunk]));
-      needed_[k].urgency = std::max(needed_[k].urgency, most[of] & ~kOwn);
-    }
+    std::array<uint32_t, 3> most{};  // by class
+    const auto of_class = [&](size_t k) -> uint32_t& {
+      return most[static_cast<size_t>(class_of(urgency_[needed_[k].chunk]))];
+    };
+    for (size_t k = i - 1; k <= last; ++k)
+      of_class(k) = std::max(of_class(k), urgency_[needed_[k].chunk]);
+    for (size_t k = i - 1; k <= last; ++k)
+      needed_[k].urgency = std::max(needed_[k].urgency, of_class(k) & ~kOwn);
     i = last;
   }
 }
