@@ -216,8 +216,7 @@ void SplatPipeline::launch_second_pass(const SceneReading& reading, const FrameI
                                        FrameReport& report) {
   const Range range("second pass");
   SplatFrame rest = work(report.tiles, 1);
-  rest.splats.limits =
-      occlusion_.second(report.tiles, rest.splats.ends, rest.splats.open_parts, stream_.get());
+  rest.splats.limits = occlusion_.second(rest.splats, stream_.get());
   launch_projections(reading, frame, rest);
   launch_bin(rest);
   launch_sort(rest);
@@ -268,9 +267,6 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
   for (const FrameEye& eye : frame.eyes)
     report->target_bytes +=
         uint64_t{eye.image.width} * eye.image.height * pixel_bytes(eye.image.format);
-  occlusion_.begin(occlusion_choice_.next(), frame, report->tiles,
-                   splats_.view(report->tiles, 0).ends, stream_.get());
-  report->limited = occlusion_.limited();
   return report;
 }
 
@@ -293,7 +289,13 @@ void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
 void SplatPipeline::launch_search(const SceneReading&, const FrameInput& frame,
                                   FrameReport& report) {
   report.timer.begin();
-  run_stage(kSearch, report, [&] { instances_.update(frame, stream_.get()); });
+  run_stage(kSearch, report, [&] {
+    // What covered the tiles of the frame before, while it is still there.
+    occlusion_.begin(occlusion_choice_.next(), frame, report.tiles,
+                     splats_.view(report.tiles, 0).ends, stream_.get());
+    report.limited = occlusion_.limited();
+    instances_.update(frame, stream_.get());
+  });
 }
 
 // Frames that are left under way cannot be drawn again: they get room before they need it.

@@ -7,8 +7,7 @@
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
 #include "cuda/splat/bin_bands.h"
-#include "cuda/splat/bin_place.cuh"
-#include "cuda/splat/occlusion.cuh"
+#include "cuda/splat/bin_few.cuh"
 #include "cuda/splat/splat_launch.h"
 
 namespace voyager::cuda {
@@ -69,6 +68,10 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
   if (!has_work(splats)) return;
   extern __shared__ uint32_t counts[];
   const Share share = bin_share(splats, band, gridDim.x);
+  if (kLimited && draws_few(splats)) {
+    if (blockIdx.y == 0) count_few(splats, {share.strips, share.count});
+    return;
+  }
   TileStrip next = share.strip(threadIdx.x);
   for (uint32_t i = threadIdx.x; i < share.tiles; i += kBinThreads) counts[i] = 0;
   __syncthreads();
@@ -186,12 +189,16 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
   if (!has_work(splats)) return;
   extern __shared__ __align__(16) unsigned char memory[];
   BinScratch& scratch = *reinterpret_cast<BinScratch*>(memory);
+  const bool few = kLimited && draws_few(splats);
+  if (few && blockIdx.y != 0) return;
   if (blockIdx.x >= blocks) {
-    if (blockIdx.y == 0) bin_place(splats, at_once, blockIdx.x - blocks, scratch.places);
+    if (few && blockIdx.x == blocks && threadIdx.x < 32) place_few(splats);
+    if (!few && blockIdx.y == 0) bin_place(splats, at_once, blockIdx.x - blocks, scratch.places);
     return;
   }
   auto* const cursors = reinterpret_cast<uint32_t*>(memory + sizeof scratch);
   const Share share = bin_share(splats, band, blocks);
+  if (few) return scatter_few(splats, {share.strips, share.count});
   TileStrip next = share.strip(threadIdx.x);
   bin_cursors(splats, share, scratch, cursors);
   for (uint32_t base = threadIdx.x / 32 * 32; base < share.count; base += kBinThreads) {

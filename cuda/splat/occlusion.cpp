@@ -118,10 +118,9 @@ void OcclusionState::begin(bool wanted, const FrameInput& frame, const FrameTile
   for (const FrameEye& eye : frame.eyes) before_.push_back(eye.camera);
 }
 
-TileLimits OcclusionState::second(const FrameTiles& tiles, uint32_t* ends,
-                                  const uint32_t* open_parts, cudaStream_t stream) const {
-  const OcclusionFrame rest = work(tiles, ends, true);
-  launch_occlusion_rest(rest, bits_.data(), open_parts, stream);
+TileLimits OcclusionState::second(const SplatView& splats, cudaStream_t stream) const {
+  const OcclusionFrame rest = work(splats.frame, splats.ends, true);
+  launch_occlusion_rest(rest, bits_.data(), splats, stream);
   return rest.limits;
 }
 

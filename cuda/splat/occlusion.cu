@@ -40,7 +40,7 @@ __device__ uint32_t limit_of(const EyeTiles& before, const EyeMotion& motion, in
   const auto rows = static_cast<float>(before.grid.rows);
   if (!(x >= 0.0f && x < columns && y >= 0.0f && y < rows)) return kDrawAll;
   const uint32_t own = before.at(static_cast<int32_t>(x), static_cast<int32_t>(y));
-  if (own == kDrawAll) return kDrawAll;
+  if (own == kDrawAll || own == kDrawNothing) return kDrawAll;
   const float z = fmaxf(bits_float(own), 1e-3f);  // metres: parallax stays finite
   const float around = motion.around + motion.parallax / z;
   if (!(around <= kFarthest)) return kDrawAll;
@@ -122,7 +122,8 @@ __global__ void __launch_bounds__(kThreads) occlusion_guess(OcclusionFrame f) {
 
 // first: of the pass that left tiles open, whose ends are known.
 __global__ void __launch_bounds__(kThreads)
-    occlusion_rest(OcclusionFrame f, const uint32_t* first, const uint32_t* open_parts) {
+    occlusion_rest(OcclusionFrame f, const uint32_t* first, const uint32_t* open_parts,
+                   OpenTiles* tiles) {
   if (*open_parts == 0) return;
   const Square at(f.tiles);
   uint32_t limit = kDrawNothing;
@@ -130,7 +131,11 @@ __global__ void __launch_bounds__(kThreads)
     const uint32_t tile =
         f.tiles.first[at.eye] + at.tile_row * f.tiles.grids[at.eye].columns + at.tile_column;
     const bool open = f.ends[tile] == kDrawAll && first[tile] != kDrawAll;
-    if (open) limit = kDrawAll, f.ends[tile] = 0;
+    if (open) {
+      limit = kDrawAll, f.ends[tile] = 0;
+      const uint32_t place = atomicAdd(&tiles->count, 1u);
+      if (place < kFewOpen) tiles->tiles[place] = tile;
+    }
   }
   put_limit(f.tiles, f.limits, f.bits, at, limit);
 }
@@ -149,10 +154,10 @@ void launch_occlusion_guess(const OcclusionFrame& f, cudaStream_t stream) {
   launch_kernel("occlusion_guess", occlusion_guess, {squares(f.tiles), kThreads, stream}, f);
 }
 
-void launch_occlusion_rest(const OcclusionFrame& f, const uint32_t* first,
-                           const uint32_t* open_parts, cudaStream_t stream) {
+void launch_occlusion_rest(const OcclusionFrame& f, const uint32_t* first, const SplatView& splats,
+                           cudaStream_t stream) {
   launch_kernel("occlusion_rest", occlusion_rest, {squares(f.tiles), kThreads, stream}, f, first,
-                open_parts);
+                splats.open_parts, &splats.counters->open);
 }
 
 }  // namespace voyager::cuda

@@ -30,9 +30,9 @@ struct OcclusionFrame {
 
 // occlusion.cu
 void launch_occlusion_guess(const OcclusionFrame& frame, cudaStream_t stream);
-// first: limits of the first pass; open_parts: its counter.
+// first: limits of the first pass; splats: of the second, whose counters get the tiles.
 void launch_occlusion_rest(const OcclusionFrame& frame, const uint32_t* first,
-                           const uint32_t* open_parts, cudaStream_t stream);
+                           const SplatView& splats, cudaStream_t stream);
 
 // Whether limits pay: by frames of either kind, now and then one of the other. By numbers of pairs,
 // which do not depend on the machine.
@@ -69,9 +69,8 @@ class OcclusionState {
   bool limited() const { return first_.bits != nullptr; }
   // Of the first pass; none where the frame has no limits.
   const TileLimits& first() const { return first_; }
-  // Launches those of the second. open_parts: the first pass's counter.
-  TileLimits second(const FrameTiles& tiles, uint32_t* ends, const uint32_t* open_parts,
-                    cudaStream_t stream) const;
+  // Launches those of the second.
+  TileLimits second(const SplatView& splats, cudaStream_t stream) const;
 
  private:
   OcclusionFrame work(const FrameTiles& tiles, uint32_t* ends, bool second) const;

@@ -23,7 +23,7 @@ constexpr unsigned kProjectThreads = 128;  // small blocks: registers bound how 
 constexpr unsigned kPairBlocks = 6;
 
 // In the image of any eye, before what hides it. hull: of the item's Gaussian.
-template <bool kLod, int kEyes>
+template <bool kLod, int kEyes, bool kSecond>
 __device__ bool project_may_show(const SplatFrame& f, const DrawItem& item, GaussianHull hull) {
   if (item.gaussian == kNoNode) return false;
   if (kLod && item.t != 1.0f) {
@@ -37,7 +37,8 @@ __device__ bool project_may_show(const SplatFrame& f, const DrawItem& item, Gaus
   for (int eye = 0; eye < kEyes; ++eye)
     reaches = reaches || may_reach(f.params[eye], hull.mean, hull.max_scale, radius);
   return radius > 0.0f && reaches &&
-         !hidden_in_all(f.splats, f.params, {hull.mean, hull.max_scale, hull.mean, radius});
+         !hidden_in_all<kSecond>(f.splats, f.params,
+                                 {hull.mean, hull.max_scale, hull.mean, radius});
 }
 
 // What the place of a node draws, and `t` of the node where it is found here.
@@ -77,9 +78,9 @@ __device__ void append_places(const uint32_t (&lanes)[kItems], uint32_t* next, u
 // The order of the candidates depends on scheduling; nothing that is made of them does. Those that
 // blend with their parents are apart: restoring two Gaussians takes twice as long, and a warp takes
 // as long as its slowest.
-template <bool kLod, int kEyes>
+template <bool kLod, int kEyes, bool kSecond>
 __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
-  if (!has_work(f.splats)) return;
+  if (kSecond && !has_work(f.splats)) return;
   __shared__ uint32_t found, first;
   const uint32_t places = *f.draws.list.size;
   InstanceCounters* const counters = f.splats.counters->instances + f.instance;
@@ -108,7 +109,7 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
       const uint32_t place = places_of[k];
       float t = 1.0f;
       const DrawItem item = weighed_item<kLod>(f, place, nodes[k], t);
-      const bool reaches = project_may_show<kLod, kEyes>(f, item, hulls[k]);
+      const bool reaches = project_may_show<kLod, kEyes, kSecond>(f, item, hulls[k]);
       const bool blends = kLod && item.t != 1.0f;
       if (kLod && reaches && f.draws.weights.origin != nullptr) f.draws.weights.weights[place] = t;
       whole[k] = __ballot_sync(kAll, reaches && !blends);
@@ -177,7 +178,7 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
           const ProjectParams& params = f.params[eye];
           if (!project(params, arrays, item, drawn, splat)) continue;
           const SplatRecord record = record_of(splat, params.log_scale);
-          f.splats.records[rank * kEyes + eye] = record;
+          f.splats.records[slot_of(f.splats, rank, eye)] = record;
           extent[eye] = tile_extent(support_of(record, params.log_scale, params.log_threshold),
                                     f.splats.frame.grids[eye]);
           depth[eye] = splat.depth;
@@ -189,7 +190,7 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
 #pragma unroll
     for (int eye = 0; eye < kEyes; ++eye)
       write_strips<kEyes>(extents[threadIdx.x / 32], extent[eye], f.splats, eye, depth[eye],
-                          rank * kEyes + eye, boxes);
+                          slot_of(f.splats, rank, eye), boxes);
   }
   visible = __reduce_add_sync(kAll, visible);
   for (int step = 16; step != 0; step /= 2) boxed += __shfl_xor_sync(kAll, boxed, step);
@@ -206,11 +207,19 @@ void launch(const SplatFrame& f, bool boxes) {
                 f, boxes);
 }
 
-template <bool kLod, int kEyes>
-void launch_for(const SplatFrame& f, bool boxes) {
-  constexpr auto cull = project_cull<kLod, kEyes>;
+template <bool kLod, int kEyes, bool kSecond>
+void launch_cull(const SplatFrame& f) {
+  constexpr auto cull = project_cull<kLod, kEyes, kSecond>;
   const unsigned resident = resident_blocks<cull>(kCullThreads);
   launch_kernel("project_cull", cull, {f.multiprocessors * resident, kCullThreads, f.stream}, f);
+}
+
+template <bool kLod, int kEyes>
+void launch_for(const SplatFrame& f, bool boxes) {
+  if (f.splats.open_parts == nullptr)
+    launch_cull<kLod, kEyes, false>(f);
+  else
+    launch_cull<kLod, kEyes, true>(f);
   with_sh(f.gaussians, [&]<class Sh>() { launch<Sh, kLod, kEyes>(f, boxes); });
 }
 

@@ -11,18 +11,20 @@ namespace {
 
 constexpr unsigned kAll = 0xffffffffu, kThreads = 256;
 
+template <bool kSecond>
 __device__ bool row_may_reach(const SplatFrame& f, uint32_t row) {
   MeanBounds bounds = f.draws.list.bounds[row];
   bounds.radius = radius_above(bounds.radius, f.params[0].log_threshold);
   bool reaches = false;
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
     reaches = reaches || may_reach(f.params[eye], bounds);
-  return reaches && !hidden_in_all(f.splats, f.params, bounds);
+  return reaches && !hidden_in_all<kSecond>(f.splats, f.params, bounds);
 }
 
 // A row a lane. Their order depends on scheduling; nothing that is made of them does.
+template <bool kSecond>
 __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
-  if (!has_work(f.splats)) return;
+  if (kSecond && !has_work(f.splats)) return;
   InstanceCounters* const counters = f.splats.counters->instances + f.instance;
   const uint32_t first_place = min(counters->first_place, f.splats.places);
   const uint32_t places = min(*f.draws.list.size, f.splats.places - first_place);
@@ -31,7 +33,7 @@ __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
   for (uint32_t base = blockIdx.x * kThreads + threadIdx.x - lane; base < end;
        base += gridDim.x * kThreads) {
     const uint32_t row = base + lane;
-    const uint32_t found = __ballot_sync(kAll, row < end && row_may_reach(f, row));
+    const uint32_t found = __ballot_sync(kAll, row < end && row_may_reach<kSecond>(f, row));
     uint32_t first = 0;
     if (lane == 0 && found != 0)
       first = atomicAdd(&counters->rows, static_cast<uint32_t>(__popc(found)));
@@ -40,13 +42,18 @@ __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
   }
 }
 
+template <bool kSecond>
+void launch(const SplatFrame& f) {
+  constexpr auto rows = project_rows<kSecond>;
+  const unsigned resident = resident_blocks<rows>(kThreads);
+  launch_kernel("project_rows", rows, {f.multiprocessors * resident, kThreads, f.stream}, f);
+}
+
 }  // namespace
 
 RowList launch_rows(const SplatFrame& f) {
   if (f.draws.list.bounds == nullptr || f.draws.list.room == 0) return {};
-  const unsigned resident = resident_blocks<project_rows>(kThreads);
-  launch_kernel("project_rows", project_rows, {f.multiprocessors * resident, kThreads, f.stream},
-                f);
+  f.splats.open_parts == nullptr ? launch<false>(f) : launch<true>(f);
   return {f.splats.rows, &f.splats.counters->instances[f.instance].rows};
 }
 

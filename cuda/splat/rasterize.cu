@@ -316,8 +316,9 @@ __global__ void __launch_bounds__(kThreads, kRasterBlocks)
     rasterize_tile<M>(params, params.splats.tile_order[at], own, lut_entries);
 }
 
-// For a second pass, which usually has no tiles. Those that have a list come before all that are
-// closed; of those without one some may be left out, since nothing is drawn in them. A kernel of
+// For a second pass, which usually has few tiles or none. Of many, those that have a list come
+// before all that are closed; of those without one some may be left out, since nothing is drawn in
+// them. A kernel of
 // its own, because a loop over tiles takes registers that the loop over splats needs.
 template <class M>
 __global__ void __launch_bounds__(kThreads)
@@ -326,7 +327,7 @@ __global__ void __launch_bounds__(kThreads)
   __shared__ WarpSplats chosen[kWarps];
   const float* lut_entries = read_lut<M>(params);
   WarpSplats& own = own_splats(chosen);
-  for (uint32_t at = blockIdx.x; at < params.splats.frame.count(); at += gridDim.x) {
+  for (uint32_t at = blockIdx.x; at < list_count(params.splats); at += gridDim.x) {
     const uint32_t tile = params.splats.tile_order[at];
     if (params.splats.limits.bits[tile] == kDrawNothing) return;
     rasterize_tile<M>(params, tile, own, lut_entries);

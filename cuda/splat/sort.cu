@@ -180,7 +180,7 @@ union Storage {
 __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) {
   if (!has_work(splats)) return;
   __shared__ Storage storage;
-  const uint32_t tiles = splats.frame.count(), long_lists = splats.counters->long_lists;
+  const uint32_t lists = list_count(splats), long_lists = splats.counters->long_lists;
   for (uint32_t i = splats.counters->large_lists + blockIdx.x; i < long_lists; i += gridDim.x) {
     const TileList list = splats.tiles[splats.tile_order[i]];
     MediumLists::sort(storage.block, splats.keys + list.first, list.last - list.first, threadIdx.x);
@@ -192,7 +192,7 @@ __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) 
     uint32_t taken = 0;
     if (threadIdx.x % 32 == 0) taken = atomicAdd(&splats.counters->queues[queue].taken, 1u);
     const uint32_t i = long_lists + __shfl_sync(0xffffffffu, taken, 0) * kSortQueues + queue;
-    if (i >= tiles) return;
+    if (i >= lists) return;
     const TileList list = splats.tiles[splats.tile_order[i]];
     if (list.last - list.first > 1)
       ShortLists::sort(storage.warp[warp], splats.keys + list.first, list.last - list.first,

@@ -69,6 +69,7 @@ struct SplatCounters {
   unsigned long long strips_dropped;
   uint32_t long_lists, large_lists, halved_lists;  // the first tiles of tile_order
   uint32_t open_parts;  // of tiles whose list was cut off before all of their pixels had ended
+  OpenTiles open;       // that the pass draws, where it is the second
 };
 
 // At most so many keys are in lists behind the long ones, and behind the large ones: just
@@ -110,7 +111,7 @@ struct FrameTiles {
 
 // As kernels take it.
 struct SplatView {
-  SplatRecord* records;  // by slot: a place's for all eyes one behind the other
+  SplatRecord* records;  // by slot: of all places for an eye, then for the next
   // Places of the instance that is being projected: whole ones from the beginning, blended ones
   // from the end.
   uint32_t* candidates;
@@ -132,6 +133,11 @@ struct SplatView {
   const uint32_t* open_parts;  // of the first pass; null there
   FrameTiles frame;
 };
+
+// rank: of a place among those of all instances.
+VOYAGER_HD uint32_t slot_of(const SplatView& splats, uint32_t rank, uint32_t eye) {
+  return eye * splats.places + rank;
+}
 
 VOYAGER_HD uint32_t* strip_count(const SplatView& splats, uint32_t region) {
   return &splats.counters->regions[region].strips;

@@ -29,4 +29,13 @@ struct TileLimits {
   uint32_t first[kLimitLevels][kMaxEyes];
 };
 
+// Of a second pass. Where they are few, as they most often are, its kernels go through them one by
+// one, and no other tile costs anything.
+inline constexpr uint32_t kFewOpen = 32;
+struct OpenTiles {
+  uint32_t count;            // may be more than are listed
+  uint32_t tiles[kFewOpen];  // in no order
+  uint32_t taken[kFewOpen];  // places of their lists
+};
+
 }  // namespace voyager::cuda

@@ -16,8 +16,9 @@ class FramesInFlight : public SplatTest {
     if (!IsSkipped()) held_ = std::make_unique<cuda::Stream>();
   }
 
-  std::unique_ptr<Pipeline> pipeline(const std::shared_ptr<const Scene>& scene) {
-    return cuda->create_pipeline({scene}, {}, std::pmr::get_default_resource(), workers);
+  std::unique_ptr<Pipeline> pipeline(const std::shared_ptr<const Scene>& scene,
+                                     const PipelineDesc& desc = {}) {
+    return cuda->create_pipeline({scene}, desc, std::pmr::get_default_resource(), workers);
   }
   std::unique_ptr<ExternalRing> make_ring(uint32_t width, uint32_t height) const {
     ExternalRingDesc desc{};

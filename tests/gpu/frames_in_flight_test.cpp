@@ -50,6 +50,32 @@ TEST_F(FramesInFlight, WhereTheRoomIsCheckedNoFrameOutgrowsIt) {
   EXPECT_EQ(stats.pairs_dropped, 0u);
 }
 
+// Each finds hidden what the one before it covered, which has not ended when it is submitted.
+TEST_F(FramesInFlight, LeaveOutWhatFramesThatAreWaitedForLeaveOut) {
+  const auto scene = flat_scene(random_cloud(60000, 31, 0));
+  const PipelineDesc desc{.occlusion = Occlusion::on};
+  const auto waited = view(scene, desc);
+  const auto drawn = pipeline(scene, desc);
+  const auto ring = make_ring(kWide.width, kWide.height);
+  const auto camera = [](int i) {
+    return look({0.05 * i, 0, -24}, {i < 6 ? 0.0 : 0.5 * i, 0, 0}, kWide.width, kWide.height);
+  };
+  drawn->submit(into(*ring, camera(0)), true);  // so that there is room
+  render(*waited, frame_input(camera(0), 3));
+  const uint64_t all = finished(*drawn).pairs_after;
+  for (int first = 1; first < 12; first += 3) {
+    for (int i = first; i < first + 3; ++i) drawn->submit(into(*ring, camera(i)), false);
+    for (int i = first; i < first + 3; ++i) {
+      const FrameStats expected = render(*waited, frame_input(camera(i), 3)).stats;
+      const FrameStats stats = finished(*drawn);
+      EXPECT_LT(stats.pairs_after, all);
+      EXPECT_EQ(stats.pairs_after, expected.pairs_after) << "frame " << i;
+      EXPECT_EQ(stats.splats, expected.splats) << "frame " << i;
+      EXPECT_EQ(stats.pairs_dropped, 0u);
+    }
+  }
+}
+
 // Submits a frame while another is held back on the device: no buffer comes or goes before that
 // one has ended.
 void expect_buffers_kept(Pipeline& drawn, const FrameInput& input, double held) {

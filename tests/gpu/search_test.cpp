@@ -7,6 +7,7 @@
 #include "runtime/base/error.h"
 #include "runtime/math/lerp.h"
 #include "tests/gpu/device_test.h"
+#include "tests/gpu/test_share.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/render_scene.h"
 
@@ -117,7 +118,7 @@ Vec3f anywhere(std::mt19937& random, float reach) {
 
 // Of the baselines of detail, through the backend.
 TEST_F(SearchTest, BaselinesOfDetailAsOnTheHost) {
-  const auto scene = baked_scene(random_cloud(20000, 35, 0));
+  const auto scene = baked_scene(random_cloud(share_of(20000), 35, 0));
   const auto on_device = create_backend(), host = create_cpu_backend();
   Workers workers;
   std::mt19937 random(36);
@@ -143,7 +144,7 @@ TEST_F(SearchTest, BaselinesOfDetailAsOnTheHost) {
 std::vector<CutQuery> jumps(const LodTree& tree, std::mt19937& random, int count) {
   std::vector<CutQuery> path;
   const float targets[] = {1e-30f, 1e-4f, 0.003f, 0.02f, 0.3f, 5.0f, kInfinity};
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < share_of(count); ++i) {
     const NodeRecord& r = tree.records[random() % tree.size()];
     const Vec3f middle = 0.5f * (r.box_min + r.box_max);
     const Vec3f centres[] = {middle,
@@ -165,7 +166,7 @@ std::vector<CutQuery> walk(std::mt19937& random, int count, float target) {
   std::vector<CutQuery> path;
   Vec3f c = anywhere(random, 60.0f);
   float step = 0.02f;
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < share_of(count); ++i) {
     if (i % 40 == 0) step = std::pow(10.0f, -7.0f + 8.0f * unit(random));
     if (i % 97 == 96) c = anywhere(random, 100.0f);
     c = c + step * anywhere(random, 1.0f);
@@ -179,7 +180,7 @@ TEST_F(SearchTest, EqualTheHostsOnTreesOfEveryShapeAfterEveryJump) {
   for (const TreeShape shape : kTreeShapes)
     for (const uint32_t nodes : {1u, 2u, 5u, 40u, 3000u, 60000u})
       for (const Extents extents : {Extents::longest_side, Extents::any}) {
-        const auto scene = scene_of(random_tree(shape, nodes, 7 + nodes, extents),
+        const auto scene = scene_of(random_tree(shape, share_of(nodes), 7 + nodes, extents),
                                     nodes % 2 ? kMinChunkBytes : kDefaultChunkBytes);
         expect_equal(scene, jumps(scene->tree, random, nodes > 10000 ? 12 : 20),
                      name_of(shape) + " of " + std::to_string(nodes));
@@ -189,7 +190,7 @@ TEST_F(SearchTest, EqualTheHostsOnTreesOfEveryShapeAfterEveryJump) {
 TEST_F(SearchTest, EqualTheHostsAlongWalksThatOutlastTheReferences) {
   std::mt19937 random(2);
   for (const TreeShape shape : {TreeShape::four_way, TreeShape::mixture, TreeShape::binary}) {
-    const auto scene = scene_of(random_tree(shape, 100000, 11));
+    const auto scene = scene_of(random_tree(shape, share_of(100000), 11));
     for (const float target : {0.004f, 0.05f, 0.5f})
       expect_equal(scene, walk(random, 700, target), name_of(shape));
   }
@@ -199,7 +200,7 @@ TEST_F(SearchTest, EqualTheHostsOnAMillionNodes) {
   std::mt19937 random(3);
   for (const TreeShape shape :
        {TreeShape::four_way, TreeShape::mixture, TreeShape::star, TreeShape::star_of_stars}) {
-    const auto scene = scene_of(random_tree(shape, 1000000, 5));
+    const auto scene = scene_of(random_tree(shape, share_of(1000000), 5));
     std::vector<CutQuery> path = walk(random, 60, 0.01f);
     for (const CutQuery& q : jumps(scene->tree, random, 20)) path.push_back(q);
     expect_equal(scene, path, name_of(shape));
@@ -209,7 +210,7 @@ TEST_F(SearchTest, EqualTheHostsOnAMillionNodes) {
 // A fast flight: more subtrees are due than a part of the device has lanes, and not yet so many
 // that streaming takes over.
 TEST_F(SearchTest, EqualTheHostsWhereEachLaneHasASubtree) {
-  const auto scene = scene_of(random_tree(TreeShape::recursive, 1500000, 21));
+  const auto scene = scene_of(random_tree(TreeShape::recursive, share_of(1500000), 21));
   constexpr unsigned kMultiprocessors = 16, kMostLanes = 2048 * kMultiprocessors;
   const auto search = create(scene, Search::temporal, kMultiprocessors);
   Oracle oracle(*scene);
@@ -226,7 +227,7 @@ TEST_F(SearchTest, EqualTheHostsWhereEachLaneHasASubtree) {
 }
 
 TEST_F(SearchTest, ASweepOfGranularityThereAndBackGivesTheSameCuts) {
-  const auto scene = scene_of(random_tree(TreeShape::four_way, 200000, 3));
+  const auto scene = scene_of(random_tree(TreeShape::four_way, share_of(200000), 3));
   std::vector<CutQuery> path;
   for (int i = 0; i < 120; ++i) {
     const int k = i < 60 ? i : 119 - i;
@@ -236,13 +237,13 @@ TEST_F(SearchTest, ASweepOfGranularityThereAndBackGivesTheSameCuts) {
 }
 
 TEST_F(SearchTest, NothingIsVisitedAndNothingDriftsWhileTheViewerStands) {
-  const auto scene = scene_of(random_tree(TreeShape::four_way, 200000, 4));
+  const auto scene = scene_of(random_tree(TreeShape::four_way, share_of(200000), 4));
   const auto search = create(scene, Search::temporal);
   const CutQuery query{{3, -2, 5}, 0.01f};
   const Result first = run(*search, query);
   ASSERT_FALSE(first.cut.empty());
   // Each run waits for 50 µs first, so that 1e5 of them take seconds.
-  for (int i = 0; i < 100000; ++i) search->run(query);
+  for (int i = 0; i < share_of(100000); ++i) search->run(query);
   EXPECT_TRUE(same(run(*search, query), first));
   EXPECT_EQ(search->stats().nodes_tested, 0u);
   EXPECT_EQ(search->stats().entered + search->stats().left, 0u);
@@ -251,7 +252,7 @@ TEST_F(SearchTest, NothingIsVisitedAndNothingDriftsWhileTheViewerStands) {
 // Where a list has no room for what enters, its neighbours make some: the rest stays where it is.
 TEST_F(SearchTest, AStepMovesAPartOfTheList) {
   std::mt19937 random(12);
-  const auto scene = scene_of(random_tree(TreeShape::four_way, 1000000, 13));
+  const auto scene = scene_of(random_tree(TreeShape::four_way, share_of(1000000), 13));
   const auto on = device();
   const auto search = search_of(on, scene, Search::temporal);
   constexpr uint32_t kNone = 0xffffffffu;
@@ -259,7 +260,7 @@ TEST_F(SearchTest, AStepMovesAPartOfTheList) {
   size_t moving_frames = 0;
   Vec3f centre = anywhere(random, 40.0f);
   const Vec3f step = 0.05f * anywhere(random, 1.0f);
-  for (int frame = 0; frame < 100; ++frame, centre = centre + step) {
+  for (int frame = 0; frame < share_of(100); ++frame, centre = centre + step) {
     search->find({centre, 0.01f}, nullptr);
     const cuda::CutList list = search->list();
     uint32_t size = 0;
@@ -283,7 +284,7 @@ TEST_F(SearchTest, AStepMovesAPartOfTheList) {
 }
 
 TEST_F(SearchTest, ViewsOfOneSceneAreIndependent) {
-  const auto scene = scene_of(random_tree(TreeShape::four_way, 50000, 6));
+  const auto scene = scene_of(random_tree(TreeShape::four_way, share_of(50000), 6));
   const auto here = create(scene, Search::temporal), there = create(scene, Search::temporal);
   Oracle oracle(*scene);
   std::mt19937 random(6);
@@ -300,7 +301,7 @@ TEST_F(SearchTest, ViewsOfOneSceneAreIndependent) {
 }
 
 TEST_F(SearchTest, CountsWhatEntersAndLeaves) {
-  const auto scene = scene_of(random_tree(TreeShape::four_way, 50000, 8));
+  const auto scene = scene_of(random_tree(TreeShape::four_way, share_of(50000), 8));
   std::mt19937 random(8);
   ASSERT_FALSE(scene->search.leaves_have_extent);
   for (const Search kind :
@@ -323,7 +324,7 @@ TEST_F(SearchTest, CountsWhatEntersAndLeaves) {
 }
 
 TEST_F(SearchTest, APartOfTheMultiprocessorsGivesTheSame) {
-  const auto scene = scene_of(random_tree(TreeShape::four_way, 50000, 9));
+  const auto scene = scene_of(random_tree(TreeShape::four_way, share_of(50000), 9));
   Oracle oracle(*scene);
   std::mt19937 random(9);
   for (const Search kind : kSearches) {

@@ -44,7 +44,8 @@ class SplatDamage : public SplatTest {
     ++drawn;
   }
 
-  const Bytes bytes = scene_bytes(bake(random_cloud(6000, 4, 1)), Quality::lossless, 0, 32768);
+  const Bytes bytes =
+      scene_bytes(bake(random_cloud(share_of(6000), 4, 1)), Quality::lossless, 0, 32768);
   Agreement agreement{"damaged scenes, CUDA against the CPU"};
   size_t drawn = 0, refused = 0;
 };

@@ -29,7 +29,7 @@ class SplatFilter : public SplatTest {
 };
 
 TEST_F(SplatFilter, ChangesNoBitWithAnyExponential) {
-  const auto scene = baked_scene(random_cloud(6000, 5, 2));
+  const auto scene = baked_scene(random_cloud(share_of(6000), 5, 2));
   for (const FrameInput& input : varied_frames())
     for (const NamedDesc& named : all_exponentials(kLutSizes)) {
       SCOPED_TRACE(named.name + ", tau " + std::to_string(input.tau));
@@ -39,7 +39,7 @@ TEST_F(SplatFilter, ChangesNoBitWithAnyExponential) {
 }
 
 TEST_F(SplatFilter, ChangesNoBitOfALargeFrame) {
-  const GaussianCloud cloud = random_cloud(100000, 6, 1);
+  const GaussianCloud cloud = random_cloud(share_of(100000), 6, 1);
   const FrameInput input = frame_input(look({3, -6, -24}, {0, 0, 0}, 1283, 717), 3);
   const auto baked = baked_scene(cloud);
   const std::shared_ptr<const Scene> flat = flat_scene(cloud);
@@ -52,7 +52,7 @@ TEST_F(SplatFilter, ChangesNoBitOfALargeFrame) {
 
 // Long thin ellipses across many tiles, where the two lists differ most.
 TEST_F(SplatFilter, ChangesNoBitOfNeedles) {
-  GaussianCloud cloud = random_cloud(3000, 7, 0);
+  GaussianCloud cloud = random_cloud(share_of(3000), 7, 0);
   for (size_t i = 0; i < cloud.size(); ++i) {
     cloud.log_scale[3 * i] = std::log(8.0f);
     cloud.log_scale[3 * i + 1] = cloud.log_scale[3 * i + 2] = std::log(1e-4f);
@@ -67,7 +67,7 @@ TEST_F(SplatFilter, ChangesNoBitOfNeedles) {
 }
 
 TEST_F(SplatFilter, CountingPixelsChangesNoBit) {
-  const auto scene = baked_scene(random_cloud(6000, 8, 1));
+  const auto scene = baked_scene(random_cloud(share_of(6000), 8, 1));
   for (const FrameInput& input : varied_frames()) {
     const Frame plain = draw(scene, {}, input),
                 counted = draw(scene, {.count_pixels = true}, input);

@@ -122,7 +122,7 @@ TEST_F(SplatLimit, EncodingsAreDecodedAsOnTheHost) {
 // One view, frames with and without limits of growing and shrinking sizes; the first of
 // them finds too little room and is drawn again.
 TEST_F(SplatLimit, IsOfOneFrameWhateverWasDrawnBefore) {
-  const std::shared_ptr<const Scene> scene = flat_scene(random_cloud(400000, 6, 0));
+  const std::shared_ptr<const Scene> scene = flat_scene(random_cloud(share_of(400000), 6, 0));
   const auto own = view(scene);
   size_t hidden = 0;
   for (const uint32_t width : {640u, 161u, 1283u, 33u})

@@ -34,7 +34,7 @@ std::vector<Camera> way() {
 class SplatOcclusion : public SplatTest {};
 
 TEST_F(SplatOcclusion, NoPixelMissesWhatWasLeftOut) {
-  const GaussianCloud cloud = random_cloud(60000, 31, 1);
+  const GaussianCloud cloud = random_cloud(share_of(60000), 31, 1);
   for (const std::shared_ptr<const Scene>& scene :
        std::vector<std::shared_ptr<const Scene>>{baked_scene(cloud), flat_scene(cloud)})
     for (const NamedDesc& named : all_exponentials(std::array{32u})) {
@@ -50,7 +50,7 @@ TEST_F(SplatOcclusion, NoPixelMissesWhatWasLeftOut) {
 }
 
 TEST_F(SplatOcclusion, NoPixelOfEitherEyeMissesIt) {
-  const auto scene = baked_scene(random_cloud(60000, 32, 1), Quality::compact);
+  const auto scene = baked_scene(random_cloud(share_of(60000), 32, 1), Quality::compact);
   const auto on = view(scene, {.search = Search::temporal, .occlusion = Occlusion::on, .eyes = 2});
   const auto off = view(scene, {.occlusion = Occlusion::off, .eyes = 2});
   for (const Camera& camera : way()) {
@@ -64,9 +64,9 @@ TEST_F(SplatOcclusion, NoPixelOfEitherEyeMissesIt) {
 
 // What covers the rest may go between two frames: as an instance, or as the engine's depth.
 TEST_F(SplatOcclusion, WhatIsUncoveredIsDrawnAtOnce) {
-  GaussianCloud wall = random_cloud(20000, 33, 0, 2.0f);
+  GaussianCloud wall = random_cloud(share_of(20000), 33, 0, 2.0f);
   for (float& logit : wall.opacity) logit = 5;
-  const Scenes scenes{baked_scene(random_cloud(30000, 34, 1)), baked_scene(wall)};
+  const Scenes scenes{baked_scene(random_cloud(share_of(30000), 34, 1)), baked_scene(wall)};
   const auto made = [&](Occlusion occlusion) {
     return std::make_unique<View>(scenes, *cuda, with(occlusion), std::pmr::get_default_resource(),
                                   workers);
@@ -82,8 +82,38 @@ TEST_F(SplatOcclusion, WhatIsUncoveredIsDrawnAtOnce) {
   }
 }
 
+// Too much for the room of a view that has seen nothing but what hides it: in the whole image, and
+// beside an edge that moves by a column of tiles.
+TEST_F(SplatOcclusion, WhatIsUncoveredMayBeMoreThanThereIsRoomFor) {
+  const auto sheets = empty_scene();
+  for (int i = 0; i < 4000; ++i)
+    add_gaussian(*sheets, {0, 0, 1 + 1e-4f * static_cast<float>(i)}, {1e4f, 1e4f, 1e-6f}, 0.004f);
+  const Vec3d behind{0, 0, -50}, ahead{0, 0, 0};
+  for (const auto& [width, aside] : {std::pair{1e4f, 1e6}, std::pair{0.3f, 0.025}}) {
+    SCOPED_TRACE(width);
+    const auto wall = empty_scene();
+    for (int i = 0; i < 12; ++i)
+      add_gaussian(*wall, {0, 0, 0.5f + 1e-3f * static_cast<float>(i)}, {width, 1e4f, 1e-6f}, 0.99f,
+                   {1, 0, 0});
+    const auto made = [&](Occlusion occlusion) {
+      return std::make_unique<View>(Scenes{sheets, wall}, *cuda, with(occlusion),
+                                    std::pmr::get_default_resource(), workers);
+    };
+    const auto on = made(Occlusion::on), off = made(Occlusion::off);
+    for (const auto& [of_sheets, of_wall] : {std::pair{behind, ahead},
+                                             {behind, ahead},
+                                             {ahead, ahead},
+                                             {ahead, Vec3d{aside, 0, 0}},
+                                             {ahead, Vec3d{aside, 0, 0}}}) {
+      FrameInput input = frame_input(look({0, 0, 0}, {0, 0, 1}, 333, 320));
+      input.instances = {pose_of(of_sheets), pose_of(of_wall)};
+      expect_same_bits(render(*on, input), render(*off, input));
+    }
+  }
+}
+
 TEST_F(SplatOcclusion, WhatIsHiddenIsNotDrawn) {
-  const auto scene = baked_scene(random_cloud(200000, 35, 1));
+  const auto scene = baked_scene(random_cloud(share_of(200000), 35, 1));
   const FrameInput input = frame_input(look({0, 0, -24}, {0, 0, 0}, 640, 400), 1);
   const auto stats = [&](Occlusion occlusion, Search search) {
     const auto drawn = view(scene, {.search = search, .occlusion = occlusion});
@@ -100,7 +130,7 @@ TEST_F(SplatOcclusion, WhatIsHiddenIsNotDrawn) {
 
 // By itself where that is less work, and not in a picture that nothing covers.
 TEST_F(SplatOcclusion, IsChosenWhereItPays) {
-  GaussianCloud sparse = random_cloud(400000, 36, 0);
+  GaussianCloud sparse = random_cloud(share_of(400000), 36, 0);
   for (float& logit : sparse.opacity) logit = -4.5f;
   for (float& log : sparse.log_scale) log -= 1.5f;
   const auto pairs = [&](const GaussianCloud& cloud, Occlusion occlusion) {
@@ -111,7 +141,7 @@ TEST_F(SplatOcclusion, IsChosenWhereItPays) {
           render(*drawn, frame_input(look({0, 0, -24}, {0, 0, 0}, 1280, 800))).stats.pairs_after);
     return all;
   };
-  const GaussianCloud dense = random_cloud(400000, 37, 0);
+  const GaussianCloud dense = random_cloud(share_of(400000), 37, 0);
   const auto of_dense = pairs(dense, Occlusion::automatic);
   ASSERT_GT(of_dense[0], uint64_t{1} << 19);
   EXPECT_EQ(of_dense[0], pairs(dense, Occlusion::off)[0]);

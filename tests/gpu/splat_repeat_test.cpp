@@ -27,7 +27,7 @@ std::vector<FrameInput> walk(size_t frames) {
 }
 
 TEST_F(SplatRepeat, AFrameIsTheSameTwiceAndFromAViewThatSawOthers) {
-  const auto scene = baked_scene(random_cloud(40000, 6, 1));
+  const auto scene = baked_scene(random_cloud(share_of(40000), 6, 1));
   for (const NamedDesc& named : all_exponentials(std::array{32u})) {
     SCOPED_TRACE(named.name);
     const auto one = view(scene, named.desc), other = view(scene, named.desc);
@@ -42,8 +42,8 @@ TEST_F(SplatRepeat, AFrameIsTheSameTwiceAndFromAViewThatSawOthers) {
 }
 
 TEST_F(SplatRepeat, ScenesAndViewsAlternate) {
-  const auto baked = baked_scene(random_cloud(20000, 7, 2));
-  const std::shared_ptr<const Scene> flat = flat_scene(random_cloud(9000, 8, 3));
+  const auto baked = baked_scene(random_cloud(share_of(20000), 7, 2));
+  const std::shared_ptr<const Scene> flat = flat_scene(random_cloud(share_of(9000), 8, 3));
   const std::vector<FrameInput> path = walk(40);
   std::vector<Frame> expected[2];
   for (const FrameInput& input : path) {
@@ -67,7 +67,7 @@ TEST_F(SplatRepeat, APartOfTheMultiprocessorsGivesTheSameBits) {
     if (error.code() != ErrorCode::unsupported) throw;
     VOYAGER_SKIP_WITHOUT(CUDA, error.what());  // a driver without green contexts
   }
-  const GaussianCloud cloud = random_cloud(60000, 9, 3);
+  const GaussianCloud cloud = random_cloud(share_of(60000), 9, 3);
   const std::shared_ptr<const Scene> flat = flat_scene(cloud);
   const auto baked = baked_scene(cloud);
   for (const NamedDesc& named : all_exponentials(std::array{32u}))
@@ -89,13 +89,13 @@ TEST_F(SplatRepeat, ASecondDeviceGivesTheSameBits) {
   cuda::check(cudaGetDeviceCount(&devices), "devices");
   if (devices < 2) GTEST_SKIP() << "one CUDA device";
   const auto second = cuda::create_cuda_backend({1, 0, nullptr});
-  const auto scene = baked_scene(random_cloud(20000, 14, 1));
+  const auto scene = baked_scene(random_cloud(share_of(20000), 14, 1));
   const FrameInput input = frame_input(look({3, -6, -24}, {0, 0, 0}, 2064, 2208), 3);
   expect_same_bits(draw(scene, {}, input), draw(*second, scene, {}, input));
 }
 
 TEST_F(SplatRepeat, MemoryStandsStillAfterTheFirstRound) {
-  const auto scene = baked_scene(random_cloud(20000, 10, 1));
+  const auto scene = baked_scene(random_cloud(share_of(20000), 10, 1));
   const auto one = view(scene), other = view(scene, {.exponential = Exponential::ex2});
   const std::vector<FrameInput> path = walk(300);
   const auto round = [&](size_t begin, size_t end) {
@@ -111,7 +111,7 @@ TEST_F(SplatRepeat, MemoryStandsStillAfterTheFirstRound) {
 }
 
 TEST_F(SplatRepeat, ViewsGoInAnyOrderAndLeaveNothing) {
-  const GaussianCloud cloud = random_cloud(20000, 11, 1);
+  const GaussianCloud cloud = random_cloud(share_of(20000), 11, 1);
   const FrameInput input = walk(1)[0];
   const auto baked = baked_scene(cloud);
   const std::shared_ptr<const Scene> flat = flat_scene(cloud);

@@ -24,7 +24,7 @@ class SplatRows : public SplatTest {
 };
 
 TEST_F(SplatRows, NoPixelMissesThem) {
-  const auto scene = baked_scene(random_cloud(60000, 95, 1));
+  const auto scene = baked_scene(random_cloud(share_of(60000), 95, 1));
   for (const Search search : {Search::temporal, Search::streaming})
     for (const double tau : {0.0, 3.0, 12.0}) {
       const auto kept = view(scene, {.search = search});
@@ -36,7 +36,7 @@ TEST_F(SplatRows, NoPixelMissesThem) {
 }
 
 TEST_F(SplatRows, NoPixelOfEitherEyeMissesThem) {
-  const auto scene = baked_scene(random_cloud(60000, 96, 1), Quality::compact);
+  const auto scene = baked_scene(random_cloud(share_of(60000), 96, 1), Quality::compact);
   const auto kept = view(scene, {.search = Search::temporal, .eyes = 2});
   for (const Camera& camera : way()) {
     // Eyes that look apart: what one does not see the other may.
@@ -48,7 +48,7 @@ TEST_F(SplatRows, NoPixelOfEitherEyeMissesThem) {
 }
 
 TEST_F(SplatRows, WhatIsNotSeenIsNotRead) {
-  const auto scene = baked_scene(random_cloud(60000, 97, 1));
+  const auto scene = baked_scene(random_cloud(share_of(60000), 97, 1));
   const auto bytes = [&](Search search, const Vec3d& target) {
     const auto drawn = view(scene, {.search = search});
     return render(*drawn, frame_input(look({0, 0, -40}, target, 240, 150), 0))

@@ -119,7 +119,7 @@ TEST_F(SplatSibling, MostNodesBetweenTheirParentsAndThemselves) {
       with_cpu("interpolated nodes, CUDA against the CPU");
   double most = 0;
   for (const TreeRule& rule : {kHierarchicalGs, TreeRule{}}) {
-    const auto scene = baked_scene(random_cloud(20000, 4, 2), Quality::lossless, rule);
+    const auto scene = baked_scene(random_cloud(share_of(20000), 4, 2), Quality::lossless, rule);
     for (const double tau : {0.5, 2.0, 5.0, 10.0, 20.0, 40.0}) {
       const FrameInput input = frame_input(look({3, -6, -34}, {0, 0, 0}, 240, 160), tau);
       most = std::max(most, interpolated_share(scene, input));
@@ -136,7 +136,7 @@ TEST_F(SplatSibling, MostNodesBetweenTheirParentsAndThemselves) {
 TEST_F(SplatSibling, TreesOfEveryShape) {
   Agreement with_reference("trees, CUDA against the reference");
   for (const TreeShape shape : kTreeShapes) {
-    const auto scene = scene_of(baked_of(random_tree(shape, 3000, 6, Extents::any)));
+    const auto scene = scene_of(baked_of(random_tree(shape, share_of(3000), 6, Extents::any)));
     for (const double tau : {1.0, 10.0, 100.0})
       for (const Vec3d& eye : {Vec3d{3, -6, -24}, Vec3d{-150, 2, 9}}) {
         const FrameInput input = frame_input(look(eye, {0, 0, 0}, 160, 100), tau);

@@ -36,7 +36,7 @@ class SplatStereo : public SplatTest {
 // of two.
 TEST_F(SplatStereo, EyesOfAFlatSceneAreToTheBitAsAlone) {
   for (const int degree : {0, 1, 2, 3}) {
-    const auto scene = flat_scene(random_cloud(6000, 61, degree));
+    const auto scene = flat_scene(random_cloud(share_of(6000), 61, degree));
     for (const FrameInput& pair : varied_pairs())
       for (const NamedDesc& named : all_exponentials(std::array{32u})) {
         SCOPED_TRACE(named.name + ", degree " + std::to_string(degree));
@@ -50,7 +50,7 @@ TEST_F(SplatStereo, EyesInOnePlaceAreToTheBitAsAloneWithATree) {
   Camera aside = look({3, -6, -24}, {4, 1, 3}, 160, 190);
   aside.fx = ahead.fx;
   for (const Quality quality : {Quality::lossless, Quality::compact}) {
-    const auto scene = baked_scene(random_cloud(6000, 62, 3), quality);
+    const auto scene = baked_scene(random_cloud(share_of(6000), 62, 3), quality);
     for (const double tau : {0.0, 3.0, 12.0, 40.0})
       expect_as_alone(scene, {}, stereo_input(ahead, aside, tau));
     expect_as_alone(scene, {.lod = Lod::all_leaves}, stereo_input(ahead, aside, 3));
@@ -62,13 +62,13 @@ TEST_F(SplatStereo, EyesOfSeveralBandsAreToTheBitAsAlone) {
   Camera wide = look({3, -6, -24}, {0, 0, 0}, 8192, 1024),
          high = look({3.1, -6, -24}, {0, 0, 0}, 4096, 2048);
   wide.fx = wide.fy = 5000, high.fx = high.fy = 3000;
-  expect_as_alone(flat_scene(random_cloud(6000, 66, 1)), {}, stereo_input(wide, high, 3));
+  expect_as_alone(flat_scene(random_cloud(share_of(6000), 66, 1)), {}, stereo_input(wide, high, 3));
 }
 
 TEST_F(SplatStereo, IsAsTheCpuAndTheReferenceDrawIt) {
   Agreement with_cpu("stereo, CUDA against the CPU"),
       with_reference("stereo, CUDA against the reference");
-  const auto scene = baked_scene(random_cloud(6000, 63, 3));
+  const auto scene = baked_scene(random_cloud(share_of(6000), 63, 3));
   for (const FrameInput& pair : varied_pairs()) {
     const EyeFrames on_cpu = render_stereo(*cpu, scene, {}, pair);
     const EyeFrames on_reference = render_stereo(*reference, scene, {}, pair);
@@ -85,7 +85,7 @@ TEST_F(SplatStereo, IsAsTheCpuAndTheReferenceDrawIt) {
 }
 
 TEST_F(SplatStereo, TheFilterChangesNoBit) {
-  const auto scene = baked_scene(random_cloud(6000, 64, 2));
+  const auto scene = baked_scene(random_cloud(share_of(6000), 64, 2));
   for (const FrameInput& pair : varied_pairs())
     for (NamedDesc named : all_exponentials(std::array{32u})) {
       SCOPED_TRACE(named.name);
@@ -97,7 +97,7 @@ TEST_F(SplatStereo, TheFilterChangesNoBit) {
 }
 
 TEST_F(SplatStereo, DepthAndLimitsAreAnEyesOwn) {
-  const auto scene = flat_scene(random_cloud(6000, 65, 1));
+  const auto scene = flat_scene(random_cloud(share_of(6000), 65, 1));
   for (FrameInput pair : varied_pairs()) {
     const LimitImage limits(pair.eyes[1].camera, 18);
     pair.eyes[0].depth_wanted = false;
@@ -117,7 +117,7 @@ TEST_F(SplatStereo, BuffersGrowForBothEyes) {
 }
 
 TEST_F(SplatStereo, InstancesOverlapInBothEyes) {
-  const GaussianCloud cloud = random_cloud(3000, 67, 1);
+  const GaussianCloud cloud = random_cloud(share_of(3000), 67, 1);
   const auto scene = baked_scene(cloud);
   PipelineDesc desc;
   desc.eyes = 2;
@@ -135,7 +135,7 @@ TEST_F(SplatStereo, InstancesOverlapInBothEyes) {
 
 TEST_F(SplatStereo, AnEmptySceneAndEyesThatLookAway) {
   const auto pair = varied_pairs()[0];
-  for (const auto& scene : {empty_scene(), flat_scene(random_cloud(500, 68, 1))}) {
+  for (const auto& scene : {empty_scene(), flat_scene(random_cloud(share_of(500), 68, 1))}) {
     FrameInput away = pair;
     for (FrameEye& eye : away.eyes)
       for (double* axis : {&eye.camera.world_to_view.row[0].x, &eye.camera.world_to_view.row[2].x})
@@ -151,7 +151,8 @@ TEST_F(SplatStereo, AnEmptySceneAndEyesThatLookAway) {
 TEST_F(SplatStereo, TheBaselineDrawsOneEye) {
   PipelineDesc desc;
   desc.splatting = Splatting::baseline_3dgs;
-  EXPECT_THROW(draw_pair(flat_scene(random_cloud(10, 69, 0)), desc, varied_pairs()[0]), Error);
+  EXPECT_THROW(draw_pair(flat_scene(random_cloud(share_of(10), 69, 0)), desc, varied_pairs()[0]),
+               Error);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "tests/gpu/device_test.h"
+#include "tests/gpu/test_share.h"
 #include "tests/support/render_scene.h"
 
 namespace voyager::test {

@@ -49,7 +49,7 @@ class Streaming : public SplatTest {
 };
 
 Bytes cloud_bytes(size_t count, uint32_t seed, int degree, Quality quality = Quality::lossless) {
-  return scene_bytes(bake(random_cloud(count, seed, degree)), quality, 0, kMinChunkBytes);
+  return scene_bytes(bake(random_cloud(share_of(count), seed, degree)), quality, 0, kMinChunkBytes);
 }
 
 // Small steps, a teleport now and then.
@@ -57,7 +57,7 @@ std::vector<FrameInput> walk(size_t frames, double tau, uint32_t seed) {
   std::mt19937 random(seed);
   Vec3d eye{3, -6, -24}, way{0.1, 0, 0.2};
   std::vector<FrameInput> path;
-  for (size_t i = 0; i < frames; ++i) {
+  for (size_t i = 0; i < share_of(frames); ++i) {
     if (i % 16 == 15) eye = {40.0 * unit(random) - 20, -5, 40.0 * unit(random) - 20};
     if (i % 5 == 0) way = {unit(random) - 0.5, 0.3 * unit(random) - 0.15, unit(random) - 0.5};
     eye = eye + way;
@@ -80,7 +80,8 @@ std::vector<NamedDesc> searches() {
   all[0].name = "temporal";
   all[1] = {"temporal_visit", {.search = Search::temporal_visit}};
   all[2] = {"streaming", {.search = Search::streaming}};
-  all[3] = {"ex2", {.exponential = Exponential::ex2}};
+  all[3] = {"ex2, what is hidden left out",
+            {.exponential = Exponential::ex2, .occlusion = Occlusion::on}};
   all[4] = {"3dgs", {.splatting = Splatting::baseline_3dgs}};
   return all;
 }
@@ -311,7 +312,7 @@ std::vector<CutQuery> queries(const LodTree& tree, std::mt19937& random, int cou
   std::vector<CutQuery> all;
   const float targets[] = {1e-30f, 1e-4f, 0.003f, 0.02f, 0.3f, 5.0f, INFINITY};
   Vec3f centre{};
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < share_of(count); ++i) {
     const NodeRecord& r = tree.records[random() % tree.size()];
     if (i % 4 == 0) centre = 0.5f * (r.box_min + r.box_max);
     centre = centre + Vec3f{0.3f * unit(random), 0.1f, 0.2f * unit(random)};
@@ -328,7 +329,8 @@ TEST_F(StreamingSearch, EqualTheHostsOnTreesOfEveryShapeStepByStep) {
         for (const double share : {0.1, 0.5, 1.0}) {
           SCOPED_TRACE(name_of(shape) + " of " + std::to_string(nodes) + ", " +
                        std::to_string(share));
-          const BakedScene baked = baked_of(random_tree(shape, nodes, 7 + nodes, extents));
+          const BakedScene baked =
+              baked_of(random_tree(shape, share_of(nodes), 7 + nodes, extents));
           const Bytes bytes = scene_bytes(baked, Quality::lossless, 0, kMinChunkBytes);
           const auto sides = open_both(bytes, share, Search::temporal);
           for (const CutQuery& query : queries(baked.tree, random, 24)) {
@@ -344,7 +346,7 @@ TEST_F(StreamingSearch, EqualTheHostsOnTreesOfEveryShapeStepByStep) {
 // A search that rests while another moves finds what has gone and come again meanwhile, or more
 // changes than are kept.
 TEST_F(StreamingSearch, EqualTheHostsAfterARest) {
-  const BakedScene baked = baked_of(random_tree(TreeShape::four_way, 8000, 3));
+  const BakedScene baked = baked_of(random_tree(TreeShape::four_way, share_of(8000), 3));
   const Bytes bytes = scene_bytes(baked, Quality::lossless, 0, kMinChunkBytes);
   const CutQuery here{{60, 0, 10}, 0.02f}, there{{-60, 5, -10}, 0.02f};
   for (const Search kind : {Search::temporal, Search::temporal_visit, Search::streaming})
@@ -450,8 +452,8 @@ TEST_F(Streaming, RecordsMayRunOutBeforeSlots) {
 TEST_F(Streaming, LargeFamiliesBlendAsResidentOnes) {
   for (const TreeShape shape : {TreeShape::star, TreeShape::star_of_stars}) {
     SCOPED_TRACE(name_of(shape));
-    const Bytes bytes =
-        scene_bytes(baked_of(random_tree(shape, 20000, 18)), Quality::compact, 0, kMinChunkBytes);
+    const Bytes bytes = scene_bytes(baked_of(random_tree(shape, share_of(20000), 18)),
+                                    Quality::compact, 0, kMinChunkBytes);
     const auto whole = resident(bytes);
     ASSERT_FALSE(whole->large_families.empty());
     const auto streamed = open(bytes, 1);

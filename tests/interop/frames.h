@@ -65,7 +65,7 @@ class Interop : public ::testing::Test {
     EXPECT_EQ(voyGetCapabilities(device, &all), VOY_SUCCESS) << voyGetLastErrorMessage();
     capabilities = all;
 
-    bytes.bytes = ply_bytes(800);
+    bytes.bytes = ply_bytes(gaussians);
     const VoyByteSource source = bytes.source();
     VoySceneDesc scene_desc = VOY_SCENE_DESC_INIT;
     scene_desc.source = &source;
@@ -222,6 +222,7 @@ class Interop : public ::testing::Test {
   }
 
   std::unique_ptr<VulkanHost> host;
+  int gaussians = 800;  // of the scene that create() opens
   BytesHost bytes;
   VoyDevice device = nullptr;
   VoyScene scene = nullptr;

@@ -35,6 +35,35 @@ TEST_F(Interop, AFrameIsTheSameInARingAsInHostMemory) {
   });
 }
 
+// Enough of them that what the frame before covered is left out, and where it is uncovered drawn
+// once more: as a view draws it that has seen nothing before.
+TEST_F(Interop, WhatIsHiddenChangesNoBitOfARing) {
+  if (!cuda()) VOYAGER_SKIP_WITHOUT(CUDA, "nothing hidden is left out on the CPU");
+  constexpr uint32_t kSide = 512;
+  gaussians = 150000;
+  FOR_EACH_MODE({
+    VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
+    const VoyTarget target =
+        make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images, kSide, kSide));
+    Line line = line_of(target);
+    VoyFrameStats stats = VOY_FRAME_STATS_INIT;
+    uint64_t pairs = 0;
+    for (uint32_t frame = 0; frame < 6; ++frame) {
+      const VoyFrameEye at = eye(target, frame < 4 ? 0.01 * frame : 2.0 * frame);
+      const Shot shot = shoot(line, target, frame % 2, at, 4, kSide, kSide);
+      EXPECT_EQ(shot.color, expected(VOY_COLOR_FORMAT_RGBA8_UNORM, at, 4, kSide, kSide).color)
+          << "frame " << frame;
+      ASSERT_EQ(voyGetFrameStats(view, &stats), VOY_SUCCESS) << voyGetLastErrorMessage();
+      EXPECT_EQ(stats.pairsDropped, 0u);
+      if (frame == 0) pairs = stats.pairsAfterFilter;
+      if (frame == 3) {
+        EXPECT_LT(stats.pairsAfterFilter, pairs);
+      }
+    }
+    EXPECT_EQ(voyDestroyTarget(target), VOY_SUCCESS);
+  });
+}
+
 TEST_F(Interop, LayersKeepToThemselves) {
   FOR_EACH_MODE({
     VoyVulkanTargetDesc images = VOY_VULKAN_TARGET_DESC_INIT;
