@@ -109,14 +109,17 @@ std::optional<Vec3d> FrameStreaming::velocity(const FrameInput& frame) {
   return velocity_ && length(*velocity_) > kSlowest ? velocity_ : std::nullopt;
 }
 
-Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance, double turn) {
+Viewer FrameStreaming::viewer_of(const FrameInput& frame, size_t instance) {
   const Vec3d& origin = instances_[instance].scene->origin;
   const double footprint = instances_[instance].scene->native.footprint();
   Viewer viewer{
       cut_query(frame, instance, origin), {}, false, static_cast<float>(std::sqrt(footprint))};
-  for (const FrameEye& eye : frame.eyes)
-    viewer.eyes.push_back(wedge_of(instance_camera(frame, eye, instance), origin,
-                                   kWedgeMargin * double{viewer.query.target_size}, turn));
+  const double margin = kWedgeMargin * double{viewer.query.target_size};
+  for (const FrameEye& eye : frame.eyes) {
+    const Camera camera = instance_camera(frame, eye, instance);
+    viewer.eyes.push_back(wedge_of(camera, origin, margin, 0));
+    viewer.turned.push_back(wedge_of(camera, origin, margin, kTurn));
+  }
   return viewer;
 }
 
@@ -128,17 +131,13 @@ FrameStreaming::Holds FrameStreaming::begin(const FrameInput& frame) {
   const std::optional<Vec3d> way = velocity(frame);
   for (size_t i = 0; i < instances_.size(); ++i) {
     if (!instances_[i].scene->streamed()) continue;
-    std::vector<Viewer> viewers = {viewer_of(frame, i, 0)};
-    const auto add_ahead = [&](const FrameInput& later) {
-      viewers.push_back(viewer_of(later, i, kTurn));
-      viewers.back().ahead = true;
-    };
-    add_ahead(frame);
+    std::vector<Viewer> viewers = {viewer_of(frame, i)};
     for (const double horizon : kHorizons) {
       if (!way) break;
       FrameInput later = frame;
       for (FrameEye& eye : later.eyes) eye.camera.eye = eye.camera.eye + horizon * *way;
-      add_ahead(later);
+      viewers.push_back(viewer_of(later, i));
+      viewers.back().ahead = true;
     }
     instances_[i].scene->stream->look(instances_[i].name.get(), std::move(viewers));
   }

@@ -40,8 +40,7 @@ class FrameStreaming {
 
   Holds hold_all() const;
   Holds hold_settled(bool stand_in) const;
-  // turn: by how many radians its wedges are wider than what eyes see.
-  Viewer viewer_of(const FrameInput& frame, size_t instance, double turn);
+  Viewer viewer_of(const FrameInput& frame, size_t instance);
   std::optional<Vec3d> velocity(const FrameInput& frame);
 
   std::vector<Instance> instances_;

@@ -6,10 +6,10 @@
 //
 // A chunk is needed where its entry hull is at least τ* large (docs/lod-selection.md): only
 // then may the cut hold a node of it. Where there are more than there are slots, the most
-// urgent are the target: what is seen before what will be seen, that before what is around,
-// and of these what would be missed most, by the size of what stands in. A chunk is as urgent
-// as the most urgent that hangs from it. Once all of the target is there nothing moves, but that
-// what is needed and has no room goes: it was there by chance.
+// urgent are the target: what is seen, then what is on the viewer's way, what a turn of the head
+// shows, and what is around; of each what would be missed most, by the size of what stands in. A
+// chunk is as urgent as the most urgent that hangs from it. Once all of the target is there nothing
+// moves, but that what is needed and has no room goes: it was there by chance.
 //
 // Beside its slot a chunk takes blocks of search records, as many as it is found to need when it
 // is read. The target takes no more of them than there are: what is not known yet counts as
@@ -124,7 +124,7 @@ class Residency {
 
  private:
   enum class State : uint8_t { absent, on_its_way, read, filled, resident, failed };
-  enum class Class : uint32_t { around, ahead, seen };
+  enum class Class : uint32_t { around, turned, soon, seen };
   struct Needed {
     uint32_t chunk, urgency;
     bool now;

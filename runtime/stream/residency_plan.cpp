@@ -44,7 +44,9 @@ Residency::Needed Residency::look_at(uint32_t chunk, std::span<const Viewer> vie
     const float size = hull.screen_size(viewer.query.centre);
     if (!(size >= viewer.query.target_size)) continue;
     const float error = size / viewer.query.target_size;
-    const Class of = !viewer.sees(hull) ? Class::around : viewer.ahead ? Class::ahead : Class::seen;
+    const Class of = viewer.sees(hull)          ? viewer.ahead ? Class::soon : Class::seen
+                     : viewer.sees_turned(hull) ? Class::turned
+                                                : Class::around;
     found.now = found.now || !viewer.ahead;
     found.urgency = std::max(
         found.urgency, make_urgency(static_cast<uint32_t>(of), error >= 1.0f ? error : INFINITY));
@@ -140,7 +142,7 @@ void Residency::share_in_families() {
     if (!follows(i)) continue;
     size_t last = i;
     while (shares_family_[needed_[last].chunk] == 2 && follows(last + 1)) ++last;
-    std::array<uint32_t, 3> most{};  // by class
+    std::array<uint32_t, 4> most{};  // by class
     const auto of_class = [&](size_t k) -> uint32_t& {
       return most[static_cast<size_t>(class_of(urgency_[needed_[k].chunk]))];
     };

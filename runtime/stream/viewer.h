@@ -48,16 +48,21 @@ struct Viewer {
   bool ahead = false;  // where it will be, by its way so far
   // The standard deviation of the scene's largest footprint (METHOD §12), metres.
   float footprint = 0;
+  std::vector<Wedge> turned = {};  // what the eyes see if the head turns
 
   bool operator==(const Viewer&) const = default;
 
-  bool sees(const EntryHull& hull) const {
+  bool sees(const EntryHull& hull) const { return meets(eyes, hull); }
+  bool sees_turned(const EntryHull& hull) const { return meets(turned, hull); }
+
+ private:
+  bool meets(const std::vector<Wedge>& wedges, const EntryHull& hull) const {
     if (!std::isfinite(hull.extent)) return true;
     const Vec3f side = hull.box_max - hull.box_min;
     const float reach =
         kHullReach * std::max({side.x, side.y, side.z}) + kFootprintReach * footprint;
-    for (const Wedge& eye : eyes)
-      if (eye.meets(hull.box_min, hull.box_max, reach)) return true;
+    for (const Wedge& wedge : wedges)
+      if (wedge.meets(hull.box_min, hull.box_max, reach)) return true;
     return false;
   }
 };

@@ -153,6 +153,23 @@ TEST(StreamingDisk, ATurnFindsMostOfWhatItShowsThere) {
   EXPECT_LT(after.chunks.late - before.chunks.late, arrived / 4);
 }
 
+// Nor room for what turns would show.
+TEST(StreamingDisk, AWalkFindsWhatItShowsThere) {
+  Flight flight(1.0, 0.001, 100e6);
+  const auto at = [](int frame) { return ahead({0, -3, -150 + 0.15 * frame}, kForward, 0.3); };
+  flight.stand(at(0));
+  const ResidencyNeed need = flight.counters().need;
+  const auto little = static_cast<uint32_t>(need.seen + 20 + flight.stream().pinned());
+  flight.rig().give_room(flight.scene(), little);
+  for (int i = -60; i < 12; ++i) flight.draw(at(std::max(i, 0)));  // until its way is known
+  const StreamCounters before = flight.counters();
+  for (int i = 12; i < 400; ++i) flight.draw(at(i));
+  const StreamCounters after = flight.counters();
+  const uint64_t arrived = after.chunks.arrived - before.chunks.arrived;
+  ASSERT_GT(arrived, 20u);
+  EXPECT_EQ(after.chunks.late, before.chunks.late);
+}
+
 class StreamingDiskOfTree : public ::testing::TestWithParam<test::NamedRule> {};
 INSTANTIATE_TEST_SUITE_P(Rules, StreamingDiskOfTree, ::testing::ValuesIn(test::all_rules()),
                          test::rule_name<::testing::TestParamInfo<test::NamedRule>>);
