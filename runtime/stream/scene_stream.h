@@ -131,11 +131,13 @@ class SceneStream {
   bool plan_is_asked();
   bool plan_if_asked();
   bool retry_due();
-  bool fill_one(Lock& lock);
+  bool fill_some(Lock& lock);
   bool read_some(Lock& lock);
-  void stage(uint32_t chunk, std::span<const std::byte> stored, Lock& lock);
+  void stage(ChunkRange range, std::span<const std::byte> stored, Lock& lock);
+  void add_ready(uint32_t chunk, StagedChunk&& staged);
   void put_first(uint32_t count, std::span<const std::byte> stored, Workers& workers);
   void fail(uint32_t chunk, const std::exception& error);
+  void fail(uint32_t chunk, const std::exception_ptr& failure);
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
   void look_again();

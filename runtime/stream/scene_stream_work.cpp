@@ -9,7 +9,8 @@ namespace voyager {
 namespace {
 
 constexpr uint32_t kMostChunksARead = 64;
-constexpr int kPlanRest = 3;  // after a plan, times what it took
+constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds
+constexpr int kPlanRest = 3;          // after a plan, times what it took
 
 // Chunk by chunk it would fail as well: a source that stalls, and a file that is gone.
 bool is_of_source(const Error& error) {
@@ -59,7 +60,7 @@ bool SceneStream::step(Lock& lock) {
 }
 
 bool SceneStream::work(Lock& lock) {
-  const bool done = plan_if_asked() || retry_due() || fill_one(lock) || read_some(lock);
+  const bool done = plan_if_asked() || retry_due() || fill_some(lock) || read_some(lock);
   commit_due_ = residency_.has_changes();
   if (done) {
     publish();
@@ -95,43 +96,52 @@ bool SceneStream::retry_due() {
   return true;
 }
 
-// The lock is let go while the slot is filled: no one else knows of it.
-bool SceneStream::fill_one(Lock& lock) {
-  while (!ready_.empty() && !residency_.keep(ready_.front())) {
-    forget(ready_.front());
+// Some at once: threads that take turns at the lock for each chunk wait for one another longer than
+// they work. It is let go while the slots are filled: no one else knows of them.
+bool SceneStream::fill_some(Lock& lock) {
+  struct Filling {
+    uint32_t chunk;
+    StagedChunk* staged;
+    std::exception_ptr failure;
+  };
+  std::vector<Filling> some;
+  while (some.size() < kMostAtOnce && !ready_.empty()) {
+    const uint32_t chunk = ready_.front();
+    if (!residency_.keep(chunk)) {
+      forget(chunk);
+      ready_.pop_front();
+      continue;
+    }
+    const uint32_t slot = residency_.take_slot(chunk);
+    if (slot == Residency::kNoSlot) break;
     ready_.pop_front();
+    Coming& coming = coming_.at(chunk);
+    staged_bytes_ -= coming.stored_bytes;
+    coming.stored_bytes = 0;
+    coming.chunk.links.slot = slot;
+    coming.chunk.links.blocks = residency_.blocks(chunk);
+    some.push_back({chunk, &coming.chunk, {}});
   }
-  if (ready_.empty()) return false;
-  const uint32_t chunk = ready_.front(), slot = residency_.take_slot(chunk);
-  if (slot == Residency::kNoSlot) return false;
-  ready_.pop_front();
-  Coming& coming = coming_.at(chunk);
-  staged_bytes_ -= coming.stored_bytes;
-  coming.stored_bytes = 0;
-  coming.chunk.links.slot = slot;
-  coming.chunk.links.blocks = residency_.blocks(chunk);
+  if (some.empty()) return false;
   ++filling_;
   lock.unlock();
-  std::exception_ptr failure;
-  try {
-    pool_.fill(slot, coming.chunk);
-  } catch (...) {
-    failure = std::current_exception();
+  for (Filling& of : some) {
+    try {
+      pool_.fill(of.staged->links.slot, *of.staged);
+    } catch (...) {
+      of.failure = std::current_exception();
+    }
+    of.staged->content = {};
+    of.staged->records = {};
   }
-  coming.chunk.content = {};
-  coming.chunk.records = {};
   lock.lock();
   --filling_;
   filled_.notify_all();
-  if (!failure) {
-    residency_.filled(chunk);
-    return true;
-  }
-  try {
-    std::rethrow_exception(failure);
-  } catch (const std::exception& error) {
-    fail(chunk, error);
-  }
+  for (const Filling& of : some)
+    if (of.failure)
+      fail(of.chunk, of.failure);
+    else
+      residency_.filled(of.chunk);
   return true;
 }
 
@@ -182,16 +192,19 @@ void SceneStream::fail_range(ChunkRange range, const Error& error, uint64_t gene
 void SceneStream::stage_range(ChunkRange range, const std::vector<std::byte>& bytes,
                               uint64_t generation, Lock& lock) {
   const auto& chunks = file_->chunks();
-  for (uint32_t chunk = range.first; chunk < range.last && generation_ == generation; ++chunk) {
+  while (range.first < range.last && generation_ == generation) {
     if (!bytes.empty()) {
-      const uint64_t at = chunks[chunk].offset - chunks[range.first].offset;
-      stage(chunk, std::span(bytes).subspan(at, chunks[chunk].bytes), lock);
+      const ChunkRange some{range.first, std::min(range.first + kMostAtOnce, range.last)};
+      const uint64_t end = chunks[range.last - 1].offset + chunks[range.last - 1].bytes;
+      stage(some, std::span(bytes).last(end - chunks[some.first].offset), lock);
+      range.first = some.last;
       continue;
     }
     std::optional<Error> failure;
-    const std::vector<std::byte> own = read({chunk, chunk + 1}, failure, lock);
-    if (failure) return fail_range({chunk, range.last}, *failure, generation);
-    stage(chunk, own, lock);
+    const std::vector<std::byte> own = read({range.first, range.first + 1}, failure, lock);
+    if (failure) return fail_range(range, *failure, generation);
+    stage({range.first, range.first + 1}, own, lock);
+    ++range.first;
   }
 }
 
@@ -201,27 +214,37 @@ StagedChunk SceneStream::decode(uint32_t chunk, std::span<const std::byte> store
   return staged;
 }
 
-// The lock is let go while the chunk is decoded.
-void SceneStream::stage(uint32_t chunk, std::span<const std::byte> stored, Lock& lock) {
-  StagedChunk staged;
-  std::exception_ptr failure;
+// stored: of the range, and what comes behind. The lock is let go while chunks are decoded.
+void SceneStream::stage(ChunkRange range, std::span<const std::byte> stored, Lock& lock) {
+  struct Decoded {
+    StagedChunk staged;
+    std::exception_ptr failure;
+  };
+  const auto& chunks = file_->chunks();
+  std::vector<Decoded> decoded(range.last - range.first);
   const uint64_t generation = generation_;
   lock.unlock();
-  try {
-    staged = decode(chunk, stored);
-  } catch (...) {
-    failure = std::current_exception();
+  for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
+    Decoded& of = decoded[chunk - range.first];
+    try {
+      const uint64_t at = chunks[chunk].offset - chunks[range.first].offset;
+      of.staged = decode(chunk, stored.subspan(at, chunks[chunk].bytes));
+    } catch (...) {
+      of.failure = std::current_exception();
+    }
   }
   lock.lock();
   if (generation_ != generation) return;
-  if (failure) {
-    try {
-      std::rethrow_exception(failure);
-    } catch (const std::exception& error) {
-      fail(chunk, error);
-    }
-    return;
+  for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
+    Decoded& of = decoded[chunk - range.first];
+    if (of.failure)
+      fail(chunk, of.failure);
+    else
+      add_ready(chunk, std::move(of.staged));
   }
+}
+
+void SceneStream::add_ready(uint32_t chunk, StagedChunk&& staged) {
   const bool wanted = residency_.read(chunk, staged.record_blocks());
   if (residency_.overfull()) look_again();
   if (!wanted) return;
@@ -229,6 +252,14 @@ void SceneStream::stage(uint32_t chunk, std::span<const std::byte> stored, Lock&
   coming_[chunk] = {std::move(staged), bytes};
   staged_bytes_ += bytes;
   ready_.push_back(chunk);
+}
+
+void SceneStream::fail(uint32_t chunk, const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    fail(chunk, error);
+  }
 }
 
 void SceneStream::fail(uint32_t chunk, const std::exception& error) {
