@@ -38,7 +38,8 @@ Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks
   for (uint32_t slot = room.slots; slot-- > 0;) free_slots_.push_back(slot);
   free_blocks_.reserve(room.blocks);
   for (uint32_t block = 0; block < room.blocks; ++block) free_blocks_.push_back(block);
-  plan({});
+  ChunkLooks nobody(chunks);
+  plan(nobody);
 }
 
 ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
@@ -63,6 +64,13 @@ ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
   counters_.requested += range.last - range.first;
   coming_ += range.last - range.first;
   return range;
+}
+
+std::vector<uint32_t> Residency::needed() const {
+  std::vector<uint32_t> all;
+  all.reserve(needed_.size());
+  for (const Needed& needed : needed_) all.push_back(needed.chunk);
+  return all;
 }
 
 void Residency::learn_blocks(uint32_t chunk, uint32_t blocks) {

@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "runtime/stream/chunk_graph.h"
+#include "runtime/stream/chunk_looks.h"
 #include "runtime/stream/record_room.h"
-#include "runtime/stream/viewer.h"
 
 namespace voyager {
 
@@ -54,7 +54,9 @@ class Residency {
             PoolRoom room, uint32_t pinned);
 
   // Who looks now. What is no longer wanted is no longer requested.
-  void plan(std::span<const Viewer> viewers);
+  void plan(ChunkLooks& looks);
+  // Those that the last plan needed: the next looks at them, and at what they lead to.
+  std::vector<uint32_t> needed() const;
 
   // The most urgent chunks that are to be read: consecutive, at most `most`, and of at most
   // `bytes` in the file unless one alone has more. They are on their way then.
@@ -124,7 +126,6 @@ class Residency {
 
  private:
   enum class State : uint8_t { absent, on_its_way, read, filled, resident, failed };
-  enum class Class : uint32_t { around, turned, soon, seen };
   struct Needed {
     uint32_t chunk, urgency;
     bool now;
@@ -134,10 +135,8 @@ class Residency {
     size_t done;  // of its parents
   };
 
-  static Class class_of(uint32_t urgency) { return static_cast<Class>(urgency >> 30); }
-  Needed look_at(uint32_t chunk, std::span<const Viewer> viewers) const;
   uint32_t most_above(uint32_t chunk) const;
-  void find_needed(std::span<const Viewer> viewers);
+  void find_needed(ChunkLooks& looks);
   bool add_needed(const Needed& needed);
   void share_in_families();
   void share_with_parents();

@@ -1,32 +1,16 @@
 // A plan: what is needed, the target, what to ask for and what may go.
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "runtime/stream/residency.h"
 
 namespace voyager {
-namespace {
 
-// The last bit says that it is a chunk's own, and not what its family has lent.
-constexpr uint32_t kOwn = 1;
-
-uint32_t make_urgency(uint32_t of_class, float error) {
-  return of_class << 30 | std::bit_cast<uint32_t>(error) >> 1 | kOwn;
-}
-
-float error_of(uint32_t urgency) {
-  return std::bit_cast<float>((urgency & 0x3fffffffu) << 1);
-}
-
-}  // namespace
-
-void Residency::plan(std::span<const Viewer> viewers) {
+void Residency::plan(ChunkLooks& looks) {
   ++plan_;
-  find_needed(viewers);
+  find_needed(looks);
   share_in_families();
   share_with_parents();
   count_need();
@@ -35,23 +19,6 @@ void Residency::plan(std::span<const Viewer> viewers) {
   queue_requests();
   list_victims();
   list_leftovers();
-}
-
-Residency::Needed Residency::look_at(uint32_t chunk, std::span<const Viewer> viewers) const {
-  const EntryHull& hull = chunks_[chunk].hull;
-  Needed found{chunk, 0, false};
-  for (const Viewer& viewer : viewers) {
-    const float size = hull.screen_size(viewer.query.centre);
-    if (!(size >= viewer.query.target_size)) continue;
-    const float error = size / viewer.query.target_size;
-    const Class of = viewer.sees(hull)          ? viewer.ahead ? Class::soon : Class::seen
-                     : viewer.sees_turned(hull) ? Class::turned
-                                                : Class::around;
-    found.now = found.now || !viewer.ahead;
-    found.urgency = std::max(
-        found.urgency, make_urgency(static_cast<uint32_t>(of), error >= 1.0f ? error : INFINITY));
-  }
-  return found;
 }
 
 // And all that it hangs from: chains may be as long as a file says. False where it is not to be
@@ -91,7 +58,7 @@ uint32_t Residency::most_above(uint32_t chunk) const {
 }
 
 // From the top: a chunk can only be needed where one that leads to it is. Both ascend.
-void Residency::find_needed(std::span<const Viewer> viewers) {
+void Residency::find_needed(ChunkLooks& looks) {
   needed_.clear(), failed_.clear(), extra_.clear();
   uint32_t next = 0;
   size_t from = 0;
@@ -101,7 +68,8 @@ void Residency::find_needed(std::span<const Viewer> viewers) {
   const auto look = [&](uint32_t chunk) {
     next = chunk + 1;
     if (needed_plan_[chunk] == plan_) return;
-    Needed found = look_at(chunk, viewers);
+    const ChunkLooks::Look own = looks.at(chunk);
+    Needed found{chunk, own.urgency, own.now};
     // A node is refined with all of its children or not at all, and the hull of a chunk that goes
     // on with a node of the one before is that of this node, not of what it hangs from.
     if (chunks_[chunk].place.listed_children != 0 && needed_before(chunk)) {
@@ -144,12 +112,12 @@ void Residency::share_in_families() {
     while (shares_family_[needed_[last].chunk] == 2 && follows(last + 1)) ++last;
     std::array<uint32_t, 4> most{};  // by class
     const auto of_class = [&](size_t k) -> uint32_t& {
-      return most[static_cast<size_t>(class_of(urgency_[needed_[k].chunk]))];
+      return most[static_cast<size_t>(ChunkLooks::class_of(urgency_[needed_[k].chunk]))];
     };
     for (size_t k = i - 1; k <= last; ++k)
       of_class(k) = std::max(of_class(k), urgency_[needed_[k].chunk]);
     for (size_t k = i - 1; k <= last; ++k)
-      needed_[k].urgency = std::max(needed_[k].urgency, of_class(k) & ~kOwn);
+      needed_[k].urgency = std::max(needed_[k].urgency, of_class(k) & ~ChunkLooks::kOwn);
     i = last;
   }
 }
@@ -159,7 +127,8 @@ void Residency::share_with_parents() {
   for (size_t i = needed_.size(); i-- > 0;) {
     needed_[i].urgency = urgency_[needed_[i].chunk];
     // What goes before others because something that is seen hangs on it counts as seen.
-    needed_[i].now = needed_[i].now || class_of(needed_[i].urgency) == Class::seen;
+    needed_[i].now =
+        needed_[i].now || ChunkLooks::class_of(needed_[i].urgency) == ChunkLooks::Class::seen;
     for (const uint32_t p : graph_->parents(needed_[i].chunk))
       urgency_[p] = std::max(urgency_[p], needed_[i].urgency);
   }
@@ -211,11 +180,11 @@ void Residency::queue_requests() {
   for (const Needed& needed : extra_)
     if (state_[needed.chunk] == State::absent) requests_.push_back(needed.chunk);
   for (const Needed& needed : needed_)
-    if (needed.now && class_of(needed.urgency) == Class::seen &&
+    if (needed.now && ChunkLooks::class_of(needed.urgency) == ChunkLooks::Class::seen &&
         state_[needed.chunk] != State::resident)
       missed_[needed.chunk] = 1;
   // Families together, as no frame sees a part of one.
-  const auto urgency = [&](uint32_t chunk) { return urgency_[chunk] | kOwn; };
+  const auto urgency = [&](uint32_t chunk) { return urgency_[chunk] | ChunkLooks::kOwn; };
   std::sort(requests_.begin(), requests_.end(), [&](uint32_t a, uint32_t b) {
     return urgency(a) != urgency(b) ? urgency(a) < urgency(b) : a > b;
   });
@@ -231,7 +200,7 @@ void Residency::list_victims() {
   for (uint32_t chunk = graph_->size(); chunk-- > pinned_;) {
     if (state_[chunk] != State::resident || is_wanted(chunk)) continue;
     const float age = static_cast<float>(plan_ - needed_plan_[chunk]);
-    score[chunk] = std::min(score[chunk], age / error_of(urgency_[chunk]));
+    score[chunk] = std::min(score[chunk], age / ChunkLooks::error_of(urgency_[chunk]));
     for (const uint32_t p : graph_->parents(chunk)) score[p] = std::min(score[p], score[chunk]);
     scored.emplace_back(score[chunk], chunk);
   }
@@ -260,7 +229,8 @@ void Residency::count_need() {
   for (const Needed& needed : needed_) {
     counted_[needed.chunk] = 0;
     if (!needed.now) continue;
-    const bool seen = class_of(needed.urgency) == Class::seen && needed.chunk >= pinned_;
+    const bool seen =
+        ChunkLooks::class_of(needed.urgency) == ChunkLooks::Class::seen && needed.chunk >= pinned_;
     counted_[needed.chunk] = seen ? kSeen : 1;
     ++need_.chunks;
     need_.seen += seen;
@@ -275,7 +245,7 @@ void Residency::count_need() {
     ++need_.chunks;
     ++need_.missing;
     need_.missing_bytes += chunks_[needed.chunk].bytes;
-    if (class_of(needed.urgency) != Class::seen) continue;
+    if (ChunkLooks::class_of(needed.urgency) != ChunkLooks::Class::seen) continue;
     ++need_.seen;
     ++need_.seen_missing;
     need_.seen_failed.push_back(needed.chunk);

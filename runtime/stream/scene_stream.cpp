@@ -49,6 +49,7 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       records_(*file_),
       pool_(pool),
       pool_bytes_(desc.bytes.of(desc.room)),
+      looks_(file_->chunks()),
       residency_(graph_, file_->chunks(), records_, desc.room, desc.pinned),
       linker_(graph_, shape_) {}
 

@@ -129,7 +129,8 @@ class SceneStream {
   bool step(Lock& lock);
   bool work(Lock& lock);
   bool plan_is_asked();
-  bool plan_if_asked();
+  bool plan_if_asked(Lock* lock);
+  void look_at_likely(Lock& lock);
   bool retry_due();
   bool fill_some(Lock& lock);
   bool read_some(Lock& lock);
@@ -201,6 +202,8 @@ class SceneStream {
 
   // Of all that follows; a plan may hold it for milliseconds.
   std::mutex mutex_;
+  ChunkLooks looks_;       // whose chunks a thread may look at without the lock:
+  bool planning_ = false;  // one does, and nobody else may
   Residency residency_;
   Linker linker_;
   std::map<uint32_t, Coming> coming_;  // by chunk

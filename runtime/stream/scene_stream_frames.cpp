@@ -196,10 +196,10 @@ bool SceneStream::work_once(const Done& done, bool first, bool& stepped) {
   }
   try {
     if (first) next_plan_ = {};
-    stepped = plan_if_asked();
+    stepped = plan_if_asked(nullptr);
     commit_all();
     publish();
-    if (!plan_is_asked() && done()) return true;
+    if (!plan_is_asked() && !planning_ && done()) return true;
   } catch (const Error&) {
     throw;
   } catch (...) {

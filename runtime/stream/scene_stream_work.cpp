@@ -60,7 +60,7 @@ bool SceneStream::step(Lock& lock) {
 }
 
 bool SceneStream::work(Lock& lock) {
-  const bool done = plan_if_asked() || retry_due() || fill_some(lock) || read_some(lock);
+  const bool done = plan_if_asked(&lock) || retry_due() || fill_some(lock) || read_some(lock);
   commit_due_ = residency_.has_changes();
   if (done) {
     publish();
@@ -69,23 +69,41 @@ bool SceneStream::work(Lock& lock) {
   return done;
 }
 
-bool SceneStream::plan_if_asked() {
+// lock: let go while chunks are looked at; null for those who hold the pool, too.
+bool SceneStream::plan_if_asked(Lock* lock) {
   std::vector<Viewer> viewers;
-  // Threads that read must not all be planning, however many chunks a scene has.
-  const auto now = std::chrono::steady_clock::now();
-  if (desc_.readers != 0 && now < next_plan_) return false;
+  // Others wait for a plan: it must not take all of their time, however many chunks a scene has.
+  if (planning_ || (desc_.readers != 0 && std::chrono::steady_clock::now() < next_plan_))
+    return false;
   {
     const std::lock_guard small(small_mutex_);
     if (!look_again_) return false;
     look_again_ = false;
     for (const auto& [who, of] : viewers_) viewers.insert(viewers.end(), of.begin(), of.end());
   }
-  residency_.plan(viewers);
+  looks_.begin(std::move(viewers));
+  if (lock != nullptr) look_at_likely(*lock);
+  const auto begin = std::chrono::steady_clock::now();
+  residency_.plan(looks_);
   // Those that nobody wants any more.
   std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
   const auto end = std::chrono::steady_clock::now();
-  next_plan_ = end + kPlanRest * (end - now);
+  next_plan_ = end + kPlanRest * (end - begin);
   return true;
+}
+
+// So that less is left to do for a plan, for which others wait.
+void SceneStream::look_at_likely(Lock& lock) {
+  const std::vector<uint32_t> likely = residency_.needed();
+  planning_ = true;
+  lock.unlock();
+  for (const uint32_t chunk : likely) {
+    const ChunkRange children = graph_.children(chunk);
+    looks_.at(chunk);
+    for (uint32_t child = children.first; child < children.last; ++child) looks_.at(child);
+  }
+  lock.lock();
+  planning_ = false;
 }
 
 bool SceneStream::retry_due() {

@@ -87,8 +87,9 @@ TEST(ChunkGraph, ChunksThatArriveInAnyOrderAllBecomeResident) {
     const RecordRoom records(file);
     Residency residency(graph, file.chunks(), records,
                         PoolRoom{graph.size(), graph.size() * records.most_blocks()}, top);
-    const Viewer everything{{{0, 0, 0}, 1e-30f}, {}, false};
-    residency.plan({&everything, 1});
+    ChunkLooks looks(file.chunks());
+    looks.begin({Viewer{{{0, 0, 0}, 1e-30f}, {}, false}});
+    residency.plan(looks);
     std::vector<uint32_t> come;
     for (;;) {
       const ChunkRange range = residency.take_requests(1, UINT64_MAX);
