@@ -290,7 +290,7 @@ void SplatPipeline::launch_search(const SceneReading&, const FrameInput& frame,
                                   FrameReport& report) {
   report.timer.begin();
   run_stage(kSearch, report, [&] {
-    // What covered the tiles of the frame before, while it is still there.
+    // Reads where the tiles of the frame before ended, which begin_frame() of the splats clears.
     occlusion_.begin(occlusion_choice_.next(), frame, report.tiles,
                      splats_.view(report.tiles, 0).ends, stream_.get());
     report.limited = occlusion_.limited();
@@ -473,7 +473,9 @@ void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) co
     stats.bytes[kProject] += culling_bytes(counted) + 2 * sizeof(uint32_t) * candidates +
                              counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) +
                              counted.strips * sizeof(TileStrip);
-    stats.bytes[kBin] += 2 * counted.strips * sizeof(TileStrip) + 2 * offsets + pairs * kKey;
+    const bool few = counted.open.count != 0 && counted.open.count <= kFewOpen;
+    stats.bytes[kBin] +=
+        2 * counted.strips * sizeof(TileStrip) + (few ? 0 : 2 * offsets) + pairs * kKey;
     stats.bytes[kSort] += 2 * pairs * kKey;
     stats.bytes[kRasterize] += pairs * (kKey + kRecord);
   }

@@ -1,6 +1,5 @@
 #pragma once
-// The lists of a second pass that has few tiles: its strips are held against each of these, and no
-// other tile is looked at.
+// Lists of a second pass with few tiles: each strip is tested against each of these tiles.
 #include "cuda/splat/bin_place.cuh"
 #include "cuda/splat/occlusion.cuh"
 
@@ -27,7 +26,7 @@ struct FewStrips {
   }
 };
 
-// A list a lane, in the order in which they lie.
+// One list a lane. They lie in the order of lanes.
 struct FewLists {
   uint32_t tile = 0, length = 0;
   unsigned long long first = 0;
@@ -69,8 +68,7 @@ __device__ inline void scatter_few(const SplatView& splats, const FewStrips& own
   });
 }
 
-// Tells where they lie, what is beyond the room cut off, and orders them, longest first. By one
-// warp.
+// Writes where each list lies, cut off at the room, and their order, longest first. By one warp.
 __device__ inline void place_few(const SplatView& splats) {
   constexpr unsigned kAll = 0xffffffffu;
   const FewLists own(splats);

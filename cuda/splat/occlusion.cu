@@ -24,7 +24,8 @@ struct EyeTiles {
   TileGrid grid;
 
   __device__ uint32_t at(int32_t column, int32_t row) const {
-    return ends[row * grid.columns + column];
+    const uint32_t end = ends[row * grid.columns + column];
+    return end == kDrawNothing ? kDrawAll : end;  // a second pass left it out: it has no list
   }
 };
 
@@ -40,7 +41,7 @@ __device__ uint32_t limit_of(const EyeTiles& before, const EyeMotion& motion, in
   const auto rows = static_cast<float>(before.grid.rows);
   if (!(x >= 0.0f && x < columns && y >= 0.0f && y < rows)) return kDrawAll;
   const uint32_t own = before.at(static_cast<int32_t>(x), static_cast<int32_t>(y));
-  if (own == kDrawAll || own == kDrawNothing) return kDrawAll;
+  if (own == kDrawAll) return kDrawAll;
   const float z = fmaxf(bits_float(own), 1e-3f);  // metres: parallax stays finite
   const float around = motion.around + motion.parallax / z;
   if (!(around <= kFarthest)) return kDrawAll;

@@ -49,7 +49,7 @@ __device__ inline bool reaches_open(const SplatView& splats, uint32_t eye,
 }
 
 // By the finest level that tells it in few cells; what is larger than those is not hidden.
-// kSecond: for a second pass. A first one has no register to spare for what that asks.
+// kSecond: of a second pass. A first one has no registers left for draws_few().
 template <bool kSecond>
 __device__ bool hidden(const SplatView& splats, uint32_t eye, const ImageBounds& image,
                        float depth_scale) {

@@ -29,13 +29,13 @@ struct TileLimits {
   uint32_t first[kLimitLevels][kMaxEyes];
 };
 
-// Of a second pass. Where they are few, as they most often are, its kernels go through them one by
-// one, and no other tile costs anything.
+// The tiles of a second pass. If there are at most so many, the kernels behind occlusion_rest look
+// at these alone. Cleared with the counters, before each time that a frame is drawn.
 inline constexpr uint32_t kFewOpen = 32;
 struct OpenTiles {
   uint32_t count;            // may be more than are listed
   uint32_t tiles[kFewOpen];  // in no order
-  uint32_t taken[kFewOpen];  // places of their lists
+  uint32_t taken[kFewOpen];  // keys written to each list so far
 };
 
 }  // namespace voyager::cuda

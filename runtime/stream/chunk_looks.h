@@ -1,6 +1,6 @@
 #pragma once
-// What those who look want of chunks, each chunk by itself: no matter what is there, or what it
-// hangs from.
+// How urgently viewers want each chunk, by its hull alone: whether it is resident, and what it
+// hangs from, do not matter.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,9 +29,9 @@ class ChunkLooks {
   explicit ChunkLooks(std::span<const ChunkEntry> chunks)
       : chunks_(chunks), urgency_(chunks.size()), round_(chunks.size()) {}
 
-  // At others from now on.
+  // A new round, with these viewers.
   void begin(std::vector<Viewer> viewers);
-  // Costs by the viewers where it is asked for the first time.
+  // The first call of a round for a chunk looks at all viewers.
   Look at(uint32_t chunk) {
     if (round_[chunk] >> 1 != now_) look(chunk);
     return {urgency_[chunk], (round_[chunk] & 1) != 0};

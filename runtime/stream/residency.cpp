@@ -99,6 +99,7 @@ void Residency::give_up(uint32_t chunk, State now) {
     --coming_;
     coming_blocks_ -= most_blocks(chunk);
   } else {
+    filling_ -= state_[chunk] == State::read;
     free({chunk, slot_[chunk], first_block_[chunk]});
   }
   slot_[chunk] = kNoSlot;
@@ -118,6 +119,7 @@ uint32_t Residency::take_slot(uint32_t chunk) {
   free_slots_.pop_back();
   --coming_;
   coming_blocks_ -= blocks_of_[chunk];
+  ++filling_;
   take_blocks(chunk);
   return slot_[chunk];
 }
@@ -178,6 +180,7 @@ bool Residency::place_records(uint32_t chunk, uint32_t blocks) {
 }
 
 void Residency::filled(uint32_t chunk) {
+  --filling_;
   state_[chunk] = State::filled;
   filled_.push_back(chunk);
 }
@@ -286,7 +289,7 @@ bool Residency::has_leftovers() const {
   const auto is = [&](State state) {
     return [this, state](uint32_t chunk) { return state_[chunk] == state; };
   };
-  return !leftovers_.empty() && coming_ == 0 && filled_.empty() &&
+  return !leftovers_.empty() && coming_ == 0 && filling_ == 0 && filled_.empty() &&
          std::none_of(waiting_.begin(), waiting_.end(), is(State::filled)) &&
          std::none_of(requests_.begin(), requests_.end(), is(State::absent));
 }

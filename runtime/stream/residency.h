@@ -203,6 +203,7 @@ class Residency {
   std::vector<uint32_t> free_blocks_;  // a heap, the least first
   std::vector<uint32_t> next_block_;   // by block, of those that a chunk has
   uint32_t coming_ = 0;                // on their way or read: each will want a slot
+  uint32_t filling_ = 0;               // have one, and are not filled yet
   uint64_t coming_blocks_ = 0;         // that those will want at most
   uint64_t target_blocks_ = 0;         // of what is wanted, as far as is known
   bool crowded_ = false;               // not all that the last plan needed has room

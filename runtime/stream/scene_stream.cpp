@@ -87,7 +87,7 @@ double SceneStream::next_due() const {
   if (lost_) return std::max(0.0, rebuild_due_ - now());
   double wait = failures_.next_due(now());
   const std::lock_guard small(small_mutex_);
-  if (!look_again_) return wait;
+  if (!look_again_ || planning_) return wait;  // whoever plans wakes the others
   const auto rest = next_plan_ - std::chrono::steady_clock::now();
   const double plan = std::max(0.0, std::chrono::duration<double>(rest).count());
   return wait < 0 ? plan : std::min(wait, plan);

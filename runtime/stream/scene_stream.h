@@ -157,7 +157,7 @@ class SceneStream {
   template <class Done>
   void work_until(const Done& done);
   template <class Done>
-  bool work_once(const Done& done, bool first, bool& stepped);
+  bool work_once(const Done& done, bool& first, bool& stepped);
   void check_fits() const;
   bool is_settled(double since) const;
   void check_seen() const;
@@ -202,8 +202,8 @@ class SceneStream {
 
   // Of all that follows; a plan may hold it for milliseconds.
   std::mutex mutex_;
-  ChunkLooks looks_;       // whose chunks a thread may look at without the lock:
-  bool planning_ = false;  // one does, and nobody else may
+  ChunkLooks looks_;       // also without the lock, by the thread that has set planning_
+  bool planning_ = false;  // a thread looks at chunks without the lock; no other may plan
   Residency residency_;
   Linker linker_;
   std::map<uint32_t, Coming> coming_;  // by chunk

@@ -183,10 +183,10 @@ bool SceneStream::plan_is_asked() {
   return look_again_;
 }
 
-// One turn; whether it is done. Both locks are held meanwhile. Only the first turn plans at once:
-// a plan after every arrival would keep those that read from reading.
+// One turn; whether it is done. Both locks are held meanwhile. Only the first turn that can plans
+// at once: a plan after every arrival would keep those that read from reading.
 template <class Done>
-bool SceneStream::work_once(const Done& done, bool first, bool& stepped) {
+bool SceneStream::work_once(const Done& done, bool& first, bool& stepped) {
   const auto pool = hold_alone();
   Lock lock(mutex_);
   if (lost_) {
@@ -196,6 +196,7 @@ bool SceneStream::work_once(const Done& done, bool first, bool& stepped) {
   }
   try {
     if (first) next_plan_ = {};
+    first = planning_;  // what is being planned may not know of this call
     stepped = plan_if_asked(nullptr);
     commit_all();
     publish();
@@ -212,7 +213,7 @@ bool SceneStream::work_once(const Done& done, bool first, bool& stepped) {
 
 template <class Done>
 void SceneStream::work_until(const Done& done) {
-  for (bool first = true;; first = false) {
+  for (bool first = true;;) {
     uint64_t seen = 0;
     {
       const std::lock_guard small(small_mutex_);

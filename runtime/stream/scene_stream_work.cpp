@@ -82,13 +82,14 @@ bool SceneStream::plan_if_asked(Lock* lock) {
     for (const auto& [who, of] : viewers_) viewers.insert(viewers.end(), of.begin(), of.end());
   }
   looks_.begin(std::move(viewers));
+  const auto look = std::chrono::steady_clock::now();
   if (lock != nullptr) look_at_likely(*lock);
   const auto begin = std::chrono::steady_clock::now();
   residency_.plan(looks_);
   // Those that nobody wants any more.
   std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
   const auto end = std::chrono::steady_clock::now();
-  next_plan_ = end + kPlanRest * (end - begin);
+  next_plan_ = end + kPlanRest * (end - begin) + (begin - look);
   return true;
 }
 

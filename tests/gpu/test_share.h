@@ -8,7 +8,7 @@
 
 namespace voyager::test {
 
-// At least 24 where there were as many.
+// Never below 24, or below `whole` if that is less.
 inline size_t share_of(size_t whole) {
   static const char* const text = std::getenv("VOYAGER_TEST_SHARE");
   if (text == nullptr) return whole;

@@ -153,7 +153,7 @@ TEST(StreamingDisk, ATurnFindsMostOfWhatItShowsThere) {
   EXPECT_LT(after.chunks.late - before.chunks.late, arrived / 4);
 }
 
-// Nor room for what turns would show.
+// In a pool with room for what is seen and 20 chunks more.
 TEST(StreamingDisk, AWalkFindsWhatItShowsThere) {
   Flight flight(1.0, 0.001, 100e6);
   const auto at = [](int frame) { return ahead({0, -3, -150 + 0.15 * frame}, kForward, 0.3); };
