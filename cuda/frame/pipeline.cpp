@@ -473,9 +473,8 @@ void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) co
     stats.bytes[kProject] += culling_bytes(counted) + 2 * sizeof(uint32_t) * candidates +
                              counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) +
                              counted.strips * sizeof(TileStrip);
-    const bool few = counted.open.count != 0 && counted.open.count <= kFewOpen;
-    stats.bytes[kBin] +=
-        2 * counted.strips * sizeof(TileStrip) + (few ? 0 : 2 * offsets) + pairs * kKey;
+    stats.bytes[kBin] += 2 * counted.strips * sizeof(TileStrip) +
+                         (counted.open.few() ? 0 : 2 * offsets) + pairs * kKey;
     stats.bytes[kSort] += 2 * pairs * kKey;
     stats.bytes[kRasterize] += pairs * (kKey + kRecord);
   }

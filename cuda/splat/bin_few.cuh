@@ -5,7 +5,7 @@
 
 namespace voyager::cuda {
 
-// Some strips, and what a block does with them.
+// The strips of a thread block.
 struct FewStrips {
   const TileStrip* strips;
   uint32_t count;

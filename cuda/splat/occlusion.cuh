@@ -13,7 +13,7 @@ __device__ inline bool has_work(const SplatView& splats) {
 
 // Whether this is a second pass that has few tiles.
 __device__ inline bool draws_few(const SplatView& splats) {
-  return splats.open_parts != nullptr && splats.counters->open.count <= kFewOpen;
+  return splats.open_parts != nullptr && splats.counters->open.few();
 }
 
 // Lists of the pass, which tile_order begins with.

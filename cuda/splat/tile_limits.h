@@ -33,9 +33,11 @@ struct TileLimits {
 // at these alone. Cleared with the counters, before each time that a frame is drawn.
 inline constexpr uint32_t kFewOpen = 32;
 struct OpenTiles {
-  uint32_t count;            // may be more than are listed
+  uint32_t count;            // may be more than are listed; 0 of a first pass
   uint32_t tiles[kFewOpen];  // in no order
   uint32_t taken[kFewOpen];  // keys written to each list so far
+
+  VOYAGER_HD bool few() const { return count != 0 && count <= kFewOpen; }
 };
 
 }  // namespace voyager::cuda

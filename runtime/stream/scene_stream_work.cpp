@@ -10,7 +10,7 @@ namespace {
 
 constexpr uint32_t kMostChunksARead = 64;
 constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds
-constexpr int kPlanRest = 3;          // after a plan, times what it took
+constexpr int kPlanRest = 3;          // times what a plan held the lock
 
 // Chunk by chunk it would fail as well: a source that stalls, and a file that is gone.
 bool is_of_source(const Error& error) {
@@ -89,6 +89,7 @@ bool SceneStream::plan_if_asked(Lock* lock) {
   // Those that nobody wants any more.
   std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
   const auto end = std::chrono::steady_clock::now();
+  // And as long as it looked, so that no thread does nothing else.
   next_plan_ = end + kPlanRest * (end - begin) + (begin - look);
   return true;
 }

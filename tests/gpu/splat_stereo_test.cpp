@@ -151,8 +151,7 @@ TEST_F(SplatStereo, AnEmptySceneAndEyesThatLookAway) {
 TEST_F(SplatStereo, TheBaselineDrawsOneEye) {
   PipelineDesc desc;
   desc.splatting = Splatting::baseline_3dgs;
-  EXPECT_THROW(draw_pair(flat_scene(random_cloud(share_of(10), 69, 0)), desc, varied_pairs()[0]),
-               Error);
+  EXPECT_THROW(draw_pair(flat_scene(random_cloud(10, 69, 0)), desc, varied_pairs()[0]), Error);
 }
 
 }  // namespace
