@@ -167,7 +167,7 @@ int main(int argc, char** argv) try {
   const voy::Device device = voyager::bench::streaming_device(megabytes);
   voyager::bench::StreamedView streamed(device, argv[1], megabytes, nullptr, width, height, tau);
 
-  std::vector<Taken> frames;
+  std::vector<Taken> frames(count);  // with its pages: what grows below is not the program's
   uint64_t arrived_before = 0;
   std::vector<long> kilobytes;  // after each tenth
   size_t since_jump = 0;
@@ -188,7 +188,7 @@ int main(int argc, char** argv) try {
                 since_jump};
     std::copy_n(stats.milliseconds, VOY_MAX_STAGES, taken.stages);
     arrived_before = arrived;
-    frames.push_back(taken);
+    frames[i] = taken;
     if ((i + 1) % std::max<size_t>(1, count / 10) == 0) kilobytes.push_back(resident_kilobytes());
     next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps));
     std::this_thread::sleep_until(next);

@@ -5,10 +5,10 @@
 
 namespace voyager::cuda {
 
-// 1 MB, the same for all scenes: Device::code_tables() shares it.
+// Less than 1 MB, the same for all scenes: Device::code_tables() shares it.
 class CodeTables {
  public:
-  static constexpr size_t kBytes = 4 * kCodes * sizeof(float);
+  static constexpr size_t kBytes = (kScaleCodes + 3 * kOpacityCodes) * sizeof(float);
 
   CodeTables();
 

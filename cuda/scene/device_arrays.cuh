@@ -56,17 +56,20 @@ struct CodedSh {
 
   static __device__ CodedSh load(const GaussianView& gaussians, uint32_t i) {
     CodedSh sh;
-    if constexpr (kDegree == 0) {
-      const uint2 row = __ldg(static_cast<const uint2*>(gaussians.coefficients) + i);
-      sh.words[0] = row.x, sh.words[1] = row.y;
+    if constexpr (kDegree < 2) {
+      const uint32_t* from = row(gaussians, i);
+#pragma unroll
+      for (int word = 0; word < kWords - 1; ++word) sh.words[word] = __ldg(from + word);
     } else {
-      const uint4* from = static_cast<const uint4*>(gaussians.coefficients) + size_t{i} * kDegree;
+      const auto* from = reinterpret_cast<const uint4*>(row(gaussians, i));
 #pragma unroll
       for (int word = 0; word < kDegree; ++word) {
         const uint4 four = __ldg(from + word);
         sh.words[4 * word] = four.x, sh.words[4 * word + 1] = four.y;
         sh.words[4 * word + 2] = four.z, sh.words[4 * word + 3] = four.w;
       }
+    }
+    if constexpr (kDegree != 0) {
       const auto* sizes =
           reinterpret_cast<const float4*>(gaussians.sh_steps + gaussians.sh_groups(i));
       const float4 first = __ldg(sizes), second = __ldg(sizes + 1);
@@ -91,15 +94,25 @@ struct CodedSh {
           __byte_perm(words[byte / 4] ^ 0x80808080u, 0x4b000000u, 0x7440u | byte % 4);
       step = __uint_as_float(bits) - (0x1p23f + 128.0f);
     } else {
-      constexpr int kUnshifted = 3;  // that lie within the 23 bits
-      const int i = at - 3 * kShBandStart[1], of_word = i % kShOfWord;
-      const int shift = of_word < kUnshifted ? 0 : 6 * kUnshifted, up = 6 * of_word - shift;
-      const uint32_t bits = words[kShSixBitsAt / 4 + i / kShOfWord] >> shift & 63u << up;
+      const int first = 8 * kShSixBitsAt + 6 * (at - 3 * kShBandStart[1]);
+      const int word = first / 32, bit = first % 32;
+      const bool unshifted = bit <= 23 - 6, split = bit > 32 - 6;
+      const int up = unshifted ? bit : 0;
+      const uint32_t own =
+          split ? __funnelshift_r(words[word], words[word + 1], static_cast<uint32_t>(bit))
+                : words[word] >> (bit - up);
+      const uint32_t bits = own & 63u << up;
       const uint32_t base = static_cast<uint32_t>(127 + 23 - up) << 23;
       step = __uint_as_float(base | bits) - (__uint_as_float(base) + static_cast<float>(kShOffset));
     }
     const int band = k < kShBandStart[1] ? 0 : k < kShBandStart[2] ? 1 : 2;
     return __fmaf_rn(step, high[band], __fmul_rn(step, low[band]));
+  }
+  static __device__ const uint32_t* row(const GaussianView& gaussians, uint32_t i) {
+    return static_cast<const uint32_t*>(gaussians.coefficients) + size_t{i} * kWords;
+  }
+  static __device__ uint32_t last_word(const GaussianView& gaussians, uint32_t i) {
+    return __ldg(row(gaussians, i) + kWords - 1);
   }
   static __device__ constexpr int degree(const GaussianView&) {
     return kDegree;
@@ -113,7 +126,7 @@ struct DeviceArrays {
   __device__ int sh_degree() const { return Sh::degree(gaussians); }
   __device__ Sh sh(uint32_t i) const { return Sh::load(gaussians, i); }
   __device__ int node_code(uint32_t i) const {
-    if constexpr (Sh::kCoded) return code(i).node_code;
+    if constexpr (Sh::kCoded) return __ldg(&rest(i)->node_code);
     return __ldg(gaussians.node_codes + i);
   }
   __device__ bool footprints_differ() const { return gaussians.footprints; }
@@ -122,7 +135,8 @@ struct DeviceArrays {
     return {hull.x, hull.y, hull.z};
   }
   __device__ Gaussian gaussian(uint32_t i) const {
-    if constexpr (Sh::kCoded) return restored_shape(code(i), gaussians.tables);
+    if constexpr (Sh::kCoded)
+      return restored_shape(code(i), Sh::last_word(gaussians, i), gaussians.tables);
     const float4* const shapes = static_cast<const float4*>(gaussians.shapes) + 2 * size_t{i};
     const float4 a = __ldg(shapes), b = __ldg(shapes + 1);
     // The opacity is read where it is interpolated: where every leaf is drawn there is no array of
@@ -135,15 +149,18 @@ struct DeviceArrays {
   }
 
  private:
+  __device__ const ShapeRest* rest(uint32_t i) const {
+    return static_cast<const ShapeRest*>(gaussians.shapes) + i;
+  }
   __device__ ShapeCode code(uint32_t i) const {
-    const uint4 w = __ldg(static_cast<const uint4*>(gaussians.shapes) + i);
+    const uint2 w = __ldg(static_cast<const uint2*>(gaussians.shapes) + i);
     ShapeCode code;
-    code.scale[0] = static_cast<uint16_t>(w.x), code.scale[1] = static_cast<uint16_t>(w.x >> 16);
-    code.scale[2] = static_cast<uint16_t>(w.y), code.opacity = static_cast<uint16_t>(w.y >> 16);
-    code.rotation[0] = static_cast<uint16_t>(w.z);
-    code.rotation[1] = static_cast<uint16_t>(w.z >> 16);
-    code.rotation[2] = static_cast<uint16_t>(w.w);
-    code.node_code = static_cast<uint8_t>(w.w >> 16), code.family = static_cast<uint8_t>(w.w >> 24);
+    code.bounds = __float_as_uint(__ldg(gaussians.hulls + i).w);
+    code.rest.rotation[0] = static_cast<uint16_t>(w.x);
+    code.rest.rotation[1] = static_cast<uint16_t>(w.x >> 16);
+    code.rest.rotation[2] = static_cast<uint16_t>(w.y);
+    code.rest.node_code = static_cast<uint8_t>(w.y >> 16);
+    code.rest.children = static_cast<uint8_t>(w.y >> 24);
     return code;
   }
 };

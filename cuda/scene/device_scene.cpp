@@ -31,25 +31,24 @@ bool fits_binary16(const Scene& scene, Workers& workers) {
 }  // namespace
 
 DeviceScene::DeviceScene(const Device& device, const Scene& scene, Workers& workers) {
-  const GaussianArrays arrays = gaussian_arrays(scene);
-  const size_t count = gaussian_count(scene);
-  hulls_ = upload_made<float4>(
-      count, [&](size_t i) { return device_hull(arrays.gaussian(static_cast<uint32_t>(i))); });
-  view_.hulls = hulls_.data();
   view_.sh_degree = scene.sh_degree;
   view_.doubles = scene.doubles;
   view_.footprints = footprints_differ(scene);
-  view_.count = static_cast<uint32_t>(count);
+  view_.count = static_cast<uint32_t>(gaussian_count(scene));
   if (is_coded(scene))
     upload_codes(device, scene);
   else
     upload_floats(scene, workers);
+  view_.hulls = hulls_.data();
 }
 
 void DeviceScene::upload_codes(const Device& device, const Scene& scene) {
   std::vector<ShStepSizes> steps;
   for (const ShScales& scales : scene.sh_scales) steps.push_back(step_sizes(scales));
-  shape_codes_ = upload(std::span<const ShapeCode>(scene.shapes));
+  const size_t count = scene.shapes.size();
+  hulls_ = upload_made<float4>(
+      count, [&](size_t i) { return coded_hull(scene.means[i], scene.shapes[i]); });
+  shape_codes_ = upload_made<ShapeRest>(count, [&](size_t i) { return scene.shapes[i].rest; });
   sh_rows_ = upload(std::span<const uint8_t>(scene.sh_rows));
   sh_steps_ = upload(std::span<const ShStepSizes>(steps));
   sh_blocks_ = upload(std::span<const RunBlock>(scene.sh_blocks));
@@ -63,6 +62,8 @@ void DeviceScene::upload_codes(const Device& device, const Scene& scene) {
 }
 
 void DeviceScene::upload_floats(const Scene& scene, Workers& workers) {
+  hulls_ = upload_made<float4>(scene.gaussians.size(),
+                               [&](size_t i) { return device_hull(scene.gaussians[i]); });
   shapes_ = upload_made<float4>(2 * scene.gaussians.size(), [&](size_t i) {
     return device_shape(scene.gaussians[i / 2], i % 2);
   });

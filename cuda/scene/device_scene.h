@@ -39,7 +39,7 @@ class DeviceScene {
   Buffer<float> coefficients_;
   Buffer<uint8_t> node_codes_;
   // Of a coded scene.
-  Buffer<ShapeCode> shape_codes_;
+  Buffer<ShapeRest> shape_codes_;
   Buffer<uint8_t> sh_rows_;
   Buffer<ShStepSizes> sh_steps_;
   Buffer<RunBlock> sh_blocks_;

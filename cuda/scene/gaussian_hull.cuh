@@ -1,25 +1,49 @@
 #pragma once
+#include <cuda_fp16.h>
+
 #include "cuda/scene/gaussian_view.h"
 #include "runtime/math/alpha.h"
 #include "runtime/math/vec.h"
+#include "runtime/stages/project.h"
 
 namespace voyager::cuda {
 
 // What is known of a Gaussian before the rest of it is read (GaussianView::hulls).
 struct GaussianHull {
   Vec3f mean;
-  float max_scale, radius;
+  float max_scale;
+  float radius_squared;  // of the support, in standard deviations
 };
+
+// Both are at least what the tables of codes say: they add more than approximate functions lose,
+// a ten-thousandth of the scale at most.
+__device__ inline float largest_scale(const ShapeCode& code) {
+  constexpr float kStep = kLog2e / 512.0f, kAbove = 1.0f + 0x1p-15f;
+  const auto steps = static_cast<float>(static_cast<int>(largest_scale_code(code)) - 21 * 512);
+  return exp2f(steps * kStep) * kAbove;
+}
+__device__ inline float support_radius_squared(const ShapeCode& code) {
+  constexpr float kAbove = kRhoMargin + 2e-5f;
+  const uint32_t q = opacity_code(code);
+  const float opacity = has_logit(code) ? static_cast<float>(q) * (1.0f / 65535.0f)
+                                        : __half2float(__ushort_as_half(static_cast<uint16_t>(q)));
+  return 2.0f * fmaxf(__logf(opacity) - kLogTruthThreshold + kAbove, 0.0f);
+}
 
 __device__ inline GaussianHull hull_at(const GaussianView& gaussians, uint32_t i) {
   const float4 h = __ldg(gaussians.hulls + i);
   const uint32_t bounds = __float_as_uint(h.w);
-  return {{h.x, h.y, h.z}, __uint_as_float(bounds & 0xffff0000u), __uint_as_float(bounds << 16)};
+  if (gaussians.sh_form == ShForm::coded) {
+    const ShapeCode code{bounds, {}};
+    return {{h.x, h.y, h.z}, largest_scale(code), support_radius_squared(code)};
+  }
+  const float radius = __uint_as_float(bounds << 16);
+  return {{h.x, h.y, h.z}, __uint_as_float(bounds & 0xffff0000u), radius * radius};
 }
 
-// The radius of the support above α*, from the stored one. 0 where α never reaches it.
-__device__ inline float radius_above(float stored, float log_threshold) {
-  return sqrtf(fmaxf(stored * stored - 2.0f * (log_threshold - kLogTruthThreshold), 0.0f));
+// The radius of the support above α*, from that of a hull. 0 where α never reaches it.
+__device__ inline float radius_above(float radius_squared, float log_threshold) {
+  return sqrtf(fmaxf(radius_squared - 2.0f * (log_threshold - kLogTruthThreshold), 0.0f));
 }
 
 }  // namespace voyager::cuda

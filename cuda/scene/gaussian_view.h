@@ -26,13 +26,13 @@ enum class ShForm { half, single, coded };
 
 // The arrays are indexed by node id, or by address in a pool.
 struct GaussianView {
-  // Mean, and a word that bounds the support before all else is read. Its upper 16 bits are the
-  // largest scale. Its lower 16 are the radius of the support in standard deviations, at the least
-  // α* there is, the truth's; 0 if α never reaches it. Both are rounded up to the upper half of a
-  // binary32.
+  // Mean, and a word that bounds the support before all else is read: ShapeCode::bounds of a coded
+  // scene. Of another its upper 16 bits are the largest scale, its lower 16 the radius of the
+  // support in standard deviations, at the least α* there is, the truth's; 0 if α never reaches it.
+  // Both are rounded up to the upper half of a binary32.
   const float4* hulls;
   // Two words for each Gaussian: scale and log o, then rotation (w, x, y, z). A coded scene has one
-  // ShapeCode for each.
+  // ShapeRest for each.
   const void* shapes;
   // What interpolation reads. Null if every leaf is drawn, except node_codes of scenes with
   // differing footprints. A coded scene has opacities and node codes in its shapes.
@@ -71,7 +71,7 @@ inline constexpr uint32_t coefficient_bytes(int degree, ShForm form) {
                                 : 12u * static_cast<uint32_t>(sh_coefficients(degree));
 }
 inline constexpr uint32_t shape_bytes(ShForm form) {
-  return form == ShForm::coded ? sizeof(ShapeCode) : 2 * sizeof(float4);
+  return form == ShForm::coded ? sizeof(ShapeRest) : 2 * sizeof(float4);
 }
 
 }  // namespace voyager::cuda

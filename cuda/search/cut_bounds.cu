@@ -32,7 +32,7 @@ __device__ void add(MeanBounds& bounds, const GaussianHull& hull) {
   bounds.greatest = {fmaxf(bounds.greatest.x, hull.mean.x), fmaxf(bounds.greatest.y, hull.mean.y),
                      fmaxf(bounds.greatest.z, hull.mean.z)};
   bounds.scale = fmaxf(bounds.scale, hull.max_scale);
-  bounds.radius = fmaxf(bounds.radius, hull.radius);
+  bounds.radius = fmaxf(bounds.radius, sqrtf(hull.radius_squared));
 }
 
 // A lane's part. A node between its parent and itself has its mean between the two.

@@ -8,8 +8,8 @@ namespace voyager::cuda {
 // Of a node that has some.
 __device__ inline uint32_t child_count(const GaussianView& gaussians, uint32_t node) {
   if (gaussians.sh_form != ShForm::coded) return __ldg(gaussians.child_counts + node);
-  const auto* shape = static_cast<const ShapeCode*>(gaussians.shapes) + node;
-  const uint32_t few = __ldg(&shape->family) & kManyChildren;
+  const auto* shape = static_cast<const ShapeRest*>(gaussians.shapes) + node;
+  const uint32_t few = __ldg(&shape->children);
   if (few != kManyChildren) return few;
   return children_of(node, gaussians.large_families, *gaussians.large_family_count);
 }

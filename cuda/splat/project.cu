@@ -29,10 +29,10 @@ __device__ bool project_may_show(const SplatFrame& f, const DrawItem& item, Gaus
   if (kLod && item.t != 1.0f) {
     const GaussianHull parent = hull_at(f.gaussians, item.parent);
     hull = {lerp_rn(parent.mean, hull.mean, item.t), fmaxf(parent.max_scale, hull.max_scale),
-            fmaxf(parent.radius, hull.radius)};
+            fmaxf(parent.radius_squared, hull.radius_squared)};
   }
   if (!is_inside(f.params[0].clip, hull.mean)) return false;
-  const float radius = radius_above(hull.radius, f.params[0].log_threshold);
+  const float radius = radius_above(hull.radius_squared, f.params[0].log_threshold);
   bool reaches = false;
   for (int eye = 0; eye < kEyes; ++eye)
     reaches = reaches || may_reach(f.params[eye], hull.mean, hull.max_scale, radius);

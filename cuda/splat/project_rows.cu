@@ -14,7 +14,7 @@ constexpr unsigned kAll = 0xffffffffu, kThreads = 256;
 template <bool kSecond>
 __device__ bool row_may_reach(const SplatFrame& f, uint32_t row) {
   MeanBounds bounds = f.draws.list.bounds[row];
-  bounds.radius = radius_above(bounds.radius, f.params[0].log_threshold);
+  bounds.radius = radius_above(bounds.radius * bounds.radius, f.params[0].log_threshold);
   bool reaches = false;
   for (uint32_t eye = 0; eye < f.splats.frame.eyes; ++eye)
     reaches = reaches || may_reach(f.params[eye], bounds);

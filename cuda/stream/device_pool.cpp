@@ -167,16 +167,12 @@ void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* i
 void DevicePool::pack_codes(const StagedChunk& staged, unsigned char* into) const {
   const Chunk& chunk = staged.content;
   const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
-  const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const ShapeCode code = shape_code(chunk, i);
-    Gaussian g = restored_shape(code, shape_tables());
-    g.mean = chunk.words[i].mean;
     const uint32_t place = staged.place[i];
-    put(at(kHulls), place, device_hull(g));
-    put(at(kShapes), place, code);
-    pack_sh(&chunk.sh[i * floats], sh_degree_, chunk.sh_scale,
-            at(kCoefficients) + place * layout_.unit(kCoefficients));
+    put(at(kHulls), place, coded_hull(chunk.words[i].mean, code));
+    put(at(kShapes), place, code.rest);
+    put_row(chunk, i, sh_degree_, at(kCoefficients) + place * layout_.unit(kCoefficients));
   }
   put(at(kStepSizes), 0, step_sizes(chunk.sh_scale));
 }

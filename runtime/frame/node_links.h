@@ -18,7 +18,7 @@ struct NodeLinks {
   uint32_t children(uint32_t node) const {
     if (records != nullptr) return records[node].child_count;
     if (child_count != nullptr) return child_count[node];
-    const uint32_t few = shapes[node].family & kManyChildren;
+    const uint32_t few = shapes[node].rest.children;
     if (few != kManyChildren) return few;
     return children_of(node, large.data(), static_cast<uint32_t>(large.size()));
   }

@@ -14,27 +14,40 @@ void fit(Array& array, size_t size) {
   Array(size, array.get_allocator()).swap(array);
 }
 
-// The first bytes of a row are those of a lower degree.
-void shorten_rows(size_t from, size_t to, std::pmr::vector<uint8_t>& rows) {
+void shorten_rows(int degree, int lower, std::pmr::vector<uint8_t>& rows) {
+  const size_t from = sh_row_bytes(degree), to = sh_row_bytes(lower);
   const size_t count = rows.size() / from;
   std::pmr::vector<uint8_t> shorter(count * to, rows.get_allocator());
   for (size_t i = 0; i < count; ++i)
-    std::copy_n(rows.data() + i * from, to, shorter.data() + i * to);
+    shorten_sh(rows.data() + i * from, degree, lower, shorter.data() + i * to);
   shorter.swap(rows);
+}
+
+ScaleCodes scales_of(const GaussianWords& words) {
+  const Vec3f& log = words.log_scale;
+  return scale_codes(std::array<uint32_t, 3>{quantise_log_scale(log.x), quantise_log_scale(log.y),
+                                             quantise_log_scale(log.z)});
 }
 
 }  // namespace
 
 ShapeCode shape_code(const Chunk& chunk, size_t i) {
   const GaussianWords& words = chunk.words[i];
-  ShapeCode code{};
-  code.family = family_code(chunk.has_logit(i), chunk.record_of(i).child_count);
-  for (int axis = 0; axis < 3; ++axis) code.scale[axis] = quantise_log_scale(words.log_scale[axis]);
-  code.opacity =
-      chunk.has_logit(i) ? quantise_leaf_opacity(words.opacity) : float_to_half(words.opacity);
-  std::copy_n(chunk.rotation_code[i].begin(), 3, code.rotation);
-  code.node_code = chunk.node_code[i];
+  const bool logit = chunk.has_logit(i);
+  const uint32_t opacity =
+      logit ? quantise_leaf_opacity(words.opacity) : float_to_half(words.opacity);
+  ShapeCode code{bounds_code(scales_of(words).largest, opacity, logit), {}};
+  std::copy_n(chunk.rotation_code[i].begin(), 3, code.rest.rotation);
+  code.rest.node_code = chunk.node_code[i];
+  code.rest.children =
+      static_cast<uint8_t>(std::min(chunk.record_of(i).child_count, kManyChildren));
   return code;
+}
+
+void put_row(const Chunk& chunk, size_t i, int degree, uint8_t* row) {
+  const size_t floats = 3 * static_cast<size_t>(sh_coefficients(degree));
+  pack_sh(chunk.sh.data() + i * floats, degree, chunk.sh_scale, row);
+  put_last_word(scales_of(chunk.words[i]).others, degree, row);
 }
 
 PackedSh packed_sh(const Scene& scene) {
@@ -76,8 +89,8 @@ void make_gaussian_room(size_t gaussians, size_t groups, Scene& scene) {
 }
 
 void set_gaussian(const Chunk& chunk, size_t i, size_t index, Scene& scene) {
-  const float* sh = chunk.sh.data() + i * sh_floats(scene);
   if (!is_coded(scene)) {
+    const float* sh = chunk.sh.data() + i * sh_floats(scene);
     scene.gaussians[index] = activate(chunk.words[i], chunk.has_logit(i));
     scene.node_code[index] = chunk.node_code[i];
     std::copy_n(sh, sh_floats(scene), scene.sh.data() + index * sh_floats(scene));
@@ -85,8 +98,7 @@ void set_gaussian(const Chunk& chunk, size_t i, size_t index, Scene& scene) {
   }
   scene.means[index] = chunk.words[i].mean;
   scene.shapes[index] = shape_code(chunk, i);
-  pack_sh(sh, scene.sh_degree, chunk.sh_scale,
-          scene.sh_rows.data() + index * sh_row_bytes(scene.sh_degree));
+  put_row(chunk, i, scene.sh_degree, scene.sh_rows.data() + index * sh_row_bytes(scene.sh_degree));
 }
 
 void set_nothing(size_t index, Scene& scene) {
@@ -111,7 +123,7 @@ void copy_sh(const Scene& scene, size_t index, float* sh) {
 void lower_sh_degree(int degree, Scene& scene) {
   if (degree >= scene.sh_degree) return;
   if (is_coded(scene))
-    shorten_rows(sh_row_bytes(scene.sh_degree), sh_row_bytes(degree), scene.sh_rows);
+    shorten_rows(scene.sh_degree, degree, scene.sh_rows);
   else
     change_sh_degree(scene.sh, scene.sh_degree, degree);
   scene.sh_degree = degree;
@@ -122,17 +134,17 @@ const ShapeTables& shape_tables() {
     std::vector<float> scale, leaf_opacity, log_opacity;
     ShapeTables view;
 
-    Tables() : scale(kCodes), leaf_opacity(kCodes), log_opacity(2 * kCodes) {
-      for (size_t code = 0; code < kCodes; ++code) {
+    Tables() : scale(kScaleCodes), leaf_opacity(kOpacityCodes), log_opacity(2 * kOpacityCodes) {
+      for (size_t code = 0; code < kOpacityCodes; ++code) {
         const auto q = static_cast<uint16_t>(code);
         const float s = restore_log_scale(q);
         GaussianWords words{{0, 0, 0}, {s, s, s}, {1, 0, 0, 0}, restore_leaf_opacity(q)};
         const Gaussian leaf = activate(words, true);
         words.opacity = half_to_float(q);
-        scale[code] = leaf.scale.x;
+        if (code < kScaleCodes) scale[code] = leaf.scale.x;
         leaf_opacity[code] = leaf.opacity;
         log_opacity[code] = activate(words, false).log_opacity;
-        log_opacity[kCodes + code] = leaf.log_opacity;
+        log_opacity[kOpacityCodes + code] = leaf.log_opacity;
       }
       view = {scale.data(), leaf_opacity.data(), log_opacity.data()};
     }

@@ -27,6 +27,8 @@ void make_gaussian_room(size_t gaussians, size_t groups, Scene& scene);
 
 // Of the i-th Gaussian of a compact chunk, to the bit.
 ShapeCode shape_code(const Chunk& chunk, size_t i);
+// Its SH row of that degree, the chunk's or a lower one, with the scales that the shape lacks.
+void put_row(const Chunk& chunk, size_t i, int degree, uint8_t* row);
 // The i-th Gaussian of a chunk, but for the scales of its group.
 void set_gaussian(const Chunk& chunk, size_t i, size_t index, Scene& scene);
 // One that draws nothing.

@@ -49,19 +49,25 @@ inline ShStepSizes step_sizes(const ShScales& scales) {
   return sizes;
 }
 
-// A row: the constant, 3 * 2 bytes; band 1, 9 bytes; one that is 0; then the other bands, words of
-// five steps of 6 bits, each above -32. What is left over is 0. So a row of a lower degree is the
-// beginning of one of a higher, and of degrees above 0 it is whole words of 16 bytes.
-inline constexpr int kShBandOneAt = 6, kShSixBitsAt = 16, kShOfWord = 5, kShOffset = 32;
+// A row: the constant, 3 * 2 bytes; band 1, 9 bytes; one that is 0; then the other bands, 6 bits a
+// step, each above -32. What is left over is 0. But the last word is a guest's: it does not fit
+// into the shape of 8 bytes (shape_code.h). So a row of degree 3 is 48 bytes.
+inline constexpr int kShBandOneAt = 6, kShSixBitsAt = 16, kShOffset = 32;
 static_assert(kShSteps[1] == 31 && kShSteps[2] == 31);
 
+// A multiple of 4; of 16 where whole words of 16 bytes hold no less.
 VOYAGER_HD constexpr uint32_t sh_row_bytes(int degree) {
-  return degree == 0 ? 8 : 16 * static_cast<uint32_t>(degree);
+  constexpr uint32_t kBytes[] = {12, 20, 32, 48};
+  return kBytes[degree];
 }
 
-// The i-th step of bands 2 and 3, [k][rgb], from the words that hold them.
-VOYAGER_HD constexpr int sh_six_bits(uint32_t word, int i) {
-  return static_cast<int>(word >> (6 * (i % kShOfWord)) & 63u) - kShOffset;
+inline void put_last_word(uint32_t word, int degree, uint8_t* row) {
+  std::memcpy(row + sh_row_bytes(degree) - sizeof word, &word, sizeof word);
+}
+inline uint32_t last_word(const uint8_t* row, int degree) {
+  uint32_t word;
+  std::memcpy(&word, row + sh_row_bytes(degree) - sizeof word, sizeof word);
+  return word;
 }
 
 // restore_sh() of a step, less the scale: a division takes longer than all the rest of a row.
@@ -76,7 +82,7 @@ constexpr std::array<double, kCount> sh_shares(int steps) {
 inline constexpr auto kShBandOneShares = sh_shares<256>(kShSteps[0]);
 inline constexpr auto kShSixBitShares = sh_shares<64>(kShSteps[1]);
 
-// sh: [k][rgb], restored with these scales before. They come back to the bit.
+// sh: [k][rgb], restored with these scales before. They come back to the bit. The last word is 0.
 inline void pack_sh(const float* sh, int degree, const ShScales& scale, uint8_t* row) {
   std::memset(row, 0, sh_row_bytes(degree));
   for (int c = 0; c < 3; ++c) {
@@ -87,15 +93,23 @@ inline void pack_sh(const float* sh, int degree, const ShScales& scale, uint8_t*
   for (int i = 0; i < 9; ++i)
     row[kShBandOneAt + i] = static_cast<uint8_t>(quantise_sh(sh[3 + i], scale[0], kShSteps[0]));
   const int first = 3 * kShBandStart[1], count = 3 * sh_coefficients(degree) - first;
-  uint32_t word = 0;
   for (int i = 0; i < count; ++i) {
     const float of = first + i < 3 * kShBandStart[2] ? scale[1] : scale[2];
     const int step = quantise_sh(sh[first + i], of, kShSteps[1]) + kShOffset;
-    word |= static_cast<uint32_t>(step) << (6 * (i % kShOfWord));
-    if (i % kShOfWord != kShOfWord - 1 && i + 1 != count) continue;
-    std::memcpy(row + kShSixBitsAt + 4 * (i / kShOfWord), &word, sizeof word);
-    word = 0;
+    uint8_t* const at = row + kShSixBitsAt + 6 * i / 8;
+    const int up = 6 * i % 8;
+    at[0] = static_cast<uint8_t>(at[0] | step << up);
+    if (up > 2) at[1] = static_cast<uint8_t>(step >> (8 - up));
   }
+}
+
+// The row of a lower degree, with the same last word.
+inline void shorten_sh(const uint8_t* row, int degree, int lower, uint8_t* into) {
+  constexpr std::array<size_t, 3> kUsed = {6, 15, 28};  // bytes
+  std::memset(into, 0, sh_row_bytes(lower));
+  std::memcpy(into, row, kUsed[static_cast<size_t>(lower)]);
+  if (lower == 2) into[27] &= 3;  // the rest is band 3's
+  put_last_word(last_word(row, degree), lower, into);
 }
 
 inline void unpack_sh(const uint8_t* __restrict row, int degree, const ShScales& scale,
@@ -109,12 +123,12 @@ inline void unpack_sh(const uint8_t* __restrict row, int degree, const ShScales&
   for (int i = 0; i < 9; ++i)
     sh[3 + i] = static_cast<float>(kShBandOneShares[row[kShBandOneAt + i] ^ 128u] * scale[0]);
   const int first = 3 * kShBandStart[1], count = 3 * sh_coefficients(degree) - first;
-  for (int at = 0; at < count; at += kShOfWord) {
-    uint32_t word;
-    std::memcpy(&word, row + kShSixBitsAt + 4 * (at / kShOfWord), sizeof word);
-    for (int i = at; i < std::min(count, at + kShOfWord); ++i, word >>= 6) {
+  for (int at = 0; at < count; at += 4) {
+    uint32_t four;  // steps, and a byte behind them
+    std::memcpy(&four, row + kShSixBitsAt + 3 * at / 4, sizeof four);
+    for (int i = at; i < std::min(count, at + 4); ++i, four >>= 6) {
       const float of = first + i < 3 * kShBandStart[2] ? scale[1] : scale[2];
-      sh[first + i] = static_cast<float>(kShSixBitShares[word & 63u] * of);
+      sh[first + i] = static_cast<float>(kShSixBitShares[four & 63u] * of);
     }
   }
 }

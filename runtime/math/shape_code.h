@@ -1,8 +1,8 @@
 #pragma once
 // The shape of a Gaussian as compact storage has it (docs/voy-format.md), and as projection reads
-// it: 16 bytes for scales, rotation and opacity, and for how many children the node has. Host and
-// device restore the same bits: what exponentials and logarithms give is looked up in tables that
-// the host makes.
+// it: 16 bytes for scales, rotation and opacity, and for how many children the node has, of which
+// four are the last word of the Gaussian's SH row. Host and device restore the same bits: what
+// exponentials and logarithms give is looked up in tables that the host makes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,23 +15,55 @@
 
 namespace voyager {
 
-// 16 bytes, so that a device reads it at once.
-struct alignas(16) ShapeCode {
-  uint16_t scale[3];     // steps of 1/512 of its logarithm, from -21
-  uint16_t opacity;      // with a logit: 65535 steps; else binary16
+struct ShapeRest {
   uint16_t rotation[3];  // smaller_component() and which is the largest
   uint8_t node_code;     // runtime/math/node_code.h
-  uint8_t family;        // the node's children, at most kManyChildren; beside them kHasLogit
+  uint8_t children;      // of the node, at most kManyChildren
 };
-static_assert(sizeof(ShapeCode) == 16);
 
-inline constexpr uint32_t kHasLogit = 0x80;
+// A device has the first word beside the mean, since culling reads no more.
+struct ShapeCode {
+  uint32_t bounds;  // the opacity; from bit 16 on the largest scale; kHasLogit
+  ShapeRest rest;
+};
+static_assert(sizeof(ShapeCode) == 12);
 
-inline uint8_t family_code(bool has_logit, uint32_t children) {
-  return static_cast<uint8_t>((has_logit ? kHasLogit : 0) | std::min(children, kManyChildren));
+// A scale: steps of 1/512 of its logarithm, from -21. An opacity: with a logit 65535 steps, else
+// binary16.
+inline constexpr uint32_t kScaleBits = 15, kScaleMask = (1u << kScaleBits) - 1;
+inline constexpr uint32_t kHasLogit = 1u << 31;
+inline constexpr size_t kScaleCodes = size_t{1} << kScaleBits, kOpacityCodes = 65536;
+
+// Three scales: the largest, and a word of the others. That names the largest one's axis from bit
+// 30 on.
+struct ScaleCodes {
+  uint32_t largest, others;
+};
+inline ScaleCodes scale_codes(const std::array<uint32_t, 3>& scales) {
+  const auto most = std::max_element(scales.begin(), scales.end());
+  const auto axis = static_cast<size_t>(most - scales.begin());
+  const uint32_t first = scales[axis == 0 ? 1 : 0], second = scales[axis == 2 ? 1 : 2];
+  return {*most, static_cast<uint32_t>(axis) << 30 | second << kScaleBits | first};
 }
+VOYAGER_HD uint32_t scale_code(const ScaleCodes& codes, uint32_t axis) {
+  const uint32_t largest = codes.others >> 30;
+  if (axis == largest) return codes.largest;
+  const bool first = axis == 0 || (axis == 1 && largest == 0);
+  return codes.others >> (first ? 0 : kScaleBits) & kScaleMask;
+}
+
+inline uint32_t bounds_code(uint32_t largest_scale, uint32_t opacity, bool has_logit) {
+  return (has_logit ? kHasLogit : 0) | largest_scale << 16 | opacity;
+}
+
 VOYAGER_HD bool has_logit(const ShapeCode& code) {
-  return (code.family & kHasLogit) != 0;
+  return (code.bounds & kHasLogit) != 0;
+}
+VOYAGER_HD uint32_t opacity_code(const ShapeCode& code) {
+  return code.bounds & 0xffffu;
+}
+VOYAGER_HD uint32_t largest_scale_code(const ShapeCode& code) {
+  return code.bounds >> 16 & kScaleMask;
 }
 
 inline float restore_log_scale(uint16_t q) {
@@ -121,18 +153,19 @@ VOYAGER_HD Quatf restore_rotation(const uint16_t* words) {
 
 // Of each code: what activate() gives.
 struct ShapeTables {
-  const float* scale;         // 65536
-  const float* leaf_opacity;  // 65536
-  const float* log_opacity;   // 2 * 65536: of merged Gaussians, then of leaves
+  const float* scale;         // kScaleCodes
+  const float* leaf_opacity;  // kOpacityCodes
+  const float* log_opacity;   // 2 * kOpacityCodes: of merged Gaussians, then of leaves
 };
-inline constexpr size_t kCodes = 65536;
 
 VOYAGER_HD float restored_opacity(const ShapeCode& code, const ShapeTables& tables) {
-  return has_logit(code) ? tables.leaf_opacity[code.opacity] : half_to_float(code.opacity);
+  const uint32_t opacity = opacity_code(code);
+  return has_logit(code) ? tables.leaf_opacity[opacity]
+                         : half_to_float(static_cast<uint16_t>(opacity));
 }
 
 VOYAGER_HD float restored_log_opacity(const ShapeCode& code, const ShapeTables& tables) {
-  return tables.log_opacity[(has_logit(code) ? kCodes : 0) + code.opacity];
+  return tables.log_opacity[(has_logit(code) ? kOpacityCodes : 0) + opacity_code(code)];
 }
 
 // What normalise() calls for a restored rotation, by its largest component and by its length. Each
@@ -143,11 +176,14 @@ VOYAGER_HD Quat<Rounded> divided(const Quat<Rounded>& q, Rounded by) {
           divisor.quotient(q.z)};
 }
 
-// Without its mean.
-VOYAGER_HD Gaussian restored_shape(const ShapeCode& code, const ShapeTables& tables) {
+// Without its mean. other_scales: ScaleCodes::others.
+VOYAGER_HD Gaussian restored_shape(const ShapeCode& code, uint32_t other_scales,
+                                   const ShapeTables& tables) {
+  const ScaleCodes scales{largest_scale_code(code), other_scales};
   Gaussian g{};
-  g.scale = {tables.scale[code.scale[0]], tables.scale[code.scale[1]], tables.scale[code.scale[2]]};
-  const Quatf q = restore_rotation(code.rotation);
+  g.scale = {tables.scale[scale_code(scales, 0)], tables.scale[scale_code(scales, 1)],
+             tables.scale[scale_code(scales, 2)]};
+  const Quatf q = restore_rotation(code.rest.rotation);
   const Quat<Rounded> unit = normalise(Quat<Rounded>{q.w, q.x, q.y, q.z});
   g.rotation = {unit.w.value, unit.x.value, unit.y.value, unit.z.value};
   g.opacity = restored_opacity(code, tables);

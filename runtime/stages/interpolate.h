@@ -76,27 +76,26 @@ struct GaussianArrays {
   Vec3f mean(uint32_t i) const { return coded() ? means[i] : gaussians[i].mean; }
   Gaussian gaussian(uint32_t i) const {
     if (!coded()) return gaussians[i];
-    Gaussian g = restored_shape(shapes[i], tables);
+    Gaussian g = restored_shape(shapes[i], last_word(row(i), degree), tables);
     g.mean = means[i];
     return g;
   }
   // Of a coded scene: what bounds its support, for less than gaussian() takes.
-  float largest_scale(uint32_t i) const {
-    const uint16_t* codes = shapes[i].scale;
-    return tables.scale[std::max({codes[0], codes[1], codes[2]})];
-  }
+  float largest_scale(uint32_t i) const { return tables.scale[largest_scale_code(shapes[i])]; }
   float log_opacity(uint32_t i) const { return restored_log_opacity(shapes[i], tables); }
   float opacity(uint32_t i) const {
     return coded() ? restored_opacity(shapes[i], tables) : gaussians[i].opacity;
   }
-  int node_code(uint32_t i) const { return coded() ? shapes[i].node_code : node_codes[i]; }
+  int node_code(uint32_t i) const { return coded() ? shapes[i].rest.node_code : node_codes[i]; }
   bool footprints_differ() const { return footprints; }
   // sh(i)(k, channel)
   ShOf sh(uint32_t i) const {
     if (!coded()) return ShOf(coefficients + i * 3 * static_cast<size_t>(sh_coefficients(degree)));
-    return {packed.rows + size_t{i} * sh_row_bytes(degree), degree,
-            packed.scales[packed.groups(i)]};
+    return {row(i), degree, packed.scales[packed.groups(i)]};
   }
+
+ private:
+  const uint8_t* row(uint32_t i) const { return packed.rows + size_t{i} * sh_row_bytes(degree); }
 };
 
 // What is drawn of a cut node. A double holds its only child's Gaussian: between the two there is

@@ -3,6 +3,8 @@
 #include <random>
 
 #include "cuda/scene/device_arrays.cuh"
+#include "cuda/scene/device_gaussian.h"
+#include "cuda/scene/gaussian_hull.cuh"
 #include "cuda/stream/device_pool.h"
 #include "runtime/frame/open_streamed.h"
 #include "runtime/frame/scene_gaussians.h"
@@ -30,6 +32,13 @@ __global__ void restore(cuda::GaussianView gaussians, Gaussian* shapes, float* s
   for (int k = 0; k < sh_coefficients(Sh::degree(gaussians)); ++k)
 #pragma unroll
     for (int c = 0; c < 3; ++c) sh[size_t{i} * kMostFloats + 3 * k + c] = own(k, c);
+}
+
+__global__ void bound(const uint32_t* bounds, float2* found, uint32_t count) {
+  const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
+  if (i >= count) return;
+  const ShapeCode code{bounds[i], {}};
+  found[i] = {cuda::largest_scale(code), cuda::support_radius_squared(code)};
 }
 
 __global__ void restore_largest(const int* steps, float* found, uint32_t count) {
@@ -137,6 +146,30 @@ TEST_F(CodedScene, StreamedGaussiansHaveTheHostsBits) {
       if (HasFatalFailure()) return;
     }
     EXPECT_GT(there, 10000u);
+  }
+}
+
+// What culling goes by leaves out nothing that the codes stand for, and adds little.
+TEST_F(CodedScene, HullsBoundWhatCodesRestore) {
+  std::vector<uint32_t> bounds;
+  for (uint32_t q = 0; q < kOpacityCodes; ++q)
+    for (const bool leaf : {false, true})
+      if (leaf || q < 0x7c00) bounds.push_back(bounds_code(q % kScaleCodes, q, leaf));
+  const auto count = static_cast<uint32_t>(bounds.size());
+  const Buffer<uint32_t> given = cuda::upload(std::span<const uint32_t>(bounds));
+  const Buffer<float2> found(count);
+  bound<<<(count + 255) / 256, 256>>>(given.data(), found.data(), count);
+  cuda::check(cudaGetLastError(), "bound");
+  const std::vector<float2> values = download(found);
+  for (uint32_t i = 0; i < count; ++i) {
+    const ShapeCode code{bounds[i], {}};
+    const float scale = shape_tables().scale[largest_scale_code(code)];
+    ASSERT_GE(values[i].x, scale) << bounds[i];
+    ASSERT_LE(values[i].x, 1.0001f * scale) << bounds[i];
+    const double over = double{restored_log_opacity(code, shape_tables())} - kLogTruthThreshold;
+    const double squared = over >= 0 ? 2 * (kRhoMargin + over) : 0;
+    ASSERT_GE(values[i].y, squared) << bounds[i];
+    ASSERT_LE(values[i].y, std::max(2 * (1e-4 + over), 0.0)) << bounds[i];
   }
 }
 

@@ -110,7 +110,9 @@ void put_bands_back(Scene& scene) {
   std::pmr::vector<uint8_t> rows(scene.sh_rows.size() / sh_row_bytes(0) * sh_row_bytes(3));
   for (size_t i = 0; i < scene.means.size(); ++i) {
     copy_sh(scene, i, sh.data());
-    pack_sh(sh.data(), 3, scene.sh_scales.front(), rows.data() + i * sh_row_bytes(3));
+    uint8_t* const row = rows.data() + i * sh_row_bytes(3);
+    pack_sh(sh.data(), 3, scene.sh_scales.front(), row);
+    put_last_word(last_word(scene.sh_rows.data() + i * sh_row_bytes(0), 0), 3, row);
   }
   scene.sh_rows.swap(rows);
   change_sh_degree(scene.sh, 0, 3);

@@ -29,12 +29,14 @@ TEST(ShCode, ARowGivesBackWhatWasRestored) {
   const ShScales scales[] = {
       {0.7f, 0.31f, 1.9f}, {3e-38f, 1e-45f, 0.0f}, {1e30f, 2.5e-7f, 65504.0f}};
   for (int degree = 0; degree <= kMaxShDegree; ++degree) {
-    EXPECT_EQ(sh_row_bytes(degree) % 8, 0u);
+    EXPECT_EQ(sh_row_bytes(degree) % sizeof(uint32_t), 0u);
     for (uint32_t of = 0; of < 3; ++of)
       for (int i = 0; i < 200; ++i) {
         const std::vector<float> sh = restored(degree, scales[of], random);
         std::vector<uint8_t> row(sh_row_bytes(degree));
         pack_sh(sh.data(), degree, scales[of], row.data());
+        EXPECT_EQ(last_word(row.data(), degree), 0u);
+        put_last_word(0xffffffffu, degree, row.data());
         std::vector<float> back(sh.size());
         unpack_sh(row.data(), degree, scales[of], back.data());
         ASSERT_EQ(back, sh) << degree << " " << of;
@@ -42,20 +44,23 @@ TEST(ShCode, ARowGivesBackWhatWasRestored) {
   }
 }
 
-// What a scene of a lower degree keeps of a row.
-TEST(ShCode, ALowerDegreeIsTheBeginningOfARow) {
+// As if the higher bands had never been there.
+TEST(ShCode, AShortenedRowIsThatOfTheLowerDegree) {
   std::mt19937 random(6);
   const ShScales scale = {0.5f, 0.4f, 0.3f};
   const std::vector<float> sh = restored(3, scale, random);
-  std::vector<uint8_t> row(sh_row_bytes(3));
-  pack_sh(sh.data(), 3, scale, row.data());
-  for (int degree = 0; degree < 3; ++degree) {
-    const std::vector<uint8_t> shorter(
-        row.begin(), row.begin() + static_cast<std::ptrdiff_t>(sh_row_bytes(degree)));
-    std::vector<float> lower(3 * static_cast<size_t>(sh_coefficients(degree)));
-    unpack_sh(shorter.data(), degree, scale, lower.data());
-    for (size_t k = 0; k < lower.size(); ++k) EXPECT_EQ(lower[k], sh[k]) << degree << " " << k;
-  }
+  const auto row_of = [&](int degree) {
+    std::vector<uint8_t> row(sh_row_bytes(degree));
+    pack_sh(sh.data(), degree, scale, row.data());
+    put_last_word(0x12345678u, degree, row.data());
+    return row;
+  };
+  for (int degree = 1; degree <= kMaxShDegree; ++degree)
+    for (int lower = 0; lower < degree; ++lower) {
+      std::vector<uint8_t> shorter(sh_row_bytes(lower));
+      shorten_sh(row_of(degree).data(), degree, lower, shorter.data());
+      EXPECT_EQ(shorter, row_of(lower)) << degree << " " << lower;
+    }
 }
 
 TEST(ShCode, GroupsBeginWhereTheirBitsAre) {

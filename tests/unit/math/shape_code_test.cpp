@@ -19,20 +19,25 @@ void expect_same_bits(float a, float b) {
 TEST(ShapeCode, ItIsWhatActivationGives) {
   std::mt19937 random(11);
   for (int i = 0; i < 20000; ++i) {
-    ShapeCode code{};
-    for (uint16_t& s : code.scale) s = static_cast<uint16_t>(random());
-    for (uint16_t& r : code.rotation) r = static_cast<uint16_t>(random());
-    code.family = family_code(i % 2 != 0, static_cast<uint32_t>(i));
+    std::array<uint32_t, 3> scales;
+    for (uint32_t& s : scales) s = static_cast<uint32_t>(random()) % kScaleCodes;
+    if (i % 7 == 0) scales[i % 3] = scales[(i + 1) % 3];
     // Any opacity of a leaf; of a merged Gaussian any that is positive and finite.
-    code.opacity = static_cast<uint16_t>(has_logit(code) ? random() : random() % 0x7c00);
-    const GaussianWords words{
-        {0, 0, 0},
-        {restore_log_scale(code.scale[0]), restore_log_scale(code.scale[1]),
-         restore_log_scale(code.scale[2])},
-        restore_rotation(code.rotation),
-        has_logit(code) ? restore_leaf_opacity(code.opacity) : half_to_float(code.opacity)};
-    const Gaussian expected = activate(words, has_logit(code));
-    const Gaussian found = restored_shape(code, shape_tables());
+    const bool leaf = i % 2 != 0;
+    const auto opacity = static_cast<uint16_t>(leaf ? random() : random() % 0x7c00);
+    const ScaleCodes packed = scale_codes(scales);
+    ShapeCode code{bounds_code(packed.largest, opacity, leaf), {}};
+    for (uint16_t& r : code.rest.rotation) r = static_cast<uint16_t>(random());
+    const auto log_scale = [&](size_t axis) {
+      return restore_log_scale(static_cast<uint16_t>(scales[axis]));
+    };
+    const GaussianWords words{{0, 0, 0},
+                              {log_scale(0), log_scale(1), log_scale(2)},
+                              restore_rotation(code.rest.rotation),
+                              leaf ? restore_leaf_opacity(opacity) : half_to_float(opacity)};
+    EXPECT_EQ(largest_scale_code(code), *std::max_element(scales.begin(), scales.end()));
+    const Gaussian expected = activate(words, leaf);
+    const Gaussian found = restored_shape(code, packed.others, shape_tables());
     ASSERT_EQ(std::memcmp(&expected, &found, sizeof expected), 0) << i;
     expect_same_bits(restored_opacity(code, shape_tables()), expected.opacity);
   }
