@@ -35,7 +35,8 @@ struct GaussianView {
   // ShapeRest for each.
   const void* shapes;
   // What interpolation reads. Null if every leaf is drawn, except node_codes of scenes with
-  // differing footprints. A coded scene has opacities and node codes in its shapes.
+  // differing footprints. A coded scene has opacities in its hulls, and node codes in its
+  // shapes.
   const float* opacities;
   const uint8_t* node_codes;
   ParentView parents;

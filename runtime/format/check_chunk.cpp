@@ -9,7 +9,8 @@
 namespace voyager {
 namespace {
 
-// exp() of it is finite and normal, and so are its square and sums of squares.
+// exp() of it is finite and normal, and so are its square and sums of squares. And kScaleBits hold
+// what is below (runtime/math/shape_code.h).
 constexpr float kMaxLogScaleWord = 43.0f;
 
 // Comparisons are written so that a NaN fails.

@@ -27,7 +27,7 @@ void make_gaussian_room(size_t gaussians, size_t groups, Scene& scene);
 
 // Of the i-th Gaussian of a compact chunk, to the bit.
 ShapeCode shape_code(const Chunk& chunk, size_t i);
-// Its SH row of that degree, the chunk's or a lower one, with the scales that the shape lacks.
+// Its SH row, with the scales that the shape lacks. degree: of chunk.sh.
 void put_row(const Chunk& chunk, size_t i, int degree, uint8_t* row);
 // The i-th Gaussian of a chunk, but for the scales of its group.
 void set_gaussian(const Chunk& chunk, size_t i, size_t index, Scene& scene);

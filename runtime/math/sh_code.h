@@ -50,12 +50,13 @@ inline ShStepSizes step_sizes(const ShScales& scales) {
 }
 
 // A row: the constant, 3 * 2 bytes; band 1, 9 bytes; one that is 0; then the other bands, 6 bits a
-// step, each above -32. What is left over is 0. But the last word is a guest's: it does not fit
-// into the shape of 8 bytes (shape_code.h). So a row of degree 3 is 48 bytes.
+// step, each above -32. What is left over is 0. The last word is not SH: it holds two scales
+// (shape_code.h), for which rows of degrees 2 and 3 have room.
 inline constexpr int kShBandOneAt = 6, kShSixBitsAt = 16, kShOffset = 32;
 static_assert(kShSteps[1] == 31 && kShSteps[2] == 31);
+static_assert(std::endian::native == std::endian::little);  // bytes are written, words are read
 
-// A multiple of 4; of 16 where whole words of 16 bytes hold no less.
+// A multiple of 4, and of 16 where that wastes nothing.
 VOYAGER_HD constexpr uint32_t sh_row_bytes(int degree) {
   constexpr uint32_t kBytes[] = {12, 20, 32, 48};
   return kBytes[degree];

@@ -1,8 +1,8 @@
 #pragma once
 // The shape of a Gaussian as compact storage has it (docs/voy-format.md), and as projection reads
-// it: 16 bytes for scales, rotation and opacity, and for how many children the node has, of which
-// four are the last word of the Gaussian's SH row. Host and device restore the same bits: what
-// exponentials and logarithms give is looked up in tables that the host makes.
+// it: 16 bytes for scales, rotation and opacity, and for how many children the node has. Four of
+// them are the last word of the Gaussian's SH row (sh_code.h). Host and device restore the same
+// bits: what exponentials and logarithms give is looked up in tables that the host makes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,7 +26,7 @@ struct ShapeCode {
   uint32_t bounds;  // the opacity; from bit 16 on the largest scale; kHasLogit
   ShapeRest rest;
 };
-static_assert(sizeof(ShapeCode) == 12);
+static_assert(sizeof(ShapeRest) == 8 && sizeof(ShapeCode) == 12);
 
 // A scale: steps of 1/512 of its logarithm, from -21. An opacity: with a logit 65535 steps, else
 // binary16.
