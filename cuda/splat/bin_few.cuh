@@ -26,7 +26,7 @@ struct FewStrips {
   }
 };
 
-// One list a lane. They lie in the order of lanes.
+// One tile's list for each lane, in the order of lanes.
 struct FewLists {
   uint32_t tile = 0, length = 0;
   unsigned long long first = 0;

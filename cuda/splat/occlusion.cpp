@@ -17,7 +17,7 @@ TileLimits limit_layout(const FrameTiles& tiles, size_t& all) {
   return limits;
 }
 
-size_t limit_cells(const FrameTiles& tiles) {
+size_t limit_cell_count(const FrameTiles& tiles) {
   size_t all = 0;
   limit_layout(tiles, all);
   return all;
@@ -79,13 +79,13 @@ void OcclusionChoice::learn(bool limited, uint64_t pairs) {
 }
 
 bool OcclusionState::fits(const FrameTiles& tiles) const {
-  return 2 * limit_cells(tiles) <= bits_.size();
+  return 2 * limit_cell_count(tiles) <= bits_.size();
 }
 
 void OcclusionState::fit(const FrameTiles& tiles) {
   if (fits(tiles)) return;
   bits_ = {};
-  bits_ = Buffer<uint32_t>(2 * limit_cells(tiles));
+  bits_ = Buffer<uint32_t>(2 * limit_cell_count(tiles));
   forget();
 }
 

@@ -30,7 +30,7 @@ __device__ inline TileRange limit_cells(float low, float high, int side, int32_t
   return {static_cast<int32_t>(first), static_cast<int32_t>(end)};
 }
 
-// Of few tiles: whether what lies there reaches one.
+// With few open tiles: true if the bounds reach one of them.
 __device__ inline bool reaches_open(const SplatView& splats, uint32_t eye,
                                     const ImageBounds& image) {
   const TileGrid& grid = splats.frame.grids[eye];

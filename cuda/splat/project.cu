@@ -18,8 +18,8 @@ constexpr unsigned kAll = 0xffffffffu;
 // A lane asks for the hulls of its places together, so that it waits for memory once.
 constexpr unsigned kCullThreads = 256, kCullItems = 4;
 constexpr unsigned kProjectThreads = 128;  // small blocks: registers bound how many are resident
-// That a multiprocessor holds where there are two eyes: the compiler would rather have
-// registers, which costs more than the few that it then spills.
+// Blocks that a multiprocessor must hold with two eyes. Without this bound the compiler uses more
+// registers, which costs more than a few spills.
 constexpr unsigned kPairBlocks = 6;
 
 // In the image of any eye, before what hides it. hull: of the item's Gaussian.
@@ -170,7 +170,7 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
       const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
       rank = first_place + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
       DrawnGaussian drawn;
-      // A rank beyond the room is that of a place that is, too: counted there.
+      // A rank beyond the room is skipped. Its place was counted, so the next frame has the room.
       if (rank < f.splats.places && read_gaussian(f.params[0], arrays, item, drawn)) {
 #pragma unroll
         for (int eye = 0; eye < kEyes; ++eye) {

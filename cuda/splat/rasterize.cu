@@ -316,10 +316,9 @@ __global__ void __launch_bounds__(kThreads, kRasterBlocks)
     rasterize_tile<M>(params, params.splats.tile_order[at], own, lut_entries);
 }
 
-// For a second pass, which usually has few tiles or none. Of many, those that have a list come
-// before all that are closed; of those without one some may be left out, since nothing is drawn in
-// them. A kernel of
-// its own, because a loop over tiles takes registers that the loop over splats needs.
+// Draws a second pass, which usually has few tiles or none. Where many tiles are open, those with a
+// list come first in tile_order. An open tile without a list keeps the first pass's picture. It is
+// a kernel of its own: a loop over tiles takes registers that the loop over splats needs.
 template <class M>
 __global__ void __launch_bounds__(kThreads)
     rasterize_open_tiles(const __grid_constant__ RasterParams params) {
