@@ -167,7 +167,7 @@ int main(int argc, char** argv) try {
   const voy::Device device = voyager::bench::streaming_device(megabytes);
   voyager::bench::StreamedView streamed(device, argv[1], megabytes, nullptr, width, height, tau);
 
-  std::vector<Taken> frames(count);  // with its pages: what grows below is not the program's
+  std::vector<Taken> frames(count);  // at once: what grows later is not this list
   uint64_t arrived_before = 0;
   std::vector<long> kilobytes;  // after each tenth
   size_t since_jump = 0;

@@ -15,8 +15,8 @@ struct GaussianHull {
   float radius_squared;  // of the support, in standard deviations
 };
 
-// Both are at least what the tables of codes say, and at most 1e-4 more: of the scale, and of half
-// the square of the radius. Approximate functions lose less than that.
+// Upper bounds of what the tables of codes say, without reading them. The scale is too large by at
+// most 1e-4 of itself, half the square of the radius by at most 1e-4.
 __device__ inline float largest_scale(const ShapeCode& code) {
   constexpr float kStep = kLog2e / 512.0f, kAbove = 1.0f + 0x1p-15f;
   const auto steps = static_cast<float>(static_cast<int>(largest_scale_code(code)) - 21 * 512);
