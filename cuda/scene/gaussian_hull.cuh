@@ -18,15 +18,17 @@ struct GaussianHull {
 // Upper bounds of what the tables of codes say, without reading them. The scale is too large by at
 // most 1e-4 of itself, half the square of the radius by at most 1e-4.
 __device__ inline float largest_scale(const ShapeCode& code) {
-  constexpr float kStep = kLog2e / 512.0f, kAbove = 1.0f + 0x1p-15f;
-  const auto steps = static_cast<float>(static_cast<int>(largest_scale_code(code)) - 21 * 512);
-  return exp2f(steps * kStep) * kAbove;
+  constexpr float kStep = kLog2e / static_cast<float>(kLogScaleSteps), kAbove = 1.0f + 0x1p-15f;
+  constexpr int kLeast = static_cast<int>(kLeastLogScale * kLogScaleSteps);
+  return exp2f(static_cast<float>(static_cast<int>(largest_scale_code(code)) + kLeast) * kStep) *
+         kAbove;
 }
 __device__ inline float support_radius_squared(const ShapeCode& code) {
   constexpr float kAbove = kRhoMargin + 2e-5f;
   const uint32_t q = opacity_code(code);
-  const float opacity = has_logit(code) ? static_cast<float>(q) * (1.0f / 65535.0f)
-                                        : __half2float(__ushort_as_half(static_cast<uint16_t>(q)));
+  const float opacity = has_logit(code)
+                            ? static_cast<float>(q) * static_cast<float>(1 / kOpacitySteps)
+                            : __half2float(__ushort_as_half(static_cast<uint16_t>(q)));
   return 2.0f * fmaxf(__logf(opacity) - kLogTruthThreshold + kAbove, 0.0f);
 }
 

@@ -35,7 +35,7 @@ inline float restore_position(uint32_t q, double centre, double step) {
 // within [-21, 106.99]; sanitised leaves lie inside, merged ones are clamped.
 inline uint16_t quantise_log_scale(float log_scale) {
   return static_cast<uint16_t>(
-      std::clamp(std::nearbyint((log_scale + 21.0) * 512.0), 0.0, 65535.0));
+      std::clamp(std::nearbyint((log_scale - kLeastLogScale) * kLogScaleSteps), 0.0, 65535.0));
 }
 
 // Rotation (shape_code.h). Error: an angle of 1.6e-4 rad.
@@ -62,6 +62,6 @@ inline std::array<uint16_t, 3> quantise_rotation(const Quatf& rotation) {
 // opacity. The ends are ±kMaxLogit.
 inline uint16_t quantise_leaf_opacity(float logit_word) {
   const double opacity = 1.0 / (1.0 + std::exp(-static_cast<double>(logit_word)));
-  return static_cast<uint16_t>(std::nearbyint(opacity * 65535.0));
+  return static_cast<uint16_t>(std::nearbyint(opacity * kOpacitySteps));
 }
 }  // namespace voyager

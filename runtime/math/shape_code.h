@@ -28,8 +28,9 @@ struct ShapeCode {
 };
 static_assert(sizeof(ShapeRest) == 8 && sizeof(ShapeCode) == 12);
 
-// A scale: steps of 1/512 of its logarithm, from -21. An opacity: with a logit 65535 steps, else
-// binary16.
+// A scale is stored by its logarithm, in kLogScaleSteps a unit from kLeastLogScale on. An opacity
+// that has a logit is stored in kOpacitySteps from 0 to 1, another in binary16.
+inline constexpr double kLogScaleSteps = 512, kLeastLogScale = -21, kOpacitySteps = 65535;
 inline constexpr uint32_t kScaleBits = 15, kScaleMask = (1u << kScaleBits) - 1;
 inline constexpr uint32_t kHasLogit = 1u << 31;
 inline constexpr size_t kScaleCodes = size_t{1} << kScaleBits, kOpacityCodes = 65536;
@@ -67,14 +68,14 @@ VOYAGER_HD uint32_t largest_scale_code(const ShapeCode& code) {
 }
 
 inline float restore_log_scale(uint16_t q) {
-  return static_cast<float>(q / 512.0 - 21.0);
+  return static_cast<float>(q / kLogScaleSteps + kLeastLogScale);
 }
 
 // A leaf's opacity, as a logit. The ends are ±kMaxLogit.
 inline float restore_leaf_opacity(uint16_t q) {
   if (q == 0) return -kMaxLogit;
   if (q == 65535) return kMaxLogit;
-  return static_cast<float>(std::log(q / (65535.0 - q)));
+  return static_cast<float>(std::log(q / (kOpacitySteps - q)));
 }
 
 // Rotation: the three smaller components of the unit quaternion whose largest is positive, 15 bits
