@@ -16,10 +16,10 @@ using LevelScan = cub::BlockScan<uint64_t, kEmitThreads, cub::BLOCK_SCAN_WARP_SC
 // Counts of the three levels in one word: at most 1024 · 31 each.
 constexpr unsigned kCountBits = 20;
 
-__device__ uint64_t count_levels(uint32_t cut, uint32_t child_count) {
+__device__ uint64_t count_levels(uint32_t cut, uint32_t levels) {
   uint64_t counts = 0;
   for (unsigned level = 0; level < kLevels; ++level)
-    counts |= uint64_t{static_cast<uint32_t>(__popc(cut & level_mask(level, child_count)))}
+    counts |= uint64_t{static_cast<uint32_t>(__popc(cut & level_slots(level, levels)))}
               << (kCountBits * level);
   return counts;
 }
@@ -44,8 +44,6 @@ __device__ void put_node(const TreeView& tree, const StateView& state, const Sea
 template <bool kOrigin>
 __device__ void emit_subtree(const TreeView& tree, const StateView& state, const SearchSubtree& s,
                              uint32_t cut, const Places& places) {
-  const uint32_t children = cut & level_mask(1, s.child_count);
-  const uint32_t grandchildren = cut & level_mask(2, s.child_count);
   const auto put = [&](uint32_t slots, uint32_t of_level, uint32_t first_place, uint32_t parent) {
     for (; slots != 0; slots &= slots - 1) {
       const uint32_t slot = __ffs(slots) - 1;
@@ -53,18 +51,21 @@ __device__ void emit_subtree(const TreeView& tree, const StateView& state, const
                         parent);
     }
   };
-  put(cut & 1, 1, places.of[0], s.entry);
-  put(children, children, places.of[1], s.first_record);
-  if (!kOrigin) {
-    put(grandchildren, grandchildren, places.of[2], kNoRecord);
-    return;
-  }
-  // Each interior child knows its slots.
-  uint32_t left = grandchildren == 0 ? 0 : s.interior & level_mask(1, s.child_count);
-  for (; left != 0; left &= left - 1) {
-    const uint32_t record = record_of(tree, s, __ffs(left) - 1);
-    put(grandchildren & load_record(tree.records + record).child_slots(), grandchildren,
-        places.of[2], record);
+  put(cut & s.level_slots(0), cut & s.level_slots(0), places.of[0], s.entry);
+  for (unsigned level = 1; level < kLevels; ++level) {
+    const uint32_t nodes = cut & s.level_slots(level);
+    if (nodes == 0) continue;
+    uint32_t parents = s.interior & s.level_slots(level - 1);
+    if (!kOrigin || (level == 1 && s.first_child_slot() == 1)) {
+      put(nodes, nodes, places.of[level], s.first_record);
+      parents = 0;
+    }
+    // Each parent knows its slots.
+    for (; parents != 0; parents &= parents - 1) {
+      const uint32_t record = record_of(tree, s, __ffs(parents) - 1);
+      put(nodes & load_record(tree.records + record).child_slots(), nodes, places.of[level],
+          record);
+    }
   }
 }
 
@@ -90,7 +91,7 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
     const uint32_t cut = subtree < block.last ? state.cut[subtree] : 0;
     const SearchSubtree s = cut == 0 ? kUnlinkedSubtree : load_own_subtree(tree, subtree);
     uint64_t before;
-    LevelScan(storage).ExclusiveSum(count_levels(cut, s.child_count), before);
+    LevelScan(storage).ExclusiveSum(count_levels(cut, s.levels), before);
     Places places;
     for (unsigned level = 0; level < kLevels; ++level)
       places.of[level] = state.segments[block.first_segment + level * block.stride].first +

@@ -39,7 +39,7 @@ struct Change {
 };
 
 // count_change() of 32 subtrees. Neighbours are of the same block, so that few lanes add for all.
-__device__ inline void count_changes(const StateView& state, uint32_t subtree, uint32_t child_count,
+__device__ inline void count_changes(const StateView& state, uint32_t subtree, uint32_t levels,
                                      const Change& change, Tally& tally) {
   const uint32_t own_block = change.any ? block_of(state, subtree) : 0;
   for (uint32_t left = __ballot_sync(kAllLanes, change.any); left != 0;) {
@@ -49,7 +49,7 @@ __device__ inline void count_changes(const StateView& state, uint32_t subtree, u
     const uint32_t old_cut = mine ? change.old_cut : 0, new_cut = mine ? change.new_cut : 0;
     const Block& block = state.blocks[b];
     for (uint32_t level = 0; level < kLevels; ++level) {
-      const uint32_t slots = level_mask(level, child_count);
+      const uint32_t slots = level_slots(level, levels);
       const int delta =
           __reduce_add_sync(kAllLanes, __popc(new_cut & slots) - __popc(old_cut & slots));
       if (lane_in_warp() == level && delta != 0)

@@ -28,7 +28,7 @@ __device__ void follow_unlinked(const TreeView& tree, const StateView& state, ui
   uint32_t refined = 0;
   if (lane_in_group() == 0) refined = atomicExch(&state.refined[subtree], 0);
   refined = __shfl_sync(group, refined, 0, kGroupLanes);
-  close_subtree(state, subtree, tree.subtrees[subtree].child_count, {refined, cut}, tally);
+  close_subtree(state, subtree, tree.subtrees[subtree].levels, {refined, cut}, tally);
 }
 
 // A record that is blocked now, or no longer is, changes its subtree's verdicts, however little

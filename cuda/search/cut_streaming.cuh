@@ -57,7 +57,7 @@ __device__ inline void read_subtrees(const TreeView& tree, const StateView& stat
                                 tally)
                    : close_own(state, subtree, known, tally);
     }
-    count_changes(state, subtree, s.child_count, change, tally);
+    count_changes(state, subtree, s.levels, change, tally);
   }
 }
 

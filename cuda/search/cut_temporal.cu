@@ -56,7 +56,7 @@ __device__ void visit_due_groups(const TreeView& tree, const StateView& state, c
     const bool open = active && (v.cut == known.cut || is_reached(tree, s, sight, tally));
     settle(state, s, subtree, known, v, reference, open, tally);
     if (active) signal_changes(tree, state, s, known.refined, v.refined);
-    if (active && !open) close_subtree(state, subtree, s.child_count, known, tally);
+    if (active && !open) close_subtree(state, subtree, s.levels, known, tally);
   }
 }
 
@@ -83,7 +83,7 @@ __device__ void visit_due_lanes(const TreeView& tree, const StateView& state, co
     const SearchSubtree s = load_own_subtree(tree, subtree);
     Change change;
     if (there) change = visit_due(tree, state, sight, reference, subtree, s, tally);
-    count_changes(state, subtree, s.child_count, change, tally);
+    count_changes(state, subtree, s.levels, change, tally);
   }
 }
 
@@ -136,7 +136,7 @@ __device__ void answer(const TreeView& tree, const StateView& state, const Sight
   const Visit v = visit_group(tree, s, sight, opens, tally);
   settle(state, s, subtree, known, v, reference, opens, tally);
   if (opens) signal_changes(tree, state, s, 0, v.refined);
-  if (any && !opens) close_subtree(state, subtree, s.child_count, known, tally);
+  if (any && !opens) close_subtree(state, subtree, s.levels, known, tally);
   __threadfence();
   __syncwarp();
   if (any && lane_in_group() == 0) atomicAdd(&state.counting->signals_done, 1);

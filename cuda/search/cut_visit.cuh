@@ -29,6 +29,11 @@ __device__ inline float group_min(float v) {
     v = fminf(v, __shfl_xor_sync(kAllLanes, v, step, kGroupLanes));
   return v;
 }
+__device__ inline float group_max(float v) {
+  for (unsigned step = kGroupLanes / 2; step != 0; step /= 2)
+    v = fmaxf(v, __shfl_xor_sync(kAllLanes, v, step, kGroupLanes));
+  return v;
+}
 __device__ inline SearchRecord load_record(const SearchRecord* record) {
   const float4* words = reinterpret_cast<const float4*>(record);
   const float4 a = __ldg(words), b = __ldg(words + 1);
@@ -43,7 +48,7 @@ __device__ inline SearchSubtree load_subtree(const TreeView& tree, uint32_t subt
   s.root = __shfl_sync(kAllLanes, word, 0, kGroupLanes);
   s.first_child = __shfl_sync(kAllLanes, word, 1, kGroupLanes);
   s.first_grandchild = __shfl_sync(kAllLanes, word, 2, kGroupLanes);
-  s.child_count = __shfl_sync(kAllLanes, word, 3, kGroupLanes);
+  s.levels = __shfl_sync(kAllLanes, word, 3, kGroupLanes);
   s.first_record = __shfl_sync(kAllLanes, word, 4, kGroupLanes);
   s.interior = __shfl_sync(kAllLanes, word, 5, kGroupLanes);
   s.owned = __shfl_sync(kAllLanes, word, 6, kGroupLanes);
@@ -54,11 +59,6 @@ __device__ inline SearchSubtree load_subtree(const TreeView& tree, uint32_t subt
 // The record of an interior slot.
 __device__ inline uint32_t record_of(const TreeView& tree, const SearchSubtree& s, uint32_t slot) {
   return s.record(__popc(s.interior & ((1u << slot) - 1)), tree.next_block);
-}
-
-__device__ inline uint32_t level_mask(uint32_t level, uint32_t child_count) {
-  const uint32_t children = ((2u << child_count) - 1) & ~1u;
-  return level == 0 ? 1u : level == 1 ? children : ~(children | 1u);
 }
 
 __device__ inline uint32_t block_of(const StateView& state, uint32_t subtree) {
@@ -137,15 +137,15 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
       if (refined) reached |= r.child_slots();
       if (verdict.refined && blocked) v.stand_ins |= 1u << slot;
       v.slack = fminf(v.slack, verdict.slack);
-      if (slot == 0) v.extent = r.extent;
+      if (slot < s.first_child_slot()) v.extent = fmaxf(v.extent, r.extent);
       ++tally.tested;
     }
     const uint32_t votes = __ballot_sync(kAllLanes, refined);
     v.refined |= (votes >> (kGroupLanes * group_in_warp()) & 0xff) << (kGroupLanes * round);
   }
-  reached = group_or(reached) | 1;
+  reached = group_or(reached) | s.level_slots(0);
   v.slack = group_min(v.slack);
-  v.extent = __shfl_sync(kAllLanes, v.extent, 0, kGroupLanes);  // extents never grow downwards
+  v.extent = group_max(v.extent);  // the roots': extents never grow downwards
   v.cut = reached & ~v.refined & s.owned;
   // A record that is blocked is of the tier's lowest level: nodes below it are in no slot here.
   if (tree.streamed()) v.stand_ins = group_or(v.stand_ins) & v.cut;
@@ -170,11 +170,11 @@ __device__ inline void set_stand_ins(const StateView& state, uint32_t subtree, u
 
 // Nodes that entered and left: the sizes of the block's segments, and that they are to
 // be written again.
-__device__ inline void count_change(const StateView& state, uint32_t subtree, uint32_t child_count,
+__device__ inline void count_change(const StateView& state, uint32_t subtree, uint32_t levels,
                                     uint32_t old_cut, uint32_t new_cut, int opened, Tally& tally) {
   const uint32_t b = block_of(state, subtree);
   if (lane_in_group() < kLevels) {
-    const uint32_t level = level_mask(lane_in_group(), child_count);
+    const uint32_t level = level_slots(lane_in_group(), levels);
     const int delta = __popc(new_cut & level) - __popc(old_cut & level);
     const Block& block = state.blocks[b];
     Segment& segment = state.segments[block.first_segment + lane_in_group() * block.stride];
@@ -225,15 +225,15 @@ __device__ inline void settle(const StateView& state, const SearchSubtree& s, ui
   const bool was_open = (known.refined & kOpen) != 0;
   if (lane_in_group() == 0) keep_open(state, subtree, known, v, reference, tally);
   if (v.cut != known.cut || !was_open)
-    count_change(state, subtree, s.child_count, known.cut, v.cut, was_open ? 0 : 1, tally);
+    count_change(state, subtree, s.levels, known.cut, v.cut, was_open ? 0 : 1, tally);
 }
 
 // Also for one that is closed. Called by whole groups.
-__device__ inline void close_subtree(const StateView& state, uint32_t subtree, uint32_t child_count,
+__device__ inline void close_subtree(const StateView& state, uint32_t subtree, uint32_t levels,
                                      const Known& known, Tally& tally) {
   if ((known.refined & kOpen) == 0) return;
   if (lane_in_group() == 0) keep_closed(state, subtree, tally);
-  count_change(state, subtree, child_count, known.cut, 0, -1, tally);
+  count_change(state, subtree, levels, known.cut, 0, -1, tally);
 }
 
 }  // namespace voyager::cuda

@@ -8,7 +8,7 @@
 namespace voyager {
 namespace {
 
-// Then no root has its descendants in several subtrees: a tier has a subtree a root.
+// Then no root has its descendants in several subtrees.
 static_assert(1 + kChildren + kChildren * kChildren <= kSubtreeNodes);
 
 [[noreturn]] void refuse(size_t node, const std::string& found, const std::string& expected) {
@@ -40,19 +40,33 @@ std::vector<uint32_t> cell_levels(std::span<const uint8_t> child_count) {
   return levels;
 }
 
-std::vector<uint8_t> subtree_nodes(std::span<const uint8_t> child_count,
+std::vector<RootShape> root_shapes(std::span<const uint8_t> child_count,
                                    std::span<const uint32_t> levels, uint32_t level) {
-  std::vector<uint8_t> nodes;
-  if (level + 1 >= levels.size()) return nodes;
-  nodes.reserve(levels[level + 1] - levels[level]);
+  std::vector<RootShape> roots;
+  if (level + 1 >= levels.size()) return roots;
+  roots.reserve(levels[level + 1] - levels[level]);
+  uint32_t above = level == 0 ? 0 : levels[level - 1];  // whose children come next
+  uint32_t siblings = 0;                                // of them that are still to come
   uint32_t child = levels[level + 1];
   for (uint32_t n = levels[level]; n < levels[level + 1]; ++n) {
-    uint32_t count = 1u + child_count[n];
+    const bool first = siblings == 0;
+    if (first && level == 0) {
+      siblings = 1;
+    } else if (first) {
+      while (child_count[above] == 0) ++above;
+      siblings = child_count[above++];
+    }
+    --siblings;
+    uint32_t grandchildren = 0;
     for (const uint32_t end = child + child_count[n]; child < end; ++child)
-      count += child_count[child];
-    nodes.push_back(static_cast<uint8_t>(count));
+      grandchildren += child_count[child];
+    RootShape shape{};
+    shape.nodes = static_cast<uint8_t>(1u + child_count[n] + grandchildren) & 31u;
+    shape.sibling = !first;
+    shape.deep = grandchildren != 0;
+    roots.push_back(shape);
   }
-  return nodes;
+  return roots;
 }
 
 }  // namespace voyager

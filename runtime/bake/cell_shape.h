@@ -18,8 +18,14 @@ inline constexpr uint32_t kSharedLevels = kTierLevels - 1;
 // only; counts that do not add up.
 std::vector<uint32_t> cell_levels(std::span<const uint8_t> child_count);
 
-// Of each node on a level: how many nodes the subtree has whose root it is.
-std::vector<uint8_t> subtree_nodes(std::span<const uint8_t> child_count,
+// A root with its children and grandchildren, as SiblingRule takes it.
+struct RootShape {
+  uint8_t nodes : 5, sibling : 1, deep : 1;
+};
+static_assert(sizeof(RootShape) == 1);
+
+// Of each node on a level.
+std::vector<RootShape> root_shapes(std::span<const uint8_t> child_count,
                                    std::span<const uint32_t> levels, uint32_t level);
 
 }  // namespace voyager

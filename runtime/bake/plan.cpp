@@ -15,8 +15,8 @@ uint32_t nodes_below(uint32_t levels) {
   return nodes;
 }
 
-// The first tier that leaves the fewest subtrees, of which there is one a root; of
-// several, that of most levels (runtime/lod/subtrees.cpp chooses the same).
+// The first tier that leaves the fewest subtrees, of which there is one a root before siblings
+// share them; of several, that of most levels (runtime/lod/subtrees.cpp chooses the same).
 uint32_t best_first_tier(const std::vector<uint32_t>& level_begin) {
   uint32_t best = 0;
   uint64_t fewest = 0;
@@ -93,61 +93,65 @@ SubtreePlace BakePlan::top_place(uint32_t tier) const {
   return place;
 }
 
-std::vector<uint8_t> BakePlan::top_subtree_nodes(uint32_t tier) const {
+std::vector<RootShape> BakePlan::top_shapes(uint32_t tier) const {
   const uint32_t first = root_level(tiers(), tier), end = first + tier_height(tiers(), tier);
-  std::vector<uint8_t> nodes(nodes_below(first));
+  std::vector<RootShape> roots(nodes_below(first));
   const uint32_t cells = nodes_below(cell_level_ - first);  // below each root
-  for (uint32_t root = 0; root < nodes.size(); ++root) {
+  for (uint32_t root = 0; root < roots.size(); ++root) {
     uint32_t count = 0;
     for (uint32_t level = first; level < end; ++level)
       count += level <= cell_level_ ? nodes_below(level - first)
                                     : first_node((root + 1) * cells, level - cell_level_) -
                                           first_node(root * cells, level - cell_level_);
-    nodes[root] = static_cast<uint8_t>(count);
+    roots[root].nodes = static_cast<uint8_t>(count) & 31u;
+    roots[root].deep = true;
   }
-  return nodes;
+  return roots;
 }
 
 void BakePlan::lay_out_segments(const ShapeOf& shape_of, Workers& workers) {
   const auto depth = static_cast<uint32_t>(level_begin_.size() - 1);
   const uint32_t tier_count = Tiers::count_of(depth, first_tier_levels_);
-  std::vector<std::vector<std::vector<uint8_t>>> cell_nodes(cells_);  // of each cell tier
+  std::vector<std::vector<std::vector<RootShape>>> cell_roots(cells_);  // of each cell tier
   workers.for_blocks(cells_, 1, [&](size_t cell, size_t) {
     const std::vector<uint8_t> shape = shape_of(static_cast<uint32_t>(cell));
     const std::vector<uint32_t> levels = cell_levels(shape);
     for (uint32_t tier = first_cell_tier_; tier < tier_count; ++tier)
-      cell_nodes[cell].push_back(subtree_nodes(shape, levels, cell_level_of(tier)));
+      cell_roots[cell].push_back(root_shapes(shape, levels, cell_level_of(tier)));
   });
   for (uint32_t tier = 0; tier < tier_count; ++tier) {
     tier_segment_.push_back(static_cast<uint32_t>(segments_.size()));
     tier_begin_.push_back(subtrees_);
     if (tier < first_cell_tier_) {
-      add_segment(tier, kTop, top_place(tier), top_subtree_nodes(tier));
+      add_segment(tier, kTop, top_place(tier), top_shapes(tier));
       continue;
     }
     for (uint32_t cell = 0; cell < cells_; ++cell) {
       SubtreePlace place{};
       for (uint32_t k = 0; k < 4; ++k) place.next[k] = first_node(cell, cell_level_of(tier) + k);
-      add_segment(tier, cell, place, cell_nodes[cell][tier - first_cell_tier_]);
+      add_segment(tier, cell, place, cell_roots[cell][tier - first_cell_tier_]);
     }
   }
   tier_segment_.push_back(static_cast<uint32_t>(segments_.size()));
   tier_begin_.push_back(subtrees_);
 }
 
-// Next-fit, as pack_runs() has it.
+// Next-fit, as pack_runs() has it; then siblings share, as join_siblings() has it. A segment's first
+// root shares with none before it.
 void BakePlan::add_segment(uint32_t tier, uint32_t cell, const SubtreePlace& place,
-                           const std::vector<uint8_t>& nodes) {
+                           const std::vector<RootShape>& roots) {
   segments_.push_back({tier, cell, subtrees_, open_bytes_, chunk_count_, place});
-  for (const uint8_t count : nodes) {
-    const auto bytes = static_cast<uint32_t>(count * sizeof(NodeRecord));
+  SiblingRule rule;
+  for (const RootShape& root : roots) {
+    const auto bytes = static_cast<uint32_t>(root.nodes * sizeof(NodeRecord));
     if (chunk_count_ == 0 || open_bytes_ + bytes > chunk_bytes_) {
       ++chunk_count_;
       open_bytes_ = 0;
+      rule.start();
     }
     open_bytes_ += bytes;
+    subtrees_ += rule.shares(root.nodes, root.sibling, root.deep) ? 0 : 1;
   }
-  subtrees_ += static_cast<uint32_t>(nodes.size());
 }
 
 std::span<const Segment> BakePlan::segments(uint32_t tier) const {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "runtime/bake/cell_shape.h"
 #include "runtime/base/workers.h"
 #include "runtime/lod/subtree_cursor.h"
 
@@ -36,7 +37,7 @@ class BakePlan {
 
   // Above cell_level ≥ 1 every node has kChildren children. chunk_bytes as
   // partition_tree() takes them. `shape_of` is called twice for each cell, by several
-  // threads. While the plan is made, there is a byte for each subtree of the cells.
+  // threads. While the plan is made, there is a byte for each root of the cells' subtrees.
   // Throws Error(internal) for a cell that cell_levels() refuses.
   BakePlan(uint32_t cell_level, uint32_t chunk_bytes, const ShapeOf& shape_of, Workers& workers);
 
@@ -65,9 +66,9 @@ class BakePlan {
   void lay_out_tiers();
   void lay_out_segments(const ShapeOf& shape_of, Workers& workers);
   void add_segment(uint32_t tier, uint32_t cell, const SubtreePlace& place,
-                   const std::vector<uint8_t>& nodes);
+                   const std::vector<RootShape>& roots);
   SubtreePlace top_place(uint32_t tier) const;
-  std::vector<uint8_t> top_subtree_nodes(uint32_t tier) const;
+  std::vector<RootShape> top_shapes(uint32_t tier) const;
 
   uint32_t cell_level_, cells_, chunk_bytes_;
   uint32_t first_tier_levels_ = 0, top_levels_ = 0, first_cell_tier_ = 0, chunk_count_ = 0;

@@ -71,8 +71,7 @@ const char* fault(const Chunk& chunk, size_t i, const ChunkContext& context) {
 
 // `first` is of the subtree's records.
 void list_nodes(const Subtree& subtree, const SubtreeCursor& cursor, size_t first, Chunk& chunk) {
-  for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
-    if (subtree.repeats(slot)) continue;
+  for (uint32_t slot = subtree.first_owned_slot(); slot < subtree.node_count(); ++slot) {
     chunk.node.push_back(subtree.node(slot));
     chunk.record.push_back(static_cast<uint32_t>(first + slot));
     chunk.first_child.push_back(cursor.first_children()[slot]);
@@ -81,8 +80,7 @@ void list_nodes(const Subtree& subtree, const SubtreeCursor& cursor, size_t firs
 
 }  // namespace
 
-void link_subtrees(std::span<const uint8_t> child_counts,
-                   std::span<const uint8_t> grandchild_counts, const ChunkLocation& location,
+void link_subtrees(std::span<const SubtreeCounts> counts, const ChunkLocation& location,
                    const ChunkContext& context, Chunk& chunk) {
   check_records(chunk, location, context);
   SubtreeCursor cursor(context.tiers);
@@ -90,13 +88,12 @@ void link_subtrees(std::span<const uint8_t> child_counts,
   if (!cursor.move_to(entry.first_subtree, entry.place))
     location.damaged("a first subtree where none can be", "one that follows the chunk before");
   size_t record = 0;
-  for (size_t i = 0; i < child_counts.size(); ++i) {
-    const size_t count = size_t{1} + child_counts[i] + grandchild_counts[i];
+  for (size_t i = 0; i < counts.size(); ++i) {
+    const size_t count = size_t{counts[i].roots} + counts[i].children + counts[i].grandchildren;
     Subtree subtree{};
     const char* wrong = count > chunk.records.size() - record
                             ? "more nodes than there are records"
-                            : cursor.take(child_counts[i], grandchild_counts[i],
-                                          chunk.records.data() + record, subtree);
+                            : cursor.take(counts[i], chunk.records.data() + record, subtree);
     if (wrong)
       location.damaged("subtree " + std::to_string(entry.first_subtree + i) + " with " + wrong,
                        "a sound subtree");

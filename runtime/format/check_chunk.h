@@ -3,12 +3,10 @@
 
 namespace voyager {
 
-// The subtrees of a chunk whose records are decoded, from a byte of child count and
-// one of grandchild count each. Fills subtrees, node, record and first_child. Throws
-// Error(damaged_chunk) naming the first record or subtree that is wrong, or where
-// they end elsewhere than at the next chunk.
-void link_subtrees(std::span<const uint8_t> child_counts,
-                   std::span<const uint8_t> grandchild_counts, const ChunkLocation& location,
+// The subtrees of a chunk whose records are decoded, from their counts. Fills subtrees,
+// node, record and first_child. Throws Error(damaged_chunk) naming the first record or
+// subtree that is wrong, or where they end elsewhere than at the next chunk.
+void link_subtrees(std::span<const SubtreeCounts> counts, const ChunkLocation& location,
                    const ChunkContext& context, Chunk& chunk);
 
 // The Gaussians of a decoded chunk: sources, axis codes and words in the ranges that

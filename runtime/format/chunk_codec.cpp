@@ -51,7 +51,8 @@ ChunkHeader checked_header(std::span<const std::byte> bytes, const ChunkLocation
   if (context.quality == Quality::lossless)
     check_field(
         location, "payload length", header.payload_bytes,
-        lossless_payload_bytes(entry, static_cast<size_t>(sh_coefficients(header.sh_degree))));
+        lossless_payload_bytes(entry, static_cast<size_t>(sh_coefficients(header.sh_degree)),
+                               context.version));
   if (!sound_scales(header))
     location.damaged("a position step or SH scale out of range", "finite values");
   return header;
@@ -84,7 +85,7 @@ EncodedChunk encode_bands(const Chunk& chunk, const ChunkContext& context) {
   if (context.quality == Quality::compact)
     encode_compact(chunk, context, header, out);
   else
-    encode_lossless(chunk, out);
+    encode_lossless(chunk, context, out);
   header.payload_bytes = static_cast<uint32_t>(out.bytes.size() - sizeof header);
   std::memcpy(out.bytes.data(), &header, sizeof header);
   out.bytes.resize(align_up(out.bytes.size(), chunk_align(context.quality)));

@@ -20,6 +20,7 @@ struct ChunkContext {
   uint32_t leaf_count = 0;
   Tiers tiers;
   ExtentRule extents = ExtentRule::error;
+  uint32_t version = kSceneVersion;
   // What a decoded chunk must keep to; an encoder reads none of it.
   float largest_sh = 0;             // no |coefficient| is larger
   bool leaves_have_extent = false;  // else every leaf's extent is 0

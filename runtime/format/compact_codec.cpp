@@ -25,8 +25,10 @@ size_t gaussian_bytes(size_t coefficients) {
   return 3 * 3 + 3 * 2 + 3 * 2 + 2 + 3 * 2 + (coefficients - 1) * 3 + sizeof(uint32_t) +
          sizeof(uint8_t);
 }
-size_t plane_bytes(size_t records, size_t subtrees, size_t nodes, size_t coefficients) {
-  return records * sizeof(NodeRecord) + 2 * subtrees + nodes * gaussian_bytes(coefficients);
+size_t plane_bytes(size_t records, size_t subtrees, size_t nodes, size_t coefficients,
+                   uint32_t version) {
+  return records * sizeof(NodeRecord) + subtree_count_bytes(version) * subtrees +
+         nodes * gaussian_bytes(coefficients);
 }
 
 // Of a box along an axis: what means are stored against. A leaf's is its mean, to the
@@ -191,8 +193,9 @@ void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficie
 
 }  // namespace
 
-uint64_t compact_plane_bytes(const ChunkEntry& entry, size_t coefficients) {
-  return plane_bytes(entry.record_count, entry.subtree_count, entry.node_count, coefficients);
+uint64_t compact_plane_bytes(const ChunkEntry& entry, size_t coefficients, uint32_t version) {
+  return plane_bytes(entry.record_count, entry.subtree_count, entry.node_count, coefficients,
+                     version);
 }
 
 void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader& header,
@@ -201,7 +204,7 @@ void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader
   for (int axis = 0; axis < 3; ++axis) header.position_step[axis] = position_step(chunk, axis);
   set_sh_scales(chunk, coefficients, header);
   std::vector<std::byte> raw(
-      plane_bytes(chunk.records.size(), chunk.subtrees.size(), nodes, coefficients));
+      plane_bytes(chunk.records.size(), chunk.subtrees.size(), nodes, coefficients, context.version));
   Compressor frame(out.bytes);
   const std::byte *group = raw.data(), *const end = raw.data() + raw.size();
   const EndGroup end_group = [&](const std::byte* position) {
@@ -212,7 +215,7 @@ void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader
   const Families families = families_of(counts);
   const GaussianOrder order = gaussian_order(families, counts, chunk.record);
   std::byte* const at =
-      put_records(raw.data(), chunk, counts, families, context.extents, end_group);
+      put_records(raw.data(), chunk, counts, families, context, end_group);
   GaussianPlanes planes(at, order, gaussian_bytes(coefficients));
   const PlaneEncoder encoder(chunk, header, end_group);
   encoder.put_geometry(planes);
@@ -228,16 +231,16 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
   const size_t nodes = entry.node_count, coefficients = context.coefficients();
   if (ZSTD_findFrameCompressedSize(payload.data(), payload.size()) != payload.size())
     location.damaged("a payload of something else", "one zstd frame");
-  std::vector<std::byte> raw(compact_plane_bytes(entry, coefficients));
+  std::vector<std::byte> raw(compact_plane_bytes(entry, coefficients, context.version));
   const size_t got = ZSTD_decompress(raw.data(), raw.size(), payload.data(), payload.size());
   if (ZSTD_isError(got)) location.damaged(ZSTD_getErrorName(got), "a zstd frame");
   if (got != raw.size())
     location.damaged(std::to_string(got) + " bytes in the frame", std::to_string(raw.size()));
   std::byte* at = raw.data();
-  const ChunkCounts counts = take_counts(at, entry);
+  const ChunkCounts counts = take_counts(at, entry, context.version);
   const Families families = families_of(counts);
   take_records(at, counts, families, context.extents, chunk);
-  link_subtrees(counts.children, counts.grandchildren, location, context, chunk);
+  link_subtrees(counts.of_subtree, location, context, chunk);
   const GaussianOrder order = gaussian_order(families, counts, chunk.record);
   GaussianPlanes planes(at, order, gaussian_bytes(coefficients));
   chunk.words.resize(nodes);

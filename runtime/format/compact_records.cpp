@@ -84,26 +84,35 @@ void take_extents(std::byte*& at, const ChunkCounts& counts, const Families& fam
   take(extents.plain, chunk.records.size());
 }
 
+// In the order of their planes.
+std::span<uint8_t SubtreeCounts::*const> count_planes(uint32_t version) {
+  static constexpr uint8_t SubtreeCounts::*kLevels[] = {
+      &SubtreeCounts::roots, &SubtreeCounts::children, &SubtreeCounts::grandchildren};
+  return std::span(kLevels).last(subtree_count_bytes(version));
+}
+
 }  // namespace
 
 std::byte* put_records(std::byte* at, const Chunk& chunk, const ChunkCounts& counts,
-                       const Families& families, ExtentRule rule, const EndGroup& end_group) {
+                       const Families& families, const ChunkContext& context,
+                       const EndGroup& end_group) {
   BytePlanes table(at, chunk.subtrees.size());
-  table.put(1, [&](size_t i) { return uint32_t{counts.children[i]}; });
-  table.put(1, [&](size_t i) { return uint32_t{counts.grandchildren[i]}; });
+  for (const auto level : count_planes(context.version))
+    table.put(1, [&](size_t i) { return uint32_t{counts.of_subtree[i].*level}; });
   BytePlanes planes(table.position(), chunk.records.size());
   planes.put(4, [&](size_t i) { return counts.of_record[i]; });
   end_group(planes.position());
-  return put_boxes_and_extents(planes.position(), chunk, counts, families, rule, end_group);
+  return put_boxes_and_extents(planes.position(), chunk, counts, families, context.extents,
+                               end_group);
 }
 
-ChunkCounts take_counts(std::byte*& at, const ChunkEntry& entry) {
+ChunkCounts take_counts(std::byte*& at, const ChunkEntry& entry, uint32_t version) {
   ChunkCounts counts;
+  counts.of_subtree.resize(entry.subtree_count, {1, 0, 0});
   BytePlanes table(at, entry.subtree_count);
-  for (auto* of_subtree : {&counts.children, &counts.grandchildren}) {
-    of_subtree->resize(entry.subtree_count);
-    table.take(1, [&](size_t i, uint32_t v) { (*of_subtree)[i] = static_cast<uint8_t>(v); });
-  }
+  for (const auto level : count_planes(version))
+    table.take(
+        1, [&](size_t i, uint32_t v) { counts.of_subtree[i].*level = static_cast<uint8_t>(v); });
   BytePlanes planes(table.position(), entry.record_count);
   counts.of_record.resize(entry.record_count);
   planes.take(4, [&](size_t i, uint32_t v) { counts.of_record[i] = v; });

@@ -13,11 +13,12 @@ using EndGroup = std::function<void(const std::byte* position)>;
 
 // Returns where the planes of the Gaussians start; the last group is not ended.
 std::byte* put_records(std::byte* at, const Chunk& chunk, const ChunkCounts& counts,
-                       const Families& families, ExtentRule rule, const EndGroup& end_group);
+                       const Families& families, const ChunkContext& context,
+                       const EndGroup& end_group);
 
 // From the planes of a chunk with as many subtrees and records; `at` moves past what is taken.
 // Any bytes give records, which are still to be checked.
-ChunkCounts take_counts(std::byte*& at, const ChunkEntry& entry);
+ChunkCounts take_counts(std::byte*& at, const ChunkEntry& entry, uint32_t version);
 void take_records(std::byte*& at, const ChunkCounts& counts, const Families& families,
                   ExtentRule rule, Chunk& chunk);
 

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "runtime/format/chunk.h"
+#include "runtime/lod/subtree_cursor.h"
 
 namespace voyager {
 
 struct ChunkCounts {
-  std::vector<uint8_t> children, grandchildren;  // of each subtree
-  std::vector<uint32_t> of_record;               // children
+  std::vector<SubtreeCounts> of_subtree;
+  std::vector<uint32_t> of_record;  // children
 };
 ChunkCounts counts_of(const Chunk& chunk);
 

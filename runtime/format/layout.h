@@ -23,8 +23,12 @@ inline constexpr uint64_t chunk_align(Quality quality) {
 
 // Line ends in both habits, so that a transfer in text mode is seen at once.
 inline constexpr unsigned char kSceneMagic[8] = {0x89, 'V', 'O', 'Y', '\r', '\n', 0x1a, '\n'};
-inline constexpr uint32_t kSceneVersion = 5;
-inline constexpr uint32_t kOldestSceneVersion = 4;  // that is read: without what version 5 adds
+inline constexpr uint32_t kSceneVersion = 6;
+inline constexpr uint32_t kOldestSceneVersion = 4;  // that is read: without what later ones add
+// A subtree may have several roots from version 6 on, and its counts then take three bytes.
+inline constexpr size_t subtree_count_bytes(uint32_t version) {
+  return version < 6 ? 2 : 3;
+}
 inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0
 inline constexpr uint32_t kFlagClustered = 4;    // the rule of the tree (tree_rule.h)

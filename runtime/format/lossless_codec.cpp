@@ -38,45 +38,51 @@ void place_leaves(const ChunkContext& context, Chunk& chunk) {
   if (differ) chunk.position_words = std::move(words);
 }
 
-// A byte of child count and one of grandchild count a subtree, and zeros up to
-// where words can be mapped.
-size_t table_bytes(size_t subtrees) {
-  return align_up(2 * subtrees, sizeof(float));
+// The counts of subtrees, and zeros up to where words can be mapped.
+size_t table_bytes(size_t subtrees, uint32_t version) {
+  return align_up(subtree_count_bytes(version) * subtrees, sizeof(float));
 }
 
-void put_table(const Chunk& chunk, PlaneWriter& planes) {
+void put_table(const Chunk& chunk, uint32_t version, PlaneWriter& planes) {
   std::vector<uint8_t> table;
-  table.reserve(table_bytes(chunk.subtrees.size()));
+  table.reserve(table_bytes(chunk.subtrees.size(), version));
+  if (version >= 6)
+    for (const Subtree& subtree : chunk.subtrees) table.push_back(subtree.root_count);
   for (const Subtree& subtree : chunk.subtrees) table.push_back(subtree.child_count);
   for (const Subtree& subtree : chunk.subtrees) table.push_back(subtree.grandchild_count);
-  table.resize(table_bytes(chunk.subtrees.size()));
+  table.resize(table_bytes(chunk.subtrees.size(), version));
   planes.put(table.data(), table.size());
 }
 
 void take_table(PlaneReader& planes, const ChunkLocation& location, const ChunkContext& context,
                 Chunk& chunk) {
   const size_t count = location.entry.subtree_count;
-  std::vector<uint8_t> table(table_bytes(count));
+  std::vector<uint8_t> table(table_bytes(count, context.version));
   planes.take(table.data(), table.size());
-  for (size_t i = 2 * count; i < table.size(); ++i)
+  for (size_t i = subtree_count_bytes(context.version) * count; i < table.size(); ++i)
     if (table[i] != 0) location.damaged("a subtree table with more than its counts", "zeros");
-  const std::span<const uint8_t> counts(table);
-  link_subtrees(counts.first(count), counts.subspan(count, count), location, context, chunk);
+  const bool roots = context.version >= 6;
+  const uint8_t *const children = table.data() + (roots ? count : 0),
+                       *const grandchildren = children + count;
+  std::vector<SubtreeCounts> counts(count);
+  for (size_t i = 0; i < count; ++i)
+    counts[i] = {roots ? table[i] : uint8_t{1}, children[i], grandchildren[i]};
+  link_subtrees(counts, location, context, chunk);
 }
 
 }  // namespace
 
-uint64_t lossless_payload_bytes(const ChunkEntry& entry, size_t coefficients) {
+uint64_t lossless_payload_bytes(const ChunkEntry& entry, size_t coefficients, uint32_t version) {
   const size_t node =
       sizeof(GaussianWords) + coefficients * 3 * sizeof(float) + sizeof(uint32_t) + sizeof(uint8_t);
-  return entry.record_count * sizeof(NodeRecord) + table_bytes(entry.subtree_count) +
+  return entry.record_count * sizeof(NodeRecord) + table_bytes(entry.subtree_count, version) +
          entry.node_count * node;
 }
 
-void encode_lossless(const Chunk& chunk, EncodedChunk& out) {
+void encode_lossless(const Chunk& chunk, const ChunkContext& context, EncodedChunk& out) {
   PlaneWriter planes(out.bytes);
   planes.put(chunk.records.data(), chunk.records.size());
-  put_table(chunk, planes);
+  put_table(chunk, context.version, planes);
   if (chunk.position_words.empty())
     for (const GaussianWords& w : chunk.words) planes.put(&w.mean, 1);
   else

@@ -102,7 +102,7 @@ uint32_t read_version(const ByteSource& source, const Check& check) {
   std::memcpy(&version, bytes + offsetof(FileHeader, version), sizeof version);
   if (version < kOldestSceneVersion || version > kSceneVersion)
     check.refuse(offsetof(FileHeader, version), "version " + std::to_string(version),
-                 std::to_string(kOldestSceneVersion) + " or " + std::to_string(kSceneVersion) +
+                 std::to_string(kOldestSceneVersion) + " to " + std::to_string(kSceneVersion) +
                      ": bake the scene again");
   return version;
 }

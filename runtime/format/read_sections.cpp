@@ -48,7 +48,7 @@ void check_lossless_length(const ChunkEntry& e, uint64_t at, const FileHeader& h
   uint64_t length = 0;
   for (int degree = 0; degree <= static_cast<int>(h.sh_degree); ++degree) {
     const auto coefficients = static_cast<size_t>(sh_coefficients(degree));
-    length = align_up(sizeof(ChunkHeader) + lossless_payload_bytes(e, coefficients),
+    length = align_up(sizeof(ChunkHeader) + lossless_payload_bytes(e, coefficients, h.version),
                       chunk_align(Quality::lossless));
     if (e.bytes == length) return;
   }
@@ -59,7 +59,8 @@ void check_lossless_length(const ChunkEntry& e, uint64_t at, const FileHeader& h
 void check_compact_length(const ChunkEntry& e, uint64_t at, const FileHeader& h,
                           const Check& check) {
   const uint64_t planes =
-      compact_plane_bytes(e, static_cast<size_t>(sh_coefficients(static_cast<int>(h.sh_degree))));
+      compact_plane_bytes(
+      e, static_cast<size_t>(sh_coefficients(static_cast<int>(h.sh_degree))), h.version);
   check.at_most(at, "chunk length", e.bytes,
                 align_up(sizeof(ChunkHeader) + 2 * planes, chunk_align(Quality::compact)));
 }

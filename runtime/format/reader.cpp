@@ -57,6 +57,7 @@ SceneFile::SceneFile(std::shared_ptr<const ByteSource> source) : source_(std::mo
   const FileHeader header = read_header(*source_, check);
   FileSections sections = read_sections(*source_, header, check);
   info_ = to_info(header);
+  version_ = header.version;
   level_begin_ = std::move(sections.level_begin);
   tier_begin_ = std::move(sections.tier_begin);
   chunks_ = std::move(sections.chunks);
@@ -100,6 +101,7 @@ Chunk SceneFile::decode(uint32_t index, std::span<const std::byte> stored) const
       info_.leaf_count,
       tiers(),
       extent_rule(info_.tree, info_.blend_share),
+      version_,
       info_.largest_sh,
       info_.leaves_have_extent,
       info_.native.levels,

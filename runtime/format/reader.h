@@ -72,6 +72,7 @@ class SceneFile {
 
   std::shared_ptr<const ByteSource> source_;
   SceneFileInfo info_{};
+  uint32_t version_ = kSceneVersion;
   std::vector<uint32_t> level_begin_, tier_begin_;
   std::vector<ChunkEntry> chunks_;
 };

@@ -18,11 +18,9 @@ void TreeCheck::add(const Chunk& chunk, uint32_t index) {
     const uint32_t levels = first_tier ? tiers_.first_tier_levels : kTierLevels;
     const NodeRecord* records = chunk.records.data() + record;
     check_subtree(subtree, records);
-    for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
-      if (subtree.repeats(slot)) continue;
-      const uint32_t level = slot == 0 ? 0 : slot <= subtree.child_count ? 1 : 2;
+    for (uint32_t slot = subtree.first_owned_slot(); slot < subtree.node_count(); ++slot) {
       const uint32_t children = records[slot].child_count;
-      if (level + 1 == levels && children != 0)
+      if (subtree.level(slot) + 1 == levels && children != 0)
         above_.push_back({chunk.first_child[owned], children, records[slot]});
       ++owned;
     }
@@ -32,34 +30,35 @@ void TreeCheck::add(const Chunk& chunk, uint32_t index) {
 
 void TreeCheck::check_subtree(const Subtree& subtree, const NodeRecord* records) {
   check_repeats(subtree, records);
-  if (subtree.root != 0 && !subtree.repeats_root) check_root(subtree, records[0]);
-  const NodeRecord* grandchild = records + 1 + subtree.child_count;
-  uint32_t node = subtree.first_grandchild, left = subtree.grandchild_count;
-  for (uint32_t i = 0; i < subtree.child_count; ++i) {
-    const NodeRecord& child = records[1 + i];
-    check_inside(subtree.first_child + i, child, records[0]);
-    // An only child may be one of several runs.
-    uint32_t own = subtree.child_count == 1 ? left : std::min(left, child.child_count);
-    for (; own != 0; --own, --left) check_inside(node++, *grandchild++, child);
-  }
+  if (subtree.root != 0 && !subtree.repeats_root()) check_roots(subtree, records);
+  each_family(
+      subtree, [&](uint32_t slot) { return records[slot].child_count; },
+      [&](uint32_t parent, uint32_t first, uint32_t count) {
+        for (uint32_t slot = first; slot < first + count; ++slot)
+          check_inside(subtree.node(slot), records[slot], records[parent]);
+      });
 }
 
 void TreeCheck::check_repeats(const Subtree& subtree, const NodeRecord* records) {
   const char* const expected = "the record that the subtree before has of it";
-  if (subtree.repeats_root && !is_same(records[0], root_))
+  if (subtree.repeats_root() && !is_same(records[0], root_))
     refuse(subtree.root, "it repeated with another record", expected);
-  if (subtree.repeats_child && !is_same(records[1], child_))
+  if (subtree.repeats_child() && !is_same(records[1], child_))
     refuse(subtree.first_child, "it repeated with another record", expected);
   root_ = records[0];
-  if (subtree.child_count != 0) child_ = records[1];
+  if (subtree.child_count != 0) child_ = records[subtree.first_child_slot()];
 }
 
-void TreeCheck::check_root(const Subtree& subtree, const NodeRecord& record) {
+void TreeCheck::check_roots(const Subtree& subtree, const NodeRecord* records) {
   const uint32_t node = subtree.root;
   while (!above_.empty() && node - above_.front().first_child >= above_.front().child_count)
     above_.pop_front();
   if (above_.empty()) refuse(node, "no parent of it", "one in the tier above");
-  check_inside(node, record, above_.front().record);
+  const Above& parent = above_.front();
+  if (subtree.root_count > parent.child_count - (node - parent.first_child))
+    refuse(node, "a subtree with roots of several nodes", "roots of one");
+  for (uint32_t slot = 0; slot < subtree.root_count; ++slot)
+    check_inside(subtree.node(slot), records[slot], parent.record);
 }
 
 void TreeCheck::check_inside(uint32_t node, const NodeRecord& child,

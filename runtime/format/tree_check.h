@@ -15,7 +15,8 @@ class TreeCheck {
   explicit TreeCheck(const SceneFile& file);
 
   // Of all chunks in order. Throws Error(refused_input) naming file, chunk and node where a box or
-  // an extent is larger than its parent's, or a repeated record is not its owner's.
+  // an extent is larger than its parent's, a repeated record is not its owner's, or the roots of
+  // a subtree hang from several nodes.
   void add(const Chunk& chunk, uint32_t index);
 
  private:
@@ -27,7 +28,7 @@ class TreeCheck {
 
   void check_subtree(const Subtree& subtree, const NodeRecord* records);
   void check_repeats(const Subtree& subtree, const NodeRecord* records);
-  void check_root(const Subtree& subtree, const NodeRecord& record);
+  void check_roots(const Subtree& subtree, const NodeRecord* records);
   void check_inside(uint32_t node, const NodeRecord& child, const NodeRecord& parent) const;
   [[noreturn]] void refuse(uint32_t node, const char* found, const char* expected) const;
 

@@ -34,10 +34,9 @@ std::vector<ChunkEntry> make_entries(const LodTree& tree, const Partition& parti
       NodeRecord records[kSubtreeNodes];
       for (uint32_t slot = 0; slot < subtree.node_count(); ++slot)
         records[slot] = tree.records[subtree.node(slot)];
-      const bool repeats[] = {subtree.repeats_root, subtree.repeats_child};
       entry.record_count += subtree.node_count();
-      entry.node_count += subtree.node_count() - repeats[0] - repeats[1];
-      cursor.take(subtree.child_count, subtree.grandchild_count, records, subtree);
+      entry.node_count += subtree.node_count() - subtree.first_owned_slot();
+      cursor.take(counts_of(subtree), records, subtree);
     }
   }
   return entries;
@@ -79,10 +78,7 @@ void write_scene_file(const BakedScene& baked, const Partition& partition, const
                              to_vec(baked.leaves.origin),
                              static_cast<uint32_t>(baked.leaves.size()),
                              tiers_of(partition),
-                             extent_rule(baked.kind, baked.tree.blend_share),
-                             0,
-                             false,
-                             1};
+                             extent_rule(baked.kind, baked.tree.blend_share)};
   std::vector<ChunkEntry> entries = make_entries(baked.tree, partition);
   const size_t chunks = entries.size();
   SceneTotals totals = totals_of(baked, partition, quality);

@@ -91,24 +91,13 @@ struct ChunkFindings {
 
 // The parents of the nodes that a subtree owns.
 void store_parents(const Subtree& subtree, const NodeRecord* records, Scene& scene) {
-  auto& parent = scene.tree.parent;
-  for (uint32_t i = subtree.repeats_child ? 1 : 0; i < subtree.child_count; ++i)
-    parent[subtree.first_child + i] = subtree.root;
-  uint32_t grandchild = subtree.first_grandchild, left = subtree.grandchild_count;
-  for (uint32_t i = 0; i < subtree.child_count && left != 0; ++i) {
-    // An only child may be one of several runs.
-    const uint32_t own =
-        subtree.child_count == 1 ? left : std::min(left, records[1 + i].child_count);
-    std::fill_n(parent.begin() + grandchild, own, subtree.first_child + i);
-    grandchild += own;
-    left -= own;
-  }
-}
-
-// Whether a slot is of the last level of its tier: its children are roots.
-bool is_bottom(const Subtree& subtree, uint32_t slot, uint32_t tier_levels) {
-  const uint32_t level = slot == 0 ? 0 : slot <= subtree.child_count ? 1 : 2;
-  return level + 1 == tier_levels;
+  each_family(
+      subtree, [&](uint32_t slot) { return records[slot].child_count; },
+      [&](uint32_t parent, uint32_t first, uint32_t count) {
+        for (uint32_t slot = std::max(first, subtree.first_owned_slot()); slot < first + count;
+             ++slot)
+          scene.tree.parent[subtree.node(slot)] = subtree.node(parent);
+      });
 }
 
 // Chunks write apart from each other: a node is owned by one chunk, and its parent
@@ -127,7 +116,7 @@ void store_subtrees(const Chunk& chunk, Scene& scene, ChunkFindings& findings) {
       }
       const uint32_t children = chunk.records[record].child_count;
       const uint32_t first_child = chunk.first_child[owned++];
-      if (children != 0 && is_bottom(subtree, slot, levels))
+      if (children != 0 && subtree.level(slot) + 1 == levels)
         std::fill_n(scene.tree.parent.begin() + first_child, children, subtree.node(slot));
     }
   }
@@ -288,6 +277,18 @@ void check_hulls(const Scene& scene) {
     }
 }
 
+// A search opens a subtree by what its first root hangs from.
+void check_siblings(const Scene& scene) {
+  const auto& parent = scene.tree.parent;
+  for (const Subtree& subtree : scene.partition.subtrees)
+    for (uint32_t slot = 1; slot < subtree.root_count; ++slot)
+      if (parent[subtree.node(slot)] != parent[subtree.root])
+        refuse(scene,
+               "a subtree whose roots from node " + std::to_string(subtree.root) +
+                   " on hang from several nodes",
+               "roots of one node");
+}
+
 // What the header says for readers that never see the whole.
 void check_claims(const SceneFileInfo& info, const Scene& scene,
                   const std::vector<ChunkFindings>& findings) {
@@ -337,6 +338,7 @@ void load_baked(const SceneFile& file, Workers& workers, Scene& scene) {
   check_repeats(scene, findings);
   check_nesting(scene, workers);
   check_hulls(scene);
+  check_siblings(scene);
   if (scene.damaged.empty() && scene.tree.size() != 0) {
     check_totals(scene);
     check_claims(file.info(), scene, findings);

@@ -42,7 +42,7 @@ struct DamagedChunk {
 };
 
 // One node, of no id: nothing that a search may follow.
-inline constexpr Subtree kLostSubtree{kNoNode, 0, 0, 0, 0, false, false};
+inline constexpr Subtree kLostSubtree{kNoNode, 0, 0, 1, 0, 0, Repeats::nothing};
 
 // Nodes whose chunk could not be read: [first, first + count). A chunk has up to three
 // such ranges a tier.

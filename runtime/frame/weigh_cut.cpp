@@ -41,34 +41,32 @@ class BlockWeights {
  private:
   DrawItem* weigh_level(uint32_t s, uint32_t level, uint32_t slots, DrawItem* out) {
     const SearchSubtree& subtree = search_tree_.subtrees[s];
-    if (level == 0) return weigh_root(subtree, out);
+    if (level == 0) return weigh_roots(subtree, slots, out);
+    // Each parent's own, in the order of the parents.
     const bool split = is_split(s);
-    if (level == 1)
-      return weigh_slots(subtree, family(subtree.first_record, subtree.root, split), slots, out);
-    // Each child's own, in the order of the children.
-    uint32_t k = subtree.interior & 1;
-    for (uint32_t left = subtree.interior & subtree.level_slots(1); left != 0;
-         left &= left - 1, ++k) {
+    const uint32_t parents = subtree.interior & subtree.level_slots(level - 1);
+    uint32_t k = level == 1 ? 0 : count_bits(subtree.interior & subtree.level_slots(0));
+    for (uint32_t left = parents; left != 0; left &= left - 1, ++k) {
       const uint32_t record = subtree.record(k, search_tree_.next_block.data());
       const uint32_t own = search_tree_.records[record].child_slots() & slots;
       if (own == 0) continue;
-      const uint32_t child = subtree.node(static_cast<uint32_t>(std::countr_zero(left)));
-      out = weigh_slots(subtree, family(record, child, split), own, out);
+      const uint32_t parent = subtree.node(static_cast<uint32_t>(std::countr_zero(left)));
+      out = weigh_slots(subtree, family(record, parent, split), own, out);
     }
     return out;
   }
 
-  DrawItem* weigh_root(const SearchSubtree& subtree, DrawItem* out) {
+  DrawItem* weigh_roots(const SearchSubtree& subtree, uint32_t slots, DrawItem* out) {
     if (subtree.entry == kNoRecord) {
       *out = whole(subtree.root);
       return out + 1;
     }
-    // The roots of neighbours often hang from one parent.
+    // Neighbours may hang from one parent.
     if (subtree.entry != entry_) {
       entry_ = subtree.entry;
       entry_family_ = family(entry_, links_.parent[subtree.root], true);
     }
-    return weigh_slots(subtree, entry_family_, 1, out);
+    return weigh_slots(subtree, entry_family_, slots, out);
   }
 
   // Whether the root may have children in other subtrees, too.

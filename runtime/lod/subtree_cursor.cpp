@@ -82,79 +82,99 @@ bool SubtreeCursor::move_to(uint32_t subtree, const SubtreePlace& place) {
   return true;
 }
 
-const char* SubtreeCursor::take(uint32_t child_count, uint32_t grandchild_count,
-                                const NodeRecord* records, Subtree& out) {
+const char* SubtreeCursor::take(const SubtreeCounts& counts, const NodeRecord* records,
+                                Subtree& out) {
   if (at_end()) return "no tier left for it";
-  if (child_count >= kSubtreeNodes || grandchild_count >= kSubtreeNodes - child_count)
+  if (counts.roots == 0) return "no root";
+  if (uint32_t{counts.roots} + counts.children + counts.grandchildren > kSubtreeNodes)
     return "more than 31 nodes";
   out = {0,
          0,
          0,
-         static_cast<uint8_t>(child_count),
-         static_cast<uint8_t>(grandchild_count),
-         place_.listed_children != 0,
-         place_.listed_grandchildren != 0};
-  const char* fault = take_root(out);
+         counts.roots,
+         counts.children,
+         counts.grandchildren,
+         place_.listed_grandchildren != 0 ? Repeats::root_and_child
+         : place_.listed_children != 0    ? Repeats::root
+                                          : Repeats::nothing};
+  const char* fault = take_roots(out);
   if (!fault) fault = take_children(records, out);
   if (!fault) fault = take_grandchildren(records, out);
   if (!fault) fault = take_below(records, out);
-  return fault ? fault : finish(records);
+  return fault ? fault : finish(records, out);
 }
 
-const char* SubtreeCursor::take_root(Subtree& out) {
-  if (!out.repeats_root && place_.next[0] == levels_.end[0]) return "a root beyond its level";
-  if (!out.repeats_root) ++place_.next[0];
-  out.root = place_.next[0] - 1;
+const char* SubtreeCursor::take_roots(Subtree& out) {
+  if (out.repeats_root()) {
+    if (out.root_count != 1) return "other roots beside a run of one";
+    out.root = place_.next[0] - 1;
+    return nullptr;
+  }
+  if (out.root_count > levels_.end[0] - place_.next[0]) return "a root beyond its level";
+  out.root = place_.next[0];
+  place_.next[0] += out.root_count;
   return nullptr;
 }
 
 const char* SubtreeCursor::take_children(const NodeRecord* records, Subtree& out) {
+  if (out.root_count > 1) return take_whole(records, 0, out);
   const uint32_t children = levels_.height > 1 ? records[0].child_count : 0;
   if (out.child_count == 0)
-    return children == 0 && !out.repeats_root ? nullptr : "no child of a root that has some";
-  const uint32_t owned = out.child_count - (out.repeats_child ? 1u : 0u);
+    return children == 0 && !out.repeats_root() ? nullptr : "no child of a root that has some";
+  const uint32_t owned = out.child_count - (out.repeats_child() ? 1u : 0u);
   if (owned > children || place_.listed_children > children - owned)
     return "more children than its root has";
   if (children - place_.listed_children > levels_.end[1] - place_.next[1])
     return "more children than the next level has";
   first_children_[0] = place_.next[1];
-  out.first_child = place_.next[1] - (out.repeats_child ? 1u : 0u);
+  out.first_child = place_.next[1] - (out.repeats_child() ? 1u : 0u);
   place_.next[1] += owned;
   place_.listed_children += owned;
   return nullptr;
 }
 
 const char* SubtreeCursor::take_grandchildren(const NodeRecord* records, Subtree& out) {
+  if (out.root_count > 1 || out.child_count != 1) {
+    if (out.repeats_child()) return "other children beside a run of one";
+    return take_whole(records, 1, out);
+  }
+  // The only child may be one of several runs.
   if (out.grandchild_count > levels_.end[2] - place_.next[2])
     return "more grandchildren than their level has";
   if (out.grandchild_count != 0) out.first_grandchild = place_.next[2];
-  uint32_t left = out.grandchild_count;
-  for (uint32_t slot = 1; slot <= out.child_count; ++slot) {
-    const uint32_t children = levels_.height > 2 ? records[slot].child_count : 0;
-    first_children_[slot] = place_.next[2];
-    uint32_t listed = children;
-    if (out.child_count == 1) {
-      // The only child may be one of several runs.
-      listed = left;
-      const uint32_t unlisted = children - std::min(children, place_.listed_grandchildren);
-      if (listed > unlisted) return "more grandchildren than its child has";
-      if (unlisted > levels_.end[2] - place_.next[2])
-        return "more grandchildren than their level has";
-      if (listed == 0 && children != 0) return "no child of a child that has some";
-      place_.listed_grandchildren += listed;
-    }
-    if (listed > left) return "fewer grandchildren than its children have";
-    left -= listed;
-    place_.next[2] += listed;
+  const uint32_t children = levels_.height > 2 ? records[1].child_count : 0;
+  first_children_[1] = place_.next[2];
+  const uint32_t unlisted = children - std::min(children, place_.listed_grandchildren);
+  if (out.grandchild_count > unlisted) return "more grandchildren than its child has";
+  if (unlisted > levels_.end[2] - place_.next[2]) return "more grandchildren than their level has";
+  if (out.grandchild_count == 0 && children != 0) return "no child of a child that has some";
+  place_.listed_grandchildren += out.grandchild_count;
+  place_.next[2] += out.grandchild_count;
+  return nullptr;
+}
+
+// The children of a level's nodes, all of each.
+const char* SubtreeCursor::take_whole(const NodeRecord* records, uint32_t level, Subtree& out) {
+  const uint32_t first = level == 0 ? 0 : out.first_child_slot();
+  const uint32_t end = level == 0 ? out.first_child_slot() : out.first_grandchild_slot();
+  uint32_t& next = place_.next[level + 1];
+  uint32_t left = level == 0 ? out.child_count : out.grandchild_count;
+  if (left > levels_.end[level + 1] - next) return "more nodes than their level has";
+  if (left != 0) (level == 0 ? out.first_child : out.first_grandchild) = next;
+  for (uint32_t slot = first; slot < end; ++slot) {
+    const uint32_t children = levels_.height > level + 1 ? records[slot].child_count : 0;
+    first_children_[slot] = next;
+    if (children > left) return "fewer nodes than their parents have children";
+    left -= children;
+    next += children;
   }
-  if (out.child_count > 1 && out.repeats_child) return "other children beside a run of one";
-  return left == 0 ? nullptr : "more grandchildren than its children have";
+  return left == 0 ? nullptr : "more nodes than their parents have children";
 }
 
 const char* SubtreeCursor::take_below(const NodeRecord* records, const Subtree& subtree) {
   const uint32_t begin = levels_.height == 1   ? 0
-                         : levels_.height == 2 ? 1
-                                               : 1u + subtree.child_count;
+                         : levels_.height == 2 ? subtree.first_child_slot()
+                                               : subtree.first_grandchild_slot();
   for (uint32_t slot = begin; slot < subtree.node_count(); ++slot) {
     const uint32_t children = records[slot].child_count;
     if (children > levels_.end[3] - place_.next[3]) return "more children than the level below has";
@@ -165,9 +185,10 @@ const char* SubtreeCursor::take_below(const NodeRecord* records, const Subtree& 
 }
 
 // Whether the root goes on in another run, and the tier in another subtree.
-const char* SubtreeCursor::finish(const NodeRecord* records) {
-  const bool child_goes_on =
-      place_.listed_grandchildren != 0 && place_.listed_grandchildren < records[1].child_count;
+const char* SubtreeCursor::finish(const NodeRecord* records, const Subtree& subtree) {
+  const bool child_goes_on = place_.listed_grandchildren != 0 &&
+                             place_.listed_grandchildren <
+                                 records[subtree.first_child_slot()].child_count;
   if (!child_goes_on) place_.listed_grandchildren = 0;
   if (!child_goes_on && place_.listed_children != 0 &&
       place_.listed_children == records[0].child_count)

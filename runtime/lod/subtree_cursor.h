@@ -65,6 +65,14 @@ struct TierLevels {
   uint32_t begin[4], end[4];
 };
 
+// The nodes of a subtree on each level, as a file has them.
+struct SubtreeCounts {
+  uint8_t roots, children, grandchildren;
+};
+inline SubtreeCounts counts_of(const Subtree& subtree) {
+  return {subtree.root_count, subtree.child_count, subtree.grandchild_count};
+}
+
 class SubtreeCursor {
  public:
   // Before the first subtree. What `tiers` refers to is sound and outlives the cursor.
@@ -77,22 +85,22 @@ class SubtreeCursor {
   uint32_t subtree() const { return subtree_; }  // index of the next one
   bool at_end() const { return tier_ == tiers_.tier_count(); }
 
-  // Reads the next subtree, of 1 + child_count + grandchild_count records by slot.
-  // Returns what is wrong with it, or nothing; after a fault the cursor is of no
-  // more use. Safe for any counts and any records.
-  const char* take(uint32_t child_count, uint32_t grandchild_count, const NodeRecord* records,
-                   Subtree& out);
+  // Reads the next subtree, of so many records by slot. That several roots hang from
+  // one node is not seen here. Returns what is wrong with it, or nothing; after a fault
+  // the cursor is of no more use. Safe for any counts and any records.
+  const char* take(const SubtreeCounts& counts, const NodeRecord* records, Subtree& out);
 
   // Of the subtree last taken, by slot; meaningless for leaves and repeated nodes.
   const std::array<uint32_t, kSubtreeNodes>& first_children() const { return first_children_; }
 
  private:
   void start_tier(uint32_t tier);
-  const char* take_root(Subtree& out);
+  const char* take_roots(Subtree& out);
   const char* take_children(const NodeRecord* records, Subtree& out);
   const char* take_grandchildren(const NodeRecord* records, Subtree& out);
+  const char* take_whole(const NodeRecord* records, uint32_t level, Subtree& out);
   const char* take_below(const NodeRecord* records, const Subtree& subtree);
-  const char* finish(const NodeRecord* records);
+  const char* finish(const NodeRecord* records, const Subtree& subtree);
 
   Tiers tiers_;
   uint32_t subtree_ = 0, tier_ = 0;

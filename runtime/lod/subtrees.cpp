@@ -29,10 +29,10 @@ class Splitter {
       : tree_(tree), levels_(levels), out_(out) {}
 
   void split(uint32_t root) {
-    current_ = {root, 0, 0, 0, 0, false, false};
+    current_ = {root, 0, 0, 1, 0, 0, Repeats::nothing};
     const uint32_t children = levels_ > 1 ? tree_.records[root].child_count : 0;
     for (uint32_t i = 0; i < children; ++i) add_child(tree_.first_child[root] + i);
-    if (current_.child_count != 0 || !current_.repeats_root) out_.push_back(current_);
+    if (current_.child_count != 0 || !current_.repeats_root()) out_.push_back(current_);
   }
 
  private:
@@ -53,7 +53,7 @@ class Splitter {
     constexpr uint32_t kRun = kSubtreeNodes - 2;
     for (uint32_t done = 0; done < grandchildren; done += kRun) {
       take(child, tree_.first_child[child] + done, std::min(kRun, grandchildren - done));
-      current_.repeats_child = done != 0;
+      if (done != 0) current_.repeated = Repeats::root_and_child;
       close();
     }
   }
@@ -66,7 +66,7 @@ class Splitter {
 
   void close() {
     out_.push_back(current_);
-    current_ = {current_.root, 0, 0, 0, 0, true, false};
+    current_ = {current_.root, 0, 0, 1, 0, 0, Repeats::root};
   }
 
   const LodTree& tree_;
@@ -74,6 +74,24 @@ class Splitter {
   std::pmr::vector<Subtree>& out_;
   Subtree current_{};
 };
+
+// Of a tier of three levels: whether all that is below the root is there.
+bool is_whole(const LodTree& tree, const Subtree& subtree) {
+  return !subtree.repeats_root() &&
+         subtree.child_count == tree.records[subtree.root].child_count &&
+         (subtree.child_count != 1 ||
+          subtree.grandchild_count == tree.records[subtree.first_child].child_count);
+}
+
+// The nodes of `next` come behind those of `to` on each level.
+void append(const Subtree& next, Subtree& to) {
+  if (to.child_count == 0) to.first_child = next.first_child;
+  if (to.grandchild_count == 0) to.first_grandchild = next.first_grandchild;
+  const auto add = [](uint8_t& sum, uint8_t more) { sum = static_cast<uint8_t>(sum + more); };
+  add(to.root_count, next.root_count);
+  add(to.child_count, next.child_count);
+  add(to.grandchild_count, next.grandchild_count);
+}
 
 // Fills the subtrees and the tiers, for a first tier of so many levels.
 void split_tiers(const LodTree& tree, uint32_t first_tier_levels, Partition& partition) {
@@ -103,6 +121,19 @@ void split_into_fewest(const LodTree& tree, Partition& partition) {
   if (best != kTierLevels) split_tiers(tree, best, partition);
 }
 
+// Where each tier begins, by the level of the roots.
+void count_tiers(Partition& partition) {
+  for (size_t tier = 1; tier < partition.tier_begin.size(); ++tier) {
+    const size_t level = partition.first_tier_levels + (tier - 1) * kTierLevels;
+    const uint32_t end = level < partition.level_begin.size() ? partition.level_begin[level] : kNoNode;
+    const auto& subtrees = partition.subtrees;
+    partition.tier_begin[tier] = static_cast<uint32_t>(
+        std::partition_point(subtrees.begin(), subtrees.end(),
+                             [&](const Subtree& subtree) { return subtree.root < end; }) -
+        subtrees.begin());
+  }
+}
+
 // The subtrees of a chunk, at least one.
 EntryHull entry_hull(const LodTree& tree, std::span<const Subtree> subtrees) {
   const auto hull_above = [&](const Subtree& subtree) {
@@ -114,18 +145,26 @@ EntryHull entry_hull(const LodTree& tree, std::span<const Subtree> subtrees) {
   return hull;
 }
 
-// Fills the partition's chunks.
+// Fills the partition's chunks, whose subtrees are then joined. Siblings share a subtree only where
+// they share a chunk, so that chunks are as full as they would be without.
 void pack_chunks(const LodTree& tree, Partition& partition, std::pmr::memory_resource* memory) {
   std::pmr::vector<uint32_t> sizes(memory);
   sizes.reserve(partition.subtrees.size());
   for (const Subtree& subtree : partition.subtrees)
     sizes.push_back(subtree.node_count() * static_cast<uint32_t>(sizeof(NodeRecord)));
-  partition.chunk_begin = pack_runs(sizes, partition.chunk_bytes, memory);
-  const std::span<const Subtree> all = partition.subtrees;
-  for (size_t i = 0; i < partition.chunk_count(); ++i) {
-    const uint32_t begin = partition.chunk_begin[i], end = partition.chunk_begin[i + 1];
-    partition.chunk_hull.push_back(entry_hull(tree, all.subspan(begin, end - begin)));
+  const auto runs = pack_runs(sizes, partition.chunk_bytes, memory);
+  const std::span<Subtree> all = partition.subtrees;
+  partition.chunk_begin.push_back(0);
+  for (size_t i = 0; i + 1 < runs.size(); ++i) {
+    const auto apart = all.subspan(runs[i], runs[i + 1] - runs[i]);
+    partition.chunk_hull.push_back(entry_hull(tree, apart));
+    const auto joined = apart.first(join_siblings(tree, apart));
+    std::copy(joined.begin(), joined.end(), all.begin() + partition.chunk_begin.back());
+    partition.chunk_begin.push_back(partition.chunk_begin.back() +
+                                    static_cast<uint32_t>(joined.size()));
   }
+  partition.subtrees.resize(partition.chunk_begin.back());
+  count_tiers(partition);
 }
 
 }  // namespace
@@ -161,6 +200,28 @@ std::pmr::vector<uint32_t> pack_runs(std::span<const uint32_t> sizes, uint32_t l
   }
   begin.push_back(static_cast<uint32_t>(sizes.size()));
   return begin;
+}
+
+size_t join_siblings(const LodTree& tree, std::span<Subtree> subtrees) {
+  SiblingRule rule;
+  size_t used = 0;
+  for (size_t i = 0; i < subtrees.size(); ++i) {
+    const Subtree next = subtrees[i];
+    bool shares = false;
+    if (!is_whole(tree, next)) {
+      rule.start();
+    } else {
+      const uint32_t parent = tree.parent[next.root];
+      const bool sibling =
+          used != 0 && parent != kNoNode && parent == tree.parent[subtrees[used - 1].root];
+      shares = rule.shares(next.node_count(), sibling, next.grandchild_count != 0);
+    }
+    if (shares)
+      append(next, subtrees[used - 1]);
+    else
+      subtrees[used++] = next;
+  }
+  return used;
 }
 
 void split_tier(const LodTree& tree, uint32_t levels, uint32_t begin, uint32_t end,

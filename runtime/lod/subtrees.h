@@ -4,21 +4,26 @@
 //
 // The levels of the tree form tiers of three: roots, children, grandchildren.
 // Only the first tier may have fewer levels; how many it has is chosen so that
-// there are as few subtrees as can be, since leaves on a level of roots are
-// subtrees of one node each.
+// there are as few subtrees as can be, before siblings share them.
 //
 // A subtree holds at most kSubtreeNodes nodes, so that a word has a bit for each.
-// One that would hold more is split into runs of consecutive children, with all
+// A root with more below it is split into runs of consecutive children, with all
 // of their children; each run but the first repeats the root. A child whose own
 // children do not fit is split in the same way: each run after its first repeats
 // the child, too. A repeated node is there to be compared with; the first run that
 // holds it answers for it.
 //
+// Siblings whose subtrees are neighbours in a chunk share one (SiblingRule): else a leaf
+// on a level of roots would be a subtree of one node, as two thirds of them would be.
+//
 // Invariants:
 //   - every node is in exactly one subtree that does not repeat it;
 //   - subtrees are ordered by root, those of one root by their runs; so are, over
 //     all subtrees, the children and the grandchildren that they hold;
+//   - the roots of a subtree hang from one node; where they are several, it has all
+//     that is below them in the tier;
 //   - a subtree whose first child is one of several runs holds no other child.
+#include <algorithm>
 #include <cstdint>
 #include <memory_resource>
 #include <span>
@@ -32,30 +37,60 @@ namespace voyager {
 inline constexpr uint32_t kSubtreeNodes = 31;
 inline constexpr uint32_t kTierLevels = 3;
 
+// What of a subtree the subtrees before it have, too.
+enum class Repeats : uint8_t { nothing, root, root_and_child };
+
 // Node ids are consecutive in each of the three levels. A node's place in the
-// subtree is its slot: the root 0, then children, then grandchildren.
+// subtree is its slot: roots, then children, then grandchildren.
 struct Subtree {
-  uint32_t root;
+  uint32_t root;              // the first
   uint32_t first_child;       // meaningless without children
   uint32_t first_grandchild;  // meaningless without grandchildren
-  uint8_t child_count;
-  uint8_t grandchild_count;
-  bool repeats_root;
-  bool repeats_child;
+  uint8_t root_count, child_count, grandchild_count;
+  Repeats repeated;  // of a subtree with several roots nothing
 
-  uint32_t node_count() const { return 1u + child_count + grandchild_count; }
+  uint32_t first_child_slot() const { return root_count; }
+  uint32_t first_grandchild_slot() const { return uint32_t{root_count} + child_count; }
+  uint32_t node_count() const { return first_grandchild_slot() + grandchild_count; }
+  // 0: roots, 1: children, 2: grandchildren.
+  uint32_t level(uint32_t slot) const {
+    return (slot >= first_child_slot() ? 1u : 0u) + (slot >= first_grandchild_slot() ? 1u : 0u);
+  }
   uint32_t node(uint32_t slot) const {
-    if (slot == 0) return root;
-    return slot <= child_count ? first_child + (slot - 1)
-                               : first_grandchild + (slot - 1 - child_count);
+    if (slot < first_child_slot()) return root + slot;
+    return slot < first_grandchild_slot() ? first_child + (slot - first_child_slot())
+                                          : first_grandchild + (slot - first_grandchild_slot());
   }
-  bool repeats(uint32_t slot) const {
-    return (slot == 0 && repeats_root) || (slot == 1 && repeats_child);
-  }
-  uint32_t first_owned() const { return node(repeats_child ? 2 : repeats_root ? 1 : 0); }
+  bool repeats_root() const { return repeated != Repeats::nothing; }
+  bool repeats_child() const { return repeated == Repeats::root_and_child; }
+  // The first slot that is not repeated: 0, 1 or 2.
+  uint32_t first_owned_slot() const { return static_cast<uint32_t>(repeated); }
+  uint32_t first_owned() const { return node(first_owned_slot()); }
+  bool repeats(uint32_t slot) const { return slot < first_owned_slot(); }
   bool operator==(const Subtree&) const = default;
 };
 static_assert(sizeof(Subtree) == 16);
+
+// Who is whose child among a subtree's slots: each(parent, first child, children) for every slot
+// above the lowest level in use, in order; the children are those that this subtree lists.
+// child_count(slot) is the node's. Safe for any counts.
+template <class ChildCount, class Each>
+void each_family(const Subtree& subtree, const ChildCount& child_count, const Each& each) {
+  uint32_t next = subtree.first_child_slot();
+  const auto list = [&](uint32_t slot, bool only, uint32_t end) {
+    const uint32_t left = end - next;
+    // One alone on its level may have the others in further runs.
+    const uint32_t listed = only ? left : std::min<uint32_t>(child_count(slot), left);
+    each(slot, next, listed);
+    next += listed;
+  };
+  const bool one_root = subtree.root_count == 1;
+  for (uint32_t slot = 0; slot < subtree.first_child_slot(); ++slot)
+    list(slot, one_root, subtree.first_grandchild_slot());
+  next = subtree.first_grandchild_slot();
+  for (uint32_t slot = subtree.first_child_slot(); slot < subtree.first_grandchild_slot(); ++slot)
+    list(slot, one_root && subtree.child_count == 1, subtree.node_count());
+}
 
 // Bytes of uncompressed search records that a chunk may hold: a warp's part of the
 // shared memory of an sm_87 multiprocessor at full residency. 164 KiB, less 1 KiB
@@ -108,7 +143,32 @@ EntryHull hull_of(const NodeRecord& parent);
 EntryHull hull_of_root(const NodeRecord& root);  // which has no parent
 EntryHull join(const EntryHull& a, const EntryHull& b);
 
-// Appends the subtrees of a tier of `levels` levels whose roots are [begin, end).
+// Which of consecutive roots share a subtree: those that hang from one node, while there is room,
+// but no two neighbours that both have grandchildren in the tier. (Of two cells of a bake in parts,
+// which do not see that their roots are siblings, both have.)
+class SiblingRule {
+ public:
+  // Of a root with all that is below it in the tier, so many nodes: whether it shares that of the
+  // root before. sibling: hangs from the same node. deep: has grandchildren.
+  bool shares(uint32_t nodes, bool sibling, bool deep) {
+    const bool shared = sibling && !(deep && deep_) && nodes_ + nodes <= kSubtreeNodes;
+    nodes_ = nodes + (shared ? nodes_ : 0);
+    deep_ = deep;
+    return shared;
+  }
+  // The next root shares nothing with what is before it: a chunk begins, or a root was split.
+  void start() { nodes_ = kSubtreeNodes; }
+
+ private:
+  uint32_t nodes_ = kSubtreeNodes;
+  bool deep_ = false;
+};
+
+// Joins those of a chunk, in their order, as SiblingRule says; roots whose parent is kNoNode with
+// none. Returns how many are left, from the first place on.
+size_t join_siblings(const LodTree& tree, std::span<Subtree> subtrees);
+
+// Appends the subtrees of a tier of `levels` levels whose roots are [begin, end), one root in each.
 void split_tier(const LodTree& tree, uint32_t levels, uint32_t begin, uint32_t end,
                 std::pmr::vector<Subtree>& out);
 

@@ -49,16 +49,19 @@ void check_subtrees(const Partition& p, const LodTree& tree, Findings& findings)
       records[slot] = tree.records[found.node(slot)];
     }
     Subtree expected{};
-    const char* fault = cursor.take(found.child_count, found.grandchild_count, records, expected);
+    const char* fault = cursor.take(counts_of(found), records, expected);
     if (fault) return findings.add(name_of("subtree", i), fault, "a sound one");
     if (found != expected)
       return findings.add(
           name_of("subtree", i), "root " + std::to_string(found.root),
           "the nodes that follow those before it, from root " + std::to_string(expected.root));
-    for (uint32_t slot = 0; slot < found.node_count(); ++slot)
-      if (!found.repeats(slot) && records[slot].child_count != 0)
+    for (uint32_t slot = found.first_owned_slot(); slot < found.node_count(); ++slot)
+      if (records[slot].child_count != 0)
         findings.check_equal(name_of("first child of node", found.node(slot)),
                              cursor.first_children()[slot], tree.first_child[found.node(slot)]);
+    for (uint32_t slot = 1; slot < found.root_count; ++slot)
+      if (tree.parent[found.node(slot)] != tree.parent[found.root])
+        findings.add(name_of("subtree", i), "roots of several nodes", "of one");
   }
   if (!cursor.at_end()) findings.add("subtrees", "nodes left over", "each node in one");
 }

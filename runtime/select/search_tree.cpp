@@ -44,7 +44,14 @@ class Builder {
   void describe(uint32_t s) {
     const Subtree& from = partition_.subtrees[s];
     SearchSubtree& to = out_.subtrees[s];
-    to = {from.root, from.first_child, from.first_grandchild, from.child_count, 0, 0, 0, kNoRecord};
+    to = {from.root,
+          from.first_child,
+          from.first_grandchild,
+          slot_levels(from.first_child_slot(), from.first_grandchild_slot()),
+          0,
+          0,
+          0,
+          kNoRecord};
     if (is_missing(s)) return;
     const auto record = [&](uint32_t slot) -> auto& {
       return tree_.records[from.node(slot)];
@@ -65,9 +72,9 @@ class Builder {
     return after != missing_.begin() && s < std::prev(after)->last;
   }
 
-  // Every node of a level of roots has a subtree, so the roots of a range ascend by
-  // one at a time. Where some have several, which is not known, and need not be:
-  // a frame that reaches any of a root's subtrees needs the chunk.
+  // How many roots each of them has is not known, and need not be: a frame that reaches any of a
+  // node's subtrees needs the chunk. So there is one for each node that the roots hang from, in
+  // their order, as there are at least so many, and the others are the last one's.
   void describe_missing(const SubtreeRange& range) {
     uint32_t root = range.first_root;
     for (uint32_t s = range.first; s < range.last; ++s) {
@@ -75,9 +82,18 @@ class Builder {
           static_cast<size_t>(std::upper_bound(out_.tier_begin.begin(), out_.tier_begin.end(), s) -
                               out_.tier_begin.begin() - 1);
       if (s == out_.tier_begin[tier]) root = first_root(tier);
-      out_.subtrees[s] = {root, 0, 0, 0, 0, 0, 0, kNoRecord};
-      root = std::min(root + 1, last_root(range, tier));
+      out_.subtrees[s] = kUnlinkedSubtree;
+      out_.subtrees[s].root = root;
+      out_.subtrees[s].entry = kNoRecord;
+      root = next_family(root, last_root(range, tier));
     }
+  }
+
+  // The first root that hangs from another node, or the same where none does.
+  uint32_t next_family(uint32_t root, uint32_t last) const {
+    for (uint32_t next = root + 1; next <= last; ++next)
+      if (tree_.parent[next] != tree_.parent[root]) return next;
+    return root;
   }
 
   size_t level_of(size_t tier) const {
@@ -93,7 +109,7 @@ class Builder {
         [](const SubtreeRange& other, uint32_t subtree) { return other.first < subtree; });
     if (after != missing_.end() && after->first == range.last) return after->first_root;
     const Subtree& next = partition_.subtrees[range.last];
-    return next.repeats_root ? next.root : next.root - 1;
+    return next.repeats_root() ? next.root : next.root - 1;
   }
 
   // A missing subtree has a record, too: what hangs below it is opened by that one,
@@ -111,8 +127,7 @@ class Builder {
     if (out_.subtrees[s].missing()) return;
     const Subtree& subtree = partition_.subtrees[s];
     fill_search_records(
-        subtree,
-        levels_of(s), [&](uint32_t slot) -> auto& { return tree_.records[subtree.node(slot)]; },
+        subtree, [&](uint32_t slot) -> auto& { return tree_.records[subtree.node(slot)]; },
         out_.records.data() + out_.subtrees[s].first_record);
   }
 
@@ -127,7 +142,7 @@ class Builder {
       uint32_t record = subtree.first_record;
       for (uint32_t left = subtree.interior; left != 0; left &= left - 1, ++record) {
         const auto slot = static_cast<uint32_t>(std::countr_zero(left));
-        const bool lowest = slot_is_lowest(s, slot);
+        const bool lowest = is_lowest(s, slot);
         const uint32_t node = subtree.node(slot);
         const uint32_t first = tree_.first_child[node];
         while (lowest && next < end && out_.subtrees[next].root < first) ++next;
@@ -140,8 +155,8 @@ class Builder {
     }
   }
 
-  bool slot_is_lowest(uint32_t s, uint32_t slot) const {
-    return is_lowest(slot, out_.subtrees[s].child_count, levels_of(s));
+  bool is_lowest(uint32_t s, uint32_t slot) const {
+    return (out_.subtrees[s].level_slots(levels_of(s) - 1) >> slot & 1) != 0;
   }
 
   void set_chunks(Workers& workers) {

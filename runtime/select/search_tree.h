@@ -51,14 +51,26 @@ VOYAGER_HD constexpr uint32_t record_blocks(uint32_t records) {
 // In SearchSubtree::owned, beside slots: the subtree's records are not all consecutive.
 inline constexpr uint32_t kScattered = 0x80000000u;
 
+// Of SearchSubtree::levels.
+VOYAGER_HD constexpr uint32_t slot_levels(uint32_t first_child_slot,
+                                          uint32_t first_grandchild_slot) {
+  return first_child_slot | first_grandchild_slot << 8;
+}
+
+// SearchSubtree::level_slots().
+VOYAGER_HD constexpr uint32_t level_slots(uint32_t level, uint32_t levels) {
+  const uint32_t roots = (1u << (levels & 0xff)) - 1u, upper = (1u << (levels >> 8)) - 1u;
+  return level == 0 ? roots : level == 1 ? upper & ~roots : ~upper & 0x7fffffffu;
+}
+
 // Slots are those of Subtree. record(k) is that of the k-th slot in `interior`.
 struct SearchSubtree {
   uint32_t root, first_child, first_grandchild;  // node ids
-  uint32_t child_count;                          // slots 1 to child_count are children
+  uint32_t levels;                               // slot_levels(): where roots end, and children
   uint32_t first_record;
   uint32_t interior;  // slots of interior nodes
   uint32_t owned;     // slots that are not repeated; 0 where the subtree's chunk is damaged
-  uint32_t entry;     // record of the root's parent; kNoRecord at the tree's root
+  uint32_t entry;     // record of the roots' parent; kNoRecord at the tree's root
 
   VOYAGER_HD bool missing() const { return owned == 0; }
   // next_block: SearchTree's.
@@ -68,21 +80,21 @@ struct SearchSubtree {
     for (; place >= kRecordBlock; place -= kRecordBlock) block = next_block[block];
     return block * kRecordBlock + place;
   }
+  VOYAGER_HD uint32_t first_child_slot() const { return levels & 0xff; }
+  VOYAGER_HD uint32_t first_grandchild_slot() const { return levels >> 8; }
   VOYAGER_HD uint32_t node(uint32_t slot) const {
-    if (slot == 0) return root;
-    return slot <= child_count ? first_child + (slot - 1)
-                               : first_grandchild + (slot - 1 - child_count);
+    if (slot < first_child_slot()) return root + slot;
+    return slot < first_grandchild_slot() ? first_child + (slot - first_child_slot())
+                                          : first_grandchild + (slot - first_grandchild_slot());
   }
-  // 0: the root's slot, 1: children's, 2: grandchildren's, used or not.
-  VOYAGER_HD uint32_t level_slots(uint32_t level) const {
-    const uint32_t upper = (2u << child_count) - 1u;
-    return level == 0 ? 1u : level == 1 ? upper & ~1u : ~upper & 0x7fffffffu;
-  }
+  // 0: the roots' slots, 1: children's, 2: grandchildren's, used or not.
+  VOYAGER_HD uint32_t level_slots(uint32_t level) const { return voyager::level_slots(level, levels); }
 };
 static_assert(sizeof(SearchSubtree) == 32);
 
 // Of a subtree that has not come yet.
-inline constexpr SearchSubtree kUnlinkedSubtree{kNoNode, 0, 0, 0, 0, 0, 0, kNotLinked};
+inline constexpr SearchSubtree kUnlinkedSubtree{
+    kNoNode, 0, 0, slot_levels(1, 1), 0, 0, 0, kNotLinked};
 
 // The subtrees below a record, which `children` is of: consecutive, and each has it as its entry.
 VOYAGER_HD SubtreeSpan subtrees_below(const SearchSubtree* subtrees, uint32_t subtree_count,

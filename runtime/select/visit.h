@@ -61,7 +61,7 @@ struct Visit {
 template <class Record>
 VOYAGER_HD Visit visit(const SearchSubtree& subtree, const Sight& sight, const Record& record) {
   Visit v;
-  uint32_t reached = 1;  // slots whose parent is refined
+  uint32_t reached = subtree.level_slots(0);  // slots whose parent is refined
   uint32_t i = 0;
   for (uint32_t left = subtree.interior; left != 0; left &= left - 1, ++i) {
     const uint32_t slot = left & (~left + 1);

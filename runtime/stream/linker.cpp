@@ -16,12 +16,12 @@ class Addresses {
   SearchSubtree of(const LinkTable& table, uint32_t index, uint32_t entry) {
     const StagedSubtree& s = table.subtrees[index];
     const uint32_t base = table.slot * shape_.nodes;
-    if (!s.ids.repeats_root) root_ = base + s.first_place[0];
-    if (s.ids.child_count != 0 && !s.ids.repeats_child) first_child_ = base + s.first_place[1];
+    if (!s.ids.repeats_root()) root_ = base + s.first_place[0];
+    if (s.ids.child_count != 0 && !s.ids.repeats_child()) first_child_ = base + s.first_place[1];
     return {root_,
             first_child_,
             base + s.first_place[2],
-            s.ids.child_count,
+            slot_levels(s.ids.first_child_slot(), s.ids.first_grandchild_slot()),
             s.interior == 0 ? 0 : table.record(s.first_record),
             s.interior,
             s.owned | (is_scattered(table, s) ? kScattered : 0),
@@ -44,13 +44,17 @@ class Addresses {
 // Of what the chunk could not know by itself.
 void add_parents(const StagedSubtree& from, const SearchSubtree& subtree, uint32_t parent,
                  LinkPatch& patch) {
-  if (!from.ids.repeats_root) patch.parents.push_back({subtree.root, parent});
-  if (from.ids.repeats_root && !from.ids.repeats_child)
-    for (uint32_t i = 0; i < from.ids.child_count; ++i)
-      patch.parents.push_back({subtree.first_child + i, subtree.root});
-  if (from.ids.repeats_child)
-    for (uint32_t i = 0; i < from.ids.grandchild_count; ++i)
-      patch.parents.push_back({subtree.first_grandchild + i, subtree.first_child});
+  const auto add = [&](uint32_t first, uint32_t count, uint32_t of) {
+    for (uint32_t i = 0; i < count; ++i) patch.parents.push_back({first + i, of});
+  };
+  switch (from.ids.repeated) {
+    case Repeats::nothing:
+      return add(subtree.root, from.ids.root_count, parent);
+    case Repeats::root:
+      return add(subtree.first_child, from.ids.child_count, subtree.root);
+    case Repeats::root_and_child:
+      return add(subtree.first_grandchild, from.ids.grandchild_count, subtree.first_child);
+  }
 }
 
 // The node that a root hangs from.
@@ -120,24 +124,33 @@ void Linker::add_below(const LinkTable& table, uint32_t subtree, std::vector<Fam
     out.push_back({table.chunk, below});
 }
 
+// records: of the roots.
+void Linker::check_roots(const LinkTable& own, const Subtree& subtree, const NodeRecord* records,
+                         const std::string& file) const {
+  const uint32_t owner = graph_->owner_of_parent(subtree.root);
+  const auto& below = owner == own.chunk ? own.below : tables_[owner]->below;
+  const NodeBelow& parent = below[find_below(below, subtree.root)];
+  if (subtree.root_count > parent.child_count - (subtree.root - parent.first_child))
+    refuse_roots(own.chunk, subtree.root, file);
+  for (uint32_t i = 0; i < subtree.root_count; ++i)
+    if (!is_inside(records[i], parent.box)) refuse_nesting(own.chunk, subtree.root + i, file);
+}
+
 void Linker::check(const StagedChunk& chunk, const std::string& file) const {
   const LinkTable& own = chunk.links;
   const auto& subtrees = own.subtrees;
   if (subtrees[0].ids.root == 0 && own.chunk > 0 && !holds(own.chunk - 1))
     refuse_gap(own.chunk, file);
-  for (size_t i = 0; i < subtrees.size(); ++i) {
-    const uint32_t root = subtrees[i].ids.root;
-    if (root == 0) continue;
-    const uint32_t owner = graph_->owner_of_parent(root);
-    const auto& below = owner == own.chunk ? own.below : tables_[owner]->below;
-    const NodeBelow& parent = below[find_below(below, root)];
-    if (!is_inside(chunk.roots[i], parent.box)) refuse_nesting(own.chunk, root, file);
+  const NodeRecord* record = chunk.roots.data();  // of the subtree's first root
+  for (const StagedSubtree& s : subtrees) {
+    if (s.ids.root != 0) check_roots(own, s.ids, record, file);
+    record += s.ids.root_count;
   }
   const auto check_repeat = [&](const Subtree& repeats, const LinkTable& before,
                                 const LinkTable& after) {
-    if (repeats.repeats_root && !is_same(before.last_root, after.first_root))
+    if (repeats.repeats_root() && !is_same(before.last_root, after.first_root))
       refuse_repeat(own.chunk, repeats.root, file);
-    if (repeats.repeats_child && !is_same(before.last_child, after.first_child))
+    if (repeats.repeats_child() && !is_same(before.last_child, after.first_child))
       refuse_repeat(own.chunk, repeats.first_child, file);
   };
   if (own.chunk > 0 && holds(own.chunk - 1))

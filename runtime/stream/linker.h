@@ -64,6 +64,8 @@ class Linker {
   const NodeBelow& below_of(const Family& family) const {
     return tables_[family.chunk]->below[family.below];
   }
+  void check_roots(const LinkTable& own, const Subtree& subtree, const NodeRecord* records,
+                   const std::string& file) const;
   Family family_of(uint32_t root) const;
   ChunkRange chunks_of(const Family& family) const;
   bool complete(const Family& family) const;

@@ -7,18 +7,17 @@
 
 namespace voyager {
 
-// Of chunks in one tier of three levels; the few others are taken for all interior.
+// Of chunks in one tier of three levels; the few others are taken for all interior, and so is
+// what a chunk repeats.
 uint32_t most_search_records(const ChunkEntry& chunk, const SubtreePlace& after,
                              const Tiers& tiers) {
   const auto& begin = tiers.tier_begin;
   const uint32_t last = chunk.first_subtree + chunk.subtree_count - 1;
   const auto tier_end = *std::upper_bound(begin.begin(), begin.end(), chunk.first_subtree);
   if (chunk.first_subtree < begin[1] || last + 1 >= tier_end) return chunk.record_count;
-  const uint32_t grandchildren = after.next[2] - chunk.place.next[2],
-                 below = after.next[3] - chunk.place.next[3],
-                 children = chunk.record_count - chunk.subtree_count - grandchildren;
-  return std::min(chunk.subtree_count, children) + std::min(children, grandchildren) +
-         std::min(grandchildren, below);
+  const auto owned = [&](size_t level) { return after.next[level] - chunk.place.next[level]; };
+  return std::min(owned(0), owned(1)) + std::min(owned(1), owned(2)) +
+         std::min(owned(2), owned(3)) + (chunk.record_count - chunk.node_count);
 }
 
 RecordRoom::RecordRoom(const SceneFile& file) : file_(file) {

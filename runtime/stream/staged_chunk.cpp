@@ -66,23 +66,23 @@ class Stager {
     const uint32_t levels = index < tiers_.tier_begin[1] ? tiers_.first_tier_levels : kTierLevels;
     const auto record = [&](uint32_t slot) -> const NodeRecord& { return records[slot]; };
     check_repeats(subtree, records);
-    const uint32_t own_root = subtree.repeats_root ? 0 : 1,
-                   own_children = subtree.child_count - (subtree.repeats_child ? 1 : 0);
+    const uint32_t first = subtree.first_owned_slot();
     StagedSubtree staged{
         subtree,
-        {place_of_owned(0), place_of_owned(own_root), place_of_owned(own_root + own_children)},
+        {place_of_owned(0), place_of_owned(std::max(subtree.first_child_slot(), first) - first),
+         place_of_owned(subtree.first_grandchild_slot() - first)},
         static_cast<uint32_t>(out_.records.size()),
         static_cast<uint32_t>(links.below.size()),
         interior_slots(subtree, record),
         owned_slots(subtree)};
     out_.records.resize(out_.records.size() + static_cast<size_t>(std::popcount(staged.interior)));
-    fill_search_records(subtree, levels, record, out_.records.data() + staged.first_record);
+    fill_search_records(subtree, record, out_.records.data() + staged.first_record);
     set_parents(subtree, records);
     uint32_t search_record = staged.first_record;
     for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
       const bool owned = (staged.owned >> slot & 1) != 0;
       if ((staged.interior >> slot & 1) != 0) {
-        if (is_lowest(slot, subtree.child_count, levels)) {
+        if (subtree.level(slot) + 1 == levels) {
           out_.records[search_record].children = kBlocked;
           links.below.push_back({out_.place[next_node_], search_record,
                                  out_.content.first_child[next_node_], records[slot].child_count,
@@ -93,32 +93,21 @@ class Stager {
       if (owned) ++next_node_;
     }
     links.subtrees.push_back(staged);
-    out_.roots.push_back(records[0]);
+    out_.roots.insert(out_.roots.end(), records, records + subtree.root_count);
   }
 
   // Slot by slot: what a node hangs from, and that it lies inside that.
   void set_parents(const Subtree& subtree, const NodeRecord* records) {
-    const uint32_t own_root = subtree.repeats_root ? 0 : 1,
-                   own_child = subtree.repeats_child ? 1 : 0;
-    const uint32_t first_child = next_node_ + own_root;  // of those that are owned
-    const uint32_t first_grandchild = first_child + subtree.child_count - own_child;
-    for (uint32_t i = 0; i < subtree.child_count; ++i) {
-      check_inside(subtree.first_child + i, records[1 + i], records[0]);
-      if (i >= own_child && own_root != 0)
-        out_.parent[first_child + i - own_child] = out_.place[next_node_];
-    }
-    uint32_t grandchild = 0;
-    for (uint32_t i = 0; i < subtree.child_count; ++i) {
-      const uint32_t left = subtree.grandchild_count - grandchild;
-      const uint32_t own =
-          subtree.child_count == 1 ? left : std::min(left, records[1 + i].child_count);
-      for (uint32_t k = 0; k < own; ++k, ++grandchild) {
-        check_inside(subtree.first_grandchild + grandchild,
-                     records[1 + subtree.child_count + grandchild], records[1 + i]);
-        if (i >= own_child)
-          out_.parent[first_grandchild + grandchild] = out_.place[first_child + i - own_child];
-      }
-    }
+    const uint32_t owned = subtree.first_owned_slot();
+    each_family(
+        subtree, [&](uint32_t slot) { return records[slot].child_count; },
+        [&](uint32_t parent, uint32_t first, uint32_t count) {
+          for (uint32_t slot = first; slot < first + count; ++slot) {
+            check_inside(subtree.node(slot), records[slot], records[parent]);
+            if (slot >= owned && parent >= owned)
+              out_.parent[next_node_ + slot - owned] = out_.place[next_node_ + parent - owned];
+          }
+        });
   }
 
   // The cut meets every path once only if sizes never grow downwards.
@@ -129,12 +118,12 @@ class Stager {
   void check_repeats(const Subtree& subtree, const NodeRecord* records) {
     const uint32_t chunk = out_.links.chunk;
     const bool first = out_.links.subtrees.empty();
-    if (subtree.repeats_root && !first && !is_same(records[0], root_))
+    if (subtree.repeats_root() && !first && !is_same(records[0], root_))
       refuse_repeat(chunk, subtree.root, file_);
-    if (subtree.repeats_child && !first && !is_same(records[1], child_))
+    if (subtree.repeats_child() && !first && !is_same(records[1], child_))
       refuse_repeat(chunk, subtree.first_child, file_);
     root_ = records[0];
-    if (subtree.child_count != 0) child_ = records[1];
+    if (subtree.child_count != 0) child_ = records[subtree.first_child_slot()];
     if (!first) return;
     out_.links.first_root = root_;
     out_.links.first_child = child_;
@@ -159,6 +148,11 @@ class Stager {
 
 void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file) {
   refuse(chunk, node, file, "a larger box or extent than its parent's", "one inside it");
+}
+
+void refuse_roots(uint32_t chunk, uint32_t node, const std::string& file) {
+  refuse(chunk, node, file, "a subtree whose roots from it on hang from several nodes",
+         "roots of one node");
 }
 
 void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file) {

@@ -16,7 +16,7 @@ namespace voyager {
 
 struct StagedSubtree {
   Subtree ids;  // nodes as the file numbers them
-  // Places of the first that it owns of each level: root, children, grandchildren.
+  // Places of the first that it owns of each level: roots, children, grandchildren.
   std::array<uint32_t, 3> first_place;
   uint32_t first_record;  // as in SearchSubtree
   uint32_t first_below;   // in LinkTable::below
@@ -46,7 +46,7 @@ struct LinkTable {
   uint32_t record(uint32_t number) const {
     return blocks[number / kRecordBlock] * kRecordBlock + number % kRecordBlock;
   }
-  // The root and the first child of the first and of the last subtree: neighbours may repeat them.
+  // The first root and child of the first and of the last subtree: neighbours may repeat them.
   NodeRecord first_root{}, first_child{}, last_root{}, last_child{};
 };
 
@@ -54,7 +54,7 @@ struct StagedChunk {
   LinkTable links;
   Chunk content;
   std::vector<SearchRecord> records;  // those of the lowest level are blocked
-  std::vector<NodeRecord> roots;      // of each subtree
+  std::vector<NodeRecord> roots;      // of each subtree in turn
   // Of each owned node, in the order of the content: its place, and its parent's, or kNoNode where
   // another chunk may own that.
   std::vector<uint32_t> place, parent;
@@ -72,6 +72,7 @@ StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers, const
 
 // Error(damaged_chunk) naming file, chunk and node.
 [[noreturn]] void refuse_nesting(uint32_t chunk, uint32_t node, const std::string& file);
+[[noreturn]] void refuse_roots(uint32_t chunk, uint32_t node, const std::string& file);
 [[noreturn]] void refuse_repeat(uint32_t chunk, uint32_t node, const std::string& file);
 [[noreturn]] void refuse_gap(uint32_t chunk, const std::string& file);
 // Naming file and chunk.

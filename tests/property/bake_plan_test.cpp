@@ -46,8 +46,7 @@ std::vector<SubtreePlace> places_of(const LodTree& tree, const Partition& partit
     for (uint32_t slot = 0; slot < subtree.node_count(); ++slot)
       records.push_back(tree.records[subtree.node(slot)]);
     Subtree taken;
-    EXPECT_EQ(cursor.take(subtree.child_count, subtree.grandchild_count, records.data(), taken),
-              nullptr);
+    EXPECT_EQ(cursor.take(counts_of(subtree), records.data(), taken), nullptr);
   }
   return places;
 }

@@ -143,7 +143,7 @@ Damaged without_chunks(const SearchRig& rig, const std::vector<uint32_t>& chunks
       Subtree& subtree = d.partition.subtrees[s];
       for (uint32_t slot = 0; slot < subtree.node_count(); ++slot)
         if (!subtree.repeats(slot)) d.nodes.push_back({subtree.node(slot), 1});
-      subtree = {kNoNode, 0, 0, 0, 0, false, false};
+      subtree = {kNoNode, 0, 0, 1, 0, 0, Repeats::nothing};
     }
   }
   std::sort(d.nodes.begin(), d.nodes.end(),

@@ -535,7 +535,7 @@ TEST_P(StreamingDiskOfTree, AChunkThatFitsNoParentIsDamaged) {
   for (uint32_t chunk = SceneStream::top_chunks(file); chunk < file.chunks().size(); ++chunk) {
     const Chunk content = file.read_chunk(chunk);
     for (const Subtree& subtree : content.subtrees)
-      if (!subtree.repeats_root && refined(baked.tree.parent[subtree.root])) root = subtree.root;
+      if (!subtree.repeats_root() && refined(baked.tree.parent[subtree.root])) root = subtree.root;
   }
   ASSERT_NE(root, 0u);
   baked.tree.records[root].box_max = {1e4f, 1e4f, 1e4f};

@@ -27,7 +27,7 @@ constexpr uint32_t kLevels[] = {0, 1, 4}, kTiers[] = {0, 1};
 // A root with three leaves.
 Chunk family(size_t coefficients) {
   Chunk chunk;
-  chunk.subtrees.push_back({0, 1, 0, 3, 0, false, false});
+  chunk.subtrees.push_back({0, 1, 0, 1, 3, 0, Repeats::nothing});
   for (uint32_t i = 0; i < 4; ++i) {
     chunk.record.push_back(i);
     const float x = static_cast<float>(i);
@@ -117,6 +117,9 @@ TEST(ChunkCodec, ImpossibleValuesAreRefusedUnderARightChecksum) {
       [](Chunk& c) { c.records[2].box_min.z = 2; },
       [](Chunk& c) { c.records[0].extent = -1; },
       [](Chunk& c) { c.records[0].extent = kNan; },
+      [](Chunk& c) { c.subtrees[0].root_count = 0; },
+      [](Chunk& c) { c.subtrees[0].root_count = 2; },
+      [](Chunk& c) { c.subtrees[0].root_count = 255; },
       [](Chunk& c) { c.subtrees[0].child_count = 2; },
       [](Chunk& c) { c.subtrees[0].child_count = 255; },
       [](Chunk& c) { c.subtrees[0].grandchild_count = 1; },
@@ -265,7 +268,7 @@ TEST(ChunkCodec, AStepOfShBeyondItsRangeIsRefused) {
   std::memcpy(&header, sound.bytes.data(), sizeof header);
   const std::byte* const frame = sound.bytes.data() + sizeof header;
   constexpr size_t kNodes = 4;
-  std::vector<std::byte> raw(32 * kNodes + 2 + kNodes * (34 + 3 * 15));
+  std::vector<std::byte> raw(32 * kNodes + 3 + kNodes * (34 + 3 * 15));
   ASSERT_EQ(ZSTD_decompress(raw.data(), raw.size(), frame, header.payload_bytes), raw.size());
   // Bands 2 and 3 of a family, all of which have one step.
   constexpr size_t kSteps = 36 * kNodes;

@@ -28,12 +28,17 @@ std::vector<uint32_t> nodes_of(const Chunk& chunk) {
   return nodes;
 }
 
-// Of each record, the first of its subtree.
-std::vector<uint32_t> roots_of(const Chunk& chunk) {
-  std::vector<uint32_t> roots;
-  for (const Subtree& subtree : chunk.subtrees)
-    roots.insert(roots.end(), subtree.node_count(), static_cast<uint32_t>(roots.size()));
-  return roots;
+// Of each record: the first of its subtree, and of what is below the roots there.
+struct Start {
+  uint32_t subtree, below;
+};
+std::vector<Start> starts_of(const Chunk& chunk) {
+  std::vector<Start> starts;
+  for (const Subtree& subtree : chunk.subtrees) {
+    const auto first = static_cast<uint32_t>(starts.size());
+    starts.insert(starts.end(), subtree.node_count(), {first, first + subtree.root_count});
+  }
+  return starts;
 }
 
 TEST(Families, AreThoseOfTheTree) {
@@ -42,7 +47,8 @@ TEST(Families, AreThoseOfTheTree) {
     const BakedScene baked = test::baked_of(test::random_tree(shape, 3000, 6));
     for_each_chunk(baked, [&](const Chunk& chunk) {
       const Families families = families_of(counts_of(chunk));
-      const std::vector<uint32_t> node = nodes_of(chunk), root = roots_of(chunk);
+      const std::vector<uint32_t> node = nodes_of(chunk);
+      const std::vector<Start> start = starts_of(chunk);
       for (uint32_t i = 0; i < node.size(); ++i) {
         const Families::Run& run = families.children[i];
         for (uint32_t k = 0; k < run.count; ++k)
@@ -50,10 +56,10 @@ TEST(Families, AreThoseOfTheTree) {
         const uint32_t all = chunk.records[i].child_count;
         uint32_t listed = 0;
         for (uint32_t k = 0; k < node.size(); ++k)
-          listed += root[k] == root[i] && baked.tree.parent[node[k]] == node[i];
+          listed += start[k].subtree == start[i].subtree && baked.tree.parent[node[k]] == node[i];
         ASSERT_EQ(run.count, listed == all ? all : 0);
         const uint32_t parent = families.parent[i];
-        ASSERT_EQ(parent == kNoNode, i == root[i]);
+        ASSERT_EQ(parent == kNoNode, i < start[i].below);
         ASSERT_TRUE(parent == kNoNode || node[parent] == baked.tree.parent[node[i]]);
         whole += run.count != 0, split += listed != 0 && listed != all;
       }
@@ -67,17 +73,17 @@ TEST(Families, AreThoseOfTheTree) {
 TEST(Families, OfAnyCountsStayAmongTheRecords) {
   std::mt19937 random(3);
   for (int round = 0; round < 20000; ++round) {
-    std::vector<uint8_t> children(random() % 5), grandchildren(children.size());
-    std::vector<uint32_t> of_record(random() % 20);
-    for (uint8_t& count : children)
-      count = static_cast<uint8_t>(random() % (random() % 8 ? 4 : 256));
-    for (uint8_t& count : grandchildren)
-      count = static_cast<uint8_t>(random() % (random() % 8 ? 4 : 256));
-    for (uint32_t& count : of_record) count = random() % (random() % 8 ? 4 : 0xffffffffu);
-    const Families families = families_of({children, grandchildren, of_record});
-    for (uint32_t i = 0; i < of_record.size(); ++i) {
+    ChunkCounts counts;
+    counts.of_subtree.resize(random() % 5);
+    counts.of_record.resize(random() % 20);
+    for (SubtreeCounts& subtree : counts.of_subtree)
+      for (uint8_t* count : {&subtree.roots, &subtree.children, &subtree.grandchildren})
+        *count = static_cast<uint8_t>(random() % (random() % 8 ? 4 : 256));
+    for (uint32_t& count : counts.of_record) count = random() % (random() % 8 ? 4 : 0xffffffffu);
+    const Families families = families_of(counts);
+    for (uint32_t i = 0; i < counts.of_record.size(); ++i) {
       const Families::Run& run = families.children[i];
-      ASSERT_TRUE(run.count == 0 || (run.first > i && run.first + run.count <= of_record.size()));
+      ASSERT_TRUE(run.count == 0 || (run.first > i && run.first + run.count <= counts.of_record.size()));
       ASSERT_TRUE(families.parent[i] == kNoNode || families.parent[i] < i);
     }
   }

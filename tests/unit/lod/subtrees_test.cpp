@@ -96,12 +96,12 @@ TEST(Subtrees, HoldEachNodeOnceWithItsChildrenUnderIt) {
         ASSERT_LT(s.node(slot), tree.size());
         owners[s.node(slot)] += s.repeats(slot) ? 0 : 1;
       }
+      for (uint32_t i = 1; i < s.root_count; ++i)
+        ASSERT_EQ(tree.parent[s.root + i], tree.parent[s.root]);
       for (uint32_t i = 0; i < s.child_count; ++i)
-        ASSERT_EQ(tree.parent[s.first_child + i], s.root);
-      for (uint32_t i = 0; i < s.grandchild_count; ++i) {
-        const uint32_t parent = tree.parent[s.first_grandchild + i];
-        ASSERT_TRUE(parent >= s.first_child && parent - s.first_child < s.child_count);
-      }
+        ASSERT_LT(tree.parent[s.first_child + i] - s.root, s.root_count);
+      for (uint32_t i = 0; i < s.grandchild_count; ++i)
+        ASSERT_LT(tree.parent[s.first_grandchild + i] - s.first_child, s.child_count);
     }
     for (uint32_t n = 0; n < tree.size(); ++n) ASSERT_EQ(owners[n], 1u) << n;
   });
@@ -121,7 +121,9 @@ TEST(Subtrees, FormTiersOfThreeLevels) {
       for (uint32_t i = p.tier_begin[tier]; i < p.tier_begin[tier + 1]; ++i) {
         const Subtree& s = p.subtrees[i];
         ASSERT_EQ(level_of(p, s.root), level);
-        children[s.root] += s.child_count - (s.repeats_child ? 1u : 0u);
+        for (uint32_t k = 0; k < s.root_count; ++k) children[s.root + k] += 0;
+        for (uint32_t k = s.repeats_child() ? 1 : 0; k < s.child_count; ++k)
+          ++children[tree.parent[s.first_child + k]];
         for (uint32_t k = 0; k < s.grandchild_count; ++k)
           ++children[tree.parent[s.first_grandchild + k]];
       }
@@ -140,8 +142,10 @@ TEST(Subtrees, AreOrderedAndRepeatOnlyWhatIsInSeveralRuns) {
     const Partition p = partition_tree(tree, kDefaultChunkBytes);
     for (size_t i = 0; i < p.subtrees.size(); ++i) {
       const Subtree& s = p.subtrees[i];
-      if (s.repeats_child) {
-        ASSERT_TRUE(s.repeats_root);
+      if (s.repeats_root()) {
+        ASSERT_EQ(s.root_count, 1u);
+      }
+      if (s.repeats_child()) {
         ASSERT_EQ(s.child_count, 1u);
         ASSERT_EQ(p.subtrees[i - 1].first_child, s.first_child);
         ASSERT_EQ(p.subtrees[i - 1].child_count, 1u);
@@ -149,11 +153,11 @@ TEST(Subtrees, AreOrderedAndRepeatOnlyWhatIsInSeveralRuns) {
       if (i == 0) continue;
       const bool starts_tier =
           std::find(p.tier_begin.begin(), p.tier_begin.end(), i) != p.tier_begin.end();
-      const uint32_t before = p.subtrees[i - 1].root;
+      const uint32_t end = p.subtrees[i - 1].root + p.subtrees[i - 1].root_count;
       if (starts_tier) {
         ASSERT_EQ(s.root, p.level_begin[level_of(p, s.root)]);
       } else {
-        ASSERT_EQ(s.root, before + (s.repeats_root ? 0 : 1));
+        ASSERT_EQ(s.root, end - (s.repeats_root() ? 1 : 0));
       }
     }
   });
@@ -180,6 +184,7 @@ size_t count_subtrees(const LodTree& tree, uint32_t root, uint32_t levels) {
   return used > 1 || done == 0 ? done + 1 : done;
 }
 
+// Before siblings share them.
 TEST(Subtrees, AreFewestOfTheThreeFirstTiers) {
   for_trees([](const std::string& name, const LodTree& tree) {
     const Partition p = partition_tree(tree, kDefaultChunkBytes);
@@ -191,8 +196,48 @@ TEST(Subtrees, AreFewestOfTheThreeFirstTiers) {
           count += count_subtrees(tree, root, kTierLevels);
       fewest = std::min(fewest, count);
     }
-    EXPECT_EQ(p.subtrees.size(), fewest) << name;
+    size_t roots = 0;  // of siblings each counts as one
+    for (const Subtree& s : p.subtrees) roots += s.root_count;
+    EXPECT_EQ(roots, fewest) << name;
   });
+}
+
+// Of a root: what of it and below it is in its subtree's tier.
+struct Below {
+  uint32_t nodes = 1;
+  bool deep = false;  // grandchildren
+};
+Below below(const LodTree& tree, uint32_t root) {
+  Below below;
+  for (uint32_t i = 0; i < tree.records[root].child_count; ++i) {
+    const uint32_t grandchildren = tree.records[tree.first_child[root] + i].child_count;
+    below.nodes += 1 + grandchildren;
+    below.deep |= grandchildren != 0;
+  }
+  return below;
+}
+
+TEST(Subtrees, AreSharedBySiblingsOfAChunkWhileThereIsRoom) {
+  size_t shared = 0, apart = 0;
+  for_trees([&](const std::string& name, const LodTree& tree) {
+    SCOPED_TRACE(name);
+    const Partition p = partition_tree(tree, kDefaultChunkBytes);
+    for (size_t chunk = 0; chunk < p.chunk_count(); ++chunk)
+      for (uint32_t i = p.chunk_begin[chunk]; i < p.chunk_begin[chunk + 1]; ++i) {
+        const Subtree& s = p.subtrees[i];
+        shared += s.root_count > 1;
+        for (uint32_t k = 1; k < s.root_count; ++k)
+          ASSERT_FALSE(below(tree, s.root + k - 1).deep && below(tree, s.root + k).deep);
+        if (i + 1 == p.chunk_begin[chunk + 1] || p.subtrees[i + 1].root == s.root) continue;
+        const uint32_t last = s.root + s.root_count - 1, next = p.subtrees[i + 1].root;
+        if (s.root == 0 || s.repeats_root() || tree.parent[last] != tree.parent[next]) continue;
+        ++apart;
+        ASSERT_TRUE((below(tree, last).deep && below(tree, next).deep) ||
+                    s.node_count() + below(tree, next).nodes > kSubtreeNodes);
+      }
+  });
+  EXPECT_GT(shared, 0u);
+  EXPECT_GT(apart, 0u);
 }
 
 TEST(Subtrees, OfAStarOfAHundredThousandChildrenAreFull) {
@@ -250,7 +295,12 @@ void expect_caught(const Edit& edit) {
 TEST(Subtrees, ThatAreNotAreCaughtByTheValidator) {
   expect_caught([](Partition& p) { p.subtrees[5].root += 1; });
   expect_caught([](Partition& p) { p.subtrees[5].root = 0xfffffff0; });
-  expect_caught([](Partition& p) { p.subtrees[5].repeats_root ^= true; });
+  expect_caught([](Partition& p) {
+    Repeats& repeated = p.subtrees[5].repeated;
+    repeated = repeated == Repeats::nothing ? Repeats::root : Repeats::nothing;
+  });
+  expect_caught([](Partition& p) { p.subtrees[5].root_count += 1; });
+  expect_caught([](Partition& p) { p.subtrees[5].root_count = 0; });
   expect_caught([](Partition& p) { p.subtrees[5].child_count += 1; });
   expect_caught([](Partition& p) { p.subtrees[5].grandchild_count = 255; });
   expect_caught([](Partition& p) { p.subtrees.pop_back(); });
@@ -277,7 +327,10 @@ TEST(SubtreeCursor, SurvivesNoise) {
       std::vector<NodeRecord> records(512);
       for (NodeRecord& r : records) r.child_count = random() % 3 ? random() % 6 : random();
       Subtree out{};
-      if (cursor.take(random() % 9, random() % (random() % 8 ? 20 : 256), records.data(), out)) {
+      const SubtreeCounts counts{static_cast<uint8_t>(random() % 4 ? 1 : random() % 8),
+                                 static_cast<uint8_t>(random() % 9),
+                                 static_cast<uint8_t>(random() % (random() % 8 ? 20 : 256))};
+      if (cursor.take(counts, records.data(), out)) {
         ++faults;
         break;
       }
@@ -299,9 +352,8 @@ TEST(SubtreeCursor, GoesOnFromAnyPlace) {
       for (uint32_t slot = 0; slot < from.node_count(); ++slot)
         records[slot] = tree.records[from.node(slot)];
       Subtree to{};
-      EXPECT_EQ(cursor.take(from.child_count, from.grandchild_count, records, to), nullptr);
-      EXPECT_EQ(to.root, from.root);
-      EXPECT_EQ(to.repeats_child, from.repeats_child);
+      EXPECT_EQ(cursor.take(counts_of(from), records, to), nullptr);
+      EXPECT_EQ(to, from);
     };
     SubtreeCursor cursor(tiers_of(p));
     while (!cursor.at_end()) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <map>
+#include <set>
 
 #include "tests/support/random_trees.h"
 
@@ -72,9 +72,12 @@ TEST(SearchTree, LeadsToEveryChild) {
         const SubtreeSpan below = subtrees_below(cut.search.subtrees.data(),
                                                  cut.search.subtree_count(), record, r.children);
         for (uint32_t i = below.first; i < below.last; ++i) {
-          ASSERT_EQ(cut.search.subtrees[i].entry, record);
-          ASSERT_EQ(cut.tree.parent[cut.search.subtrees[i].root], node);
-          reached[cut.search.subtrees[i].root] += cut.search.subtrees[i].owned & 1;
+          const SearchSubtree& under = cut.search.subtrees[i];
+          ASSERT_EQ(under.entry, record);
+          for (uint32_t root = 0; root < under.first_child_slot(); ++root) {
+            ASSERT_EQ(cut.tree.parent[under.node(root)], node);
+            reached[under.node(root)] += under.owned >> root & 1;
+          }
         }
       }
     }
@@ -84,14 +87,16 @@ TEST(SearchTree, LeadsToEveryChild) {
 }
 
 TEST(SearchTree, LevelsShareOutTheSlots) {
-  for (uint32_t children = 0; children < kSubtreeNodes; ++children) {
-    SearchSubtree s{};
-    s.child_count = children;
-    EXPECT_EQ(s.level_slots(0), 1u);
-    EXPECT_EQ(s.level_slots(0) | s.level_slots(1) | s.level_slots(2), 0x7fffffffu);
-    EXPECT_EQ(static_cast<uint32_t>(std::popcount(s.level_slots(1))), children);
-    EXPECT_EQ(s.level_slots(1) & s.level_slots(2), 0u);
-  }
+  for (uint32_t roots = 1; roots <= kSubtreeNodes; ++roots)
+    for (uint32_t children = 0; roots + children <= kSubtreeNodes; ++children) {
+      SearchSubtree s{};
+      s.levels = slot_levels(roots, roots + children);
+      EXPECT_EQ(s.level_slots(0) | s.level_slots(1) | s.level_slots(2), 0x7fffffffu);
+      EXPECT_EQ(static_cast<uint32_t>(std::popcount(s.level_slots(0))), roots);
+      EXPECT_EQ(static_cast<uint32_t>(std::popcount(s.level_slots(1))), children);
+      EXPECT_EQ(s.level_slots(0) & s.level_slots(1), 0u);
+      EXPECT_EQ((s.level_slots(0) | s.level_slots(1)) & s.level_slots(2), 0u);
+    }
 }
 
 TEST(SearchTree, HullsAreNeverSmallerThanWhatLeadsIntoTheChunk) {
@@ -128,30 +133,44 @@ TEST(SearchTree, OfAnEmptyTreeIsEmpty) {
   EXPECT_TRUE(cut.search.subtrees.empty());
 }
 
-// Damage renames no other subtree, and what hangs below it is led to by nothing.
+// Whether a subtree of the partition holds the node.
+bool holds(const Subtree& subtree, uint32_t node) {
+  for (uint32_t slot = 0; slot < subtree.node_count(); ++slot)
+    if (subtree.node(slot) == node) return true;
+  return false;
+}
+
+// Damage renames no other subtree, and what hangs below it is led to by nothing. What leads into it
+// leads to a subtree that is missing.
 TEST(SearchTree, MissingSubtreesKeepTheirPlaces) {
   Workers workers(2);
-  const Cut whole = make(test::random_tree(test::TreeShape::four_way, 2000, 1), kMinChunkBytes);
-  const auto& chunk_begin = whole.partition.chunk_begin;
-  for (size_t chunk = 0; chunk + 1 < chunk_begin.size(); chunk += 5) {
-    const uint32_t first = chunk_begin[chunk], last = chunk_begin[chunk + 1];
-    Partition partition = whole.partition;
-    for (uint32_t s = first; s < last; ++s)
-      partition.subtrees[s] = {kNoNode, 0, 0, 0, 0, false, false};
-    const SubtreeRange missing{first, last, whole.partition.subtrees[first].root};
-    const SearchTree search = make_search_tree(whole.tree, partition, {&missing, 1}, workers);
-    for (uint32_t s = 0; s < search.subtrees.size(); ++s) {
-      const SearchSubtree &a = search.subtrees[s], &b = whole.search.subtrees[s];
-      ASSERT_EQ(a.missing(), s >= first && s < last);
-      ASSERT_EQ(a.root, b.root);
-      const uint32_t above = b.entry == kNoRecord ? kNoNode : whole.tree.parent[b.root];
-      const auto in_chunk = [&](uint32_t node) {
-        for (uint32_t m = first; m < last; ++m)
-          for (uint32_t slot = 0; slot < whole.partition.subtrees[m].node_count(); ++slot)
-            if (whole.partition.subtrees[m].node(slot) == node) return true;
-        return false;
-      };
-      ASSERT_EQ(a.entry == kNoRecord, b.entry == kNoRecord || in_chunk(above)) << s;
+  for (const test::TreeShape shape : {test::TreeShape::four_way, test::TreeShape::mixture}) {
+    const Cut whole = make(test::random_tree(shape, 2000, 1), kMinChunkBytes);
+    const auto& chunk_begin = whole.partition.chunk_begin;
+    for (size_t chunk = 0; chunk + 1 < chunk_begin.size(); chunk += 5) {
+      const uint32_t first = chunk_begin[chunk], last = chunk_begin[chunk + 1];
+      const auto lost = std::span(whole.partition.subtrees).subspan(first, last - first);
+      Partition partition = whole.partition;
+      for (uint32_t s = first; s < last; ++s)
+        partition.subtrees[s] = {kNoNode, 0, 0, 1, 0, 0, Repeats::nothing};
+      const SubtreeRange missing{first, last, lost.front().root};
+      const SearchTree search = make_search_tree(whole.tree, partition, {&missing, 1}, workers);
+      std::set<uint32_t> wanted, found;  // parents that lead into what is missing
+      for (uint32_t s = 0; s < search.subtrees.size(); ++s) {
+        const SearchSubtree &a = search.subtrees[s], &b = whole.search.subtrees[s];
+        const uint32_t above = b.entry == kNoRecord ? kNoNode : whole.tree.parent[b.root];
+        const bool is_lost = std::ranges::any_of(
+            lost, [&](const Subtree& subtree) { return holds(subtree, above); });
+        ASSERT_EQ(a.missing(), s >= first && s < last);
+        if (a.missing()) {
+          if (above != kNoNode && !is_lost) wanted.insert(above);
+          if (a.entry != kNoRecord) found.insert(whole.tree.parent[a.root]);
+        } else {
+          ASSERT_EQ(a.root, b.root);
+          ASSERT_EQ(a.entry == kNoRecord, b.entry == kNoRecord || is_lost) << s;
+        }
+      }
+      ASSERT_EQ(found, wanted) << chunk;
     }
   }
 }
