@@ -427,6 +427,7 @@ void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const 
     stats.pixels_evaluated += counted.evaluated;
     stats.pixels_blended += counted.blended;
     stats.places_read += counted.places_read;
+    stats.tiles_redrawn += counted.open.count;
   }
   stats.pairs_dropped = dropped(report.counters(), report.room);
   count_bytes(report, stats);

@@ -4,20 +4,22 @@
 
 #include <cstdint>
 
+#include "runtime/math/parent_code.h"
 #include "runtime/math/sh.h"
 #include "runtime/math/sh_code.h"
 #include "runtime/math/shape_code.h"
 
 namespace voyager::cuda {
 
-// A node's parent, kNoNode of the root: by node, or by family, since siblings are consecutive.
+// A node's parent, kNoNode of the root: by family, since siblings are consecutive.
 struct ParentView {
   const uint32_t* parents;
-  const RunBlock* families;  // null: by node
+  const RunBlock* families;  // null in a pool
+  PoolParents pool{};
 
 #if defined(__CUDACC__)
   __device__ uint32_t operator()(uint32_t node) const {
-    return __ldg(parents + (families == nullptr ? node : run_of(families, node)));
+    return families == nullptr ? pool(node) : __ldg(parents + run_of(families, node));
   }
 #endif
 };

@@ -10,7 +10,7 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kThreads = 256, kWarps = kThreads / 32;
-static_assert(kBlockRows == 32 && kRowSubtrees == 32);  // a row a lane, then a subtree a lane
+static_assert(kBlockRows <= 32 && kRowSubtrees == 32);  // a row a lane, then a subtree a lane
 
 // What a warp has found in a block, before it has places for it in due[].
 struct Found {
@@ -51,12 +51,12 @@ __global__ void __launch_bounds__(kThreads)
     const uint32_t b = state.open_blocks[i];
     const Block block = state.blocks[b];
     WatchRow* rows = state.rows + b * kBlockRows;
-    const WatchRow own = rows[lane_in_warp()];
     const bool there = block.first + lane_in_warp() * kRowSubtrees < block.last;
+    const WatchRow own = there ? rows[lane_in_warp()] : WatchRow{};
     const bool ends = there && static_cast<int32_t>(own.moves - now.moves) <= 0;
     const uint32_t ending = __ballot_sync(kAllLanes, ends);
     uint32_t looks = __ballot_sync(kAllLanes, there && !is_quiet(own, now));
-    bytes += 32 * sizeof(WatchRow) + __popc(looks) * kRowSubtrees * sizeof(Watch);
+    bytes += kBlockRows * sizeof(WatchRow) + __popc(looks) * kRowSubtrees * sizeof(Watch);
     for (; looks != 0; looks &= looks - 1) {
       const uint32_t row = __ffs(looks) - 1;
       const uint32_t subtree = block.first + row * kRowSubtrees + lane_in_warp();

@@ -20,14 +20,102 @@ __device__ inline bool is_own_reached(const TreeView& tree, const SearchSubtree&
   return judge(load_record(tree.records + s.entry), sight).refined;
 }
 
-// By a lane alone.
-__device__ inline Visit visit_own(const TreeView& tree, const SearchSubtree& s, const Sight& sight,
-                                  Tally& tally) {
-  Visit v = visit(s, sight, [&](uint32_t i) {
-    return load_record(tree.records + s.record(i, tree.next_block));
-  });
+// What judging a subtree's records found: bits by record, in their order.
+struct Judged {
+  uint32_t refined = 0, blocked = 0;
+  float slack = INFINITY, extent = 0.0f;
+};
+
+// The records of 32 subtrees, one a lane, since few subtrees have as many as others: lanes would
+// wait for one of theirs that has many. Those below a node that is not refined are judged too: they
+// are not refined, and have more slack than it has.
+__device__ inline Judged judge_records(const TreeView& tree, const SearchSubtree& s, bool active,
+                                       const Sight& sight, Tally& tally) {
+  const uint32_t lane = lane_in_warp(), own = active ? __popc(s.interior) : 0;
+  uint32_t through = own;
+#pragma unroll
+  for (unsigned step = 1; step < 32; step *= 2) {
+    const uint32_t below = __shfl_up_sync(kAllLanes, through, step);
+    if (lane >= step) through += below;
+  }
+  const uint32_t start = through - own, total = __shfl_sync(kAllLanes, through, 31);
+  const uint32_t own_roots = __popc(s.interior & s.level_slots(0));
+  Judged all;
+  for (uint32_t base = 0; base < total; base += 32) {
+    uint32_t of = 0;  // the lane whose record this is: the last that starts here or before
+#pragma unroll
+    for (unsigned step = 16; step != 0; step /= 2)
+      if (__shfl_sync(kAllLanes, start, of + step) <= base + lane) of += step;
+    SearchSubtree owner{};
+    owner.first_record = __shfl_sync(kAllLanes, s.first_record, of);
+    owner.levels = __shfl_sync(kAllLanes, s.levels, of);
+    const uint32_t k = base + lane - __shfl_sync(kAllLanes, start, of);
+    const bool is_root = k < __shfl_sync(kAllLanes, own_roots, of);
+    bool refined = false, blocked = false;
+    float slack = INFINITY, extent = 0.0f;
+    if (base + lane < total) {
+      const SearchRecord r = load_record(tree.records + owner.record(k, tree.next_block));
+      const NodeVerdict verdict = judge(r, sight);
+      refined = verdict.refined, blocked = r.children == kBlocked, slack = verdict.slack;
+      if (is_root) extent = r.extent;
+    }
+    const uint32_t refined_votes = __ballot_sync(kAllLanes, refined);
+    const uint32_t blocked_votes = __ballot_sync(kAllLanes, blocked);
+    // Over the lanes of one subtree, in the first of them.
+#pragma unroll
+    for (unsigned step = 1; step < 32; step *= 2) {
+      const uint32_t other = __shfl_down_sync(kAllLanes, of, step);
+      const float other_slack = __shfl_down_sync(kAllLanes, slack, step);
+      const float other_extent = __shfl_down_sync(kAllLanes, extent, step);
+      if (lane + step >= 32 || other != of) continue;
+      slack = fminf(slack, other_slack), extent = fmaxf(extent, other_extent);
+    }
+    const uint32_t from = max(start, base), to = min(start + own, base + 32);
+    const float own_slack = __shfl_sync(kAllLanes, slack, from % 32);
+    const float own_extent = __shfl_sync(kAllLanes, extent, from % 32);
+    if (from >= to) continue;
+    const uint32_t mask = slots_before(to - from);
+    all.refined |= (refined_votes >> (from - base) & mask) << (from - start);
+    all.blocked |= (blocked_votes >> (from - base) & mask) << (from - start);
+    all.slack = fminf(all.slack, own_slack), all.extent = fmaxf(all.extent, own_extent);
+  }
+  tally.tested += own;
+  return all;
+}
+
+// The slots of those of a level whose parents are refined. refined: bits of the parents in turn.
+__device__ inline uint32_t children_of_refined(const SearchSubtree& s, uint32_t level,
+                                               uint32_t refined) {
+  const uint32_t slots = s.level_slots(level) & slots_before(s.slot_count());
+  uint32_t reached = 0;
+  for (uint32_t starts = s.families & slots; starts != 0; refined >>= 1) {
+    const uint32_t first = starts & (~starts + 1);
+    starts &= starts - 1;
+    const uint32_t next = starts & (~starts + 1);  // 0: the level's end
+    if (refined & 1) reached |= slots & ~(first - 1) & (next - 1);
+  }
+  return reached;
+}
+
+// A subtree a lane.
+__device__ inline Visit visit_lanes(const TreeView& tree, const SearchSubtree& s, bool active,
+                                    const Sight& sight, Tally& tally) {
+  const Judged judged = judge_records(tree, s, active, sight, tally);
+  const uint32_t refined = judged.refined & ~judged.blocked;
+  Visit v;
+  v.slack = judged.slack, v.extent = judged.extent;
+  uint32_t by_record = refined, waits = judged.refined & judged.blocked;
+  for (uint32_t left = s.interior; (by_record | waits) != 0; left &= left - 1) {
+    const uint32_t slot = left & (~left + 1);
+    if (by_record & 1) v.refined |= slot;
+    if (waits & 1) v.stand_ins |= slot;
+    by_record >>= 1, waits >>= 1;
+  }
+  const uint32_t roots = s.level_slots(0);
+  const uint32_t reached = roots | children_of_refined(s, 1, refined) |
+                           children_of_refined(s, 2, refined >> __popc(s.interior & roots));
+  v.cut = reached & ~v.refined & s.owned();
   v.stand_ins &= v.cut;
-  tally.tested += v.tested;
   return v;
 }
 

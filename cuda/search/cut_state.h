@@ -11,7 +11,7 @@
 
 namespace voyager::cuda {
 
-inline constexpr uint32_t kBlockSubtrees = 1024, kBlockRows = kBlockSubtrees / kRowSubtrees;
+inline constexpr uint32_t kBlockSubtrees = 512, kBlockRows = kBlockSubtrees / kRowSubtrees;
 inline constexpr uint32_t kLevels = 3;  // of a tier
 
 // Places for a segment of so many nodes, in whole rows: one in eight to spare.

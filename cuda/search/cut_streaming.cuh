@@ -48,15 +48,18 @@ __device__ inline void read_subtrees(const TreeView& tree, const StateView& stat
     const bool there = base + lane_in_warp() < ticket.total;
     const uint32_t subtree = subtree_of(ticket, there ? base + lane_in_warp() : base);
     SearchSubtree s = kUnlinkedSubtree;
-    Change change;
+    Known known;
+    bool open = false;
     if (there) {
-      const Known known = load_known(state, subtree);
+      known = load_known(state, subtree);
       s = load_own_subtree(tree, subtree);
-      change = reached && is_own_reached(tree, s, sight, tally)
-                   ? settle_own(state, subtree, known, visit_own(tree, s, sight, tally), reference,
-                                tally)
-                   : close_own(state, subtree, known, tally);
+      open = reached && is_own_reached(tree, s, sight, tally);
     }
+    const Visit v = visit_lanes(tree, s, open, sight, tally);
+    Change change;
+    if (there)
+      change = open ? settle_own(state, subtree, known, v, reference, tally)
+                    : close_own(state, subtree, known, tally);
     count_changes(state, subtree, s.levels, change, tally);
   }
 }

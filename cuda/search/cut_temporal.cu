@@ -60,20 +60,7 @@ __device__ void visit_due_groups(const TreeView& tree, const StateView& state, c
   }
 }
 
-// The same, by a lane alone.
-__device__ Change visit_due(const TreeView& tree, const StateView& state, const Sight& sight,
-                            uint32_t reference, uint32_t subtree, const SearchSubtree& s,
-                            Tally& tally) {
-  const Known known = load_known(state, subtree);
-  const Visit v = visit_own(tree, s, sight, tally);
-  const bool open = v.cut == known.cut || is_own_reached(tree, s, sight, tally);
-  const Change change = open ? settle_own(state, subtree, known, v, reference, tally)
-                             : close_own(state, subtree, known, tally);
-  for (uint32_t left = (known.refined ^ v.refined) & s.interior; left != 0; left &= left - 1)
-    signal_change(tree, state, s, __ffs(left) - 1, v.refined);
-  return change;
-}
-
+// The same, a subtree a lane.
 __device__ void visit_due_lanes(const TreeView& tree, const StateView& state, const Sight& sight,
                                 uint32_t reference, uint32_t count, Tally& tally) {
   const uint32_t first = (blockIdx.x * kThreads + threadIdx.x) / 32 * 32;
@@ -81,8 +68,16 @@ __device__ void visit_due_lanes(const TreeView& tree, const StateView& state, co
     const bool there = base + lane_in_warp() < count;
     const uint32_t subtree = state.due[there ? base + lane_in_warp() : base];
     const SearchSubtree s = load_own_subtree(tree, subtree);
+    const Known known = load_known(state, subtree);
+    const Visit v = visit_lanes(tree, s, there, sight, tally);
     Change change;
-    if (there) change = visit_due(tree, state, sight, reference, subtree, s, tally);
+    if (there) {
+      const bool open = v.cut == known.cut || is_own_reached(tree, s, sight, tally);
+      change = open ? settle_own(state, subtree, known, v, reference, tally)
+                    : close_own(state, subtree, known, tally);
+      for (uint32_t left = (known.refined ^ v.refined) & s.interior; left != 0; left &= left - 1)
+        signal_change(tree, state, s, __ffs(left) - 1, v.refined);
+    }
     count_changes(state, subtree, s.levels, change, tally);
   }
 }

@@ -51,14 +51,14 @@ __device__ inline SearchSubtree load_subtree(const TreeView& tree, uint32_t subt
   s.levels = __shfl_sync(kAllLanes, word, 3, kGroupLanes);
   s.first_record = __shfl_sync(kAllLanes, word, 4, kGroupLanes);
   s.interior = __shfl_sync(kAllLanes, word, 5, kGroupLanes);
-  s.owned = __shfl_sync(kAllLanes, word, 6, kGroupLanes);
+  s.families = __shfl_sync(kAllLanes, word, 6, kGroupLanes);
   s.entry = __shfl_sync(kAllLanes, word, 7, kGroupLanes);
   return s;
 }
 
 // The record of an interior slot.
 __device__ inline uint32_t record_of(const TreeView& tree, const SearchSubtree& s, uint32_t slot) {
-  return s.record(__popc(s.interior & ((1u << slot) - 1)), tree.next_block);
+  return s.record(__popc(s.interior & slots_before(slot)), tree.next_block);
 }
 
 __device__ inline uint32_t block_of(const StateView& state, uint32_t subtree) {
@@ -146,7 +146,7 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
   reached = group_or(reached) | s.level_slots(0);
   v.slack = group_min(v.slack);
   v.extent = group_max(v.extent);  // the roots': extents never grow downwards
-  v.cut = reached & ~v.refined & s.owned;
+  v.cut = reached & ~v.refined & s.owned();
   // A record that is blocked is of the tier's lowest level: nodes below it are in no slot here.
   if (tree.streamed()) v.stand_ins = group_or(v.stand_ins) & v.cut;
   return v;

@@ -30,6 +30,9 @@ void put(unsigned char* into, size_t index, const T& value) {
   std::memcpy(into + index * sizeof(T), &value, sizeof(T));
 }
 
+static_assert(outside_code(kMaxChunkBytes / sizeof(NodeRecord),
+                           kMaxChunkBytes / sizeof(NodeRecord) - 1) <= 0xffff);
+
 void check_addresses(SlotShape shape, PoolRoom room) {
   const uint64_t nodes = uint64_t{room.slots} * shape.nodes,
                  records = uint64_t{room.blocks} * kRecordBlock;
@@ -117,7 +120,10 @@ GaussianView DevicePool::gaussians() const {
           array<unsigned char>(kShapes),
           array<float>(kOpacities),
           array<uint8_t>(kNodeCodes),
-          {array<uint32_t>(kParents), nullptr},
+          {nullptr,
+           nullptr,
+           {array<unsigned char>(kParents), array<uint32_t>(kFirstSubtrees),
+            array<uint32_t>(kOutside), shape_.nodes}},
           array<uint32_t>(kChildCounts),
           array<LargeFamily>(kLargeFamilies),
           array<uint32_t>(kLargeFamilyCount),
@@ -146,12 +152,18 @@ TreeView DevicePool::tree() const {
 }
 
 // As pool_fill copies it into the slot.
-void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* into) const {
+void DevicePool::pack(const StagedChunk& staged, unsigned char* into) const {
   const Chunk& chunk = staged.content;
   const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const uint32_t parent = staged.parent[i], place = staged.place[i];
-    put(at(kParents), place, parent == kNoNode ? kNoNode : slot * shape_.nodes + parent);
+    const bool outside = (parent & StagedChunk::kOutside) != 0;
+    const uint32_t code =
+        outside ? outside_code(shape_.nodes, parent & ~StagedChunk::kOutside) : parent;
+    if (layout_.unit(kParents) == 1)
+      put(at(kParents), place, static_cast<uint8_t>(code));
+    else
+      put(at(kParents), place, static_cast<uint16_t>(code));
     if (layout_.unit(kLeaves) != 0) put(at(kLeaves), place, chunk.record_of(i));
   }
   if (sh_form_ == ShForm::coded)
@@ -159,6 +171,7 @@ void DevicePool::pack(uint32_t slot, const StagedChunk& staged, unsigned char* i
   else
     pack_floats(staged, into);
   put(at(kSlotIds), 0, staged.ids);
+  put(at(kFirstSubtrees), 0, staged.links.first_subtree);
   std::memcpy(at(kRecords), staged.records.data(), staged.records.size() * sizeof(SearchRecord));
   std::memcpy(at(kNextBlocks), staged.links.blocks.data(),
               staged.links.blocks.size() * sizeof(uint32_t));
@@ -204,10 +217,10 @@ PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
   for (uint32_t a = 0; a < kFilledArrays; ++a) {
     const auto which = static_cast<PoolArray>(a);
     const size_t unit = layout_.unit(which);
-    const size_t count = which == kRecords                          ? staged.records.size()
-                         : which == kNextBlocks                     ? staged.links.blocks.size()
-                         : which == kStepSizes || which == kSlotIds ? 1
-                                                                    : staged.content.node.size();
+    const size_t count = which == kRecords      ? staged.records.size()
+                         : which == kNextBlocks ? staged.links.blocks.size()
+                         : is_one_a_slot(which) ? 1
+                                                : staged.content.node.size();
     const size_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
     fill.copies[a] = {from + piece_layout_.begin(which),
                       array<unsigned char>(which) + slot * layout_.slot_bytes(which),
@@ -221,7 +234,7 @@ void DevicePool::fill(uint32_t slot, const StagedChunk& chunk) {
   device_->use();
   require_room();
   const UploadRing::Piece piece = ring_.take();
-  pack(slot, chunk, piece.host());
+  pack(chunk, piece.host());
   launch_fill(copies(slot, chunk, piece.device()), stream_.get());
   piece.read_by(stream_.get());
 }
@@ -238,7 +251,7 @@ void DevicePool::apply(const LinkPatch& patch) {
   const PoolPatch copy = patches_.put(patch);
   put_behind_frames();
   launch_patch(
-      {array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords), array<uint32_t>(kParents),
+      {array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords), array<uint32_t>(kOutside),
        tables_ == nullptr ? nullptr : array<LargeFamily>(kLargeFamilies),
        array<uint32_t>(kLargeFamilyCount)},
       copy, stream_.get());

@@ -54,7 +54,7 @@ class DevicePool final : public ChunkPool {
   T* array(PoolArray which) const {
     return reinterpret_cast<T*>(memory_.data() + layout_.begin(which));
   }
-  void pack(uint32_t slot, const StagedChunk& chunk, unsigned char* into) const;
+  void pack(const StagedChunk& chunk, unsigned char* into) const;
   void pack_codes(const StagedChunk& chunk, unsigned char* into) const;
   void pack_floats(const StagedChunk& chunk, unsigned char* into) const;
   PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;

@@ -39,7 +39,7 @@ class Writer {
 size_t bytes_of(const LinkPatch& p) {
   return (p.cut.records.size() + p.tied.records.size()) * sizeof(LinkPatch::Record) +
          p.linked.size() * (sizeof(SearchSubtree) + sizeof(uint32_t)) +
-         p.parents.size() * sizeof(LinkPatch::Parent) + p.unlinked.size() * sizeof(uint32_t) +
+         p.outside.size() * sizeof(LinkPatch::Outside) + p.unlinked.size() * sizeof(uint32_t) +
          (p.large ? p.large->size() * sizeof(LargeFamily) : 0);
 }
 
@@ -70,7 +70,7 @@ PoolPatch PatchBuffers::put(const LinkPatch& patch) {
   p.tied = writer.put(patch.tied.records);
   p.linked = writer.put<SearchSubtree>(patch.linked.size(),
                                        [&](size_t i) { return patch.linked[i].second; });
-  p.parents = writer.put(patch.parents);
+  p.outside = writer.put(patch.outside);
   p.large_changed = patch.large.has_value();
   if (p.large_changed) {
     p.large = writer.put(*patch.large);
@@ -82,7 +82,7 @@ PoolPatch PatchBuffers::put(const LinkPatch& patch) {
   p.cut_count = count_of(patch.cut.records);
   p.tied_count = count_of(patch.tied.records);
   p.linked_count = count_of(patch.linked);
-  p.parent_count = count_of(patch.parents);
+  p.outside_count = count_of(patch.outside);
   p.unlinked_count = count_of(patch.unlinked);
   return p;
 }

@@ -78,9 +78,9 @@ __global__ void __launch_bounds__(kThreads) pool_tie(PoolTables tables, PoolPatc
   set_records(tables, patch.tied, patch.tied_count);
   for (uint32_t i = first_index(); i < patch.linked_count; i += stride())
     tables.subtrees[patch.linked_subtrees[i]] = patch.linked[i];
-  for (uint32_t i = first_index(); i < patch.parent_count; i += stride()) {
-    const LinkPatch::Parent p = patch.parents[i];
-    tables.parents[p.node] = p.parent;
+  for (uint32_t i = first_index(); i < patch.outside_count; i += stride()) {
+    const LinkPatch::Outside o = patch.outside[i];
+    tables.outside[o.subtree] = o.parent;
   }
   if (!patch.large_changed || tables.large == nullptr) return;
   for (uint32_t i = first_index(); i < patch.large_count; i += stride())
@@ -107,7 +107,7 @@ void launch_patch(const PoolTables& tables, const PoolPatch& patch, cudaStream_t
     launch_kernel("pool_cut", pool_cut, {blocks_for(most), kThreads, stream}, tables, patch);
   }
   if (const uint32_t most =
-          std::max({patch.tied_count, patch.linked_count, patch.parent_count, patch.large_count});
+          std::max({patch.tied_count, patch.linked_count, patch.outside_count, patch.large_count});
       most != 0 || patch.large_changed) {
     launch_kernel("pool_tie", pool_tie, {blocks_for(most), kThreads, stream}, tables, patch);
   }

@@ -21,7 +21,7 @@ struct PoolFill {
 struct PoolTables {
   SearchSubtree* subtrees;
   SearchRecord* records;
-  uint32_t* parents;
+  uint32_t* outside;
   LargeFamily* large;  // null where they are not asked for
   uint32_t* large_count;
 };
@@ -31,11 +31,11 @@ struct PoolPatch {
   const LinkPatch::Record* cut;
   const LinkPatch::Record* tied;
   const SearchSubtree* linked;
-  const LinkPatch::Parent* parents;
+  const LinkPatch::Outside* outside;
   const uint32_t* linked_subtrees;  // of each of linked
   const uint32_t* unlinked;
   const LargeFamily* large;
-  uint32_t cut_count, tied_count, linked_count, parent_count, unlinked_count, large_count;
+  uint32_t cut_count, tied_count, linked_count, outside_count, unlinked_count, large_count;
   bool large_changed;
 };
 

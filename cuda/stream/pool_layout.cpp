@@ -26,19 +26,22 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
            coefficient_bytes(scene.sh_degree, form),
            scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0,
            coded ? 0 : sizeof(float),
-           sizeof(uint32_t),
+           parent_code_bytes(shape.nodes),
            coded ? 0 : sizeof(uint32_t),
            coded ? 0 : sizeof(uint8_t),
            sizeof(SearchRecord),
            sizeof(uint32_t),
            coded ? sizeof(ShStepSizes) : 0,
            sizeof(SlotIds),
+           sizeof(uint32_t),
            sizeof(SearchSubtree),
+           sizeof(uint32_t),
            sizeof(SearchChunk),
            sizeof(LargeFamily),
            sizeof(uint32_t)};
   fixed_bytes_ = {};
   fixed_bytes_[kSubtrees] = scene.search.subtree_count() * unit_[kSubtrees];
+  fixed_bytes_[kOutside] = scene.search.subtree_count() * unit_[kOutside];
   fixed_bytes_[kChunks] = scene.search.chunks.size() * unit_[kChunks];
   if (coded) {
     fixed_bytes_[kLargeFamilies] = most_large_families(scene.node_count) * unit_[kLargeFamilies];
@@ -48,10 +51,9 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
   block_bytes_[kRecords] = kRecordBlock * unit_[kRecords];
   block_bytes_[kNextBlocks] = unit_[kNextBlocks];
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
-    const size_t places = a >= kFilledArrays || block_bytes_[a] != 0 ? 0
-                          : a == kStepSizes || a == kSlotIds         ? 1
-                                                                     : shape.nodes;
-    slot_bytes_[a] = places * unit_[a];
+    const auto which = static_cast<PoolArray>(a);
+    const bool filled = a < kFilledArrays && block_bytes_[a] == 0;
+    slot_bytes_[a] = (!filled ? 0 : is_one_a_slot(which) ? 1 : shape.nodes) * unit_[a];
   }
   set_room(room);
 }

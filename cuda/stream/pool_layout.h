@@ -19,19 +19,25 @@ enum PoolArray : uint32_t {
   kParents,
   kChildCounts,
   kNodeCodes,
-  kRecords,     // blocks
-  kNextBlocks,  // one a block; of a chunk on its way, its blocks
-  kStepSizes,   // one a slot
-  kSlotIds,     // the same
+  kRecords,        // blocks
+  kNextBlocks,     // one a block; of a chunk on its way, its blocks
+  kStepSizes,      // one a slot
+  kSlotIds,        // the same
+  kFirstSubtrees,  // the same
   kFilledArrays,
   // Of the whole tree.
   kSubtrees = kFilledArrays,
+  kOutside,  // one a subtree
   kChunks,
   // Of a compact scene.
   kLargeFamilies,
   kLargeFamilyCount,
   kPoolArrays
 };
+
+inline bool is_one_a_slot(PoolArray array) {
+  return array == kStepSizes || array == kSlotIds || array == kFirstSubtrees;
+}
 
 // Of the coefficients of a streamed scene, as a resident one decides it.
 ShForm sh_form(const Scene& scene);

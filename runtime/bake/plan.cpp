@@ -93,6 +93,7 @@ SubtreePlace BakePlan::top_place(uint32_t tier) const {
   return place;
 }
 
+// They share no subtree: each has grandchildren in its tier (cell_shape.h).
 std::vector<RootShape> BakePlan::top_shapes(uint32_t tier) const {
   const uint32_t first = root_level(tiers(), tier), end = first + tier_height(tiers(), tier);
   std::vector<RootShape> roots(nodes_below(first));
@@ -104,7 +105,6 @@ std::vector<RootShape> BakePlan::top_shapes(uint32_t tier) const {
                                     : first_node((root + 1) * cells, level - cell_level_) -
                                           first_node(root * cells, level - cell_level_);
     roots[root].nodes = static_cast<uint8_t>(count) & 31u;
-    roots[root].deep = true;
   }
   return roots;
 }
@@ -136,8 +136,8 @@ void BakePlan::lay_out_segments(const ShapeOf& shape_of, Workers& workers) {
   tier_begin_.push_back(subtrees_);
 }
 
-// Next-fit, as pack_runs() has it; then siblings share, as join_siblings() has it. A segment's first
-// root shares with none before it.
+// Next-fit, as pack_runs() has it; then siblings share, as join_siblings() has it. A segment's
+// first root shares with none before it.
 void BakePlan::add_segment(uint32_t tier, uint32_t cell, const SubtreePlace& place,
                            const std::vector<RootShape>& roots) {
   segments_.push_back({tier, cell, subtrees_, open_bytes_, chunk_count_, place});

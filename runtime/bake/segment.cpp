@@ -1,7 +1,5 @@
 #include "runtime/bake/segment.h"
 
-#include <algorithm>
-
 #include "runtime/format/gather.h"
 
 namespace voyager {
@@ -12,9 +10,7 @@ void pass(const Subtree& subtree, uint32_t levels, const LodTree& tree, SubtreeP
   place.next[0] += subtree.root_count;
   place.next[1] += subtree.child_count;
   place.next[2] += subtree.grandchild_count;
-  const uint32_t first = levels == 1   ? 0
-                         : levels == 2 ? subtree.first_child_slot()
-                                       : subtree.first_grandchild_slot();
+  const uint32_t first = subtree.first_slot(levels - 1);
   for (uint32_t slot = first; slot < subtree.node_count(); ++slot)
     place.next[3] += tree.records[subtree.node(slot)].child_count;
 }
@@ -23,20 +19,6 @@ EntryHull hull_above(const SegmentNodes& nodes, const Subtree& subtree) {
   const LodTree& tree = nodes.baked.tree;
   if (subtree.root != 0) return hull_of(tree.records[tree.parent[subtree.root]]);
   return nodes.above ? hull_of(*nodes.above) : hull_of_root(tree.records[0]);
-}
-
-void join_siblings_of_runs(const LodTree& tree, SegmentRuns& runs) {
-  const std::span<Subtree> all = runs.subtrees;
-  uint32_t used = 0;
-  for (size_t i = 0; i + 1 < runs.begin.size(); ++i) {
-    const auto apart = all.subspan(runs.begin[i], runs.begin[i + 1] - runs.begin[i]);
-    const auto joined = apart.first(join_siblings(tree, apart));
-    std::copy(joined.begin(), joined.end(), all.begin() + used);
-    runs.begin[i] = used;
-    used += static_cast<uint32_t>(joined.size());
-  }
-  runs.begin.back() = used;
-  runs.subtrees.resize(used);
 }
 
 }  // namespace
@@ -62,7 +44,7 @@ SegmentRuns divide(const Segment& segment, const SegmentNodes& nodes, uint32_t c
     pass(runs.subtrees[i], nodes.levels, nodes.baked.tree, place);
   }
   runs.begin.push_back(static_cast<uint32_t>(runs.subtrees.size()));
-  join_siblings_of_runs(nodes.baked.tree, runs);
+  join_siblings(nodes.baked.tree, runs.begin, runs.subtrees);
   return runs;
 }
 

@@ -203,8 +203,8 @@ void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader
   const size_t coefficients = context.coefficients(), nodes = chunk.words.size();
   for (int axis = 0; axis < 3; ++axis) header.position_step[axis] = position_step(chunk, axis);
   set_sh_scales(chunk, coefficients, header);
-  std::vector<std::byte> raw(
-      plane_bytes(chunk.records.size(), chunk.subtrees.size(), nodes, coefficients, context.version));
+  std::vector<std::byte> raw(plane_bytes(chunk.records.size(), chunk.subtrees.size(), nodes,
+                                         coefficients, context.version));
   Compressor frame(out.bytes);
   const std::byte *group = raw.data(), *const end = raw.data() + raw.size();
   const EndGroup end_group = [&](const std::byte* position) {
@@ -214,8 +214,7 @@ void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader
   const ChunkCounts counts = counts_of(chunk);
   const Families families = families_of(counts);
   const GaussianOrder order = gaussian_order(families, counts, chunk.record);
-  std::byte* const at =
-      put_records(raw.data(), chunk, counts, families, context, end_group);
+  std::byte* const at = put_records(raw.data(), chunk, counts, families, context, end_group);
   GaussianPlanes planes(at, order, gaussian_bytes(coefficients));
   const PlaneEncoder encoder(chunk, header, end_group);
   encoder.put_geometry(planes);

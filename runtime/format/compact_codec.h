@@ -6,8 +6,7 @@ namespace voyager {
 
 // Of a chunk with the counts of `entry`, in a file of that version: its planes, before they are
 // compressed.
-uint64_t compact_plane_bytes(const ChunkEntry& entry, size_t coefficients,
-                             uint32_t version = kSceneVersion);
+uint64_t compact_plane_bytes(const ChunkEntry& entry, size_t coefficients, uint32_t version);
 // Fills the frame and scale fields of `header`, whose counts are set; appends the
 // payload to out.bytes, and sets what out says of the restored values.
 void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader& header,

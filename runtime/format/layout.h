@@ -25,9 +25,12 @@ inline constexpr uint64_t chunk_align(Quality quality) {
 inline constexpr unsigned char kSceneMagic[8] = {0x89, 'V', 'O', 'Y', '\r', '\n', 0x1a, '\n'};
 inline constexpr uint32_t kSceneVersion = 6;
 inline constexpr uint32_t kOldestSceneVersion = 4;  // that is read: without what later ones add
-// A subtree may have several roots from version 6 on, and its counts then take three bytes.
+// From version 6 on a subtree may have several roots, and says how many.
+inline constexpr bool has_root_counts(uint32_t version) {
+  return version >= 6;
+}
 inline constexpr size_t subtree_count_bytes(uint32_t version) {
-  return version < 6 ? 2 : 3;
+  return has_root_counts(version) ? 3 : 2;
 }
 inline constexpr uint32_t kFlagAntialiased = 1;
 inline constexpr uint32_t kFlagLeafExtents = 2;  // some leaf's extent is not 0

@@ -46,7 +46,7 @@ size_t table_bytes(size_t subtrees, uint32_t version) {
 void put_table(const Chunk& chunk, uint32_t version, PlaneWriter& planes) {
   std::vector<uint8_t> table;
   table.reserve(table_bytes(chunk.subtrees.size(), version));
-  if (version >= 6)
+  if (has_root_counts(version))
     for (const Subtree& subtree : chunk.subtrees) table.push_back(subtree.root_count);
   for (const Subtree& subtree : chunk.subtrees) table.push_back(subtree.child_count);
   for (const Subtree& subtree : chunk.subtrees) table.push_back(subtree.grandchild_count);
@@ -61,9 +61,9 @@ void take_table(PlaneReader& planes, const ChunkLocation& location, const ChunkC
   planes.take(table.data(), table.size());
   for (size_t i = subtree_count_bytes(context.version) * count; i < table.size(); ++i)
     if (table[i] != 0) location.damaged("a subtree table with more than its counts", "zeros");
-  const bool roots = context.version >= 6;
-  const uint8_t *const children = table.data() + (roots ? count : 0),
-                       *const grandchildren = children + count;
+  const bool roots = has_root_counts(context.version);
+  const uint8_t *const children = table.data() + (roots ? count : 0), *const grandchildren =
+                                                                          children + count;
   std::vector<SubtreeCounts> counts(count);
   for (size_t i = 0; i < count; ++i)
     counts[i] = {roots ? table[i] : uint8_t{1}, children[i], grandchildren[i]};

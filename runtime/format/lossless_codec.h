@@ -5,8 +5,7 @@
 namespace voyager {
 
 // Of a chunk with the counts of `entry`, in a file of that version.
-uint64_t lossless_payload_bytes(const ChunkEntry& entry, size_t coefficients,
-                                uint32_t version = kSceneVersion);
+uint64_t lossless_payload_bytes(const ChunkEntry& entry, size_t coefficients, uint32_t version);
 // Appends the payload to out.bytes, and sets out.largest_sh.
 void encode_lossless(const Chunk& chunk, const ChunkContext& context, EncodedChunk& out);
 // payload.size() is lossless_payload_bytes(). Fills the chunk: subtrees are checked

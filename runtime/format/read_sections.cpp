@@ -58,8 +58,7 @@ void check_lossless_length(const ChunkEntry& e, uint64_t at, const FileHeader& h
 // However little there is to compress, and whatever ends a block of the frame.
 void check_compact_length(const ChunkEntry& e, uint64_t at, const FileHeader& h,
                           const Check& check) {
-  const uint64_t planes =
-      compact_plane_bytes(
+  const uint64_t planes = compact_plane_bytes(
       e, static_cast<size_t>(sh_coefficients(static_cast<int>(h.sh_degree))), h.version);
   check.at_most(at, "chunk length", e.bytes,
                 align_up(sizeof(ChunkHeader) + 2 * planes, chunk_align(Quality::compact)));
@@ -72,7 +71,7 @@ void check_entry(const ChunkEntry& e, uint64_t at, const FileHeader& h, const Ch
              "a chunk length that is 0 or not a multiple of the alignment", "a multiple");
   check.at_most(at, "bytes of search records", e.record_count * uint64_t{sizeof(NodeRecord)},
                 h.chunk_bytes);
-  check.at_most(at, "subtrees of a chunk", e.subtree_count, e.record_count);
+  check.at_most(at, "subtrees of a chunk", e.subtree_count, e.node_count);
   check.at_most(at, "nodes of a chunk", e.node_count, e.record_count);
   check.that(sound(e.hull), at, "an entry hull out of range", "finite, ordered, below 1e18");
   if (quality == Quality::lossless)

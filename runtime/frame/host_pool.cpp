@@ -37,8 +37,8 @@ class HostPool final : public ChunkPool {
       set_gaussian(chunk, i, at, scene_);
       if (scene_.search.leaves_have_extent) scene_.tree.records[at] = chunk.record_of(i);
       if (counts_children(scene_)) scene_.child_count[at] = chunk.record_of(i).child_count;
-      scene_.tree.parent[at] =
-          staged.parent[i] == kNoNode ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
+      const bool outside = (staged.parent[i] & StagedChunk::kOutside) != 0;
+      scene_.tree.parent[at] = outside ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
     }
     for (uint32_t i = 0; i < staged.records.size(); ++i)
       scene_.search.records[staged.links.record(i)] = staged.records[i];
@@ -57,7 +57,8 @@ class HostPool final : public ChunkPool {
     for (const uint32_t subtree : patch.unlinked) search.subtrees[subtree].entry = kNotLinked;
     set_records(patch.tied.records);
     for (const auto& [subtree, linked] : patch.linked) search.subtrees[subtree] = linked;
-    for (const LinkPatch::Parent& p : patch.parents) scene_.tree.parent[p.node] = p.parent;
+    for (const LinkPatch::Outside& o : patch.outside)
+      std::fill_n(scene_.tree.parent.begin() + o.first, o.count, o.parent);
     if (patch.large) scene_.large_families.assign(patch.large->begin(), patch.large->end());
   }
 

@@ -150,9 +150,10 @@ void report_damage(const SceneFile& file, const std::vector<ChunkFindings>& find
     const std::string& damage = findings[index].damage;
     if (damage.empty()) continue;
     const ChunkEntry& entry = file.chunks()[index];
-    const uint32_t first_root = entry.place.next[0] - (entry.place.listed_children != 0 ? 1 : 0);
+    const bool repeats_root = entry.place.listed_children != 0;
+    const uint32_t first_root = entry.place.next[0] - (repeats_root ? 1 : 0);
     scene.damaged_chunks.push_back(
-        {index, entry.first_subtree, entry.subtree_count, first_root, damage});
+        {index, entry.first_subtree, entry.subtree_count, first_root, repeats_root, damage});
     for (const NodeRange& range : file.nodes_of(index))
       scene.damaged.push_back({range.first, range.count, damage});
     scene.notes.push_back(
@@ -322,7 +323,8 @@ void check_totals(const Scene& scene) {
 void add_search(Scene& scene, Workers& workers) {
   std::vector<SubtreeRange> missing;
   for (const DamagedChunk& d : scene.damaged_chunks)
-    missing.push_back({d.first_subtree, d.first_subtree + d.subtree_count, d.first_root});
+    missing.push_back(
+        {d.first_subtree, d.first_subtree + d.subtree_count, d.first_root, d.repeats_root});
   scene.search = make_search_tree(scene.tree, scene.partition, missing, workers,
                                   scene.tree.records.get_allocator().resource());
 }

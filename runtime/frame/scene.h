@@ -37,7 +37,8 @@ struct SceneNote {
 struct DamagedChunk {
   uint32_t chunk;
   uint32_t first_subtree, subtree_count;
-  uint32_t first_root;  // of the first subtree, which may repeat it
+  uint32_t first_root;  // of the first subtree
+  bool repeats_root;    // which the chunk before has, too
   std::string message;  // names file, chunk, offset, found, expected
 };
 

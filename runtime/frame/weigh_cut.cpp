@@ -94,7 +94,7 @@ class BlockWeights {
 
   float own_size(const SearchSubtree& subtree, uint32_t slot) const {
     if ((subtree.interior >> slot & 1) == 0) return leaf_size(links_.records[subtree.node(slot)]);
-    const uint32_t below = subtree.interior & ((1u << slot) - 1);
+    const uint32_t below = subtree.interior & slots_before(slot);
     return size_of(
         search_tree_.records[subtree.record(count_bits(below), search_tree_.next_block.data())]);
   }
@@ -125,7 +125,7 @@ class BlockWeights {
       const float t = interpolation_weight(true, f.size, own_size(subtree, slot),
                                            query_.target_size, links_.blend_share);
       const uint32_t node = subtree.node(slot);
-      items[count_bits(slots & ((1u << slot) - 1))] =
+      items[count_bits(slots & slots_before(slot))] =
           t == 1.0f ? whole(node) : DrawItem{node, f.parent, t, f.inverse_k};
     }
   }

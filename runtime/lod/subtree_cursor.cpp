@@ -148,6 +148,7 @@ const char* SubtreeCursor::take_grandchildren(const NodeRecord* records, Subtree
   if (out.grandchild_count > unlisted) return "more grandchildren than its child has";
   if (unlisted > levels_.end[2] - place_.next[2]) return "more grandchildren than their level has";
   if (out.grandchild_count == 0 && children != 0) return "no child of a child that has some";
+  if (out.grandchild_count == 0 && out.repeats_child()) return "no node of its own";
   place_.listed_grandchildren += out.grandchild_count;
   place_.next[2] += out.grandchild_count;
   return nullptr;
@@ -155,13 +156,11 @@ const char* SubtreeCursor::take_grandchildren(const NodeRecord* records, Subtree
 
 // The children of a level's nodes, all of each.
 const char* SubtreeCursor::take_whole(const NodeRecord* records, uint32_t level, Subtree& out) {
-  const uint32_t first = level == 0 ? 0 : out.first_child_slot();
-  const uint32_t end = level == 0 ? out.first_child_slot() : out.first_grandchild_slot();
   uint32_t& next = place_.next[level + 1];
   uint32_t left = level == 0 ? out.child_count : out.grandchild_count;
   if (left > levels_.end[level + 1] - next) return "more nodes than their level has";
   if (left != 0) (level == 0 ? out.first_child : out.first_grandchild) = next;
-  for (uint32_t slot = first; slot < end; ++slot) {
+  for (uint32_t slot = out.first_slot(level); slot < out.first_slot(level + 1); ++slot) {
     const uint32_t children = levels_.height > level + 1 ? records[slot].child_count : 0;
     first_children_[slot] = next;
     if (children > left) return "fewer nodes than their parents have children";
@@ -172,9 +171,7 @@ const char* SubtreeCursor::take_whole(const NodeRecord* records, uint32_t level,
 }
 
 const char* SubtreeCursor::take_below(const NodeRecord* records, const Subtree& subtree) {
-  const uint32_t begin = levels_.height == 1   ? 0
-                         : levels_.height == 2 ? subtree.first_child_slot()
-                                               : subtree.first_grandchild_slot();
+  const uint32_t begin = subtree.first_slot(levels_.height - 1);
   for (uint32_t slot = begin; slot < subtree.node_count(); ++slot) {
     const uint32_t children = records[slot].child_count;
     if (children > levels_.end[3] - place_.next[3]) return "more children than the level below has";
@@ -186,9 +183,9 @@ const char* SubtreeCursor::take_below(const NodeRecord* records, const Subtree& 
 
 // Whether the root goes on in another run, and the tier in another subtree.
 const char* SubtreeCursor::finish(const NodeRecord* records, const Subtree& subtree) {
-  const bool child_goes_on = place_.listed_grandchildren != 0 &&
-                             place_.listed_grandchildren <
-                                 records[subtree.first_child_slot()].child_count;
+  const bool child_goes_on =
+      place_.listed_grandchildren != 0 &&
+      place_.listed_grandchildren < records[subtree.first_child_slot()].child_count;
   if (!child_goes_on) place_.listed_grandchildren = 0;
   if (!child_goes_on && place_.listed_children != 0 &&
       place_.listed_children == records[0].child_count)

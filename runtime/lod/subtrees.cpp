@@ -77,8 +77,7 @@ class Splitter {
 
 // Of a tier of three levels: whether all that is below the root is there.
 bool is_whole(const LodTree& tree, const Subtree& subtree) {
-  return !subtree.repeats_root() &&
-         subtree.child_count == tree.records[subtree.root].child_count &&
+  return !subtree.repeats_root() && subtree.child_count == tree.records[subtree.root].child_count &&
          (subtree.child_count != 1 ||
           subtree.grandchild_count == tree.records[subtree.first_child].child_count);
 }
@@ -125,7 +124,8 @@ void split_into_fewest(const LodTree& tree, Partition& partition) {
 void count_tiers(Partition& partition) {
   for (size_t tier = 1; tier < partition.tier_begin.size(); ++tier) {
     const size_t level = partition.first_tier_levels + (tier - 1) * kTierLevels;
-    const uint32_t end = level < partition.level_begin.size() ? partition.level_begin[level] : kNoNode;
+    const uint32_t end =
+        level < partition.level_begin.size() ? partition.level_begin[level] : kNoNode;
     const auto& subtrees = partition.subtrees;
     partition.tier_begin[tier] = static_cast<uint32_t>(
         std::partition_point(subtrees.begin(), subtrees.end(),
@@ -152,19 +152,37 @@ void pack_chunks(const LodTree& tree, Partition& partition, std::pmr::memory_res
   sizes.reserve(partition.subtrees.size());
   for (const Subtree& subtree : partition.subtrees)
     sizes.push_back(subtree.node_count() * static_cast<uint32_t>(sizeof(NodeRecord)));
-  const auto runs = pack_runs(sizes, partition.chunk_bytes, memory);
-  const std::span<Subtree> all = partition.subtrees;
-  partition.chunk_begin.push_back(0);
-  for (size_t i = 0; i + 1 < runs.size(); ++i) {
-    const auto apart = all.subspan(runs[i], runs[i + 1] - runs[i]);
-    partition.chunk_hull.push_back(entry_hull(tree, apart));
-    const auto joined = apart.first(join_siblings(tree, apart));
-    std::copy(joined.begin(), joined.end(), all.begin() + partition.chunk_begin.back());
-    partition.chunk_begin.push_back(partition.chunk_begin.back() +
-                                    static_cast<uint32_t>(joined.size()));
+  partition.chunk_begin = pack_runs(sizes, partition.chunk_bytes, memory);
+  const std::span<const Subtree> all = partition.subtrees;
+  for (size_t i = 0; i < partition.chunk_count(); ++i) {
+    const uint32_t begin = partition.chunk_begin[i], end = partition.chunk_begin[i + 1];
+    partition.chunk_hull.push_back(entry_hull(tree, all.subspan(begin, end - begin)));
   }
-  partition.subtrees.resize(partition.chunk_begin.back());
+  join_siblings(tree, partition.chunk_begin, partition.subtrees);
   count_tiers(partition);
+}
+
+// Of one chunk. Returns how many are left, from the first place on.
+size_t join_siblings(const LodTree& tree, std::span<Subtree> subtrees) {
+  SiblingRule rule;
+  size_t used = 0;
+  for (size_t i = 0; i < subtrees.size(); ++i) {
+    const Subtree next = subtrees[i];
+    bool shares = false;
+    if (!is_whole(tree, next)) {
+      rule.start();
+    } else {
+      const uint32_t parent = tree.parent[next.root];
+      const bool sibling =
+          used != 0 && parent != kNoNode && parent == tree.parent[subtrees[used - 1].root];
+      shares = rule.shares(next.node_count(), sibling, next.grandchild_count != 0);
+    }
+    if (shares)
+      append(next, subtrees[used - 1]);
+    else
+      subtrees[used++] = next;
+  }
+  return used;
 }
 
 }  // namespace
@@ -202,26 +220,19 @@ std::pmr::vector<uint32_t> pack_runs(std::span<const uint32_t> sizes, uint32_t l
   return begin;
 }
 
-size_t join_siblings(const LodTree& tree, std::span<Subtree> subtrees) {
-  SiblingRule rule;
-  size_t used = 0;
-  for (size_t i = 0; i < subtrees.size(); ++i) {
-    const Subtree next = subtrees[i];
-    bool shares = false;
-    if (!is_whole(tree, next)) {
-      rule.start();
-    } else {
-      const uint32_t parent = tree.parent[next.root];
-      const bool sibling =
-          used != 0 && parent != kNoNode && parent == tree.parent[subtrees[used - 1].root];
-      shares = rule.shares(next.node_count(), sibling, next.grandchild_count != 0);
-    }
-    if (shares)
-      append(next, subtrees[used - 1]);
-    else
-      subtrees[used++] = next;
+void join_siblings(const LodTree& tree, std::span<uint32_t> chunk_begin,
+                   std::pmr::vector<Subtree>& subtrees) {
+  const std::span<Subtree> all = subtrees;
+  uint32_t used = 0;
+  for (size_t i = 0; i + 1 < chunk_begin.size(); ++i) {
+    const auto apart = all.subspan(chunk_begin[i], chunk_begin[i + 1] - chunk_begin[i]);
+    const auto joined = apart.first(join_siblings(tree, apart));
+    std::copy(joined.begin(), joined.end(), all.begin() + used);
+    chunk_begin[i] = used;
+    used += static_cast<uint32_t>(joined.size());
   }
-  return used;
+  chunk_begin.back() = used;
+  subtrees.resize(used);
 }
 
 void split_tier(const LodTree& tree, uint32_t levels, uint32_t begin, uint32_t end,

@@ -51,6 +51,11 @@ struct Subtree {
 
   uint32_t first_child_slot() const { return root_count; }
   uint32_t first_grandchild_slot() const { return uint32_t{root_count} + child_count; }
+  // Of a level; of level 3 the end.
+  uint32_t first_slot(uint32_t level) const {
+    const uint32_t first[] = {0, first_child_slot(), first_grandchild_slot(), node_count()};
+    return first[level];
+  }
   uint32_t node_count() const { return first_grandchild_slot() + grandchild_count; }
   // 0: roots, 1: children, 2: grandchildren.
   uint32_t level(uint32_t slot) const {
@@ -164,9 +169,10 @@ class SiblingRule {
   bool deep_ = false;
 };
 
-// Joins those of a chunk, in their order, as SiblingRule says; roots whose parent is kNoNode with
-// none. Returns how many are left, from the first place on.
-size_t join_siblings(const LodTree& tree, std::span<Subtree> subtrees);
+// Joins the subtrees of each chunk, in their order, as SiblingRule says; roots whose parent is
+// kNoNode with none. chunk_begin: the first of each, and the end.
+void join_siblings(const LodTree& tree, std::span<uint32_t> chunk_begin,
+                   std::pmr::vector<Subtree>& subtrees);
 
 // Appends the subtrees of a tier of `levels` levels whose roots are [begin, end), one root in each.
 void split_tier(const LodTree& tree, uint32_t levels, uint32_t begin, uint32_t end,

@@ -9,9 +9,19 @@ inline uint32_t slot_bits(uint32_t first, uint32_t count) {
   return ((1u << count) - 1u) << first;
 }
 
-inline uint32_t owned_slots(const Subtree& subtree) {
-  const uint32_t first = subtree.first_owned_slot();
-  return slot_bits(first, subtree.node_count() - first);
+inline uint32_t slot_levels(const Subtree& subtree) {
+  return slot_levels(subtree.first_child_slot(), subtree.first_grandchild_slot(),
+                     subtree.node_count(), subtree.first_owned_slot());
+}
+
+// As SearchSubtree::families.
+template <class Record>
+uint32_t family_slots(const Subtree& subtree, const Record& record) {
+  uint32_t families = 0;
+  each_family(
+      subtree, [&](uint32_t slot) { return record(slot).child_count; },
+      [&](uint32_t, uint32_t first, uint32_t count) { families |= slot_bits(first, count != 0); });
+  return families;
 }
 
 template <class Record>
@@ -33,8 +43,7 @@ void fill_search_records(const Subtree& subtree, const Record& record, SearchRec
       });
   for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
     const NodeRecord& from = record(slot);
-    if (from.child_count != 0)
-      *out++ = {from.box_min, from.extent, from.box_max, children[slot]};
+    if (from.child_count != 0) *out++ = {from.box_min, from.extent, from.box_max, children[slot]};
   }
 }
 

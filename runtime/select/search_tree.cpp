@@ -44,20 +44,14 @@ class Builder {
   void describe(uint32_t s) {
     const Subtree& from = partition_.subtrees[s];
     SearchSubtree& to = out_.subtrees[s];
-    to = {from.root,
-          from.first_child,
-          from.first_grandchild,
-          slot_levels(from.first_child_slot(), from.first_grandchild_slot()),
-          0,
-          0,
-          0,
-          kNoRecord};
+    to = {from.root, from.first_child, from.first_grandchild, slot_levels(from), 0, 0,
+          0,         kNoRecord};
     if (is_missing(s)) return;
     const auto record = [&](uint32_t slot) -> auto& {
       return tree_.records[from.node(slot)];
     };
-    to.owned = owned_slots(from);
     to.interior = interior_slots(from, record);
+    to.families = family_slots(from, record);
     bool extent = false;
     for (uint32_t slot = 0; slot < from.node_count(); ++slot)
       extent |= (to.interior >> slot & 1) == 0 && record(slot).extent != 0.0f;
@@ -74,24 +68,28 @@ class Builder {
 
   // How many roots each of them has is not known, and need not be: a frame that reaches any of a
   // node's subtrees needs the chunk. So there is one for each node that the roots hang from, in
-  // their order, as there are at least so many, and the others are the last one's.
+  // their order; there are at least so many. Surplus subtrees are given to the last of these nodes.
   void describe_missing(const SubtreeRange& range) {
     uint32_t root = range.first_root;
+    bool more = true;  // nodes, in this tier
     for (uint32_t s = range.first; s < range.last; ++s) {
       const auto tier =
           static_cast<size_t>(std::upper_bound(out_.tier_begin.begin(), out_.tier_begin.end(), s) -
                               out_.tier_begin.begin() - 1);
-      if (s == out_.tier_begin[tier]) root = first_root(tier);
+      if (s == out_.tier_begin[tier]) root = first_root(tier), more = true;
       out_.subtrees[s] = kUnlinkedSubtree;
       out_.subtrees[s].root = root;
       out_.subtrees[s].entry = kNoRecord;
-      root = next_family(root, last_root(range, tier));
+      if (!more) continue;
+      const uint32_t next = next_family(root, end_of_roots(range, tier));
+      more = next != root;
+      root = next;
     }
   }
 
   // The first root that hangs from another node, or the same where none does.
-  uint32_t next_family(uint32_t root, uint32_t last) const {
-    for (uint32_t next = root + 1; next <= last; ++next)
+  uint32_t next_family(uint32_t root, uint32_t end) const {
+    for (uint32_t next = root + 1; next < end; ++next)
       if (tree_.parent[next] != tree_.parent[root]) return next;
     return root;
   }
@@ -101,15 +99,16 @@ class Builder {
   }
   uint32_t first_root(size_t tier) const { return partition_.level_begin[level_of(tier)]; }
 
-  uint32_t last_root(const SubtreeRange& range, size_t tier) const {
-    if (range.last >= out_.tier_begin[tier + 1])
-      return partition_.level_begin[level_of(tier) + 1] - 1;
+  // Behind the last root that the range has, whether or not it goes on behind it.
+  uint32_t end_of_roots(const SubtreeRange& range, size_t tier) const {
+    if (range.last >= out_.tier_begin[tier + 1]) return partition_.level_begin[level_of(tier) + 1];
     const auto after = std::lower_bound(
         missing_.begin(), missing_.end(), range.last,
         [](const SubtreeRange& other, uint32_t subtree) { return other.first < subtree; });
-    if (after != missing_.end() && after->first == range.last) return after->first_root;
+    if (after != missing_.end() && after->first == range.last)
+      return after->first_root + (after->repeats_root ? 1 : 0);
     const Subtree& next = partition_.subtrees[range.last];
-    return next.repeats_root() ? next.root : next.root - 1;
+    return next.root + (next.repeats_root() ? 1 : 0);
   }
 
   // A missing subtree has a record, too: what hangs below it is opened by that one,

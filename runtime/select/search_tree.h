@@ -44,57 +44,72 @@ struct SubtreeSpan {
 
 // Records lie in blocks. In a pool those of a chunk are anywhere, and each says which block is the
 // chunk's next.
-inline constexpr uint32_t kRecordBlock = 8;
+inline constexpr uint32_t kRecordBlock = 4;
 VOYAGER_HD constexpr uint32_t record_blocks(uint32_t records) {
   return (records + kRecordBlock - 1) / kRecordBlock;
 }
-// In SearchSubtree::owned, beside slots: the subtree's records are not all consecutive.
-inline constexpr uint32_t kScattered = 0x80000000u;
-
-// Of SearchSubtree::levels.
-VOYAGER_HD constexpr uint32_t slot_levels(uint32_t first_child_slot,
-                                          uint32_t first_grandchild_slot) {
-  return first_child_slot | first_grandchild_slot << 8;
+// SearchSubtree::levels: where the slots of roots, of children and of all end, and the first that
+// is not repeated.
+inline constexpr uint32_t kScattered = 0x80000000u;  // beside them: records are not consecutive
+VOYAGER_HD constexpr uint32_t slot_levels(uint32_t first_child_slot, uint32_t first_grandchild_slot,
+                                          uint32_t slots, uint32_t first_owned_slot) {
+  return first_child_slot | first_grandchild_slot << 8 | slots << 16 | first_owned_slot << 24;
 }
-
-// SearchSubtree::level_slots().
+VOYAGER_HD constexpr uint32_t slots_before(uint32_t slot) {
+  return (1u << slot) - 1u;
+}
+// The slots of level 0, the roots', of 1, the children's, or of 2; used or not.
 VOYAGER_HD constexpr uint32_t level_slots(uint32_t level, uint32_t levels) {
-  const uint32_t roots = (1u << (levels & 0xff)) - 1u, upper = (1u << (levels >> 8)) - 1u;
+  const uint32_t roots = slots_before(levels & 0xff), upper = slots_before(levels >> 8 & 0xff);
   return level == 0 ? roots : level == 1 ? upper & ~roots : ~upper & 0x7fffffffu;
 }
 
 // Slots are those of Subtree. record(k) is that of the k-th slot in `interior`.
 struct SearchSubtree {
   uint32_t root, first_child, first_grandchild;  // node ids
-  uint32_t levels;                               // slot_levels(): where roots end, and children
+  uint32_t levels;                               // slot_levels(); 0 slots where it is missing
   uint32_t first_record;
   uint32_t interior;  // slots of interior nodes
-  uint32_t owned;     // slots that are not repeated; 0 where the subtree's chunk is damaged
+  uint32_t families;  // slots of the first children here of nodes of the level above
   uint32_t entry;     // record of the roots' parent; kNoRecord at the tree's root
 
-  VOYAGER_HD bool missing() const { return owned == 0; }
+  VOYAGER_HD uint32_t slot_count() const { return levels >> 16 & 0xff; }
+  // Its chunk is damaged.
+  VOYAGER_HD bool missing() const { return slot_count() == 0; }
+  VOYAGER_HD bool scattered() const { return (levels & kScattered) != 0; }
   // next_block: SearchTree's.
   VOYAGER_HD uint32_t record(uint32_t k, const uint32_t* next_block) const {
-    if ((owned & kScattered) == 0) return first_record + k;
+    if (!scattered()) return first_record + k;
     uint32_t block = first_record / kRecordBlock, place = first_record % kRecordBlock + k;
     for (; place >= kRecordBlock; place -= kRecordBlock) block = next_block[block];
     return block * kRecordBlock + place;
   }
   VOYAGER_HD uint32_t first_child_slot() const { return levels & 0xff; }
-  VOYAGER_HD uint32_t first_grandchild_slot() const { return levels >> 8; }
+  VOYAGER_HD uint32_t first_grandchild_slot() const { return levels >> 8 & 0xff; }
+  // Slots that are not repeated.
+  VOYAGER_HD uint32_t owned() const {
+    return slots_before(slot_count()) & ~slots_before(levels >> 24 & 3);
+  }
+  VOYAGER_HD uint32_t first_slot(uint32_t level) const {
+    return level == 0 ? 0 : level == 1 ? first_child_slot() : first_grandchild_slot();
+  }
+  VOYAGER_HD uint32_t first_node(uint32_t level) const {
+    return level == 0 ? root : level == 1 ? first_child : first_grandchild;
+  }
   VOYAGER_HD uint32_t node(uint32_t slot) const {
     if (slot < first_child_slot()) return root + slot;
     return slot < first_grandchild_slot() ? first_child + (slot - first_child_slot())
                                           : first_grandchild + (slot - first_grandchild_slot());
   }
-  // 0: the roots' slots, 1: children's, 2: grandchildren's, used or not.
-  VOYAGER_HD uint32_t level_slots(uint32_t level) const { return voyager::level_slots(level, levels); }
+  VOYAGER_HD uint32_t level_slots(uint32_t level) const {
+    return voyager::level_slots(level, levels);
+  }
 };
 static_assert(sizeof(SearchSubtree) == 32);
 
 // Of a subtree that has not come yet.
-inline constexpr SearchSubtree kUnlinkedSubtree{
-    kNoNode, 0, 0, slot_levels(1, 1), 0, 0, 0, kNotLinked};
+inline constexpr SearchSubtree kUnlinkedSubtree{kNoNode, 0, 0, slot_levels(1, 1, 0, 0),
+                                                0,       0, 0, kNotLinked};
 
 // The subtrees below a record, which `children` is of: consecutive, and each has it as its entry.
 VOYAGER_HD SubtreeSpan subtrees_below(const SearchSubtree* subtrees, uint32_t subtree_count,
@@ -140,7 +155,8 @@ struct SearchTree {
 // Subtrees [first, last), whose chunk is damaged.
 struct SubtreeRange {
   uint32_t first, last;
-  uint32_t first_root;  // of subtree `first`, which may repeat it
+  uint32_t first_root;  // of subtree `first`
+  bool repeats_root;    // which the subtree before has, too
 };
 
 // Tree and partition are sound where no chunk is damaged. missing: ascending and

@@ -53,10 +53,7 @@ void PartitionedSearch::list_block(const Block& block) {
     for (uint32_t s = block.first; s < block.last; ++s) {
       if (cut_slots_[s] == 0) continue;
       const SearchSubtree& subtree = tree_.subtrees[s];
-      const uint32_t first_slot = level == 0   ? 0
-                                  : level == 1 ? subtree.first_child_slot()
-                                               : subtree.first_grandchild_slot();
-      const uint32_t node = subtree.node(first_slot);
+      const uint32_t first_slot = subtree.first_slot(level), node = subtree.first_node(level);
       out = put_set_bits<8>((cut_slots_[s] & subtree.level_slots(level)) >> first_slot, out, end,
                             [node](uint32_t place) { return node + place; });
     }

@@ -1,6 +1,7 @@
 #pragma once
 // One visit of a subtree: which of its nodes are refined, which are in the cut, and
-// how long that can be relied on. One definition for every partitioned search.
+// how long that can be relied on. judge() decides for every search; visit() is the host's, and a
+// device visits by several lanes (cuda/search).
 #include <cfloat>
 #include <cmath>
 
@@ -43,7 +44,7 @@ VOYAGER_HD NodeVerdict judge(const SearchRecord& r, const Sight& sight) {
   return {size_at(squared, r.extent) >= sight.target_size, 0.0f};
 }
 
-// What a search keeps of a subtree that is open: one whose root's parent is refined.
+// What a search keeps of a subtree that is open: one whose roots hang from a refined node.
 inline constexpr uint32_t kOpen = 0x80000000u;  // beside the bits of refined slots
 
 struct Visit {
@@ -59,7 +60,7 @@ struct Visit {
 // they cannot be refined, and their slack cannot end before their parent's. record(i): the i-th
 // of the subtree's records.
 template <class Record>
-VOYAGER_HD Visit visit(const SearchSubtree& subtree, const Sight& sight, const Record& record) {
+Visit visit(const SearchSubtree& subtree, const Sight& sight, const Record& record) {
   Visit v;
   uint32_t reached = subtree.level_slots(0);  // slots whose parent is refined
   uint32_t i = 0;
@@ -79,7 +80,7 @@ VOYAGER_HD Visit visit(const SearchSubtree& subtree, const Sight& sight, const R
     v.refined |= slot;
     reached |= r.child_slots();
   }
-  v.cut = reached & ~v.refined & subtree.owned;
+  v.cut = reached & ~v.refined & subtree.owned();
   return v;
 }
 

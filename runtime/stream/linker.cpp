@@ -4,6 +4,8 @@
 #include <bit>
 #include <utility>
 
+#include "runtime/select/search_records.h"
+
 namespace voyager {
 namespace {
 
@@ -21,10 +23,10 @@ class Addresses {
     return {root_,
             first_child_,
             base + s.first_place[2],
-            slot_levels(s.ids.first_child_slot(), s.ids.first_grandchild_slot()),
+            slot_levels(s.ids) | (is_scattered(table, s) ? kScattered : 0),
             s.interior == 0 ? 0 : table.record(s.first_record),
             s.interior,
-            s.owned | (is_scattered(table, s) ? kScattered : 0),
+            s.families,
             entry};
   }
 
@@ -41,20 +43,19 @@ class Addresses {
   uint32_t root_ = 0, first_child_ = 0;
 };
 
-// Of what the chunk could not know by itself.
-void add_parents(const StagedSubtree& from, const SearchSubtree& subtree, uint32_t parent,
-                 LinkPatch& patch) {
-  const auto add = [&](uint32_t first, uint32_t count, uint32_t of) {
-    for (uint32_t i = 0; i < count; ++i) patch.parents.push_back({first + i, of});
-  };
+// Of what the chunk could not know by itself. number: the subtree's. parent: what the roots hang
+// from.
+LinkPatch::Outside outside_of(const StagedSubtree& from, const SearchSubtree& subtree,
+                              uint32_t number, uint32_t parent) {
   switch (from.ids.repeated) {
     case Repeats::nothing:
-      return add(subtree.root, from.ids.root_count, parent);
+      break;
     case Repeats::root:
-      return add(subtree.first_child, from.ids.child_count, subtree.root);
+      return {number, subtree.first_child, from.ids.child_count, subtree.root};
     case Repeats::root_and_child:
-      return add(subtree.first_grandchild, from.ids.grandchild_count, subtree.first_child);
+      return {number, subtree.first_grandchild, from.ids.grandchild_count, subtree.first_child};
   }
+  return {number, subtree.root, from.ids.root_count, parent};
 }
 
 // The node that a root hangs from.
@@ -197,8 +198,9 @@ void Linker::link_root(LinkTable& table, uint32_t subtree, LinkPatch& patch) {
     for (uint32_t i = 0; i < end; ++i) linked = addresses.of(*tables_[chunk], i, kNoRecord);
   }
   table.subtrees[subtree].linked = true;
-  add_parents(table.subtrees[subtree], linked, kNoNode, patch);
-  patch.linked.emplace_back(table.first_subtree + subtree, linked);
+  const uint32_t number = table.first_subtree + subtree;
+  patch.outside.push_back(outside_of(table.subtrees[subtree], linked, number, kNoNode));
+  patch.linked.emplace_back(number, linked);
 }
 
 void Linker::link(Family first, LinkPatch& patch) {
@@ -219,7 +221,7 @@ void Linker::link(Family first, LinkPatch& patch) {
       first_below = std::min(first_below, subtree);
       const SearchSubtree linked = addresses.of(of, i, record);
       of.subtrees[i].linked = true;
-      add_parents(of.subtrees[i], linked, parent, patch);
+      patch.outside.push_back(outside_of(of.subtrees[i], linked, subtree, parent));
       patch.linked.emplace_back(subtree, linked);
       add_below(of, i, work_);
     });

@@ -23,8 +23,9 @@ struct LinkPatch {
   struct Record {
     uint32_t record, children;  // SearchRecord::children
   };
-  struct Parent {
-    uint32_t node, parent;
+  // The nodes [first, first + count) of a subtree, whose parent it does not own.
+  struct Outside {
+    uint32_t subtree, first, count, parent;
   };
   struct Links {
     std::vector<Record> records;
@@ -33,7 +34,7 @@ struct LinkPatch {
   Links cut, tied;
   std::vector<uint32_t> unlinked;  // subtrees to which nothing leads any more; for their entries
   std::vector<std::pair<uint32_t, SearchSubtree>> linked;
-  std::vector<Parent> parents;
+  std::vector<Outside> outside;
   // All large families of nodes that are held, where those have changed.
   std::optional<std::vector<LargeFamily>> large;
 

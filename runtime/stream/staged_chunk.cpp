@@ -28,7 +28,7 @@ class Stager {
   StagedChunk stage() {
     const Chunk& content = out_.content;
     set_places();
-    out_.parent.assign(content.node.size(), kNoNode);
+    out_.parent.reserve(content.node.size());
     uint32_t record = 0;
     for (size_t i = 0; i < content.subtrees.size(); ++i) {
       add(content.subtrees[i], content.first_subtree + static_cast<uint32_t>(i),
@@ -74,13 +74,12 @@ class Stager {
         static_cast<uint32_t>(out_.records.size()),
         static_cast<uint32_t>(links.below.size()),
         interior_slots(subtree, record),
-        owned_slots(subtree)};
+        family_slots(subtree, record)};
     out_.records.resize(out_.records.size() + static_cast<size_t>(std::popcount(staged.interior)));
     fill_search_records(subtree, record, out_.records.data() + staged.first_record);
     set_parents(subtree, records);
     uint32_t search_record = staged.first_record;
     for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
-      const bool owned = (staged.owned >> slot & 1) != 0;
       if ((staged.interior >> slot & 1) != 0) {
         if (subtree.level(slot) + 1 == levels) {
           out_.records[search_record].children = kBlocked;
@@ -90,7 +89,7 @@ class Stager {
         }
         ++search_record;
       }
-      if (owned) ++next_node_;
+      if (!subtree.repeats(slot)) ++next_node_;
     }
     links.subtrees.push_back(staged);
     out_.roots.insert(out_.roots.end(), records, records + subtree.root_count);
@@ -99,6 +98,8 @@ class Stager {
   // Slot by slot: what a node hangs from, and that it lies inside that.
   void set_parents(const Subtree& subtree, const NodeRecord* records) {
     const uint32_t owned = subtree.first_owned_slot();
+    out_.parent.resize(out_.parent.size() + subtree.node_count() - owned,
+                       StagedChunk::kOutside | static_cast<uint32_t>(out_.links.subtrees.size()));
     each_family(
         subtree, [&](uint32_t slot) { return records[slot].child_count; },
         [&](uint32_t parent, uint32_t first, uint32_t count) {

@@ -20,7 +20,7 @@ struct StagedSubtree {
   std::array<uint32_t, 3> first_place;
   uint32_t first_record;  // as in SearchSubtree
   uint32_t first_below;   // in LinkTable::below
-  uint32_t interior, owned;
+  uint32_t interior, families;
   bool linked = false;  // a refined node may lead to it (Linker)
 };
 
@@ -55,9 +55,10 @@ struct StagedChunk {
   Chunk content;
   std::vector<SearchRecord> records;  // those of the lowest level are blocked
   std::vector<NodeRecord> roots;      // of each subtree in turn
-  // Of each owned node, in the order of the content: its place, and its parent's, or kNoNode where
-  // another chunk may own that.
+  // Of each owned node, in the order of the content: its place, and its parent's, or kOutside with
+  // the index of its subtree in the chunk, where that does not own the parent (parent_code.h).
   std::vector<uint32_t> place, parent;
+  static constexpr uint32_t kOutside = 0x80000000u;
   SlotIds ids;
 
   uint32_t record_blocks() const {

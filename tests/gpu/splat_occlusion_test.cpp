@@ -1,4 +1,5 @@
 // What the frame before shows to be hidden is left out, and no bit of a picture tells.
+#include "runtime/stages/bin.h"
 #include "tests/gpu/splat_test.h"
 #include "tests/support/depth_limits.h"
 #include "tests/support/instances.h"
@@ -108,6 +109,33 @@ TEST_F(SplatOcclusion, WhatIsUncoveredMayBeMoreThanThereIsRoomFor) {
       FrameInput input = frame_input(look({0, 0, 0}, {0, 0, 1}, 333, 320));
       input.instances = {pose_of(of_sheets), pose_of(of_wall)};
       expect_same_bits(render(*on, input), render(*off, input));
+    }
+  }
+}
+
+// A second pass has lists of its own for few tiles: to either side of the most that these may be.
+TEST_F(SplatOcclusion, AnyNumberOfTilesIsDrawnOnceMore) {
+  const auto sheets = empty_scene(), wall = empty_scene();
+  for (int i = 0; i < 400; ++i)
+    add_gaussian(*sheets, {0, 0, 1 + 1e-3f * static_cast<float>(i)}, {1e4f, 1e4f, 1e-6f}, 0.04f);
+  for (int i = 0; i < 12; ++i)
+    add_gaussian(*wall, {0, 0, 0.5f + 1e-3f * static_cast<float>(i)}, {1e4f, 1e4f, 1e-6f}, 0.99f,
+                 {1, 0, 0});
+  const Vec3d ahead{0, 0, 0}, gone{1e6, 0, 0};
+  for (const int tiles : {1, 31, 32, 33, 100}) {
+    SCOPED_TRACE(tiles);
+    const auto made = [&](Occlusion occlusion) {
+      return std::make_unique<View>(Scenes{sheets, wall}, *cuda, with(occlusion),
+                                    std::pmr::get_default_resource(), workers);
+    };
+    const auto on = made(Occlusion::on), off = made(Occlusion::off);
+    const Camera column = look({0, 0, 0}, {0, 0, 1}, kTile, tiles * kTile, 2);
+    for (const int frame : {0, 1, 2, 3}) {
+      FrameInput input = frame_input(column);
+      input.instances = {pose_of(ahead), pose_of(frame < 2 ? ahead : gone)};
+      const Frame found = render(*on, input);
+      expect_same_bits(found, render(*off, input));
+      EXPECT_EQ(found.stats.tiles_redrawn, frame == 2 ? static_cast<uint64_t>(tiles) : 0);
     }
   }
 }

@@ -448,22 +448,23 @@ TEST_F(Streaming, RecordsMayRunOutBeforeSlots) {
   }
 }
 
-// Of more children than a shape has room to say.
-TEST_F(Streaming, LargeFamiliesBlendAsResidentOnes) {
-  for (const TreeShape shape : {TreeShape::star, TreeShape::star_of_stars}) {
-    SCOPED_TRACE(name_of(shape));
-    const Bytes bytes = scene_bytes(baked_of(random_tree(shape, share_of(20000), 18)),
-                                    Quality::compact, 0, kMinChunkBytes);
-    const auto whole = resident(bytes);
-    ASSERT_FALSE(whole->large_families.empty());
-    const auto streamed = open(bytes, 1);
-    const auto all = view(whole), part = view(streamed);
-    for (FrameInput input : walk(20, 20, 10)) {
-      const Frame expected = render(*all, input);
-      input.wait_resident = true;
-      expect_same_frame(render(*part, input), expected);
+// Of more children than a shape has room to say, and in slots of more places than a byte names.
+TEST_F(Streaming, LargeFamiliesAndLargeChunksBlendAsResidentOnes) {
+  for (const TreeShape shape : {TreeShape::star, TreeShape::star_of_stars})
+    for (const uint32_t chunk_bytes : {kMinChunkBytes, 300 * uint32_t{sizeof(NodeRecord)}}) {
+      SCOPED_TRACE(name_of(shape) + (", " + std::to_string(chunk_bytes)));
+      const Bytes bytes = scene_bytes(baked_of(random_tree(shape, share_of(20000), 18)),
+                                      Quality::compact, 0, chunk_bytes);
+      const auto whole = resident(bytes);
+      ASSERT_FALSE(whole->large_families.empty());
+      const auto streamed = open(bytes, 1);
+      const auto all = view(whole), part = view(streamed);
+      for (FrameInput input : walk(20, 20, 10)) {
+        const Frame expected = render(*all, input);
+        input.wait_resident = true;
+        expect_same_frame(render(*part, input), expected);
+      }
     }
-  }
 }
 
 TEST_F(Streaming, TooSmallABudgetIsRefused) {

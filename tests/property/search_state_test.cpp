@@ -138,7 +138,8 @@ Damaged without_chunks(const SearchRig& rig, const std::vector<uint32_t>& chunks
   for (const uint32_t chunk : chunks) {
     const uint32_t first = d.partition.chunk_begin[chunk],
                    last = d.partition.chunk_begin[chunk + 1];
-    d.subtrees.push_back({first, last, d.partition.subtrees[first].root});
+    const Subtree& lost = d.partition.subtrees[first];
+    d.subtrees.push_back({first, last, lost.root, lost.repeats_root()});
     for (uint32_t s = first; s < last; ++s) {
       Subtree& subtree = d.partition.subtrees[s];
       for (uint32_t slot = 0; slot < subtree.node_count(); ++slot)

@@ -551,6 +551,27 @@ TEST_P(StreamingDiskOfTree, AChunkThatFitsNoParentIsDamaged) {
   EXPECT_GT(render(view, input).stats.missing, 0u);
 }
 
+// So does one whose roots hang from several nodes.
+TEST_P(StreamingDiskOfTree, AChunkWithRootsOfSeveralNodesIsDamaged) {
+  const BakedScene baked = test::bake(test::random_cloud(4000, 6, 0), GetParam().rule);
+  test::StreamRig sound(baked, 1.0);
+  Partition partition = partition_tree(baked.tree, kMinChunkBytes);
+  ASSERT_TRUE(test::join_strangers(baked.tree, partition));
+  const test::Bytes bytes = test::scene_bytes(baked, Quality::lossless, 0, partition);
+  const auto scene = sound.open(test::source_of(bytes), 1.0);
+  View view(scene, *sound.backend, {}, sound.memory(), sound.workers);
+  FrameInput input = frame_input(look({0, -2, -200}, {0, 0, 0}, 31, 25), 0.0);
+  input.wait_resident = true;
+  try {
+    render(view, input);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::damaged_chunk);
+    EXPECT_NE(std::string(error.what()).find("hang from several nodes"), std::string::npos)
+        << error.what();
+  }
+}
+
 // The megabytes that a refusal names are enough.
 TEST(StreamingDisk, ARefusedBudgetSaysWhatIsEnough) {
   Flight flight(0.1);

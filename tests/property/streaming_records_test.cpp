@@ -96,7 +96,7 @@ TEST(StreamingRecords, ScatteredOnesAreTheSame) {
     ASSERT_TRUE(is_cut(*whole_tree(*rig.resident), frame.cut));
     if (frame.stats.missing == 0) expect_same_bits(frame, render(rig.whole, from(eye, 4)));
     for (const SearchSubtree& s : rig.streamed->search.subtrees)
-      scattered += s.entry != kNotLinked && (s.owned & kScattered) != 0;
+      scattered += s.entry != kNotLinked && s.scattered();
   }
   EXPECT_GT(scattered, 100u);
 }

@@ -37,7 +37,8 @@ inline ClaimedFile claimed_chunks(Quality quality, uint32_t chunks) {
     e.record_count = records;
     e.place = {{i == 0 ? 0u : 1u, 1 + i * leaves, nodes, nodes}, i * leaves, 0};
     e.hull = {{0, 0, 0}, 1, {1, 1, 1}};
-    const uint64_t payload = quality == Quality::compact ? 0 : lossless_payload_bytes(e, 1);
+    const uint64_t payload =
+        quality == Quality::compact ? 0 : lossless_payload_bytes(e, 1, kSceneVersion);
     e.bytes = static_cast<uint32_t>(align_up(sizeof(ChunkHeader) + payload, chunk_align(quality)));
     file.length += e.bytes;
     entries.push_back(e);

@@ -27,13 +27,40 @@ inline BakedScene bake(const GaussianCloud& cloud, const TreeRule& rule = {}) {
   return build_tree(cloud, workers, {}, rule);
 }
 
-inline Bytes scene_bytes(const BakedScene& baked, Quality quality, unsigned threads = 0,
-                         uint32_t chunk_bytes = kDefaultChunkBytes) {
+inline Bytes scene_bytes(const BakedScene& baked, Quality quality, unsigned threads,
+                         const Partition& partition) {
   const TempFolder folder;
   Workers workers(threads);
-  write_scene_file(baked, partition_tree(baked.tree, chunk_bytes), folder.file("scene.voy"),
-                   quality, workers);
+  write_scene_file(baked, partition, folder.file("scene.voy"), quality, workers);
   return file_bytes(folder.file("scene.voy"));
+}
+inline Bytes scene_bytes(const BakedScene& baked, Quality quality, unsigned threads = 0,
+                         uint32_t chunk_bytes = kDefaultChunkBytes) {
+  return scene_bytes(baked, quality, threads, partition_tree(baked.tree, chunk_bytes));
+}
+
+// Gives two neighbours of a chunk, the last that it can, one subtree, though their roots hang from
+// different nodes: counts that are sound by themselves. False where there are none.
+inline bool join_strangers(const LodTree& tree, Partition& p) {
+  for (size_t chunk = p.chunk_count(); chunk-- > 1;)
+    for (uint32_t i = p.chunk_begin[chunk]; i + 1 < p.chunk_begin[chunk + 1]; ++i) {
+      Subtree& to = p.subtrees[i];
+      const Subtree next = p.subtrees[i + 1];
+      if (to.root == 0 || to.repeats_root() || next.repeats_root() ||
+          tree.parent[to.root] == tree.parent[next.root] ||
+          to.node_count() + next.node_count() > kSubtreeNodes)
+        continue;
+      if (to.child_count == 0) to.first_child = next.first_child;
+      if (to.grandchild_count == 0) to.first_grandchild = next.first_grandchild;
+      to.root_count = static_cast<uint8_t>(to.root_count + next.root_count);
+      to.child_count = static_cast<uint8_t>(to.child_count + next.child_count);
+      to.grandchild_count = static_cast<uint8_t>(to.grandchild_count + next.grandchild_count);
+      p.subtrees.erase(p.subtrees.begin() + i + 1);
+      for (auto* begins : {&p.chunk_begin, &p.tier_begin})
+        for (uint32_t& begin : *begins) begin -= begin > i ? 1 : 0;
+      return true;
+    }
+  return false;
 }
 
 inline Bytes ply_bytes(const GaussianCloud& cloud) {

@@ -97,6 +97,18 @@ TEST(ChunkCodec, BandsThatAreZeroThroughoutAreNotStoredAndComeBack) {
   }
 }
 
+// Of versions 4 and 5: without counts of roots, a byte less for each subtree.
+TEST(ChunkCodec, OlderFilesHaveOneRootInEachSubtree) {
+  for (const Quality quality : {Quality::lossless, Quality::compact}) {
+    ChunkContext context = context_of(quality);
+    context.version = 5;
+    const Chunk chunk = family(4), back = round_trip(chunk, context);
+    ASSERT_EQ(back.subtrees.size(), 1u);
+    EXPECT_TRUE(back.subtrees[0] == chunk.subtrees[0]);
+    EXPECT_EQ(back.node, round_trip(chunk, context_of(quality)).node);
+  }
+}
+
 TEST(ChunkCodec, MoreBandsThanTheFileHasAreRefused) {
   for (const Quality quality : {Quality::lossless, Quality::compact}) {
     const EncodedChunk encoded = encode_chunk(family(9), context_of(quality, 2));
@@ -449,9 +461,9 @@ TEST(ChunkCodec, CompactKeepsItsBoundsAndItsSizeOnARealBlock) {
 // says.
 TEST(ChunkCodec, KeptFilesHoldWhatTheyHeld) {
   const std::pair<const char*, uint64_t> kept[] = {
-      {"compact_sh3", 15588292055588502376u},
-      {"compact_hierarchicalgs", 13764596890077128708u},
-      {"chain", 14896656721393000543u}};
+      {"compact_sh3", 15588292055588502376u}, {"compact_hierarchicalgs", 13764596890077128708u},
+      {"chain", 14896656721393000543u},       {"version5", 9826885671687106360u},
+      {"version6", 16920627217292383017u},    {"version6_lossless", 12740476357596010903u}};
   for (const auto& [name, sum] : kept) {
     const SceneFile file(kept_file(name));
     std::vector<std::byte> held;

@@ -83,7 +83,8 @@ TEST(Families, OfAnyCountsStayAmongTheRecords) {
     const Families families = families_of(counts);
     for (uint32_t i = 0; i < counts.of_record.size(); ++i) {
       const Families::Run& run = families.children[i];
-      ASSERT_TRUE(run.count == 0 || (run.first > i && run.first + run.count <= counts.of_record.size()));
+      ASSERT_TRUE(run.count == 0 ||
+                  (run.first > i && run.first + run.count <= counts.of_record.size()));
       ASSERT_TRUE(families.parent[i] == kNoNode || families.parent[i] < i);
     }
   }

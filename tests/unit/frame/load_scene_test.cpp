@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "runtime/base/checksum.h"
+#include "runtime/format/tree_check.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_gaussians.h"
 #include "runtime/frame/whole_tree.h"
@@ -338,6 +339,23 @@ TEST(LoadScene, ATreeThatBreaksNestingIsRefused) {
   baked.tree.records[7] = sound;
   baked.tree.records[7].box_max.x = 1e6f;
   EXPECT_EQ(test::error_code([&] { load(test::scene_bytes(baked, Quality::compact)); }),
+            ErrorCode::refused_input);
+}
+
+// A search opens a subtree by what its first root hangs from.
+TEST(LoadScene, ASubtreeWithRootsOfSeveralNodesIsRefused) {
+  const BakedScene baked = test::bake(test::random_cloud(2000, 46, 0));
+  Partition partition = partition_tree(baked.tree, kMinChunkBytes);
+  EXPECT_NO_THROW(load(test::scene_bytes(baked, Quality::compact, 0, partition)));
+  ASSERT_TRUE(test::join_strangers(baked.tree, partition));
+  const Bytes bytes = test::scene_bytes(baked, Quality::compact, 0, partition);
+  EXPECT_EQ(test::error_code([&] { load(bytes); }), ErrorCode::refused_input);
+  // An export goes from chunk to chunk.
+  const SceneFile file(test::source_of(bytes));
+  TreeCheck check(file);
+  EXPECT_EQ(test::error_code([&] {
+              for (uint32_t i = 0; i < file.chunks().size(); ++i) check.add(file.read_chunk(i), i);
+            }),
             ErrorCode::refused_input);
 }
 

@@ -341,6 +341,18 @@ TEST(SubtreeCursor, SurvivesNoise) {
   EXPECT_GT(faults, 1500u);
 }
 
+// A chunk has no more subtrees than nodes.
+TEST(SubtreeCursor, EverySubtreeOwnsANode) {
+  const uint32_t levels[] = {0, 1, 2, 62}, tiers[] = {0, 4};
+  SubtreeCursor cursor({3, levels, tiers});
+  NodeRecord records[kSubtreeNodes]{};
+  Subtree out{};
+  records[0].child_count = 1, records[1].child_count = 60;
+  ASSERT_EQ(cursor.take({1, 1, 29}, records, out), nullptr);
+  records[1].child_count = 0;
+  EXPECT_STREQ(cursor.take({1, 1, 0}, records, out), "no node of its own");
+}
+
 // From any place at which a subtree starts, the rest is as from the first.
 TEST(SubtreeCursor, GoesOnFromAnyPlace) {
   for (const test::TreeShape shape : test::kTreeShapes) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <set>
 
@@ -39,8 +40,9 @@ TEST(SearchTree, OwnsEachNodeOnceAndHasARecordForEachInteriorSlot) {
     for (const SearchSubtree& s : cut.search.subtrees) {
       ASSERT_EQ(s.first_record, records);
       ASSERT_FALSE(s.missing());
+      uint32_t families = 0;
       for (uint32_t slot = 0; slot < kSubtreeNodes; ++slot) {
-        if ((s.owned >> slot & 1) != 0) ++owners[s.node(slot)];
+        if ((s.owned() >> slot & 1) != 0) ++owners[s.node(slot)];
         if ((s.interior >> slot & 1) == 0) continue;
         const SearchRecord& r = cut.search.records[records++];
         const NodeRecord& n = cut.tree.records[s.node(slot)];
@@ -51,7 +53,12 @@ TEST(SearchTree, OwnsEachNodeOnceAndHasARecordForEachInteriorSlot) {
         for (uint32_t left = r.child_slots(); left != 0; left &= left - 1)
           ASSERT_EQ(cut.tree.parent[s.node(static_cast<uint32_t>(std::countr_zero(left)))],
                     s.node(slot));
+        if (r.child_slots() != 0) {
+          ASSERT_EQ(r.child_slots() & s.families, r.child_slots() & (~r.child_slots() + 1));
+        }
+        families |= r.child_slots() & s.families;
       }
+      ASSERT_EQ(families, s.families);
     }
     ASSERT_EQ(records, cut.search.records.size());
     for (const uint32_t count : owners) ASSERT_EQ(count, 1u);
@@ -67,7 +74,7 @@ TEST(SearchTree, LeadsToEveryChild) {
       for (uint32_t left = s.interior; left != 0; left &= left - 1, ++record) {
         const uint32_t node = s.node(static_cast<uint32_t>(std::countr_zero(left)));
         const SearchRecord& r = cut.search.records[record];
-        for (uint32_t slots = r.child_slots() & s.owned; slots != 0; slots &= slots - 1)
+        for (uint32_t slots = r.child_slots() & s.owned(); slots != 0; slots &= slots - 1)
           ++reached[s.node(static_cast<uint32_t>(std::countr_zero(slots)))];
         const SubtreeSpan below = subtrees_below(cut.search.subtrees.data(),
                                                  cut.search.subtree_count(), record, r.children);
@@ -76,7 +83,7 @@ TEST(SearchTree, LeadsToEveryChild) {
           ASSERT_EQ(under.entry, record);
           for (uint32_t root = 0; root < under.first_child_slot(); ++root) {
             ASSERT_EQ(cut.tree.parent[under.node(root)], node);
-            reached[under.node(root)] += under.owned >> root & 1;
+            reached[under.node(root)] += under.owned() >> root & 1;
           }
         }
       }
@@ -90,7 +97,7 @@ TEST(SearchTree, LevelsShareOutTheSlots) {
   for (uint32_t roots = 1; roots <= kSubtreeNodes; ++roots)
     for (uint32_t children = 0; roots + children <= kSubtreeNodes; ++children) {
       SearchSubtree s{};
-      s.levels = slot_levels(roots, roots + children);
+      s.levels = slot_levels(roots, roots + children, kSubtreeNodes, 0);
       EXPECT_EQ(s.level_slots(0) | s.level_slots(1) | s.level_slots(2), 0x7fffffffu);
       EXPECT_EQ(static_cast<uint32_t>(std::popcount(s.level_slots(0))), roots);
       EXPECT_EQ(static_cast<uint32_t>(std::popcount(s.level_slots(1))), children);
@@ -133,44 +140,66 @@ TEST(SearchTree, OfAnEmptyTreeIsEmpty) {
   EXPECT_TRUE(cut.search.subtrees.empty());
 }
 
-// Whether a subtree of the partition holds the node.
-bool holds(const Subtree& subtree, uint32_t node) {
-  for (uint32_t slot = 0; slot < subtree.node_count(); ++slot)
-    if (subtree.node(slot) == node) return true;
-  return false;
+// The nodes that lead into each range of what is missing.
+using Leads = std::vector<std::set<uint32_t>>;
+
+struct Damaged {
+  std::vector<SubtreeRange> missing;
+  Partition partition;
+};
+
+Damaged without(const Cut& whole, std::span<const size_t> chunks) {
+  Damaged damaged{{}, whole.partition};
+  for (const size_t chunk : chunks) {
+    const uint32_t first = whole.partition.chunk_begin[chunk];
+    const uint32_t last = whole.partition.chunk_begin[chunk + 1];
+    const Subtree& subtree = whole.partition.subtrees[first];
+    damaged.missing.push_back({first, last, subtree.root, subtree.repeats_root()});
+    for (uint32_t s = first; s < last; ++s)
+      damaged.partition.subtrees[s] = {kNoNode, 0, 0, 1, 0, 0, Repeats::nothing};
+  }
+  return damaged;
 }
 
-// Damage renames no other subtree, and what hangs below it is led to by nothing. What leads into it
-// leads to a subtree that is missing.
-TEST(SearchTree, MissingSubtreesKeepTheirPlaces) {
+void expect_places(const Cut& whole, const Damaged& damaged) {
   Workers workers(2);
-  for (const test::TreeShape shape : {test::TreeShape::four_way, test::TreeShape::mixture}) {
+  const SearchTree search =
+      make_search_tree(whole.tree, damaged.partition, damaged.missing, workers);
+  std::vector<bool> lost(whole.tree.size());
+  for (const SubtreeRange& range : damaged.missing)
+    for (uint32_t s = range.first; s < range.last; ++s)
+      for (uint32_t slot = 0; slot < whole.partition.subtrees[s].node_count(); ++slot)
+        lost[whole.partition.subtrees[s].node(slot)] = true;
+  Leads wanted(damaged.missing.size()), found(damaged.missing.size());
+  size_t range = 0;
+  for (uint32_t s = 0; s < search.subtrees.size(); ++s) {
+    while (range < damaged.missing.size() && s >= damaged.missing[range].last) ++range;
+    const bool is_missing = range < damaged.missing.size() && s >= damaged.missing[range].first;
+    const SearchSubtree &a = search.subtrees[s], &b = whole.search.subtrees[s];
+    const uint32_t above = b.entry == kNoRecord ? kNoNode : whole.tree.parent[b.root];
+    const bool led_to = above != kNoNode && !lost[above];
+    ASSERT_EQ(a.missing(), is_missing);
+    if (!is_missing) {
+      ASSERT_EQ(a.root, b.root);
+      ASSERT_EQ(a.entry == kNoRecord, !led_to) << s;
+      continue;
+    }
+    if (led_to) wanted[range].insert(above);
+    if (a.entry != kNoRecord) found[range].insert(whole.tree.parent[a.root]);
+  }
+  ASSERT_EQ(found, wanted);
+}
+
+// Damage renames no other subtree, and what hangs below it is led to by nothing. What leads into a
+// chunk that is missing leads to a subtree of that chunk and of no other.
+TEST(SearchTree, MissingSubtreesKeepTheirPlaces) {
+  for (const test::TreeShape shape : test::kTreeShapes) {
     const Cut whole = make(test::random_tree(shape, 2000, 1), kMinChunkBytes);
-    const auto& chunk_begin = whole.partition.chunk_begin;
-    for (size_t chunk = 0; chunk + 1 < chunk_begin.size(); chunk += 5) {
-      const uint32_t first = chunk_begin[chunk], last = chunk_begin[chunk + 1];
-      const auto lost = std::span(whole.partition.subtrees).subspan(first, last - first);
-      Partition partition = whole.partition;
-      for (uint32_t s = first; s < last; ++s)
-        partition.subtrees[s] = {kNoNode, 0, 0, 1, 0, 0, Repeats::nothing};
-      const SubtreeRange missing{first, last, lost.front().root};
-      const SearchTree search = make_search_tree(whole.tree, partition, {&missing, 1}, workers);
-      std::set<uint32_t> wanted, found;  // parents that lead into what is missing
-      for (uint32_t s = 0; s < search.subtrees.size(); ++s) {
-        const SearchSubtree &a = search.subtrees[s], &b = whole.search.subtrees[s];
-        const uint32_t above = b.entry == kNoRecord ? kNoNode : whole.tree.parent[b.root];
-        const bool is_lost = std::ranges::any_of(
-            lost, [&](const Subtree& subtree) { return holds(subtree, above); });
-        ASSERT_EQ(a.missing(), s >= first && s < last);
-        if (a.missing()) {
-          if (above != kNoNode && !is_lost) wanted.insert(above);
-          if (a.entry != kNoRecord) found.insert(whole.tree.parent[a.root]);
-        } else {
-          ASSERT_EQ(a.root, b.root);
-          ASSERT_EQ(a.entry == kNoRecord, b.entry == kNoRecord || is_lost) << s;
-        }
-      }
-      ASSERT_EQ(found, wanted) << chunk;
+    for (size_t chunk = 0; chunk + 2 < whole.partition.chunk_begin.size(); chunk += 3) {
+      SCOPED_TRACE(test::name_of(shape) + ", chunk " + std::to_string(chunk));
+      expect_places(whole, without(whole, std::array{chunk}));
+      expect_places(whole, without(whole, std::array{chunk, chunk + 1}));
+      if (testing::Test::HasFatalFailure()) return;
     }
   }
 }
