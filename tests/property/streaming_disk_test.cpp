@@ -560,7 +560,7 @@ TEST_P(StreamingDiskOfTree, AChunkWithRootsOfSeveralNodesIsDamaged) {
   const test::Bytes bytes = test::scene_bytes(baked, Quality::lossless, 0, partition);
   const auto scene = sound.open(test::source_of(bytes), 1.0);
   View view(scene, *sound.backend, {}, sound.memory(), sound.workers);
-  FrameInput input = frame_input(look({0, -2, -200}, {0, 0, 0}, 31, 25), 0.0);
+  FrameInput input = frame_input(look({0, -2, -30}, {0, 0, 0}, 600, 400), 0.0);
   input.wait_resident = true;
   try {
     render(view, input);
