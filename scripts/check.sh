@@ -16,7 +16,7 @@ declare -A about=(
   [parity]="the CPU stages with contraction off, against the float64 reference"
   [fuzz]="each target of tests/fuzz under libFuzzer for a minute, from the kept corpus"
   [searches]="what scripts/test.sh does in small: trees of a million nodes, whole paths, a bake in real cells"
-  [cuda]="device code for every GPU that ships: Orin, Hopper, PTX"
+  [cuda]="device code for every GPU that ships: Orin, Hopper, PTX; what kernels spill on an Orin"
   [bench]="the benchmarks build and run once, and so do the scripts of bench/"
   [demo]="scripts/demo.sh"
 )
@@ -99,6 +99,7 @@ check_cuda() {
   configure release -B build/cuda
   cmake --build build/cuda --target voyager_cuda gpu_tests
   scripts/check_cuda_module.sh build/cuda
+  scripts/check_spills.sh
 }
 
 check_bench() {

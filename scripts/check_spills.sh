@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# Which kernels spill registers on an Orin (sm_87), and how many bytes: check_spills.sh [MOST].
+# Fails where one spills more than MOST bytes (default 112, the most of today's kernels; what those
+# of the splats gain by it is in bench/NOTES.md). Needs nvcc, no GPU.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+most=${1:-112}
+nvcc=$(scripts/check_cuda_module.sh --nvcc)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+compile() {
+  "$1" -I. -O3 -DNDEBUG -std=c++20 --expt-relaxed-constexpr -Xcompiler=-fPIC,-ffp-contract=off \
+    --generate-code=arch=compute_87,code=[sm_87] -Xptxas -v -c "$3" -o "$2/$(basename "$3").o" 2>"$2/$(basename "$3").log" ||
+    { cat "$2/$(basename "$3").log" >&2; exit 255; }
+}
+export -f compile
+ls cuda/*/*.cu | xargs -P "$(nproc)" -I{} bash -c 'compile "$@"' _ "$nvcc" "$work" {}
+
+# ptxas names a kernel, then its stack and spills, then its registers.
+awk -v most="$most" '
+  /Compiling entry function/ { split($0, name, "\x27"); kernel = name[2] }
+  /bytes spill stores/ { spills = $5 }
+  /Used [0-9]+ registers/ {
+    for (i = 1; i < NF; ++i) if ($i == "Used") registers = $(i + 1)
+    ++kernels
+    if (spills > 0) printf "%4d bytes spilled, %3d registers: %s\n", spills, registers, kernel
+    if (spills > most) bad = 1
+    spills = 0
+  }
+  END {
+    printf "%d kernels for sm_87\n", kernels
+    if (bad || kernels == 0) { printf "check_spills.sh: found a kernel that spills more than %d bytes, or none, expected at most that\n", most > "/dev/stderr"; exit 1 }
+  }' "$work"/*.log
