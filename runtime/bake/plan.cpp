@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "runtime/bake/cell_shape.h"
 #include "runtime/lod/shape.h"
 
 namespace voyager {

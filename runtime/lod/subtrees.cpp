@@ -163,7 +163,7 @@ void pack_chunks(const LodTree& tree, Partition& partition, std::pmr::memory_res
 }
 
 // Of one chunk. Returns how many are left, from the first place on.
-size_t join_siblings(const LodTree& tree, std::span<Subtree> subtrees) {
+size_t join_chunk(const LodTree& tree, std::span<Subtree> subtrees) {
   SiblingRule rule;
   size_t used = 0;
   for (size_t i = 0; i < subtrees.size(); ++i) {
@@ -226,10 +226,9 @@ void join_siblings(const LodTree& tree, std::span<uint32_t> chunk_begin,
   uint32_t used = 0;
   for (size_t i = 0; i + 1 < chunk_begin.size(); ++i) {
     const auto apart = all.subspan(chunk_begin[i], chunk_begin[i + 1] - chunk_begin[i]);
-    const auto joined = apart.first(join_siblings(tree, apart));
-    std::copy(joined.begin(), joined.end(), all.begin() + used);
+    const auto joined = apart.first(join_chunk(tree, apart));
     chunk_begin[i] = used;
-    used += static_cast<uint32_t>(joined.size());
+    for (const Subtree& subtree : joined) all[used++] = subtree;
   }
   chunk_begin.back() = used;
   subtrees.resize(used);

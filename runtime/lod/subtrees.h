@@ -14,7 +14,7 @@
 // holds it answers for it.
 //
 // Siblings whose subtrees are neighbours in a chunk share one (SiblingRule): else a leaf
-// on a level of roots would be a subtree of one node, as two thirds of them would be.
+// on a level of roots would be a subtree of one node, as three in five would be.
 //
 // Invariants:
 //   - every node is in exactly one subtree that does not repeat it;
@@ -149,8 +149,8 @@ EntryHull hull_of_root(const NodeRecord& root);  // which has no parent
 EntryHull join(const EntryHull& a, const EntryHull& b);
 
 // Which of consecutive roots share a subtree: those that hang from one node, while there is room,
-// but no two neighbours that both have grandchildren in the tier. (Of two cells of a bake in parts,
-// which do not see that their roots are siblings, both have.)
+// but no two neighbours that both have grandchildren in the tier. (A bake in parts relies on this:
+// it does not see that the roots of two cells are siblings, and both have grandchildren.)
 class SiblingRule {
  public:
   // Of a root with all that is below it in the tier, so many nodes: whether it shares that of the

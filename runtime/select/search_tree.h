@@ -107,7 +107,7 @@ struct SearchSubtree {
 };
 static_assert(sizeof(SearchSubtree) == 32);
 
-// Of a subtree that has not come yet.
+// Of a subtree that has not come yet, or is missing.
 inline constexpr SearchSubtree kUnlinkedSubtree{kNoNode, 0, 0, slot_levels(1, 1, 0, 0),
                                                 0,       0, 0, kNotLinked};
 
