@@ -9,6 +9,7 @@
 #include "runtime/cpu/cpu_backend.h"
 #include "runtime/frame/backend_module.h"
 #include "runtime/lod/build.h"
+#include "runtime/lod/round_bounds.h"
 #include "runtime/scene/append.h"
 #include "tools/search_bench.h"
 #include "tools/synth/city.h"
@@ -39,6 +40,7 @@ std::shared_ptr<Scene> make_scene(uint64_t gaussians, Workers& workers) {
   {
     BakedScene baked = build_tree(make_city(gaussians), workers);
     scene->tree = std::move(baked.tree);
+    round_bounds(scene->tree, workers);
     scene->origin = {baked.origin[0], baked.origin[1], baked.origin[2]};
   }
   scene->storage = Storage::lossless;

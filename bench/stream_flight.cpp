@@ -1,5 +1,6 @@
 // A random flight through a streamed scene: what frames took, and which took longer than those
-// around them, with what they did.
+// around them, with what they did. Late frames are listed but for those of a search with chunks
+// that came, and those after a jump.
 //   stream_flight SCENE CAMERAS.json MEGABYTES [FRAMES] [WxH] [TAU] [SEED] [FPS]
 // From a camera of the file towards the next one, drawn at random, at 1 to 15 m a second, with a
 // head that turns; now and then a jump. The same arguments fly the same way.
@@ -9,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <random>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -74,8 +76,11 @@ class Flight {
 struct Taken {
   double device, call;  // milliseconds; the device's without the copy to the host
   double stages[VOY_MAX_STAGES];
-  uint64_t entered, arrived;
+  uint64_t entered, arrived, splats, pairs;
   size_t since_jump;
+  // More splats or pairs than any frame before: where buffers had no room, they grew, and the frame
+  // was drawn again.
+  bool most_so_far;
 };
 
 double quantile(std::vector<double> values, double q) {
@@ -93,16 +98,19 @@ double median_around(const std::vector<Taken>& frames, size_t frame, const Of& o
   return quantile(around, 0.5);
 }
 
-// What made a frame late: the stage that grew most. Buffers that grow count as project's.
-int longer_stage(const std::vector<Taken>& frames, size_t frame) {
-  int most = 0;
+// The stage that took longer, and by how many milliseconds.
+struct Longer {
+  int stage = 0;
   double by = -1;
+};
+
+Longer longer_stage(const std::vector<Taken>& frames, size_t frame) {
+  Longer most;
   for (int stage = 0; stage < VOY_STAGE_RESOLVE; ++stage) {
     const double usual =
         median_around(frames, frame, [&](const Taken& of) { return of.stages[stage]; });
-    if (frames[frame].stages[stage] - usual <= by) continue;
-    by = frames[frame].stages[stage] - usual;
-    most = stage;
+    const double by = frames[frame].stages[stage] - usual;
+    if (by > most.by) most = {stage, by};
   }
   return most;
 }
@@ -127,6 +135,7 @@ void print(const std::vector<Taken>& frames) {
       frames.size(), quantile(device, 0.5), quantile(device, 0.99), quantile(device, 0.999),
       quantile(device, 1), quantile(call, 0.5), quantile(call, 0.99), quantile(call, 1));
   size_t late = 0, after_jumps = 0, by_stage[VOY_STAGE_RESOLVE] = {}, with_chunks = 0;
+  std::vector<std::string> others;  // that neither a search nor a jump made late
   for (size_t i = 0; i < frames.size(); ++i) {
     const double usual = median_around(frames, i, [](const Taken& of) { return of.device; });
     if (frames[i].device <= kLate * usual) continue;
@@ -135,8 +144,22 @@ void print(const std::vector<Taken>& frames) {
       ++after_jumps;
       continue;
     }
-    ++by_stage[longer_stage(frames, i)];
+    const Longer longer = longer_stage(frames, i);
+    ++by_stage[longer.stage];
     with_chunks += frames[i].arrived != 0;
+    if (longer.stage == VOY_STAGE_SEARCH && frames[i].arrived != 0) continue;
+    char line[256];
+    std::snprintf(
+        line, sizeof line,
+        "  frame %zu, %zu after a jump: %.3f ms, usually %.3f; %s %.3f longer; %llu chunks "
+        "came, %llu nodes entered, %llu pairs%s\n",
+        i, frames[i].since_jump, frames[i].device, usual,
+        voyStageName(static_cast<VoyStage>(longer.stage)), longer.by,
+        static_cast<unsigned long long>(frames[i].arrived),
+        static_cast<unsigned long long>(frames[i].entered),
+        static_cast<unsigned long long>(frames[i].pairs),
+        frames[i].most_so_far ? ", more than ever before" : "");
+    others.emplace_back(line);
   }
   std::printf(
       "late %zu: %zu within two frames after a jump; of the others, by the stage that grew:", late,
@@ -144,6 +167,7 @@ void print(const std::vector<Taken>& frames) {
   for (int s = 0; s < VOY_STAGE_RESOLVE; ++s)
     std::printf(" %s %zu", voyStageName(static_cast<VoyStage>(s)), by_stage[s]);
   std::printf("; %zu of them with chunks that came\n", with_chunks);
+  for (const std::string& line : others) std::fputs(line.c_str(), stdout);
 }
 
 }  // namespace
@@ -168,7 +192,7 @@ int main(int argc, char** argv) try {
   voyager::bench::StreamedView streamed(device, argv[1], megabytes, nullptr, width, height, tau);
 
   std::vector<Taken> frames(count);  // at once: what grows later is not this list
-  uint64_t arrived_before = 0;
+  uint64_t arrived_before = 0, most_splats = 0, most_pairs = 0;
   std::vector<long> kilobytes;  // after each tenth
   size_t since_jump = 0;
   auto next = Clock::now();
@@ -185,7 +209,12 @@ int main(int argc, char** argv) try {
                 {},
                 stats.nodesEntered,
                 arrived - arrived_before,
-                since_jump};
+                stats.splats,
+                stats.pairsAfterFilter,
+                since_jump,
+                stats.splats > most_splats || stats.pairsAfterFilter > most_pairs};
+    most_splats = std::max(most_splats, stats.splats);
+    most_pairs = std::max(most_pairs, stats.pairsAfterFilter);
     std::copy_n(stats.milliseconds, VOY_MAX_STAGES, taken.stages);
     arrived_before = arrived;
     frames[i] = taken;

@@ -1,4 +1,4 @@
-// How objects go while frames are under way.
+// How objects go while frames are in flight.
 #include "plugin/objects.h"
 
 #include <algorithm>

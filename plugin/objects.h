@@ -107,13 +107,13 @@ struct ViewObject final : Child {
   }
 
   ~ViewObject() override { drop_view(); }
-  // A view waits for its frames under way, which may wait for the host: so rings first see
+  // A view waits for its frames in flight, which may wait for the host: so rings first see
   // to it that they end. False, and the device is abandoned, where they do not.
   bool finish_frames() noexcept;
   void drop_view() noexcept;
   // The scene was closed: the view draws no instance of it any more. Under `state`.
   void lose(const std::shared_ptr<Object>& scene) noexcept;
-  // As View has it; the frames under way are finished. Under `state`.
+  // As View has it; the frames in flight are finished. Under `state`.
   void set_scenes(std::vector<std::shared_ptr<SceneObject>> next);
   // Whether it draws the scene. Any thread, without `state`.
   bool draws(const std::shared_ptr<Object>& scene) const;

@@ -75,6 +75,7 @@ Json counters(const FrameRun& run) {
                {"splats", mean(run.timed, &FrameStats::splats)},
                {"pairs_before", mean(run.timed, &FrameStats::pairs_before)},
                {"pairs_after", mean(run.timed, &FrameStats::pairs_after)},
+               {"tiles_redrawn", mean(run.timed, &FrameStats::tiles_redrawn)},
                {"pairs_dropped", mean(run.timed, &FrameStats::pairs_dropped)},
                {"pixels_evaluated", nullptr},
                {"pixels_blended", nullptr},

@@ -75,7 +75,7 @@ class Ring {
   Image begin_frame(uint32_t index, uint32_t layer, const FrameSync& sync);
   // Where the host's depth is, if it is in host memory.
   void set_limits(uint32_t index, uint32_t layer, DepthLimits& limits) const;
-  // After a frame that was drawn, or is under way.
+  // After a frame that was drawn, or is in flight.
   void end_frame(const FrameSync& sync);
   // The backend's frames are done, or will be without the host.
   // False where they do not end within a few times the patience: a lost device, say.

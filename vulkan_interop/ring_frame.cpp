@@ -1,5 +1,5 @@
 // A frame into a ring: what it waits for and signals, where it is drawn, and the end of those
-// that are under way.
+// that are in flight.
 #include <algorithm>
 #include <chrono>
 #include <string>

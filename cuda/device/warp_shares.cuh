@@ -2,6 +2,8 @@
 // Work of very different sizes, one piece a lane, to be shared out evenly over the warp.
 #include <cstdint>
 
+#include "cuda/device/warp.cuh"
+
 namespace voyager::cuda {
 
 // All members are called by the whole warp together.
@@ -12,11 +14,11 @@ class WarpShares {
     uint32_t through = count;
 #pragma unroll
     for (unsigned step = 1; step < 32; step *= 2) {
-      const uint32_t lower = __shfl_up_sync(kAll, through, step);
+      const uint32_t lower = __shfl_up_sync(kAllLanes, through, step);
       if (threadIdx.x % 32 >= step) through += lower;
     }
     before_ = through - count;
-    total_ = __shfl_sync(kAll, through, 31);
+    total_ = __shfl_sync(kAllLanes, through, 31);
   }
 
   // Items of the lanes below, and of all.
@@ -28,7 +30,6 @@ class WarpShares {
   }
 
  private:
-  static constexpr unsigned kAll = 0xffffffffu;
   uint32_t before_, total_;
 };
 

@@ -22,7 +22,7 @@ class FrameReport {
   }
   bool passed() const { return copied_.passed(); }
   void wait() const { copied_.wait(); }
-  // Of a frame under way, which may wait for the host.
+  // Of a frame in flight, which may wait for the host.
   void wait_for_host() const { cuda::wait_for_host(copied_); }
 
   const PassCounters& counters() const {

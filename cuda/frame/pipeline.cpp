@@ -56,7 +56,7 @@ class SplatPipeline final : public Pipeline {
         limits_(desc.eyes),
         occlusion_choice_(desc.count_pixels ? Occlusion::off : desc.occlusion) {}
 
-  // What it frees belongs to the device's context, and to frames that may be under way.
+  // What it frees belongs to the device's context, and to frames that may be in flight.
   ~SplatPipeline() override {
     device_->use_quietly();
     stream_.wait_quietly();
@@ -121,10 +121,10 @@ class SplatPipeline final : public Pipeline {
   OcclusionState occlusion_;
   OcclusionChoice occlusion_choice_;
   Stream stream_;
-  std::vector<Report> free_;      // made as many as were under way at once
+  std::vector<Report> free_;      // made as many as were in flight at once
   std::deque<Report> under_way_;  // the oldest first
   Event begun_{kWaitedFor};       // passed once the host has let go of the last one's images
-  SplatRoom wanted_;              // by what frames that were under way have used
+  SplatRoom wanted_;              // by what frames that were in flight have used
 };
 
 // A frame that failed may still run, and read what is freed here. Reports have the room that the
@@ -223,7 +223,7 @@ void SplatPipeline::launch_second_pass(const SceneReading& reading, const FrameI
   launch_rasterize(rest, choices, eyes.data());
 }
 
-// Before a frame that the host will wait for: frames under way may wait for the host, those of
+// Before a frame that the host will wait for: frames in flight may wait for the host, those of
 // other views too, behind which a pool's chunks were linked.
 void SplatPipeline::wait_for_frames() {
   device_->use();
@@ -236,7 +236,7 @@ void SplatPipeline::await_links() const {
     if (instance.scene->streamed()) pool_of(*instance.scene, *device_).await_links();
 }
 
-// Of this frame and those under way, if they have more than kInstancesAhead together: none of them
+// Of this frame and those in flight, if they have more than kInstancesAhead together: none of them
 // waits for the host any more in front of its lists.
 void SplatPipeline::bound_launches() const {
   const size_t frames = under_way_.size() + 1;
@@ -254,7 +254,7 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
   device_->use();
   make_room();
   const FrameTiles tiles = frame_tiles(frame);
-  fit(frame, tiles);  // while nothing is taken that would be freed beside a frame under way
+  fit(frame, tiles);  // while nothing is taken that would be freed beside a frame in flight
   Report report;
   if (free_.empty()) {
     report = std::make_unique<FrameReport>(stream_, instances_);
@@ -298,7 +298,7 @@ void SplatPipeline::launch_search(const SceneReading&, const FrameInput& frame,
   });
 }
 
-// Frames that are left under way cannot be drawn again: they get room before they need it.
+// Frames that are left in flight cannot be drawn again: they get room before they need it.
 void SplatPipeline::make_room() {
   const SplatRoom wanted = wanted_, room = splats_.room();
   if (wanted.places > room.places || wanted.strips > room.strips || wanted.pairs > room.pairs) {

@@ -11,7 +11,7 @@ namespace voyager::cuda {
 std::unique_ptr<ExternalRing> import_ring(std::shared_ptr<const Device> device,
                                           ExternalRingDesc desc);
 
-// Until what the stream has so far is done, or the event has passed. Frames under way may wait for
+// Until what the stream has so far is done, or the event has passed. Frames in flight may wait for
 // the host: throws Error(timeout) after kHostPatience. It looks five times a millisecond.
 void wait_for_host(const Event& event);
 void wait_for_host(cudaStream_t stream);

@@ -3,13 +3,14 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/scene/gaussian_hull.cuh"
 #include "cuda/search/search_launch.h"
 
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kAll = 0xffffffffu, kThreads = 256;
+constexpr unsigned kThreads = 256;
 
 // Numbers, not NaN, as integers that ascend with them: a warp finds the least of these at once.
 __device__ uint32_t ascending(float v) {
@@ -20,10 +21,10 @@ __device__ float number_of(uint32_t ascending) {
   return __uint_as_float((ascending & 0x80000000u) != 0 ? ascending ^ 0x80000000u : ~ascending);
 }
 __device__ float warp_min(float v) {
-  return number_of(__reduce_min_sync(kAll, ascending(v)));
+  return number_of(__reduce_min_sync(kAllLanes, ascending(v)));
 }
 __device__ float warp_max(float v) {
-  return number_of(__reduce_max_sync(kAll, ascending(v)));
+  return number_of(__reduce_max_sync(kAllLanes, ascending(v)));
 }
 
 __device__ void add(MeanBounds& bounds, const GaussianHull& hull) {

@@ -17,7 +17,7 @@ __device__ inline bool is_own_reached(const TreeView& tree, const SearchSubtree&
                                       const Sight& sight, Tally& tally) {
   if (s.entry == kNoRecord || s.entry == kNotLinked) return s.entry == kNoRecord;
   ++tally.tested;
-  return judge(load_record(tree.records + s.entry), sight).refined;
+  return judge(load_record(tree.records + s.entry).bounds(), sight).refined;
 }
 
 // What judging a subtree's records found: bits by record, in their order.
@@ -55,9 +55,10 @@ __device__ inline Judged judge_records(const TreeView& tree, const SearchSubtree
     float slack = INFINITY, extent = 0.0f;
     if (base + lane < total) {
       const SearchRecord r = load_record(tree.records + owner.record(k, tree.next_block));
-      const NodeVerdict verdict = judge(r, sight);
+      const NodeBounds bounds = r.bounds();
+      const NodeVerdict verdict = judge(bounds, sight);
       refined = verdict.refined, blocked = r.children == kBlocked, slack = verdict.slack;
-      if (is_root) extent = r.extent;
+      if (is_root) extent = bounds.extent;
     }
     const uint32_t refined_votes = __ballot_sync(kAllLanes, refined);
     const uint32_t blocked_votes = __ballot_sync(kAllLanes, blocked);

@@ -3,13 +3,13 @@
 #include <cub/block/block_scan.cuh>
 
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/search/search_launch.h"
 
 namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kScanThreads = 1024, kScanItems = 4;
-constexpr unsigned kAll = 0xffffffffu;
 constexpr unsigned kScanTile = kScanThreads * kScanItems;
 using BlockScan = cub::BlockScan<uint32_t, kScanThreads, cub::BLOCK_SCAN_WARP_SCANS>;
 
@@ -87,7 +87,7 @@ __device__ void share_room(const StateView& state, uint32_t first, uint32_t last
     uint32_t through = own;
 #pragma unroll
     for (unsigned step = 1; step < 32; step *= 2) {
-      const uint32_t lower = __shfl_up_sync(kAll, through, step);
+      const uint32_t lower = __shfl_up_sync(kAllLanes, through, step);
       if (lane >= step) through += lower;
     }
     const uint32_t behind = before + through, ahead = behind - own;
@@ -97,7 +97,7 @@ __device__ void share_room(const StateView& state, uint32_t first, uint32_t last
       state.segments[i].room = own + spare_before(behind) - spare_before(ahead);
       if (size != 0) dirty.add(block_of_segment(state, i));
     }
-    before = __shfl_sync(kAll, behind, 31);
+    before = __shfl_sync(kAllLanes, behind, 31);
   }
 }
 
@@ -113,7 +113,7 @@ __device__ bool make_room(const StateView& state, uint32_t segment, Dirty& dirty
       need += least_room(state.segments[i].size);
       room += state.segments[i].room;
     }
-    need = __reduce_add_sync(kAll, need), room = __reduce_add_sync(kAll, room);
+    need = __reduce_add_sync(kAllLanes, need), room = __reduce_add_sync(kAllLanes, room);
     if (need <= room) {
       share_room(state, first, last, need, room, dirty);
       return true;

@@ -4,13 +4,13 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/search/search_launch.h"
 #include "runtime/math/lerp.h"
 
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kAll = 0xffffffffu;
 constexpr unsigned kThreads = 256;
 // Words of nodes that a thread block collects at once: eight to each warp, one after another.
 constexpr unsigned kTileWords = 64, kWarps = kThreads / 32, kWarpWords = kTileWords / kWarps;
@@ -79,9 +79,9 @@ __device__ uint32_t count_before(const unsigned long long* tiles, uint32_t run, 
       } while (status >> 1 != (run & 0x7fffffffu));
       count = static_cast<uint32_t>(value);
     }
-    const uint32_t complete = __ballot_sync(kAll, (status & 1) != 0);
+    const uint32_t complete = __ballot_sync(kAllLanes, (status & 1) != 0);
     const uint32_t needed = complete == 0 ? 32 : __ffs(complete);  // lanes up to the first of all
-    before += __reduce_add_sync(kAll, lane < needed ? count : 0);
+    before += __reduce_add_sync(kAllLanes, lane < needed ? count : 0);
     if (complete != 0) break;
   }
   return before;
@@ -93,12 +93,12 @@ __device__ uint32_t scan_words(uint32_t* counts, unsigned lane) {
   const uint32_t a = counts[2 * lane], b = counts[2 * lane + 1];
   uint32_t sum = a + b;
   for (unsigned step = 1; step < 32; step *= 2) {
-    const uint32_t below = __shfl_up_sync(kAll, sum, step);
+    const uint32_t below = __shfl_up_sync(kAllLanes, sum, step);
     if (lane >= step) sum += below;
   }
   counts[2 * lane] = sum - a - b;
   counts[2 * lane + 1] = sum - b;
-  return __shfl_sync(kAll, sum, 31);
+  return __shfl_sync(kAllLanes, sum, 31);
 }
 
 // Decoupled look-back: one pass over the nodes, in the order of ids.
@@ -120,7 +120,7 @@ __global__ void __launch_bounds__(kThreads)
       const uint32_t word = tile * kTileWords + warp * kWarpWords + k;
       const bool there = word < words;
       verdicts[k] = there ? judge_node(tree, state, sight, word, lane) : Verdict{};
-      cut[k] = __ballot_sync(kAll, verdicts[k].in_cut);
+      cut[k] = __ballot_sync(kAllLanes, verdicts[k].in_cut);
       if (lane != 0) continue;
       counts[warp * kWarpWords + k] = __popc(cut[k]);
       if (!there) continue;

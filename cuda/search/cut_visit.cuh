@@ -1,17 +1,14 @@
 #pragma once
 // Subtrees on the device: eight lanes each, four to a warp. Every function here is
 // called by all 32 lanes together; `active` tells which groups have a subtree.
+#include "cuda/device/warp.cuh"
 #include "cuda/search/cut_state.h"
 
 namespace voyager::cuda {
 
-inline constexpr unsigned kAllLanes = 0xffffffffu;
 inline constexpr unsigned kGroupLanes = 8, kGroups = 4;
 inline constexpr unsigned kSlotRounds = 4;  // 32 slots over 8 lanes
 
-__device__ inline unsigned lane_in_warp() {
-  return threadIdx.x % 32;
-}
 __device__ inline unsigned lane_in_group() {
   return threadIdx.x % kGroupLanes;
 }
@@ -35,9 +32,8 @@ __device__ inline float group_max(float v) {
   return v;
 }
 __device__ inline SearchRecord load_record(const SearchRecord* record) {
-  const float4* words = reinterpret_cast<const float4*>(record);
-  const float4 a = __ldg(words), b = __ldg(words + 1);
-  return {{a.x, a.y, a.z}, a.w, {b.x, b.y, b.z}, __float_as_uint(b.w)};
+  const uint4 words = __ldg(reinterpret_cast<const uint4*>(record));
+  return {words.x, {words.y, words.z, words.w}};
 }
 
 // One word a lane: 32 bytes in one request.
@@ -114,7 +110,7 @@ __device__ inline bool is_reached(const TreeView& tree, const SearchSubtree& s, 
                                   Tally& tally) {
   if (s.entry == kNoRecord || s.entry == kNotLinked) return s.entry == kNoRecord;
   if (lane_in_group() == 0) ++tally.tested;
-  return judge(load_record(tree.records + s.entry), sight).refined;
+  return judge(load_record(tree.records + s.entry).bounds(), sight).refined;
 }
 
 // A subtree's verdicts; the same in all lanes of its group. Nodes below one that is not
@@ -131,13 +127,14 @@ __device__ inline Visit visit_group(const TreeView& tree, const SearchSubtree& s
     bool refined = false;
     if (interior >> slot & 1) {
       const SearchRecord r = load_record(tree.records + record_of(tree, s, slot));
-      const NodeVerdict verdict = judge(r, sight);
+      const NodeBounds bounds = r.bounds();
+      const NodeVerdict verdict = judge(bounds, sight);
       const bool blocked = r.children == kBlocked;
       refined = verdict.refined && !blocked;
       if (refined) reached |= r.child_slots();
       if (verdict.refined && blocked) v.stand_ins |= 1u << slot;
       v.slack = fminf(v.slack, verdict.slack);
-      if (slot < s.first_child_slot()) v.extent = fmaxf(v.extent, r.extent);
+      if (slot < s.first_child_slot()) v.extent = fmaxf(v.extent, bounds.extent);
       ++tally.tested;
     }
     const uint32_t votes = __ballot_sync(kAllLanes, refined);

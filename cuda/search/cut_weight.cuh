@@ -6,8 +6,8 @@
 namespace voyager::cuda {
 
 __device__ inline float record_size(const WeightSource& from, uint32_t record) {
-  const SearchRecord r = load_record(from.tree.records + record);
-  return screen_size(from.sight.centre, r.box_min, r.box_max, r.extent);
+  const NodeBounds b = load_record(from.tree.records + record).bounds();
+  return screen_size(from.sight.centre, b.box_min, b.box_max, b.extent);
 }
 
 __device__ inline float own_size(const WeightSource& from, uint32_t record, uint32_t node) {

@@ -1,3 +1,6 @@
+#include <algorithm>
+
+#include "cuda/interop/external_ring.h"
 #include "cuda/search/search.h"
 #include "runtime/base/error.h"
 #include "runtime/frame/host_search.h"
@@ -12,17 +15,24 @@ class HostCutSearch final : public CutSearch {
         search_(scene, {kind, true}, std::pmr::get_default_resource(), workers),
         nodes_(scene->node_count),
         weights_(scene->node_count),
-        size_(1) {}
+        size_(1),
+        sent_((2 * size_t{scene->node_count} + 1) * sizeof(uint32_t)),
+        was_sent_(kWaitedFor) {}
 
   void find(const CutQuery& query, cudaStream_t stream) override {
     search_.run(query, workers_);
     const auto& cut = search_.cut();
-    host_weights_.resize(cut.size());
-    for (size_t i = 0; i < cut.size(); ++i) host_weights_[i] = search_.items()[i].t;
-    host_size_ = static_cast<uint32_t>(cut.size());
-    copy(nodes_.data(), cut.data(), cut.size(), stream);
-    copy(weights_.data(), host_weights_.data(), cut.size(), stream);
-    copy(size_.data(), &host_size_, 1, stream);
+    wait_for_host(was_sent_);
+    auto* const nodes = reinterpret_cast<uint32_t*>(sent_.data());
+    auto* const weights = reinterpret_cast<float*>(nodes + nodes_.size());
+    uint32_t& size = nodes[2 * nodes_.size()];
+    std::copy(cut.begin(), cut.end(), nodes);
+    for (size_t i = 0; i < cut.size(); ++i) weights[i] = search_.items()[i].t;
+    size = static_cast<uint32_t>(cut.size());
+    send(nodes_, nodes, cut.size(), stream);
+    send(weights_, weights, cut.size(), stream);
+    send(size_, &size, 1, stream);
+    was_sent_.record(stream);
   }
   void weigh(const CutQuery&, cudaStream_t) override {}  // found in the same pass
   CutList list() const override {
@@ -30,7 +40,7 @@ class HostCutSearch final : public CutSearch {
   }
   size_t report_bytes() const override { return sizeof(CutFound); }
   void report(void* into, cudaStream_t) const override {
-    *static_cast<CutFound*>(into) = {search_.stats(), host_size_};
+    *static_cast<CutFound*>(into) = {search_.stats(), static_cast<uint32_t>(search_.cut().size())};
   }
   CutFound found(const void* report) const override {
     return *static_cast<const CutFound*>(report);
@@ -38,25 +48,27 @@ class HostCutSearch final : public CutSearch {
   bool counts_changes() const override { return search_.counts_changes(); }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
     cut.assign(search_.cut().begin(), search_.cut().end());
-    weights = host_weights_;
+    weights.resize(cut.size());
+    for (size_t i = 0; i < cut.size(); ++i) weights[i] = search_.items()[i].t;
   }
 
  private:
-  // From memory that is not pinned, so the source may change as soon as it returns.
   template <class T>
-  static void copy(T* into, const T* from, size_t count, cudaStream_t stream) {
+  static void send(const Buffer<T>& into, const T* from, size_t count, cudaStream_t stream) {
     if (count == 0) return;
-    check(cudaMemcpyAsync(into, from, count * sizeof(T), cudaMemcpyHostToDevice, stream),
+    check(cudaMemcpyAsync(into.data(), from, count * sizeof(T), cudaMemcpyHostToDevice, stream),
           "a cut that the host found");
   }
 
   Workers& workers_;
   HostSearch search_;
-  std::vector<float> host_weights_;
-  uint32_t host_size_ = 0;
   Buffer<uint32_t> nodes_;
   Buffer<float> weights_;
   Buffer<uint32_t> size_;
+  // Of the last frame: nodes, weights and size on their way. A copy out of pageable memory would
+  // keep the host until the stream comes to it.
+  PinnedMemory sent_;
+  Event was_sent_;
 };
 
 }  // namespace

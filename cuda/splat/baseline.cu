@@ -5,6 +5,7 @@
 #include <cub/device/device_scan.cuh>
 
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/scene/device_arrays.cuh"
 #include "cuda/splat/baseline_launch.h"
 #include "cuda/splat/draw_item.cuh"
@@ -162,7 +163,7 @@ __global__ void __launch_bounds__(kThreads) baseline_count(BaselineView view) {
   for (uint32_t place = blockIdx.x * kThreads + threadIdx.x; place < view.places;
        place += gridDim.x * kThreads)
     drawn += view.tile_counts[place] != 0;
-  drawn = __reduce_add_sync(0xffffffffu, drawn);
+  drawn = __reduce_add_sync(kAllLanes, drawn);
   if (threadIdx.x % 32 == 0) atomicAdd(view.splat_count, drawn);
 }
 

@@ -6,6 +6,7 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/splat/bin_bands.h"
 #include "cuda/splat/bin_few.cuh"
 #include "cuda/splat/splat_launch.h"
@@ -121,7 +122,7 @@ __device__ void bin_strip(const SplatView& splats, const Share& share, uint32_t*
   for (uint32_t k = 0; k < kNarrow; ++k) place[k] = k < tiles ? take(begin + k, key) : splats.pairs;
 #pragma unroll
   for (uint32_t k = 0; k < kNarrow; ++k) bin_pair(splats, place[k], key);
-  unsigned wide = __ballot_sync(0xffffffffu, tiles > kNarrow);
+  unsigned wide = __ballot_sync(kAllLanes, tiles > kNarrow);
   while (wide != 0) {
     unsigned own = wide;
 #pragma unroll
@@ -130,9 +131,9 @@ __device__ void bin_strip(const SplatView& splats, const Share& share, uint32_t*
       wide &= wide - 1;
     }
     const int owner = own == 0 ? 0 : __ffs(own) - 1;
-    const DepthKey shared_key = __shfl_sync(0xffffffffu, key, owner);
-    const uint32_t first = __shfl_sync(0xffffffffu, begin, owner);
-    const uint32_t count = __shfl_sync(0xffffffffu, tiles, owner);
+    const DepthKey shared_key = __shfl_sync(kAllLanes, key, owner);
+    const uint32_t first = __shfl_sync(kAllLanes, begin, owner);
+    const uint32_t count = __shfl_sync(kAllLanes, tiles, owner);
     for (uint32_t k = kNarrow + lane % kWideLanes; own != 0 && k < count; k += kWideLanes)
       bin_pair(splats, take(first + k, shared_key), shared_key);
   }

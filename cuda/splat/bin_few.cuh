@@ -1,5 +1,6 @@
 #pragma once
 // Lists of a second pass with few tiles: each strip is tested against each of these tiles.
+#include "cuda/device/warp.cuh"
 #include "cuda/splat/bin_place.cuh"
 #include "cuda/splat/occlusion.cuh"
 
@@ -19,7 +20,7 @@ struct FewStrips {
       const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
       for (uint32_t i = 0; i < open.count; ++i) {
         const bool touches = open.tiles[i] - strip.first_tile < strip.tiles;
-        const unsigned lanes = __ballot_sync(0xffffffffu, touches);
+        const unsigned lanes = __ballot_sync(kAllLanes, touches);
         if (lanes != 0) found(i, lanes, key);
       }
     }
@@ -38,7 +39,7 @@ struct FewLists {
     if (lane < open.count) tile = open.tiles[lane], length = splats.tile_counts[tile];
     unsigned long long through = length;
     for (unsigned step = 1; step < 32; step *= 2) {
-      const unsigned long long lower = __shfl_up_sync(0xffffffffu, through, step);
+      const unsigned long long lower = __shfl_up_sync(kAllLanes, through, step);
       if (lane >= step) through += lower;
     }
     first = through - length;
@@ -61,8 +62,8 @@ __device__ inline void scatter_few(const SplatView& splats, const FewStrips& own
   own.each(open, [&](uint32_t i, unsigned lanes, DepthKey key) {
     uint32_t taken = 0;
     if (lane == 0) taken = atomicAdd(open.taken + i, static_cast<uint32_t>(__popc(lanes)));
-    const unsigned long long at = __shfl_sync(0xffffffffu, lists.first, static_cast<int>(i)) +
-                                  __shfl_sync(0xffffffffu, taken, 0) +
+    const unsigned long long at = __shfl_sync(kAllLanes, lists.first, static_cast<int>(i)) +
+                                  __shfl_sync(kAllLanes, taken, 0) +
                                   __popc(lanes & ((1u << lane) - 1));
     if (lanes >> lane & 1 && at < splats.pairs) splats.keys[at] = key;
   });
@@ -70,13 +71,12 @@ __device__ inline void scatter_few(const SplatView& splats, const FewStrips& own
 
 // Writes where each list lies, cut off at the room, and their order, longest first. By one warp.
 __device__ inline void place_few(const SplatView& splats) {
-  constexpr unsigned kAll = 0xffffffffu;
   const FewLists own(splats);
   SplatCounters& counters = *splats.counters;
   const uint32_t lists = counters.open.count, lane = threadIdx.x;
   uint32_t place = 0;  // in the order
   for (uint32_t other = 0; other < lists; ++other) {
-    const uint32_t of_other = __shfl_sync(kAll, own.length, static_cast<int>(other));
+    const uint32_t of_other = __shfl_sync(kAllLanes, own.length, static_cast<int>(other));
     place += of_other > own.length || (of_other == own.length && other < lane);
   }
   const auto room = static_cast<unsigned long long>(splats.pairs);
@@ -85,8 +85,8 @@ __device__ inline void place_few(const SplatView& splats) {
                               static_cast<uint32_t>(min(own.first + own.length, room))};
     splats.tile_order[place] = own.tile;
   }
-  const unsigned large = __ballot_sync(kAll, own.length > kMediumList);
-  const unsigned longer = __ballot_sync(kAll, own.length > kShortList);
+  const unsigned large = __ballot_sync(kAllLanes, own.length > kMediumList);
+  const unsigned longer = __ballot_sync(kAllLanes, own.length > kShortList);
   bin_strip_counts(splats);
   if (lane != 31) return;
   counters.large_lists = __popc(large);

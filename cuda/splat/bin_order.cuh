@@ -1,6 +1,7 @@
 #pragma once
 // Tiles by the lengths of their lists, longest first: the longest must not start last, and
 // sort.cu treats the classes of lengths differently.
+#include "cuda/device/warp.cuh"
 #include "cuda/splat/splats.h"
 
 namespace voyager::cuda {
@@ -62,7 +63,7 @@ struct BinOrder {
     uint32_t through = sum;
 #pragma unroll
     for (unsigned step = 1; step < 32; step *= 2) {
-      const uint32_t lower = __shfl_up_sync(0xffffffffu, through, step);
+      const uint32_t lower = __shfl_up_sync(kAllLanes, through, step);
       if (lane >= step) through += lower;
     }
     __syncwarp();

@@ -3,6 +3,7 @@
 // sort and draw them.
 #include <cub/block/block_scan.cuh>
 
+#include "cuda/device/warp.cuh"
 #include "cuda/splat/bin_order.cuh"
 
 namespace voyager::cuda {
@@ -27,10 +28,10 @@ __device__ inline void bin_strip_counts(const SplatView& splats) {
   const uint32_t room = splats.strip_room / kStripRegions;
   unsigned long long sum = strips, dropped = strips > room ? strips - room : 0;
   for (int step = 16; step != 0; step /= 2) {
-    sum += __shfl_xor_sync(0xffffffffu, sum, step);
-    dropped += __shfl_xor_sync(0xffffffffu, dropped, step);
+    sum += __shfl_xor_sync(kAllLanes, sum, step);
+    dropped += __shfl_xor_sync(kAllLanes, dropped, step);
   }
-  const unsigned long long most = __reduce_max_sync(0xffffffffu, strips);
+  const unsigned long long most = __reduce_max_sync(kAllLanes, strips);
   if (threadIdx.x != 0) return;
   splats.counters->strips = sum;
   splats.counters->strip_room = most * kStripRegions;
@@ -39,7 +40,7 @@ __device__ inline void bin_strip_counts(const SplatView& splats) {
 
 // Adds a warp's values to `sum`, which is the block's.
 __device__ inline void bin_add(unsigned long long& sum, unsigned long long value) {
-  for (int step = 16; step != 0; step /= 2) value += __shfl_xor_sync(0xffffffffu, value, step);
+  for (int step = 16; step != 0; step /= 2) value += __shfl_xor_sync(kAllLanes, value, step);
   if (threadIdx.x % 32 == 0) atomicAdd(&sum, value);
 }
 

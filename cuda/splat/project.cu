@@ -3,6 +3,7 @@
 // those that may reach the image; project_splats reads the rest of these.
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/scene/device_arrays.cuh"
 #include "cuda/scene/gaussian_hull.cuh"
 #include "cuda/search/cut_weight.cuh"
@@ -14,7 +15,6 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kAll = 0xffffffffu;
 // A lane asks for the hulls of its places together, so that it waits for memory once.
 constexpr unsigned kCullThreads = 256, kCullItems = 4;
 constexpr unsigned kProjectThreads = 128;  // small blocks: registers bound how many are resident
@@ -70,7 +70,7 @@ __device__ void append_places(const uint32_t (&lanes)[kItems], uint32_t* next, u
   __syncthreads();
 #pragma unroll
   for (unsigned k = 0; k < kItems; ++k) {
-    const uint32_t at = first + __shfl_sync(kAll, before[k], 0);
+    const uint32_t at = first + __shfl_sync(kAllLanes, before[k], 0);
     if (lanes[k] >> lane & 1) put(at + __popc(lanes[k] & ((1u << lane) - 1)), k);
   }
 }
@@ -112,8 +112,8 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
       const bool reaches = project_may_show<kLod, kEyes, kSecond>(f, item, hulls[k]);
       const bool blends = kLod && item.t != 1.0f;
       if (kLod && reaches && f.draws.weights.origin != nullptr) f.draws.weights.weights[place] = t;
-      whole[k] = __ballot_sync(kAll, reaches && !blends);
-      blended[k] = kLod ? __ballot_sync(kAll, reaches && blends) : 0;
+      whole[k] = __ballot_sync(kAllLanes, reaches && !blends);
+      blended[k] = kLod ? __ballot_sync(kAllLanes, reaches && blends) : 0;
     }
     append_places(whole, &counters->whole, found, first,
                   [&](uint32_t at, unsigned k) { f.splats.candidates[at] = places_of[k]; });
@@ -192,8 +192,8 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
       write_strips<kEyes>(extents[threadIdx.x / 32], extent[eye], f.splats, eye, depth[eye],
                           slot_of(f.splats, rank, eye), boxes);
   }
-  visible = __reduce_add_sync(kAll, visible);
-  for (int step = 16; step != 0; step /= 2) boxed += __shfl_xor_sync(kAll, boxed, step);
+  visible = __reduce_add_sync(kAllLanes, visible);
+  for (int step = 16; step != 0; step /= 2) boxed += __shfl_xor_sync(kAllLanes, boxed, step);
   if (threadIdx.x % 32 != 0 || visible == 0) return;
   atomicAdd(&f.splats.counters->splats, visible);
   atomicAdd(&f.splats.counters->pairs_boxed, boxed);

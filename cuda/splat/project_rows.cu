@@ -2,6 +2,7 @@
 // and is not hidden.
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/scene/gaussian_hull.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/splat_launch.h"
@@ -9,7 +10,7 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kAll = 0xffffffffu, kThreads = 256;
+constexpr unsigned kThreads = 256;
 
 template <bool kSecond>
 __device__ bool row_may_reach(const SplatFrame& f, uint32_t row) {
@@ -33,11 +34,11 @@ __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
   for (uint32_t base = blockIdx.x * kThreads + threadIdx.x - lane; base < end;
        base += gridDim.x * kThreads) {
     const uint32_t row = base + lane;
-    const uint32_t found = __ballot_sync(kAll, row < end && row_may_reach<kSecond>(f, row));
+    const uint32_t found = __ballot_sync(kAllLanes, row < end && row_may_reach<kSecond>(f, row));
     uint32_t first = 0;
     if (lane == 0 && found != 0)
       first = atomicAdd(&counters->rows, static_cast<uint32_t>(__popc(found)));
-    first = __shfl_sync(kAll, first, 0);
+    first = __shfl_sync(kAllLanes, first, 0);
     if (found >> lane & 1) f.splats.rows[first + __popc(found & ((1u << lane) - 1))] = row;
   }
 }
@@ -53,7 +54,10 @@ void launch(const SplatFrame& f) {
 
 RowList launch_rows(const SplatFrame& f) {
   if (f.draws.list.bounds == nullptr || f.draws.list.room == 0) return {};
-  f.splats.open_parts == nullptr ? launch<false>(f) : launch<true>(f);
+  if (f.splats.open_parts == nullptr)
+    launch<false>(f);
+  else
+    launch<true>(f);
   return {f.splats.rows, &f.splats.counters->instances[f.instance].rows};
 }
 

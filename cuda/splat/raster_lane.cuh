@@ -2,6 +2,7 @@
 // A lane's pixels, and how one splat is blended into them; as the exponential wants it.
 #include <cuda_fp16.h>
 
+#include "cuda/device/warp.cuh"
 #include "cuda/splat/raster_pixel.cuh"
 #include "runtime/math/half.h"
 
@@ -165,7 +166,7 @@ struct HalfLane {
     __half2 weight = __hmul2(alpha, transmittance);
     if constexpr (M::kCount) counts.evaluated += kRows, counts.blended += hits[0] + hits[1];
     const __half2 end = __float2half2_rn(kTransmittanceEnd);
-    if (__any_sync(0xffffffffu, !__hbge2(after, end))) {
+    if (__any_sync(kAllLanes, !__hbge2(after, end))) {
       const bool ends[kRows] = {__low2half(after) < __low2half(end),
                                 __high2half(after) < __low2half(end)};
       keep(ends, weight, after);

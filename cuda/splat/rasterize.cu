@@ -7,6 +7,7 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/raster_lane.cuh"
 #include "cuda/splat/raster_output.cuh"
@@ -16,7 +17,6 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kAll = 0xffffffffu;
 constexpr int kWarps = 4;  // a tile's, or those of one of its halves
 constexpr unsigned kThreads = 32 * kWarps;
 
@@ -69,7 +69,7 @@ __device__ bool all_ended(const Lane& lane) {
   bool all = true;
 #pragma unroll
   for (int row = 0; row < Lane::kRows; ++row) all &= lane.ended(row);
-  return __all_sync(kAll, all);
+  return __all_sync(kAllLanes, all);
 }
 
 // From how far the warp's pixels still take splats; -inf once all have ended.
@@ -80,7 +80,7 @@ __device__ float farthest_of(const Lane& lane) {
   for (int row = 0; row < Lane::kRows; ++row)
     if (!lane.ended(row)) z = fmaxf(z, lane.farthest(row));
 #pragma unroll
-  for (int other = 16; other > 0; other /= 2) z = fmaxf(z, __shfl_xor_sync(kAll, z, other));
+  for (int other = 16; other > 0; other /= 2) z = fmaxf(z, __shfl_xor_sync(kAllLanes, z, other));
   return z;
 }
 
@@ -129,7 +129,7 @@ __device__ Gathered gather(const RasterSplat& splat, bool within, const Part& pa
                            float log_threshold, WarpSplats& chosen) {
   const uint32_t self = threadIdx.x % 32;
   const bool touches = within & (!M::kFilter | rasterize_touches(splat, part, log_threshold));
-  const unsigned lanes = __ballot_sync(kAll, touches);
+  const unsigned lanes = __ballot_sync(kAllLanes, touches);
   __syncwarp();
   const int at = __popc(lanes & ((1u << self) - 1));
   if (touches) {
@@ -141,8 +141,8 @@ __device__ Gathered gather(const RasterSplat& splat, bool within, const Part& pa
   if constexpr (M::kSiblings) {
     const Siblings own =
         touches ? siblings_of<M::kExponential>(splat.middle.w, splat.colour.w) : Siblings::none;
-    gathered.siblings = __reduce_or_sync(kAll, own != Siblings::none ? 1u << at : 0);
-    gathered.many = __any_sync(kAll, own == Siblings::many);
+    gathered.siblings = __reduce_or_sync(kAllLanes, own != Siblings::none ? 1u << at : 0);
+    gathered.many = __any_sync(kAllLanes, own == Siblings::many);
   }
   return gathered;
 }
@@ -186,7 +186,7 @@ __device__ uint32_t rasterize_list(const SplatView& splats, const TileList& list
     if constexpr (M::kLimits) {
       // Splats come front to back: behind one that is too far all are.
       farthest = farthest_of(lane);
-      ended = __any_sync(kAll, valid && splat.middle.z > farthest);
+      ended = __any_sync(kAllLanes, valid && splat.middle.z > farthest);
     } else {
       ended = all_ended(lane);
     }
@@ -356,7 +356,7 @@ __global__ void __launch_bounds__(kThreads) rasterize_count_places(SplatView spl
   for (uint32_t tile = blockIdx.x * kThreads + threadIdx.x; tile < splats.frame.count();
        tile += gridDim.x * kThreads)
     read += places_read(splats, tile);
-  read = __reduce_add_sync(kAll, read);
+  read = __reduce_add_sync(kAllLanes, read);
   if (threadIdx.x % 32 == 0)
     atomicAdd(&splats.counters->places_read, static_cast<unsigned long long>(read));
 }

@@ -9,6 +9,7 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/splat/occlusion.cuh"
 #include "cuda/splat/splat_launch.h"
 
@@ -191,7 +192,7 @@ __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) 
   for (;;) {
     uint32_t taken = 0;
     if (threadIdx.x % 32 == 0) taken = atomicAdd(&splats.counters->queues[queue].taken, 1u);
-    const uint32_t i = long_lists + __shfl_sync(0xffffffffu, taken, 0) * kSortQueues + queue;
+    const uint32_t i = long_lists + __shfl_sync(kAllLanes, taken, 0) * kSortQueues + queue;
     if (i >= lists) return;
     const TileList list = splats.tiles[splats.tile_order[i]];
     if (list.last - list.first > 1)

@@ -1,6 +1,7 @@
 #pragma once
 // A splat's tiles, a row of tiles at a time. All splats of a warp are cut up by all of its
 // lanes together: one splat may have one strip, another a hundred.
+#include "cuda/device/warp.cuh"
 #include "cuda/device/warp_shares.cuh"
 #include "cuda/splat/splats.h"
 
@@ -44,7 +45,6 @@ struct WarpExtents {
 template <int kEyes>
 __device__ void write_strips(WarpExtents& shared, const TileExtent& own, const SplatView& splats,
                              int eye, float depth, uint32_t slot, bool boxes) {
-  constexpr unsigned kAll = 0xffffffffu;
   const uint32_t lane = threadIdx.x % 32;
   const WarpShares shares(own.strips());
   const uint32_t strips = shares.total();
@@ -57,8 +57,8 @@ __device__ void write_strips(WarpExtents& shared, const TileExtent& own, const S
   const uint32_t room = splats.strip_room / kStripRegions;
   uint32_t first = 0;
   if (lane == 0) first = atomicAdd(strip_count(splats, region), strips);
-  first = __shfl_sync(kAll, first, 0);
-  const unsigned with_some = __ballot_sync(kAll, some);
+  first = __shfl_sync(kAllLanes, first, 0);
+  const unsigned with_some = __ballot_sync(kAllLanes, some);
   if (some)
     shared.source[__popc(with_some & at_most_own) - 1] = {
         own.ellipse, own.rows.begin - static_cast<int32_t>(before_own), own.columns,
@@ -67,7 +67,7 @@ __device__ void write_strips(WarpExtents& shared, const TileExtent& own, const S
   int begun = 0;  // splats whose first strip is below base
   for (uint32_t base = 0; base < strips; base += 32) {
     const uint32_t strip = base + lane, own_at = before_own - base;
-    const unsigned starts = __reduce_or_sync(kAll, some && own_at < 32 ? 1u << own_at : 0);
+    const unsigned starts = __reduce_or_sync(kAllLanes, some && own_at < 32 ? 1u << own_at : 0);
     const int owner = begun + __popc(starts & at_most_own) - 1;
     begun += __popc(starts);
     if (strip >= strips) continue;

@@ -7,7 +7,8 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kThreads = 256;
-// A chunk is some 10 KB: what counts is how many reads are on the bus at once.
+// A chunk is some 8 KB in a dozen arrays. Its reads cross the bus: more blocks than these find none
+// left to ask for.
 constexpr unsigned kMostBlocks = 64;
 
 unsigned blocks_for(uint32_t threads) {

@@ -107,7 +107,7 @@ class CudaTrainer final : public NodeTrainer {
     search_ = create_exhaustive_search(device_, *scene_, scene_->tree, true);
   }
 
-  // What it frees belongs to the device's context, and to work under way.
+  // What it frees belongs to the device's context, and to work in flight.
   ~CudaTrainer() override {
     device_->use_quietly();
     cudaStreamSynchronize(stream_.get());

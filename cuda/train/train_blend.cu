@@ -2,6 +2,7 @@
 // once more. A warp has a part of the tile, a lane one of its pixels; of each splat the warp adds
 // its pixels' shares up before it adds them to the splat's sums.
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/splat/raster_part.cuh"
 #include "cuda/train/fixed_sum.cuh"
 #include "runtime/stages/blend_gradient.h"
@@ -9,7 +10,6 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kAll = 0xffffffffu;
 constexpr int kTrainRows = 32 / kPartWidth;  // of a warp's part
 constexpr int kWarps = kTile * kTile / 32;
 constexpr unsigned kThreads = 32 * kWarps;
@@ -35,17 +35,17 @@ __device__ float warp_sums(float (&v)[8], uint32_t lane) {
     for (int i = 0; i < half; ++i) {
       const float sent = upper ? v[i] : v[i + half];
       const float kept = upper ? v[i + half] : v[i];
-      v[i] = kept + __shfl_xor_sync(kAll, sent, offset);
+      v[i] = kept + __shfl_xor_sync(kAllLanes, sent, offset);
     }
   }
   float sum = v[0];
-  sum += __shfl_xor_sync(kAll, sum, 2);
-  sum += __shfl_xor_sync(kAll, sum, 1);
+  sum += __shfl_xor_sync(kAllLanes, sum, 2);
+  sum += __shfl_xor_sync(kAllLanes, sum, 1);
   return sum;
 }
 __device__ float warp_sum(float v) {
 #pragma unroll
-  for (int offset = 16; offset != 0; offset /= 2) v += __shfl_xor_sync(kAll, v, offset);
+  for (int offset = 16; offset != 0; offset /= 2) v += __shfl_xor_sync(kAllLanes, v, offset);
   return v;
 }
 
@@ -66,7 +66,7 @@ __device__ void add_pixel(const TrainSplats& chosen, int i, float x, float y, fl
   const float p = dx * shape.z, q = fmaf(-middle.x, dx, dy) * shape.w;
   const float log_alpha = middle.y - fmaf(q, q, p * p);
   const bool hit = open && log_alpha >= log_threshold;
-  if (!__any_sync(kAll, hit)) return;
+  if (!__any_sync(kAllLanes, hit)) return;
   PixelShare<float> share{0.0f, 0.0f};
   if (hit) {
     const float plain = ex2(log_alpha);
@@ -130,7 +130,7 @@ __global__ void __launch_bounds__(kThreads)
       splat = {__ldg(record), __ldg(record + 1), __ldg(record + 2)};
       touches = rasterize_touches(splat, part, params.log_threshold);
     }
-    const unsigned lanes = __ballot_sync(kAll, touches);
+    const unsigned lanes = __ballot_sync(kAllLanes, touches);
     __syncwarp();
     if (touches) {
       const int place = __popc(lanes & ((1u << self) - 1));
@@ -144,7 +144,7 @@ __global__ void __launch_bounds__(kThreads)
     for (int i = 0; i < count; ++i)
       add_pixel(chosen, i, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
                 params.log_threshold, error, pixel, open, params.sums);
-    if (!__any_sync(kAll, open)) return;
+    if (!__any_sync(kAllLanes, open)) return;
   }
 }
 

@@ -1,5 +1,6 @@
 // The truth from its samples, and how far a picture is from it.
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/train/fixed_sum.cuh"
 #include "cuda/train/train_launch.h"
 
@@ -31,7 +32,7 @@ __global__ void __launch_bounds__(kThreads)
   float sum = 0;
   const uint32_t pixel = blockIdx.x * kThreads + threadIdx.x;
   if (pixel < pictures.width * pictures.height) sum = squared_error(pictures, pixel);
-  for (int step = 16; step != 0; step /= 2) sum += __shfl_xor_sync(0xffffffffu, sum, step);
+  for (int step = 16; step != 0; step /= 2) sum += __shfl_xor_sync(kAllLanes, sum, step);
   if (threadIdx.x % 32 == 0 && sum > 0.0f) add_fixed(squares, sum);
 }
 

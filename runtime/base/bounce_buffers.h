@@ -1,5 +1,5 @@
 #pragma once
-// Aligned memory for reads past the page cache: one buffer a read under way, kept for the next.
+// Aligned memory for reads past the page cache: one buffer a read in flight, kept for the next.
 #include <cstddef>
 #include <memory>
 #include <mutex>

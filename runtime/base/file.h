@@ -35,7 +35,7 @@ class ByteSource {
   // A wish, granted where the source has something to choose. Before reads of other threads.
   virtual void expect(Access) const noexcept {}
   // Nobody wants the bytes any more: where reads can be slow for want of an answer (HTTP),
-  // those under way end at once with Error(io), as do all later ones. Callable from any thread,
+  // those in flight end at once with Error(io), as do all later ones. Callable from any thread,
   // during reads; for good. The others are not affected.
   virtual void cancel() const noexcept {}
   // Another file that this one refers to, in its folder or below: a relative path, its folders

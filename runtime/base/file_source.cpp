@@ -131,7 +131,7 @@ size_t FileSource::read_some(uint64_t at, std::span<std::byte> bytes, size_t ski
     const ssize_t got = ::pread(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (got > static_cast<ssize_t>(skip)) return static_cast<size_t>(got);
     if (got < 0 && errno == EINTR) continue;
-    // Some file systems refuse direct reads only now. Reads under way go on without.
+    // Some file systems refuse direct reads only now. Reads in flight go on without.
     if (got < 0 && errno == EINVAL && direct_.exchange(false) && set_direct(false)) continue;
     if (got < 0)
       throw Error(

@@ -145,7 +145,7 @@ class Pipeline {
   // sizes and formats; only resolve() writes to them, after all else that may fail.
   virtual void draw(const FrameInput& frame, FrameStats& stats) = 0;
   virtual void resolve(const FrameInput& frame, FrameStats& stats) = 0;
-  // As draw() and resolve(), into rings of another API, but leaves the frame under way.
+  // As draw() and resolve(), into rings of another API, but leaves the frame in flight.
   // checked: room that is too small is found out first; else the frame is what it can be.
   // Where it throws, nothing is waited for and nothing signalled.
   virtual void submit(const FrameInput&, bool) {
@@ -153,12 +153,12 @@ class Pipeline {
                 "target: found another API's memory, expected the host's: this pipeline draws "
                 "into no other");
   }
-  // Adds what is known of the oldest frame under way. False, and untouched stats, where
+  // Adds what is known of the oldest frame in flight. False, and untouched stats, where
   // there is none or, without `wait`, it has not ended. A frame may wait for the host: so `wait`
   // ends after kHostPatience, with Error(timeout), as do draw(), submit() and set_scenes() where
-  // they have to wait for frames under way.
+  // they have to wait for frames in flight.
   virtual bool finish(bool, FrameStats&) { return false; }
-  // The instances from now on; no frame is under way. from: of each the one so far whose state it
+  // The instances from now on; no frame is in flight. from: of each the one so far whose state it
   // takes over (match_instances.h). The state of the others is freed. Where it throws, nothing has
   // changed.
   virtual void set_scenes(const Scenes& scenes, std::span<const size_t> from) = 0;

@@ -51,7 +51,7 @@ struct ExternalSupport {
 class ExternalRing {
  public:
   virtual ~ExternalRing() = default;
-  // No frame into it is under way.
+  // No frame into it is in flight.
   virtual bool idle() const = 0;
   // Until it is. Throws Error(device_lost).
   virtual void wait() const = 0;

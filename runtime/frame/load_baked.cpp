@@ -10,6 +10,7 @@
 #include "runtime/frame/sh_runs.h"
 #include "runtime/frame/whole_tree.h"
 #include "runtime/lod/nesting.h"
+#include "runtime/lod/round_bounds.h"
 #include "runtime/scene/sh_bands.h"
 
 namespace voyager {
@@ -345,6 +346,7 @@ void load_baked(const SceneFile& file, Workers& workers, Scene& scene) {
     check_totals(scene);
     check_claims(file.info(), scene, findings);
   }
+  round_bounds(scene.tree, workers);
   add_search(scene, workers);
   leave_out_records(scene);
   int used = 0;

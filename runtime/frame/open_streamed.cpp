@@ -8,6 +8,7 @@
 #include "runtime/base/megabytes.h"
 #include "runtime/format/check_claims.h"
 #include "runtime/frame/load.h"
+#include "runtime/lod/round_bounds.h"
 #include "runtime/math/screen_size.h"
 
 namespace voyager {
@@ -17,10 +18,10 @@ namespace {
 // but where a chunk goes on with a root of the one before, and of the tree's root: those are
 // never passed over.
 SearchChunk search_chunk(const ChunkEntry& entry, bool top) {
-  const EntryHull& hull = entry.hull;
   if (top || entry.place.listed_children != 0)
     return {
         {-FLT_MAX, -FLT_MAX, -FLT_MAX}, FLT_MAX, {FLT_MAX, FLT_MAX, FLT_MAX}, entry.first_subtree};
+  const EntryHull hull = round_hull(entry.hull);
   return {hull.box_min, hull.extent, hull.box_max, entry.first_subtree};
 }
 

@@ -2,7 +2,7 @@
 // τ from the times of frames: a pure controller, in u = log(τ + ½). Near any τ a frame takes
 // about exp(load − slope·u), so a frame that was drawn at u and took t tells where the aim is:
 // at u + log(t / aim) / slope, whenever it becomes known and wherever τ is by then. That is why
-// frames under way cause no ringing. docs/time-budget.md derives the rest and has its figures.
+// frames in flight cause no ringing. docs/time-budget.md derives the rest and has its figures.
 #include <array>
 #include <cstddef>
 

@@ -21,7 +21,7 @@ class View {
        std::pmr::memory_resource* memory, Workers& workers, Clock clock = {})
       : View(Scenes{std::move(scene)}, backend, desc, memory, workers, std::move(clock)) {}
 
-  // The instances from the next frame on. Waits for the frames under way. The k-th instance of a
+  // The instances from the next frame on. Waits for the frames in flight. The k-th instance of a
   // scene goes on with what the k-th of this scene has kept, and what nobody goes on with is freed.
   // Where it throws, as the constructor may, nothing has changed.
   void set_scenes(Scenes scenes);
@@ -53,7 +53,7 @@ class View {
   bool has_frame() const { return frames_ > 0; }
   // Whether a frame has been drawn since the instances are what they are.
   bool has_cuts() const { return drawn_; }
-  // Of the last frame that has ended; a frame into another API's image may still be under way.
+  // Of the last frame that has ended; a frame into another API's image may still be in flight.
   // Waits where none has. pairs_dropped is also that of frames before it that nobody asked about.
   const FrameStats& stats();
   // What the view does without, its scenes' own omissions first; each scene's once. As far as the

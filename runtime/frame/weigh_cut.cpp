@@ -79,24 +79,24 @@ class BlockWeights {
   // split: the record's slots may not be all of the children.
   Family family(uint32_t record, uint32_t parent, bool split) const {
     const SearchRecord& r = search_tree_.records[record];
-    const float size = size_of(r), target = query_.target_size;
+    const float size = size_of(r.bounds()), target = query_.target_size;
     if (is_drawn_whole(size, target, links_.blend_share)) return {parent, size, true, 1.0f, 1.0f};
     const uint32_t children = split ? links_.children(parent) : count_bits(r.child_slots());
     return {parent, size, false, interpolation_weight(true, size, 0.0f, target, links_.blend_share),
             1.0f / static_cast<float>(children)};
   }
 
-  // Of SearchRecord or NodeRecord.
-  template <class Record>
-  float size_of(const Record& r) const {
-    return screen_size(query_.centre, r.box_min, r.box_max, r.extent);
+  // Of NodeBounds or NodeRecord.
+  template <class Bounds>
+  float size_of(const Bounds& b) const {
+    return screen_size(query_.centre, b.box_min, b.box_max, b.extent);
   }
 
   float own_size(const SearchSubtree& subtree, uint32_t slot) const {
     if ((subtree.interior >> slot & 1) == 0) return leaf_size(links_.records[subtree.node(slot)]);
     const uint32_t below = subtree.interior & slots_before(slot);
-    return size_of(
-        search_tree_.records[subtree.record(count_bits(below), search_tree_.next_block.data())]);
+    const uint32_t record = subtree.record(count_bits(below), search_tree_.next_block.data());
+    return size_of(search_tree_.records[record].bounds());
   }
 
   float leaf_size(const NodeRecord& r) const { return r.extent == 0.0f ? 0.0f : size_of(r); }

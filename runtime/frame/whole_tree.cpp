@@ -12,7 +12,7 @@ void fill_interior(const SearchTree& search, LodTree& tree) {
   for (const SearchSubtree& subtree : search.subtrees) {
     uint32_t record = subtree.first_record;
     for (uint32_t slots = subtree.interior; slots != 0; slots &= slots - 1, ++record) {
-      const SearchRecord& from = search.records[record];
+      const NodeBounds from = search.records[record].bounds();
       NodeRecord& to = tree.records[subtree.node(static_cast<uint32_t>(std::countr_zero(slots)))];
       to.box_min = from.box_min;
       to.box_max = from.box_max;

@@ -32,8 +32,8 @@ using ShScales = std::array<float, 3>;  // of bands 1 to 3
 
 // What a step of each band stands for, as a sum of two binary32 numbers: fma(step, high, step *
 // low) is restore_sh() to the bit, for scales from 1e-30 on. No such product lies in the middle
-// between two binary32 numbers, since twice a step times a scale is no odd multiple of 31 or 127 of
-// them. Padded, so that a device reads it at once.
+// between two binary32 numbers: divided by 31 or 127 it has 24 significant bits at most, or no end.
+// Padded, so that a device reads it at once.
 struct alignas(16) ShStepSizes {
   float high[3], low[3];
   float unused[2];

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "runtime/lod/round_bounds.h"
+
 namespace voyager {
 namespace {
 
@@ -88,6 +90,7 @@ DetailTree make_detail_tree(const LodTree& tree, const Partition& partition, Lod
     Blocks(detail.tree, partition).set();
   else
     set_levels(detail.tree);
+  round_bounds(detail.tree, workers);
   detail.search = make_search_tree(detail.tree, partition, {}, workers, memory);
   return detail;
 }

@@ -43,7 +43,8 @@ void fill_search_records(const Subtree& subtree, const Record& record, SearchRec
       });
   for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
     const NodeRecord& from = record(slot);
-    if (from.child_count != 0) *out++ = {from.box_min, from.extent, from.box_max, children[slot]};
+    if (from.child_count != 0)
+      *out++ = {children[slot], encode_bounds({from.box_min, from.extent, from.box_max})};
   }
 }
 

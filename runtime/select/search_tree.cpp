@@ -177,7 +177,7 @@ class Builder {
     SearchChunk hull{{kMost, kMost, kMost}, 0, {-kMost, -kMost, -kMost}, first};
     for (uint32_t s = first; s < last; ++s) {
       if (out_.subtrees[s].entry == kNoRecord) continue;
-      const SearchRecord& r = out_.records[out_.subtrees[s].entry];
+      const NodeBounds r = out_.records[out_.subtrees[s].entry].bounds();
       hull.extent = std::max(hull.extent, r.extent);
       for (int axis = 0; axis < 3; ++axis) {
         hull.hull_min[axis] = std::min(hull.hull_min[axis], r.box_min[axis]);

@@ -11,6 +11,7 @@
 
 #include "runtime/base/workers.h"
 #include "runtime/lod/subtrees.h"
+#include "runtime/math/bounds_code.h"
 
 namespace voyager {
 
@@ -27,15 +28,14 @@ inline constexpr uint32_t kBlocked = 0xffffffffu;
 
 // An interior node in its subtree.
 struct SearchRecord {
-  Vec3f box_min;
-  float extent;
-  Vec3f box_max;
   uint32_t children;  // the slots of its children; kLowest or kBlocked on a tier's lowest level
+  BoundsCode code;
 
+  VOYAGER_HD NodeBounds bounds() const { return decode_bounds(code); }
   // The slots of its children in its own subtree.
   VOYAGER_HD uint32_t child_slots() const { return (children & kLowest) != 0 ? 0 : children; }
 };
-static_assert(sizeof(SearchRecord) == 32);
+static_assert(sizeof(SearchRecord) == 16);
 
 // Subtrees [first, last).
 struct SubtreeSpan {
@@ -159,9 +159,9 @@ struct SubtreeRange {
   bool repeats_root;    // which the subtree before has, too
 };
 
-// Tree and partition are sound where no chunk is damaged. missing: ascending and
-// disjoint; nothing of those subtrees but their number is read from the partition.
-// Throws only std::bad_alloc.
+// Tree and partition are sound where no chunk is damaged, and bounds are rounded (round_bounds()).
+// missing: ascending and disjoint; nothing of those subtrees but their number is read from the
+// partition. Throws only std::bad_alloc.
 SearchTree make_search_tree(const LodTree& tree, const Partition& partition,
                             std::span<const SubtreeRange> missing, Workers& workers,
                             std::pmr::memory_resource* memory = std::pmr::get_default_resource());

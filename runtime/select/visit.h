@@ -35,13 +35,13 @@ struct NodeVerdict {
 
 // Where there is slack, distance and reach are so far apart that which of them is the
 // longer is the verdict; only without slack the predicate itself must be asked.
-VOYAGER_HD NodeVerdict judge(const SearchRecord& r, const Sight& sight) {
-  const float squared = squared_distance(sight.centre, r.box_min, r.box_max);
-  const float distance = sqrt_near(squared), reach = r.extent * sight.inverse_size;
+VOYAGER_HD NodeVerdict judge(const NodeBounds& b, const Sight& sight) {
+  const float squared = squared_distance(sight.centre, b.box_min, b.box_max);
+  const float distance = sqrt_near(squared), reach = b.extent * sight.inverse_size;
   const float slack =
       std::fabs(distance - reach) - (kSlackRounding * (distance + reach) + kSlackFloor);
   if (slack > 0.0f && reach <= FLT_MAX) return {distance < reach, slack};
-  return {size_at(squared, r.extent) >= sight.target_size, 0.0f};
+  return {size_at(squared, b.extent) >= sight.target_size, 0.0f};
 }
 
 // What a search keeps of a subtree that is open: one whose roots hang from a refined node.
@@ -68,10 +68,11 @@ Visit visit(const SearchSubtree& subtree, const Sight& sight, const Record& reco
     const uint32_t slot = left & (~left + 1);
     if ((reached & slot) == 0) continue;
     const SearchRecord& r = record(i);
-    const NodeVerdict verdict = judge(r, sight);
+    const NodeBounds bounds = r.bounds();
+    const NodeVerdict verdict = judge(bounds, sight);
     ++v.tested;
     v.slack = verdict.slack < v.slack ? verdict.slack : v.slack;
-    v.extent = r.extent > v.extent ? r.extent : v.extent;
+    v.extent = bounds.extent > v.extent ? bounds.extent : v.extent;
     if (!verdict.refined) continue;
     if (r.children == kBlocked) {
       v.stand_ins |= slot;

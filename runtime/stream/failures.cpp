@@ -48,7 +48,7 @@ double Failures::wait_after(unsigned times) {
 void Failures::source_failed(const Error& error, double now) {
   source_code_ = error.code();
   source_message_ = error.what();
-  // Reads that were under way together fail together.
+  // Reads that were in flight together fail together.
   if (!source_may_be_read(now)) return;
   // Long ago, and nothing was read since: not in a row.
   constexpr double kForgotten = 6 * kLongestWait;

@@ -6,7 +6,7 @@
 inline constexpr std::chrono::milliseconds kStuckPatience{100};  // a fifth of what frames are given
 
 struct StuckModule {
-  std::atomic<bool> idle{true};  // no: frames under way never end
+  std::atomic<bool> idle{true};  // no: frames in flight never end
   // Objects that live, and those that were destroyed beside a frame: CUDA would wait there,
   // without end.
   std::atomic<int> backends{0}, pipelines{0}, rings{0}, hangs{0};

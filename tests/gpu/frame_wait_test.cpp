@@ -1,7 +1,9 @@
-// A host that waits for the device sleeps, and the copy of an image is the device's work alone.
+// A host that waits for the device sleeps, and copies of images and of cuts that the host found are
+// the device's work alone.
 #include <time.h>
 
 #include "cuda/frame/frame_image.h"
+#include "cuda/search/search.h"
 #include "runtime/base/clock.h"
 #include "tests/gpu/frames_in_flight.h"
 
@@ -97,6 +99,38 @@ TEST_F(FrameWait, AnImageWithoutMemoryIsNotCopied) {
   drawn.fit(eye);
   const cuda::Stream stream;
   EXPECT_FALSE(drawn.fetch(eye.image, stream.get()));
+}
+
+// As of a scene with damaged chunks. More nodes than a driver copies out of pageable memory at
+// once.
+TEST_F(FrameWait, ACutThatTheHostFoundIsTheDevicesToFetch) {
+  const auto on = device();
+  on->use();
+  const auto scene = baked_scene(random_cloud(40'000, 40, 0));
+  const auto search = cuda::create_host_cut_search(scene, Search::temporal, workers);
+  const cuda::Stream stream;
+  search->find({{0, 0, -30}, 0.01f}, stream.get());
+  cuda::give_head_start(stream.get(), 100'000'000);
+  const Stopwatch time;
+  search->find({{0, 0, -30}, 1e-9f}, stream.get());
+  EXPECT_EQ(cudaStreamQuery(stream.get()), cudaErrorNotReady) << "the host copied";
+  std::vector<uint32_t> fine, coarse;
+  std::vector<float> weights;
+  search->read(fine, weights);
+  EXPECT_GT(fine.size(), 20'000u);
+  // The next one comes while this one is on its way, and leaves it alone.
+  const cuda::Buffer<uint32_t> kept(fine.size());
+  cuda::check(cudaMemcpyAsync(kept.data(), search->list().nodes, kept.bytes(),
+                              cudaMemcpyDeviceToDevice, stream.get()),
+              "a cut");
+  search->find({{0, 0, -3000}, 0.1f}, stream.get());
+  stream.wait();
+  EXPECT_GT(time.milliseconds(), 50) << "nothing was held back";
+  search->read(coarse, weights);
+  EXPECT_LT(coarse.size(), fine.size() / 10);
+  std::vector<uint32_t> sent(fine.size());
+  cuda::check(cudaMemcpy(sent.data(), kept.data(), kept.bytes(), cudaMemcpyDeviceToHost), "a cut");
+  EXPECT_EQ(sent, fine);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "tests/gpu/test_share.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/render_scene.h"
+#include "tests/support/rounded_tree.h"
 
 namespace voyager::test {
 namespace search_test {
@@ -23,7 +24,7 @@ std::shared_ptr<Scene> scene_of(LodTree tree, uint32_t chunk_bytes = kDefaultChu
   Workers workers;
   auto scene = std::make_shared<Scene>(std::pmr::get_default_resource());
   scene->storage = Storage::lossless;
-  scene->tree = std::move(tree);
+  scene->tree = rounded(std::move(tree));
   scene->leaf_count =
       static_cast<uint64_t>(std::count_if(scene->tree.records.begin(), scene->tree.records.end(),
                                           [](const NodeRecord& r) { return r.child_count == 0; }));

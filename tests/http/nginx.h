@@ -93,7 +93,7 @@ class Nginx {
     }
     return "nginx did not start: " + text_of("error.log");
   }
-  // At once: transfers under way are cut off.
+  // At once: transfers in flight are cut off.
   void stop() {
     if (process_ == 0) return;
     ::kill(process_, SIGKILL);

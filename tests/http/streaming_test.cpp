@@ -76,7 +76,7 @@ struct Near {
   FrameInput input = frame_input(look({0, -1.7, -22}, {0, -1.6, 0}, 96, 54, 70), 1);
 };
 
-// At 500 kB/s, so that it is under way when the server goes. On a busy machine all may have come
+// At 500 kB/s, so that it is in flight when the server goes. On a busy machine all may have come
 // by then: then once more.
 TEST_F(HttpStreaming, AServerThatComesBackIsGoneOnWith) {
   std::optional<Near> near;

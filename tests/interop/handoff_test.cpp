@@ -104,7 +104,7 @@ TEST_F(Interop, NoFrameIsTornOrStale) {
     const VoyTarget target = make_target(target_desc(VOY_COLOR_FORMAT_RGBA8_UNORM, &images));
     Line line = line_of(target);
     std::mt19937 random(5);
-    // Drawn before, so that buffers have room for each: a frame under way cannot be drawn again.
+    // Drawn before, so that buffers have room for each: a frame in flight cannot be drawn again.
     std::vector<VoyFrameEye> places;
     std::vector<std::vector<uint8_t>> pictures;
     for (int i = 0; i < 5; ++i) {

@@ -10,6 +10,7 @@
 #include "runtime/frame/draw_list.h"
 #include "tests/support/is_cut.h"
 #include "tests/support/render_scene.h"
+#include "tests/support/rounded_tree.h"
 #include "tests/support/search_rig.h"
 #include "tests/support/stream_rig.h"
 #include "tests/support/tree_clouds.h"
@@ -118,7 +119,7 @@ TEST(Detail, ABlockIsDrawnAtOneDepth) {
 
 // By the definition, in double: the extent's level is that of the distance, or above.
 TEST(Detail, LevelsAreLogarithmsToBaseTwo) {
-  const LodTree tree = test::random_tree(TreeShape::mixture, 4000, 8);
+  const LodTree tree = test::rounded(test::random_tree(TreeShape::mixture, 4000, 8));
   Baseline baseline(tree, Lod::levels);
   for (const CutQuery& query : queries(9)) {
     const std::vector<uint32_t> cut = baseline.cut(query);

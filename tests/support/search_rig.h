@@ -12,6 +12,7 @@
 #include "runtime/select/cut.h"
 #include "runtime/select/partitioned.h"
 #include "tests/support/random_trees.h"
+#include "tests/support/rounded_tree.h"
 
 namespace voyager::test {
 
@@ -31,7 +32,7 @@ class SearchRig {
   explicit SearchRig(LodTree sound_tree, uint32_t chunk_bytes = kDefaultChunkBytes,
                      unsigned threads = 2)
       : workers(threads),
-        tree(std::move(sound_tree)),
+        tree(rounded(std::move(sound_tree))),
         partition(partition_tree(tree, chunk_bytes)),
         search_tree(make_search_tree(tree, partition, {}, workers)) {}
 

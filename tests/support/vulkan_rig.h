@@ -91,7 +91,7 @@ class Backend final {
   std::vector<FileIdentity> identities;  // of those
   std::function<bool()> idle = [] { return true; };
   std::chrono::milliseconds patience{2000};  // with a host that left frames, at the end
-  int waits = 0;                             // for frames under way
+  int waits = 0;                             // for frames in flight
   int rings = 0;                             // that live
 
  private:
@@ -99,7 +99,7 @@ class Backend final {
     Held(Backend& from, std::vector<FileDescriptor> taken)
         : backend(from), descriptors(std::move(taken)) {}
     ~Held() override {
-      EXPECT_TRUE(backend.idle()) << "destroyed with frames under way";
+      EXPECT_TRUE(backend.idle()) << "destroyed with frames in flight";
       --backend.rings;
     }
     bool idle() const override { return backend.idle(); }

@@ -63,7 +63,7 @@ void Session::open(const std::string& path) {
       return refuse(problem);
     }
   }
-  loader_ = nullptr;  // ends what is under way
+  loader_ = nullptr;  // ends what is in progress
   loader_ = std::make_unique<SceneLoader>(device_, LoadRequest{path, budget_bytes(), keep_});
 }
 

@@ -29,7 +29,7 @@ struct TruthResult {
 class TruthJob {
  public:
   explicit TruthJob(TruthRequest request);
-  // Waits until the step that is under way has ended: the scene is loaded, or the truth drawn.
+  // Waits until the step that is in progress has ended: the scene is loaded, or the truth drawn.
   ~TruthJob() {
     stop();
     thread_.join();

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/support/random_trees.h"
+#include "tests/support/rounded_tree.h"
 
 namespace voyager::search_tree_test {
 namespace {
@@ -18,7 +19,8 @@ struct Cut {
   SearchTree search;
 };
 
-Cut make(LodTree tree, uint32_t chunk_bytes) {
+Cut make(LodTree sound_tree, uint32_t chunk_bytes) {
+  LodTree tree = test::rounded(std::move(sound_tree));
   Workers workers(2);
   Partition partition = partition_tree(tree, chunk_bytes);
   SearchTree search = make_search_tree(tree, partition, {}, workers);
@@ -47,9 +49,9 @@ TEST(SearchTree, OwnsEachNodeOnceAndHasARecordForEachInteriorSlot) {
         const SearchRecord& r = cut.search.records[records++];
         const NodeRecord& n = cut.tree.records[s.node(slot)];
         ASSERT_GT(n.child_count, 0u);
-        ASSERT_EQ(r.extent, n.extent);
-        ASSERT_EQ(r.box_min.x, n.box_min.x);
-        ASSERT_EQ(r.box_max.z, n.box_max.z);
+        ASSERT_EQ(r.bounds().extent, n.extent);
+        ASSERT_EQ(r.bounds().box_min.x, n.box_min.x);
+        ASSERT_EQ(r.bounds().box_max.z, n.box_max.z);
         for (uint32_t left = r.child_slots(); left != 0; left &= left - 1)
           ASSERT_EQ(cut.tree.parent[s.node(static_cast<uint32_t>(std::countr_zero(left)))],
                     s.node(slot));
@@ -120,7 +122,7 @@ TEST(SearchTree, HullsAreNeverSmallerThanWhatLeadsIntoTheChunk) {
             ASSERT_EQ(hull, INFINITY);
             continue;
           }
-          const SearchRecord& r = cut.search.records[entry];
+          const NodeBounds r = cut.search.records[entry].bounds();
           ASSERT_GE(hull, screen_size(at, r.box_min, r.box_max, r.extent));
         }
       }

@@ -1,5 +1,5 @@
 // Every wait has its signal: what a frame waits for and signals in each mode, frames that fail
-// or are refused, and the end of a ring whose frames are under way.
+// or are refused, and the end of a ring whose frames are in flight.
 #include <chrono>
 
 #include "tests/support/vulkan_rig.h"
