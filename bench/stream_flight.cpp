@@ -1,6 +1,6 @@
 // A random flight through a streamed scene: what frames took, and which took longer than those
-// around them, with what they did. Late frames are listed but for those of a search with chunks
-// that came, and those after a jump.
+// around them, with what they did. It lists late frames, except those
+// after a jump and those whose search took longer because chunks arrived.
 //   stream_flight SCENE CAMERAS.json MEGABYTES [FRAMES] [WxH] [TAU] [SEED] [FPS]
 // From a camera of the file towards the next one, drawn at random, at 1 to 15 m a second, with a
 // head that turns; now and then a jump. The same arguments fly the same way.
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "streamed_view.h"
+#include "voyager/voyager_experiment.h"
 
 namespace {
 
@@ -76,11 +77,9 @@ class Flight {
 struct Taken {
   double device, call;  // milliseconds; the device's without the copy to the host
   double stages[VOY_MAX_STAGES];
-  uint64_t entered, arrived, splats, pairs;
+  uint64_t entered, arrived, pairs;
   size_t since_jump;
-  // More splats or pairs than any frame before: where buffers had no room, they grew, and the frame
-  // was drawn again.
-  bool most_so_far;
+  uint32_t redraws;
 };
 
 double quantile(std::vector<double> values, double q) {
@@ -158,7 +157,7 @@ void print(const std::vector<Taken>& frames) {
         static_cast<unsigned long long>(frames[i].arrived),
         static_cast<unsigned long long>(frames[i].entered),
         static_cast<unsigned long long>(frames[i].pairs),
-        frames[i].most_so_far ? ", more than ever before" : "");
+        frames[i].redraws != 0 ? "; drawn again with larger buffers" : "");
     others.emplace_back(line);
   }
   std::printf(
@@ -192,7 +191,7 @@ int main(int argc, char** argv) try {
   voyager::bench::StreamedView streamed(device, argv[1], megabytes, nullptr, width, height, tau);
 
   std::vector<Taken> frames(count);  // at once: what grows later is not this list
-  uint64_t arrived_before = 0, most_splats = 0, most_pairs = 0;
+  uint64_t arrived_before = 0;
   std::vector<long> kilobytes;  // after each tenth
   size_t since_jump = 0;
   auto next = Clock::now();
@@ -202,19 +201,19 @@ int main(int argc, char** argv) try {
     const auto begun = Clock::now();
     streamed.render(camera);
     const std::chrono::duration<double, std::milli> call = Clock::now() - begun;
-    const VoyFrameStats stats = streamed.view.stats();
+    VoyExperimentStats experiment = VOY_EXPERIMENT_STATS_INIT;
+    VoyFrameStats stats = VOY_FRAME_STATS_INIT;
+    stats.next = &experiment;
+    voy::check(voyGetFrameStats(streamed.view.get(), &stats));
     const uint64_t arrived = streamed.scene.streaming_stats().arrivedChunks;
     Taken taken{stats.millisecondsTotal - stats.milliseconds[VOY_STAGE_RESOLVE],
                 call.count(),
                 {},
                 stats.nodesEntered,
                 arrived - arrived_before,
-                stats.splats,
                 stats.pairsAfterFilter,
                 since_jump,
-                stats.splats > most_splats || stats.pairsAfterFilter > most_pairs};
-    most_splats = std::max(most_splats, stats.splats);
-    most_pairs = std::max(most_pairs, stats.pairsAfterFilter);
+                experiment.redrawCount};
     std::copy_n(stats.milliseconds, VOY_MAX_STAGES, taken.stages);
     arrived_before = arrived;
     frames[i] = taken;

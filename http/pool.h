@@ -38,7 +38,7 @@ class Pool {
   Lease take(Clock::time_point deadline);
   // Sleeps; after cancel(), also a later one, throws Error(io).
   void wait(std::chrono::milliseconds time);
-  // Ends take(), wait() and the requests of connections in flight, for good.
+  // Ends take(), wait() and the requests in flight, for good.
   void cancel() noexcept;
 
  private:

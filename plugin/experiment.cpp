@@ -110,7 +110,7 @@ void fill(VoyExperimentCapabilities& out, VoyBackend backend) {
 
 void fill(VoyExperimentStats& out, const FrameStats& stats) {
   out.search = search_of(stats);
-  out.reserved = 0;
+  out.redrawCount = stats.redraws;
 }
 
 }  // namespace voyager

@@ -33,6 +33,7 @@ class FrameReport {
   StageTimer timer;
   FrameTiles tiles{};
   SplatRoom room;
+  uint32_t redraws = 0;       // of the frame, since buffers had no room
   bool limited = false;       // its tiles had limits
   uint64_t target_bytes = 0;  // of the images
 

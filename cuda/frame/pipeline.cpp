@@ -105,6 +105,7 @@ class SplatPipeline final : public Pipeline {
     report.copy(splats_.counters(), instances_, stream_.get());
   }
   void make_room();
+  static void draw_again(FrameReport& report);
   void collect(const FrameReport& report, FrameStats& stats) const;
   uint64_t culling_bytes(const SplatCounters& counted) const;
   void learn(const FrameReport& report);
@@ -174,6 +175,11 @@ void SplatPipeline::launch_lists(const SceneReading& reading, const FrameInput& 
   run_stage(kSort, report, [&] { launch_sort(lists); });
 }
 
+void SplatPipeline::draw_again(FrameReport& report) {
+  report.timer.go_back_to(kSearch);
+  ++report.redraws;
+}
+
 // Lists that found too little room are made again with more.
 void SplatPipeline::launch_checked_lists(const SceneReading& reading, const FrameInput& frame,
                                          FrameReport& report) {
@@ -182,7 +188,7 @@ void SplatPipeline::launch_checked_lists(const SceneReading& reading, const Fram
     copy(report);
     report.wait();
     if (!splats_.grow(room_for(report.counters()))) return;
-    report.timer.go_back_to(kSearch);
+    draw_again(report);
   }
 }
 
@@ -262,6 +268,7 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
     report = std::move(free_.back());
     free_.pop_back();
   }
+  report->redraws = 0;
   report->tiles = tiles;
   report->target_bytes = 0;
   for (const FrameEye& eye : frame.eyes)
@@ -325,7 +332,7 @@ void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
     copy(*report);
     report->wait();
     if (!splats_.grow(room_for(report->counters()))) break;
-    report->timer.go_back_to(kSearch);
+    draw_again(*report);
   }
   collect(*report, stats);
   learn(*report);
@@ -430,6 +437,7 @@ void SplatPipeline::collect(const FrameReport& report, FrameStats& stats) const 
     stats.tiles_redrawn += counted.open.count;
   }
   stats.pairs_dropped = dropped(report.counters(), report.room);
+  stats.redraws = report.redraws;
   count_bytes(report, stats);
   report.timer.collect(stats);
 }

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <optional>
 
 #include "cuda/interop/external_ring.h"
 #include "cuda/search/search.h"
@@ -15,24 +17,19 @@ class HostCutSearch final : public CutSearch {
         search_(scene, {kind, true}, std::pmr::get_default_resource(), workers),
         nodes_(scene->node_count),
         weights_(scene->node_count),
-        size_(1),
-        sent_((2 * size_t{scene->node_count} + 1) * sizeof(uint32_t)),
-        was_sent_(kWaitedFor) {}
+        size_(1) {}
 
   void find(const CutQuery& query, cudaStream_t stream) override {
     search_.run(query, workers_);
-    const auto& cut = search_.cut();
-    wait_for_host(was_sent_);
-    auto* const nodes = reinterpret_cast<uint32_t*>(sent_.data());
-    auto* const weights = reinterpret_cast<float*>(nodes + nodes_.size());
-    uint32_t& size = nodes[2 * nodes_.size()];
-    std::copy(cut.begin(), cut.end(), nodes);
-    for (size_t i = 0; i < cut.size(); ++i) weights[i] = search_.items()[i].t;
-    size = static_cast<uint32_t>(cut.size());
-    send(nodes_, nodes, cut.size(), stream);
-    send(weights_, weights, cut.size(), stream);
-    send(size_, &size, 1, stream);
-    was_sent_.record(stream);
+    const size_t next = (last_ + 1) % sent_.size();
+    SentCut& sent = sent_[next];
+    wait_for_host(sent.taken);
+    sent.set(search_.cut(), search_.items());
+    send(nodes_, sent.nodes(), sent.size(), stream);
+    send(weights_, sent.weights(), sent.size(), stream);
+    send(size_, &sent.size(), 1, stream);
+    sent.taken.record(stream);
+    last_ = next;
   }
   void weigh(const CutQuery&, cudaStream_t) override {}  // found in the same pass
   CutList list() const override {
@@ -40,19 +37,47 @@ class HostCutSearch final : public CutSearch {
   }
   size_t report_bytes() const override { return sizeof(CutFound); }
   void report(void* into, cudaStream_t) const override {
-    *static_cast<CutFound*>(into) = {search_.stats(), static_cast<uint32_t>(search_.cut().size())};
+    *static_cast<CutFound*>(into) = {search_.stats(), sent_[last_].size()};
   }
   CutFound found(const void* report) const override {
     return *static_cast<const CutFound*>(report);
   }
   bool counts_changes() const override { return search_.counts_changes(); }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
-    cut.assign(search_.cut().begin(), search_.cut().end());
-    weights.resize(cut.size());
-    for (size_t i = 0; i < cut.size(); ++i) weights[i] = search_.items()[i].t;
+    const SentCut& sent = sent_[last_];
+    cut.assign(sent.nodes(), sent.nodes() + sent.size());
+    weights.assign(sent.weights(), sent.weights() + sent.size());
   }
 
  private:
+  // In page-locked memory: a copy out of other memory would keep the host until the stream reaches
+  // it.
+  class SentCut {
+   public:
+    void set(std::span<const uint32_t> cut, std::span<const DrawItem> items) {
+      if (!memory_ || room_ < cut.size()) grow(cut.size() + cut.size() / 2);
+      size() = static_cast<uint32_t>(cut.size());
+      std::copy(cut.begin(), cut.end(), nodes());
+      std::transform(items.begin(), items.end(), weights(), [](const DrawItem& d) { return d.t; });
+    }
+    uint32_t& size() const { return *reinterpret_cast<uint32_t*>(memory_->data()); }
+    uint32_t* nodes() const { return &size() + 1; }
+    float* weights() const { return reinterpret_cast<float*>(nodes() + room_); }
+
+    Event taken{kWaitedFor};
+
+   private:
+    void grow(size_t room) {
+      room_ = 0;
+      memory_.reset();
+      memory_.emplace((2 * room + 1) * sizeof(uint32_t));
+      room_ = room;
+    }
+
+    size_t room_ = 0;
+    std::optional<PinnedMemory> memory_;
+  };
+
   template <class T>
   static void send(const Buffer<T>& into, const T* from, size_t count, cudaStream_t stream) {
     if (count == 0) return;
@@ -65,10 +90,8 @@ class HostCutSearch final : public CutSearch {
   Buffer<uint32_t> nodes_;
   Buffer<float> weights_;
   Buffer<uint32_t> size_;
-  // Of the last frame: nodes, weights and size on their way. A copy out of pageable memory would
-  // keep the host until the stream comes to it.
-  PinnedMemory sent_;
-  Event was_sent_;
+  std::array<SentCut, 3> sent_;  // of frames in flight
+  size_t last_ = 0;
 };
 
 }  // namespace

@@ -69,7 +69,7 @@ void check_entry(const ChunkEntry& e, uint64_t at, const FileHeader& h, const Ch
   const uint64_t alignment = chunk_align(quality);
   check.that(e.bytes != 0 && e.bytes % alignment == 0, at,
              "a chunk length that is 0 or not a multiple of the alignment", "a multiple");
-  check.at_most(at, "bytes of search records", e.record_count * uint64_t{sizeof(NodeRecord)},
+  check.at_most(at, "bytes of records", e.record_count * uint64_t{sizeof(NodeRecord)},
                 h.chunk_bytes);
   check.at_most(at, "subtrees of a chunk", e.subtree_count, e.node_count);
   check.at_most(at, "nodes of a chunk", e.node_count, e.record_count);

@@ -14,9 +14,9 @@
 namespace voyager {
 namespace {
 
-// As make_search_tree() has it: over what the subtrees' roots hang from. A file's hull is as good
-// but where a chunk goes on with a root of the one before, and of the tree's root: those are
-// never passed over.
+// As make_search_tree() has it: over what the subtrees' roots hang from. A file's hull, rounded, is
+// as good but where a chunk goes on with a root of the one before, and of the tree's root: those
+// are never passed over.
 SearchChunk search_chunk(const ChunkEntry& entry, bool top) {
   if (top || entry.place.listed_children != 0)
     return {

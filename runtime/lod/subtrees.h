@@ -97,7 +97,7 @@ void each_family(const Subtree& subtree, const ChildCount& child_count, const Ea
     list(slot, one_root && subtree.child_count == 1, subtree.node_count());
 }
 
-// Bytes of uncompressed search records that a chunk may hold: a warp's part of the
+// Bytes of uncompressed records that a chunk may hold: a warp's part of the
 // shared memory of an sm_87 multiprocessor at full residency. 164 KiB, less 1 KiB
 // that the system keeps a block, over 3 blocks of 16 warps: 3434 bytes, which is
 // 107 records.
@@ -108,9 +108,9 @@ inline constexpr uint32_t kMaxChunkBytes = 1u << 20;
 
 // Where a chunk is entered from: over its subtrees, the hull of the boxes and the
 // greatest of the extents of the parents of the first node that each does not
-// repeat. size(hull) ≥ size(parent) in binary32 for each of them, so that where
-// size(hull) < τ* no node that the chunk owns is in the cut. For the tree's root, which
-// has no parent, the extent is +inf, and so is the size.
+// repeat. size(hull) ≥ size(parent) in binary32 for each of them, and for their rounded bounds and
+// a rounded hull (lod/round_bounds.h). So where that is < τ* no node that the chunk owns is in the
+// cut. For the tree's root, which has no parent, the extent is +inf, and so is the size.
 struct EntryHull {
   Vec3f box_min;
   float extent;

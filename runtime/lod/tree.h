@@ -23,7 +23,7 @@ namespace voyager {
 
 inline constexpr uint32_t kNoNode = 0xffffffffu;
 
-// What one search step reads: 32 bytes, apart from the Gaussians.
+// A node apart from its Gaussian, as a file has it. Searches read less (select/search_tree.h).
 struct NodeRecord {
   Vec3f box_min;
   float extent;

@@ -2,15 +2,15 @@
 // The box and the extent of a node with children as every search reads them
 // (docs/lod-selection.md): 12 bytes, rounded so that no node gets smaller than its file says.
 //
-// A box is a corner on a grid and a number of steps across. Its step is the least power of two
-// for which that fits, whatever the steps of other nodes are. So, on every machine alike:
+// A box is a corner on a grid and a number of steps across. Its step is the least power of two for
+// which that fits, whatever the steps of other nodes are. So, on every machine alike:
 //   - what is decoded is exact in binary32, and covers what was encoded;
-//   - boxes that nest and extents that do not grow downwards stay so: if A lies in B, B's step is
-//   no
-//     smaller than A's, and the points of a coarser grid are on the finer one;
+//   - boxes that nest and extents that do not grow downwards stay so: if A lies in B, A fits every
+//     grid that B fits, and the points of a coarser grid are on the finer one;
 //   - encoding what was decoded gives the same code.
-// A side moves by less than a step, which is less than a 30th of the longest side, or 1/65,535 of
-// the least corner's largest coordinate, whichever is more. An extent grows by less than a 256th.
+// A side moves by less than a step. That is less than a 30th of the longest side, or 1/65,535 of
+// the largest coordinate, or 2^-126, whichever is most. An extent grows by less than a 256th, or
+// 2^-134 where that is more; one beyond 2^127.99 becomes +inf.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -61,26 +61,33 @@ VOYAGER_HD NodeBounds decode_bounds(const BoundsCode& code) {
   return b;
 }
 
-// Whether a box fits a grid of 2^exponent, and how. Exact.
+// Whether a box fits a grid of 2^exponent, and how; exact. Both corners are bounded: else one that
+// lies in another might not fit a grid that this one fits.
 inline bool fits_grid(const NodeBounds& bounds, int exponent, int32_t* corner, int32_t* across) {
+  const double steps_a_metre = std::ldexp(1.0, -exponent);
   for (int axis = 0; axis < 3; ++axis) {
-    const double low = std::floor(std::ldexp(double{bounds.box_min[axis]}, -exponent));
-    const double high = std::ceil(std::ldexp(double{bounds.box_max[axis]}, -exponent));
-    if (low < -kMostCorner - 1 || low > kMostCorner || high - low > kMostSteps) return false;
-    corner[axis] = static_cast<int32_t>(low);
-    across[axis] = static_cast<int32_t>(high - low);
+    const double from = steps_a_metre * double{bounds.box_min[axis]};
+    const double to = steps_a_metre * double{bounds.box_max[axis]};
+    if (!(from >= -kMostCorner - 1 && to <= kMostCorner)) return false;
+    const auto least = static_cast<int32_t>(from), most = static_cast<int32_t>(to);
+    corner[axis] = least - (least > from);
+    across[axis] = most + (most < to) - corner[axis];
+    if (across[axis] > kMostSteps) return false;
   }
   return true;
 }
 
 // No box fits a grid of a smaller one.
 inline int least_grid_exponent(const NodeBounds& bounds) {
-  double step = 0;
+  double longest = 0, farthest = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = bounds.box_min[axis], high = bounds.box_max[axis];
-    step = std::max({step, (high - low) / kMostSteps, std::fabs(low) / (kMostCorner + 1)});
+    longest = std::max(longest, high - low);
+    farthest = std::max({farthest, -low, high});
   }
-  return step == 0 ? kLeastGridExponent : std::max(kLeastGridExponent, std::ilogb(step));
+  const auto log2 = [](double x) { return x > 0 ? std::ilogb(x) : kLeastGridExponent; };
+  return std::max(
+      {kLeastGridExponent, log2(longest) - kStepBits + 1, log2(farthest) - kCornerBits + 1});
 }
 
 // The box is finite, ordered and below 2^126 in magnitude; the extent is not negative, may be +inf.

@@ -4,8 +4,8 @@
 // What is there once all of the target is, among what is needed, is a function of who looks and
 // of the room alone, whatever was there before (docs/streaming.md).
 //
-// A chunk is needed where its entry hull is at least τ* large (docs/lod-selection.md): only
-// then may the cut hold a node of it. Where there are more than there are slots, the most
+// A chunk is needed where its entry hull, rounded, is at least τ* large (docs/lod-selection.md):
+// only then may the cut hold a node of it. Where there are more than there are slots, the most
 // urgent are the target: what is seen, then what is on the viewer's way, what a turn of the head
 // shows, and what is around; of each what would be missed most, by the size of what stands in. A
 // chunk is as urgent as the most urgent that hangs from it. Once all of the target is there nothing

@@ -426,6 +426,6 @@ const struct LayoutRow kLayout[] = {
     FIELD(VoyExperimentStats, type),
     FIELD(VoyExperimentStats, next),
     FIELD(VoyExperimentStats, search),
-    FIELD(VoyExperimentStats, reserved),
+    FIELD(VoyExperimentStats, redrawCount),
 };
 const size_t kLayoutCount = sizeof kLayout / sizeof kLayout[0];

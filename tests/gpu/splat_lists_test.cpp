@@ -129,7 +129,10 @@ TEST_F(SplatLists, AViewsFirstFrameIsWholeHoweverLargeItIs) {
   EXPECT_GT(first.stats.splats, kFirstSlots);
   EXPECT_GT(first.stats.pairs_after, kFirstPairs);
   EXPECT_EQ(first.stats.pairs_dropped, 0u);
-  expect_same_bits(first, render(*cold, large));
+  EXPECT_GT(first.stats.redraws, 0u);
+  const Frame second = render(*cold, large);
+  EXPECT_EQ(second.stats.redraws, 0u);
+  expect_same_bits(first, second);
   render(*warm, small);
   render(*warm, large);
   render(*warm, small);

@@ -51,6 +51,14 @@ TEST(SearchEquality, TreesOfEveryShape) {
   expect_agreement_on_all_shapes(3000, 2);
 }
 
+// Boxes that are small beside their coordinates, astride the planes where rounded ones change.
+TEST(SearchEquality, TreesFarFromTheOrigin) {
+  for (const test::TreeShape shape : test::kTreeShapes)
+    ASSERT_NO_FATAL_FAILURE(
+        expect_agreement(test::moved(test::random_tree(shape, 2000, 7), 0.02f, {256, 1024, -64}),
+                         kMinChunkBytes, 7, 2));
+}
+
 TEST(SearchEquality, LargeTrees) {
   for (const test::TreeShape shape :
        {test::TreeShape::four_way, test::TreeShape::star, test::TreeShape::mixture})

@@ -101,19 +101,11 @@ TEST(SearchWalk, OnTheEdgeOfEveryVerdict) {
       ASSERT_NO_FATAL_FAILURE(walk_on_edge(test::random_tree(shape, 300, 5, extents), 5, 1));
 }
 
-void scale_tree(LodTree& tree, float scale, const Vec3f& shift) {
-  for (NodeRecord& r : tree.records) {
-    r.box_min = scale * r.box_min + shift;
-    r.box_max = scale * r.box_max + shift;
-    r.extent *= scale;
-  }
-}
-
 // Coordinates at the limits: squares near overflow, and squares that underflow.
 TEST(SearchWalk, OnTheEdgeAtExtremeScales) {
   for (const float scale : {1e15f, 1e-18f, 1e-24f}) {
-    LodTree tree = test::random_tree(TreeShape::four_way, 300, 6);
-    scale_tree(tree, scale, {0, 0, 0});
+    const LodTree tree =
+        test::moved(test::random_tree(TreeShape::four_way, 300, 6), scale, {0, 0, 0});
     ASSERT_NO_FATAL_FAILURE(walk_on_edge(tree, 6, scale)) << scale;
   }
 }
@@ -133,9 +125,8 @@ TEST(SearchWalk, UnboundedGranularityAndHugeExtents) {
 }
 
 TEST(SearchWalk, FarFromTheOrigin) {
-  LodTree tree = test::random_tree(TreeShape::four_way, 3000, 7);
-  scale_tree(tree, 1000.0f, {6.4e6f, -3e6f, 1e5f});
-  SearchRig rig(tree);
+  SearchRig rig(
+      test::moved(test::random_tree(TreeShape::four_way, 3000, 7), 1000.0f, {6.4e6f, -3e6f, 1e5f}));
   std::mt19937 random(7);
   Vec3f c{6.41e6f, -3e6f, 1e5f};
   for (int frame = 0; frame < 300; ++frame) {

@@ -179,4 +179,13 @@ inline LodTree random_tree(TreeShape shape, uint32_t nodes, uint32_t seed,
   return tree;
 }
 
+inline LodTree moved(LodTree tree, float scale, const Vec3f& shift) {
+  for (NodeRecord& r : tree.records) {
+    r.box_min = scale * r.box_min + shift;
+    r.box_max = scale * r.box_max + shift;
+    r.extent *= scale;
+  }
+  return tree;
+}
+
 }  // namespace voyager::test

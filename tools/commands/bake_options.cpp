@@ -110,7 +110,8 @@ void add_bake(CLI::App& app) {
                    "FILE.refine when it is run again. In memory only")
       ->type_name("VIEWS");
   add_whole_option(*command, "--chunk-bytes", {kMinChunkBytes, kMaxChunkBytes},
-                   arguments->chunk_bytes, "Bytes of search records in a chunk, at most")
+                   arguments->chunk_bytes,
+                   "Bytes of records in a chunk, at most: 32 for each of its nodes")
       ->default_str(std::to_string(arguments->chunk_bytes));
   name_group(*command, "The tree");
   add_optimize_options(*command, arguments->optimize);

@@ -87,7 +87,7 @@ void print_text(const std::string& path, const VoySceneInfo& info, const VoyScen
     fmt::print("  nodes         {} in {} levels, {} chunks ({} damaged)\n", info.nodeCount,
                info.treeDepth, info.chunkCount, info.damagedChunkCount);
   if (info.storage != VOY_SCENE_STORAGE_FLAT)
-    fmt::print("  subtrees      {} in {} tiers, chunks of up to {} bytes of search records\n",
+    fmt::print("  subtrees      {} in {} tiers, chunks of up to {} bytes of records\n",
                tree.subtrees, tree.tiers, tree.chunk_bytes);
   print_profile(info, profile);
   fmt::print("  native pixel  {}\n", native_text(info, tree.least_pixel));

@@ -18,7 +18,7 @@ struct Context {
   Handles handles;
   std::unique_ptr<Run> run;   // from the first xrCreateInstance on
   bool instance = false;      // there is one
-  const char* function = "";  // the call in flight
+  const char* function = "";  // the current call
 };
 
 // Lives as long as the process: at its end the application's Vulkan is gone, so that nothing of it
@@ -27,7 +27,7 @@ Context& context();
 // That of the script; not before xrCreateInstance.
 Run& run();
 
-// Shown in the report for the call in flight.
+// Shown in the report for the current call.
 void remark(const std::string& what);
 
 XrResult start_call(const char* function);

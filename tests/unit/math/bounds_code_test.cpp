@@ -50,6 +50,20 @@ class Boxes {
     if (outer.extent < kInfinity) b.extent = outer.extent * between(0, 1);
     return b;
   }
+  // Where a finer grid ends: its corners are some steps on either side of ±2^k.
+  NodeBounds astride() {
+    NodeBounds b{};
+    const int k = pick(20) - 3;
+    const float step = std::ldexp(pick(2) == 0 ? 1.0f : 0.25f, k - kCornerBits + 1);
+    const auto steps = [&](int most) { return static_cast<float>(pick(most + 1)) * step; };
+    for (int axis = 0; axis < 3; ++axis) {
+      const float plane = std::ldexp(pick(2) == 0 ? 1.0f : -1.0f, k);
+      b.box_min[axis] = pick(3) == 0 ? plane - steps(70) : plane + steps(3);
+      b.box_max[axis] = b.box_min[axis] + steps(140);
+    }
+    b.extent = between(0, 1);
+    return b;
+  }
   int pick(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
 
  private:
@@ -86,6 +100,24 @@ TEST(BoundsCode, BoxesThatNestStaySo) {
   }
 }
 
+TEST(BoundsCode, BoxesThatNestStaySoWhereAFinerGridEnds) {
+  const NodeBounds outer{{131071, 0, 0}, 1, {131073, 1, 1}},
+      inner{{131072, 0, 0}, 1, {131073, 1, 1}};
+  EXPECT_TRUE(covers(round_bounds(outer), round_bounds(inner)));
+  Boxes boxes;
+  for (int i = 0; i < 20000; ++i) {
+    const NodeBounds b = boxes.astride();
+    NodeBounds part = b;
+    const int axis = boxes.pick(3);
+    if (boxes.pick(2) == 0)
+      part.box_min[axis] = 0.5f * (b.box_min[axis] + b.box_max[axis]);
+    else
+      part.box_max[axis] = 0.5f * (b.box_min[axis] + b.box_max[axis]);
+    ASSERT_TRUE(covers(round_bounds(b), round_bounds(part))) << i;
+    ASSERT_TRUE(covers(round_bounds(b), round_bounds(boxes.inside(b)))) << i;
+  }
+}
+
 TEST(BoundsCode, GrowsByNoMoreThanItSays) {
   Boxes boxes;
   for (int i = 0; i < 20000; ++i) {
@@ -93,15 +125,15 @@ TEST(BoundsCode, GrowsByNoMoreThanItSays) {
     double longest = 0, farthest = 0;
     for (int axis = 0; axis < 3; ++axis) {
       longest = std::max(longest, double{b.box_max[axis]} - double{b.box_min[axis]});
-      farthest = std::max(farthest, std::fabs(double{b.box_min[axis]}));
+      farthest = std::max({farthest, -double{b.box_min[axis]}, double{b.box_max[axis]}});
     }
     const double step = std::max({longest / 30, farthest / 65535, 0x1p-126});
     for (int axis = 0; axis < 3; ++axis) {
       ASSERT_LE(double{b.box_min[axis]} - double{rounded.box_min[axis]}, step) << i;
       ASSERT_LE(double{rounded.box_max[axis]} - double{b.box_max[axis]}, step) << i;
     }
-    if (b.extent >= 0x1p-126f && b.extent < kInfinity) {
-      ASSERT_LT(rounded.extent, b.extent * (1 + 0x1p-8f)) << i;
+    if (b.extent < kInfinity) {
+      ASSERT_LE(double{rounded.extent}, double{b.extent} * (1 + 0x1p-8) + 0x1p-134) << i;
     }
     ASSERT_TRUE(b.extent != 0 || rounded.extent == 0) << i;
   }
