@@ -109,10 +109,11 @@ typedef struct VoyExperimentCapabilities {
 typedef struct VoyExperimentStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_EXPERIMENT_STATS */
   void* next;
-  VoySearch search;  /* the search that ran for the first instance with a cut: STREAMING where
-                        TEMPORAL fell back to it. AUTO if no instance has a cut */
-  uint32_t redrawCount; /* times that the frame was drawn again, with larger buffers, before the call
-                           returned; on CUDA. Its time from "project" on is that of all of them */
+  VoySearch search; /* the search that ran for the first instance with a cut: STREAMING where
+                       TEMPORAL fell back to it. AUTO if no instance has a cut */
+  uint32_t
+      redrawCount; /* times that the frame was drawn again, with larger buffers, before the call
+                      returned; on CUDA. Its time from "project" on is that of all of them */
 } VoyExperimentStats;
 #define VOY_EXPERIMENT_STATS_INIT \
   { VOY_STRUCTURE_TYPE_EXPERIMENT_STATS, NULL, VOY_SEARCH_AUTO, 0 }
