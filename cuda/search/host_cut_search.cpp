@@ -24,11 +24,16 @@ class HostCutSearch final : public CutSearch {
     const size_t next = (last_ + 1) % sent_.size();
     SentCut& sent = sent_[next];
     wait_for_host(sent.taken);
+    // What frames in flight read is not freed beside them, nor what a call that failed has sent.
+    const size_t size = search_.cut().size();
+    if (sending_ || sent.outgrown(size)) wait_for_host(stream);
+    sending_ = true;
     sent.set(search_.cut(), search_.items());
-    send(nodes_, sent.nodes(), sent.size(), stream);
-    send(weights_, sent.weights(), sent.size(), stream);
-    send(size_, &sent.size(), 1, stream);
+    send(nodes_, sent.nodes(), size, stream);
+    send(weights_, sent.weights(), size, stream);
+    send(size_, sent.size_word(), 1, stream);
     sent.taken.record(stream);
+    sending_ = false;
     last_ = next;
   }
   void weigh(const CutQuery&, cudaStream_t) override {}  // found in the same pass
@@ -45,6 +50,8 @@ class HostCutSearch final : public CutSearch {
   bool counts_changes() const override { return search_.counts_changes(); }
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override {
     const SentCut& sent = sent_[last_];
+    cut.clear(), weights.clear();
+    if (sent.size() == 0) return;
     cut.assign(sent.nodes(), sent.nodes() + sent.size());
     weights.assign(sent.weights(), sent.weights() + sent.size());
   }
@@ -54,14 +61,18 @@ class HostCutSearch final : public CutSearch {
   // it.
   class SentCut {
    public:
+    bool outgrown(size_t size) const { return memory_ && room_ < size; }
     void set(std::span<const uint32_t> cut, std::span<const DrawItem> items) {
       if (!memory_ || room_ < cut.size()) grow(cut.size() + cut.size() / 2);
-      size() = static_cast<uint32_t>(cut.size());
+      *size_word() = static_cast<uint32_t>(cut.size());
       std::copy(cut.begin(), cut.end(), nodes());
       std::transform(items.begin(), items.end(), weights(), [](const DrawItem& d) { return d.t; });
     }
-    uint32_t& size() const { return *reinterpret_cast<uint32_t*>(memory_->data()); }
-    uint32_t* nodes() const { return &size() + 1; }
+    // Before the first cut: 0.
+    uint32_t size() const { return memory_ ? *size_word() : 0; }
+    // Once there was one.
+    uint32_t* size_word() const { return reinterpret_cast<uint32_t*>(memory_->data()); }
+    uint32_t* nodes() const { return size_word() + 1; }
     float* weights() const { return reinterpret_cast<float*>(nodes() + room_); }
 
     Event taken{kWaitedFor};
@@ -92,6 +103,7 @@ class HostCutSearch final : public CutSearch {
   Buffer<uint32_t> size_;
   std::array<SentCut, 3> sent_;  // of frames in flight
   size_t last_ = 0;
+  bool sending_ = false;  // in a call that has not ended well
 };
 
 }  // namespace

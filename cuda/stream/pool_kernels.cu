@@ -7,8 +7,7 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kThreads = 256;
-// A chunk is some 8 KB in a dozen arrays. Its reads cross the bus: more blocks than these find none
-// left to ask for.
+// A chunk is some 8 KB in a dozen arrays: that many blocks ask for all of it at once.
 constexpr unsigned kMostBlocks = 64;
 
 unsigned blocks_for(uint32_t threads) {

@@ -79,7 +79,7 @@ struct FileHeader {
   uint64_t dropped_opacity;
   uint64_t repaired_sh;
   uint32_t subtree_count;
-  uint32_t chunk_bytes;  // of search records, at most
+  uint32_t chunk_bytes;  // of records, at most
   uint32_t first_tier_levels;
   uint32_t section_count;
   Section directory;

@@ -25,7 +25,7 @@ struct SceneFileInfo {
   uint32_t chunk_count;
   uint32_t depth;  // levels of the tree
   uint32_t subtree_count;
-  uint32_t chunk_bytes;  // of search records, at most
+  uint32_t chunk_bytes;  // of records, at most
   uint32_t first_tier_levels;
   std::array<double, 3> origin;         // of the scene (METHOD §2)
   std::array<double, 3> source_origin;  // of the input's position words

@@ -122,7 +122,7 @@ struct FrameStats {
   uint64_t splats = 0, pairs_before = 0, pairs_after = 0;
   // Pairs, or what would have become pairs, for which a device had no memory; 0 in a whole image.
   uint64_t pairs_dropped = 0;
-  uint32_t redraws = 0;        // of the whole frame, with larger buffers
+  uint32_t redraws = 0;        // of the frame, or of its lists, with larger buffers
   uint64_t tiles_redrawn = 0;  // by a second pass, since what the frame before hid is seen
   // (pixel, splat) pairs: whose ρ was found, and that were blended.
   uint64_t pixels_evaluated = 0, pixels_blended = 0;

@@ -10,7 +10,7 @@
 //   - encoding what was decoded gives the same code.
 // A side moves by less than a step. That is less than a 30th of the longest side, or 1/65,535 of
 // the largest coordinate, or 2^-126, whichever is most. An extent grows by less than a 256th, or
-// 2^-134 where that is more; one beyond 2^127.99 becomes +inf.
+// 2^-134 where that is more; one beyond 255.5 · 2^120 becomes +inf.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -112,8 +112,8 @@ typedef struct VoyExperimentStats {
   VoySearch search; /* the search that ran for the first instance with a cut: STREAMING where
                        TEMPORAL fell back to it. AUTO if no instance has a cut */
   uint32_t
-      redrawCount; /* times that the frame was drawn again, with larger buffers, before the call
-                      returned; on CUDA. Its time from "project" on is that of all of them */
+      redrawCount; /* how often CUDA drew the frame again, with larger buffers; into a Vulkan
+                      image, made its lists again. "project" counts all that was drawn before */
 } VoyExperimentStats;
 #define VOY_EXPERIMENT_STATS_INIT \
   { VOY_STRUCTURE_TYPE_EXPERIMENT_STATS, NULL, VOY_SEARCH_AUTO, 0 }
