@@ -1,6 +1,6 @@
 // A random flight through a streamed scene: what frames took, and which took longer than those
-// around them, with what they did. It lists late frames, except those
-// after a jump and those whose search took longer because chunks arrived.
+// around them, with what they did. It lists late frames, except those after a
+// jump and those whose search took longer because chunks arrived.
 //   stream_flight SCENE CAMERAS.json MEGABYTES [FRAMES] [WxH] [TAU] [SEED] [FPS]
 // From a camera of the file towards the next one, drawn at random, at 1 to 15 m a second, with a
 // head that turns; now and then a jump. The same arguments fly the same way.

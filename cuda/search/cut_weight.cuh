@@ -6,8 +6,7 @@
 namespace voyager::cuda {
 
 __device__ inline float record_size(const WeightSource& from, uint32_t record) {
-  const NodeBounds b = load_record(from.tree.records + record).bounds();
-  return screen_size(from.sight.centre, b.box_min, b.box_max, b.extent);
+  return load_record(from.tree.records + record).bounds().screen_size(from.sight.centre);
 }
 
 __device__ inline float own_size(const WeightSource& from, uint32_t record, uint32_t node) {

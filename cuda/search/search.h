@@ -104,10 +104,10 @@ std::unique_ptr<CutSearch> create_sweep_search(std::shared_ptr<const Device> dev
                                                const Scene& scene, bool weights);
 
 // Runs on the host, for scenes with damaged chunks; find() throws Error(damaged_chunk)
-// where the cut needs one. find() waits until the device has taken the cut of three calls before:
-// page-locked memory holds three, 8 bytes a node with half again as many to spare, and where one
-// has no room the call waits for all. Device memory:
-// 8 bytes a node of the scene. Throws Error(unsupported) for a streamed scene.
+// where the cut needs one. Three cuts are in flight, in page-locked memory: 8 bytes a node each,
+// with half again as much to spare. So find() waits until the device has taken the cut of three
+// calls before, and of all of them where a cut has outgrown its memory. Device memory: 8 bytes a
+// node of the scene. Throws Error(unsupported) for a streamed scene.
 std::unique_ptr<CutSearch> create_host_cut_search(const std::shared_ptr<const Scene>& scene,
                                                   Search kind, Workers& workers);
 

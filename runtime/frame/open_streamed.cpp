@@ -8,8 +8,7 @@
 #include "runtime/base/megabytes.h"
 #include "runtime/format/check_claims.h"
 #include "runtime/frame/load.h"
-#include "runtime/lod/round_bounds.h"
-#include "runtime/math/screen_size.h"
+#include "runtime/math/bounds_code.h"
 
 namespace voyager {
 namespace {
@@ -21,7 +20,7 @@ SearchChunk search_chunk(const ChunkEntry& entry, bool top) {
   if (top || entry.place.listed_children != 0)
     return {
         {-FLT_MAX, -FLT_MAX, -FLT_MAX}, FLT_MAX, {FLT_MAX, FLT_MAX, FLT_MAX}, entry.first_subtree};
-  const EntryHull hull = round_hull(entry.hull);
+  const EntryHull hull = round_bounds(entry.hull);
   return {hull.box_min, hull.extent, hull.box_max, entry.first_subtree};
 }
 

@@ -16,9 +16,4 @@ void round_bounds(LodTree& tree, Workers& workers) {
   });
 }
 
-EntryHull round_hull(const EntryHull& hull) {
-  const NodeBounds b = round_bounds(NodeBounds{hull.box_min, hull.extent, hull.box_max});
-  return {b.box_min, b.extent, b.box_max};
-}
-
 }  // namespace voyager

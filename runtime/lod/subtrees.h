@@ -109,17 +109,9 @@ inline constexpr uint32_t kMaxChunkBytes = 1u << 20;
 // Where a chunk is entered from: over its subtrees, the hull of the boxes and the
 // greatest of the extents of the parents of the first node that each does not
 // repeat. size(hull) ≥ size(parent) in binary32 for each of them, and for their rounded bounds and
-// a rounded hull (lod/round_bounds.h). So where that is < τ* no node that the chunk owns is in the
+// a rounded hull (math/bounds_code.h). So where that is < τ* no node that the chunk owns is in the
 // cut. For the tree's root, which has no parent, the extent is +inf, and so is the size.
-struct EntryHull {
-  Vec3f box_min;
-  float extent;
-  Vec3f box_max;
-
-  float screen_size(const Vec3f& centre) const {
-    return voyager::screen_size(centre, box_min, box_max, extent);
-  }
-};
+using EntryHull = NodeBounds;
 static_assert(sizeof(EntryHull) == 28);
 
 struct Partition {

@@ -17,16 +17,9 @@
 
 #include "runtime/math/exact.h"
 #include "runtime/math/float_bits.h"
-#include "runtime/math/vec.h"
+#include "runtime/math/screen_size.h"
 
 namespace voyager {
-
-// What the cut predicate reads of a node (METHOD §3): binary32, scene-local metres.
-struct NodeBounds {
-  Vec3f box_min;
-  float extent;
-  Vec3f box_max;
-};
 
 // From the lowest bit: of each axis the least corner in steps (18 bits, two's complement) and the
 // steps across (6 bits); above them the step's exponent in axis 0, as binary32 has it, and the

@@ -47,4 +47,15 @@ VOYAGER_HD float screen_size(const Vec3f& c, const Vec3f& box_min, const Vec3f& 
   return size_at(squared_distance(c, box_min, box_max), extent);
 }
 
+// What the predicate reads of a node, or of many at once; scene-local metres.
+struct NodeBounds {
+  Vec3f box_min;
+  float extent;
+  Vec3f box_max;
+
+  VOYAGER_HD float screen_size(const Vec3f& c) const {
+    return voyager::screen_size(c, box_min, box_max, extent);
+  }
+};
+
 }  // namespace voyager

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/lod/round_bounds.h"
+#include "runtime/math/bounds_code.h"
 
 namespace voyager {
 namespace {
@@ -34,7 +34,7 @@ void ChunkLooks::begin(std::vector<Viewer> viewers) {
 }
 
 void ChunkLooks::look(uint32_t chunk) {
-  const EntryHull hull = round_hull(chunks_[chunk].hull);
+  const EntryHull hull = round_bounds(chunks_[chunk].hull);
   uint32_t urgency = 0;
   bool now = false;
   for (const Viewer& viewer : viewers_) {

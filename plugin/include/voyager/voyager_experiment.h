@@ -109,11 +109,10 @@ typedef struct VoyExperimentCapabilities {
 typedef struct VoyExperimentStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_EXPERIMENT_STATS */
   void* next;
-  VoySearch search; /* the search that ran for the first instance with a cut: STREAMING where
-                       TEMPORAL fell back to it. AUTO if no instance has a cut */
-  uint32_t
-      redrawCount; /* how often CUDA drew the frame again, with larger buffers; into a Vulkan
-                      image, made its lists again. "project" counts all that was drawn before */
+  VoySearch search;     /* the search that ran for the first instance with a cut: STREAMING where
+                           TEMPORAL fell back to it. AUTO if no instance has a cut */
+  uint32_t redrawCount; /* how often CUDA drew the frame again, because a buffer was too small.
+                           "project" includes the time of what was drawn before */
 } VoyExperimentStats;
 #define VOY_EXPERIMENT_STATS_INIT \
   { VOY_STRUCTURE_TYPE_EXPERIMENT_STATS, NULL, VOY_SEARCH_AUTO, 0 }

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "runtime/lod/nesting.h"
+#include "runtime/lod/subtrees.h"
+#include "runtime/math/bounds_code.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/rounded_tree.h"
 
@@ -34,7 +36,7 @@ TEST(RoundBounds, ARoundedHullCoversWhatItsChunkHangsFrom) {
     const LodTree rounded = test::rounded(tree);
     const Partition partition = partition_tree(tree, kMinChunkBytes);
     for (size_t chunk = 0; chunk < partition.chunk_count(); ++chunk) {
-      const EntryHull hull = round_hull(partition.chunk_hull[chunk]);
+      const EntryHull hull = round_bounds(partition.chunk_hull[chunk]);
       for (uint32_t s = partition.chunk_begin[chunk]; s < partition.chunk_begin[chunk + 1]; ++s) {
         const uint32_t parent = tree.parent[partition.subtrees[s].first_owned()];
         if (parent == kNoNode) continue;
