@@ -62,6 +62,8 @@ struct Restored {
 Restored restore_all(const cuda::GaussianView& view) {
   const Buffer<Gaussian> shapes(view.count);
   const Buffer<float> sh(size_t{view.count} * kMostFloats);
+  // Lower degrees leave the rest of a row as it is, and all of it is read.
+  cuda::check(cudaMemset(sh.data(), 0, sh.bytes()), "clear");
   cuda::with_sh(view, [&]<class Sh>() {
     if constexpr (Sh::kCoded)
       restore<Sh><<<(view.count + 127) / 128, 128>>>(view, shapes.data(), sh.data());
