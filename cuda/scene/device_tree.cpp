@@ -10,10 +10,12 @@ DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree)
       chunks_(upload(std::span<const SearchChunk>(search.chunks))) {
   if (search.leaves_have_extent) leaves_ = upload(std::span<const NodeRecord>(tree.records));
   view_ = {subtrees_.data(),
+           {nullptr},
            records_.data(),
            nullptr,
            chunks_.data(),
            leaves_.data(),
+           search.subtree_count(),
            search.subtree_count(),
            static_cast<uint32_t>(search.chunk_count()),
            tree.blend_share,

@@ -9,12 +9,13 @@ namespace voyager::cuda {
 
 // As kernels take it.
 struct TreeView {
-  const SearchSubtree* subtrees;
+  const SearchSubtree* subtrees;  // by place
+  SubtreePlaces places;
   const SearchRecord* records;
   const uint32_t* next_block;  // of a streamed scene, as SearchTree's
   const SearchChunk* chunks;
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
-  uint32_t subtree_count, chunk_count;
+  uint32_t subtree_count, place_count, chunk_count;
   float blend_share;  // LodTree's
   // Of a streamed scene, whose nodes and records are addresses: the file's ids of nodes, by slot.
   // Else null.

@@ -62,12 +62,13 @@ __global__ void __launch_bounds__(kThreads)
       const uint32_t subtree = block.first + row * kRowSubtrees + lane_in_warp();
       Look left;
       if (subtree < block.last) {
-        const Watch before = state.watch[subtree];
+        Watch& kept = state.watch[state.places(subtree)];
+        const Watch before = kept;
         Watch watch = before;
         left = look_at(watch, travel, travels.retired, reference, ending >> row & 1);
         if (watch.extent_and_reference != before.extent_and_reference ||
             watch.slack != before.slack)
-          state.watch[subtree] = watch;
+          kept = watch;
       }
       found.add(left.due, subtree);
       // Floats that are not negative are in the order of their bits.
@@ -93,7 +94,8 @@ __global__ void __launch_bounds__(kThreads) search_list_open(StateView state) {
     const Block block = state.blocks[state.open_blocks[i]];
     for (uint32_t first = block.first; first < block.last; first += 32) {
       const uint32_t subtree = first + lane_in_warp();
-      found.add(subtree < block.last && (state.refined[subtree] & kOpen) != 0, subtree);
+      found.add(subtree < block.last && (state.refined[state.places(subtree)] & kOpen) != 0,
+                subtree);
     }
     bytes += (block.last - block.first) * sizeof(uint32_t);
     found.list(state);

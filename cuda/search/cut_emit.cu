@@ -116,8 +116,9 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
   for (uint32_t i = blockIdx.x; i < dirty; i += gridDim.x) {
     const Block block = state.blocks[state.dirty[i]];
     const uint32_t subtree = block.first + threadIdx.x;
-    const uint32_t cut = subtree < block.last ? state.cut[subtree] : 0;
-    const SearchSubtree s = cut == 0 ? kUnlinkedSubtree : load_own_subtree(tree, subtree);
+    const uint32_t place = subtree < block.last ? state.places(subtree) : 0;
+    const uint32_t cut = subtree < block.last ? state.cut[place] : 0;
+    const SearchSubtree s = cut == 0 ? kUnlinkedSubtree : load_own_subtree(tree, place);
     const uint32_t scattered = __ballot_sync(kAllLanes, s.scattered());
     uint64_t before;
     LevelScan(storage).ExclusiveSum(count_levels(cut, s.levels), before);

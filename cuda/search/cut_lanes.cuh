@@ -6,8 +6,8 @@
 namespace voyager::cuda {
 
 // By a lane alone.
-__device__ inline SearchSubtree load_own_subtree(const TreeView& tree, uint32_t subtree) {
-  const uint4* words = reinterpret_cast<const uint4*>(tree.subtrees + subtree);
+__device__ inline SearchSubtree load_own_subtree(const TreeView& tree, uint32_t place) {
+  const uint4* words = reinterpret_cast<const uint4*>(tree.subtrees + place);
   const uint4 a = __ldg(words), b = __ldg(words + 1);
   return {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w};
 }
@@ -169,10 +169,9 @@ __device__ inline Change settle_own(const StateView& state, uint32_t subtree, co
 }
 
 // By a lane alone; also for one that is closed.
-__device__ inline Change close_own(const StateView& state, uint32_t subtree, const Known& known,
-                                   Tally& tally) {
+__device__ inline Change close_own(const StateView& state, const Known& known, Tally& tally) {
   if ((known.refined & kOpen) == 0) return {};
-  keep_closed(state, subtree, tally);
+  keep_closed(state, known.place, tally);
   return {true, known.cut, 0, -1};
 }
 

@@ -17,25 +17,27 @@ constexpr unsigned kThreads = 256;
 // A subtree may be there more than once: what has set its word to 0 closes it.
 __device__ void follow_unlinked(const TreeView& tree, const StateView& state, uint32_t subtree,
                                 Tally& tally) {
-  if (tree.subtrees[subtree].entry != kNotLinked) {
-    if (lane_in_group() == 0 && (state.refined[subtree] & kOpen) != 0)
+  const uint32_t place = state.places(subtree);
+  if (tree.subtrees[place].entry != kNotLinked) {
+    if (lane_in_group() == 0 && (state.refined[place] & kOpen) != 0)
       mark_dirty(state, block_of(state, subtree));
     return;
   }
   const unsigned group = 0xffu << (kGroupLanes * group_in_warp());
-  const uint32_t cut = state.cut[subtree];
+  const uint32_t cut = state.cut[place];
   __syncwarp(group);
   uint32_t refined = 0;
-  if (lane_in_group() == 0) refined = atomicExch(&state.refined[subtree], 0);
+  if (lane_in_group() == 0) refined = atomicExch(&state.refined[place], 0);
   refined = __shfl_sync(group, refined, 0, kGroupLanes);
-  close_subtree(state, subtree, tree.subtrees[subtree].levels, {refined, cut}, tally);
+  close_subtree(state, subtree, tree.subtrees[place].levels, {place, refined, cut}, tally);
 }
 
 // A record that is blocked now, or no longer is, changes its subtree's verdicts, however little
 // has moved. Nothing that is closed here is linked.
 __device__ void follow_changed(const TreeView& tree, const StateView& state, uint32_t subtree) {
-  if (tree.subtrees[subtree].entry == kNotLinked || (state.refined[subtree] & kOpen) == 0) return;
-  state.watch[subtree] = {-1.0f, 0};
+  const uint32_t place = state.places(subtree);
+  if (tree.subtrees[place].entry == kNotLinked || (state.refined[place] & kOpen) == 0) return;
+  state.watch[place] = {-1.0f, 0};
   wake_row(state, subtree);
 }
 
@@ -52,9 +54,9 @@ __global__ void __launch_bounds__(kThreads)
 }
 
 // As CutState is made: the list is made anew with its segments.
-__global__ void __launch_bounds__(kThreads) search_forget(uint32_t subtrees, StateView state) {
+__global__ void __launch_bounds__(kThreads) search_forget(StateView state) {
   const uint32_t thread = blockIdx.x * kThreads + threadIdx.x, threads = gridDim.x * kThreads;
-  for (uint32_t i = thread; i < subtrees; i += threads) {
+  for (uint32_t i = thread; i < state.place_count; i += threads) {
     state.watch[i] = {INFINITY, 0};
     state.refined[i] = state.cut[i] = state.stand_ins[i] = 0;
   }
@@ -84,7 +86,7 @@ void launch_relink(const SearchFrame& f, const Relinked& relinked) {
 void launch_forget(const SearchFrame& f) {
   const unsigned resident = resident_blocks<search_forget>(kThreads);
   launch_kernel("search_forget", search_forget, {f.multiprocessors * resident, kThreads, f.stream},
-                f.tree.subtree_count, f.state);
+                f.state);
 }
 
 }  // namespace voyager::cuda

@@ -29,32 +29,31 @@ Layout make_layout(const SearchTree& tree) {
 
 }  // namespace
 
-CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
-  const size_t subtrees = tree.subtree_count();
+CutState::CutState(const SearchTree& tree, uint32_t places, size_t most, bool weights) {
   const Layout layout = make_layout(tree);
   const size_t blocks = layout.blocks.size();
   blocks_ = upload(std::span<const Block>(layout.blocks));
   tiers_ = upload(std::span<const Tier>(layout.tiers));
-  watch_ = upload(std::span<const Watch>(std::vector<Watch>(subtrees, {INFINITY, 0})));
+  watch_ = upload(std::span<const Watch>(std::vector<Watch>(places, {INFINITY, 0})));
   rows_ = Buffer<WatchRow>(blocks * kBlockRows);
-  refined_ = Buffer<uint32_t>(subtrees);
-  cut_ = Buffer<uint32_t>(subtrees);
-  stand_ins_ = Buffer<uint32_t>(tree.chunks_come_and_go ? subtrees : 0);
+  refined_ = Buffer<uint32_t>(places);
+  cut_ = Buffer<uint32_t>(places);
+  stand_ins_ = Buffer<uint32_t>(tree.chunks_come_and_go ? places : 0);
   segments_ = Buffer<Segment>(kLevels * blocks);
   open_counts_ = Buffer<uint32_t>(blocks);
   open_blocks_ = Buffer<uint32_t>(blocks);
   open_block_count_ = Buffer<uint32_t>(1);
   dirty_flags_ = Buffer<uint32_t>(blocks);
   dirty_ = Buffer<uint32_t>(blocks);
-  due_ = Buffer<uint32_t>(subtrees);
-  signals_ = Buffer<uint32_t>(subtrees);
+  due_ = Buffer<uint32_t>(places);
+  signals_ = Buffer<uint32_t>(places);
   counters_ = Buffer<FrameCounters>(2);  // counting, counted
-  const size_t places = most + most / 8 + 64 * kLevels * blocks;
-  nodes_ = Buffer<uint32_t>(places);
-  origin_ = Buffer<CutOrigin>(weights ? places : 0);
-  weights_ = Buffer<float>(weights ? places : 0);
-  ids_ = Buffer<uint32_t>(tree.chunks_come_and_go ? places : 0);
-  bounds_ = Buffer<MeanBounds>(places / kRowPlaces + 1);
+  const size_t room = most + most / 8 + 64 * kLevels * blocks;
+  nodes_ = Buffer<uint32_t>(room);
+  origin_ = Buffer<CutOrigin>(weights ? room : 0);
+  weights_ = Buffer<float>(weights ? room : 0);
+  ids_ = Buffer<uint32_t>(tree.chunks_come_and_go ? room : 0);
+  bounds_ = Buffer<MeanBounds>(room / kRowPlaces + 1);
   for (const Buffer<uint32_t>* zero : {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_,
                                        &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);
@@ -67,12 +66,14 @@ CutState::CutState(const SearchTree& tree, size_t most, bool weights) {
   fill(counters_, 0);
 }
 
-StateView CutState::view() const {
-  return {watch_.data(),
-          rows_.data(),
+StateView CutState::view(SubtreePlaces places) const {
+  return {places,
+          static_cast<uint32_t>(watch_.size()),
+          watch_.data(),
           refined_.data(),
           cut_.data(),
           stand_ins_.data(),
+          rows_.data(),
           blocks_.data(),
           tiers_.data(),
           static_cast<uint32_t>(blocks_.size()),

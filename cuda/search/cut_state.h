@@ -1,6 +1,6 @@
 #pragma once
 // What a view keeps of its cut between frames, on the device; direct-indexed by
-// subtree, so that no result depends on the order in which warps come by.
+// subtree, or its place, so that no result depends on the order in which warps come by.
 #include "cuda/device/buffer.h"
 #include "cuda/scene/device_tree.h"
 #include "cuda/search/search.h"
@@ -55,11 +55,14 @@ struct FrameCounters {
 
 // As kernels take it.
 struct StateView {
+  // By the subtree's place, as the tree's.
+  SubtreePlaces places;
+  uint32_t place_count;
   Watch* watch;
-  WatchRow* rows;       // of each block, as many as a whole one has
   uint32_t* refined;    // bits of slots, and kOpen
   uint32_t* cut;        // bits of slots
   uint32_t* stand_ins;  // bits of slots; null where no record is ever blocked
+  WatchRow* rows;       // of each block, as many as a whole one has
   const Block* blocks;
   const Tier* tiers;
   uint32_t block_count, tier_count;
@@ -84,10 +87,12 @@ inline constexpr uint32_t kClose = 0x80000000u;  // beside the subtree; else it 
 
 class CutState {
  public:
-  // most: no cut has more nodes. All memory is taken here.
-  CutState(const SearchTree& tree, size_t most, bool weights);
+  // places: that subtrees have in the device's tree. most: no cut has more nodes. All memory is
+  // taken here.
+  CutState(const SearchTree& tree, uint32_t places, size_t most, bool weights);
 
-  StateView view() const;
+  // places: the device's tree's, where its subtrees are read or written.
+  StateView view(SubtreePlaces places = {}) const;
   uint32_t list_room() const { return static_cast<uint32_t>(nodes_.size()); }
 
  private:

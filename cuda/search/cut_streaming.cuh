@@ -52,14 +52,14 @@ __device__ inline void read_subtrees(const TreeView& tree, const StateView& stat
     bool open = false;
     if (there) {
       known = load_known(state, subtree);
-      s = load_own_subtree(tree, subtree);
+      s = load_own_subtree(tree, known.place);
       open = reached && is_own_reached(tree, s, sight, tally);
     }
     const Visit v = visit_lanes(tree, s, open, sight, tally);
     Change change;
     if (there)
       change = open ? settle_own(state, subtree, known, v, reference, tally)
-                    : close_own(state, subtree, known, tally);
+                    : close_own(state, known, tally);
     count_changes(state, subtree, s.levels, change, tally);
   }
 }

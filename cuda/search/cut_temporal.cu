@@ -26,7 +26,7 @@ __device__ void send_signals(const StateView& state, uint32_t first, uint32_t la
 __device__ void signal_change(const TreeView& tree, const StateView& state, const SearchSubtree& s,
                               uint32_t slot, uint32_t refined) {
   const uint32_t record = record_of(tree, s, slot);
-  const auto [first, last] = subtrees_below(tree.subtrees, tree.subtree_count, record,
+  const auto [first, last] = subtrees_below(tree.subtrees, tree.places, tree.subtree_count, record,
                                             __ldg(&tree.records[record].children));
   if (first != last) send_signals(state, first, last, refined >> slot & 1 ? 0 : kClose);
 }
@@ -51,7 +51,7 @@ __device__ void visit_due_groups(const TreeView& tree, const StateView& state, c
     const bool active = base + group_in_warp() < count;
     const uint32_t subtree = state.due[active ? base + group_in_warp() : base];
     const Known known = load_known(state, subtree);
-    const SearchSubtree s = load_subtree(tree, subtree);
+    const SearchSubtree s = load_subtree(tree, known.place);
     const Visit v = visit_group(tree, s, sight, active, tally);
     const bool open = active && (v.cut == known.cut || is_reached(tree, s, sight, tally));
     settle(state, s, subtree, known, v, reference, open, tally);
@@ -67,14 +67,14 @@ __device__ void visit_due_lanes(const TreeView& tree, const StateView& state, co
   for (uint32_t base = first; base < count; base += gridDim.x * kThreads) {
     const bool there = base + lane_in_warp() < count;
     const uint32_t subtree = state.due[there ? base + lane_in_warp() : base];
-    const SearchSubtree s = load_own_subtree(tree, subtree);
     const Known known = load_known(state, subtree);
+    const SearchSubtree s = load_own_subtree(tree, known.place);
     const Visit v = visit_lanes(tree, s, there, sight, tally);
     Change change;
     if (there) {
       const bool open = v.cut == known.cut || is_own_reached(tree, s, sight, tally);
       change = open ? settle_own(state, subtree, known, v, reference, tally)
-                    : close_own(state, subtree, known, tally);
+                    : close_own(state, known, tally);
       for (uint32_t left = (known.refined ^ v.refined) & s.interior; left != 0; left &= left - 1)
         signal_change(tree, state, s, __ffs(left) - 1, v.refined);
     }
@@ -127,7 +127,7 @@ __device__ void answer(const TreeView& tree, const StateView& state, const Sight
   const bool opens = any && (signal & kClose) == 0;
   const uint32_t subtree = any ? signal & ~kClose : 0;
   const Known known = load_known(state, subtree);
-  const SearchSubtree s = load_subtree(tree, subtree);
+  const SearchSubtree s = load_subtree(tree, known.place);
   const Visit v = visit_group(tree, s, sight, opens, tally);
   settle(state, s, subtree, known, v, reference, opens, tally);
   if (opens) signal_changes(tree, state, s, 0, v.refined);

@@ -37,9 +37,9 @@ __device__ inline SearchRecord load_record(const SearchRecord* record) {
 }
 
 // One word a lane: 32 bytes in one request.
-__device__ inline SearchSubtree load_subtree(const TreeView& tree, uint32_t subtree) {
+__device__ inline SearchSubtree load_subtree(const TreeView& tree, uint32_t place) {
   const uint32_t word =
-      __ldg(reinterpret_cast<const uint32_t*>(tree.subtrees + subtree) + lane_in_group());
+      __ldg(reinterpret_cast<const uint32_t*>(tree.subtrees + place) + lane_in_group());
   SearchSubtree s;
   s.root = __shfl_sync(kAllLanes, word, 0, kGroupLanes);
   s.first_child = __shfl_sync(kAllLanes, word, 1, kGroupLanes);
@@ -156,12 +156,12 @@ __device__ inline void mark_dirty(const StateView& state, uint32_t block) {
 }
 
 // By one lane of a subtree's group.
-__device__ inline void set_stand_ins(const StateView& state, uint32_t subtree, uint32_t stand_ins,
+__device__ inline void set_stand_ins(const StateView& state, uint32_t place, uint32_t stand_ins,
                                      Tally& tally) {
   if (state.stand_ins == nullptr) return;
-  const uint32_t before = state.stand_ins[subtree];
+  const uint32_t before = state.stand_ins[place];
   if (before == stand_ins) return;
-  state.stand_ins[subtree] = stand_ins;
+  state.stand_ins[place] = stand_ins;
   tally.stand_ins += __popc(stand_ins) - __popc(before);
 }
 
@@ -190,27 +190,29 @@ __device__ inline void count_change(const StateView& state, uint32_t subtree, ui
 
 // What was known of a subtree: loaded early, so that it is there when it is needed.
 struct Known {
+  uint32_t place = 0;  // the subtree's
   uint32_t refined = 0, cut = 0;
 };
 __device__ inline Known load_known(const StateView& state, uint32_t subtree) {
-  return {state.refined[subtree], state.cut[subtree]};
+  const uint32_t place = state.places(subtree);
+  return {place, state.refined[place], state.cut[place]};
 }
 
 // By a lane alone: what is known of a subtree from now on, of an open one and of a closed one.
 __device__ inline void keep_open(const StateView& state, uint32_t subtree, const Known& known,
                                  const Visit& v, uint32_t reference, Tally& tally) {
-  state.watch[subtree] = make_watch(v.slack, v.extent, reference);
+  state.watch[known.place] = make_watch(v.slack, v.extent, reference);
   wake_row(state, subtree);
-  if (v.refined != known.refined) state.refined[subtree] = v.refined;
-  if (v.cut != known.cut) state.cut[subtree] = v.cut;
-  set_stand_ins(state, subtree, v.stand_ins, tally);
+  if (v.refined != known.refined) state.refined[known.place] = v.refined;
+  if (v.cut != known.cut) state.cut[known.place] = v.cut;
+  set_stand_ins(state, known.place, v.stand_ins, tally);
   ++tally.visited;
 }
-__device__ inline void keep_closed(const StateView& state, uint32_t subtree, Tally& tally) {
-  state.watch[subtree] = make_watch(INFINITY, 0.0f, 0);
-  state.refined[subtree] = 0;
-  state.cut[subtree] = 0;
-  set_stand_ins(state, subtree, 0, tally);
+__device__ inline void keep_closed(const StateView& state, uint32_t place, Tally& tally) {
+  state.watch[place] = make_watch(INFINITY, 0.0f, 0);
+  state.refined[place] = 0;
+  state.cut[place] = 0;
+  set_stand_ins(state, place, 0, tally);
 }
 
 // An open subtree takes its new verdicts.
@@ -229,7 +231,7 @@ __device__ inline void settle(const StateView& state, const SearchSubtree& s, ui
 __device__ inline void close_subtree(const StateView& state, uint32_t subtree, uint32_t levels,
                                      const Known& known, Tally& tally) {
   if ((known.refined & kOpen) == 0) return;
-  if (lane_in_group() == 0) keep_closed(state, subtree, tally);
+  if (lane_in_group() == 0) keep_closed(state, known.place, tally);
   count_change(state, subtree, levels, known.cut, 0, -1, tally);
 }
 

@@ -11,8 +11,9 @@
 namespace voyager::cuda {
 namespace {
 
-// Streaming takes over where more than one in so many subtrees has run out of slack: on a whole
-// H100 and on 16 of its multiprocessors it pays by then. bench/NOTES.md has the measurement.
+// Streaming takes over where more than one in so many of the tables' subtrees has run out of slack:
+// on a whole H100 and on 16 of its multiprocessors it pays by then. bench/NOTES.md has the
+// measurement.
 constexpr uint32_t kSubtreesADue = 8;
 
 // What a search of a streamed scene follows.
@@ -35,7 +36,8 @@ class PartitionedSearch final : public CutSearch {
         weights_(weights),
         streamed_(scene_->streamed() ? std::make_unique<Streamed>(*scene_, *device_) : nullptr),
         most_(most_nodes()),
-        state_(std::make_unique<CutState>(scene_->search, most_, weights)) {}
+        state_(std::make_unique<CutState>(scene_->search, tree_->view().place_count, most_,
+                                          weights)) {}
 
   // What it frees belongs to the device's context.
   ~PartitionedSearch() override { device_->use_quietly(); }
@@ -74,12 +76,8 @@ class PartitionedSearch final : public CutSearch {
 };
 
 SearchFrame PartitionedSearch::frame(const CutQuery& query, cudaStream_t stream) const {
-  return {tree_->view(),
-          state_->view(),
-          make_sight(query),
-          references_.current(),
-          device_->multiprocessors(),
-          stream};
+  return {tree_->view(),         state_->view(tree_->view().places), make_sight(query),
+          references_.current(), device_->multiprocessors(),         stream};
 }
 
 // Of a streamed scene: of those that are there. That a tree has no more leaves than its file says
@@ -92,10 +90,11 @@ uint64_t PartitionedSearch::most_nodes() const {
 // Whether there was room for a cut of the pool, which may have grown.
 bool PartitionedSearch::fit_pool(cudaStream_t stream) {
   const uint64_t most = most_nodes();
-  if (state_ && most <= most_) return true;
+  const uint32_t places = tree_->view().place_count;
+  if (state_ && most <= most_ && places <= state_->view().place_count) return true;
   wait_for_host(stream);
   state_.reset();
-  state_ = std::make_unique<CutState>(scene_->search, most, weights_);
+  state_ = std::make_unique<CutState>(scene_->search, places, most, weights_);
   most_ = most;
   return false;
 }
@@ -133,7 +132,7 @@ void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
       std::copy(references_.travel().begin(), references_.travel().end(), travels.of);
       travels.retired = references_.retired();
       launch_check(now, travels, references_.journey());
-      launch_temporal(now, now.tree.subtree_count / kSubtreesADue);
+      launch_temporal(now, now.tree.place_count / kSubtreesADue);
     }
     launch_place(now);
     launch_emit(now, weights_);

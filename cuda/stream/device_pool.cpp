@@ -80,13 +80,15 @@ void DevicePool::make_room(PoolRoom room) {
   layout_.set_room(room);
   memory_ = Buffer<unsigned char>(layout_.bytes());
   slots_ = room.slots;
+  pages_ = room.pages;
   check(cudaMemcpy(array<SearchChunk>(kChunks), chunks_.data(),
                    chunks_.size() * sizeof(SearchChunk), cudaMemcpyHostToDevice),
         "chunk hulls");
+  check(cudaMemset(array<uint32_t>(kPages), 0, layout_.fixed_bytes(kPages)), "links");
   check(cudaMemset(array<uint32_t>(kLargeFamilyCount), 0, layout_.fixed_bytes(kLargeFamilyCount)),
         "links");
   check(cudaStreamSynchronize(nullptr), "links");
-  launch_unlink_all(array<SearchSubtree>(kSubtrees), chunks_.back().first_subtree, stream_.get());
+  launch_unlink_all(array<SearchSubtree>(kSubtrees), place_count(), stream_.get());
   applied_.record(stream_.get());
 }
 
@@ -122,8 +124,11 @@ GaussianView DevicePool::gaussians() const {
           array<uint8_t>(kNodeCodes),
           {nullptr,
            nullptr,
-           {array<unsigned char>(kParents), array<uint32_t>(kFirstSubtrees),
-            array<uint32_t>(kOutside), shape_.nodes}},
+           {array<unsigned char>(kParents),
+            array<uint32_t>(kFirstSubtrees),
+            array<uint32_t>(kOutside),
+            {array<uint32_t>(kPages)},
+            shape_.nodes}},
           array<uint32_t>(kChildCounts),
           array<LargeFamily>(kLargeFamilies),
           array<uint32_t>(kLargeFamilyCount),
@@ -140,11 +145,13 @@ GaussianView DevicePool::gaussians() const {
 
 TreeView DevicePool::tree() const {
   return {array<SearchSubtree>(kSubtrees),
+          {array<uint32_t>(kPages)},
           array<SearchRecord>(kRecords),
           array<uint32_t>(kNextBlocks),
           array<SearchChunk>(kChunks),
           layout_.unit(kLeaves) == 0 ? nullptr : array<NodeRecord>(kLeaves),
           chunks_.back().first_subtree,
+          place_count(),
           static_cast<uint32_t>(chunks_.size() - 1),
           blend_share_,
           array<SlotIds>(kSlotIds),
@@ -251,8 +258,8 @@ void DevicePool::apply(const LinkPatch& patch) {
   const PoolPatch copy = patches_.put(patch);
   put_behind_frames();
   launch_patch(
-      {array<SearchSubtree>(kSubtrees), array<SearchRecord>(kRecords), array<uint32_t>(kOutside),
-       tables_ == nullptr ? nullptr : array<LargeFamily>(kLargeFamilies),
+      {array<SearchSubtree>(kSubtrees), array<uint32_t>(kPages), array<SearchRecord>(kRecords),
+       array<uint32_t>(kOutside), tables_ == nullptr ? nullptr : array<LargeFamily>(kLargeFamilies),
        array<uint32_t>(kLargeFamilyCount)},
       copy, stream_.get());
   patches_.read_by(stream_.get());

@@ -58,6 +58,8 @@ class DevicePool final : public ChunkPool {
   void pack_codes(const StagedChunk& chunk, unsigned char* into) const;
   void pack_floats(const StagedChunk& chunk, unsigned char* into) const;
   PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;
+  // With the page that stands for all that has no place.
+  uint32_t place_count() const { return (pages_ + 1) * kPageSubtrees; }
   // Throws Error(over_budget) where a resize has left no memory.
   void require_room() const;
   void put_behind_frames();
@@ -73,7 +75,7 @@ class DevicePool final : public ChunkPool {
   const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
   const PoolLayout piece_layout_;                // of one chunk
   PoolLayout layout_;
-  uint32_t slots_ = 0;
+  uint32_t slots_ = 0, pages_ = 0;
   Buffer<unsigned char> memory_;
   UploadRing ring_;
   PatchBuffers patches_;

@@ -40,6 +40,7 @@ size_t bytes_of(const LinkPatch& p) {
   return (p.cut.records.size() + p.tied.records.size()) * sizeof(LinkPatch::Record) +
          p.linked.size() * (sizeof(SearchSubtree) + sizeof(uint32_t)) +
          p.outside.size() * sizeof(LinkPatch::Outside) + p.unlinked.size() * sizeof(uint32_t) +
+         p.pages.size() * sizeof(PageChange) +
          (p.large ? p.large->size() * sizeof(LargeFamily) : 0);
 }
 
@@ -79,11 +80,13 @@ PoolPatch PatchBuffers::put(const LinkPatch& patch) {
   p.linked_subtrees =
       writer.put<uint32_t>(patch.linked.size(), [&](size_t i) { return patch.linked[i].first; });
   p.unlinked = writer.put(patch.unlinked);
+  p.pages = writer.put(patch.pages);
   p.cut_count = count_of(patch.cut.records);
   p.tied_count = count_of(patch.tied.records);
   p.linked_count = count_of(patch.linked);
   p.outside_count = count_of(patch.outside);
   p.unlinked_count = count_of(patch.unlinked);
+  p.page_count = count_of(patch.pages);
   return p;
 }
 

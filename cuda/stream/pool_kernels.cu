@@ -60,6 +60,10 @@ __global__ void __launch_bounds__(kThreads) pool_fill(PoolFill fill) {
     copy_words<uint8_t>(copy);
 }
 
+__device__ SubtreePlaces places_of(const PoolTables& tables) {
+  return {tables.pages};
+}
+
 __device__ void set_records(const PoolTables& tables, const LinkPatch::Record* records,
                             uint32_t count) {
   for (uint32_t i = first_index(); i < count; i += stride()) {
@@ -71,16 +75,27 @@ __device__ void set_records(const PoolTables& tables, const LinkPatch::Record* r
 __global__ void __launch_bounds__(kThreads) pool_cut(PoolTables tables, PoolPatch patch) {
   set_records(tables, patch.cut, patch.cut_count);
   for (uint32_t i = first_index(); i < patch.unlinked_count; i += stride())
-    tables.subtrees[patch.unlinked[i]].entry = kNotLinked;
+    tables.subtrees[places_of(tables)(patch.unlinked[i])].entry = kNotLinked;
+}
+
+__global__ void __launch_bounds__(kThreads) pool_place(PoolTables tables, PoolPatch patch) {
+  for (uint32_t i = first_index(); i < patch.page_count * kPageSubtrees; i += stride()) {
+    const PageChange change = patch.pages[i / kPageSubtrees];
+    const uint32_t subtree = i % kPageSubtrees;
+    if (subtree == 0) tables.pages[change.page] = change.place;
+    if (change.place != 0)
+      tables.subtrees[change.place * kPageSubtrees + subtree] = kUnlinkedSubtree;
+  }
 }
 
 __global__ void __launch_bounds__(kThreads) pool_tie(PoolTables tables, PoolPatch patch) {
+  const SubtreePlaces places = places_of(tables);
   set_records(tables, patch.tied, patch.tied_count);
   for (uint32_t i = first_index(); i < patch.linked_count; i += stride())
-    tables.subtrees[patch.linked_subtrees[i]] = patch.linked[i];
+    tables.subtrees[places(patch.linked_subtrees[i])] = patch.linked[i];
   for (uint32_t i = first_index(); i < patch.outside_count; i += stride()) {
     const LinkPatch::Outside o = patch.outside[i];
-    tables.outside[o.subtree] = o.parent;
+    tables.outside[places(o.subtree)] = o.parent;
   }
   if (!patch.large_changed || tables.large == nullptr) return;
   for (uint32_t i = first_index(); i < patch.large_count; i += stride())
@@ -106,6 +121,9 @@ void launch_patch(const PoolTables& tables, const PoolPatch& patch, cudaStream_t
   if (const uint32_t most = std::max(patch.cut_count, patch.unlinked_count); most != 0) {
     launch_kernel("pool_cut", pool_cut, {blocks_for(most), kThreads, stream}, tables, patch);
   }
+  if (patch.page_count != 0)
+    launch_kernel("pool_place", pool_place,
+                  {blocks_for(patch.page_count * kPageSubtrees), kThreads, stream}, tables, patch);
   if (const uint32_t most =
           std::max({patch.tied_count, patch.linked_count, patch.outside_count, patch.large_count});
       most != 0 || patch.large_changed) {

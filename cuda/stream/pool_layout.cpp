@@ -36,12 +36,12 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
            sizeof(uint32_t),
            sizeof(SearchSubtree),
            sizeof(uint32_t),
+           sizeof(uint32_t),
            sizeof(SearchChunk),
            sizeof(LargeFamily),
            sizeof(uint32_t)};
   fixed_bytes_ = {};
-  fixed_bytes_[kSubtrees] = scene.search.subtree_count() * unit_[kSubtrees];
-  fixed_bytes_[kOutside] = scene.search.subtree_count() * unit_[kOutside];
+  fixed_bytes_[kPages] = pages_of(scene.search.subtree_count()) * unit_[kPages];
   fixed_bytes_[kChunks] = scene.search.chunks.size() * unit_[kChunks];
   if (coded) {
     fixed_bytes_[kLargeFamilies] = most_large_families(scene.node_count) * unit_[kLargeFamilies];
@@ -50,6 +50,11 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
   block_bytes_ = {};
   block_bytes_[kRecords] = kRecordBlock * unit_[kRecords];
   block_bytes_[kNextBlocks] = unit_[kNextBlocks];
+  page_bytes_ = {};
+  for (const PoolArray a : {kSubtrees, kOutside}) {
+    page_bytes_[a] = kPageSubtrees * unit_[a];
+    fixed_bytes_[a] = page_bytes_[a];  // of the page that stands for all that has no place
+  }
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
     const auto which = static_cast<PoolArray>(a);
     const bool filled = a < kFilledArrays && block_bytes_[a] == 0;
@@ -61,15 +66,17 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
 void PoolLayout::set_room(PoolRoom room) {
   begin_[0] = 0;
   for (uint32_t a = 0; a < kPoolArrays; ++a)
-    begin_[a + 1] = begin_[a] + aligned(room.slots * slot_bytes_[a] +
-                                        room.blocks * block_bytes_[a] + fixed_bytes_[a]);
+    begin_[a + 1] =
+        begin_[a] + aligned(room.slots * slot_bytes_[a] + room.blocks * block_bytes_[a] +
+                            room.pages * page_bytes_[a] + fixed_bytes_[a]);
 }
 
 PoolBytes PoolLayout::pool_bytes() const {
-  PoolBytes bytes{0, 0, kPoolArrays * kAlign};
+  PoolBytes bytes{0, 0, kPoolArrays * kAlign, 0};
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
     bytes.slot += slot_bytes_[a];
     bytes.block += block_bytes_[a];
+    bytes.page += page_bytes_[a];
     bytes.fixed += fixed_bytes_[a];
   }
   return bytes;

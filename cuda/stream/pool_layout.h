@@ -25,9 +25,11 @@ enum PoolArray : uint32_t {
   kSlotIds,        // the same
   kFirstSubtrees,  // the same
   kFilledArrays,
-  // Of the whole tree.
+  // By page of subtrees (runtime/math/subtree_places.h).
   kSubtrees = kFilledArrays,
   kOutside,  // one a subtree
+  // Of the whole tree.
+  kPages,  // one a page
   kChunks,
   // Of a compact scene.
   kLargeFamilies,
@@ -51,7 +53,7 @@ class PoolLayout {
   size_t unit(PoolArray array) const { return unit_[array]; }
   // Bytes that a slot takes of it; 0 of records, and of what is the whole tree's.
   size_t slot_bytes(PoolArray array) const { return slot_bytes_[array]; }
-  // What it takes beside the slots.
+  // What is the whole tree's takes.
   size_t fixed_bytes(PoolArray array) const { return fixed_bytes_[array]; }
   // From the allocation's start; multiples of 256.
   size_t begin(PoolArray array) const { return begin_[array]; }
@@ -62,7 +64,7 @@ class PoolLayout {
   PoolBytes pool_bytes() const;
 
  private:
-  std::array<size_t, kPoolArrays> unit_, slot_bytes_, block_bytes_, fixed_bytes_;
+  std::array<size_t, kPoolArrays> unit_, slot_bytes_, block_bytes_, page_bytes_, fixed_bytes_;
   std::array<size_t, kPoolArrays + 1> begin_;
 };
 

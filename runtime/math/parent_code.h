@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "runtime/math/host_device.h"
+#include "runtime/math/subtree_places.h"
 
 namespace voyager {
 
@@ -21,7 +22,8 @@ VOYAGER_HD constexpr size_t parent_code_bytes(uint32_t slot_nodes) {
 struct PoolParents {
   const void* codes;              // by address: of parent_code_bytes()
   const uint32_t* first_subtree;  // of the chunk in each slot
-  const uint32_t* outside;        // by subtree
+  const uint32_t* outside;        // by the subtree's place
+  SubtreePlaces places;
   uint32_t slot_nodes;
 
   VOYAGER_HD uint32_t operator()(uint32_t node) const {
@@ -30,7 +32,7 @@ struct PoolParents {
                               ? static_cast<const uint8_t*>(codes)[node]
                               : static_cast<const uint16_t*>(codes)[node];
     return code < slot_nodes ? slot * slot_nodes + code
-                             : outside[first_subtree[slot] + (code - slot_nodes)];
+                             : outside[places(first_subtree[slot] + (code - slot_nodes))];
   }
 };
 

@@ -12,6 +12,7 @@
 #include "runtime/base/workers.h"
 #include "runtime/lod/subtrees.h"
 #include "runtime/math/bounds_code.h"
+#include "runtime/math/subtree_places.h"
 
 namespace voyager {
 
@@ -112,12 +113,12 @@ inline constexpr SearchSubtree kUnlinkedSubtree{kNoNode, 0, 0, slot_levels(1, 1,
                                                 0,       0, 0, kNotLinked};
 
 // The subtrees below a record, which `children` is of: consecutive, and each has it as its entry.
-VOYAGER_HD SubtreeSpan subtrees_below(const SearchSubtree* subtrees, uint32_t subtree_count,
-                                      uint32_t record, uint32_t children) {
+VOYAGER_HD SubtreeSpan subtrees_below(const SearchSubtree* subtrees, SubtreePlaces places,
+                                      uint32_t subtree_count, uint32_t record, uint32_t children) {
   if ((children & kLowest) == 0 || children == kBlocked) return {0, 0};
   const uint32_t first = children & ~kLowest;
   uint32_t last = first;
-  while (last < subtree_count && subtrees[last].entry == record) ++last;
+  while (last < subtree_count && subtrees[places(last)].entry == record) ++last;
   return {first, last};
 }
 

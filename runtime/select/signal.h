@@ -15,8 +15,8 @@ void signal_below(const SearchTree& tree, uint32_t subtree, uint32_t flipped, ui
   for (; flipped != 0; flipped &= flipped - 1) {
     const uint32_t slot = flipped & (~flipped + 1);
     const uint32_t record = s.record(count_bits(s.interior & (slot - 1)), tree.next_block.data());
-    const auto [first, last] = subtrees_below(tree.subtrees.data(), tree.subtree_count(), record,
-                                              tree.records[record].children);
+    const auto [first, last] = subtrees_below(tree.subtrees.data(), {}, tree.subtree_count(),
+                                              record, tree.records[record].children);
     if (first == last) continue;
     if ((refined & slot) != 0)
       opened(first, last);

@@ -4,16 +4,20 @@
 
 namespace voyager {
 
-// What a pool has room for: chunks, and blocks of search records.
+// What a pool has room for: chunks, blocks of search records, and pages of subtrees where its
+// tables do not have all of the file's.
 struct PoolRoom {
-  uint32_t slots, blocks;
+  uint32_t slots, blocks, pages = 0;
 };
 
-// What a pool takes: each slot, each block, and beside them.
+// What a pool takes: each slot, each block, beside them, and each page; 0 where its tables have all
+// subtrees.
 struct PoolBytes {
-  uint64_t slot, block, fixed;
+  uint64_t slot, block, fixed, page = 0;
 
-  uint64_t of(PoolRoom room) const { return fixed + room.slots * slot + room.blocks * block; }
+  uint64_t of(PoolRoom room) const {
+    return fixed + room.slots * slot + room.blocks * block + room.pages * page;
+  }
 };
 
 class ChunkPool {

@@ -7,6 +7,7 @@
 
 #include "runtime/stream/chunk_graph.h"
 #include "runtime/stream/staged_chunk.h"
+#include "runtime/stream/subtree_pages.h"
 
 namespace voyager {
 
@@ -17,8 +18,8 @@ struct SlotShape {
 };
 
 // Changes of a SearchTree whose nodes and records are addresses, and of its nodes' parents.
-// All of `cut` is to be done before all of `tied`; in each, no place is there twice with
-// different values.
+// All of `cut` and `unlinked` is to be done before `pages`, and that before all of `tied` and
+// `linked`; in each, nothing is there twice with different values.
 struct LinkPatch {
   struct Record {
     uint32_t record, children;  // SearchRecord::children
@@ -33,12 +34,16 @@ struct LinkPatch {
   };
   Links cut, tied;
   std::vector<uint32_t> unlinked;  // subtrees to which nothing leads any more; for their entries
+  // Pages of subtrees that have another place. Nothing leads to what is there yet.
+  std::vector<PageChange> pages;
   std::vector<std::pair<uint32_t, SearchSubtree>> linked;
   std::vector<Outside> outside;
   // All large families of nodes that are held, where those have changed.
   std::optional<std::vector<LargeFamily>> large;
 
-  bool empty() const { return cut.records.empty() && unlinked.empty() && linked.empty() && !large; }
+  bool empty() const {
+    return cut.records.empty() && unlinked.empty() && pages.empty() && linked.empty() && !large;
+  }
 };
 
 class Linker {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/math/subtree_places.h"
 #include "runtime/stream/scene_stream.h"
 
 namespace voyager {
@@ -32,7 +33,12 @@ RecordRoom::RecordRoom(const SceneFile& file) : file_(file) {
     greatest_ = std::max(greatest_, most_.back());
     sum_of_most_ += most_.back();
     records += chunks[i].record_count - chunks[i].node_count;
+    const uint32_t pages = pages_of(chunks[i].first_subtree + chunks[i].subtree_count) -
+                           chunks[i].first_subtree / kPageSubtrees;
+    touching_.resize(std::max<size_t>(touching_.size(), pages + 1));
+    ++touching_[pages];
   }
+  all_pages_ = pages_of(file.info().subtree_count);
   // Each chunk leaves less than a block unused.
   const uint64_t rounded = (records + (kRecordBlock - 1) * uint64_t{chunks.size()}) / kRecordBlock;
   all_ = static_cast<uint32_t>(std::min(sum_of_most_, rounded));
@@ -44,11 +50,23 @@ uint64_t RecordRoom::likely_blocks(uint64_t most) const {
 }
 
 PoolRoom RecordRoom::of(uint32_t slots) const {
-  if (slots >= chunks()) return {slots, all_};
+  if (slots >= chunks()) return {slots, all_, all_pages_};
   const double part = static_cast<double>(slots) / chunks();
   const double share = std::ceil(all_ * part * (1.5 - 0.5 * part));
   const double least = (SceneStream::pinned_chunks(file_, slots) + 1.0) * greatest_;
-  return {slots, static_cast<uint32_t>(std::min<double>(all_, std::max(share, least)))};
+  return {slots, static_cast<uint32_t>(std::min<double>(all_, std::max(share, least))),
+          most_pages(slots)};
+}
+
+// As if they were those that touch the most, and shared none.
+uint32_t RecordRoom::most_pages(uint32_t slots) const {
+  uint64_t pages = 0;
+  for (size_t each = touching_.size(); each-- > 0 && slots != 0;) {
+    const uint32_t some = std::min(slots, touching_[each]);
+    pages += uint64_t{each} * some;
+    slots -= some;
+  }
+  return static_cast<uint32_t>(std::min<uint64_t>(all_pages_, pages + pages / 8 + 1));
 }
 
 PoolRoom RecordRoom::enough(uint64_t chunks_needed, uint64_t blocks) const {

@@ -51,7 +51,8 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       pool_bytes_(desc.bytes.of(desc.room)),
       looks_(file_->chunks()),
       residency_(graph_, file_->chunks(), records_, desc.room, desc.pinned),
-      linker_(graph_, shape_) {}
+      linker_(graph_, shape_),
+      pages_(no_pages(desc.room)) {}
 
 SceneStream::~SceneStream() {
   stop();
@@ -100,6 +101,12 @@ void SceneStream::signal() {
   }
   wake_.notify_all();
   progress_.notify_all();
+}
+
+// None has a place yet.
+std::optional<SubtreePages> SceneStream::no_pages(PoolRoom room) const {
+  if (desc_.bytes.page == 0) return std::nullopt;
+  return SubtreePages(file_->info().subtree_count, room.pages, kChangesKept);
 }
 
 void SceneStream::read_top(Workers& workers) {
@@ -188,6 +195,7 @@ void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
   pool_.await_frames();
   Residency residency(graph_, file_->chunks(), records_, room, std::min(pinned, desc_.pinned));
   Linker linker(graph_, shape_);
+  std::optional<SubtreePages> pages = no_pages(room);
   unsound_ = std::make_exception_ptr(Error(
       ErrorCode::internal,
       file_->name() + ": found memory that was only partly filled again, expected all of it"));
@@ -197,6 +205,8 @@ void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
   counted_ = total(counted_, residency_.counters());
   residency_ = std::move(residency);
   linker_ = std::move(linker);
+  pages_.reset();
+  if (pages) pages_.emplace(std::move(*pages));
   coming_.clear();
   ready_.clear();
   failures_.forget_chunks();

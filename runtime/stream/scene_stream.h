@@ -145,6 +145,7 @@ class SceneStream {
   void commit_all();
   void commit_changes();
   std::shared_ptr<const StreamChange> change_of(const LinkPatch& patch) const;
+  std::optional<SubtreePages> no_pages(PoolRoom room) const;
   void lose(std::exception_ptr what) noexcept;
   bool rebuild_if_due(Lock& lock);
   void rebuild();
@@ -152,6 +153,7 @@ class SceneStream {
   void apply(const LinkPatch& patch);
   bool accept(uint32_t chunk, LinkPatch& patch);
   void learn_families(const LinkTable& table);
+  void place_subtrees(const ChunkEntry& chunk);
   void reset(PoolRoom room, uint32_t pinned, Workers& workers);
   StagedChunk decode(uint32_t chunk, std::span<const std::byte> stored) const;
   template <class Done>
@@ -206,6 +208,8 @@ class SceneStream {
   bool planning_ = false;  // a thread looks at chunks without the lock; no other may plan
   Residency residency_;
   Linker linker_;
+  std::optional<SubtreePages> pages_;  // where the pool's tables are by page
+  std::vector<uint32_t> moved_pages_;  // of the commit that is being made
   std::map<uint32_t, Coming> coming_;  // by chunk
   std::deque<uint32_t> ready_;         // those of them without a slot
   uint64_t staged_bytes_ = 0;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "runtime/stream/scene_stream.h"
 
@@ -81,10 +82,15 @@ void SceneStream::commit_all() {
 
 void SceneStream::commit_changes() {
   LinkPatch patch;
+  moved_pages_.clear();
   put_off_ = -1;
   commit_due_ = false;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
-  for (const Residency::Evicted& e : evicted) linker_.evict(e.chunk, patch);
+  for (const Residency::Evicted& e : evicted) {
+    linker_.evict(e.chunk, patch);
+    const ChunkEntry& chunk = file_->chunks()[e.chunk];
+    if (pages_) pages_->release(chunk.first_subtree, chunk.subtree_count, version_ + 1);
+  }
   const Residency::Arrivals arrived =
       residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
   for (const uint32_t chunk : arrived.resident) {
@@ -92,6 +98,7 @@ void SceneStream::commit_changes() {
     failures_.remove(chunk);
   }
   for (const uint32_t chunk : arrived.given_up) coming_.erase(chunk);
+  if (pages_) patch.pages = pages_->changes(std::exchange(moved_pages_, {}));
   if (!patch.empty()) {
     changes_.push_back(change_of(patch));
     apply(patch);
@@ -127,8 +134,16 @@ bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
     return false;
   }
   learn_families(staged.links);
+  if (pages_) place_subtrees(file_->chunks()[chunk]);
   linker_.arrive(std::move(staged.links), patch);
   return true;
+}
+
+void SceneStream::place_subtrees(const ChunkEntry& chunk) {
+  if (pages_->take(chunk.first_subtree, chunk.subtree_count, version_ + 1, moved_pages_)) return;
+  // Searches start from nothing.
+  changes_.clear();
+  version_ += kChangesKept;
 }
 
 void SceneStream::learn_families(const LinkTable& table) {

@@ -78,7 +78,7 @@ TEST(SearchTree, LeadsToEveryChild) {
         const SearchRecord& r = cut.search.records[record];
         for (uint32_t slots = r.child_slots() & s.owned(); slots != 0; slots &= slots - 1)
           ++reached[s.node(static_cast<uint32_t>(std::countr_zero(slots)))];
-        const SubtreeSpan below = subtrees_below(cut.search.subtrees.data(),
+        const SubtreeSpan below = subtrees_below(cut.search.subtrees.data(), {},
                                                  cut.search.subtree_count(), record, r.children);
         for (uint32_t i = below.first; i < below.last; ++i) {
           const SearchSubtree& under = cut.search.subtrees[i];

@@ -46,7 +46,8 @@ struct Pool {
   void expect_parents(const LodTree& tree) const {
     const std::vector<Code> stored(codes.begin(), codes.end());
     for (size_t at = 0; at < codes.size(); ++at) ASSERT_EQ(stored[at], codes[at]);
-    const PoolParents parents{stored.data(), first_subtree.data(), outside.data(), nodes};
+    const PoolParents parents{
+        stored.data(), first_subtree.data(), outside.data(), {nullptr}, nodes};
     for (uint32_t n = 0; n < tree.size(); ++n)
       ASSERT_EQ(parents(address[n]), n == 0 ? kNoNode : address[tree.parent[n]]) << n;
   }

@@ -1,0 +1,68 @@
+#include "runtime/stream/subtree_pages.h"
+
+#include <string>
+#include <utility>
+
+#include "runtime/base/error.h"
+
+namespace voyager {
+
+SubtreePages::SubtreePages(uint32_t subtrees, uint32_t room, uint64_t kept)
+    : room_(room), kept_(kept), places_(pages_of(subtrees)), chunks_(pages_of(subtrees)) {}
+
+bool SubtreePages::take(uint32_t first, uint32_t count, uint64_t version,
+                        std::vector<uint32_t>& moved) {
+  const uint32_t begin = first / kPageSubtrees, end = pages_of(first + count);
+  for (uint32_t page = begin; page < end; ++page)
+    if (chunks_[page]++ == 0) released_at_.erase(page);
+  bool followed = true;
+  for (uint32_t page = begin; page < end; ++page)
+    if (places_[page] == 0) followed &= place_page(page, version, moved);
+  return followed;
+}
+
+void SubtreePages::release(uint32_t first, uint32_t count, uint64_t version) {
+  const uint32_t begin = first / kPageSubtrees, end = pages_of(first + count);
+  for (uint32_t page = begin; page < end; ++page) {
+    if (--chunks_[page] != 0) continue;
+    released_.push_back({page, version});
+    released_at_[page] = version;
+  }
+}
+
+std::vector<PageChange> SubtreePages::changes(const std::vector<uint32_t>& moved) const {
+  std::vector<PageChange> changes;
+  changes.reserve(moved.size());
+  for (const uint32_t page : moved) changes.push_back({page, places_[page]});
+  return changes;
+}
+
+// The page that went first of those that have a place and no chunk.
+std::optional<SubtreePages::Released> SubtreePages::drop_oldest() {
+  while (!released_.empty()) {
+    const Released oldest = released_.front();
+    released_.pop_front();
+    const auto found = released_at_.find(oldest.page);
+    if (found == released_at_.end() || found->second != oldest.version) continue;
+    released_at_.erase(found);
+    return oldest;
+  }
+  return std::nullopt;
+}
+
+bool SubtreePages::place_page(uint32_t page, uint64_t version, std::vector<uint32_t>& moved) {
+  moved.push_back(page);
+  if (used_ < room_) {
+    places_[page] = ++used_;
+    return true;
+  }
+  const std::optional<Released> gone = drop_oldest();
+  if (!gone)
+    throw Error(ErrorCode::internal, "streaming: found no place for subtrees in " +
+                                         std::to_string(room_) + " pages, expected one");
+  places_[page] = std::exchange(places_[gone->page], 0);
+  moved.push_back(gone->page);
+  return gone->version + kept_ <= version;
+}
+
+}  // namespace voyager
