@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Which kernels spill registers on an Orin (sm_87), and how many bytes: check_spills.sh [MOST].
-# Fails where one spills more than MOST bytes (default 112: what search_descend spills). Needs nvcc,
-# no GPU. The flags are those of cuda/CMakeLists.txt.
+# Fails where one spills more than MOST bytes (default 112: search_visit spills 108). Needs nvcc, no
+# GPU. The flags are those of cuda/CMakeLists.txt.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 most=${1:-112}

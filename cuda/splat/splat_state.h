@@ -46,7 +46,7 @@ class SplatState {
   // memory for it: the frame is then what it can be. Nothing on the device uses them.
   bool grow(const SplatRoom& wanted);
 
-  // pass: without limits.
+  // Of that pass; its limits are not set.
   SplatView view(const FrameTiles& tiles, int pass) const;
   // Clears what the kernels add to, in both passes.
   void begin_frame(const FrameTiles& tiles, cudaStream_t stream) const;

@@ -297,12 +297,12 @@ VOY_API VoyResult VOY_CALL voyGetVulkanImages(VoyTarget target, uint32_t capacit
  * With DEVICE sharing the call returns while the frame is in flight; it takes about 0.1 ms of host
  * time. It waits for the device in the first frame of a view and of a list of scenes
  * (voySetViewInstances), after a failure, when buffers must grow, when 16 frames of the view are in
- * flight, when these and the new one have more than 24 instances together, and in every frame of a
- * scene with damaged chunks. If a frame that it waits for is one that the host does not let go on,
- * it returns VOY_ERROR_TIMEOUT after 10 s. A frame in flight cannot be drawn again with larger
- * buffers. So if the view turns to far more splats at once, frames may lack some of them.
- * VoyFrameStats.pairsDropped counts them, and the frames that are drawn after the first of these
- * has ended have larger buffers.
+ * flight, when these and the new one have more than 24 instances together, and when 3 frames of a
+ * scene with damaged chunks are in flight. If a frame that it waits for is one that the host does
+ * not let go on, it returns VOY_ERROR_TIMEOUT after 10 s. A frame in flight cannot be drawn again
+ * with larger buffers. So if the view turns to far more splats at once, frames may lack some of
+ * them. VoyFrameStats.pairsDropped counts them, and the frames that are drawn after the first of
+ * these has ended have larger buffers.
  *
  * Two eyes draw into two layers of one image, or into one image of two targets each. imageIndex and
  * the values then apply to both targets. A target has a fixed size: to resize, create another. */

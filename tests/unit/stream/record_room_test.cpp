@@ -1,6 +1,11 @@
 // How much room search records take, as the directory tells it and as chunks have it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+#include <random>
+#include <set>
+
 #include "runtime/stream/scene_stream.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
@@ -62,6 +67,31 @@ TEST(RecordRoom, GrowsWithTheSlotsAndHoldsWhatIsPinned) {
     const uint32_t pinned = SceneStream::pinned_chunks(file, slots);
     EXPECT_GE(blocks, std::min(all, (pinned + 1) * room.most_blocks()));
     before = blocks;
+  }
+}
+
+// Whichever chunks those are.
+TEST(RecordRoom, HasPagesForTheSubtreesOfAnySoManyChunks) {
+  for (const TreeShape shape : test::kTreeShapes) {
+    SCOPED_TRACE(test::name_of(shape));
+    const test::Bytes bytes = test::scene_bytes(test::baked_of(test::random_tree(shape, 6000, 3)),
+                                                Quality::compact, 0, kMinChunkBytes);
+    const SceneFile file(test::source_of(bytes));
+    const RecordRoom room(file);
+    const auto chunks = static_cast<uint32_t>(file.chunks().size());
+    std::vector<uint32_t> order(chunks);
+    std::iota(order.begin(), order.end(), 0u);
+    std::shuffle(order.begin(), order.end(), std::mt19937(5));
+    std::set<uint32_t> pages;
+    for (uint32_t some = 1; some <= chunks; ++some) {
+      const ChunkEntry& chunk = file.chunks()[order[some - 1]];
+      for (uint32_t s = 0; s < chunk.subtree_count; ++s)
+        pages.insert((chunk.first_subtree + s) / kPageSubtrees);
+      if (some >= SceneStream::top_chunks(file)) {
+        ASSERT_GE(room.of(some).pages, pages.size());
+      }
+    }
+    EXPECT_EQ(room.of(chunks).pages, pages_of(file.info().subtree_count));
   }
 }
 
