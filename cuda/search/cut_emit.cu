@@ -123,7 +123,8 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
     uint64_t before;
     LevelScan(storage).ExclusiveSum(count_levels(cut, s.levels), before);
     for (unsigned level = 0; level < kLevels; ++level) {
-      const auto own = static_cast<uint32_t>(before >> (kCountBits * level)) & ((1u << kCountBits) - 1);
+      const auto own =
+          static_cast<uint32_t>(before >> (kCountBits * level)) & ((1u << kCountBits) - 1);
       const uint32_t count = __popc(cut & s.level_slots(level));
       const uint32_t warps = __shfl_sync(kAllLanes, own, 0);
       const uint32_t total = __shfl_sync(kAllLanes, own + count, 31) - warps;
