@@ -12,8 +12,12 @@ import json
 import math
 import os
 import subprocess
+import sys
 
-import numpy
+try:
+    import numpy
+except ImportError:
+    numpy = None  # --help works without
 
 TURNS = 6  # as the shader
 
@@ -90,6 +94,8 @@ def main():
     parser.add_argument("--turn", type=float, nargs="+", default=[0, 30, 100])
     parser.add_argument("--options", default="", help="for voyager, such as \"--tau 3 --size 960x540\"")
     options = parser.parse_args()
+    if numpy is None:
+        sys.exit("reprojection.py: found no numpy, expected it (python3-numpy)")
     os.makedirs(options.o, exist_ok=True)
     with open(options.cameras, encoding="utf-8") as file:
         walk = json.load(file)

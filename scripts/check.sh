@@ -114,10 +114,10 @@ check_demo() {
   configure release  # which the demo leaves without its tests
 }
 
-if [ $# -eq 0 ]; then
+if [ $# -eq 0 ] || [ "$1" = --help ]; then
   echo "usage: check.sh PART... | all"
   for part in "${parts[@]}"; do printf '  %-9s %s\n' "$part" "${about[$part]}"; done
-  exit 1
+  exit $(($# == 0))
 fi
 [ "$*" = all ] && set -- "${parts[@]}"
 for part in "$@"; do

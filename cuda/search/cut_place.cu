@@ -31,7 +31,8 @@ __device__ uint32_t scan(uint32_t count, BlockScan::TempStorage& storage, const 
   return before;
 }
 
-// Segments that have no room for their nodes. Where more are found than are kept, all move.
+// Segments that have no room for their nodes. Where more are found than are kept, all move: one
+// warp makes room for each in turn, which by then takes longer.
 struct Outgrown {
   static constexpr uint32_t kMost = 64;
   uint32_t count;

@@ -156,7 +156,8 @@ __device__ void answer_signals(const TreeView& tree, const StateView& state, con
   }
 }
 
-// As many thread blocks as there is work for: those that wait only get in the way.
+// As many thread blocks as there is work for: those that wait only get in the way. A block answers
+// 32 signals at once, and the first few blocks begin before there are any.
 __device__ bool helps(const FrameCounters* counting) {
   constexpr uint32_t kLeast = 4, kSignalsEach = 32;
   return blockIdx.x < kLeast + read_now(&counting->signal_tail) / kSignalsEach;

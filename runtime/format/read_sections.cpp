@@ -151,6 +151,7 @@ void read_directory(const ByteSource& source, const FileHeader& h, const Check& 
       .read(h.chunk_count, sections.chunks,
             [&](const std::vector<ChunkEntry>& all, uint64_t i) { directory.accept(all, i); });
   directory.finish(sections.chunks);
+  sections.chunks.shrink_to_fit();  // kept as long as the file is open
 }
 
 }  // namespace

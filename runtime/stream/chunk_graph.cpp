@@ -18,6 +18,7 @@ ChunkGraph::ChunkGraph(std::span<const ChunkEntry> chunks, const Tiers& tiers)
       if (!children_[p].empty()) parents_.push_back(p);
     parents_begin_.push_back(static_cast<uint32_t>(parents_.size()));
   }
+  parents_.shrink_to_fit();
 }
 
 ChunkRange ChunkGraph::find_children(uint32_t chunk) const {
