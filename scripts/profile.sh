@@ -4,7 +4,8 @@
 # many warps are resident, and how long multiprocessors idle while the last blocks end; and what
 # a Jetson AGX Orin would take by its rates.
 #   scripts/profile.sh SCENE.voy CAMERAS.json [options of `voyager bench`]
-# Frames are drawn with --stages all --exp ex2 unless the options say otherwise.
+# Frames are drawn with --stages all --exp ex2 unless the options say otherwise; a search alone
+# (--stages search) is not profiled.
 # Each launch runs several times and much slower than alone: a path of a few frames is enough.
 # VOYAGER names another command line than this build's. The program needs the right to read the
 # GPU's counters: root, or the driver's option NVreg_RestrictProfilingToAdminUsers=0.
@@ -12,7 +13,7 @@ set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 voyager=${VOYAGER:-$here/../build/release/bin/voyager}
 if (($# < 2)); then
-  sed -n '2,10s/^# \?//p' "$0"
+  sed -n '2,11s/^# \?//p' "$0"
   exit 2
 fi
 command -v ncu >/dev/null || {
@@ -20,8 +21,8 @@ command -v ncu >/dev/null || {
   exit 1
 }
 drawn=()
-[[ " ${*:3} " == *' --stages '* ]] || drawn+=(--stages all)
-[[ " ${*:3} " == *' --exp '* ]] || drawn+=(--exp ex2)
+[[ " ${*:3} " == *' --stages'[\ =]* ]] || drawn+=(--stages all)
+[[ " ${*:3} " == *' --exp'[\ =]* ]] || drawn+=(--exp ex2)
 rows=$(mktemp)
 trap 'rm -f "$rows" "$rows.json"' EXIT
 metrics=gpu__time_duration.sum,dram__bytes.sum,dram__bytes.sum.per_second,\

@@ -12,8 +12,8 @@ namespace voyager::cuda {
 namespace {
 
 // Streaming takes over where more than one in so many of the tables' subtrees has run out of slack:
-// on a whole H100 and on 16 of its multiprocessors it pays by then. bench/NOTES.md has the
-// measurement.
+// on a whole H100 and on 16 of its multiprocessors it pays by then, with tables of all subtrees.
+// bench/NOTES.md has the measurement.
 constexpr uint32_t kSubtreesADue = 8;
 
 // What a search of a streamed scene follows.

@@ -27,7 +27,7 @@ enum PoolArray : uint32_t {
   kFilledArrays,
   // By page of subtrees (runtime/math/subtree_places.h).
   kSubtrees = kFilledArrays,
-  kOutside,  // one a subtree
+  kOutside,  // one a subtree; of one that is in no cut it may be anything
   // Of the whole tree.
   kPages,  // one a page
   kChunks,
@@ -51,9 +51,9 @@ class PoolLayout {
 
   // Bytes of an element.
   size_t unit(PoolArray array) const { return unit_[array]; }
-  // Bytes that a slot takes of it; 0 of records, and of what is the whole tree's.
+  // Bytes that a slot takes of it; 0 of records, and of what is by page or the whole tree's.
   size_t slot_bytes(PoolArray array) const { return slot_bytes_[array]; }
-  // What is the whole tree's takes.
+  // What it takes beside slots, blocks and pages.
   size_t fixed_bytes(PoolArray array) const { return fixed_bytes_[array]; }
   // From the allocation's start; multiples of 256.
   size_t begin(PoolArray array) const { return begin_[array]; }

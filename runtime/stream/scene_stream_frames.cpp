@@ -140,7 +140,14 @@ bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
 }
 
 void SceneStream::place_subtrees(const ChunkEntry& chunk) {
-  if (pages_->take(chunk.first_subtree, chunk.subtree_count, version_ + 1, moved_pages_)) return;
+  bool follows = false;
+  try {
+    follows = pages_->take(chunk.first_subtree, chunk.subtree_count, version_ + 1, moved_pages_);
+  } catch (const Error&) {
+    lose(std::current_exception());
+    throw;
+  }
+  if (follows) return;
   // Searches start from nothing.
   changes_.clear();
   version_ += kChangesKept;

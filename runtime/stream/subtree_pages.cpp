@@ -1,7 +1,6 @@
 #include "runtime/stream/subtree_pages.h"
 
 #include <string>
-#include <utility>
 
 #include "runtime/base/error.h"
 
@@ -14,7 +13,11 @@ bool SubtreePages::take(uint32_t first, uint32_t count, uint64_t version,
                         std::vector<uint32_t>& moved) {
   const uint32_t begin = first / kPageSubtrees, end = pages_of(first + count);
   for (uint32_t page = begin; page < end; ++page)
-    if (chunks_[page]++ == 0) released_at_.erase(page);
+    if (chunks_[page]++ == 0)
+      if (const auto released = released_at_.find(page); released != released_at_.end()) {
+        released_.erase({released->second, page});
+        released_at_.erase(released);
+      }
   bool followed = true;
   for (uint32_t page = begin; page < end; ++page)
     if (places_[page] == 0) followed &= place_page(page, version, moved);
@@ -25,7 +28,7 @@ void SubtreePages::release(uint32_t first, uint32_t count, uint64_t version) {
   const uint32_t begin = first / kPageSubtrees, end = pages_of(first + count);
   for (uint32_t page = begin; page < end; ++page) {
     if (--chunks_[page] != 0) continue;
-    released_.push_back({page, version});
+    released_.insert({version, page});
     released_at_[page] = version;
   }
 }
@@ -37,32 +40,21 @@ std::vector<PageChange> SubtreePages::changes(const std::vector<uint32_t>& moved
   return changes;
 }
 
-// The page that went first of those that have a place and no chunk.
-std::optional<SubtreePages::Released> SubtreePages::drop_oldest() {
-  while (!released_.empty()) {
-    const Released oldest = released_.front();
-    released_.pop_front();
-    const auto found = released_at_.find(oldest.page);
-    if (found == released_at_.end() || found->second != oldest.version) continue;
-    released_at_.erase(found);
-    return oldest;
-  }
-  return std::nullopt;
-}
-
 bool SubtreePages::place_page(uint32_t page, uint64_t version, std::vector<uint32_t>& moved) {
   moved.push_back(page);
   if (used_ < room_) {
     places_[page] = ++used_;
     return true;
   }
-  const std::optional<Released> gone = drop_oldest();
-  if (!gone)
+  if (released_.empty())
     throw Error(ErrorCode::internal, "streaming: found no place for subtrees in " +
                                          std::to_string(room_) + " pages, expected one");
-  places_[page] = std::exchange(places_[gone->page], 0);
-  moved.push_back(gone->page);
-  return gone->version + kept_ <= version;
+  const auto [gone_with, gone] = *released_.begin();
+  released_.erase(released_.begin());
+  released_at_.erase(gone);
+  places_[page] = std::exchange(places_[gone], 0);
+  moved.push_back(gone);
+  return gone_with + kept_ <= version;
 }
 
 }  // namespace voyager

@@ -4,9 +4,9 @@
 // gone: a view that has not drawn since still has something there, which it closes when it follows
 // what has changed.
 #include <cstdint>
-#include <deque>
-#include <optional>
+#include <set>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "runtime/math/subtree_places.h"
@@ -35,21 +35,16 @@ class SubtreePages {
   std::vector<PageChange> changes(const std::vector<uint32_t>& moved) const;
 
  private:
-  struct Released {
-    uint32_t page;
-    uint64_t version;
-  };
-
-  std::optional<Released> drop_oldest();
   bool place_page(uint32_t page, uint64_t version, std::vector<uint32_t>& moved);
 
   const uint32_t room_;
   const uint64_t kept_;
-  std::vector<uint32_t> places_;                        // by page
-  std::vector<uint8_t> chunks_;                         // by page: that are there
-  uint32_t used_ = 0;                                   // places that were ever taken
-  std::deque<Released> released_;                       // in their order; some were taken again
-  std::unordered_map<uint32_t, uint64_t> released_at_;  // by page: with which change
+  std::vector<uint32_t> places_;  // by page
+  std::vector<uint8_t> chunks_;   // by page: that are there
+  uint32_t used_ = 0;             // places that were ever taken
+  // Those that have a place and no chunk, by the change with which that went; and the other way.
+  std::set<std::pair<uint64_t, uint32_t>> released_;
+  std::unordered_map<uint32_t, uint64_t> released_at_;
 };
 
 }  // namespace voyager

@@ -28,7 +28,8 @@ test::Outcome profile(const std::string& options) {
 }
 
 TEST(Profile, AsksForWhatBenchTakes) {
-  for (const char* options : {"", "--tau 3 --sms 16", "--stages splat --exp lut"}) {
+  for (const char* options :
+       {"", "--tau 3 --sms 16", "--stages splat --exp lut", "--stages=splat --exp=lut"}) {
     const test::Outcome found = profile(options);
     EXPECT_EQ(found.exit_code, 2) << found.output;
     EXPECT_EQ(found.output, "voyager: missing.voy: open: No such file or directory\n");

@@ -81,16 +81,25 @@ TEST(RecordRoom, HasPagesForTheSubtreesOfAnySoManyChunks) {
     const auto chunks = static_cast<uint32_t>(file.chunks().size());
     std::vector<uint32_t> order(chunks);
     std::iota(order.begin(), order.end(), 0u);
-    std::shuffle(order.begin(), order.end(), std::mt19937(5));
-    std::set<uint32_t> pages;
-    for (uint32_t some = 1; some <= chunks; ++some) {
-      const ChunkEntry& chunk = file.chunks()[order[some - 1]];
-      for (uint32_t s = 0; s < chunk.subtree_count; ++s)
-        pages.insert((chunk.first_subtree + s) / kPageSubtrees);
-      if (some >= SceneStream::top_chunks(file)) {
+    const auto expect_room = [&] {
+      std::set<uint32_t> pages;
+      uint32_t before = 0;
+      for (uint32_t some = 1; some <= chunks; ++some) {
+        const ChunkEntry& chunk = file.chunks()[order[some - 1]];
+        for (uint32_t s = 0; s < chunk.subtree_count; ++s)
+          pages.insert((chunk.first_subtree + s) / kPageSubtrees);
+        if (some < SceneStream::top_chunks(file)) continue;
         ASSERT_GE(room.of(some).pages, pages.size());
+        ASSERT_GE(room.of(some).pages, before);
+        before = room.of(some).pages;
       }
-    }
+    };
+    std::shuffle(order.begin(), order.end(), std::mt19937(5));
+    expect_room();
+    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+      return file.chunks()[a].subtree_count > file.chunks()[b].subtree_count;
+    });
+    expect_room();
     EXPECT_EQ(room.of(chunks).pages, pages_of(file.info().subtree_count));
   }
 }
