@@ -81,10 +81,10 @@ class CutSearch {
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // kind: any but exhaustive; temporal in place of a sweep. Device memory besides the scene's arrays:
-// 32.4 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 19; of a streamed scene
-// 8.5 for each subtree of the file, 28 for each that its pool has a place for, and 4.5 more for
-// each node. Such a scene's
-// search runs under SceneStream::hold(), and ends each run with end_frame().
+// 32.4 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 19. Of a streamed scene it
+// is 8.5 bytes for each subtree of the file, 28 for each that its pool has a place for, and 4.5
+// more for each node that there are places for. Such a scene's search runs under
+// SceneStream::hold(), and ends each run with end_frame().
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,
                                                      std::shared_ptr<const DeviceTree> tree,
                                                      std::shared_ptr<const Scene> scene,

@@ -1,8 +1,8 @@
 #pragma once
-// Where tables by subtree have a streamed scene's: they have room for what is resident, not for
-// all of the file. kPageSubtrees consecutive subtrees of the file are a page, which has a place in
-// the tables while a chunk of it is resident. Place 0 stands for all that has none: nothing leads
-// to its subtrees, and nothing is written there.
+// Where a subtree of a streamed scene lies in tables that have room for resident subtrees, not for
+// all of the file's. kPageSubtrees consecutive subtrees of the file are a page, which has a place in
+// the tables while a chunk of it is resident. All pages that have none share the first place: there
+// nothing leads to a subtree, and nothing is written.
 #include <cstdint>
 
 #include "runtime/math/host_device.h"
