@@ -1,8 +1,8 @@
 #pragma once
 // Where a subtree of a streamed scene lies in tables that have room for resident subtrees, not for
-// all of the file's. kPageSubtrees consecutive subtrees of the file are a page, which has a place in
-// the tables while a chunk of it is resident. All pages that have none share the first place: there
-// nothing leads to a subtree, and nothing is written.
+// all of the file's. kPageSubtrees consecutive subtrees of the file are a page, which has a place
+// in the tables while a chunk of it is resident. All pages that have none share the first place:
+// there nothing leads to a subtree, and nothing is written.
 #include <cstdint>
 
 #include "runtime/math/host_device.h"
