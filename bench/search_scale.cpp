@@ -69,7 +69,7 @@ Json bench(Backend& backend, const std::shared_ptr<const Scene>& scene,
           {"leaves", scene->leaf_count},
           {"nodes", scene->tree.size()},
           {"subtrees", scene->search.subtrees.size()},
-          {"chunks", scene->search.chunk_count()},
+          {"chunks", scene->search.chunk_count},
           {"tau", tau},
           {"searches", rows}};
 }

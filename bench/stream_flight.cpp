@@ -80,6 +80,7 @@ struct Taken {
   uint64_t entered, arrived, pairs;
   size_t since_jump;
   uint32_t redraws;
+  bool anew;  // the search went through the whole tree
 };
 
 double quantile(std::vector<double> values, double q) {
@@ -151,12 +152,13 @@ void print(const std::vector<Taken>& frames) {
     std::snprintf(
         line, sizeof line,
         "  frame %zu, %zu after a jump: %.3f ms, usually %.3f; %s %.3f longer; %llu chunks "
-        "came, %llu nodes entered, %llu pairs%s\n",
+        "came, %llu nodes entered, %llu pairs%s%s\n",
         i, frames[i].since_jump, frames[i].device, usual,
         voyStageName(static_cast<VoyStage>(longer.stage)), longer.by,
         static_cast<unsigned long long>(frames[i].arrived),
         static_cast<unsigned long long>(frames[i].entered),
         static_cast<unsigned long long>(frames[i].pairs),
+        frames[i].anew ? "; searched from the top" : "",
         frames[i].redraws != 0 ? "; drawn again with larger buffers" : "");
     others.emplace_back(line);
   }
@@ -213,7 +215,8 @@ int main(int argc, char** argv) try {
                 arrived - arrived_before,
                 stats.pairsAfterFilter,
                 since_jump,
-                experiment.redrawCount};
+                experiment.redrawCount,
+                experiment.search == VOY_SEARCH_STREAMING};
     std::copy_n(stats.milliseconds, VOY_MAX_STAGES, taken.stages);
     arrived_before = arrived;
     frames[i] = taken;

@@ -65,9 +65,10 @@ class CudaBackend final : public Backend {
     return cuda::create_pipeline(device_, std::move(make), scenes, desc, workers);
   }
 
-  std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, PoolRoom room) override {
+  std::unique_ptr<ChunkPool> create_pool(Scene& scene, const std::shared_ptr<const SceneFile>& file,
+                                         SlotShape shape, PoolRoom room) override {
     device_->use();
-    return std::make_unique<DevicePool>(device_, scene, shape, room);
+    return std::make_unique<DevicePool>(device_, scene, file, shape, room);
   }
   PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const override {
     return DevicePool::bytes(*device_, scene, shape);

@@ -11,23 +11,14 @@ class WarpShares {
  public:
   // count: how many items the lane's piece has.
   __device__ explicit WarpShares(uint32_t count) {
-    uint32_t through = count;
-#pragma unroll
-    for (unsigned step = 1; step < 32; step *= 2) {
-      const uint32_t lower = __shfl_up_sync(kAllLanes, through, step);
-      if (threadIdx.x % 32 >= step) through += lower;
-    }
+    const uint32_t through = warp_scan(count);
     before_ = through - count;
     total_ = __shfl_sync(kAllLanes, through, 31);
   }
 
   // Items of the lanes below, and of all.
-  __device__ uint32_t before() const {
-    return before_;
-  }
-  __device__ uint32_t total() const {
-    return total_;
-  }
+  __device__ uint32_t before() const { return before_; }
+  __device__ uint32_t total() const { return total_; }
 
  private:
   uint32_t before_, total_;

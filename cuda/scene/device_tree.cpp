@@ -17,7 +17,7 @@ DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree)
            leaves_.data(),
            search.subtree_count(),
            search.subtree_count(),
-           static_cast<uint32_t>(search.chunk_count()),
+           search.chunk_count,
            tree.blend_share,
            nullptr,
            0};

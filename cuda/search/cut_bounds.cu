@@ -62,7 +62,7 @@ constexpr uint32_t kShares = 8;
 __global__ void __launch_bounds__(kThreads)
     search_bound(StateView state, GaussianView gaussians, bool parents) {
   constexpr uint32_t kWarps = kThreads / 32;
-  const uint32_t dirty = state.counted->dirty_count, lane = threadIdx.x % 32;
+  const uint32_t dirty = state.counted->dirty_count, lane = lane_in_warp();
   const uint32_t shares = kShares * dirty <= gridDim.x ? kShares : 1;
   for (uint32_t i = blockIdx.x; i < shares * dirty; i += gridDim.x) {
     const Block block = state.blocks[state.dirty[i / shares]];

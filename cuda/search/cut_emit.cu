@@ -4,6 +4,7 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/search/cut_lanes.cuh"
 #include "cuda/search/search_launch.h"
 

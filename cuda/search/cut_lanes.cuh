@@ -1,6 +1,7 @@
 #pragma once
 // Subtrees on the device, one a lane: where there are many, most of them small. Every function
 // here is called by all 32 lanes together, unless it says otherwise.
+#include "cuda/device/warp.cuh"
 #include "cuda/search/cut_visit.cuh"
 
 namespace voyager::cuda {
@@ -32,12 +33,7 @@ struct Judged {
 __device__ inline Judged judge_records(const TreeView& tree, const SearchSubtree& s, bool active,
                                        const Sight& sight, Tally& tally) {
   const uint32_t lane = lane_in_warp(), own = active ? __popc(s.interior) : 0;
-  uint32_t through = own;
-#pragma unroll
-  for (unsigned step = 1; step < 32; step *= 2) {
-    const uint32_t below = __shfl_up_sync(kAllLanes, through, step);
-    if (lane >= step) through += below;
-  }
+  const uint32_t through = warp_scan(own);
   const uint32_t start = through - own, total = __shfl_sync(kAllLanes, through, 31);
   const uint32_t own_roots = __popc(s.interior & s.level_slots(0));
   Judged all;

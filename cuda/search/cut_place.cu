@@ -75,7 +75,7 @@ __device__ uint32_t least_room(uint32_t size) {
 // Shares the room of [first, last) out anew, by what each needs.
 __device__ void share_room(const StateView& state, uint32_t first, uint32_t last, uint32_t need,
                            uint32_t room, Dirty& dirty) {
-  const uint32_t lane = threadIdx.x % 32;
+  const uint32_t lane = lane_in_warp();
   const uint64_t rows = (room - need) / kRowPlaces;  // to spare
   const auto spare_before = [&](uint32_t needed) {
     return static_cast<uint32_t>(rows * needed / need) * kRowPlaces;
@@ -85,13 +85,7 @@ __device__ void share_room(const StateView& state, uint32_t first, uint32_t last
   for (uint32_t base = first; base < last; base += 32) {
     const uint32_t i = base + lane;
     const uint32_t size = i < last ? state.segments[i].size : 0, own = least_room(size);
-    uint32_t through = own;
-#pragma unroll
-    for (unsigned step = 1; step < 32; step *= 2) {
-      const uint32_t lower = __shfl_up_sync(kAllLanes, through, step);
-      if (lane >= step) through += lower;
-    }
-    const uint32_t behind = before + through, ahead = behind - own;
+    const uint32_t behind = before + warp_scan(own), ahead = behind - own;
     __syncwarp();
     if (i < last) {
       state.segments[i].first = begin + ahead + spare_before(ahead);
@@ -105,7 +99,7 @@ __device__ void share_room(const StateView& state, uint32_t first, uint32_t last
 // Moves as few of a segment's neighbours as there have to be for it to have room. One warp. False
 // where all of them together have none.
 __device__ bool make_room(const StateView& state, uint32_t segment, Dirty& dirty) {
-  const uint32_t count = kLevels * state.block_count, lane = threadIdx.x % 32;
+  const uint32_t count = kLevels * state.block_count, lane = lane_in_warp();
   if (state.segments[segment].size <= state.segments[segment].room) return true;
   for (uint32_t width = 16;; width *= 2) {
     const uint32_t first = segment / width * width, last = min(first + width, count);

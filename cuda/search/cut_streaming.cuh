@@ -1,5 +1,6 @@
 #pragma once
 // The fully streaming search, as a warp runs it (METHOD §9).
+#include "cuda/device/warp.cuh"
 #include "cuda/search/cut_lanes.cuh"
 
 namespace voyager::cuda {
@@ -18,11 +19,7 @@ struct Ticket {
 __device__ inline Ticket make_ticket(uint32_t first, uint32_t count) {
   Ticket ticket;
   ticket.first = first;
-  uint32_t sum = count;
-  for (unsigned step = 1; step < kTicketChunks; step *= 2) {
-    const uint32_t below = __shfl_up_sync(kAllLanes, sum, step);
-    if (lane_in_warp() >= step) sum += below;
-  }
+  const uint32_t sum = warp_scan<kTicketChunks>(count);
   ticket.before = sum - count;
   ticket.total = __shfl_sync(kAllLanes, sum, kTicketChunks - 1);
   return ticket;

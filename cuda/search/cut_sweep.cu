@@ -91,11 +91,7 @@ __device__ uint32_t count_before(const unsigned long long* tiles, uint32_t run, 
 __device__ uint32_t scan_words(uint32_t* counts, unsigned lane) {
   static_assert(kTileWords == 64);
   const uint32_t a = counts[2 * lane], b = counts[2 * lane + 1];
-  uint32_t sum = a + b;
-  for (unsigned step = 1; step < 32; step *= 2) {
-    const uint32_t below = __shfl_up_sync(kAllLanes, sum, step);
-    if (lane >= step) sum += below;
-  }
+  const uint32_t sum = warp_scan(a + b);
   counts[2 * lane] = sum - a - b;
   counts[2 * lane + 1] = sum - b;
   return __shfl_sync(kAllLanes, sum, 31);
@@ -105,7 +101,7 @@ __device__ uint32_t scan_words(uint32_t* counts, unsigned lane) {
 __global__ void __launch_bounds__(kThreads)
     search_collect(SweepView tree, SweepState state, Sight sight, uint32_t run) {
   __shared__ uint32_t counts[kTileWords], taken, before;
-  const unsigned lane = threadIdx.x % 32, warp = threadIdx.x / 32;
+  const unsigned lane = lane_in_warp(), warp = threadIdx.x / 32;
   const uint32_t words = (tree.nodes + 31) / 32, tiles = (words + kTileWords - 1) / kTileWords;
   uint32_t entered = 0, left = 0;
   for (;;) {

@@ -4,6 +4,7 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/search/cut_streaming.cuh"
 #include "cuda/search/search_launch.h"
 
@@ -160,7 +161,10 @@ __device__ void answer_signals(const TreeView& tree, const StateView& state, con
 // 32 signals at once, and the first few blocks begin before there are any.
 __device__ bool helps(const FrameCounters* counting) {
   constexpr uint32_t kLeast = 4, kSignalsEach = 32;
-  return blockIdx.x < kLeast + read_now(&counting->signal_tail) / kSignalsEach;
+  uint32_t sent = 0;
+  if (lane_in_warp() == 0) sent = read_now(&counting->signal_tail);
+  sent = __shfl_sync(kAllLanes, sent, 0);  // a warp's lanes stay together
+  return blockIdx.x < kLeast + sent / kSignalsEach;
 }
 
 __global__ void __launch_bounds__(kThreads)

@@ -164,7 +164,7 @@ __global__ void __launch_bounds__(kThreads) baseline_count(BaselineView view) {
        place += gridDim.x * kThreads)
     drawn += view.tile_counts[place] != 0;
   drawn = __reduce_add_sync(kAllLanes, drawn);
-  if (threadIdx.x % 32 == 0) atomicAdd(view.splat_count, drawn);
+  if (lane_in_warp() == 0) atomicAdd(view.splat_count, drawn);
 }
 
 template <class Sh>

@@ -110,7 +110,7 @@ __device__ void bin_pair(const SplatView& splats, uint32_t place, DepthKey key) 
 template <bool kLimited>
 __device__ void bin_strip(const SplatView& splats, const Share& share, uint32_t* cursors,
                           const TileRange& range, DepthKey key) {
-  const auto begin = static_cast<uint32_t>(range.begin), lane = threadIdx.x % 32;
+  const auto begin = static_cast<uint32_t>(range.begin), lane = lane_in_warp();
   const auto tiles = static_cast<uint32_t>(range.end - range.begin);
   const auto take = [&](uint32_t tile, DepthKey of) {
     return bin_takes<kLimited>(splats, share.first_tile + tile, static_cast<uint32_t>(of >> 32))
@@ -204,7 +204,7 @@ __global__ void __launch_bounds__(kBinThreads, kBinBlocks)
   bin_cursors(splats, share, scratch, cursors);
   for (uint32_t base = threadIdx.x / 32 * 32; base < share.count; base += kBinThreads) {
     const TileStrip strip = next;
-    next = share.strip(base + kBinThreads + threadIdx.x % 32);
+    next = share.strip(base + kBinThreads + lane_in_warp());
     const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
     bin_strip<kLimited>(splats, share, cursors, bin_band(strip, share), key);
   }

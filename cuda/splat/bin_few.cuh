@@ -14,7 +14,7 @@ struct FewStrips {
   // found(index, lanes, key): strips of the warp's lanes that touch the tile of that index.
   template <class Found>
   __device__ void each(const OpenTiles& open, const Found& found) const {
-    const uint32_t lane = threadIdx.x % 32;
+    const uint32_t lane = lane_in_warp();
     for (uint32_t base = threadIdx.x - lane; base < count; base += kBinThreads) {
       const TileStrip strip = base + lane < count ? strips[base + lane] : TileStrip{};
       const DepthKey key = static_cast<DepthKey>(strip.depth) << 32 | strip.slot;
@@ -35,21 +35,16 @@ struct FewLists {
   __device__ explicit FewLists(const SplatView& splats) {
     static_assert(kFewOpen == 32);
     const OpenTiles& open = splats.counters->open;
-    const uint32_t lane = threadIdx.x % 32;
+    const uint32_t lane = lane_in_warp();
     if (lane < open.count) tile = open.tiles[lane], length = splats.tile_counts[tile];
-    unsigned long long through = length;
-    for (unsigned step = 1; step < 32; step *= 2) {
-      const unsigned long long lower = __shfl_up_sync(kAllLanes, through, step);
-      if (lane >= step) through += lower;
-    }
-    first = through - length;
+    first = warp_scan(static_cast<unsigned long long>(length)) - length;
   }
 };
 
 __device__ inline void count_few(const SplatView& splats, const FewStrips& own) {
   const OpenTiles& open = splats.counters->open;
   own.each(open, [&](uint32_t i, unsigned lanes, DepthKey) {
-    if (threadIdx.x % 32 == 0)
+    if (lane_in_warp() == 0)
       atomicAdd(splats.tile_counts + open.tiles[i], static_cast<uint32_t>(__popc(lanes)));
   });
 }
@@ -58,7 +53,7 @@ __device__ inline void count_few(const SplatView& splats, const FewStrips& own) 
 __device__ inline void scatter_few(const SplatView& splats, const FewStrips& own) {
   OpenTiles& open = splats.counters->open;
   const FewLists lists(splats);
-  const uint32_t lane = threadIdx.x % 32;
+  const uint32_t lane = lane_in_warp();
   own.each(open, [&](uint32_t i, unsigned lanes, DepthKey key) {
     uint32_t taken = 0;
     if (lane == 0) taken = atomicAdd(open.taken + i, static_cast<uint32_t>(__popc(lanes)));

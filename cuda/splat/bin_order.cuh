@@ -52,7 +52,7 @@ struct BinOrder {
   // By one warp: its lanes have so many classes each.
   __device__ void sum_up() {
     constexpr unsigned kEach = (kClasses + 31) / 32;
-    const unsigned lane = threadIdx.x % 32;
+    const unsigned lane = lane_in_warp();
     uint32_t own[kEach], sum = 0;
 #pragma unroll
     for (unsigned k = 0; k < kEach; ++k) {
@@ -60,12 +60,7 @@ struct BinOrder {
       own[k] = sum;
       sum += at < kClasses ? places[at] : 0;
     }
-    uint32_t through = sum;
-#pragma unroll
-    for (unsigned step = 1; step < 32; step *= 2) {
-      const uint32_t lower = __shfl_up_sync(kAllLanes, through, step);
-      if (lane >= step) through += lower;
-    }
+    const uint32_t through = warp_scan(sum);
     __syncwarp();
 #pragma unroll
     for (unsigned k = 0; k < kEach; ++k)

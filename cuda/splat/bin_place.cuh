@@ -26,11 +26,8 @@ __device__ inline void bin_strip_counts(const SplatView& splats) {
   static_assert(kStripRegions == 32);
   const uint32_t strips = *strip_count(splats, threadIdx.x);
   const uint32_t room = splats.strip_room / kStripRegions;
-  unsigned long long sum = strips, dropped = strips > room ? strips - room : 0;
-  for (int step = 16; step != 0; step /= 2) {
-    sum += __shfl_xor_sync(kAllLanes, sum, step);
-    dropped += __shfl_xor_sync(kAllLanes, dropped, step);
-  }
+  const auto sum = warp_sum(static_cast<unsigned long long>(strips));
+  const auto dropped = warp_sum(static_cast<unsigned long long>(strips > room ? strips - room : 0));
   const unsigned long long most = __reduce_max_sync(kAllLanes, strips);
   if (threadIdx.x != 0) return;
   splats.counters->strips = sum;
@@ -40,8 +37,8 @@ __device__ inline void bin_strip_counts(const SplatView& splats) {
 
 // Adds a warp's values to `sum`, which is the block's.
 __device__ inline void bin_add(unsigned long long& sum, unsigned long long value) {
-  for (int step = 16; step != 0; step /= 2) value += __shfl_xor_sync(kAllLanes, value, step);
-  if (threadIdx.x % 32 == 0) atomicAdd(&sum, value);
+  value = warp_sum(value);
+  if (lane_in_warp() == 0) atomicAdd(&sum, value);
 }
 
 // Places the tiles of one of the blocks that do. Each counts all tiles for itself, and so waits for

@@ -73,7 +73,7 @@ void OcclusionChoice::learn(bool limited, uint64_t pairs) {
     plain_pairs_ = pairs;
     return;
   }
-  const bool pays = pairs + pairs / 4 < plain_pairs_;
+  const bool pays = pairs + pairs / 4 < plain_pairs_;  // a fifth is saved
   if (pays != pays_) since_other_ = pays ? 0 : 1;
   pays_ = pays;
 }

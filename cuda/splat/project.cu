@@ -57,7 +57,7 @@ __device__ DrawItem weighed_item(const SplatFrame& f, uint32_t place, uint32_t n
 template <unsigned kItems, class Put>
 __device__ void append_places(const uint32_t (&lanes)[kItems], uint32_t* next, uint32_t& found,
                               uint32_t& first, const Put& put) {
-  const uint32_t lane = threadIdx.x % 32;
+  const uint32_t lane = lane_in_warp();
   __syncthreads();  // the last call's have been read
   if (threadIdx.x == 0) found = 0;
   __syncthreads();
@@ -98,7 +98,7 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
     for (unsigned k = 0; k < kCullItems; ++k) {
       const uint32_t at = base + k * kWarps + threadIdx.x / 32;
       const uint32_t row = all || at >= rows ? at : __ldg(f.rows.rows + at);
-      const uint32_t place = places_of[k] = row * kRowPlaces + threadIdx.x % 32;
+      const uint32_t place = places_of[k] = row * kRowPlaces + lane_in_warp();
       nodes[k] = at < rows && place < end ? node_at(f.draws.list, place) : kNoNode;
     }
 #pragma unroll
@@ -162,7 +162,7 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
   __shared__ WarpExtents extents[kProjectThreads / 32];
   // Whole warps together: they share the strips of their splats.
   for (uint32_t base = first; base < candidates.end(); base += gridDim.x * kProjectThreads) {
-    const uint32_t place = candidates(base + threadIdx.x % 32);
+    const uint32_t place = candidates(base + lane_in_warp());
     TileExtent extent[kEyes] = {};
     float depth[kEyes] = {};
     uint32_t rank = 0;  // among the places of all instances
@@ -193,8 +193,8 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
                           slot_of(f.splats, rank, eye), boxes);
   }
   visible = __reduce_add_sync(kAllLanes, visible);
-  for (int step = 16; step != 0; step /= 2) boxed += __shfl_xor_sync(kAllLanes, boxed, step);
-  if (threadIdx.x % 32 != 0 || visible == 0) return;
+  boxed = warp_sum(boxed);
+  if (lane_in_warp() != 0 || visible == 0) return;
   atomicAdd(&f.splats.counters->splats, visible);
   atomicAdd(&f.splats.counters->pairs_boxed, boxed);
 }

@@ -30,7 +30,7 @@ __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
   const uint32_t first_place = min(counters->first_place, f.splats.places);
   const uint32_t places = min(*f.draws.list.size, f.splats.places - first_place);
   const uint32_t end = (places + kRowPlaces - 1) / kRowPlaces;
-  const uint32_t lane = threadIdx.x % 32;
+  const uint32_t lane = lane_in_warp();
   for (uint32_t base = blockIdx.x * kThreads + threadIdx.x - lane; base < end;
        base += gridDim.x * kThreads) {
     const uint32_t row = base + lane;

@@ -127,7 +127,7 @@ struct Gathered {
 template <class M, class Lane>
 __device__ Gathered gather(const RasterSplat& splat, bool within, const Part& part,
                            float log_threshold, WarpSplats& chosen) {
-  const uint32_t self = threadIdx.x % 32;
+  const uint32_t self = lane_in_warp();
   const bool touches = within & (!M::kFilter | rasterize_touches(splat, part, log_threshold));
   const unsigned lanes = __ballot_sync(kAllLanes, touches);
   __syncwarp();
@@ -169,7 +169,7 @@ template <class M, class Lane>
 __device__ uint32_t rasterize_list(const SplatView& splats, const TileList& list, const Part& part,
                                    float log_threshold, const Lut& lut, WarpSplats& chosen,
                                    Lane& lane, Counts& counts) {
-  const uint32_t self = threadIdx.x % 32;
+  const uint32_t self = lane_in_warp();
   if (all_ended(lane)) return kDrawNothing;  // none of its pixels is in the image
   Reader reader(splats, list, self);
   float farthest = kInfinity;
@@ -202,7 +202,7 @@ __device__ float limit_at(const DepthLimits& limits, uint32_t x, uint32_t y) {
 
 // What a part of a tile tells of where it ended.
 __device__ void note_end(const SplatView& splats, uint32_t tile, uint32_t end) {
-  if (threadIdx.x % 32 != 0) return;
+  if (lane_in_warp() != 0) return;
   atomicMax(splats.ends + tile, end);
   if (end == kDrawAll && splats.limits.bits != nullptr && splats.limits.bits[tile] != kDrawAll)
     atomicAdd(&splats.counters->open_parts, 1u);
@@ -223,7 +223,7 @@ __device__ void rasterize_part(const RasterParams& params, const PartOfTile& of,
   const RasterEye& eye = params.eyes[index];
   const uint32_t tile = of.list - params.splats.frame.first[index];
   const auto columns = static_cast<uint32_t>(params.splats.frame.grids[index].columns);
-  const unsigned self = threadIdx.x % 32;
+  const unsigned self = lane_in_warp();
   const uint32_t part_x = tile % columns * kTile + of.column * kPartWidth;
   const uint32_t part_y = tile / columns * kTile + of.row * kPartWidth;
   const uint32_t x = part_x + self % kPartWidth, y = part_y + self / kPartWidth;
@@ -357,7 +357,7 @@ __global__ void __launch_bounds__(kThreads) rasterize_count_places(SplatView spl
        tile += gridDim.x * kThreads)
     read += places_read(splats, tile);
   read = __reduce_add_sync(kAllLanes, read);
-  if (threadIdx.x % 32 == 0)
+  if (lane_in_warp() == 0)
     atomicAdd(&splats.counters->places_read, static_cast<unsigned long long>(read));
 }
 

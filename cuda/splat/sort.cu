@@ -191,13 +191,13 @@ __global__ void __launch_bounds__(kSortThreads, 9) sort_tiles(SplatView splats) 
   const uint32_t queue = (blockIdx.x * kSortWarps + warp) % kSortQueues;
   for (;;) {
     uint32_t taken = 0;
-    if (threadIdx.x % 32 == 0) taken = atomicAdd(&splats.counters->queues[queue].taken, 1u);
+    if (lane_in_warp() == 0) taken = atomicAdd(&splats.counters->queues[queue].taken, 1u);
     const uint32_t i = long_lists + __shfl_sync(kAllLanes, taken, 0) * kSortQueues + queue;
     if (i >= lists) return;
     const TileList list = splats.tiles[splats.tile_order[i]];
     if (list.last - list.first > 1)
       ShortLists::sort(storage.warp[warp], splats.keys + list.first, list.last - list.first,
-                       threadIdx.x % 32);
+                       lane_in_warp());
     __syncwarp();
   }
 }

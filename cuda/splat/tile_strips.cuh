@@ -45,7 +45,7 @@ struct WarpExtents {
 template <int kEyes>
 __device__ void write_strips(WarpExtents& shared, const TileExtent& own, const SplatView& splats,
                              int eye, float depth, uint32_t slot, bool boxes) {
-  const uint32_t lane = threadIdx.x % 32;
+  const uint32_t lane = lane_in_warp();
   const WarpShares shares(own.strips());
   const uint32_t strips = shares.total();
   if (strips == 0) return;

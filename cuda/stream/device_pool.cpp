@@ -7,6 +7,7 @@
 #include "cuda/scene/device_gaussian.h"
 #include "runtime/base/error.h"
 #include "runtime/frame/scene_gaussians.h"
+#include "runtime/stream/search_chunks.h"
 
 namespace voyager::cuda {
 namespace {
@@ -57,8 +58,8 @@ PoolBytes DevicePool::bytes(const Device& device, const Scene& scene, SlotShape 
   return bytes;
 }
 
-DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
-                       PoolRoom room)
+DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
+                       std::shared_ptr<const SceneFile> file, SlotShape shape, PoolRoom room)
     : device_(std::move(device)),
       tables_(is_coded(scene) ? device_->code_tables() : nullptr),
       shape_(shape),
@@ -67,7 +68,7 @@ DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
       doubles_(scene.doubles),
       footprints_(footprints_differ(scene)),
       blend_share_(scene.tree.blend_share),
-      chunks_(scene.search.chunks),
+      file_(std::move(file)),
       piece_layout_(piece_layout(scene, shape)),
       layout_(piece_layout_),
       ring_(piece_layout_.filled_bytes(), pieces_of(piece_layout_)) {
@@ -81,15 +82,26 @@ void DevicePool::make_room(PoolRoom room) {
   memory_ = Buffer<unsigned char>(layout_.bytes());
   slots_ = room.slots;
   pages_ = room.pages;
-  check(cudaMemcpy(array<SearchChunk>(kChunks), chunks_.data(),
-                   chunks_.size() * sizeof(SearchChunk), cudaMemcpyHostToDevice),
-        "chunk hulls");
+  upload_chunks();
   check(cudaMemset(array<uint32_t>(kPages), 0, layout_.fixed_bytes(kPages)), "links");
   check(cudaMemset(array<uint32_t>(kLargeFamilyCount), 0, layout_.fixed_bytes(kLargeFamilyCount)),
         "links");
   check(cudaStreamSynchronize(nullptr), "links");
   launch_unlink_all(array<SearchSubtree>(kSubtrees), place_count(), stream_.get());
   applied_.record(stream_.get());
+}
+
+void DevicePool::upload_chunks() {
+  constexpr uint32_t kAtOnce = 1 << 16;
+  const uint32_t all = file_->info().chunk_count + 1;
+  std::vector<SearchChunk> some;
+  for (uint32_t first = 0; first < all; first += kAtOnce) {
+    some.resize(std::min(kAtOnce, all - first));
+    set_search_chunks(*file_, first, some);
+    check(cudaMemcpy(array<SearchChunk>(kChunks) + first, some.data(),
+                     some.size() * sizeof(SearchChunk), cudaMemcpyHostToDevice),
+          "chunk hulls");
+  }
 }
 
 void DevicePool::await_frames() {
@@ -150,9 +162,9 @@ TreeView DevicePool::tree() const {
           array<uint32_t>(kNextBlocks),
           array<SearchChunk>(kChunks),
           layout_.unit(kLeaves) == 0 ? nullptr : array<NodeRecord>(kLeaves),
-          chunks_.back().first_subtree,
+          file_->info().subtree_count,
           place_count(),
-          static_cast<uint32_t>(chunks_.size() - 1),
+          file_->info().chunk_count,
           blend_share_,
           array<SlotIds>(kSlotIds),
           shape_.nodes};

@@ -23,11 +23,11 @@ class DevicePool final : public ChunkPool {
  public:
   static PoolBytes bytes(const Device& device, const Scene& scene, SlotShape shape);
 
-  // Takes all its memory. The scene outlives it; its description is complete, and its search has
-  // chunks and tiers. Throws Error(over_budget) for want of memory, Error(unsupported) where there
+  // Takes all its memory. The scene outlives it; its description is complete.
+  // Throws Error(over_budget) for want of memory, Error(unsupported) where there
   // are more addresses than 32 bits.
-  DevicePool(std::shared_ptr<const Device> device, const Scene& scene, SlotShape shape,
-             PoolRoom room);
+  DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
+             std::shared_ptr<const SceneFile> file, SlotShape shape, PoolRoom room);
   ~DevicePool() override;
   DevicePool(const DevicePool&) = delete;
   DevicePool& operator=(const DevicePool&) = delete;
@@ -64,6 +64,7 @@ class DevicePool final : public ChunkPool {
   void require_room() const;
   void put_behind_frames();
   void make_room(PoolRoom room);
+  void upload_chunks();
 
   const std::shared_ptr<const Device> device_;
   const std::shared_ptr<const CodeTables> tables_;  // of a coded scene
@@ -72,8 +73,8 @@ class DevicePool final : public ChunkPool {
   const ShForm sh_form_;
   const bool doubles_, footprints_;
   const float blend_share_;
-  const std::pmr::vector<SearchChunk>& chunks_;  // the scene's
-  const PoolLayout piece_layout_;                // of one chunk
+  const std::shared_ptr<const SceneFile> file_;
+  const PoolLayout piece_layout_;  // of one chunk
   PoolLayout layout_;
   uint32_t slots_ = 0, pages_ = 0;
   Buffer<unsigned char> memory_;

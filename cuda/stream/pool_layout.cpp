@@ -42,7 +42,7 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
            sizeof(uint32_t)};
   fixed_bytes_ = {};
   fixed_bytes_[kPages] = pages_of(scene.search.subtree_count()) * unit_[kPages];
-  fixed_bytes_[kChunks] = scene.search.chunks.size() * unit_[kChunks];
+  fixed_bytes_[kChunks] = (uint64_t{scene.search.chunk_count} + 1) * unit_[kChunks];
   if (coded) {
     fixed_bytes_[kLargeFamilies] = most_large_families(scene.node_count) * unit_[kLargeFamilies];
     fixed_bytes_[kLargeFamilyCount] = unit_[kLargeFamilyCount];

@@ -78,7 +78,7 @@ __device__ void add_pixel(const TrainSplats& chosen, int i, float x, float y, fl
     open = blend_adjoint(alpha, slope, {colour.x, colour.y, colour.z}, pixel, share);
     if (!open) share = {0.0f, 0.0f};
   }
-  const uint32_t lane = threadIdx.x % 32;
+  const uint32_t lane = lane_in_warp();
   const float gp = share.g * p, gq = share.g * q;
   float most[8] = {share.g,
                    gp,
@@ -103,7 +103,7 @@ __global__ void __launch_bounds__(kThreads)
   const SplatView& splats = params.splats;
   const uint32_t tile = splats.tile_order[blockIdx.x];
   const auto columns = static_cast<uint32_t>(splats.frame.grids[0].columns);
-  const unsigned warp = threadIdx.x / 32, self = threadIdx.x % 32;
+  const unsigned warp = threadIdx.x / 32, self = lane_in_warp();
   const uint32_t part_x = tile % columns * kTile + warp % (kTile / kPartWidth) * kPartWidth;
   const uint32_t part_y = tile / columns * kTile + warp / (kTile / kPartWidth) * kTrainRows;
   const uint32_t x = part_x + self % kPartWidth, y = part_y + self / kPartWidth;

@@ -32,8 +32,8 @@ __global__ void __launch_bounds__(kThreads)
   float sum = 0;
   const uint32_t pixel = blockIdx.x * kThreads + threadIdx.x;
   if (pixel < pictures.width * pictures.height) sum = squared_error(pictures, pixel);
-  for (int step = 16; step != 0; step /= 2) sum += __shfl_xor_sync(kAllLanes, sum, step);
-  if (threadIdx.x % 32 == 0 && sum > 0.0f) add_fixed(squares, sum);
+  sum = warp_sum(sum);
+  if (lane_in_warp() == 0 && sum > 0.0f) add_fixed(squares, sum);
 }
 
 unsigned blocks_of(uint32_t pixels) {

@@ -2,6 +2,7 @@
 // place: its lanes share the numbers of a row.
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/warp.cuh"
 #include "cuda/scene/device_gaussian.h"
 #include "cuda/splat/draw_item.cuh"
 #include "cuda/train/train_launch.h"
@@ -63,7 +64,7 @@ struct Places {
 
 // By a warp. parent: whether the node is the parent of what the places draw.
 __device__ void move_node(const UpdateParams& p, uint32_t node, const Places& places, bool parent) {
-  const uint32_t lane = threadIdx.x % 32, row = p.arrays.row_of[node];
+  const uint32_t lane = lane_in_warp(), row = p.arrays.row_of[node];
   if (row == kNoNode) return;
   const size_t at = size_t{row} * numbers_of(p.arrays.sh_degree);
   const AdamStep step(p.rates, p.arrays.steps[row] + 1);

@@ -18,14 +18,15 @@ void read_tiers(const ByteSource& source, const FileHeader& h, const Check& chec
   std::vector<uint32_t> begins;
   SectionReader(source, h.tiers, SectionKind::tiers, offset, align_up(count * sizeof(uint32_t), 8),
                 check)
-      .read(count, begins, [&](const std::vector<uint32_t>& all, uint64_t i) {
+      .each<uint32_t>(count, [&](uint32_t begin, uint64_t i) {
         const bool level = i < levels, first = i == 0 || i == levels;
         const char* what = level ? "first nodes of levels" : "first subtrees of tiers";
         const uint64_t at = offset + (level ? 0 : levels * sizeof(uint32_t));
-        check.that(first ? all[i] == 0 : all[i] > all[i - 1], at, what, "ascending from 0");
-        if (i == 1) check.equal(at, "nodes in the first level", all[1], 1);
-        if (i == levels - 1) check.equal(at, what, all[i], h.node_count);
-        if (i == count - 1) check.equal(at, what, all[i], h.subtree_count);
+        check.that(first ? begin == 0 : begin > begins.back(), at, what, "ascending from 0");
+        if (i == 1) check.equal(at, "nodes in the first level", begin, 1);
+        if (i == levels - 1) check.equal(at, what, begin, h.node_count);
+        if (i == count - 1) check.equal(at, what, begin, h.subtree_count);
+        begins.push_back(begin);
       });
   const auto end_of_levels = begins.begin() + static_cast<std::ptrdiff_t>(levels);
   sections.tier_begin.assign(end_of_levels, begins.end());
@@ -98,8 +99,7 @@ class DirectoryCheck {
         next_(tiers),
         offset_(h.directory.offset + h.directory.length) {}
 
-  void accept(const std::vector<ChunkEntry>& chunks, uint64_t i) {
-    const ChunkEntry& e = chunks[i];
+  void accept(const ChunkEntry& e, uint64_t i) {
     const uint64_t at = header_.directory.offset + i * sizeof(ChunkEntry);
     check_.equal(at, "chunk offset", e.offset, offset_);
     check_.at_most(at, "chunk length", e.bytes, header_.file_length - offset_);
@@ -111,13 +111,14 @@ class DirectoryCheck {
                 "at least 1");
     if (i > 0)
       check_.equal(at, "nodes of the chunk before", count_nodes(tiers_, cursor_.place(), e.place),
-                   chunks[i - 1].node_count);
+                   nodes_);
     cursor_ = next_;
+    nodes_ = e.node_count;
     offset_ += e.bytes;
     subtree_ += e.subtree_count;
   }
 
-  void finish(const std::vector<ChunkEntry>& chunks) {
+  void finish() {
     const FileHeader& h = header_;
     if ((h.flags & kFlagFurther) == 0)
       check_.equal(offsetof(FileHeader, file_length), "end of the chunks", offset_, h.file_length);
@@ -126,10 +127,10 @@ class DirectoryCheck {
                   "too little room for further Gaussians", "at least 260 bytes");
     check_.equal(offsetof(FileHeader, subtree_count), "subtrees in all chunks", subtree_,
                  h.subtree_count);
-    if (chunks.empty()) return;
+    if (subtree_ == 0) return;
     next_.move_to(h.subtree_count, SubtreePlace::end_of(tiers_));
     check_.equal(offsetof(FileHeader, node_count), "nodes of the last chunk",
-                 count_nodes(tiers_, cursor_.place(), next_.place()), chunks.back().node_count);
+                 count_nodes(tiers_, cursor_.place(), next_.place()), nodes_);
   }
 
  private:
@@ -138,6 +139,7 @@ class DirectoryCheck {
   const Check& check_;
   SubtreeCursor cursor_, next_;  // at the last entry's first subtree
   uint64_t offset_, subtree_ = 0;
+  uint32_t nodes_ = 0;  // of the last entry
 };
 
 void read_directory(const ByteSource& source, const FileHeader& h, const Check& check,
@@ -148,10 +150,12 @@ void read_directory(const ByteSource& source, const FileHeader& h, const Check& 
   DirectoryCheck directory({h.first_tier_levels, sections.level_begin, sections.tier_begin}, h,
                            check);
   SectionReader(source, h.directory, SectionKind::chunk_directory, offset, end - offset, check)
-      .read(h.chunk_count, sections.chunks,
-            [&](const std::vector<ChunkEntry>& all, uint64_t i) { directory.accept(all, i); });
-  directory.finish(sections.chunks);
-  sections.chunks.shrink_to_fit();  // kept as long as the file is open
+      .each<ChunkEntry>(h.chunk_count, [&](const ChunkEntry& entry, uint64_t i) {
+        directory.accept(entry, i);
+        sections.chunks.add(entry);
+      });
+  directory.finish();
+  sections.chunks.close();
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "runtime/format/layout.h"
+#include "runtime/format/chunk_directory.h"
 #include "runtime/format/refusal.h"
 
 namespace voyager {
@@ -9,7 +9,7 @@ namespace voyager {
 // What lies between the header and the first chunk.
 struct FileSections {
   std::vector<uint32_t> level_begin, tier_begin;  // as in Partition
-  std::vector<ChunkEntry> chunks;
+  ChunkDirectory chunks;
 };
 
 // Checked so far that every entry's place is one that a SubtreeCursor can move to,

@@ -73,7 +73,7 @@ Tiers SceneFile::tiers() const {
 }
 
 SubtreePlace SceneFile::place_after(uint32_t index) const {
-  return index + 1 < chunks_.size() ? chunks_[index + 1].place : SubtreePlace::end_of(tiers());
+  return index + 1 < chunks_.size() ? chunks_.place(index + 1) : SubtreePlace::end_of(tiers());
 }
 
 std::vector<NodeRange> SceneFile::nodes_of(uint32_t index) const {
@@ -81,7 +81,7 @@ std::vector<NodeRange> SceneFile::nodes_of(uint32_t index) const {
 }
 
 std::vector<std::byte> SceneFile::read_stored(uint32_t first, uint32_t last) const {
-  const ChunkEntry &from = chunks_.at(first), &to = chunks_.at(last - 1);
+  const ChunkEntry from = chunks_.at(first), to = chunks_.at(last - 1);
   std::vector<std::byte> bytes(to.offset + to.bytes - from.offset);
   source_->read(from.offset, bytes);
   return bytes;
@@ -92,7 +92,7 @@ Chunk SceneFile::read_chunk(uint32_t index) const {
 }
 
 Chunk SceneFile::decode(uint32_t index, std::span<const std::byte> stored) const {
-  const ChunkEntry& entry = chunks_.at(index);
+  const ChunkEntry entry = chunks_.at(index);
   const ChunkContext context{
       info_.quality,
       info_.sh_degree,

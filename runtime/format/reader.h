@@ -7,6 +7,7 @@
 
 #include "runtime/base/file.h"
 #include "runtime/format/chunk.h"
+#include "runtime/format/chunk_directory.h"
 #include "runtime/format/layout.h"
 #include "runtime/lod/tree_rule.h"
 #include "runtime/scene/gaussian_cloud.h"
@@ -50,7 +51,7 @@ class SceneFile {
   const std::string& name() const { return source_->name(); }
   const ByteSource& source() const { return *source_; }
 
-  const std::vector<ChunkEntry>& chunks() const { return chunks_; }
+  const ChunkDirectory& chunks() const { return chunks_; }
   // Valid as long as the file.
   Tiers tiers() const;
   // The nodes that a chunk owns, ascending and disjoint; reads nothing.
@@ -74,7 +75,7 @@ class SceneFile {
   SceneFileInfo info_{};
   uint32_t version_ = kSceneVersion;
   std::vector<uint32_t> level_begin_, tier_begin_;
-  std::vector<ChunkEntry> chunks_;
+  ChunkDirectory chunks_;
 };
 
 }  // namespace voyager

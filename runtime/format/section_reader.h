@@ -1,7 +1,7 @@
 #pragma once
 // A section of a .voy as it comes. Its length is only what a header claims, so it is read in
-// pieces, each as long as all before it: it takes no more room, and no more time, than twice what
-// has been read and found right, and a piece more.
+// pieces, each as long as all before it: it takes no more time than twice what has been read and
+// found right, and no more room than a piece.
 #include <algorithm>
 #include <vector>
 
@@ -17,18 +17,18 @@ class SectionReader {
   SectionReader(const ByteSource& source, const Section& section, SectionKind kind, uint64_t offset,
                 uint64_t length, const Check& check);
 
-  // The whole section: `count` items, and zeros. accept(items, index) of each in turn, which
+  // The whole section: `count` items, and zeros. accept(item, index) of each in turn, which
   // throws where it cannot be right; of the last piece only after the checksum of all was.
   template <class Item, class Accept>
-  void read(uint64_t count, std::vector<Item>& items, const Accept& accept) {
+  void each(uint64_t count, const Accept& accept) {
+    std::vector<Item> piece;
     uint64_t had = 0;
     do {
-      had = items.size();
       const uint64_t most = std::clamp(had, kLeastPiece / sizeof(Item), kMostPiece / sizeof(Item));
-      items.resize(had + std::min(count - had, most));
-      read_piece(std::as_writable_bytes(std::span(items).subspan(had)));
-      if (items.size() == count) finish();
-      for (; had < items.size(); ++had) accept(items, had);
+      piece.resize(std::min(count - had, most));
+      read_piece(std::as_writable_bytes(std::span(piece)));
+      if (had + piece.size() == count) finish();
+      for (const Item& item : piece) accept(item, had++);
     } while (had < count);
   }
 

@@ -199,9 +199,11 @@ class Backend {
   virtual std::unique_ptr<Pipeline> create_pipeline(const Scenes& scenes, const PipelineDesc& desc,
                                                     std::pmr::memory_resource* memory,
                                                     Workers& workers) = 0;
-  // Where the chunks of a streamed scene lie, whose description is complete. Throws
-  // Error(over_budget), std::bad_alloc.
-  virtual std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, PoolRoom room);
+  // Where the chunks of a streamed scene lie, whose description is complete. The scene outlives
+  // the pool. Throws Error(over_budget), std::bad_alloc.
+  virtual std::unique_ptr<ChunkPool> create_pool(Scene& scene,
+                                                 const std::shared_ptr<const SceneFile>& file,
+                                                 SlotShape shape, PoolRoom room);
   // What that takes of the memory that a budget for streaming bounds.
   virtual PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const;
   // Of a resident scene with a tree, which stays as it is. Throws Error(unsupported) where the

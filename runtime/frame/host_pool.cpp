@@ -4,6 +4,7 @@
 
 #include "runtime/frame/load.h"
 #include "runtime/frame/scene_gaussians.h"
+#include "runtime/stream/search_chunks.h"
 
 namespace voyager {
 namespace {
@@ -15,7 +16,10 @@ bool counts_children(const Scene& scene) {
 
 class HostPool final : public ChunkPool {
  public:
-  HostPool(Scene& scene, SlotShape shape, PoolRoom room) : scene_(scene), shape_(shape) {
+  HostPool(Scene& scene, const SceneFile& file, SlotShape shape, PoolRoom room)
+      : scene_(scene), shape_(shape) {
+    scene.search.chunks.resize(size_t{scene.search.chunk_count} + 1);
+    set_search_chunks(file, 0, scene.search.chunks);
     resize(room);
   }
 
@@ -96,17 +100,20 @@ PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
   const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
   return {shape.nodes * node + scales + sizeof(SlotIds), block,
           search.subtree_count() * sizeof(SearchSubtree) +
-              search.chunks.size() * sizeof(SearchChunk) +
+              (uint64_t{search.chunk_count} + 1) * sizeof(SearchChunk) +
               search.tier_begin.size() * sizeof(uint32_t) +
               (is_coded(scene) ? most_large_families(scene.node_count) * sizeof(LargeFamily) : 0)};
 }
 
-std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, SlotShape shape, PoolRoom room) {
-  return std::make_unique<HostPool>(scene, shape, room);
+std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, const SceneFile& file, SlotShape shape,
+                                            PoolRoom room) {
+  return std::make_unique<HostPool>(scene, file, shape, room);
 }
 
-std::unique_ptr<ChunkPool> Backend::create_pool(Scene& scene, SlotShape shape, PoolRoom room) {
-  return create_host_pool(scene, shape, room);
+std::unique_ptr<ChunkPool> Backend::create_pool(Scene& scene,
+                                                const std::shared_ptr<const SceneFile>& file,
+                                                SlotShape shape, PoolRoom room) {
+  return create_host_pool(scene, *file, shape, room);
 }
 
 PoolBytes Backend::pool_bytes(const Scene& scene, SlotShape shape) const {

@@ -2,38 +2,21 @@
 
 #include <algorithm>
 #include <array>
-#include <cfloat>
 #include <cmath>
 
 #include "runtime/base/megabytes.h"
 #include "runtime/format/check_claims.h"
 #include "runtime/frame/load.h"
-#include "runtime/math/bounds_code.h"
 
 namespace voyager {
 namespace {
 
-// As make_search_tree() has it: over what the subtrees' roots hang from. A file's hull, rounded, is
-// as good but where a chunk goes on with a root of the one before, and of the tree's root: those
-// are never passed over.
-SearchChunk search_chunk(const ChunkEntry& entry, bool top) {
-  if (top || entry.place.listed_children != 0)
-    return {
-        {-FLT_MAX, -FLT_MAX, -FLT_MAX}, FLT_MAX, {FLT_MAX, FLT_MAX, FLT_MAX}, entry.first_subtree};
-  const EntryHull hull = round_bounds(entry.hull);
-  return {hull.box_min, hull.extent, hull.box_max, entry.first_subtree};
-}
-
 // All that is known without a chunk; the pool has the rest.
 void set_search(const SceneFile& file, SearchTree& search) {
-  const uint32_t subtrees = file.info().subtree_count;
   search.chunks_come_and_go = true;
   search.leaves_have_extent = file.info().leaves_have_extent;
   const Tiers tiers = file.tiers();
-  search.chunks.reserve(file.chunks().size() + 1);
-  for (const ChunkEntry& entry : file.chunks())
-    search.chunks.push_back(search_chunk(entry, entry.first_subtree < tiers.tier_begin[1]));
-  search.chunks.push_back({{0, 0, 0}, 0, {0, 0, 0}, subtrees});
+  search.chunk_count = file.info().chunk_count;
   search.tier_begin.assign(tiers.tier_begin.begin(), tiers.tier_begin.end());
 }
 
@@ -102,7 +85,7 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   stream.readers = desc.readers;
   stream.bytes = bytes;
   stream.clock = desc.clock;
-  scene->pool = backend.create_pool(*scene, shape, stream.room);
+  scene->pool = backend.create_pool(*scene, file, shape, stream.room);
   scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
   scene->stream->read_top(workers);
   if (desc.start)

@@ -39,7 +39,7 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
   const size_t runs = std::max(blocks_.size(), count / kRoundSubtrees + 1);
   signals_.reserve(runs);
   for (size_t i = 0; i < runs; ++i) signals_.emplace_back(memory);
-  chunk_stamp_.resize(tree.chunk_count());
+  chunk_stamp_.resize(tree.chunk_count);
 }
 
 void PartitionedSearch::run(const CutQuery& query, Search kind, Workers& workers) {

@@ -160,6 +160,7 @@ class Builder {
 
   void set_chunks(Workers& workers) {
     const size_t count = partition_.chunk_count();
+    out_.chunk_count = static_cast<uint32_t>(count);
     out_.chunks.resize(count + 1);
     workers.for_blocks(count, kSubtreesAtOnce, [&](size_t begin, size_t end) {
       for (size_t chunk = begin; chunk < end; ++chunk) out_.chunks[chunk] = hull_of(chunk);

@@ -137,8 +137,7 @@ struct SearchTree {
   explicit SearchTree(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
       : subtrees(memory), records(memory), next_block(memory), chunks(memory), tier_begin(memory) {}
 
-  uint32_t subtree_count() const { return chunks.empty() ? 0 : chunks.back().first_subtree; }
-  size_t chunk_count() const { return chunks.empty() ? 0 : chunks.size() - 1; }
+  uint32_t subtree_count() const { return tier_begin.empty() ? 0 : tier_begin.back(); }
   uint64_t bytes() const {
     return subtrees.size() * sizeof(SearchSubtree) + records.size() * sizeof(SearchRecord) +
            chunks.size() * sizeof(SearchChunk);
@@ -147,7 +146,9 @@ struct SearchTree {
   std::pmr::vector<SearchSubtree> subtrees;
   std::pmr::vector<SearchRecord> records;
   std::pmr::vector<uint32_t> next_block;  // by block of records, of a pool
-  std::pmr::vector<SearchChunk> chunks;   // and one with the end as its first subtree
+  // And one with the end as its first subtree. None where a device has them (set_search_chunks()).
+  std::pmr::vector<SearchChunk> chunks;
+  uint32_t chunk_count = 0;
   std::pmr::vector<uint32_t> tier_begin;  // first subtree of each tier, and the end
   bool leaves_have_extent = false;        // else a leaf's size is 0 wherever its weight matters
   bool chunks_come_and_go = false;  // records may be blocked, and the tree changes between runs

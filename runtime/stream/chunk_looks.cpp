@@ -5,8 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "runtime/math/bounds_code.h"
-
 namespace voyager {
 namespace {
 
@@ -28,13 +26,11 @@ float ChunkLooks::error_of(uint32_t urgency) {
 
 void ChunkLooks::begin(std::vector<Viewer> viewers) {
   viewers_ = std::move(viewers);
-  constexpr uint32_t kLast = UINT32_MAX >> 1;
-  if (now_ == kLast) std::fill(round_.begin(), round_.end(), now_ = 0);
-  ++now_;
+  std::fill(looks_.begin(), looks_.end(), kNotLooked);
 }
 
-void ChunkLooks::look(uint32_t chunk) {
-  const EntryHull hull = round_bounds(chunks_[chunk].hull);
+uint32_t ChunkLooks::look(uint32_t chunk) const {
+  const EntryHull hull = chunks_->hull(chunk);
   uint32_t urgency = 0;
   bool now = false;
   for (const Viewer& viewer : viewers_) {
@@ -45,8 +41,8 @@ void ChunkLooks::look(uint32_t chunk) {
     urgency =
         std::max(urgency, make_urgency(class_at(viewer, hull), error >= 1.0f ? error : INFINITY));
   }
-  urgency_[chunk] = urgency;
-  round_[chunk] = now_ << 1 | (now ? 1 : 0);
+  if (urgency == 0) return kNobody;
+  return now ? urgency | kNow : urgency & ~kNow;
 }
 
 }  // namespace voyager

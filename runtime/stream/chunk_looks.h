@@ -2,10 +2,9 @@
 // How urgently viewers want each chunk, by its hull alone: whether it is resident, and what it
 // hangs from, do not matter.
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "runtime/format/layout.h"
+#include "runtime/format/chunk_directory.h"
 #include "runtime/stream/viewer.h"
 
 namespace voyager {
@@ -26,25 +25,28 @@ class ChunkLooks {
     bool now;          // a viewer wants it that is not ahead
   };
 
-  explicit ChunkLooks(std::span<const ChunkEntry> chunks)
-      : chunks_(chunks), urgency_(chunks.size()), round_(chunks.size()) {}
+  // The directory outlives it.
+  explicit ChunkLooks(const ChunkDirectory& chunks) : chunks_(&chunks), looks_(chunks.size()) {}
 
   // A new round, with these viewers.
   void begin(std::vector<Viewer> viewers);
   // The first call of a round for a chunk looks at all viewers.
   Look at(uint32_t chunk) {
-    if (round_[chunk] >> 1 != now_) look(chunk);
-    return {urgency_[chunk], (round_[chunk] & 1) != 0};
+    if (looks_[chunk] == kNotLooked) looks_[chunk] = look(chunk);
+    const uint32_t own = looks_[chunk];
+    return own == kNobody ? Look{0, false} : Look{own | kOwn, (own & kNow) != 0};
   }
 
  private:
-  void look(uint32_t chunk);
+  // In the place of kOwn, which an urgency always has here.
+  static constexpr uint32_t kNow = kOwn;
+  static constexpr uint32_t kNotLooked = 0, kNobody = 1;  // no chunk's: an error is at least 1
 
-  std::span<const ChunkEntry> chunks_;
+  uint32_t look(uint32_t chunk) const;
+
+  const ChunkDirectory* chunks_;
   std::vector<Viewer> viewers_;
-  // By chunk: as of the round, whose last bit is Look::now.
-  std::vector<uint32_t> urgency_, round_;
-  uint32_t now_ = 0;
+  std::vector<uint32_t> looks_;  // by chunk, of the round
 };
 
 }  // namespace voyager

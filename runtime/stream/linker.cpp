@@ -179,7 +179,7 @@ void Linker::remove_large(const LinkTable& table, LinkPatch& patch) {
 
 void Linker::arrive(LinkTable&& table, LinkPatch& patch) {
   const uint32_t chunk = table.chunk;
-  tables_[chunk] = std::make_unique<LinkTable>(std::move(table));
+  tables_.know(chunk) = std::make_unique<LinkTable>(std::move(table));
   LinkTable& own = *tables_[chunk];
   add_large(own, patch);
   for (uint32_t i = 0; i < own.subtrees.size() && own.subtrees[i].ids.root == 0; ++i)
@@ -251,7 +251,7 @@ void Linker::unlink(Family first, LinkPatch& patch) {
 void Linker::evict(uint32_t chunk, LinkPatch& patch) {
   each_family_of(*tables_[chunk], [&](const Family& family) { unlink(family, patch); });
   remove_large(*tables_[chunk], patch);
-  tables_[chunk].reset();
+  tables_.forget(chunk);
 }
 
 }  // namespace voyager

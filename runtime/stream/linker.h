@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "runtime/stream/by_chunk.h"
 #include "runtime/stream/chunk_graph.h"
 #include "runtime/stream/staged_chunk.h"
 #include "runtime/stream/subtree_pages.h"
@@ -89,8 +90,8 @@ class Linker {
 
   const ChunkGraph* graph_;
   SlotShape shape_;
-  std::vector<std::unique_ptr<LinkTable>> tables_;  // by chunk
-  std::vector<LargeFamily> large_;                  // of what is held, by address
+  ByChunk<std::unique_ptr<LinkTable>> tables_;
+  std::vector<LargeFamily> large_;  // of what is held, by address
   std::vector<Family> work_;
 };
 

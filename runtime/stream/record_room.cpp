@@ -26,15 +26,18 @@ RecordRoom::RecordRoom(const SceneFile& file) : file_(file) {
   const Tiers tiers = file.tiers();
   uint64_t records = file.info().node_count - file.info().leaf_count;
   most_.reserve(chunks.size());
+  static_assert(kMaxChunkBytes / sizeof(NodeRecord) / kRecordBlock <= UINT16_MAX);
   for (size_t i = 0; i < chunks.size(); ++i) {
+    const ChunkEntry chunk = chunks[i];
     const SubtreePlace after =
-        i + 1 < chunks.size() ? chunks[i + 1].place : SubtreePlace::end_of(tiers);
-    most_.push_back(record_blocks(most_search_records(chunks[i], after, tiers)));
-    greatest_ = std::max(greatest_, most_.back());
-    sum_of_most_ += most_.back();
-    records += chunks[i].record_count - chunks[i].node_count;
-    const uint32_t pages = pages_of(chunks[i].first_subtree + chunks[i].subtree_count) -
-                           chunks[i].first_subtree / kPageSubtrees;
+        i + 1 < chunks.size() ? chunks.place(i + 1) : SubtreePlace::end_of(tiers);
+    const uint32_t most = record_blocks(most_search_records(chunk, after, tiers));
+    most_.push_back(static_cast<uint16_t>(most));
+    greatest_ = std::max(greatest_, most);
+    sum_of_most_ += most;
+    records += chunk.record_count - chunk.node_count;
+    const uint32_t pages =
+        pages_of(chunk.first_subtree + chunk.subtree_count) - chunk.first_subtree / kPageSubtrees;
     touching_.resize(std::max<size_t>(touching_.size(), pages + 1));
     ++touching_[pages];
   }

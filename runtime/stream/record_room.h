@@ -32,7 +32,7 @@ class RecordRoom {
   uint32_t most_pages(uint32_t slots) const;
 
   const SceneFile& file_;
-  std::vector<uint32_t> most_;  // by chunk
+  std::vector<uint16_t> most_;  // by chunk
   uint32_t greatest_ = 0;
   uint32_t all_ = 0;                // that all chunks together take at most
   uint64_t sum_of_most_ = 0;        // which is more

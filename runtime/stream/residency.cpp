@@ -13,24 +13,15 @@ constexpr size_t kRoomAhead = 256;
 
 }  // namespace
 
-Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks,
+Residency::Residency(const ChunkGraph& graph, const ChunkDirectory& chunks,
                      const RecordRoom& records, PoolRoom room, uint32_t pinned)
     : graph_(&graph),
-      chunks_(chunks),
+      chunks_(&chunks),
       records_(&records),
       room_(room),
       pinned_(pinned),
-      state_(chunks.size()),
-      slot_(chunks.size(), kNoSlot),
-      first_block_(chunks.size(), kNoBlock),
-      blocks_of_(chunks.size(), kUnknown),
-      urgency_(chunks.size()),
-      own_urgency_(chunks.size()),
-      needed_plan_(chunks.size()),
-      missed_(chunks.size()),
-      counted_(chunks.size()),
-      target_(chunks.size()),
-      children_there_(chunks.size()),
+      known_(chunks.size()),
+      few_blocks_(chunks.size(), kMany),
       shares_family_(chunks.size()),
       next_block_(room.blocks, kNoBlock) {
   assert(pinned <= room.slots);
@@ -43,22 +34,22 @@ Residency::Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks
 }
 
 ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
-  while (!requests_.empty() && state_[requests_.back()] != State::absent) requests_.pop_back();
+  while (!requests_.empty() && known(requests_.back()).state != State::absent) requests_.pop_back();
   if (requests_.empty()) return {0, 0};
   const auto to_read = [&](uint32_t chunk) {
-    return chunk < graph_->size() && state_[chunk] == State::absent && is_wanted(chunk);
+    return chunk < graph_->size() && known(chunk).state == State::absent && is_wanted(chunk);
   };
   ChunkRange range{requests_.back(), requests_.back() + 1};
-  uint64_t taken = chunks_[range.first].bytes;
+  uint64_t taken = chunks_->bytes(range.first);
   const auto fits = [&](uint32_t chunk) {
     return range.last - range.first < most && to_read(chunk) &&
-           taken + chunks_[chunk].bytes <= bytes;
+           taken + chunks_->bytes(chunk) <= bytes;
   };
-  for (; fits(range.last); ++range.last) taken += chunks_[range.last].bytes;
+  for (; fits(range.last); ++range.last) taken += chunks_->bytes(range.last);
   for (; range.first > 0 && fits(range.first - 1); --range.first)
-    taken += chunks_[range.first - 1].bytes;
+    taken += chunks_->bytes(range.first - 1);
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
-    state_[chunk] = State::on_its_way;
+    know(chunk).state = State::on_its_way;
     coming_blocks_ += most_blocks(chunk);
   }
   counters_.requested += range.last - range.first;
@@ -76,18 +67,23 @@ std::vector<uint32_t> Residency::needed() const {
 void Residency::learn_blocks(uint32_t chunk, uint32_t blocks) {
   coming_blocks_ += uint64_t{blocks} - most_blocks(chunk);
   if (is_wanted(chunk)) target_blocks_ += uint64_t{blocks} - known_blocks(chunk);
-  blocks_of_[chunk] = blocks;
+  set_blocks(chunk, blocks);
+}
+
+void Residency::set_blocks(uint32_t chunk, uint32_t blocks) {
+  know(chunk).blocks = blocks;
+  few_blocks_[chunk] = static_cast<uint8_t>(std::min<uint32_t>(blocks, kMany));
 }
 
 bool Residency::read(uint32_t chunk, uint32_t blocks) {
-  assert(state_[chunk] == State::on_its_way);
+  assert(known(chunk).state == State::on_its_way);
   learn_blocks(chunk, blocks);
-  state_[chunk] = State::read;
+  know(chunk).state = State::read;
   return keep(chunk);
 }
 
 bool Residency::keep(uint32_t chunk) {
-  assert(state_[chunk] == State::read);
+  assert(known(chunk).state == State::read);
   if (is_wanted(chunk)) return true;
   drop(chunk);
   return false;
@@ -95,16 +91,16 @@ bool Residency::keep(uint32_t chunk) {
 
 // Its slot, or its claim to one.
 void Residency::give_up(uint32_t chunk, State now) {
-  if (slot_[chunk] == kNoSlot) {
+  if (known(chunk).slot == kNoSlot) {
     --coming_;
     coming_blocks_ -= most_blocks(chunk);
   } else {
-    filling_ -= state_[chunk] == State::read;
-    free({chunk, slot_[chunk], first_block_[chunk]});
+    filling_ -= known(chunk).state == State::read;
+    free({chunk, known(chunk).slot, known(chunk).first_block});
   }
-  slot_[chunk] = kNoSlot;
-  first_block_[chunk] = kNoBlock;
-  state_[chunk] = now;
+  know(chunk).slot = kNoSlot;
+  know(chunk).first_block = kNoBlock;
+  know(chunk).state = now;
 }
 
 void Residency::drop(uint32_t chunk) {
@@ -113,21 +109,21 @@ void Residency::drop(uint32_t chunk) {
 }
 
 uint32_t Residency::take_slot(uint32_t chunk) {
-  assert(state_[chunk] == State::read && slot_[chunk] == kNoSlot);
-  if (free_slots_.empty() || free_blocks_.size() < blocks_of_[chunk]) return kNoSlot;
-  slot_[chunk] = free_slots_.back();
+  assert(known(chunk).state == State::read && known(chunk).slot == kNoSlot);
+  if (free_slots_.empty() || free_blocks_.size() < known(chunk).blocks) return kNoSlot;
+  know(chunk).slot = free_slots_.back();
   free_slots_.pop_back();
   --coming_;
-  coming_blocks_ -= blocks_of_[chunk];
+  coming_blocks_ -= known(chunk).blocks;
   ++filling_;
   take_blocks(chunk);
-  return slot_[chunk];
+  return known(chunk).slot;
 }
 
 // The first that are free, so that most lie one behind another.
 void Residency::take_blocks(uint32_t chunk) {
-  uint32_t* last = &first_block_[chunk];
-  for (uint32_t i = 0; i < blocks_of_[chunk]; ++i) {
+  uint32_t* last = &know(chunk).first_block;
+  for (uint32_t i = 0; i < known(chunk).blocks; ++i) {
     std::pop_heap(free_blocks_.begin(), free_blocks_.end(), std::greater<>());
     *last = free_blocks_.back();
     free_blocks_.pop_back();
@@ -150,7 +146,7 @@ void Residency::free(const Evicted& evicted) {
 
 std::vector<uint32_t> Residency::blocks(uint32_t chunk) const {
   std::vector<uint32_t> all;
-  for (uint32_t block = first_block_[chunk]; block != kNoBlock; block = next_block_[block])
+  for (uint32_t block = known(chunk).first_block; block != kNoBlock; block = next_block_[block])
     all.push_back(block);
   return all;
 }
@@ -162,18 +158,18 @@ uint64_t Residency::pinned_blocks() const {
 }
 
 void Residency::place(uint32_t chunk) {
-  assert(state_[chunk] == State::absent);
-  state_[chunk] = State::read;
-  target_[chunk] = plan_;
-  blocks_of_[chunk] = 0;  // until place_records()
+  assert(known(chunk).state == State::absent);
+  know(chunk).state = State::read;
+  know(chunk).target_plan = plan_;
+  know(chunk).blocks = 0;  // until place_records()
   ++coming_;
   take_slot(chunk);
 }
 
 bool Residency::place_records(uint32_t chunk, uint32_t blocks) {
-  assert(state_[chunk] == State::read && slot_[chunk] != kNoSlot);
+  assert(known(chunk).state == State::read && known(chunk).slot != kNoSlot);
   if (blocks > free_blocks_.size()) return false;
-  blocks_of_[chunk] = blocks;
+  set_blocks(chunk, blocks);
   target_blocks_ += blocks;
   take_blocks(chunk);
   return true;
@@ -181,29 +177,29 @@ bool Residency::place_records(uint32_t chunk, uint32_t blocks) {
 
 void Residency::filled(uint32_t chunk) {
   --filling_;
-  state_[chunk] = State::filled;
+  know(chunk).state = State::filled;
   filled_.push_back(chunk);
 }
 
 void Residency::failed(uint32_t chunk) {
-  assert(state_[chunk] == State::on_its_way || state_[chunk] == State::read);
+  assert(known(chunk).state == State::on_its_way || known(chunk).state == State::read);
   give_up(chunk, State::failed);
 }
 
 void Residency::retry(uint32_t chunk) {
-  if (state_[chunk] == State::failed) state_[chunk] = State::absent;
+  if (known(chunk).state == State::failed) know(chunk).state = State::absent;
 }
 
 bool Residency::parents_there(uint32_t chunk) const {
   for (const uint32_t p : graph_->parents(chunk))
-    if (state_[p] != State::resident) return false;
+    if (known(p).state != State::resident) return false;
   return true;
 }
 
 // Those that came before their parents, and are not wanted any more.
 void Residency::drop_waiting() {
   std::erase_if(waiting_, [&](uint32_t chunk) {
-    if (state_[chunk] != State::filled) return true;
+    if (known(chunk).state != State::filled) return true;
     if (is_wanted(chunk)) return false;
     drop(chunk);
     return true;
@@ -216,7 +212,7 @@ Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accep
   std::sort(next.begin(), next.end());
   for (size_t i = 0; i < next.size(); ++i) {
     const uint32_t chunk = next[i];
-    if (state_[chunk] != State::filled) continue;  // came after its parent as well
+    if (known(chunk).state != State::filled) continue;  // came after its parent as well
     if (!is_wanted(chunk)) {
       drop(chunk);
       out.given_up.push_back(chunk);
@@ -231,16 +227,16 @@ Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accep
       out.given_up.push_back(chunk);
       continue;
     }
-    state_[chunk] = State::resident;
+    know(chunk).state = State::resident;
     count_missing(chunk, false);
     ++resident_;
     ++counters_.arrived;
-    counters_.late += missed_[chunk];
-    missed_[chunk] = 0;
+    counters_.late += known(chunk).missed;
+    know(chunk).missed = false;
     const ChunkRange children = graph_->children(chunk);
-    for (const uint32_t p : graph_->parents(chunk)) ++children_there_[p];
+    for (const uint32_t p : graph_->parents(chunk)) ++know(p).children_there;
     for (uint32_t c = children.first; c < children.last; ++c)
-      if (state_[c] == State::filled) next.push_back(c);
+      if (known(c).state == State::filled) next.push_back(c);
     out.resident.push_back(chunk);
   }
   return out;
@@ -267,14 +263,15 @@ std::vector<Residency::Evicted> Residency::evict() {
   std::vector<Evicted> evicted;
   Wanted still = wanted(std::min(requests_.size(), kRoomAhead));
   const auto may_go = [&](uint32_t chunk) {
-    return state_[chunk] == State::resident && !is_wanted(chunk) && children_there_[chunk] == 0;
+    return known(chunk).state == State::resident && !is_wanted(chunk) &&
+           known(chunk).children_there == 0;
   };
   while (!victims_.empty() && is_short(still)) {
     const uint32_t chunk = victims_.back();
     victims_.pop_back();
     if (!may_go(chunk)) continue;
     still.slots -= std::min<size_t>(still.slots, 1);
-    still.blocks -= std::min<uint64_t>(still.blocks, blocks_of_[chunk]);
+    still.blocks -= std::min<uint64_t>(still.blocks, known(chunk).blocks);
     remove(chunk, evicted);
   }
   while (has_leftovers()) {
@@ -287,7 +284,7 @@ std::vector<Residency::Evicted> Residency::evict() {
 
 bool Residency::has_leftovers() const {
   const auto is = [&](State state) {
-    return [this, state](uint32_t chunk) { return state_[chunk] == state; };
+    return [this, state](uint32_t chunk) { return known(chunk).state == state; };
   };
   return !leftovers_.empty() && coming_ == 0 && filling_ == 0 && filled_.empty() &&
          std::none_of(waiting_.begin(), waiting_.end(), is(State::filled)) &&
@@ -295,11 +292,11 @@ bool Residency::has_leftovers() const {
 }
 
 void Residency::remove(uint32_t chunk, std::vector<Evicted>& evicted) {
-  for (const uint32_t p : graph_->parents(chunk)) --children_there_[p];
-  evicted.push_back({chunk, slot_[chunk], first_block_[chunk]});
-  slot_[chunk] = kNoSlot;
-  first_block_[chunk] = kNoBlock;
-  state_[chunk] = State::absent;
+  for (const uint32_t p : graph_->parents(chunk)) --know(p).children_there;
+  evicted.push_back({chunk, known(chunk).slot, known(chunk).first_block});
+  know(chunk).slot = kNoSlot;
+  know(chunk).first_block = kNoBlock;
+  know(chunk).state = State::absent;
   count_missing(chunk, true);
   --resident_;
   ++counters_.evicted;
@@ -313,7 +310,8 @@ bool Residency::set_family(ChunkRange family) {
       news = news || shares_family_[chunk] != shares;
       shares_family_[chunk] = shares;
     }
-    (is_wanted(chunk) ? has_room : has_none) |= needed_plan_[chunk] == plan_ || chunk < pinned_;
+    (is_wanted(chunk) ? has_room : has_none) |=
+        known(chunk).needed_plan == plan_ || chunk < pinned_;
   }
   // Where all of them have room, or none has, others' places in the order stay.
   return news && crowded_ && has_room && has_none;
@@ -321,17 +319,17 @@ bool Residency::set_family(ChunkRange family) {
 
 // A chunk that comes or goes after the plan.
 void Residency::count_missing(uint32_t chunk, bool missing) {
-  if (needed_plan_[chunk] != plan_ || counted_[chunk] == 0) return;
+  if (known(chunk).needed_plan != plan_ || known(chunk).counted == 0) return;
   const uint64_t one = missing ? 1 : -uint64_t{1};
   need_.missing += one;
-  if (counted_[chunk] == kSeen) need_.seen_missing += one;
-  need_.missing_bytes += missing ? chunks_[chunk].bytes : -uint64_t{chunks_[chunk].bytes};
+  if (known(chunk).counted == kSeen) need_.seen_missing += one;
+  need_.missing_bytes += missing ? chunks_->bytes(chunk) : -uint64_t{chunks_->bytes(chunk)};
 }
 
 bool Residency::settled(const std::function<bool(uint32_t)>& hopeless) const {
   const auto to_come = [&](uint32_t chunk) {
-    return is_wanted(chunk) && state_[chunk] != State::resident && state_[chunk] != State::failed &&
-           !hopeless(chunk);
+    return is_wanted(chunk) && known(chunk).state != State::resident &&
+           known(chunk).state != State::failed && !hopeless(chunk);
   };
   if (has_leftovers()) return false;
   for (uint32_t chunk = 0; chunk < pinned_; ++chunk)

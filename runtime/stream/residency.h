@@ -18,9 +18,9 @@
 //     absent -> on its way -> read -> filled -> resident -> absent
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <vector>
 
+#include "runtime/stream/by_chunk.h"
 #include "runtime/stream/chunk_graph.h"
 #include "runtime/stream/chunk_looks.h"
 #include "runtime/stream/record_room.h"
@@ -50,7 +50,7 @@ class Residency {
 
   // All outlive it. pinned: so many of the first chunks stay; all without parents at least,
   // and no more than there is room for.
-  Residency(const ChunkGraph& graph, std::span<const ChunkEntry> chunks, const RecordRoom& records,
+  Residency(const ChunkGraph& graph, const ChunkDirectory& chunks, const RecordRoom& records,
             PoolRoom room, uint32_t pinned);
 
   // Who looks now. What is no longer wanted is no longer requested.
@@ -103,16 +103,18 @@ class Residency {
   // otherwise.
   bool set_family(ChunkRange family);
 
-  uint32_t slot(uint32_t chunk) const { return slot_[chunk]; }
-  bool is_resident(uint32_t chunk) const { return state_[chunk] == State::resident; }
+  uint32_t slot(uint32_t chunk) const { return known(chunk).slot; }
+  bool is_resident(uint32_t chunk) const { return known(chunk).state == State::resident; }
   bool is_coming(uint32_t chunk) const {
-    return state_[chunk] == State::read || state_[chunk] == State::filled;
+    return known(chunk).state == State::read || known(chunk).state == State::filled;
   }
   // Of the last plan: a viewer of now sees what it holds.
   bool is_seen(uint32_t chunk) const {
-    return needed_plan_[chunk] == plan_ && counted_[chunk] == kSeen;
+    return known(chunk).needed_plan == plan_ && known(chunk).counted == kSeen;
   }
-  bool is_wanted(uint32_t chunk) const { return target_[chunk] == plan_ || chunk < pinned_; }
+  bool is_wanted(uint32_t chunk) const {
+    return known(chunk).target_plan == plan_ || chunk < pinned_;
+  }
   uint32_t slots() const { return room_.slots; }
   PoolRoom room() const { return room_; }
   // Of what is pinned and was read.
@@ -125,7 +127,26 @@ class Residency {
   const ResidencyCounters& counters() const { return counters_; }
 
  private:
+  static constexpr uint32_t kUnknown = 0xffffffffu, kNoBlock = 0xffffffffu;
+  static constexpr uint8_t kSeen = 2, kMany = 0xff;
+
   enum class State : uint8_t { absent, on_its_way, read, filled, resident, failed };
+  // Of a chunk that is not absent, or that the last plan needed.
+  struct Known {
+    State state = State::absent;
+    bool missed = false;  // a viewer has seen that it was not there
+    uint8_t counted = 0;  // in need_, if the last plan needed it; kSeen: as seen, too
+    bool leaves = false;  // scratch
+    float score = 0;      // scratch
+    uint32_t slot = kNoSlot;
+    uint32_t first_block = kNoBlock;
+    uint32_t blocks = kUnknown;  // how many it takes
+    uint32_t urgency = 0;        // when it was last needed
+    uint32_t own_urgency = 0;    // in the last plan that needed it; 0: for what hangs from it
+    uint32_t needed_plan = 0;    // the last plan that needed it
+    uint32_t target_plan = 0;    // the last plan that had it in its target
+    uint32_t children_there = 0;
+  };
   struct Needed {
     uint32_t chunk, urgency;
     bool now;
@@ -143,6 +164,7 @@ class Residency {
   void count_need();
   void choose_target();
   void queue_requests();
+  std::vector<uint32_t> unwanted();
   void list_victims();
   struct Wanted {
     size_t slots;
@@ -150,12 +172,23 @@ class Residency {
   };
   Wanted wanted(size_t requests) const;
   bool is_short(const Wanted& wanted) const;
+  const Known& known(uint32_t chunk) const { return known_[chunk]; }
+  Known& know(uint32_t chunk) { return known_.know(chunk); }
+  void forget_absent();
+  // How many it takes; kUnknown before it was read.
+  uint32_t blocks_of(uint32_t chunk) const {
+    if (known(chunk).blocks != kUnknown) return known(chunk).blocks;
+    return few_blocks_[chunk] == kMany ? kUnknown : few_blocks_[chunk];
+  }
   uint32_t known_blocks(uint32_t chunk) const {
-    return blocks_of_[chunk] == kUnknown ? 0 : blocks_of_[chunk];
+    const uint32_t blocks = blocks_of(chunk);
+    return blocks == kUnknown ? 0 : blocks;
   }
   uint32_t most_blocks(uint32_t chunk) const {
-    return blocks_of_[chunk] == kUnknown ? records_->most_blocks(chunk) : blocks_of_[chunk];
+    const uint32_t blocks = blocks_of(chunk);
+    return blocks == kUnknown ? records_->most_blocks(chunk) : blocks;
   }
+  void set_blocks(uint32_t chunk, uint32_t blocks);
   void learn_blocks(uint32_t chunk, uint32_t blocks);
   void take_blocks(uint32_t chunk);
   void free_blocks(uint32_t first);
@@ -167,27 +200,15 @@ class Residency {
   void give_up(uint32_t chunk, State now);
   void drop(uint32_t chunk);
 
-  static constexpr uint32_t kUnknown = 0xffffffffu, kNoBlock = 0xffffffffu;
-  static constexpr uint8_t kSeen = 2;
-
   const ChunkGraph* graph_;
-  std::span<const ChunkEntry> chunks_;
+  const ChunkDirectory* chunks_;
   const RecordRoom* records_;
   PoolRoom room_;
   uint32_t pinned_, resident_ = 0;
   uint32_t plan_ = 0;
+  ByChunk<Known> known_;
   // By chunk.
-  std::vector<State> state_;
-  std::vector<uint32_t> slot_;
-  std::vector<uint32_t> first_block_;
-  std::vector<uint32_t> blocks_of_;    // how many it takes
-  std::vector<uint32_t> urgency_;      // when it was last needed
-  std::vector<uint32_t> own_urgency_;  // in the last plan that needed it; 0: for what hangs from it
-  std::vector<uint32_t> needed_plan_;  // the last plan that needed it
-  std::vector<uint8_t> missed_;        // a viewer has seen that it was not there
-  std::vector<uint8_t> counted_;       // in need_, if the last plan needed it; kSeen: as seen, too
-  std::vector<uint32_t> target_;       // the last plan that had it in its target
-  std::vector<uint32_t> children_there_;
+  std::vector<uint8_t> few_blocks_;  // that it took when it was last read; kMany: or not known
   // 1: a node that leads to it leads to the chunk before, too; 2: and to the one behind.
   std::vector<uint8_t> shares_family_;
 

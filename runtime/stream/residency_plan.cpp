@@ -9,6 +9,7 @@
 namespace voyager {
 
 void Residency::plan(ChunkLooks& looks) {
+  forget_absent();
   ++plan_;
   find_needed(looks);
   share_in_families();
@@ -21,25 +22,34 @@ void Residency::plan(ChunkLooks& looks) {
   list_leftovers();
 }
 
+// What the last plan did not need either.
+void Residency::forget_absent() {
+  std::vector<uint32_t> absent;
+  known_.each([&](uint32_t chunk, const Known& known) {
+    if (known.state == State::absent && known.needed_plan != plan_) absent.push_back(chunk);
+  });
+  for (const uint32_t chunk : absent) known_.forget(chunk);
+}
+
 // And all that it hangs from: chains may be as long as a file says. False where it is not to be
 // had, because it or what it hangs from has failed.
 bool Residency::add_needed(const Needed& needed) {
   climb_.assign(1, {needed, 0});
   while (!climb_.empty()) {
     auto& [of, done] = climb_.back();
-    if (state_[of.chunk] == State::failed) {
+    if (known(of.chunk).state == State::failed) {
       failed_.push_back(of);
       return false;
     }
     const std::span<const uint32_t> parents = graph_->parents(of.chunk);
-    while (done < parents.size() && needed_plan_[parents[done]] == plan_) ++done;
+    while (done < parents.size() && known(parents[done]).needed_plan == plan_) ++done;
     if (done < parents.size()) {
       const uint32_t parent = parents[done++];
-      own_urgency_[parent] = 0;
+      know(parent).own_urgency = 0;
       climb_.push_back({{parent, of.urgency, of.now}, 0});
       continue;
     }
-    needed_plan_[of.chunk] = plan_;
+    know(of.chunk).needed_plan = plan_;
     extra_.push_back(of);
     climb_.pop_back();
   }
@@ -53,7 +63,7 @@ uint32_t Residency::most_above(uint32_t chunk) const {
   if (parents.empty()) return UINT32_MAX;
   uint32_t most = 0;
   for (const uint32_t p : parents)
-    if (needed_plan_[p] == plan_) most = std::max(most, own_urgency_[p]);
+    if (known(p).needed_plan == plan_) most = std::max(most, known(p).own_urgency);
   return most;
 }
 
@@ -67,18 +77,18 @@ void Residency::find_needed(ChunkLooks& looks) {
   };
   const auto look = [&](uint32_t chunk) {
     next = chunk + 1;
-    if (needed_plan_[chunk] == plan_) return;
+    if (known(chunk).needed_plan == plan_) return;
     const ChunkLooks::Look own = looks.at(chunk);
     Needed found{chunk, own.urgency, own.now};
     // A node is refined with all of its children or not at all, and the hull of a chunk that goes
     // on with a node of the one before is that of this node, not of what it hangs from.
-    if (chunks_[chunk].place.listed_children != 0 && needed_before(chunk)) {
+    if (chunks_->place(chunk).listed_children != 0 && needed_before(chunk)) {
       found.urgency = std::max(found.urgency, extra_.back().urgency);
       found.now = found.now || extra_.back().now;
     }
     found.urgency = std::min(found.urgency, most_above(chunk));
     if (found.urgency == 0) return;
-    own_urgency_[chunk] = found.urgency;
+    know(chunk).own_urgency = found.urgency;
     add_needed(found);
   };
   while (next < graph_->size() && graph_->parents(next).empty()) look(next);
@@ -101,7 +111,7 @@ void Residency::find_needed(ChunkLooks& looks) {
 // families of parents that have no room alter nothing in front of those, known or not. Nor is it
 // lent to another class: a node that is seen and refined makes all chunks of its family seen.
 void Residency::share_in_families() {
-  for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
+  for (const Needed& needed : needed_) know(needed.chunk).urgency = needed.urgency;
   const auto follows = [&](size_t i) {
     return i < needed_.size() && needed_[i].chunk == needed_[i - 1].chunk + 1 &&
            shares_family_[needed_[i].chunk] != 0;
@@ -112,10 +122,10 @@ void Residency::share_in_families() {
     while (shares_family_[needed_[last].chunk] == 2 && follows(last + 1)) ++last;
     std::array<uint32_t, 4> most{};  // by class
     const auto of_class = [&](size_t k) -> uint32_t& {
-      return most[static_cast<size_t>(ChunkLooks::class_of(urgency_[needed_[k].chunk]))];
+      return most[static_cast<size_t>(ChunkLooks::class_of(known(needed_[k].chunk).urgency))];
     };
     for (size_t k = i - 1; k <= last; ++k)
-      of_class(k) = std::max(of_class(k), urgency_[needed_[k].chunk]);
+      of_class(k) = std::max(of_class(k), known(needed_[k].chunk).urgency);
     for (size_t k = i - 1; k <= last; ++k)
       needed_[k].urgency = std::max(needed_[k].urgency, of_class(k) & ~ChunkLooks::kOwn);
     i = last;
@@ -123,14 +133,14 @@ void Residency::share_in_families() {
 }
 
 void Residency::share_with_parents() {
-  for (const Needed& needed : needed_) urgency_[needed.chunk] = needed.urgency;
+  for (const Needed& needed : needed_) know(needed.chunk).urgency = needed.urgency;
   for (size_t i = needed_.size(); i-- > 0;) {
-    needed_[i].urgency = urgency_[needed_[i].chunk];
+    needed_[i].urgency = known(needed_[i].chunk).urgency;
     // What goes before others because something that is seen hangs on it counts as seen.
     needed_[i].now =
         needed_[i].now || ChunkLooks::class_of(needed_[i].urgency) == ChunkLooks::Class::seen;
     for (const uint32_t p : graph_->parents(needed_[i].chunk))
-      urgency_[p] = std::max(urgency_[p], needed_[i].urgency);
+      know(p).urgency = std::max(known(p).urgency, needed_[i].urgency);
   }
 }
 
@@ -165,29 +175,41 @@ void Residency::choose_target() {
   } else {
     target_blocks_ = all;
   }
-  for (const Needed& needed : extra_) target_[needed.chunk] = plan_;
+  for (const Needed& needed : extra_) know(needed.chunk).target_plan = plan_;
 }
 
 void Residency::queue_requests() {
   for (const uint32_t chunk : requests_)
-    counters_.flushed += state_[chunk] == State::absent && !is_wanted(chunk);
+    counters_.flushed += known(chunk).state == State::absent && !is_wanted(chunk);
   requests_.clear();
   for (uint32_t chunk = 0; chunk < pinned_; ++chunk)
-    if (state_[chunk] == State::absent) {
-      urgency_[chunk] = UINT32_MAX;
+    if (known(chunk).state == State::absent) {
+      know(chunk).urgency = UINT32_MAX;
       requests_.push_back(chunk);
     }
   for (const Needed& needed : extra_)
-    if (state_[needed.chunk] == State::absent) requests_.push_back(needed.chunk);
+    if (known(needed.chunk).state == State::absent) requests_.push_back(needed.chunk);
   for (const Needed& needed : needed_)
     if (needed.now && ChunkLooks::class_of(needed.urgency) == ChunkLooks::Class::seen &&
-        state_[needed.chunk] != State::resident)
-      missed_[needed.chunk] = 1;
+        known(needed.chunk).state != State::resident)
+      know(needed.chunk).missed = true;
   // Families together, as no frame sees a part of one.
-  const auto urgency = [&](uint32_t chunk) { return urgency_[chunk] | ChunkLooks::kOwn; };
+  const auto urgency = [&](uint32_t chunk) { return known(chunk).urgency | ChunkLooks::kOwn; };
   std::sort(requests_.begin(), requests_.end(), [&](uint32_t a, uint32_t b) {
     return urgency(a) != urgency(b) ? urgency(a) < urgency(b) : a > b;
   });
+}
+
+// Residents that nobody wants, ascending. Clears what the lists below keep of all residents.
+std::vector<uint32_t> Residency::unwanted() {
+  std::vector<uint32_t> chunks;
+  known_.each([&](uint32_t chunk, Known& known) {
+    known.score = INFINITY;
+    known.leaves = false;
+    if (known.state == State::resident && !is_wanted(chunk)) chunks.push_back(chunk);
+  });
+  std::sort(chunks.begin(), chunks.end());
+  return chunks;
 }
 
 // By the time since they were last needed over the error that they then spared; what leads to a
@@ -196,13 +218,14 @@ void Residency::list_victims() {
   victims_.clear();
   if (!is_short(wanted(requests_.size()))) return;
   std::vector<std::pair<float, uint32_t>> scored;
-  std::vector<float> score(graph_->size(), INFINITY);
-  for (uint32_t chunk = graph_->size(); chunk-- > pinned_;) {
-    if (state_[chunk] != State::resident || is_wanted(chunk)) continue;
-    const float age = static_cast<float>(plan_ - needed_plan_[chunk]);
-    score[chunk] = std::min(score[chunk], age / ChunkLooks::error_of(urgency_[chunk]));
-    for (const uint32_t p : graph_->parents(chunk)) score[p] = std::min(score[p], score[chunk]);
-    scored.emplace_back(score[chunk], chunk);
+  const std::vector<uint32_t> chunks = unwanted();
+  for (size_t i = chunks.size(); i-- > 0;) {
+    Known& own = know(chunks[i]);
+    const float age = static_cast<float>(plan_ - own.needed_plan);
+    own.score = std::min(own.score, age / ChunkLooks::error_of(own.urgency));
+    scored.emplace_back(own.score, chunks[i]);
+    for (const uint32_t p : graph_->parents(chunks[i]))
+      know(p).score = std::min(known(p).score, scored.back().first);
   }
   std::sort(scored.begin(), scored.end());
   for (const auto& [of, chunk] : scored) victims_.push_back(chunk);
@@ -214,37 +237,37 @@ void Residency::list_victims() {
 void Residency::list_leftovers() {
   leftovers_.clear();
   if (!crowded_) return;
-  std::vector<bool> goes(graph_->size());
-  for (uint32_t chunk = pinned_; chunk < graph_->size(); ++chunk) {
-    if (state_[chunk] != State::resident || is_wanted(chunk)) continue;
+  for (const uint32_t chunk : unwanted()) {
     const std::span<const uint32_t> parents = graph_->parents(chunk);
-    goes[chunk] = needed_plan_[chunk] == plan_ ||
-                  std::any_of(parents.begin(), parents.end(), [&](uint32_t p) { return goes[p]; });
-    if (goes[chunk]) leftovers_.push_back(chunk);
+    const bool leaves =
+        known(chunk).needed_plan == plan_ ||
+        std::any_of(parents.begin(), parents.end(), [&](uint32_t p) { return known(p).leaves; });
+    know(chunk).leaves = leaves;
+    if (leaves) leftovers_.push_back(chunk);
   }
 }
 
 void Residency::count_need() {
   need_ = {};
   for (const Needed& needed : needed_) {
-    counted_[needed.chunk] = 0;
+    know(needed.chunk).counted = 0;
     if (!needed.now) continue;
     const bool seen =
         ChunkLooks::class_of(needed.urgency) == ChunkLooks::Class::seen && needed.chunk >= pinned_;
-    counted_[needed.chunk] = seen ? kSeen : 1;
+    know(needed.chunk).counted = seen ? kSeen : 1;
     ++need_.chunks;
     need_.seen += seen;
     if (seen) {
       need_.seen_blocks += known_blocks(needed.chunk);
       need_.seen_unread_blocks += most_blocks(needed.chunk) - known_blocks(needed.chunk);
     }
-    if (state_[needed.chunk] != State::resident) count_missing(needed.chunk, true);
+    if (known(needed.chunk).state != State::resident) count_missing(needed.chunk, true);
   }
   for (const Needed& needed : failed_) {
     if (!needed.now) continue;
     ++need_.chunks;
     ++need_.missing;
-    need_.missing_bytes += chunks_[needed.chunk].bytes;
+    need_.missing_bytes += chunks_->bytes(needed.chunk);
     if (ChunkLooks::class_of(needed.urgency) != ChunkLooks::Class::seen) continue;
     ++need_.seen;
     ++need_.seen_missing;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "runtime/base/first_that.h"
+
 namespace voyager {
 namespace {
 
@@ -29,10 +31,8 @@ uint32_t SceneStream::top_chunks(const SceneFile& file) {
   const auto& chunks = file.chunks();
   if (chunks.empty()) return 0;
   const uint32_t end = file.tiers().tier_begin[1];
-  return static_cast<uint32_t>(
-      std::partition_point(chunks.begin(), chunks.end(),
-                           [&](const ChunkEntry& entry) { return entry.first_subtree < end; }) -
-      chunks.begin());
+  return first_that(0u, static_cast<uint32_t>(chunks.size()),
+                    [&](uint32_t chunk) { return chunks.first_subtree(chunk) >= end; });
 }
 
 uint32_t SceneStream::pinned_chunks(const SceneFile& file, uint32_t slots) {

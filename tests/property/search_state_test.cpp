@@ -122,7 +122,7 @@ TEST(SearchState, StreamingSkipsChunksAndStopsWhereTheCutIsClosed) {
   EXPECT_LT(few * 20, all);
   EXPECT_LT(few, more);
   EXPECT_LT(more, all);
-  EXPECT_LE(all, rig.search_tree.chunk_count());
+  EXPECT_LE(all, rig.search_tree.chunk_count);
 }
 
 // One chunk of a tree, gone: what may not be read is poisoned.

@@ -72,7 +72,7 @@ Json bench_searches(const BenchArguments& arguments, const BenchSubject& subject
   Json report = {{"leaves", scene.leaf_count},
                  {"nodes", scene.node_count},
                  {"subtrees", scene.search.subtrees.size()},
-                 {"chunks", scene.search.chunk_count()},
+                 {"chunks", scene.search.chunk_count},
                  {"search_bytes", scene.search.bytes()}};
   report["searches"] = time_searches(arguments, subject);
   print_searches(report["searches"]);

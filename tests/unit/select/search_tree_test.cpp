@@ -111,7 +111,7 @@ TEST(SearchTree, LevelsShareOutTheSlots) {
 TEST(SearchTree, HullsAreNeverSmallerThanWhatLeadsIntoTheChunk) {
   std::mt19937 random(1);
   for (const Cut& cut : all_cuts())
-    for (size_t chunk = 0; chunk < cut.search.chunk_count(); ++chunk) {
+    for (size_t chunk = 0; chunk < cut.search.chunk_count; ++chunk) {
       const SearchChunk& c = cut.search.chunks[chunk];
       for (uint32_t s = c.first_subtree; s < cut.search.chunks[chunk + 1].first_subtree; ++s) {
         const uint32_t entry = cut.search.subtrees[s].entry;
@@ -138,7 +138,7 @@ TEST(SearchTree, KnowsWhetherLeavesHaveExtents) {
 
 TEST(SearchTree, OfAnEmptyTreeIsEmpty) {
   const Cut cut = make(LodTree(), kMinChunkBytes);
-  EXPECT_EQ(cut.search.chunk_count(), 0u);
+  EXPECT_EQ(cut.search.chunk_count, 0u);
   EXPECT_TRUE(cut.search.subtrees.empty());
 }
 

@@ -59,8 +59,9 @@ class ScriptedBackend final : public Backend {
     return std::make_unique<ScriptedPipeline>(
         inner_->create_pipeline(scenes, desc, memory, workers), script);
   }
-  std::unique_ptr<ChunkPool> create_pool(Scene& scene, SlotShape shape, PoolRoom room) override {
-    return inner_->create_pool(scene, shape, room);
+  std::unique_ptr<ChunkPool> create_pool(Scene& scene, const std::shared_ptr<const SceneFile>& file,
+                                         SlotShape shape, PoolRoom room) override {
+    return inner_->create_pool(scene, file, shape, room);
   }
   std::unique_ptr<SceneSearch> create_search(std::shared_ptr<const Scene> scene,
                                              const SearchDesc& desc,

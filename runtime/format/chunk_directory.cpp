@@ -1,0 +1,110 @@
+#include "runtime/format/chunk_directory.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace voyager {
+namespace {
+
+// False where it is too large.
+template <class Small>
+bool narrow(uint64_t value, Small& out) {
+  out = static_cast<Small>(value);
+  return value <= std::numeric_limits<Small>::max();
+}
+
+}  // namespace
+
+void ChunkDirectory::add(const ChunkEntry& entry) {
+  static_assert(chunk_align(Quality::lossless) % kUnit == 0 &&
+                chunk_align(Quality::compact) % kUnit == 0);
+  open_.push_back(entry);
+  open_.back().hull = round_bounds(entry.hull);
+  subtrees_ = entry.first_subtree + entry.subtree_count;
+  if (open_.size() == kBlockRows) close_block();
+}
+
+void ChunkDirectory::close() {
+  close_block();
+  open_ = {};
+  rows_.shrink_to_fit();
+  blocks_.shrink_to_fit();
+  wide_.shrink_to_fit();
+}
+
+bool ChunkDirectory::pack(const Block& block, const ChunkEntry& entry, Row& row) {
+  row.checksum = entry.checksum;
+  row.hull = encode_bounds(entry.hull);
+  bool fits = narrow((entry.offset - block.offset) / kUnit, row.offset) &&
+              narrow(entry.bytes / kUnit, row.bytes) &&
+              narrow(entry.first_subtree - block.first_subtree, row.first_subtree) &&
+              narrow(entry.node_count, row.node_count) &&
+              narrow(entry.record_count, row.record_count) &&
+              narrow(entry.place.listed_children, row.listed_children) &&
+              narrow(entry.place.listed_grandchildren, row.listed_grandchildren);
+  for (int level = 0; level < 4; ++level)
+    fits = fits && narrow(entry.place.next[level] - block.next[level], row.next[level]);
+  return fits;
+}
+
+void ChunkDirectory::close_block() {
+  if (open_.empty()) return;
+  const ChunkEntry& first = open_.front();
+  Block block{first.offset, {}, first.first_subtree, kPacked};
+  std::copy_n(first.place.next, 4, block.next);
+  for (const ChunkEntry& entry : open_) {
+    rows_.push_back({});
+    if (pack(block, entry, rows_.back())) continue;
+    block.wide = static_cast<uint32_t>(wide_.size());
+  }
+  if (block.wide != kPacked) wide_.insert(wide_.end(), open_.begin(), open_.end());
+  blocks_.push_back(block);
+  open_.clear();
+}
+
+ChunkEntry ChunkDirectory::operator[](size_t chunk) const {
+  if (const ChunkEntry* entry = wide(chunk)) return *entry;
+  const Block& block = blocks_[chunk / kBlockRows];
+  const Row& row = rows_[chunk];
+  ChunkEntry entry{};
+  entry.offset = block.offset + uint64_t{row.offset} * kUnit;
+  entry.checksum = row.checksum;
+  entry.bytes = row.bytes * kUnit;
+  entry.first_subtree = block.first_subtree + row.first_subtree;
+  entry.subtree_count =
+      (chunk + 1 < size() ? first_subtree(chunk + 1) : subtrees_) - entry.first_subtree;
+  entry.node_count = row.node_count;
+  entry.record_count = row.record_count;
+  entry.place = place(chunk);
+  entry.hull = hull(chunk);
+  return entry;
+}
+
+ChunkEntry ChunkDirectory::at(size_t chunk) const {
+  if (chunk >= size())
+    throw std::out_of_range("chunk " + std::to_string(chunk) + " of " + std::to_string(size()));
+  return (*this)[chunk];
+}
+
+SubtreePlace ChunkDirectory::place(size_t chunk) const {
+  if (const ChunkEntry* entry = wide(chunk)) return entry->place;
+  const Block& block = blocks_[chunk / kBlockRows];
+  const Row& row = rows_[chunk];
+  SubtreePlace place{{}, row.listed_children, row.listed_grandchildren};
+  for (int level = 0; level < 4; ++level) place.next[level] = block.next[level] + row.next[level];
+  return place;
+}
+
+uint32_t ChunkDirectory::first_subtree(size_t chunk) const {
+  if (const ChunkEntry* entry = wide(chunk)) return entry->first_subtree;
+  return blocks_[chunk / kBlockRows].first_subtree + rows_[chunk].first_subtree;
+}
+
+uint32_t ChunkDirectory::bytes(size_t chunk) const {
+  if (const ChunkEntry* entry = wide(chunk)) return entry->bytes;
+  return rows_[chunk].bytes * kUnit;
+}
+
+}  // namespace voyager

@@ -1,0 +1,90 @@
+#pragma once
+// A file's chunk directory, as it is kept while the file is open: 42 bytes a chunk, where the file
+// has 88.
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "runtime/format/layout.h"
+#include "runtime/math/bounds_code.h"
+
+namespace voyager {
+
+class ChunkDirectory {
+ public:
+  // The next entry, which follows the one before it in bytes, subtrees and nodes, and has a sound
+  // hull. An entry can be read after close().
+  void add(const ChunkEntry& entry);
+  // There are no more.
+  void close();
+
+  size_t size() const { return rows_.size(); }
+  bool empty() const { return rows_.empty(); }
+  // As the file has it, but for the hull, which is rounded as searches read it (bounds_code.h).
+  ChunkEntry operator[](size_t chunk) const;
+  ChunkEntry at(size_t chunk) const;  // throws std::out_of_range
+  ChunkEntry front() const { return (*this)[0]; }
+  ChunkEntry back() const { return (*this)[size() - 1]; }
+  // Of its entry, at less cost.
+  EntryHull hull(size_t chunk) const { return decode_bounds(rows_[chunk].hull); }
+  SubtreePlace place(size_t chunk) const;
+  uint32_t first_subtree(size_t chunk) const;
+  uint32_t bytes(size_t chunk) const;
+
+  class Iterator {
+   public:
+    Iterator(const ChunkDirectory* of, size_t chunk) : of_(of), chunk_(chunk) {}
+    ChunkEntry operator*() const { return (*of_)[chunk_]; }
+    Iterator& operator++() {
+      ++chunk_;
+      return *this;
+    }
+    bool operator==(const Iterator&) const = default;
+
+   private:
+    const ChunkDirectory* of_;
+    size_t chunk_;
+  };
+  Iterator begin() const { return {this, 0}; }
+  Iterator end() const { return {this, size()}; }
+
+ private:
+  static constexpr size_t kBlockRows = 16;
+  static constexpr uint32_t kUnit = 64;  // bytes, of offsets and lengths
+  static constexpr uint32_t kPacked = 0xffffffffu;
+
+  // Numbers are counted from the block's.
+  struct Row {
+    uint64_t checksum;
+    BoundsCode hull;
+    uint16_t offset, bytes;  // in units
+    uint16_t first_subtree;
+    uint16_t next[4];  // SubtreePlace::next
+    uint16_t node_count, record_count;
+    uint8_t listed_children, listed_grandchildren;
+  };
+  static_assert(sizeof(Row) == 40);
+  struct Block {
+    uint64_t offset;
+    uint32_t next[4];
+    uint32_t first_subtree;
+    uint32_t wide;  // where wide_ has its entries, since some number is too large; or kPacked
+  };
+
+  static bool pack(const Block& block, const ChunkEntry& entry, Row& row);
+  void close_block();
+  // The entry in wide_; null where it is packed.
+  const ChunkEntry* wide(size_t chunk) const {
+    const uint32_t at = blocks_[chunk / kBlockRows].wide;
+    return at == kPacked ? nullptr : &wide_[at + chunk % kBlockRows];
+  }
+
+  std::vector<Row> rows_;
+  std::vector<Block> blocks_;
+  std::vector<ChunkEntry> wide_;
+  std::vector<ChunkEntry> open_;  // of the block that is being added
+  uint32_t subtrees_ = 0;         // of all
+};
+
+}  // namespace voyager

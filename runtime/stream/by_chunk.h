@@ -1,0 +1,49 @@
+#pragma once
+// What is known of a few of a scene's chunks, at four bytes for each of the others.
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace voyager {
+
+template <class Known>
+class ByChunk {
+ public:
+  explicit ByChunk(size_t chunks) : at_(chunks), known_(1) {}
+
+  // Known{} where nothing is known of the chunk. No reference outlives know() or forget().
+  const Known& operator[](uint32_t chunk) const { return known_[at_[chunk]].of; }
+  // To be changed; from now on it is known.
+  Known& know(uint32_t chunk) {
+    if (at_[chunk] == 0) {
+      known_.push_back({chunk, {}});
+      at_[chunk] = static_cast<uint32_t>(known_.size() - 1);
+    }
+    return known_[at_[chunk]].of;
+  }
+  void forget(uint32_t chunk) {
+    const uint32_t at = std::exchange(at_[chunk], 0);
+    if (at == 0) return;
+    if (at + 1 != known_.size()) {
+      known_[at] = std::move(known_.back());
+      at_[known_[at].chunk] = at;
+    }
+    known_.pop_back();
+  }
+  // Those that are known, in any order: visit(chunk, Known&).
+  template <class Visit>
+  void each(const Visit& visit) {
+    for (size_t i = 1; i < known_.size(); ++i) visit(known_[i].chunk, known_[i].of);
+  }
+
+ private:
+  struct Entry {
+    uint32_t chunk = 0;
+    Known of{};
+  };
+  std::vector<uint32_t> at_;  // by chunk, its place in known_; 0 where nothing is known
+  std::vector<Entry> known_;  // the first is Known{}
+};
+
+}  // namespace voyager
