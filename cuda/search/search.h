@@ -62,7 +62,7 @@ class CutSearch {
   virtual void bound(const GaussianView&, cudaStream_t) {}
   // t of the cut just found; only of a search that was made for weights.
   virtual void weigh(const CutQuery& query, cudaStream_t stream) = 0;
-  // The same for who draws the cut, in place of weigh(); none where it has to be called.
+  // What weighs the cut while it is drawn, in place of weigh(). None: call weigh().
   virtual WeightSource weight_source(const CutQuery&) const { return {}; }
   virtual CutList list() const = 0;
   // What reads the scene's arrays in this frame has been launched, or has failed to be.

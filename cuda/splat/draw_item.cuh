@@ -5,7 +5,7 @@
 
 namespace voyager::cuda {
 
-// Of a node that has some.
+// How many children a node has that is not a leaf.
 __device__ inline uint32_t child_count(const GaussianView& gaussians, uint32_t node) {
   if (gaussians.sh_form != ShForm::coded) return __ldg(gaussians.child_counts + node);
   const auto* shape = static_cast<const ShapeRest*>(gaussians.shapes) + node;

@@ -22,7 +22,7 @@ constexpr unsigned kProjectThreads = 128;  // small blocks: registers bound how 
 // registers, which costs more than a few spills.
 constexpr unsigned kPairBlocks = 6;
 
-// In the image of any eye, before what hides it. hull: of the item's Gaussian.
+// Whether any eye may see the item if nothing hides it. hull: its Gaussian's.
 template <bool kLod, int kEyes, bool kSecond>
 __device__ bool project_may_show(const SplatFrame& f, const DrawItem& item, GaussianHull hull) {
   if (item.gaussian == kNoNode) return false;

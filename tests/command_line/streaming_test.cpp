@@ -78,7 +78,7 @@ TEST_F(Streaming, ABudgetThatIsTooSmallIsToldWhatItTakes) {
   EXPECT_TRUE(file_bytes(file("fits.pfm")) == file_bytes(file("whole.pfm")));
   const Outcome top = run(render("c.voy", "--budget 0.001 -o " + file("none.pfm")));
   EXPECT_EQ(top.exit_code, 4) << top.output;
-  EXPECT_NE(top.output.find("needs at least "), std::string::npos) << top.output;
+  EXPECT_NE(top.output.find("the top of the tree takes "), std::string::npos) << top.output;
   EXPECT_EQ(std::count(top.output.begin(), top.output.end(), '\n'), 1) << top.output;
   EXPECT_FALSE(std::filesystem::exists(file("none.pfm")));
 }
