@@ -47,7 +47,7 @@ CutState::CutState(const SearchTree& tree, uint32_t places, size_t most, bool we
   dirty_ = Buffer<uint32_t>(blocks);
   due_ = Buffer<uint32_t>(places);
   signals_ = Buffer<uint32_t>(places);
-  counters_ = Buffer<FrameCounters>(2);  // counting, counted
+  counters_ = Buffer<FrameCounters>(2);                                     // counting, counted
   const size_t room = most + most / 8 + 2 * kRowPlaces * kLevels * blocks;  // all least_room()s
   nodes_ = Buffer<uint32_t>(room);
   origin_ = Buffer<CutOrigin>(weights ? room : 0);
