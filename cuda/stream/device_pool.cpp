@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <vector>
 
 #include "cuda/interop/external_ring.h"
 #include "cuda/scene/device_gaussian.h"

@@ -23,9 +23,9 @@ class DevicePool final : public ChunkPool {
  public:
   static PoolBytes bytes(const Device& device, const Scene& scene, SlotShape shape);
 
-  // Takes all its memory. The scene outlives it; its description is complete.
-  // Throws Error(over_budget) for want of memory, Error(unsupported) where there
-  // are more addresses than 32 bits.
+  // Takes all its memory. The scene outlives it; its description is complete. Throws
+  // Error(over_budget) for want of memory, Error(unsupported) where there are more addresses than
+  // 32 bits.
   DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
              std::shared_ptr<const SceneFile> file, SlotShape shape, PoolRoom room);
   ~DevicePool() override;

@@ -8,11 +8,12 @@
 namespace voyager {
 namespace {
 
-// False where it is too large.
+// False where it is too large; then it is the largest.
 template <class Small>
 bool narrow(uint64_t value, Small& out) {
-  out = static_cast<Small>(value);
-  return value <= std::numeric_limits<Small>::max();
+  constexpr uint64_t kMost = std::numeric_limits<Small>::max();
+  out = static_cast<Small>(std::min(value, kMost));
+  return value <= kMost;
 }
 
 }  // namespace
@@ -37,15 +38,15 @@ void ChunkDirectory::close() {
 bool ChunkDirectory::pack(const Block& block, const ChunkEntry& entry, Row& row) {
   row.checksum = entry.checksum;
   row.hull = encode_bounds(entry.hull);
-  bool fits = narrow((entry.offset - block.offset) / kUnit, row.offset) &&
-              narrow(entry.bytes / kUnit, row.bytes) &&
-              narrow(entry.first_subtree - block.first_subtree, row.first_subtree) &&
-              narrow(entry.node_count, row.node_count) &&
-              narrow(entry.record_count, row.record_count) &&
-              narrow(entry.place.listed_children, row.listed_children) &&
-              narrow(entry.place.listed_grandchildren, row.listed_grandchildren);
+  bool fits = narrow(entry.place.listed_children, row.listed_children);
+  fits &= narrow(entry.place.listed_grandchildren, row.listed_grandchildren);
+  fits &= narrow((entry.offset - block.offset) / kUnit, row.offset);
+  fits &= narrow(entry.bytes / kUnit, row.bytes);
+  fits &= narrow(entry.first_subtree - block.first_subtree, row.first_subtree);
+  fits &= narrow(entry.node_count, row.node_count);
+  fits &= narrow(entry.record_count, row.record_count);
   for (int level = 0; level < 4; ++level)
-    fits = fits && narrow(entry.place.next[level] - block.next[level], row.next[level]);
+    fits &= narrow(entry.place.next[level] - block.next[level], row.next[level]);
   return fits;
 }
 

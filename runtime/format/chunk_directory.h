@@ -3,7 +3,6 @@
 // has 88.
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "runtime/format/layout.h"
@@ -31,6 +30,7 @@ class ChunkDirectory {
   SubtreePlace place(size_t chunk) const;
   uint32_t first_subtree(size_t chunk) const;
   uint32_t bytes(size_t chunk) const;
+  bool goes_on_with_root(size_t chunk) const { return rows_[chunk].listed_children != 0; }
 
   class Iterator {
    public:
@@ -62,7 +62,7 @@ class ChunkDirectory {
     uint16_t first_subtree;
     uint16_t next[4];  // SubtreePlace::next
     uint16_t node_count, record_count;
-    uint8_t listed_children, listed_grandchildren;
+    uint8_t listed_children, listed_grandchildren;  // not 0 if the entry's is not
   };
   static_assert(sizeof(Row) == 40);
   struct Block {

@@ -31,7 +31,8 @@ class ByChunk {
     }
     known_.pop_back();
   }
-  // Those that are known, in any order: visit(chunk, Known&).
+  // Those that are known, in any order: visit(chunk, Known&), which neither makes one known nor
+  // forgets one.
   template <class Visit>
   void each(const Visit& visit) {
     for (size_t i = 1; i < known_.size(); ++i) visit(known_[i].chunk, known_[i].of);

@@ -6,66 +6,45 @@
 
 namespace voyager {
 
-// What is sought for one chunk lies behind what was sought for the one before: O(n) in all.
-class ChunkGraph::Builder {
- public:
-  explicit Builder(const ChunkGraph& graph) : graph_(graph) {}
-
-  ChunkRange children(uint32_t chunk) {
-    const uint32_t below = graph_.chunks_->place(chunk).next[3];
-    const uint32_t after = graph_.place_after(chunk).next[3];
-    if (below == after) return {0, 0};
-    while (first_ < graph_.size() && graph_.last_root(first_) < below) ++first_;
-    uint32_t last = first_;
-    while (last < graph_.size() && graph_.first_root(last) < after) ++last;
-    const uint32_t least = std::max(first_, chunk + 1);
-    return {least, std::max(least, last)};
-  }
-
-  // From the first parent to the last.
-  ChunkRange among_parents(uint32_t chunk) {
-    const uint32_t last = graph_.last_root(chunk);
-    if (last == 0) return {chunk, chunk};
-    const uint32_t begin = owner(std::max(graph_.first_root(chunk), 1u), first_owner_);
-    const uint32_t end = std::min(chunk, owner(last, last_owner_) + 1);
-    return {std::min(begin, end), end};
-  }
-
- private:
-  // As owner_of_parent().
-  uint32_t owner(uint32_t root, uint32_t& after) const {
-    while (after < graph_.size() && graph_.chunks_->place(after).next[3] <= root) ++after;
-    return after == 0 ? 0 : after - 1;
-  }
-
-  const ChunkGraph& graph_;
-  uint32_t first_ = 0, first_owner_ = 0, last_owner_ = 0;
-};
-
+// What is sought for a chunk of a sound file is near what was sought for the one before.
 ChunkGraph::ChunkGraph(const ChunkDirectory& chunks, const Tiers& tiers)
     : chunks_(&chunks), tiers_(tiers) {
-  Builder builder(*this);
-  words_.resize(chunks.size() / 64 + 1);
+  children_.reserve(chunks.size());
+  ChunkRange near{0, 0};
   for (uint32_t chunk = 0; chunk < size(); ++chunk) {
-    Word& word = words_[chunk / 64];
-    if (chunk % 64 == 0) word.before = static_cast<uint32_t>(leading_.size());
-    const ChunkRange children = builder.children(chunk);
-    if (children.empty()) continue;
-    word.leads |= uint64_t{1} << chunk % 64;
-    leading_.push_back(chunk);
-    children_.push_back(children);
+    children_.push_back(find_children(chunk, near.first));
+    if (!children_.back().empty()) near = children_.back();
   }
-  leading_.shrink_to_fit();
-  children_.shrink_to_fit();
-  const auto place_of = [&](uint32_t chunk) {
-    return static_cast<uint32_t>(std::lower_bound(leading_.begin(), leading_.end(), chunk) -
-                                 leading_.begin());
-  };
-  parents_.reserve(chunks.size());
+  parents_begin_ = {0};
+  parents_begin_.reserve(chunks.size() + 1);
+  near = {0, 0};
   for (uint32_t chunk = 0; chunk < size(); ++chunk) {
-    const ChunkRange among = builder.among_parents(chunk);
-    parents_.push_back({place_of(among.first), place_of(among.last)});
+    const ChunkRange among = near = among_parents(chunk, near);
+    for (uint32_t p = among.first; p < among.last; ++p)
+      if (!children_[p].empty()) parents_.push_back(p);
+    parents_begin_.push_back(static_cast<uint32_t>(parents_.size()));
   }
+  parents_.shrink_to_fit();
+}
+
+ChunkRange ChunkGraph::find_children(uint32_t chunk, uint32_t near) const {
+  const uint32_t below = chunks_->place(chunk).next[3], after = place_after(chunk).next[3];
+  if (below == after) return {0, 0};
+  const uint32_t first =
+      first_near(near, size(), [&](uint32_t other) { return last_root(other) >= below; });
+  const uint32_t last =
+      first_near(first, size(), [&](uint32_t other) { return first_root(other) >= after; });
+  const uint32_t least = std::max(first, chunk + 1);
+  return {least, std::max(least, last)};
+}
+
+// From the first parent to the last.
+ChunkRange ChunkGraph::among_parents(uint32_t chunk, ChunkRange near) const {
+  const uint32_t last = last_root(chunk);
+  if (last == 0) return {chunk, chunk};
+  const uint32_t begin = owner_of_parent(std::max(first_root(chunk), 1u), near.first);
+  const uint32_t end = std::min(chunk, owner_of_parent(last, near.last) + 1);
+  return {std::min(begin, end), end};
 }
 
 SubtreePlace ChunkGraph::place_after(uint32_t chunk) const {
@@ -94,9 +73,9 @@ uint32_t ChunkGraph::last_root(uint32_t chunk) const {
 }
 
 // next[3] ascends over all chunks; a chunk that nothing hangs from has its successor's.
-uint32_t ChunkGraph::owner_of_parent(uint32_t root) const {
-  const uint32_t after =
-      first_that(0u, size(), [&](uint32_t chunk) { return chunks_->place(chunk).next[3] > root; });
+uint32_t ChunkGraph::owner_of_parent(uint32_t root, uint32_t near) const {
+  const uint32_t after = first_near(
+      near, size(), [&](uint32_t chunk) { return chunks_->place(chunk).next[3] > root; });
   return after == 0 ? 0 : after - 1;
 }
 
@@ -108,7 +87,7 @@ ChunkRange ChunkGraph::with_roots(uint32_t first, uint32_t count, ChunkRange amo
 }
 
 ChunkRange ChunkGraph::with_family(uint32_t chunk, uint32_t first, uint32_t count) const {
-  ChunkRange among = children(chunk);
+  ChunkRange among = children_[chunk];
   if (among.empty()) return {chunk, chunk + 1};
   if (last_root(chunk) >= first) among.first = chunk;
   return with_roots(first, count, among);

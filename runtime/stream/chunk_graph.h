@@ -2,7 +2,6 @@
 // Which chunks lead to which: a chunk's nodes hang from those of its parents. Found from
 // the directory alone, since nodes are numbered breadth-first, so that children are consecutive
 // chunks, and parents but for those that lead nowhere.
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -28,16 +27,11 @@ class ChunkGraph {
   // to hangs from itself. Between them may be chunks that lead nowhere: on a level with few nodes
   // a chunk hangs from places far apart, and what is between is none of its business.
   std::span<const uint32_t> parents(uint32_t chunk) const {
-    const ChunkRange at = parents_[chunk];
-    return std::span(leading_).subspan(at.first, at.last - at.first);
+    return std::span(parents_).subspan(parents_begin_[chunk],
+                                       parents_begin_[chunk + 1] - parents_begin_[chunk]);
   }
   // Each behind the chunk: those that it is a parent of, and no other.
-  ChunkRange children(uint32_t chunk) const {
-    const Word& word = words_[chunk / 64];
-    const uint64_t own = uint64_t{1} << chunk % 64;
-    if ((word.leads & own) == 0) return {0, 0};
-    return children_[word.before + static_cast<uint32_t>(std::popcount(word.leads & (own - 1)))];
-  }
+  ChunkRange children(uint32_t chunk) const { return children_[chunk]; }
   // The chunks whose subtrees have these nodes as their roots: [first, first + count) on a level
   // of roots, but for the tree's. Of no nodes: the one that has roots on either side of first.
   ChunkRange with_roots(uint32_t first, uint32_t count) const {
@@ -46,12 +40,13 @@ class ChunkGraph {
   // The same of the children of a node that `chunk` owns. Costs by how many chunks it leads to.
   ChunkRange with_family(uint32_t chunk, uint32_t first, uint32_t count) const;
   // The chunk that owns the parent of a root, which is not the tree's.
-  uint32_t owner_of_parent(uint32_t root) const;
+  uint32_t owner_of_parent(uint32_t root) const { return owner_of_parent(root, 0); }
 
  private:
-  class Builder;
-
   ChunkRange with_roots(uint32_t first, uint32_t count, ChunkRange among) const;
+  ChunkRange find_children(uint32_t chunk, uint32_t near) const;
+  ChunkRange among_parents(uint32_t chunk, ChunkRange near) const;
+  uint32_t owner_of_parent(uint32_t root, uint32_t near) const;
   uint32_t first_root(uint32_t chunk) const;
   uint32_t last_root(uint32_t chunk) const;
   SubtreePlace place_after(uint32_t chunk) const;
@@ -59,15 +54,8 @@ class ChunkGraph {
 
   const ChunkDirectory* chunks_;
   Tiers tiers_;
-  // Of 64 chunks.
-  struct Word {
-    uint64_t leads;   // a bit for each that leads to others
-    uint32_t before;  // how many of those are in front
-  };
-  std::vector<Word> words_;
-  std::vector<uint32_t> leading_;     // the chunks that lead to others, and
-  std::vector<ChunkRange> children_;  // what each leads to
-  std::vector<ChunkRange> parents_;   // by chunk, places in leading_
+  std::vector<uint32_t> parents_, parents_begin_;  // of all chunks, and where each one's begin
+  std::vector<ChunkRange> children_;
 };
 
 }  // namespace voyager

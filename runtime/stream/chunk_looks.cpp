@@ -26,7 +26,8 @@ float ChunkLooks::error_of(uint32_t urgency) {
 
 void ChunkLooks::begin(std::vector<Viewer> viewers) {
   viewers_ = std::move(viewers);
-  std::fill(looks_.begin(), looks_.end(), kNotLooked);
+  for (const uint32_t chunk : looked_) looks_[chunk] = kNotLooked;
+  looked_.clear();
 }
 
 uint32_t ChunkLooks::look(uint32_t chunk) const {

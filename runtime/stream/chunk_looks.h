@@ -32,7 +32,10 @@ class ChunkLooks {
   void begin(std::vector<Viewer> viewers);
   // The first call of a round for a chunk looks at all viewers.
   Look at(uint32_t chunk) {
-    if (looks_[chunk] == kNotLooked) looks_[chunk] = look(chunk);
+    if (looks_[chunk] == kNotLooked) {
+      looked_.push_back(chunk);
+      looks_[chunk] = look(chunk);
+    }
     const uint32_t own = looks_[chunk];
     return own == kNobody ? Look{0, false} : Look{own | kOwn, (own & kNow) != 0};
   }
@@ -46,7 +49,8 @@ class ChunkLooks {
 
   const ChunkDirectory* chunks_;
   std::vector<Viewer> viewers_;
-  std::vector<uint32_t> looks_;  // by chunk, of the round
+  std::vector<uint32_t> looks_;   // by chunk, of the round
+  std::vector<uint32_t> looked_;  // chunks, in it
 };
 
 }  // namespace voyager

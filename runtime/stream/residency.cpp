@@ -22,6 +22,7 @@ Residency::Residency(const ChunkGraph& graph, const ChunkDirectory& chunks,
       pinned_(pinned),
       known_(chunks.size()),
       few_blocks_(chunks.size(), kMany),
+      missed_(chunks.size()),
       shares_family_(chunks.size()),
       next_block_(room.blocks, kNoBlock) {
   assert(pinned <= room.slots);
@@ -231,8 +232,8 @@ Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accep
     count_missing(chunk, false);
     ++resident_;
     ++counters_.arrived;
-    counters_.late += known(chunk).missed;
-    know(chunk).missed = false;
+    counters_.late += missed_[chunk];
+    missed_[chunk] = false;
     const ChunkRange children = graph_->children(chunk);
     for (const uint32_t p : graph_->parents(chunk)) ++know(p).children_there;
     for (uint32_t c = children.first; c < children.last; ++c)

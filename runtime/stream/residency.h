@@ -131,10 +131,9 @@ class Residency {
   static constexpr uint8_t kSeen = 2, kMany = 0xff;
 
   enum class State : uint8_t { absent, on_its_way, read, filled, resident, failed };
-  // Of a chunk that is not absent, or that the last plan needed.
+  // Of a chunk that is not absent, or that the last plan needed or might have needed.
   struct Known {
     State state = State::absent;
-    bool missed = false;  // a viewer has seen that it was not there
     uint8_t counted = 0;  // in need_, if the last plan needed it; kSeen: as seen, too
     bool leaves = false;  // scratch
     float score = 0;      // scratch
@@ -208,7 +207,9 @@ class Residency {
   uint32_t plan_ = 0;
   ByChunk<Known> known_;
   // By chunk.
-  std::vector<uint8_t> few_blocks_;  // that it took when it was last read; kMany: or not known
+  // That it took when it was last read. kMany: many, which is forgotten with it, or not known.
+  std::vector<uint8_t> few_blocks_;
+  std::vector<bool> missed_;  // a viewer has seen that it was not there
   // 1: a node that leads to it leads to the chunk before, too; 2: and to the one behind.
   std::vector<uint8_t> shares_family_;
 

@@ -34,6 +34,14 @@ void Residency::forget_absent() {
 // And all that it hangs from: chains may be as long as a file says. False where it is not to be
 // had, because it or what it hangs from has failed.
 bool Residency::add_needed(const Needed& needed) {
+  const auto is_needed = [&](uint32_t parent) { return known(parent).needed_plan == plan_; };
+  const std::span<const uint32_t> above = graph_->parents(needed.chunk);
+  if (known(needed.chunk).state != State::failed &&
+      std::all_of(above.begin(), above.end(), is_needed)) {  // nearly always
+    know(needed.chunk).needed_plan = plan_;
+    extra_.push_back(needed);
+    return true;
+  }
   climb_.assign(1, {needed, 0});
   while (!climb_.empty()) {
     auto& [of, done] = climb_.back();
@@ -42,7 +50,7 @@ bool Residency::add_needed(const Needed& needed) {
       return false;
     }
     const std::span<const uint32_t> parents = graph_->parents(of.chunk);
-    while (done < parents.size() && known(parents[done]).needed_plan == plan_) ++done;
+    while (done < parents.size() && is_needed(parents[done])) ++done;
     if (done < parents.size()) {
       const uint32_t parent = parents[done++];
       know(parent).own_urgency = 0;
@@ -82,7 +90,7 @@ void Residency::find_needed(ChunkLooks& looks) {
     Needed found{chunk, own.urgency, own.now};
     // A node is refined with all of its children or not at all, and the hull of a chunk that goes
     // on with a node of the one before is that of this node, not of what it hangs from.
-    if (chunks_->place(chunk).listed_children != 0 && needed_before(chunk)) {
+    if (chunks_->goes_on_with_root(chunk) && needed_before(chunk)) {
       found.urgency = std::max(found.urgency, extra_.back().urgency);
       found.now = found.now || extra_.back().now;
     }
@@ -192,7 +200,7 @@ void Residency::queue_requests() {
   for (const Needed& needed : needed_)
     if (needed.now && ChunkLooks::class_of(needed.urgency) == ChunkLooks::Class::seen &&
         known(needed.chunk).state != State::resident)
-      know(needed.chunk).missed = true;
+      missed_[needed.chunk] = true;
   // Families together, as no frame sees a part of one.
   const auto urgency = [&](uint32_t chunk) { return known(chunk).urgency | ChunkLooks::kOwn; };
   std::sort(requests_.begin(), requests_.end(), [&](uint32_t a, uint32_t b) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 #include <stdexcept>
+#include <vector>
 
 namespace voyager::chunk_directory_test {
 namespace {

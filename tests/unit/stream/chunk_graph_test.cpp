@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstring>
+#include <optional>
 #include <set>
 
 #include "runtime/stream/residency.h"
 #include "runtime/stream/staged_chunk.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
+#include "tests/support/sealed.h"
 
 namespace voyager::chunk_graph_test {
 namespace {
@@ -39,6 +43,50 @@ Leads by_nodes(const SceneFile& file, const ChunkGraph& graph) {
         leads.emplace(graph.owner_of_parent(subtree.root), chunk);
   }
   return leads;
+}
+
+// As if the chunk went on with nothing of the one before.
+test::Bytes without_repeats(test::Bytes bytes, uint32_t chunk) {
+  FileHeader header;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  const uint64_t at = header.directory.offset + chunk * sizeof(ChunkEntry);
+  ChunkEntry entry;
+  std::memcpy(&entry, bytes.data() + at, sizeof entry);
+  entry.place.listed_children = entry.place.listed_grandchildren = 0;
+  std::memcpy(bytes.data() + at, &entry, sizeof entry);
+  return test::sealed(bytes);
+}
+
+// What links a chunk relies on it, and a directory that is opened may be wrong in this.
+TEST(ChunkGraph, WhatARootHangsFromIsAParentAlsoIfTheDirectoryHidesARepeat) {
+  size_t opened = 0;
+  for (const test::TreeShape shape : test::kTreeShapes) {
+    const test::Bytes sound = bytes_of(shape, 1000);
+    const uint32_t chunks = SceneFile(test::source_of(sound)).info().chunk_count;
+    for (uint32_t edited = 1; edited < chunks; ++edited) {
+      const test::Bytes bytes = without_repeats(sound, edited);
+      std::optional<SceneFile> file;
+      try {
+        file.emplace(test::source_of(bytes));
+      } catch (const Error&) {
+        continue;
+      }
+      ++opened;
+      const ChunkGraph graph(file->chunks(), file->tiers());
+      for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
+        if (chunk == edited || chunk + 1 == edited) continue;  // damaged
+        const std::span<const uint32_t> parents = graph.parents(chunk);
+        for (const Subtree& subtree : file->read_chunk(chunk).subtrees) {
+          if (subtree.root == 0) continue;
+          const uint32_t owner = graph.owner_of_parent(subtree.root);
+          EXPECT_TRUE(owner == chunk ||
+                      std::find(parents.begin(), parents.end(), owner) != parents.end())
+              << test::name_of(shape) << ": chunk " << chunk << ", edited " << edited;
+        }
+      }
+    }
+  }
+  EXPECT_GT(opened, 10u);
 }
 
 // Who waits for its parents is looked at again by each of them, and none is of those that lead
