@@ -47,8 +47,9 @@ CutState::CutState(const SearchTree& tree, uint32_t places, size_t most, bool we
   dirty_ = Buffer<uint32_t>(blocks);
   due_ = Buffer<uint32_t>(places);
   signals_ = Buffer<uint32_t>(places);
-  counters_ = Buffer<FrameCounters>(2);                                     // counting, counted
-  const size_t room = most + most / 8 + 2 * kRowPlaces * kLevels * blocks;  // all least_room()s
+  counters_ = Buffer<FrameCounters>(2);  // counting, counted
+  // What search_place gives all segments at least, and more.
+  const size_t room = most + most / 8 + 2 * kRowPlaces * kLevels * blocks;
   nodes_ = Buffer<uint32_t>(room);
   origin_ = Buffer<CutOrigin>(weights ? room : 0);
   weights_ = Buffer<float>(weights ? room : 0);

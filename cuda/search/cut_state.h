@@ -43,7 +43,8 @@ struct Segment {
 struct FrameCounters {
   unsigned long long nodes_tested, subtrees_visited, chunks_read, bytes_read;
   unsigned long long entered, left;
-  // Nodes, places in the list, and nodes that stand in for children that are not resident; kept.
+  // Nodes, places in the list, and nodes that stand in for children that are not resident. They
+  // are kept from frame to frame.
   uint32_t cut_size, list_size, stand_ins;
   uint32_t streamed;             // 1: by streaming
   uint32_t due_count;            // entries of due[]

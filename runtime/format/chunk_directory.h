@@ -30,6 +30,7 @@ class ChunkDirectory {
   SubtreePlace place(size_t chunk) const;
   uint32_t first_subtree(size_t chunk) const;
   uint32_t bytes(size_t chunk) const;
+  // Whether its first subtree goes on with a root of the chunk before.
   bool goes_on_with_root(size_t chunk) const { return rows_[chunk].listed_children != 0; }
 
   class Iterator {

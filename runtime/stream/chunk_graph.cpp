@@ -42,8 +42,8 @@ ChunkRange ChunkGraph::find_children(uint32_t chunk, uint32_t near) const {
 ChunkRange ChunkGraph::among_parents(uint32_t chunk, ChunkRange near) const {
   const uint32_t last = last_root(chunk);
   if (last == 0) return {chunk, chunk};
-  const uint32_t begin = owner_of_parent(std::max(first_root(chunk), 1u), near.first);
-  const uint32_t end = std::min(chunk, owner_of_parent(last, near.last) + 1);
+  const uint32_t begin = owner_near(std::max(first_root(chunk), 1u), near.first);
+  const uint32_t end = std::min(chunk, owner_near(last, near.last) + 1);
   return {std::min(begin, end), end};
 }
 
@@ -73,9 +73,20 @@ uint32_t ChunkGraph::last_root(uint32_t chunk) const {
 }
 
 // next[3] ascends over all chunks; a chunk that nothing hangs from has its successor's.
-uint32_t ChunkGraph::owner_of_parent(uint32_t root, uint32_t near) const {
-  const uint32_t after = first_near(
-      near, size(), [&](uint32_t chunk) { return chunks_->place(chunk).next[3] > root; });
+bool ChunkGraph::leads_beyond(uint32_t chunk, uint32_t root) const {
+  return chunks_->place(chunk).next[3] > root;
+}
+
+uint32_t ChunkGraph::owner_of_parent(uint32_t root) const {
+  const uint32_t after =
+      first_that(0u, size(), [&](uint32_t chunk) { return leads_beyond(chunk, root); });
+  return after == 0 ? 0 : after - 1;
+}
+
+// The same, sought from a chunk that is probably near.
+uint32_t ChunkGraph::owner_near(uint32_t root, uint32_t near) const {
+  const uint32_t after =
+      first_near(near, size(), [&](uint32_t chunk) { return leads_beyond(chunk, root); });
   return after == 0 ? 0 : after - 1;
 }
 

@@ -40,13 +40,14 @@ class ChunkGraph {
   // The same of the children of a node that `chunk` owns. Costs by how many chunks it leads to.
   ChunkRange with_family(uint32_t chunk, uint32_t first, uint32_t count) const;
   // The chunk that owns the parent of a root, which is not the tree's.
-  uint32_t owner_of_parent(uint32_t root) const { return owner_of_parent(root, 0); }
+  uint32_t owner_of_parent(uint32_t root) const;
 
  private:
   ChunkRange with_roots(uint32_t first, uint32_t count, ChunkRange among) const;
   ChunkRange find_children(uint32_t chunk, uint32_t near) const;
   ChunkRange among_parents(uint32_t chunk, ChunkRange near) const;
-  uint32_t owner_of_parent(uint32_t root, uint32_t near) const;
+  uint32_t owner_near(uint32_t root, uint32_t near) const;
+  bool leads_beyond(uint32_t chunk, uint32_t root) const;
   uint32_t first_root(uint32_t chunk) const;
   uint32_t last_root(uint32_t chunk) const;
   SubtreePlace place_after(uint32_t chunk) const;
