@@ -1,5 +1,5 @@
 #pragma once
-// A file's chunk directory, as it is kept while the file is open: 42 bytes a chunk, where the file
+// A file's chunk directory, as it is kept while the file is open: 41 bytes a chunk, where the file
 // has 88.
 #include <cstddef>
 #include <cstdint>
@@ -51,7 +51,7 @@ class ChunkDirectory {
   Iterator end() const { return {this, size()}; }
 
  private:
-  static constexpr size_t kBlockRows = 16;
+  static constexpr size_t kBlockRows = 32;
   static constexpr uint32_t kUnit = 64;  // bytes, of offsets and lengths
   static constexpr uint32_t kPacked = 0xffffffffu;
 

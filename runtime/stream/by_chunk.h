@@ -1,9 +1,11 @@
 #pragma once
-// What is known of a few of a scene's chunks, at four bytes for each of the others.
+// What is known of a few of a scene's chunks.
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
+
+#include "runtime/stream/sparse_array.h"
 
 namespace voyager {
 
@@ -16,18 +18,18 @@ class ByChunk {
   const Known& operator[](uint32_t chunk) const { return known_[at_[chunk]].of; }
   // To be changed; from now on it is known.
   Known& know(uint32_t chunk) {
-    if (at_[chunk] == 0) {
-      known_.push_back({chunk, {}});
-      at_[chunk] = static_cast<uint32_t>(known_.size() - 1);
-    }
-    return known_[at_[chunk]].of;
+    if (const uint32_t at = at_[chunk]; at != 0) return known_[at].of;
+    at_.set(chunk, static_cast<uint32_t>(known_.size()));
+    known_.push_back({chunk, {}});
+    return known_.back().of;
   }
   void forget(uint32_t chunk) {
-    const uint32_t at = std::exchange(at_[chunk], 0);
+    const uint32_t at = at_[chunk];
     if (at == 0) return;
+    at_.set(chunk, 0);
     if (at + 1 != known_.size()) {
       known_[at] = std::move(known_.back());
-      at_[known_[at].chunk] = at;
+      at_.set(known_[at].chunk, at);
     }
     known_.pop_back();
   }
@@ -43,7 +45,7 @@ class ByChunk {
     uint32_t chunk = 0;
     Known of{};
   };
-  std::vector<uint32_t> at_;  // by chunk, its place in known_; 0 where nothing is known
+  SparseArray<uint32_t> at_;  // by chunk, its place in known_; 0 where nothing is known
   std::vector<Entry> known_;  // the first is Known{}
 };
 

@@ -9,22 +9,21 @@ namespace voyager {
 // What is sought for a chunk of a sound file is near what was sought for the one before.
 ChunkGraph::ChunkGraph(const ChunkDirectory& chunks, const Tiers& tiers)
     : chunks_(&chunks), tiers_(tiers) {
-  children_.reserve(chunks.size());
   ChunkRange near{0, 0};
   for (uint32_t chunk = 0; chunk < size(); ++chunk) {
-    children_.push_back(find_children(chunk, near.first));
-    if (!children_.back().empty()) near = children_.back();
+    const ChunkRange children = find_children(chunk, near.first);
+    children_.add(children);
+    if (!children.empty()) near = children;
   }
-  parents_begin_ = {0};
-  parents_begin_.reserve(chunks.size() + 1);
+  children_.close();
   near = {0, 0};
   for (uint32_t chunk = 0; chunk < size(); ++chunk) {
-    const ChunkRange among = near = among_parents(chunk, near);
-    for (uint32_t p = among.first; p < among.last; ++p)
-      if (!children_[p].empty()) parents_.push_back(p);
-    parents_begin_.push_back(static_cast<uint32_t>(parents_.size()));
+    ChunkRange among = near = among_parents(chunk, near);
+    while (!among.empty() && children_.is_empty(among.first)) ++among.first;
+    while (!among.empty() && children_.is_empty(among.last - 1)) --among.last;
+    parents_.add(among);
   }
-  parents_.shrink_to_fit();
+  parents_.close();
 }
 
 ChunkRange ChunkGraph::find_children(uint32_t chunk, uint32_t near) const {

@@ -2,34 +2,69 @@
 // Which chunks lead to which: a chunk's nodes hang from those of its parents. Found from
 // the directory alone, since nodes are numbered breadth-first, so that children are consecutive
 // chunks, and parents but for those that lead nowhere.
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
+#include <iterator>
 
 #include "runtime/format/chunk_directory.h"
+#include "runtime/stream/chunk_ranges.h"
 
 namespace voyager {
 
-// Chunks [first, last).
-struct ChunkRange {
-  uint32_t first, last;
-  bool empty() const { return first == last; }
-};
-
 class ChunkGraph {
  public:
+  class Parents {
+   public:
+    // Those of the chunks that lead somewhere.
+    Parents(ChunkRange among, const ChunkRanges* children) : among_(among), children_(children) {}
+    class Iterator {
+     public:
+      using iterator_category = std::forward_iterator_tag;
+      using value_type = uint32_t;
+      using difference_type = std::ptrdiff_t;
+      using pointer = void;
+      using reference = uint32_t;
+
+      Iterator(uint32_t chunk, const Parents* of) : chunk_(chunk), of_(of) { skip(); }
+      uint32_t operator*() const { return chunk_; }
+      Iterator& operator++() {
+        ++chunk_;
+        skip();
+        return *this;
+      }
+      bool operator==(const Iterator& other) const { return chunk_ == other.chunk_; }
+
+     private:
+      void skip() {
+        while (chunk_ != of_->among_.last && of_->children_->is_empty(chunk_)) ++chunk_;
+      }
+
+      uint32_t chunk_;
+      const Parents* of_;
+    };
+    Iterator begin() const { return {among_.first, this}; }
+    Iterator end() const { return {among_.last, this}; }
+
+   private:
+    ChunkRange among_;
+    const ChunkRanges* children_;
+  };
+
   // A directory as SceneFile checks it, which outlives the graph, as what tiers refers to.
   // O(n log n).
   ChunkGraph(const ChunkDirectory& chunks, const Tiers& tiers);
 
   uint32_t size() const { return static_cast<uint32_t>(chunks_->size()); }
-  // Ascending, each before the chunk; none where it holds the tree's root and all that it leads
-  // to hangs from itself. Between them may be chunks that lead nowhere: on a level with few nodes
-  // a chunk hangs from places far apart, and what is between is none of its business.
-  std::span<const uint32_t> parents(uint32_t chunk) const {
-    return std::span(parents_).subspan(parents_begin_[chunk],
-                                       parents_begin_[chunk + 1] - parents_begin_[chunk]);
+  // Ascending, each before the chunk, and none before `from`; none where it holds the tree's root
+  // and all that it leads to hangs from itself. Between them may be chunks that lead nowhere: on a
+  // level with few nodes a chunk hangs from places far apart, and what is between is none of its
+  // business.
+  Parents parents(uint32_t chunk, uint32_t from = 0) const {
+    const ChunkRange among = parents_[chunk];
+    return Parents{{std::clamp(from, among.first, among.last), among.last}, &children_};
   }
+  bool has_parents(uint32_t chunk) const { return !parents_.is_empty(chunk); }
   // Each behind the chunk: those that it is a parent of, and no other.
   ChunkRange children(uint32_t chunk) const { return children_[chunk]; }
   // The chunks whose subtrees have these nodes as their roots: [first, first + count) on a level
@@ -55,8 +90,8 @@ class ChunkGraph {
 
   const ChunkDirectory* chunks_;
   Tiers tiers_;
-  std::vector<uint32_t> parents_, parents_begin_;  // of all chunks, and where each one's begin
-  std::vector<ChunkRange> children_;
+  ChunkRanges children_;
+  ChunkRanges parents_;  // from the first to the last, with those between that lead nowhere
 };
 
 }  // namespace voyager

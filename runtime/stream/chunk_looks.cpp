@@ -26,7 +26,7 @@ float ChunkLooks::error_of(uint32_t urgency) {
 
 void ChunkLooks::begin(std::vector<Viewer> viewers) {
   viewers_ = std::move(viewers);
-  for (const uint32_t chunk : looked_) looks_[chunk] = kNotLooked;
+  for (const uint32_t chunk : looked_) looks_.set(chunk, kNotLooked);
   looked_.clear();
 }
 

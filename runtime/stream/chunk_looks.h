@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "runtime/format/chunk_directory.h"
+#include "runtime/stream/sparse_array.h"
 #include "runtime/stream/viewer.h"
 
 namespace voyager {
@@ -32,11 +33,12 @@ class ChunkLooks {
   void begin(std::vector<Viewer> viewers);
   // The first call of a round for a chunk looks at all viewers.
   Look at(uint32_t chunk) {
-    if (looks_[chunk] == kNotLooked) {
+    uint32_t own = looks_[chunk];
+    if (own == kNotLooked) {
+      own = look(chunk);
+      looks_.set(chunk, own);
       looked_.push_back(chunk);
-      looks_[chunk] = look(chunk);
     }
-    const uint32_t own = looks_[chunk];
     return own == kNobody ? Look{0, false} : Look{own | kOwn, (own & kNow) != 0};
   }
 
@@ -49,7 +51,7 @@ class ChunkLooks {
 
   const ChunkDirectory* chunks_;
   std::vector<Viewer> viewers_;
-  std::vector<uint32_t> looks_;   // by chunk, of the round
+  SparseArray<uint32_t> looks_;   // by chunk, of the round
   std::vector<uint32_t> looked_;  // chunks, in it
 };
 

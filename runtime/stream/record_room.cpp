@@ -21,18 +21,19 @@ uint32_t most_search_records(const ChunkEntry& chunk, const SubtreePlace& after,
          std::min(owned(2), owned(3)) + (chunk.record_count - chunk.node_count);
 }
 
-RecordRoom::RecordRoom(const SceneFile& file) : file_(file) {
+uint32_t RecordRoom::most_blocks(uint32_t chunk) const {
+  const ChunkDirectory& chunks = file_.chunks();
+  const SubtreePlace after =
+      chunk + 1 < chunks.size() ? chunks.place(chunk + 1) : SubtreePlace::end_of(tiers_);
+  return record_blocks(most_search_records(chunks[chunk], after, tiers_));
+}
+
+RecordRoom::RecordRoom(const SceneFile& file) : file_(file), tiers_(file.tiers()) {
   const auto& chunks = file.chunks();
-  const Tiers tiers = file.tiers();
   uint64_t records = file.info().node_count - file.info().leaf_count;
-  most_.reserve(chunks.size());
-  static_assert(kMaxChunkBytes / sizeof(NodeRecord) / kRecordBlock <= UINT16_MAX);
-  for (size_t i = 0; i < chunks.size(); ++i) {
+  for (uint32_t i = 0; i < chunks.size(); ++i) {
     const ChunkEntry chunk = chunks[i];
-    const SubtreePlace after =
-        i + 1 < chunks.size() ? chunks.place(i + 1) : SubtreePlace::end_of(tiers);
-    const uint32_t most = record_blocks(most_search_records(chunk, after, tiers));
-    most_.push_back(static_cast<uint16_t>(most));
+    const uint32_t most = most_blocks(i);
     greatest_ = std::max(greatest_, most);
     sum_of_most_ += most;
     records += chunk.record_count - chunk.node_count;

@@ -15,7 +15,7 @@ class RecordRoom {
   explicit RecordRoom(const SceneFile& file);
 
   // That the chunk takes at most.
-  uint32_t most_blocks(uint32_t chunk) const { return most_[chunk]; }
+  uint32_t most_blocks(uint32_t chunk) const;
   uint32_t most_blocks() const { return greatest_; }
   // What chunks probably take of which this is the most.
   uint64_t likely_blocks(uint64_t most) const;
@@ -28,12 +28,12 @@ class RecordRoom {
   PoolRoom enough(uint64_t chunks, uint64_t blocks) const;
 
  private:
-  uint32_t chunks() const { return static_cast<uint32_t>(most_.size()); }
+  uint32_t chunks() const { return static_cast<uint32_t>(file_.chunks().size()); }
   uint32_t most_pages(uint32_t slots) const;
 
   const SceneFile& file_;
-  std::vector<uint16_t> most_;  // by chunk
-  uint32_t greatest_ = 0;
+  const Tiers tiers_;
+  uint32_t greatest_ = 0;           // of most_blocks()
   uint32_t all_ = 0;                // that all chunks together take at most
   uint64_t sum_of_most_ = 0;        // which is more
   std::vector<uint32_t> touching_;  // chunks that touch so many pages, by how many

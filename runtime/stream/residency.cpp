@@ -21,7 +21,7 @@ Residency::Residency(const ChunkGraph& graph, const ChunkDirectory& chunks,
       room_(room),
       pinned_(pinned),
       known_(chunks.size()),
-      few_blocks_(chunks.size(), kMany),
+      few_blocks_(chunks.size()),
       missed_(chunks.size()),
       shares_family_(chunks.size()),
       next_block_(room.blocks, kNoBlock) {
@@ -73,7 +73,8 @@ void Residency::learn_blocks(uint32_t chunk, uint32_t blocks) {
 
 void Residency::set_blocks(uint32_t chunk, uint32_t blocks) {
   know(chunk).blocks = blocks;
-  few_blocks_[chunk] = static_cast<uint8_t>(std::min<uint32_t>(blocks, kMany));
+  know(chunk).was_read = true;
+  few_blocks_.set(chunk, static_cast<uint8_t>(blocks < kMany ? blocks + 1 : 0));
 }
 
 bool Residency::read(uint32_t chunk, uint32_t blocks) {
@@ -163,6 +164,7 @@ void Residency::place(uint32_t chunk) {
   know(chunk).state = State::read;
   know(chunk).target_plan = plan_;
   know(chunk).blocks = 0;  // until place_records()
+  know(chunk).was_read = true;
   ++coming_;
   take_slot(chunk);
 }
@@ -309,7 +311,7 @@ bool Residency::set_family(ChunkRange family) {
     if (chunk != family.first) {
       const uint8_t shares = chunk + 1 < family.last ? 2 : 1;
       news = news || shares_family_[chunk] != shares;
-      shares_family_[chunk] = shares;
+      shares_family_.set(chunk, shares);
     }
     (is_wanted(chunk) ? has_room : has_none) |=
         known(chunk).needed_plan == plan_ || chunk < pinned_;

@@ -24,6 +24,7 @@
 #include "runtime/stream/chunk_graph.h"
 #include "runtime/stream/chunk_looks.h"
 #include "runtime/stream/record_room.h"
+#include "runtime/stream/sparse_array.h"
 
 namespace voyager {
 
@@ -128,7 +129,8 @@ class Residency {
 
  private:
   static constexpr uint32_t kUnknown = 0xffffffffu, kNoBlock = 0xffffffffu;
-  static constexpr uint8_t kSeen = 2, kMany = 0xff;
+  static constexpr uint8_t kSeen = 2;
+  static constexpr uint32_t kMany = 0xff;
 
   enum class State : uint8_t { absent, on_its_way, read, filled, resident, failed };
   // Of a chunk that is not absent, or that the last plan needed or might have needed.
@@ -136,10 +138,11 @@ class Residency {
     State state = State::absent;
     uint8_t counted = 0;  // in need_, if the last plan needed it; kSeen: as seen, too
     bool leaves = false;  // scratch
-    float score = 0;      // scratch
+    bool was_read = false;
+    float score = 0;  // scratch
     uint32_t slot = kNoSlot;
     uint32_t first_block = kNoBlock;
-    uint32_t blocks = kUnknown;  // how many it takes
+    uint32_t blocks = kUnknown;  // how many it takes; before it was read, at most
     uint32_t urgency = 0;        // when it was last needed
     uint32_t own_urgency = 0;    // in the last plan that needed it; 0: for what hangs from it
     uint32_t needed_plan = 0;    // the last plan that needed it
@@ -152,12 +155,13 @@ class Residency {
   };
   struct Climb {
     Needed of;
-    size_t done;  // of its parents
+    uint32_t from;  // its parents before this one are done
   };
 
   uint32_t most_above(uint32_t chunk) const;
   void find_needed(ChunkLooks& looks);
   bool add_needed(const Needed& needed);
+  void mark_needed(uint32_t chunk);
   void share_in_families();
   void share_with_parents();
   void count_need();
@@ -176,16 +180,18 @@ class Residency {
   void forget_absent();
   // How many it takes; kUnknown before it was read.
   uint32_t blocks_of(uint32_t chunk) const {
-    if (known(chunk).blocks != kUnknown) return known(chunk).blocks;
-    return few_blocks_[chunk] == kMany ? kUnknown : few_blocks_[chunk];
+    if (known(chunk).was_read) return known(chunk).blocks;
+    const uint32_t few = few_blocks_[chunk];
+    return few == 0 ? kUnknown : few - 1;
   }
   uint32_t known_blocks(uint32_t chunk) const {
     const uint32_t blocks = blocks_of(chunk);
     return blocks == kUnknown ? 0 : blocks;
   }
   uint32_t most_blocks(uint32_t chunk) const {
-    const uint32_t blocks = blocks_of(chunk);
-    return blocks == kUnknown ? records_->most_blocks(chunk) : blocks;
+    if (const uint32_t blocks = blocks_of(chunk); blocks != kUnknown) return blocks;
+    const uint32_t most = known(chunk).blocks;
+    return most == kUnknown ? records_->most_blocks(chunk) : most;
   }
   void set_blocks(uint32_t chunk, uint32_t blocks);
   void learn_blocks(uint32_t chunk, uint32_t blocks);
@@ -207,11 +213,12 @@ class Residency {
   uint32_t plan_ = 0;
   ByChunk<Known> known_;
   // By chunk.
-  // That it took when it was last read. kMany: many, which is forgotten with it, or not known.
-  std::vector<uint8_t> few_blocks_;
+  // One more than it took when it was last read; 0: not known, or kMany, which is forgotten with
+  // it.
+  SparseArray<uint8_t> few_blocks_;
   std::vector<bool> missed_;  // a viewer has seen that it was not there
   // 1: a node that leads to it leads to the chunk before, too; 2: and to the one behind.
-  std::vector<uint8_t> shares_family_;
+  SparseArray<uint8_t> shares_family_;
 
   std::vector<Needed> needed_;                // of the last plan, ascending
   std::vector<Needed> failed_;                // and what it would have needed

@@ -35,42 +35,48 @@ void Residency::forget_absent() {
 // had, because it or what it hangs from has failed.
 bool Residency::add_needed(const Needed& needed) {
   const auto is_needed = [&](uint32_t parent) { return known(parent).needed_plan == plan_; };
-  const std::span<const uint32_t> above = graph_->parents(needed.chunk);
+  const ChunkGraph::Parents above = graph_->parents(needed.chunk);
   if (known(needed.chunk).state != State::failed &&
       std::all_of(above.begin(), above.end(), is_needed)) {  // nearly always
-    know(needed.chunk).needed_plan = plan_;
+    mark_needed(needed.chunk);
     extra_.push_back(needed);
     return true;
   }
   climb_.assign(1, {needed, 0});
   while (!climb_.empty()) {
-    auto& [of, done] = climb_.back();
+    auto& [of, from] = climb_.back();
     if (known(of.chunk).state == State::failed) {
       failed_.push_back(of);
       return false;
     }
-    const std::span<const uint32_t> parents = graph_->parents(of.chunk);
-    while (done < parents.size() && is_needed(parents[done])) ++done;
-    if (done < parents.size()) {
-      const uint32_t parent = parents[done++];
+    const ChunkGraph::Parents parents = graph_->parents(of.chunk, from);
+    const auto next = std::find_if_not(parents.begin(), parents.end(), is_needed);
+    if (next != parents.end()) {
+      const uint32_t parent = *next;
+      from = parent + 1;
       know(parent).own_urgency = 0;
       climb_.push_back({{parent, of.urgency, of.now}, 0});
       continue;
     }
-    know(of.chunk).needed_plan = plan_;
+    mark_needed(of.chunk);
     extra_.push_back(of);
     climb_.pop_back();
   }
   return true;
 }
 
+void Residency::mark_needed(uint32_t chunk) {
+  Known& own = know(chunk);
+  own.needed_plan = plan_;
+  if (own.blocks == kUnknown) own.blocks = records_->most_blocks(chunk);
+}
+
 // Nothing that hangs from a chunk is larger than the largest of its own nodes, or seen where these
 // are not. Where few nodes go so deep a chunk is of places far apart, and its hull of all between.
 uint32_t Residency::most_above(uint32_t chunk) const {
-  const std::span<const uint32_t> parents = graph_->parents(chunk);
-  if (parents.empty()) return UINT32_MAX;
+  if (!graph_->has_parents(chunk)) return UINT32_MAX;
   uint32_t most = 0;
-  for (const uint32_t p : parents)
+  for (const uint32_t p : graph_->parents(chunk))
     if (known(p).needed_plan == plan_) most = std::max(most, known(p).own_urgency);
   return most;
 }
@@ -99,7 +105,7 @@ void Residency::find_needed(ChunkLooks& looks) {
     know(chunk).own_urgency = found.urgency;
     add_needed(found);
   };
-  while (next < graph_->size() && graph_->parents(next).empty()) look(next);
+  while (next < graph_->size() && !graph_->has_parents(next)) look(next);
   for (; from < extra_.size(); ++from) {
     const ChunkRange children = graph_->children(extra_[from].chunk);
     for (uint32_t c = std::max(next, children.first); c < children.last; ++c) look(c);
@@ -189,23 +195,21 @@ void Residency::choose_target() {
 void Residency::queue_requests() {
   for (const uint32_t chunk : requests_)
     counters_.flushed += known(chunk).state == State::absent && !is_wanted(chunk);
-  requests_.clear();
+  std::erase_if(extra_,
+                [&](const Needed& needed) { return known(needed.chunk).state != State::absent; });
   for (uint32_t chunk = 0; chunk < pinned_; ++chunk)
-    if (known(chunk).state == State::absent) {
-      know(chunk).urgency = UINT32_MAX;
-      requests_.push_back(chunk);
-    }
-  for (const Needed& needed : extra_)
-    if (known(needed.chunk).state == State::absent) requests_.push_back(needed.chunk);
+    if (known(chunk).state == State::absent) extra_.push_back({chunk, UINT32_MAX, false});
+  // Families together, as no frame sees a part of one.
+  const auto urgency = [](const Needed& needed) { return needed.urgency | ChunkLooks::kOwn; };
+  std::sort(extra_.begin(), extra_.end(), [&](const Needed& a, const Needed& b) {
+    return urgency(a) != urgency(b) ? urgency(a) < urgency(b) : a.chunk > b.chunk;
+  });
+  requests_.clear();
+  for (const Needed& needed : extra_) requests_.push_back(needed.chunk);
   for (const Needed& needed : needed_)
     if (needed.now && ChunkLooks::class_of(needed.urgency) == ChunkLooks::Class::seen &&
         known(needed.chunk).state != State::resident)
       missed_[needed.chunk] = true;
-  // Families together, as no frame sees a part of one.
-  const auto urgency = [&](uint32_t chunk) { return known(chunk).urgency | ChunkLooks::kOwn; };
-  std::sort(requests_.begin(), requests_.end(), [&](uint32_t a, uint32_t b) {
-    return urgency(a) != urgency(b) ? urgency(a) < urgency(b) : a > b;
-  });
 }
 
 // Residents that nobody wants, ascending. Clears what the lists below keep of all residents.
@@ -246,7 +250,7 @@ void Residency::list_leftovers() {
   leftovers_.clear();
   if (!crowded_) return;
   for (const uint32_t chunk : unwanted()) {
-    const std::span<const uint32_t> parents = graph_->parents(chunk);
+    const ChunkGraph::Parents parents = graph_->parents(chunk);
     const bool leaves =
         known(chunk).needed_plan == plan_ ||
         std::any_of(parents.begin(), parents.end(), [&](uint32_t p) { return known(p).leaves; });

@@ -75,7 +75,7 @@ TEST(ChunkGraph, WhatARootHangsFromIsAParentAlsoIfTheDirectoryHidesARepeat) {
       const ChunkGraph graph(file->chunks(), file->tiers());
       for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
         if (chunk == edited || chunk + 1 == edited) continue;  // damaged
-        const std::span<const uint32_t> parents = graph.parents(chunk);
+        const ChunkGraph::Parents parents = graph.parents(chunk);
         for (const Subtree& subtree : file->read_chunk(chunk).subtrees) {
           if (subtree.root == 0) continue;
           const uint32_t owner = graph.owner_of_parent(subtree.root);
@@ -131,7 +131,7 @@ TEST(ChunkGraph, ChunksThatArriveInAnyOrderAllBecomeResident) {
   for_each_tree([&](const SceneFile& file) {
     const ChunkGraph graph(file.chunks(), file.tiers());
     uint32_t top = 1;
-    while (top < graph.size() && graph.parents(top).empty()) ++top;
+    while (top < graph.size() && !graph.has_parents(top)) ++top;
     const RecordRoom records(file);
     Residency residency(graph, file.chunks(), records,
                         PoolRoom{graph.size(), graph.size() * records.most_blocks()}, top);
