@@ -24,11 +24,13 @@ class HostPool final : public ChunkPool {
   }
 
   void resize(PoolRoom room) override {
-    if (scene_.search.subtrees.empty() || scene_.slot_ids.size() != room.slots ||
-        scene_.search.next_block.size() != room.blocks)
+    SearchTree& search = scene_.search;
+    if (search.subtrees.size() != places_of(room) || scene_.slot_ids.size() != room.slots ||
+        search.next_block.size() != room.blocks)
       make_room(room);
     scene_.large_families.clear();
-    scene_.search.subtrees.assign(scene_.search.subtree_count(), kUnlinkedSubtree);
+    std::fill(search.subtrees.begin(), search.subtrees.end(), kUnlinkedSubtree);
+    std::fill(search.pages.begin(), search.pages.end(), 0);
   }
 
   void fill(uint32_t slot, const StagedChunk& staged) override {
@@ -58,15 +60,24 @@ class HostPool final : public ChunkPool {
       }
     };
     set_records(patch.cut.records);
-    for (const uint32_t subtree : patch.unlinked) search.subtrees[subtree].entry = kNotLinked;
+    for (const uint32_t s : patch.unlinked) search.subtrees[search.places()(s)].entry = kNotLinked;
+    for (const PageChange& change : patch.pages) {
+      search.pages[change.page] = change.place;
+      if (change.place != 0)
+        std::fill_n(search.subtrees.begin() + size_t{change.place} * kPageSubtrees, kPageSubtrees,
+                    kUnlinkedSubtree);
+    }
     set_records(patch.tied.records);
-    for (const auto& [subtree, linked] : patch.linked) search.subtrees[subtree] = linked;
+    for (const auto& [s, linked] : patch.linked) search.subtrees[search.places()(s)] = linked;
     for (const LinkPatch::Outside& o : patch.outside)
       std::fill_n(scene_.tree.parent.begin() + o.first, o.count, o.parent);
     if (patch.large) scene_.large_families.assign(patch.large->begin(), patch.large->end());
   }
 
  private:
+  // Beside the first page, which is that of all that have none.
+  static size_t places_of(PoolRoom room) { return (size_t{room.pages} + 1) * kPageSubtrees; }
+
   // The old arrays go first, so that a budget holds at every moment.
   void make_room(PoolRoom room_for) {
     scene_.slot_nodes = shape_.nodes;
@@ -80,6 +91,8 @@ class HostPool final : public ChunkPool {
       fit(scene_.child_count, counts_children(scene_) ? nodes : 0);
       fit(scene_.tree.parent, nodes);
       fit(scene_.slot_ids, slots);
+      fit(scene_.search.subtrees, places_of(room_for));
+      fit(scene_.search.pages, pages_of(scene_.search.subtree_count()));
       fit(scene_.search.records, size_t{room_for.blocks} * kRecordBlock);
       fit(scene_.search.next_block, room_for.blocks);
     }
@@ -96,13 +109,15 @@ PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
                         (counts_children(scene) ? sizeof(uint32_t) : 0) +
                         (scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0);
   const uint64_t block = kRecordBlock * sizeof(SearchRecord) + sizeof(uint32_t);
+  const uint64_t page = kPageSubtrees * sizeof(SearchSubtree);
   const SearchTree& search = scene.search;
   const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
   return {shape.nodes * node + scales + sizeof(SlotIds), block,
-          search.subtree_count() * sizeof(SearchSubtree) +
+          page + pages_of(search.subtree_count()) * sizeof(uint32_t) +
               (uint64_t{search.chunk_count} + 1) * sizeof(SearchChunk) +
               search.tier_begin.size() * sizeof(uint32_t) +
-              (is_coded(scene) ? most_large_families(scene.node_count) * sizeof(LargeFamily) : 0)};
+              (is_coded(scene) ? most_large_families(scene.node_count) * sizeof(LargeFamily) : 0),
+          page};
 }
 
 std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, const SceneFile& file, SlotShape shape,

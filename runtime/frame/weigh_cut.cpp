@@ -31,7 +31,7 @@ class BlockWeights {
       for (uint32_t s = block.first; s < block.last; ++s) {
         const uint32_t cut = search.cut_slots(s);
         if (cut == 0) continue;
-        const SearchSubtree& subtree = search_tree_.subtrees[s];
+        const SearchSubtree& subtree = search_tree_.subtree(s);
         const uint32_t slots = cut & subtree.level_slots(level);
         if (slots != 0) out = weigh_level(s, level, slots, out);
       }
@@ -40,7 +40,7 @@ class BlockWeights {
 
  private:
   DrawItem* weigh_level(uint32_t s, uint32_t level, uint32_t slots, DrawItem* out) {
-    const SearchSubtree& subtree = search_tree_.subtrees[s];
+    const SearchSubtree& subtree = search_tree_.subtree(s);
     if (level == 0) return weigh_roots(subtree, slots, out);
     // Each parent's own, in the order of the parents.
     const bool split = is_split(s);
@@ -71,9 +71,9 @@ class BlockWeights {
 
   // Whether the root may have children in other subtrees, too.
   bool is_split(uint32_t s) const {
-    const auto& subtrees = search_tree_.subtrees;
-    return (s > 0 && subtrees[s - 1].root == subtrees[s].root) ||
-           (s + 1 < subtrees.size() && subtrees[s + 1].root == subtrees[s].root);
+    const uint32_t root = search_tree_.subtree(s).root;
+    return (s > 0 && search_tree_.subtree(s - 1).root == root) ||
+           (s + 1 < search_tree_.subtree_count() && search_tree_.subtree(s + 1).root == root);
   }
 
   // split: the record's slots may not be all of the children.

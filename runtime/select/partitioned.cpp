@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <type_traits>
 #include <utility>
 
 #include "runtime/select/partitioned_blocks.h"
@@ -22,13 +23,6 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
       touched_(memory),
       chunk_stamp_(memory),
       cut_(memory) {
-  const size_t count = tree.subtrees.size();
-  watch_.resize(count);
-  refined_.resize(count);
-  cut_slots_.resize(count);
-  last_cut_slots_.resize(count);
-  work_.resize(count);
-  if (tree.chunks_come_and_go) stand_ins_.resize(count);
   for (uint32_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier) {
     tier_block_.push_back(static_cast<uint32_t>(blocks_.size()));
     const uint32_t end = tree.tier_begin[tier + 1];
@@ -36,10 +30,30 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
       blocks_.push_back({s, std::min(end, s + kBlockSubtrees), tier, 0, 0, {}, {}});
   }
   touched_.resize(blocks_.size());
-  const size_t runs = std::max(blocks_.size(), count / kRoundSubtrees + 1);
-  signals_.reserve(runs);
-  for (size_t i = 0; i < runs; ++i) signals_.emplace_back(memory);
   chunk_stamp_.resize(tree.chunk_count);
+  make_room();
+}
+
+void PartitionedSearch::make_room() {
+  const size_t places = tree_.subtrees.size();
+  known_ = false;
+  const auto empty = [](auto& array) {
+    std::decay_t<decltype(array)>(array.get_allocator()).swap(array);
+  };
+  const auto fit = [&](auto& array) {
+    empty(array);
+    array.resize(places);
+  };
+  empty(watch_);  // until all of the others have room
+  fit(refined_);
+  fit(cut_slots_);
+  fit(last_cut_slots_);
+  fit(work_);
+  if (tree_.chunks_come_and_go) fit(stand_ins_);
+  const size_t runs = std::max(blocks_.size(), places / kRoundSubtrees + 1);
+  signals_.reserve(runs);
+  while (signals_.size() < runs) signals_.emplace_back(cut_.get_allocator().resource());
+  watch_.resize(places);
 }
 
 void PartitionedSearch::run(const CutQuery& query, Search kind, Workers& workers) {
@@ -60,10 +74,12 @@ void PartitionedSearch::run(const CutQuery& query, Search kind, Workers& workers
 }
 
 void PartitionedSearch::begin(const CutQuery& query) {
+  if (watch_.size() != tree_.subtrees.size()) make_room();
   continues_ = known_;
   known_ = false;
   relisted_ = std::exchange(relinked_, false) || !continues_;
   if (!continues_) references_.clear();
+  places_ = tree_.places();
   query_ = query;
   references_.begin_frame(query);
   sight_ = make_sight(query);
@@ -142,26 +158,28 @@ bool PartitionedSearch::mark_read(uint32_t chunk) {
 
 // Visits an open subtree. Gives the slots whose verdict is not what it was.
 uint32_t PartitionedSearch::look(uint32_t subtree, Tally& tally) {
-  const SearchSubtree& s = tree_.subtrees[subtree];
+  const uint32_t place = places_(subtree);
+  const SearchSubtree& s = tree_.subtrees[place];
   const Visit found = visit(s, sight_, [&](uint32_t i) -> const SearchRecord& {
     return tree_.records[s.record(i, tree_.next_block.data())];
   });
   ++tally.visited;
   tally.tested += found.tested;
   tally.bytes += sizeof s + found.tested * sizeof(SearchRecord) + 2 * sizeof(uint32_t);
-  const uint32_t before = refined_[subtree];
-  refined_[subtree] = found.refined;
-  cut_slots_[subtree] = found.cut;
-  if (!stand_ins_.empty()) stand_ins_[subtree] = found.stand_ins;
-  watch_[subtree] = make_watch(found.slack, found.extent, references_.current());
+  const uint32_t before = refined_[place];
+  refined_[place] = found.refined;
+  cut_slots_[place] = found.cut;
+  if (!stand_ins_.empty()) stand_ins_[place] = found.stand_ins;
+  watch_[place] = make_watch(found.slack, found.extent, references_.current());
   return (before ^ found.refined) & s.interior;
 }
 
 void PartitionedSearch::close(uint32_t subtree) {
-  refined_[subtree] = 0;
-  cut_slots_[subtree] = 0;
-  if (!stand_ins_.empty()) stand_ins_[subtree] = 0;
-  watch_[subtree] = kNever;
+  const uint32_t place = places_(subtree);
+  refined_[place] = 0;
+  cut_slots_[place] = 0;
+  if (!stand_ins_.empty()) stand_ins_[place] = 0;
+  watch_[place] = kNever;
 }
 
 uint64_t PartitionedSearch::count_stand_ins() const {
@@ -174,14 +192,15 @@ void PartitionedSearch::relink(std::span<const uint32_t> unlinked,
                                std::span<const uint32_t> changed) {
   relinked_ = true;
   if (!known_) return;
+  places_ = tree_.places();
   // What leads to a subtree that was linked again says nothing new: it stays as it was, at other
   // addresses.
   for (const uint32_t s : unlinked) {
-    if (tree_.subtrees[s].entry == kNotLinked) close(s);
+    if (tree_.subtree(s).entry == kNotLinked) close(s);
     touch(block_of(s));
   }
   for (const uint32_t s : changed)
-    if (refined_[s] != 0) watch_[s] = kDue;
+    if (refined_[places_(s)] != 0) watch_[places_(s)] = kDue;
 }
 
 }  // namespace voyager

@@ -17,10 +17,10 @@
 namespace voyager {
 
 // One view's cut of one tree, kept from run to run. Not thread-safe; the work is
-// spread over `workers`, and no result depends on their number. Takes 24 bytes a
-// subtree when made (28 where chunks come and go), and from the given resource 4 a node
-// of the largest cut and 4 a subtree of the largest change that it has seen; once they
-// were seen a run allocates nothing. Throws only std::bad_alloc; the next run then starts
+// spread over `workers`, and no result depends on their number. From the given resource it
+// takes 24 bytes a place of the tree's subtrees (28 where chunks come and go), 4 a node of the
+// largest cut and 4 a subtree of the largest change that it has seen; once they were seen a run
+// allocates nothing. Throws only std::bad_alloc; the next run then starts
 // from nothing, and is right.
 class PartitionedSearch {
  public:
@@ -45,7 +45,7 @@ class PartitionedSearch {
   void forget() { known_ = false; }
   // Between two runs the tree has changed, and is what it is now: nothing led to the subtrees of
   // `unlinked` for a time, or does now, and those of `changed` have a record that is blocked, or
-  // no longer is.
+  // no longer is. Where it has another number of places, forget() comes first.
   void relink(std::span<const uint32_t> unlinked, std::span<const uint32_t> changed);
 
   // Results of the last run, valid until the next.
@@ -59,11 +59,11 @@ class PartitionedSearch {
   // of their roots. kNoNode if the cut is whole.
   uint32_t needed_missing_subtree() const { return needed_missing_; }
   uint32_t needed_missing() const {
-    return needed_missing_ == kNoNode ? kNoNode : tree_.subtrees[needed_missing_].root;
+    return needed_missing_ == kNoNode ? kNoNode : tree_.subtree(needed_missing_).root;
   }
   // The cut, subtree by subtree.
   std::span<const Block> blocks() const { return blocks_; }
-  uint32_t cut_slots(uint32_t subtree) const { return cut_slots_[subtree]; }
+  uint32_t cut_slots(uint32_t subtree) const { return cut_slots_[places_(subtree)]; }
 
  private:
   // What a task counts; sums, so that their order does not matter.
@@ -73,6 +73,7 @@ class PartitionedSearch {
     uint32_t first_opened = kNoNode, last_opened = 0;  // subtrees, of a tier that is streamed
   };
 
+  void make_room();
   void begin(const CutQuery& query);
   void finish(Workers& workers);
   void count(const Tally& tally);
@@ -87,6 +88,7 @@ class PartitionedSearch {
   // streaming.cpp
   void stream(Workers& workers);
   void start_over(Workers& workers);
+  void clear(Workers& workers);
   void stream_tier(uint32_t first, uint32_t last, Workers& workers);
   void stream_chunk(uint32_t chunk, uint32_t first, uint32_t last, Tally& tally);
   void open(uint32_t subtree, Tally& tally);
@@ -94,7 +96,7 @@ class PartitionedSearch {
   // temporal.cpp
   void repair(Search kind, Workers& workers);
   uint64_t list_due(Search kind, Workers& workers);
-  bool renew(uint32_t subtree);
+  bool renew(uint32_t place);
   bool streaming_is_cheaper(uint64_t due) const;
   void visit_due(Workers& workers);
   void close_signalled(Workers& workers);
@@ -116,18 +118,19 @@ class PartitionedSearch {
   bool relinked_ = false;   // since then
   bool relisted_ = false;
 
-  // By subtree. A closed one: kNever, 0, 0.
+  SubtreePlaces places_{};
+  // By a subtree's place. A closed one: kNever, 0, 0.
   std::pmr::vector<Watch> watch_;
   std::pmr::vector<uint32_t> refined_;    // bits of slots, and kOpen
   std::pmr::vector<uint32_t> cut_slots_;  // bits of slots
   std::pmr::vector<uint32_t> last_cut_slots_;
   std::pmr::vector<uint32_t> stand_ins_;  // bits of slots; empty where no record is ever blocked
-  // Scratch by subtree: subtrees that are due, by block, then those just opened.
+  // Scratch, as many as there are places: subtrees that are due, by block, then those just opened.
   std::pmr::vector<uint32_t> work_;
-  // Of a run of subtrees: how many of work_ it visits, and what they opened and closed.
+  // Of a run of subtrees: which of work_ it visits, and what they opened and closed.
   struct Signals {
     explicit Signals(std::pmr::memory_resource* memory) : opened(memory), closed(memory) {}
-    uint32_t visits = 0;
+    uint32_t first = 0, visits = 0;
     std::pmr::vector<uint32_t> opened, closed;
   };
   std::pmr::vector<Signals> signals_;  // by block, then by run of work_

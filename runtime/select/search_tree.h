@@ -135,15 +135,23 @@ static_assert(sizeof(SearchChunk) == 32);
 
 struct SearchTree {
   explicit SearchTree(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
-      : subtrees(memory), records(memory), next_block(memory), chunks(memory), tier_begin(memory) {}
+      : subtrees(memory),
+        pages(memory),
+        records(memory),
+        next_block(memory),
+        chunks(memory),
+        tier_begin(memory) {}
 
   uint32_t subtree_count() const { return tier_begin.empty() ? 0 : tier_begin.back(); }
+  SubtreePlaces places() const { return {pages.empty() ? nullptr : pages.data()}; }
+  const SearchSubtree& subtree(uint32_t s) const { return subtrees[places()(s)]; }
   uint64_t bytes() const {
-    return subtrees.size() * sizeof(SearchSubtree) + records.size() * sizeof(SearchRecord) +
-           chunks.size() * sizeof(SearchChunk);
+    return subtrees.size() * sizeof(SearchSubtree) + pages.size() * sizeof(uint32_t) +
+           records.size() * sizeof(SearchRecord) + chunks.size() * sizeof(SearchChunk);
   }
 
-  std::pmr::vector<SearchSubtree> subtrees;
+  std::pmr::vector<SearchSubtree> subtrees;  // by place
+  std::pmr::vector<uint32_t> pages;          // of a pool: SubtreePlaces::pages; else empty
   std::pmr::vector<SearchRecord> records;
   std::pmr::vector<uint32_t> next_block;  // by block of records, of a pool
   // And one with the end as its first subtree. None where a device has them (set_search_chunks()).

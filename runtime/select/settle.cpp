@@ -14,17 +14,18 @@ void PartitionedSearch::settle(size_t index, Tally& tally) {
   block.size = {};
   block.stand_ins = 0;
   for (uint32_t s = block.first; s < block.last; ++s) {
-    const uint32_t now = cut_slots_[s], before = last_cut_slots_[s];
-    block.open += refined_[s] != 0;
-    if (!stand_ins_.empty()) block.stand_ins += count_bits(stand_ins_[s]);
+    const uint32_t place = places_(s);
+    const uint32_t now = cut_slots_[place], before = last_cut_slots_[place];
+    block.open += refined_[place] != 0;
+    if (!stand_ins_.empty()) block.stand_ins += count_bits(stand_ins_[place]);
     if (now != before) {
       tally.entered += count_bits(now & ~before);
       tally.left += count_bits(before & ~now);
-      last_cut_slots_[s] = now;
+      last_cut_slots_[place] = now;
     }
     if (now == 0) continue;
     for (uint32_t level = 0; level < 3; ++level)
-      block.size[level] += count_bits(now & tree_.subtrees[s].level_slots(level));
+      block.size[level] += count_bits(now & tree_.subtrees[place].level_slots(level));
   }
   tally.bytes += (block.last - block.first) * 3 * sizeof(uint32_t);
 }
@@ -51,10 +52,11 @@ void PartitionedSearch::list_block(const Block& block) {
     uint32_t* out = cut_.data() + block.at[level];
     const uint32_t* const end = out + block.size[level];
     for (uint32_t s = block.first; s < block.last; ++s) {
-      if (cut_slots_[s] == 0) continue;
-      const SearchSubtree& subtree = tree_.subtrees[s];
+      const uint32_t slots = cut_slots_[places_(s)];
+      if (slots == 0) continue;
+      const SearchSubtree& subtree = tree_.subtree(s);
       const uint32_t first_slot = subtree.first_slot(level), node = subtree.first_node(level);
-      out = put_set_bits<8>((cut_slots_[s] & subtree.level_slots(level)) >> first_slot, out, end,
+      out = put_set_bits<8>((slots & subtree.level_slots(level)) >> first_slot, out, end,
                             [node](uint32_t place) { return node + place; });
     }
   }

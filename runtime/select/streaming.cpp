@@ -27,26 +27,41 @@ void PartitionedSearch::stream(Workers& workers) {
 
 // Closes everything; last_cut_slots_ stays, to be compared with.
 void PartitionedSearch::start_over(Workers& workers) {
+  if (!continues_) return clear(workers);
   workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b) {
       Block& block = blocks_[b];
-      if (continues_ && block.open == 0) continue;
+      if (block.open == 0) continue;
       touched_[b] = 1;
-      for (uint32_t s = block.first; s < block.last; ++s) {
-        close(s);
-        if (!continues_) last_cut_slots_[s] = 0;
-      }
+      for (uint32_t s = block.first; s < block.last; ++s)
+        if (refined_[places_(s)] != 0) close(s);
     }
+  });
+}
+
+void PartitionedSearch::clear(Workers& workers) {
+  std::fill(touched_.begin(), touched_.end(), uint8_t{1});
+  workers.for_blocks(watch_.size(), kBlockSubtrees * kBlocksTask, [&](size_t begin, size_t end) {
+    const auto fill = [&](auto& array, const auto& value) {
+      std::fill(array.begin() + static_cast<std::ptrdiff_t>(begin),
+                array.begin() + static_cast<std::ptrdiff_t>(end), value);
+    };
+    fill(watch_, kNever);
+    fill(refined_, 0u);
+    fill(cut_slots_, 0u);
+    fill(last_cut_slots_, 0u);
+    if (!stand_ins_.empty()) fill(stand_ins_, 0u);
   });
 }
 
 void PartitionedSearch::open(uint32_t subtree, Tally& tally) {
   tally.first_opened = std::min(tally.first_opened, subtree);
   tally.last_opened = std::max(tally.last_opened, subtree);
-  if (tree_.subtrees[subtree].missing())
+  const uint32_t place = places_(subtree);
+  if (tree_.subtrees[place].missing())
     tally.needed_missing = std::min(tally.needed_missing, subtree);
   else
-    refined_[subtree] = kOpen;
+    refined_[place] = kOpen;
 }
 
 // Subtrees [first, last) of one tier.
@@ -76,7 +91,7 @@ void PartitionedSearch::stream_chunk(uint32_t chunk, uint32_t first, uint32_t la
   tally.bytes += (last - first) * sizeof refined_[0];
   bool read = false;
   for (uint32_t s = first; s < last; ++s) {
-    if (refined_[s] != kOpen) continue;
+    if (refined_[places_(s)] != kOpen) continue;
     read = true;
     const uint32_t refined = look(s, tally);
     signal_below(

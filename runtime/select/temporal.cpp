@@ -23,21 +23,29 @@ void PartitionedSearch::repair(Search kind, Workers& workers) {
   visit_opened(workers);
 }
 
-// Each block's, in work_ from the block's first place on.
+// Each block's, in work_ from a place on that leaves room for all of its open subtrees.
 uint64_t PartitionedSearch::list_due(Search kind, Workers& workers) {
   const Travel* travel = references_.travel().data();
+  uint32_t room = 0;
+  for (size_t b = 0; b < blocks_.size(); ++b) {
+    signals_[b].first = room;
+    room += blocks_[b].open;
+  }
   const bool all = kind == Search::temporal_visit;
   workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
     Tally tally;
     for (size_t b = begin; b < end; ++b) {
       const Block& block = blocks_[b];
-      uint32_t out = block.first;
+      uint32_t out = signals_[b].first;
       if (block.open != 0) {
         tally.bytes += (block.last - block.first) * sizeof(Watch);
-        for (uint32_t s = block.first; s < block.last; ++s)
-          if (all ? refined_[s] != 0 : due(watch_[s], travel) && !renew(s)) work_[out++] = s;
+        for (uint32_t s = block.first; s < block.last; ++s) {
+          const uint32_t place = places_(s);
+          if (all ? refined_[place] != 0 : due(watch_[place], travel) && !renew(place))
+            work_[out++] = s;
+        }
       }
-      signals_[b].visits = out - block.first;
+      signals_[b].visits = out - signals_[b].first;
     }
     count(tally);
   });
@@ -47,8 +55,8 @@ uint64_t PartitionedSearch::list_due(Search kind, Workers& workers) {
 }
 
 // A subtree whose reference is forgotten in this frame keeps what slack is left.
-bool PartitionedSearch::renew(uint32_t subtree) {
-  Watch& watch = watch_[subtree];
+bool PartitionedSearch::renew(uint32_t place) {
+  Watch& watch = watch_[place];
   if (watch_reference(watch) != references_.current()) return false;
   const float slack = slack_left(watch, references_.retired());
   if (!(slack > 0.0f)) return false;
@@ -67,17 +75,16 @@ void PartitionedSearch::visit_due(Workers& workers) {
     Tally tally;
     uint32_t chunk = kNoChunk;
     for (size_t b = begin; b < end; ++b) {
-      const Block& block = blocks_[b];
       Signals& signals = signals_[b];
       signals.opened.clear(), signals.closed.clear();
       if (signals.visits == 0) continue;
       touch(b);
       for (uint32_t i = 0; i < signals.visits; ++i) {
-        const uint32_t s = work_[block.first + i];
+        const uint32_t s = work_[signals.first + i];
         read_chunk_of(s, chunk, tally);
         const uint32_t flipped = look(s, tally);
         signal_below(
-            tree_, s, flipped, refined_[s],
+            tree_, s, flipped, refined_[places_(s)],
             [&](uint32_t from, uint32_t to) { append(signals.opened, from, to); },
             [&](uint32_t from, uint32_t to) { append(signals.closed, from, to); });
       }
@@ -114,7 +121,7 @@ void PartitionedSearch::visit_round(size_t begin, size_t end) {
   opened.clear();
   for (size_t i = begin; i < end; ++i) {
     const uint32_t s = work_[i];
-    if (tree_.subtrees[s].missing()) {
+    if (tree_.subtree(s).missing()) {
       tally.needed_missing = std::min(tally.needed_missing, s);
       continue;
     }
@@ -122,7 +129,7 @@ void PartitionedSearch::visit_round(size_t begin, size_t end) {
     read_chunk_of(s, chunk, tally);
     const uint32_t flipped = look(s, tally);
     signal_below(
-        tree_, s, flipped, refined_[s],
+        tree_, s, flipped, refined_[places_(s)],
         [&](uint32_t from, uint32_t to) { append(opened, from, to); }, [](uint32_t, uint32_t) {});
   }
   count(tally);

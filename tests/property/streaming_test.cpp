@@ -243,8 +243,8 @@ TEST(Streaming, RoomForWhatIsSeenIsEnoughBesideViewersWhoMove) {
     const ResidencyNeed need = rig.stream().counters().need;
     for (const Other& other : others) rig.stream().look(&other, {other.now, other.ahead});
     for (const PoolRoom tight :
-         {PoolRoom{top + static_cast<uint32_t>(need.seen), all.blocks},
-          PoolRoom{all.slots, top_blocks + static_cast<uint32_t>(need.seen_blocks)}}) {
+         {PoolRoom{top + static_cast<uint32_t>(need.seen), all.blocks, all.pages},
+          PoolRoom{all.slots, top_blocks + static_cast<uint32_t>(need.seen_blocks), all.pages}}) {
       rig.stream().resize(tight, top, rig.workers);
       expect_same_bits(render(rig.part, input), whole);
     }
@@ -319,6 +319,39 @@ TEST(Streaming, TheTemporalCutIsTheStreamingOne) {
     ASSERT_EQ(all.cut, other.cut);
   }
   EXPECT_GT(compared, 40u);
+}
+
+// Tables with places for a part of the subtrees, whose pages other pages take.
+TEST(Streaming, WhatAViewKeepsByPlaceIsRightHoweverSeldomItDraws) {
+  GaussianCloud cloud = test::random_cloud(20000, 6, 1);
+  for (float& x : cloud.position) x *= 40;
+  StreamRig rig(test::bake(cloud), 0.1, {}, kDefaultChunkBytes, Quality::compact);
+  const SearchTree& search = rig.streamed->search;
+  ASSERT_LT(search.subtrees.size(), size_t{search.subtree_count()} * 2 / 3);
+  const auto view = [&](Search kind) {
+    return View(rig.streamed, *rig.backend, searching(kind), rig.memory(), rig.workers);
+  };
+  View streaming = view(Search::streaming), seldom = view(Search::temporal);
+  std::mt19937 random(3);
+  const auto within = [&](double end) { return end * (2 * test::unit(random) - 1); };
+  size_t compared = 0;
+  Vec3d eye{0, -5, 0};
+  for (int frame = 0; frame < 120; ++frame) {
+    eye = frame % 4 == 0 ? Vec3d{within(400), -5, within(400)} : eye + Vec3d{within(2), 0, 1};
+    const FrameInput input = frame_input(look(eye, {0, 0, 0}, 61, 45, 75), 8);
+    const Frame temporal = render(rig.part, input);
+    const uint64_t version = rig.stream().version();
+    const Frame other = render(streaming, input);
+    const Frame late = frame % 9 == 0 ? render(seldom, input) : other;
+    rig.work(30);
+    if (rig.stream().version() != version) continue;
+    ++compared;
+    ASSERT_EQ(temporal.cut, other.cut);
+    ASSERT_EQ(late.cut, other.cut);
+    ASSERT_EQ(temporal.stats.missing, other.stats.missing);
+  }
+  EXPECT_GT(compared, 60u);
+  EXPECT_GT(rig.stream().counters().chunks.evicted, 100u);
 }
 
 }  // namespace
