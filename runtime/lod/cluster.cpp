@@ -64,6 +64,10 @@ class Clustering {
   }
 
  private:
+  static bool is_before(const Pair& a, const Pair& b) {
+    return a.first != b.first ? a.first < b.first : a.second < b.second;
+  }
+
   float* colour(size_t cluster) {
     return &colours_[cluster * size_t{3} * static_cast<size_t>(coefficients_)];
   }
@@ -124,16 +128,25 @@ class Clustering {
       }
       add_nearest(static_cast<uint32_t>(i));
     }
-    std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
-      return a.first != b.first ? a.first < b.first : a.second < b.second;
-    });
+    std::sort(pairs_.begin(), pairs_.end(), is_before);
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end(),
                              [](const Pair& a, const Pair& b) {
                                return a.first == b.first && a.second == b.second;
                              }),
                  pairs_.end());
-    for (Pair& pair : pairs_) pair.pixel = joined(pair.first, pair.second).pixel;
+    measure_pairs();
     std::sort(pairs_.begin(), pairs_.end());
+  }
+
+  // Three of ten pairs of a round the last one has found, too. Both are in the order of clusters.
+  void measure_pairs() {
+    auto known = measured_.begin();
+    for (Pair& pair : pairs_) {
+      while (known != measured_.end() && is_before(*known, pair)) ++known;
+      const bool is_known = known != measured_.end() && !is_before(pair, *known);
+      pair.pixel = is_known ? known->pixel : joined(pair.first, pair.second).pixel;
+    }
+    measured_ = pairs_;
   }
 
   // Of equally near ones those that follow it: where all are in one place, each has others near
@@ -197,7 +210,7 @@ class Clustering {
   std::vector<Cluster> clusters_;
   std::vector<float> colours_;
   std::vector<uint32_t> active_;
-  std::vector<Pair> pairs_;
+  std::vector<Pair> pairs_, measured_;  // of this round, and of the last
   std::vector<bool> taken_;
   std::vector<float> x_, y_, z_, distance_;
 };

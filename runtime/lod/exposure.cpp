@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 #include "runtime/lod/stand_in.h"
@@ -24,6 +25,7 @@ constexpr float kLargest = 0.99f;  // α, METHOD §6
 // T from which on what is behind is divided by it.
 constexpr float kLeastBehind = 1e-4f;
 constexpr double kContrastBeyond = 0.2;  // of what is beyond all pictures
+constexpr double kRounding = 1e-6;       // of d's terms, more than what binary32 loses
 
 struct Direction {
   Vec3d forward, right, down;
@@ -40,11 +42,52 @@ Direction direction(int index) {
   return {f, right, cross(f, right)};
 }
 
-// e^(-d/2) to 0.04, enough to tell what hides what: it is cheap, and vectors do it.
-float falloff(float d) {
-  const float x = 1 - d * (1.0f / 16), x2 = x * x, x4 = x2 * x2;
+// Pixels side by side. Most rows are short, so that what a compiler makes of a loop over pixels is
+// mostly what is left over at its end.
+constexpr int kLanes = 4;
+using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+
+Lanes load(const float* from) {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+void store(Lanes lanes, float* to) {
+  std::memcpy(to, &lanes, sizeof lanes);
+}
+
+// Rows of so many pixels are painted faster than what can be left out of them is found.
+constexpr int kNarrow = 2 * kLanes;
+
+// e^(-d/2) to 0.04, enough to tell what hides what: it is cheap.
+Lanes falloff(Lanes d) {
+  const Lanes x = 1 - d * (1.0f / 16), x2 = x * x, x4 = x2 * x2;
   return x4 * x4;
 }
+
+// d = a·dx² + b·dx·dy + c·dy², a not negative.
+struct Conic {
+  double a, b, c;
+
+  // Bounds |a·dx²| + |b·dx·dy| + |c·dy²| between these.
+  double most(double x0, double x1, double y0, double y1) const {
+    const double x = std::max(std::fabs(x0), std::fabs(x1)),
+                 y = std::max(std::fabs(y0), std::fabs(y1));
+    return a * x * x + std::fabs(b) * x * y + std::fabs(c) * y * y;
+  }
+
+  // Of a row's pixels, of which number i has dx = i + from: a range that holds all where d is under
+  // the limit; all of them where the numbers tell nothing.
+  std::pair<int, int> within(double limit, double dy, double from, int count) const {
+    const double middle = -b * dy / (2 * a);
+    const double square = middle * middle - (c * dy * dy - limit) / a;
+    if (square < 0) return {0, 0};
+    const double half = std::sqrt(square);
+    const double first = middle - half - from - 1, last = middle + half - from + 2;
+    return {first > 0 ? static_cast<int>(std::min(first, static_cast<double>(count))) : 0,
+            last < count ? static_cast<int>(std::max(last, 0.0)) : count};
+  }
+};
 
 class Exposures {
  public:
@@ -56,6 +99,7 @@ class Exposures {
         x_(leaves.size()),
         y_(leaves.size()),
         z_(leaves.size()),
+        footprints_(leaves.size()),
         most_side_(std::min(kMostSide,
                             static_cast<int>(std::ceil(
                                 kSideOfRoot * std::sqrt(static_cast<double>(leaves.size())))))) {
@@ -64,6 +108,7 @@ class Exposures {
       GaussianWords words = cloud.words(leaf);
       words.mean = local_mean(cloud, leaf, origin);
       blobs_.push_back(blob_of(activate(words, true)));
+      reach_.push_back(2 * std::log(kThreshold * static_cast<float>(blobs_.back().opacity)));
       for (int k = 0; k < 3; ++k) {
         const float c = static_cast<float>(kSh0) * cloud.sh[leaf * floats + k] + 0.5f;
         colour_[k].push_back(std::clamp(c, 0.0f, 1.0f));
@@ -95,11 +140,12 @@ class Exposures {
       x_[i] = dot(along.right, blobs_[i].mean);
       y_[i] = dot(along.down, blobs_[i].mean);
       z_[i] = dot(along.forward, blobs_[i].mean);
+      footprints_[i] = sharp_footprint(blobs_[i], along);
     }
     const auto [x0, x1] = middle(x_);
     const auto [y0, y1] = middle(y_);
     const double side = std::max({x1 - x0, y1 - y0, 1e-6});
-    set_side(side, along);
+    set_side(side);
     left_ = (x0 + x1) / 2 - side / 2;
     top_ = (y0 + y1) / 2 - side / 2;
     order_.resize(blobs_.size());
@@ -107,22 +153,22 @@ class Exposures {
     std::sort(order_.begin(), order_.end(),
               [&](uint32_t a, uint32_t b) { return z_[a] < z_[b] || (z_[a] == z_[b] && a < b); });
     begin_picture();
-    for (const uint32_t i : order_) paint(i, along);
+    for (const uint32_t i : order_) paint(i);
     end_picture();
-    for (const uint32_t i : order_) measure(i, along);
+    for (const uint32_t i : order_) measure(i);
   }
 
   // Into how many pixels a square of that width, in metres, is divided.
-  void set_side(double width, const Direction& along) {
+  void set_side(double width) {
     side_ = most_side_;
     pixel_ = width / side_;
     double covered = 0;
-    for (const Blob& blob : blobs_) {
-      const Footprint f = footprint(blob, along);
-      if (!(f.reach > 0)) continue;
+    for (size_t i = 0; i < blobs_.size(); ++i) {
+      if (!(reach_[i] > 0)) continue;
+      const Footprint f = footprint(i);
       const double most = side_;
-      covered += std::min(2 * std::sqrt(f.reach * f.xx), most) *
-                 std::min(2 * std::sqrt(f.reach * f.yy), most);
+      covered += std::min(2 * std::sqrt(reach_[i] * f.xx), most) *
+                 std::min(2 * std::sqrt(reach_[i] * f.yy), most);
     }
     const double allowed = kMeanCover * static_cast<double>(blobs_.size());
     if (!(covered > allowed)) return;
@@ -143,8 +189,8 @@ class Exposures {
 
   void begin_picture() {
     const size_t pixels = static_cast<size_t>(side_) * static_cast<size_t>(side_);
-    transmittance_.assign(pixels, 1.0f);
-    for (std::vector<float>& plane : behind_) plane.assign(pixels, 0.0f);
+    transmittance_.assign(pixels + kLanes, 1.0f);
+    for (std::vector<float>& plane : behind_) plane.assign(pixels + kLanes, 0.0f);
   }
 
   // Of what was painted, all is still behind what comes next.
@@ -155,44 +201,46 @@ class Exposures {
     transmittance_.assign(transmittance_.size(), 1.0f);
   }
 
-  void paint(uint32_t i, const Direction& along) {
+  void paint(uint32_t i) {
     const float r = colour_[0][i], g = colour_[1][i], b = colour_[2][i];
-    cover(i, along, [&](size_t first, int count) {
-      const float* alpha = alpha_;
+    cover(i, [&](size_t first, int count) {
       float* through = &transmittance_[first];
       float *red = &behind_[0][first], *green = &behind_[1][first], *blue = &behind_[2][first];
-      for (int x = 0; x < count; ++x) {
-        const float weight = alpha[x] * through[x];
-        red[x] += weight * r;
-        green[x] += weight * g;
-        blue[x] += weight * b;
-        through[x] *= 1 - alpha[x];
+      for (int x = 0; x < count; x += kLanes) {
+        const Lanes alpha = load(alpha_ + x), before = load(through + x), weight = alpha * before;
+        store(load(red + x) + weight * r, red + x);
+        store(load(green + x) + weight * g, green + x);
+        store(load(blue + x) + weight * b, blue + x);
+        store(before * (1 - alpha), through + x);
       }
     });
   }
 
-  void measure(uint32_t i, const Direction& along) {
+  void measure(uint32_t i) {
     const float r = colour_[0][i], g = colour_[1][i], b = colour_[2][i];
     float covered = 0, seen = 0, contrast = 0;
-    const bool inside = cover(i, along, [&](size_t first, int count) {
-      const float* alpha = alpha_;
+    const bool inside = cover(i, [&](size_t first, int count) {
       float* through = &transmittance_[first];
       float *red = &behind_[0][first], *green = &behind_[1][first], *blue = &behind_[2][first];
-      float *shown = shown_, *differs = differs_;
-      for (int x = 0; x < count; ++x) {
-        const float weight = alpha[x] * through[x], after = through[x] * (1 - alpha[x]);
-        const float least = std::max(after, kLeastBehind);
-        const float dr = r - (red[x] -= weight * r) / least,
-                    dg = g - (green[x] -= weight * g) / least,
-                    db = b - (blue[x] -= weight * b) / least;
-        shown[x] = weight * through[x];
-        differs[x] = shown[x] * std::min((dr * dr + dg * dg) + db * db, 3.0f);
-        through[x] = after;
-      }
-      for (int x = 0; x < count; ++x) {
-        covered += alpha[x];
-        seen += shown[x];
-        contrast += differs[x];
+      for (int x = 0; x < count; x += kLanes) {
+        const Lanes alpha = load(alpha_ + x), before = load(through + x), weight = alpha * before,
+                    after = before * (1 - alpha), all = Lanes{} + kLeastBehind,
+                    least = after < all ? all : after;
+        // The plane without this Gaussian, and how its colour differs from that.
+        const auto difference = [&](float* plane, float colour) {
+          const Lanes behind = load(plane + x) - weight * colour;
+          store(behind, plane + x);
+          return colour - behind / least;
+        };
+        const Lanes dr = difference(red, r), dg = difference(green, g), db = difference(blue, b);
+        const Lanes square = (dr * dr + dg * dg) + db * db, most = Lanes{} + 3,
+                    shown = weight * before, differs = shown * (most < square ? most : square);
+        store(after, through + x);
+        for (int k = 0; k < kLanes; ++k) {
+          covered += alpha[k];
+          seen += shown[k];
+          contrast += differs[k];
+        }
       }
     });
     if (!inside) seen_[i] += 1;  // beyond the picture: nothing is known to hide it
@@ -203,27 +251,33 @@ class Exposures {
   }
 
   struct Footprint {
-    float reach;        // of d, where alpha is the threshold; drawn where it is over 0
-    double xx, xy, yy;  // pixels²
+    double xx, xy, yy;  // pixels², or metres²
   };
-  Footprint footprint(const Blob& blob, const Direction& along) const {
+  // In metres², as it is seen.
+  static Footprint sharp_footprint(const Blob& blob, const Direction& along) {
     const auto across = [&](const Vec3d& a, const Vec3d& b) {
       const double* c = blob.covariance;
       const Vec3d cb{(c[0] * b.x + c[1] * b.y) + c[2] * b.z, (c[1] * b.x + c[3] * b.y) + c[4] * b.z,
                      (c[2] * b.x + c[4] * b.y) + c[5] * b.z};
-      return dot(a, cb) / (pixel_ * pixel_);
+      return dot(a, cb);
     };
-    return {2 * std::log(kThreshold * static_cast<float>(blob.opacity)),
-            across(along.right, along.right) + kLowPass, across(along.right, along.down),
-            across(along.down, along.down) + kLowPass};
+    return {across(along.right, along.right), across(along.right, along.down),
+            across(along.down, along.down)};
+  }
+  Footprint footprint(size_t i) const {
+    const double pixel = pixel_ * pixel_;
+    const Footprint& f = footprints_[i];
+    return {f.xx / pixel + kLowPass, f.xy / pixel, f.yy / pixel + kLowPass};
   }
 
   // Fills alpha_ for each row of pixels that a Gaussian covers, and calls row(first pixel, count).
-  // False where it covers none of the picture.
+  // count is of whole lanes: where those end behind the row alpha is 0. False where it covers none
+  // of the picture.
   template <class Row>
-  bool cover(uint32_t i, const Direction& along, const Row& row) {
-    const auto [reach, xx, xy, yy] = footprint(blobs_[i], along);
+  bool cover(uint32_t i, const Row& row) {
+    const float reach = reach_[i];
     if (!(reach > 0)) return true;
+    const auto [xx, xy, yy] = footprint(i);
     const auto opacity = static_cast<float>(blobs_[i].opacity);
     const double det = std::max(xx * yy - xy * xy, 1e-14 * xx * yy);
     const double u = (x_[i] - left_) / pixel_, v = (y_[i] - top_) / pixel_;
@@ -233,16 +287,29 @@ class Exposures {
     const auto a = static_cast<float>(yy / det), b = static_cast<float>(-2 * xy / det),
                c = static_cast<float>(xx / det);
     const auto from = static_cast<float>(begin_x + 0.5 - u);
+    const auto dy_of = [v = v](int y) { return static_cast<float>(y + 0.5 - v); };
+    const int width = end_x - begin_x;
+    const Conic conic{a, b, c};
+    const double limit = reach + kRounding * conic.most(from, from + static_cast<float>(width),
+                                                        dy_of(begin_y), dy_of(end_y));
     for (int y = begin_y; y < end_y; ++y) {
-      const auto dy = static_cast<float>(y + 0.5 - v);
-      const int count = end_x - begin_x;
-      float* alpha = alpha_;
-      for (int x = 0; x < count; ++x) {
-        const float dx = static_cast<float>(x) + from;
-        const float d = (a * dx * dx + b * dx * dy) + c * dy * dy;
-        alpha[x] = d < reach ? std::min(kLargest, opacity * falloff(d)) : 0.0f;
+      const float dy = dy_of(y);
+      const auto [left, right] = width <= kNarrow
+                                     ? std::pair(0, width)
+                                     : conic.within(limit, double{dy}, double{from}, width);
+      if (left >= right) continue;
+      const Lanes none{}, largest = none + kLargest;
+      int count = 0;
+      for (; left + count < right; count += kLanes) {
+        Lanes x{0, 1, 2, 3};
+        x += static_cast<float>(left + count);
+        const Lanes dx = x + from;
+        const Lanes d = (a * dx * dx + b * dx * dy) + c * dy * dy;
+        const Lanes painted = opacity * falloff(d);
+        const Lanes alpha = painted < largest ? painted : largest;
+        store((d < reach) & (x < static_cast<float>(right)) ? alpha : none, alpha_ + count);
       }
-      row(static_cast<size_t>(y) * static_cast<size_t>(side_) + static_cast<size_t>(begin_x),
+      row(static_cast<size_t>(y) * static_cast<size_t>(side_) + static_cast<size_t>(begin_x + left),
           count);
     }
     return true;
@@ -256,17 +323,21 @@ class Exposures {
     return static_cast<int>(std::clamp(std::ceil(centre + reach), 0.0, static_cast<double>(side_)));
   }
 
+  // By Gaussian.
   std::vector<Blob> blobs_;
-  std::vector<float> colour_[3];  // by Gaussian
-  float beyond_[3];               // behind all of them: their mean
+  std::vector<float> reach_;  // of d, where alpha is the threshold; drawn where it is over 0
+  std::vector<float> colour_[3];
+  float beyond_[3];  // behind all of them: their mean
   // Sums over directions: of T², of it where the picture has the Gaussian, and there times a
   // square.
   std::vector<double> seen_, met_, contrast_;
   std::vector<double> x_, y_, z_, sorted_;
+  std::vector<Footprint> footprints_;
   std::vector<uint32_t> order_;
+  // By pixel, and lanes that are written with the last.
   std::vector<float> transmittance_;
   std::vector<float> behind_[3];  // the picture without what is before
-  float alpha_[kMostSide], shown_[kMostSide], differs_[kMostSide];
+  float alpha_[kMostSide + kLanes];
   int most_side_, side_ = 0;
   double pixel_ = 0, left_ = 0, top_ = 0;
 };

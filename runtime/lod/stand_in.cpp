@@ -70,47 +70,77 @@ double overlap(const Footprint& a, const Footprint& b) {
          std::exp(-0.5 * distance);
 }
 
+// The same of a and itself.
+double own_overlap(const Footprint& a) {
+  const double sum = determinant(2 * a.uu, 2 * a.uv, 2 * a.vv);
+  if (!(sum > 0)) return 0;
+  return 2 * kPi * a.peak * a.peak * std::sqrt(a.determinant / sum * a.determinant);
+}
+
 struct Error {
   double error;  // m², squared code values
   double opacity;
 };
 
-Error error_at(const Group& group, double pixel) {
-  const double blur = group.low_pass * pixel * pixel;
-  const size_t count = group.children.size();
-  const double most = *std::max_element(group.seen, group.seen + count);
-  // What coverage differs by shows what is behind, wherever any of them is seen.
-  const double lack =
-      3 * most * most * (group.contrast * group.contrast + kUnknownContrast * kUnknownContrast);
-  double error = 0, sharp_own = 0, own = 0, lacking = 0, added = 0;
-  for (int axis = 0; axis < kAxes; ++axis) {
-    Footprint child[kChildren];
-    Footprint parent = sharp_footprint(group.parent, group.parent.mean, axis, group.footprint);
-    sharp_own += overlap(parent, parent);
-    blur_by(blur, parent);
-    for (size_t i = 0; i < count; ++i) {
-      child[i] = sharp_footprint(group.children[i], group.parent.mean, axis, group.footprint);
-      blur_by(blur, child[i]);
+// What is lost if the parent is drawn in the place of its children, by the pixel's size.
+class Loss {
+ public:
+  // The group outlives it.
+  explicit Loss(const Group& group) : group_(group), count_(group.children.size()) {
+    const double most = *std::max_element(group.seen, group.seen + count_);
+    // What coverage differs by shows what is behind, wherever any of them is seen.
+    lack_ =
+        3 * most * most * (group.contrast * group.contrast + kUnknownContrast * kUnknownContrast);
+    for (int axis = 0; axis < kAxes; ++axis) {
+      const auto seen = [&](const Blob& blob) {
+        return sharp_footprint(blob, group.parent.mean, axis, group.footprint);
+      };
+      Sharp& sharp = sharp_[axis];
+      sharp.parent = seen(group.parent);
+      for (size_t i = 0; i < count_; ++i) sharp.child[i] = seen(group.children[i]);
+      sharp_own_ += own_overlap(sharp.parent);
     }
-    for (size_t i = 0; i < count; ++i) {
-      added += group.children[i].opacity * overlap(child[i], parent);
-      for (size_t j = i; j < count; ++j) {
-        const double both = (i == j ? 1 : 2) * group.children[i].opacity *
-                            group.children[j].opacity * overlap(child[i], child[j]);
-        error += both * group.seen[i] * group.seen[j] * group.colours[i][j];
-        lacking += both;
-      }
-    }
-    own += overlap(parent, parent);
   }
-  if (!(own > 0)) return {0, 0};
-  error += lack * lacking;
-  const double best = added / own,
-               opacity = std::min(best, kMostOpacity * std::sqrt(sharp_own / own));
-  // Least squares, and what is lost where the best would be more than all.
-  const double off = best - opacity;
-  return {std::max(error - lack * own * (best * best - off * off), 0.0) / kAxes, opacity};
-}
+
+  Error at(double pixel) const {
+    const double blur = group_.low_pass * pixel * pixel;
+    double error = 0, own = 0, lacking = 0, added = 0;
+    for (const Sharp& sharp : sharp_) {
+      Sharp seen = sharp;
+      blur_by(blur, seen.parent);
+      for (size_t i = 0; i < count_; ++i) blur_by(blur, seen.child[i]);
+      for (size_t i = 0; i < count_; ++i) {
+        const double opacity = group_.children[i].opacity;
+        added += opacity * overlap(seen.child[i], seen.parent);
+        for (size_t j = i; j < count_; ++j) {
+          const double both = i == j ? opacity * opacity * own_overlap(seen.child[i])
+                                     : 2 * opacity * group_.children[j].opacity *
+                                           overlap(seen.child[i], seen.child[j]);
+          error += both * group_.seen[i] * group_.seen[j] * group_.colours[i][j];
+          lacking += both;
+        }
+      }
+      own += own_overlap(seen.parent);
+    }
+    if (!(own > 0)) return {0, 0};
+    error += lack_ * lacking;
+    const double best = added / own,
+                 opacity = std::min(best, kMostOpacity * std::sqrt(sharp_own_ / own));
+    // Least squares, and what is lost where the best would be more than all.
+    const double off = best - opacity;
+    return {std::max(error - lack_ * own * (best * best - off * off), 0.0) / kAxes, opacity};
+  }
+
+ private:
+  struct Sharp {
+    Footprint parent, child[kChildren];
+  };
+
+  const Group& group_;
+  const size_t count_;
+  Sharp sharp_[kAxes];
+  double lack_, sharp_own_ = 0;
+};
 
 }  // namespace
 
@@ -160,15 +190,17 @@ StandIn stand_in(const Group& group) {
   const double reach = std::sqrt(c[0] + c[3] + c[5]);
   const double spared = std::max<double>(1, static_cast<double>(group.children.size()) - 1);
   const double scale = 1 / (std::sqrt(spared) * kTolerance * kExtentOfPixel);
+  const Loss loss(group);
+  const auto loss_at = [&](double pixel) { return loss.at(std::max(pixel, 1e-4 * reach)); };
   const auto tolerated = [&](double pixel) {
-    const double error = error_at(group, std::max(pixel, 1e-4 * reach)).error;
+    const double error = loss_at(pixel).error;
     return std::min(std::sqrt(error) * scale, kLargestPixel);
   };
   // A fixed point: what a pixel of that size leaves of the error asks for that size. Halving the
   // step keeps it from swinging, since a larger pixel leaves less.
   double pixel = tolerated(0);
   for (int i = 0; i < kRefinements; ++i) pixel = std::sqrt(pixel * tolerated(pixel));
-  return {pixel, error_at(group, std::max(pixel, 1e-4 * reach)).opacity};
+  return {pixel, loss_at(pixel).opacity};
 }
 
 double extent_of(double pixel) {
