@@ -25,7 +25,6 @@ constexpr float kLargest = 0.99f;  // α, METHOD §6
 // T from which on what is behind is divided by it.
 constexpr float kLeastBehind = 1e-4f;
 constexpr double kContrastBeyond = 0.2;  // of what is beyond all pictures
-constexpr double kRounding = 1e-6;       // of d's terms, more than what binary32 loses
 
 struct Direction {
   Vec3d forward, right, down;
@@ -56,38 +55,11 @@ void store(Lanes lanes, float* to) {
   std::memcpy(to, &lanes, sizeof lanes);
 }
 
-// Rows of so many pixels are painted faster than what can be left out of them is found.
-constexpr int kNarrow = 2 * kLanes;
-
 // e^(-d/2) to 0.04, enough to tell what hides what: it is cheap.
 Lanes falloff(Lanes d) {
   const Lanes x = 1 - d * (1.0f / 16), x2 = x * x, x4 = x2 * x2;
   return x4 * x4;
 }
-
-// d = a·dx² + b·dx·dy + c·dy², a not negative.
-struct Conic {
-  double a, b, c;
-
-  // Bounds |a·dx²| + |b·dx·dy| + |c·dy²| between these.
-  double most(double x0, double x1, double y0, double y1) const {
-    const double x = std::max(std::fabs(x0), std::fabs(x1)),
-                 y = std::max(std::fabs(y0), std::fabs(y1));
-    return a * x * x + std::fabs(b) * x * y + std::fabs(c) * y * y;
-  }
-
-  // Of a row's pixels, of which number i has dx = i + from: a range that holds all where d is under
-  // the limit; all of them where the numbers tell nothing.
-  std::pair<int, int> within(double limit, double dy, double from, int count) const {
-    const double middle = -b * dy / (2 * a);
-    const double square = middle * middle - (c * dy * dy - limit) / a;
-    if (square < 0) return {0, 0};
-    const double half = std::sqrt(square);
-    const double first = middle - half - from - 1, last = middle + half - from + 2;
-    return {first > 0 ? static_cast<int>(std::min(first, static_cast<double>(count))) : 0,
-            last < count ? static_cast<int>(std::max(last, 0.0)) : count};
-  }
-};
 
 class Exposures {
  public:
@@ -287,29 +259,22 @@ class Exposures {
     const auto a = static_cast<float>(yy / det), b = static_cast<float>(-2 * xy / det),
                c = static_cast<float>(xx / det);
     const auto from = static_cast<float>(begin_x + 0.5 - u);
-    const auto dy_of = [v = v](int y) { return static_cast<float>(y + 0.5 - v); };
     const int width = end_x - begin_x;
-    const Conic conic{a, b, c};
-    const double limit = reach + kRounding * conic.most(from, from + static_cast<float>(width),
-                                                        dy_of(begin_y), dy_of(end_y));
     for (int y = begin_y; y < end_y; ++y) {
-      const float dy = dy_of(y);
-      const auto [left, right] = width <= kNarrow
-                                     ? std::pair(0, width)
-                                     : conic.within(limit, double{dy}, double{from}, width);
-      if (left >= right) continue;
+      const auto dy = static_cast<float>(y + 0.5 - v);
       const Lanes none{}, largest = none + kLargest;
       int count = 0;
-      for (; left + count < right; count += kLanes) {
+      for (; count < width; count += kLanes) {
         Lanes x{0, 1, 2, 3};
-        x += static_cast<float>(left + count);
+        x += static_cast<float>(count);
         const Lanes dx = x + from;
         const Lanes d = (a * dx * dx + b * dx * dy) + c * dy * dy;
         const Lanes painted = opacity * falloff(d);
         const Lanes alpha = painted < largest ? painted : largest;
-        store((d < reach) & (x < static_cast<float>(right)) ? alpha : none, alpha_ + count);
+        const auto inside = (d < reach) & (x < static_cast<float>(width));
+        store(inside ? alpha : none, alpha_ + count);
       }
-      row(static_cast<size_t>(y) * static_cast<size_t>(side_) + static_cast<size_t>(begin_x + left),
+      row(static_cast<size_t>(y) * static_cast<size_t>(side_) + static_cast<size_t>(begin_x),
           count);
     }
     return true;

@@ -31,7 +31,8 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
   }
   touched_.resize(blocks_.size());
   chunk_stamp_.resize(tree.chunk_count);
-  make_room();
+  // A pool may have other room at any moment but within a run, which sees to it.
+  if (!tree.chunks_come_and_go) make_room();
 }
 
 void PartitionedSearch::make_room() {

@@ -20,8 +20,8 @@ namespace voyager {
 // spread over `workers`, and no result depends on their number. From the given resource it
 // takes 24 bytes a place of the tree's subtrees (28 where chunks come and go), 4 a node of the
 // largest cut and 4 a subtree of the largest change that it has seen; once they were seen a run
-// allocates nothing. Throws only std::bad_alloc; the next run then starts
-// from nothing, and is right.
+// allocates nothing, until a pool has another number of places. Throws only std::bad_alloc; the
+// next run then starts from nothing, and is right.
 class PartitionedSearch {
  public:
   // Consecutive subtrees of one tier. Their cut nodes are in cut() in three pieces:

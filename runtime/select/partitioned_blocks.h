@@ -23,4 +23,14 @@ inline constexpr uint32_t kNoChunk = 0xffffffffu;
 inline constexpr Watch kNever{INFINITY, 0};  // of a subtree that is closed
 inline constexpr Watch kDue{-1, 0};  // of one that is to be visited, however little has moved
 
+// visit(subtree, its place) for the subtrees [first, last). Tables of all subtrees have a loop of
+// their own, since they are read often.
+template <class Visit>
+void each_place(SubtreePlaces places, uint32_t first, uint32_t last, const Visit& visit) {
+  if (places.pages == nullptr)
+    for (uint32_t s = first; s < last; ++s) visit(s, s);
+  else
+    for (uint32_t s = first; s < last; ++s) visit(s, places(s));
+}
+
 }  // namespace voyager

@@ -13,8 +13,7 @@ void PartitionedSearch::settle(size_t index, Tally& tally) {
   block.open = 0;
   block.size = {};
   block.stand_ins = 0;
-  for (uint32_t s = block.first; s < block.last; ++s) {
-    const uint32_t place = places_(s);
+  each_place(places_, block.first, block.last, [&](uint32_t, uint32_t place) {
     const uint32_t now = cut_slots_[place], before = last_cut_slots_[place];
     block.open += refined_[place] != 0;
     if (!stand_ins_.empty()) block.stand_ins += count_bits(stand_ins_[place]);
@@ -23,10 +22,10 @@ void PartitionedSearch::settle(size_t index, Tally& tally) {
       tally.left += count_bits(before & ~now);
       last_cut_slots_[place] = now;
     }
-    if (now == 0) continue;
+    if (now == 0) return;
     for (uint32_t level = 0; level < 3; ++level)
       block.size[level] += count_bits(now & tree_.subtrees[place].level_slots(level));
-  }
+  });
   tally.bytes += (block.last - block.first) * 3 * sizeof(uint32_t);
 }
 
@@ -51,14 +50,14 @@ void PartitionedSearch::list_block(const Block& block) {
     if (block.size[level] == 0) continue;
     uint32_t* out = cut_.data() + block.at[level];
     const uint32_t* const end = out + block.size[level];
-    for (uint32_t s = block.first; s < block.last; ++s) {
-      const uint32_t slots = cut_slots_[places_(s)];
-      if (slots == 0) continue;
-      const SearchSubtree& subtree = tree_.subtree(s);
+    each_place(places_, block.first, block.last, [&](uint32_t, uint32_t place) {
+      const uint32_t slots = cut_slots_[place];
+      if (slots == 0) return;
+      const SearchSubtree& subtree = tree_.subtrees[place];
       const uint32_t first_slot = subtree.first_slot(level), node = subtree.first_node(level);
       out = put_set_bits<8>((slots & subtree.level_slots(level)) >> first_slot, out, end,
-                            [node](uint32_t place) { return node + place; });
-    }
+                            [node](uint32_t slot) { return node + slot; });
+    });
   }
 }
 

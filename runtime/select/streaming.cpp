@@ -33,8 +33,9 @@ void PartitionedSearch::start_over(Workers& workers) {
       Block& block = blocks_[b];
       if (block.open == 0) continue;
       touched_[b] = 1;
-      for (uint32_t s = block.first; s < block.last; ++s)
-        if (refined_[places_(s)] != 0) close(s);
+      each_place(places_, block.first, block.last, [&](uint32_t s, uint32_t place) {
+        if (refined_[place] != 0) close(s);
+      });
     }
   });
 }

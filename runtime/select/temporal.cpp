@@ -39,11 +39,10 @@ uint64_t PartitionedSearch::list_due(Search kind, Workers& workers) {
       uint32_t out = signals_[b].first;
       if (block.open != 0) {
         tally.bytes += (block.last - block.first) * sizeof(Watch);
-        for (uint32_t s = block.first; s < block.last; ++s) {
-          const uint32_t place = places_(s);
+        each_place(places_, block.first, block.last, [&](uint32_t s, uint32_t place) {
           if (all ? refined_[place] != 0 : due(watch_[place], travel) && !renew(place))
             work_[out++] = s;
-        }
+        });
       }
       signals_[b].visits = out - signals_[b].first;
     }

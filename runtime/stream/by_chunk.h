@@ -19,8 +19,9 @@ class ByChunk {
   // To be changed; from now on it is known.
   Known& know(uint32_t chunk) {
     if (const uint32_t at = at_[chunk]; at != 0) return known_[at].of;
+    if (known_.size() == known_.capacity()) known_.reserve(2 * known_.size());
     at_.set(chunk, static_cast<uint32_t>(known_.size()));
-    known_.push_back({chunk, {}});
+    known_.push_back({chunk, {}});  // throws nothing, so that the place is never another's
     return known_.back().of;
   }
   void forget(uint32_t chunk) {

@@ -36,8 +36,8 @@ class ChunkLooks {
     uint32_t own = looks_[chunk];
     if (own == kNotLooked) {
       own = look(chunk);
+      looked_.push_back(chunk);  // first: what is not in it is never cleared
       looks_.set(chunk, own);
-      looked_.push_back(chunk);
     }
     return own == kNobody ? Look{0, false} : Look{own | kOwn, (own & kNow) != 0};
   }

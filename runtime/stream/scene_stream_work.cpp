@@ -99,13 +99,19 @@ void SceneStream::look_at_likely(Lock& lock) {
   const std::vector<uint32_t> likely = residency_.needed();
   planning_ = true;
   lock.unlock();
-  for (const uint32_t chunk : likely) {
-    const ChunkRange children = graph_.children(chunk);
-    looks_.at(chunk);
-    for (uint32_t child = children.first; child < children.last; ++child) looks_.at(child);
+  std::exception_ptr failure;
+  try {
+    for (const uint32_t chunk : likely) {
+      const ChunkRange children = graph_.children(chunk);
+      looks_.at(chunk);
+      for (uint32_t child = children.first; child < children.last; ++child) looks_.at(child);
+    }
+  } catch (...) {
+    failure = std::current_exception();
   }
   lock.lock();
   planning_ = false;
+  if (failure) std::rethrow_exception(failure);
 }
 
 bool SceneStream::retry_due() {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "runtime/math/subtree_places.h"
+#include "runtime/stream/sparse_array.h"
 
 namespace voyager {
 
@@ -39,8 +40,8 @@ class SubtreePages {
 
   const uint32_t room_;
   const uint64_t kept_;
-  std::vector<uint32_t> places_;  // by page
-  std::vector<uint8_t> chunks_;   // by page: that are there
+  SparseArray<uint32_t> places_;  // by page
+  SparseArray<uint8_t> chunks_;   // by page: that are there
   uint32_t used_ = 0;             // places that were ever taken
   // Those that have a place and no chunk, by the change with which that went; and the other way.
   std::set<std::pair<uint64_t, uint32_t>> released_;

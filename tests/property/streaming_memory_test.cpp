@@ -74,5 +74,37 @@ TEST(StreamingMemory, RefusedAtAnyMomentIsOvercome) {
   EXPECT_GE(refused, 10u);
 }
 
+// Of a scene that has seen little until then, whose lists still grow.
+TEST(StreamingMemory, RefusedWhileAPlanIsMadeIsOvercomeForAllViewers) {
+  GaussianCloud cloud = test::random_cloud(1500, 3, 1);
+  for (float& x : cloud.position) x *= 20;
+  test::StreamRig rig(test::bake(cloud), 1.0);
+  const auto from = [](Vec3d eye, Vec3d at) {
+    return test::frame_input(test::look(eye, at, 24, 18, 70), 2);
+  };
+  const FrameInput far = from({0, -3, -3000}, {0, -3, 0});
+  const FrameInput inputs[] = {from({0, -3, -60}, {0, -3, 0}), from({0, -3, 60}, {0, -3, 200})};
+  long at = 1;
+  for (bool reached = true; reached; ++at) {
+    const auto scene = rig.open(test::source_of(rig.bytes), 1.0);
+    View view(scene, *rig.backend, {}, rig.memory(), rig.workers);
+    test::render(view, far);
+    while (scene->stream->step()) continue;
+    test::render(view, inputs[0]);
+    refused_after = at;
+    scene->stream->step();
+    reached = refused_after == 0;
+    refused_after = 0;
+    rig.time += 20;
+    for (FrameInput input : inputs) {
+      const test::Frame whole = test::render(rig.whole, input);
+      input.wait_resident = true;
+      test::expect_same_bits(test::render(view, input), whole);
+    }
+    ASSERT_FALSE(HasFailure()) << at;
+  }
+  EXPECT_GT(at, 20);
+}
+
 }  // namespace
 }  // namespace voyager::streaming_memory_test

@@ -71,7 +71,7 @@ Json bench_searches(const BenchArguments& arguments, const BenchSubject& subject
   const Scene& scene = *subject.scene;
   Json report = {{"leaves", scene.leaf_count},
                  {"nodes", scene.node_count},
-                 {"subtrees", scene.search.subtrees.size()},
+                 {"subtrees", scene.search.subtree_count()},
                  {"chunks", scene.search.chunk_count},
                  {"search_bytes", scene.search.bytes()}};
   report["searches"] = time_searches(arguments, subject);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -17,6 +18,7 @@ std::vector<ChunkRange> random_ranges(uint32_t seed, size_t count) {
   while (ranges.size() < count) {
     const uint32_t far = below(30) == 0 ? 65'534 + below(4) : 0, many = below(30) == 0 ? far : 0;
     at += far + below(3);
+    if (below(40) == 0) at -= std::min(at, below(10));
     ranges.push_back({at, at + (below(4) == 0 ? 0 : below(5) + many)});
     if (below(50) == 0) ranges.back() = {0, 0};
   }
