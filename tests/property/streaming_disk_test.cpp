@@ -153,6 +153,22 @@ TEST(StreamingDisk, ATurnFindsMostOfWhatItShowsThere) {
   EXPECT_LT(after.chunks.late - before.chunks.late, arrived / 4);
 }
 
+// From a local disk, in a pool without room for what is all around.
+TEST(StreamingDisk, AViewerWhoTurnsRoundSeesAllOfItInASecond) {
+  Flight flight(1.0, 0.001, 100e6);
+  const auto facing = [](double z) { return ahead({0, -3, 0}, {0, 0.02, z}, 0.3); };
+  flight.stand(facing(1));
+  const ResidencyNeed need = flight.counters().need;
+  const auto enough = static_cast<uint32_t>(need.seen + need.chunks + flight.stream().pinned()) / 2;
+  flight.rig().give_room(flight.scene(), enough);
+  flight.stand(facing(1), 60);
+  flight.draw(facing(-1));
+  const StreamCounters before = flight.counters();
+  EXPECT_GT(before.need.seen_missing, 20u);
+  for (int i = 0; i < 60; ++i) flight.draw(facing(-1));
+  EXPECT_EQ(flight.counters().need.seen_missing, 0u);
+}
+
 // In a pool with room for what is seen and 20 chunks more.
 TEST(StreamingDisk, AWalkFindsWhatItShowsThere) {
   Flight flight(1.0, 0.001, 100e6);
