@@ -108,8 +108,8 @@ float largest_difference(const Picture& a, const Picture& b, uint32_t from, uint
   return most;
 }
 
-// Another viewer's bake of the same scene, for which a viewer waits. It ends once the file is
-// there, and has made none.
+// Another viewer's bake of the same scene, for which a viewer waits. It ends when the file appears,
+// and leaves no bake.
 class BakeWhileAbsent {
  public:
   BakeWhileAbsent(const std::string& scene, const std::string& file) {
