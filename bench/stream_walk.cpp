@@ -1,5 +1,5 @@
 // A walk through a streamed scene at the pace of a headset: what each frame took, and what it
-// showed coarser than τ.
+// showed coarser than τ. Then whoever walks stands still for three seconds and turns round.
 //   stream_walk SCENE CAMERAS.json MEGABYTES [FPS] [WxH] [TAU] [SECONDS]
 // The cameras are a path that is walked at 1.4 m a second of its length, back and forth.
 #include <algorithm>
@@ -58,6 +58,16 @@ class Path {
   std::vector<double> at_;
 };
 
+// Turned about the viewer's own upward axis.
+Camera turned(Camera camera, double radians) {
+  double* q = camera.pose.orientation;
+  const double s = std::sin(radians / 2), c = std::cos(radians / 2);
+  const double x = q[0] * c - q[2] * s, y = q[1] * c + q[3] * s, z = q[2] * c + q[0] * s,
+               w = q[3] * c - q[1] * s;
+  q[0] = x, q[1] = y, q[2] = z, q[3] = w;
+  return camera;
+}
+
 double quantile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());
   return values[static_cast<size_t>(q * static_cast<double>(values.size() - 1))];
@@ -70,6 +80,37 @@ long peak_kilobytes() {
     while (std::fgets(line, sizeof line, status))
       if (std::sscanf(line, "VmHWM: %ld", &found) == 1) break;
     std::fclose(status);
+  }
+  return found;
+}
+
+bool is_whole(const VoyFrameStats& frame, const VoyStreamingStats& streaming) {
+  return frame.nodesUnrefined == 0 || streaming.seenMissingChunks == 0;
+}
+
+struct Turn {
+  double whole_after = 0;  // seconds from the turn's end to the end of the last coarse frame
+  size_t coarse_turning = 0, coarse_after = 0;
+  bool ended_whole = false;
+};
+
+// Three seconds of standing, half a second for 180 degrees, and three seconds of standing.
+Turn turn_round(voyager::bench::StreamedView& streamed, const Camera& from, double fps) {
+  Turn found;
+  const auto standing = static_cast<size_t>(3 * fps), turning = static_cast<size_t>(fps / 2);
+  auto next = Clock::now(), ended = next;
+  for (size_t i = 0; i <= 2 * standing + turning; ++i) {
+    const double share =
+        static_cast<double>(i - std::min(i, standing)) / static_cast<double>(turning);
+    streamed.render(turned(from, 3.14159265358979 * std::min(1.0, share)));
+    found.ended_whole = is_whole(streamed.view.stats(), streamed.scene.streaming_stats());
+    if (i == standing + turning) ended = Clock::now();
+    if (i > standing && !found.ended_whole) {
+      (i > standing + turning ? found.coarse_after : found.coarse_turning)++;
+      found.whole_after = i > standing + turning ? seconds_since(ended) : 0;
+    }
+    next += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / fps));
+    std::this_thread::sleep_until(next);
   }
   return found;
 }
@@ -114,7 +155,7 @@ int main(int argc, char** argv) try {
     const VoyFrameStats stats = streamed.view.stats();
     if (i == 0) first_image = seconds_since(start);
     const VoyStreamingStats now = streamed.scene.streaming_stats();
-    const bool whole = stats.nodesUnrefined == 0 || now.seenMissingChunks == 0;
+    const bool whole = is_whole(stats, now);
     if (settled == 0 && i > 10 && whole) settled = seconds_since(start);
     if (i == settling) before = now;
     if (i >= settling) {
@@ -130,6 +171,7 @@ int main(int argc, char** argv) try {
     std::this_thread::sleep_until(next);
   }
   const VoyStreamingStats after = streamed.scene.streaming_stats();
+  const Turn turn = turn_round(streamed, path.at(1.4 * static_cast<double>(frames) / fps), fps);
   const VoySceneInfo info = streamed.scene.info();
   const double metres = 1.4 * static_cast<double>(frames) / fps;
   std::printf(
@@ -141,7 +183,9 @@ int main(int argc, char** argv) try {
       "%.0f,\n"
       " \"ms_p50\": %.2f, \"ms_p99\": %.2f, \"wall_p50\": %.2f, \"wall_p99\": %.2f, "
       "\"wall_max\": %.2f, \"read_mb_a_metre\": %.3f, \"late\": %llu, \"arrived\": %llu, "
-      "\"evicted\": %llu, \"failures\": %llu, \"peak_host_mb\": %.0f}\n",
+      "\"evicted\": %llu, \"failures\": %llu, \"peak_host_mb\": %.0f,\n"
+      " \"turn_coarse_frames\": %zu, \"after_turn_coarse_frames\": %zu, "
+      "\"after_turn_coarse_s\": %.2f, \"after_turn_whole\": %s}\n",
       device.capabilities().deviceName, static_cast<unsigned long long>(info.gaussianCount),
       info.shDegree, megabytes, static_cast<double>(after.budgetBytes) / 1e6,
       static_cast<unsigned long long>(after.chunkSlots),
@@ -154,7 +198,9 @@ int main(int argc, char** argv) try {
       static_cast<unsigned long long>(after.lateChunks - before.lateChunks),
       static_cast<unsigned long long>(after.arrivedChunks - before.arrivedChunks),
       static_cast<unsigned long long>(after.evictedChunks - before.evictedChunks),
-      static_cast<unsigned long long>(after.failures), static_cast<double>(peak_kilobytes()) / 1e3);
+      static_cast<unsigned long long>(after.failures), static_cast<double>(peak_kilobytes()) / 1e3,
+      turn.coarse_turning, turn.coarse_after, turn.whole_after,
+      turn.ended_whole ? "true" : "false");
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "stream_walk: %s\n", error.what());
