@@ -10,6 +10,7 @@
 #include <functional>
 #include <numeric>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "runtime/base/open_source.h"
@@ -71,27 +72,95 @@ std::vector<uint32_t> depth_first(const LodTree& tree) {
   return order;
 }
 
-// Classes of sizes, `octaves` wide, the large ones first; in each by place.
-std::vector<uint32_t> by_size(const LodTree& tree, double octaves) {
-  const NodeRecord& root = tree.records[0];
-  const Vec3f side = root.box_max - root.box_min;
-  const float widest = std::max({side.x, side.y, side.z, 1e-6f});
-  const auto key = [&](uint32_t n) {
-    const NodeRecord& r = tree.records[n];
+// Where a node is, large ones before small ones by classes of sizes that are `octaves` wide.
+class SizeAndPlace {
+ public:
+  SizeAndPlace(const LodTree& tree, double octaves) : tree_(tree), octaves_(octaves) {
+    const NodeRecord& root = tree.records[0];
+    const Vec3f side = root.box_max - root.box_min;
+    least_ = root.box_min, widest_ = std::max({side.x, side.y, side.z, 1e-6f});
+  }
+  using Key = std::pair<double, uint64_t>;
+  Key operator()(uint32_t n) const {
+    const NodeRecord& r = tree_.records[n];
     const auto cell = [&](int axis) {
-      const float middle = (r.box_min[axis] + r.box_max[axis]) / 2 - root.box_min[axis];
-      return static_cast<uint32_t>(std::clamp(middle / widest, 0.0f, 1.0f) * 0x1fffff);
+      const float middle = (r.box_min[axis] + r.box_max[axis]) / 2 - least_[axis];
+      return static_cast<uint32_t>(std::clamp(middle / widest_, 0.0f, 1.0f) * 0x1fffff);
     };
     const double size = std::clamp(double{r.extent}, 1e-9, 1e9);
-    return std::pair(-std::floor(std::log2(size) / octaves),
-                     morton_code(cell(0), cell(1), cell(2)));
-  };
+    return {-std::floor(std::log2(size) / octaves_), morton_code(cell(0), cell(1), cell(2))};
+  }
+
+ private:
+  const LodTree& tree_;
+  double octaves_;
+  Vec3f least_;
+  float widest_;
+};
+
+std::vector<uint32_t> by_size(const LodTree& tree, double octaves) {
+  const SizeAndPlace key(tree, octaves);
   std::vector<uint32_t> parents = parents_of(tree);
-  std::vector<std::pair<double, uint64_t>> keys(tree.size());
+  std::vector<SizeAndPlace::Key> keys(tree.size());
   for (const uint32_t n : parents) keys[n] = key(n);
   std::stable_sort(parents.begin(), parents.end(),
                    [&](uint32_t a, uint32_t b) { return keys[a] < keys[b]; });
   return parents;
+}
+
+// The file's subtrees, whole, in pages of at most so many records: by the node that each hangs
+// from, and first by tier if `tiers`.
+Pages packed_subtrees(const Scene& scene, const LodTree& tree, double octaves, bool tiers,
+                      uint32_t most) {
+  const Partition& partition = scene.partition;
+  const SizeAndPlace key(tree, octaves);
+  std::vector<uint32_t> parent(tree.size(), 0);
+  for (const uint32_t n : parents_of(tree))
+    for (uint32_t k = 0; k < tree.records[n].child_count; ++k) parent[tree.first_child[n] + k] = n;
+  std::vector<std::tuple<size_t, SizeAndPlace::Key, uint32_t>> order;
+  for (uint32_t s = 0, tier = 0; s < partition.subtrees.size(); ++s) {
+    while (partition.tier_begin[tier + 1] <= s) ++tier;
+    order.emplace_back(tiers ? tier : 0, key(parent[partition.subtrees[s].first_owned()]), s);
+  }
+  std::sort(order.begin(), order.end());
+  Pages pages(tree.size());
+  uint32_t page = 0, used = 0;
+  for (const auto& [tier, at, s] : order) {
+    const Subtree& subtree = partition.subtrees[s];
+    if (used + subtree.node_count() > most) ++page, used = 0;
+    used += subtree.node_count();
+    for (uint32_t slot = subtree.first_owned_slot(); slot < subtree.node_count(); ++slot)
+      pages[subtree.node(slot)] = page;
+  }
+  return pages;
+}
+
+// A node's children and grandchildren together, for every other level of the tree.
+Pages packed_twos(const LodTree& tree, double octaves, uint32_t most) {
+  const SizeAndPlace key(tree, octaves);
+  std::vector<uint8_t> level(tree.size(), 0);
+  std::vector<std::pair<SizeAndPlace::Key, uint32_t>> order;
+  for (uint32_t n = 0; n < tree.size(); ++n) {
+    for (uint32_t k = 0; k < tree.records[n].child_count; ++k)
+      level[tree.first_child[n] + k] = level[n] + 1;
+    if (!tree.is_leaf(n) && level[n] % 2 == 0) order.emplace_back(key(n), n);
+  }
+  std::sort(order.begin(), order.end());
+  Pages pages(tree.size());
+  uint32_t page = 0, used = 1;
+  for (const auto& [at, n] : order) {
+    const uint32_t first = tree.first_child[n], count = tree.records[n].child_count;
+    uint32_t all = count;
+    for (uint32_t k = first; k < first + count; ++k) all += tree.records[k].child_count;
+    if (used + all > most) ++page, used = 0;
+    used += all;
+    for (uint32_t k = first; k < first + count; ++k) {
+      pages[k] = page;
+      for (uint32_t j = 0; j < tree.records[k].child_count; ++j)
+        pages[tree.first_child[k] + j] = page;
+    }
+  }
+  return pages;
 }
 
 Wedge wedge_of(const tools::Camera& camera, const Vec3f& eye) {
@@ -155,7 +224,10 @@ int main(int argc, char** argv) try {
                       {"depth first, 107", packed(*tree, depth_first(*tree), 107)},
                       {"by octave and place, 107", packed(*tree, by_size(*tree, 1), 107)},
                       {"by octave and place, 450", packed(*tree, by_size(*tree, 1), 450)},
-                      {"by half an octave, 107", packed(*tree, by_size(*tree, 0.5), 107)}};
+                      {"by half an octave, 107", packed(*tree, by_size(*tree, 0.5), 107)},
+                      {"subtrees by octave, place", packed_subtrees(*scene, *tree, 1, false, 107)},
+                      {"subtrees by tier, octave", packed_subtrees(*scene, *tree, 1, true, 107)},
+                      {"two levels by octave", packed_twos(*tree, 1, 107)}};
   for (Layout& layout : layouts) {
     layout.sizes.resize(*std::max_element(layout.pages.begin(), layout.pages.end()) + size_t{1});
     for (const uint32_t page : layout.pages) ++layout.sizes[page];
