@@ -97,6 +97,8 @@ class Residency {
   void free(const Evicted& evicted);
   // Whether arrive() or evict() has something to do.
   bool has_changes() const;
+  // How many chunks arrive() has to do with.
+  size_t filled_count() const { return filled_.size(); }
   // The target takes more blocks than there are, which the next plan does something about.
   bool overfull() const { return target_blocks_ > room_.blocks; }
 

@@ -82,8 +82,9 @@ class SceneStream {
   // Who looks, for one view's instance; it replaces what was said before. No viewers: nobody.
   // Any thread.
   void look(const void* who, std::vector<Viewer> viewers);
-  // What has come becomes resident. Frames that read the pool just now put that off, for a tenth
-  // of a second; then the call waits for them to end. Any thread.
+  // What has come becomes resident, as far as the stream's own threads have not seen to that
+  // between frames. Frames that read the pool just now put that off, for a tenth of a second; then
+  // the call waits for them to end. Any thread.
   void commit();
   // The same until nothing more is to come. Throws Error(over_budget) where what is seen does
   // not fit, and unless `stand_in` what kept a chunk that is seen from coming: what failed for
@@ -142,6 +143,8 @@ class SceneStream {
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
   void look_again();
+  void commit_between_frames();
+  void commit_if_free();
   void commit_all();
   void commit_changes();
   std::shared_ptr<const StreamChange> change_of(const LinkPatch& patch) const;
@@ -186,7 +189,8 @@ class SceneStream {
   mutable std::mutex door_;
   mutable std::shared_mutex pool_mutex_;
   std::atomic<bool> commit_due_{false};
-  std::atomic<double> put_off_{-1};  // since when a commit is due; negative: none was put off
+  std::atomic<size_t> filled_count_{0};  // chunks for the next commit
+  std::atomic<double> put_off_{-1};      // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0, departures_ = 0;
   // What kept the pool from being what is linked. Changed under both locks, read under either.

@@ -53,6 +53,20 @@ void SceneStream::commit() {
     if (since < 0 || now() < since + kPutOff) return;
     pool = hold_alone();
   }
+  commit_if_free();
+}
+
+// So that a frame finds few chunks to link, while many come. Fewer at once would be more changes
+// than a view that draws seldom can follow.
+void SceneStream::commit_between_frames() {
+  constexpr size_t kEnough = 32;
+  if (filled_count_ < kEnough) return;
+  const std::unique_lock pool(pool_mutex_, std::try_to_lock);
+  if (pool.owns_lock()) commit_if_free();
+}
+
+// The pool is held alone.
+void SceneStream::commit_if_free() {
   const Lock lock(mutex_, std::try_to_lock);
   if (!lock.owns_lock() || lost_) return;
   try {
@@ -85,6 +99,7 @@ void SceneStream::commit_changes() {
   moved_pages_.clear();
   put_off_ = -1;
   commit_due_ = false;
+  filled_count_ = 0;
   const std::vector<Residency::Evicted> evicted = residency_.evict();
   for (const Residency::Evicted& e : evicted) {
     linker_.evict(e.chunk, patch);

@@ -28,6 +28,7 @@ void SceneStream::run() {
       if (stopping_) return;
       seen = signals_;
     }
+    commit_between_frames();
     double wait = 0;
     {
       Lock lock(mutex_);
@@ -62,6 +63,7 @@ bool SceneStream::step(Lock& lock) {
 bool SceneStream::work(Lock& lock) {
   const bool done = plan_if_asked(&lock) || retry_due() || fill_some(lock) || read_some(lock);
   commit_due_ = residency_.has_changes();
+  filled_count_ = residency_.filled_count();
   if (done) {
     publish();
     signal();

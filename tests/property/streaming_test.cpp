@@ -1,7 +1,9 @@
 // A scene of which only a part is there is drawn as its resident part allows, and once all
 // that is needed has come, as if it were there whole.
+#include <chrono>
 #include <map>
 #include <random>
+#include <thread>
 #include <utility>
 
 #include "runtime/frame/whole_tree.h"
@@ -323,6 +325,27 @@ TEST(Streaming, TheTemporalCutIsTheStreamingOne) {
 }
 
 // Tables with places for a part of the subtrees, whose pages other pages take.
+// So that a frame has little to link where much comes.
+TEST(Streaming, WhatComesIsLinkedBetweenFrames) {
+  StreamRig rig(random_scene(4000, 3), 1.0);
+  StreamingDesc desc;
+  desc.first_bytes = 0;
+  const auto scene = open_streamed(test::source_of(rig.bytes), desc, *rig.backend,
+                                   StreamRig::memory(), rig.workers);
+  SceneStream& stream = *scene->stream;
+  const size_t chunks = stream.file().chunks().size();
+  ASSERT_LT(stream.counters().resident, chunks / 2);
+  stream.look(&rig, {{{Vec3f{0, -2, 0}, 1e-6f}, {}, false}});
+  const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (stream.counters().resident + 64 < chunks && std::chrono::steady_clock::now() < patience)
+    std::this_thread::yield();
+  EXPECT_GE(stream.counters().resident + 64, chunks);
+  View part(scene, *rig.backend, {}, StreamRig::memory(), rig.workers);
+  FrameInput input = walk(1, 1, 6).front();
+  input.wait_resident = true;
+  expect_same_bits(render(part, input), render(rig.whole, input));
+}
+
 TEST(Streaming, WhatAViewKeepsByPlaceIsRightHoweverSeldomItDraws) {
   GaussianCloud cloud = test::random_cloud(20000, 6, 1);
   for (float& x : cloud.position) x *= 40;
