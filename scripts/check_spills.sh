@@ -1,14 +1,24 @@
 #!/usr/bin/env bash
-# Which kernels spill registers on an Orin (sm_87), and how many bytes: check_spills.sh [MOST].
-# Fails where one spills more than MOST bytes (default 96: a rasterize_tiles spills 92). Needs nvcc, no
-# GPU. The flags are those of cuda/CMakeLists.txt.
+# Which kernels spill registers on an Orin (sm_87), and how many bytes:
+#   scripts/check_spills.sh [MOST]
+# Fails where one spills more than MOST bytes (default 96: a rasterize_tiles spills 92). Compiles
+# every kernel, which takes minutes. Needs nvcc, no GPU.
 set -euo pipefail
-cd "$(dirname "$0")/.."
+if [[ ${1:-} == --help ]]; then
+  sed -n '2,5s/^# \?//p' "$0"
+  exit 0
+fi
 most=${1:-96}
+if (($# > 1)) || [[ ! $most =~ ^[0-9]+$ ]]; then
+  echo "check_spills.sh: found '$*', expected a number of bytes, or nothing" >&2
+  exit 2
+fi
+cd "$(dirname "$0")/.."
 nvcc=$(scripts/check_cuda_module.sh --nvcc) || { echo "check_spills.sh: found no nvcc, expected one" >&2; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# The flags are those of cuda/CMakeLists.txt.
 compile() {
   "$1" -I. -O3 -DNDEBUG -std=c++20 --expt-relaxed-constexpr -Xcompiler=-fPIC,-ffp-contract=off \
     --generate-code=arch=compute_87,code='[sm_87]' -Xptxas -v -c "$3" -o "$2/$(basename "$3").o" 2>"$2/$(basename "$3").log" ||

@@ -14,7 +14,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 voyager=${VOYAGER:-$here/../build/release/bin/voyager}
 if (($# < 2)); then
   sed -n '2,12s/^# \?//p' "$0"
-  exit 2
+  [[ ${1:-} == --help ]] || exit 2
+  exit 0
 fi
 command -v ncu >/dev/null || {
   echo "profile.sh: found no ncu, expected Nsight Compute of the CUDA toolkit on the PATH" >&2

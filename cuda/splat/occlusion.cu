@@ -16,7 +16,8 @@ constexpr int kSquare =
     kLimitSide * kLimitSide;  // tiles of a thread block, a side: a cell of level 2
 constexpr unsigned kThreads = kSquare * kSquare;
 
-// In tiles: what is farther from where a tile was is not looked at.
+// In tiles, so that at most 8 × 8 are read for one. Where more may have come into view, all is
+// drawn.
 constexpr float kFarthest = 3.0f;
 
 struct EyeTiles {

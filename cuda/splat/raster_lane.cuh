@@ -8,8 +8,8 @@
 
 namespace voyager::cuda {
 
-inline constexpr int kPartWidth = 8;               // pixels of a warp's part: a lane a column, and
-inline constexpr int kLaneRows = 32 / kPartWidth;  // rows that lie so far apart
+inline constexpr int kPartWidth = 8;               // pixels of a warp's part; a lane has a column
+inline constexpr int kLaneRows = 32 / kPartWidth;  // from one of a lane's rows to its next
 
 // What a kernel is compiled for.
 template <Exponential E, bool kFilterOn, bool kSiblingsIn, bool kDepthOut, bool kCounting,

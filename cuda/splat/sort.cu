@@ -208,7 +208,7 @@ void launch_sort(const SplatFrame& f) {
   constexpr size_t kBytes = sizeof(LargeLists::Storage);
   static_assert(kBytes <= kLeastSharedBytes);
   allow_shared_bytes(sort_large, kBytes, "sort_large");
-  // As many blocks as their shared memory leaves room for.
+  // Two on a multiprocessor are what the shared memory of an Orin's has room for.
   launch_kernel("sort_large", sort_large, {2 * f.multiprocessors, kLargeThreads, f.stream, kBytes},
                 f.splats);
   const unsigned resident = resident_blocks<sort_tiles>(kSortThreads);
