@@ -81,6 +81,7 @@ void DevicePool::make_room(PoolRoom room) {
   check_addresses(shape_, room);
   layout_.set_room(room);
   memory_ = Buffer<unsigned char>(layout_.bytes());
+  bounds_.make_room(room.blocks);
   slots_ = room.slots;
   pages_ = room.pages;
   upload_chunks();
@@ -193,8 +194,7 @@ void DevicePool::pack(const StagedChunk& staged, unsigned char* into) const {
   put(at(kSlotIds), 0, staged.ids);
   put(at(kFirstSubtrees), 0, staged.links.first_subtree);
   std::memcpy(at(kRecords), staged.records.data(), staged.records.size() * sizeof(SearchRecord));
-  std::memcpy(at(kNextBlocks), staged.links.blocks.data(),
-              staged.links.blocks.size() * sizeof(uint32_t));
+  std::memcpy(at(kNextBlocks), staged.blocks.data(), staged.blocks.size() * sizeof(uint32_t));
 }
 
 void DevicePool::pack_codes(const StagedChunk& staged, unsigned char* into) const {
@@ -238,7 +238,7 @@ PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
     const auto which = static_cast<PoolArray>(a);
     const size_t unit = layout_.unit(which);
     const size_t count = which == kRecords      ? staged.records.size()
-                         : which == kNextBlocks ? staged.links.blocks.size()
+                         : which == kNextBlocks ? staged.blocks.size()
                          : is_one_a_slot(which) ? 1
                                                 : staged.content.node.size();
     const size_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
@@ -255,6 +255,7 @@ void DevicePool::fill(uint32_t slot, const StagedChunk& chunk) {
   require_room();
   const UploadRing::Piece piece = ring_.take();
   pack(chunk, piece.host());
+  bounds_.fill(chunk);
   launch_fill(copies(slot, chunk, piece.device()), stream_.get());
   piece.read_by(stream_.get());
 }

@@ -14,6 +14,7 @@
 #include "cuda/scene/gaussian_view.h"
 #include "cuda/stream/patch_buffers.h"
 #include "cuda/stream/upload_ring.h"
+#include "runtime/stream/record_bounds.h"
 
 namespace voyager::cuda {
 
@@ -35,6 +36,7 @@ class DevicePool final : public ChunkPool {
   // May wait for a piece of the ring, which is to say for chunks that came before it, and for the
   // frames that those wait for: throws Error(timeout), too.
   void fill(uint32_t slot, const StagedChunk& chunk) override;
+  const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
   void apply(const LinkPatch& patch) override;
   void await_frames() override;
   // Until the last links are the device's. Throws Error(timeout) as await_frames() does.
@@ -78,6 +80,7 @@ class DevicePool final : public ChunkPool {
   PoolLayout layout_;
   uint32_t slots_ = 0, pages_ = 0;
   Buffer<unsigned char> memory_;
+  RecordBounds bounds_;
   UploadRing ring_;
   PatchBuffers patches_;
   Event applied_{cudaEventDisableTiming};

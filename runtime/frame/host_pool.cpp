@@ -43,13 +43,15 @@ class HostPool final : public ChunkPool {
       set_gaussian(chunk, i, at, scene_);
       if (scene_.search.leaves_have_extent) scene_.tree.records[at] = chunk.record_of(i);
       if (counts_children(scene_)) scene_.child_count[at] = chunk.record_of(i).child_count;
-      const bool outside = (staged.parent[i] & StagedChunk::kOutside) != 0;
-      scene_.tree.parent[at] = outside ? kNoNode : static_cast<uint32_t>(base) + staged.parent[i];
     }
     for (uint32_t i = 0; i < staged.records.size(); ++i)
-      scene_.search.records[staged.links.record(i)] = staged.records[i];
-    const std::vector<uint32_t>& blocks = staged.links.blocks;
+      scene_.search.records[staged.record(i)] = staged.records[i];
+    const std::vector<uint32_t>& blocks = staged.blocks;
     for (size_t i = 1; i < blocks.size(); ++i) scene_.search.next_block[blocks[i - 1]] = blocks[i];
+  }
+
+  const BoundsCode& bounds(uint32_t record) const override {
+    return scene_.search.records[record].code;
   }
 
   void apply(const LinkPatch& patch) override {
@@ -70,7 +72,7 @@ class HostPool final : public ChunkPool {
     set_records(patch.tied.records);
     for (const auto& [s, linked] : patch.linked) search.subtrees[search.places()(s)] = linked;
     for (const LinkPatch::Outside& o : patch.outside)
-      std::fill_n(scene_.tree.parent.begin() + o.first, o.count, o.parent);
+      scene_.root_parents[search.places()(o.subtree)] = o.parent;
     if (patch.large) scene_.large_families.assign(patch.large->begin(), patch.large->end());
   }
 
@@ -89,9 +91,9 @@ class HostPool final : public ChunkPool {
       make_gaussian_room(room ? nodes : 0, room ? slots : 0, scene_);
       fit(scene_.tree.records, scene_.search.leaves_have_extent ? nodes : 0);
       fit(scene_.child_count, counts_children(scene_) ? nodes : 0);
-      fit(scene_.tree.parent, nodes);
       fit(scene_.slot_ids, slots);
       fit(scene_.search.subtrees, places_of(room_for));
+      fit(scene_.root_parents, places_of(room_for));
       fit(scene_.search.pages, pages_of(scene_.search.subtree_count()));
       fit(scene_.search.records, size_t{room_for.blocks} * kRecordBlock);
       fit(scene_.search.next_block, room_for.blocks);
@@ -105,11 +107,11 @@ class HostPool final : public ChunkPool {
 }  // namespace
 
 PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
-  const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) + sizeof(uint32_t) +
+  const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) +
                         (counts_children(scene) ? sizeof(uint32_t) : 0) +
                         (scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0);
   const uint64_t block = kRecordBlock * sizeof(SearchRecord) + sizeof(uint32_t);
-  const uint64_t page = kPageSubtrees * sizeof(SearchSubtree);
+  const uint64_t page = kPageSubtrees * (sizeof(SearchSubtree) + sizeof(uint32_t));
   const SearchTree& search = scene.search;
   const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
   return {shape.nodes * node + scales + sizeof(SlotIds), block,

@@ -71,7 +71,8 @@ struct Scene {
         search(memory),
         leaves(memory),
         partition(memory),
-        slot_ids(memory) {}
+        slot_ids(memory),
+        root_parents(memory) {}
 
   bool flat() const { return storage == Storage::flat; }
   bool streamed() const { return stream != nullptr; }
@@ -114,7 +115,9 @@ struct Scene {
   std::vector<DamagedChunk> damaged_chunks;  // by chunk
   std::vector<SceneNote> notes;
 
-  std::pmr::vector<SlotIds> slot_ids;  // of a streamed scene on the host
+  // Of a streamed scene on the host, which has no tree.parent.
+  std::pmr::vector<SlotIds> slot_ids;
+  std::pmr::vector<uint32_t> root_parents;  // by a subtree's place: what its roots hang from
   std::unique_ptr<ChunkPool> pool;
   std::unique_ptr<SceneStream> stream;  // fills the pool, so goes before it
 };

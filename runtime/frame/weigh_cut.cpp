@@ -41,7 +41,7 @@ class BlockWeights {
  private:
   DrawItem* weigh_level(uint32_t s, uint32_t level, uint32_t slots, DrawItem* out) {
     const SearchSubtree& subtree = search_tree_.subtree(s);
-    if (level == 0) return weigh_roots(subtree, slots, out);
+    if (level == 0) return weigh_roots(s, slots, out);
     // Each parent's own, in the order of the parents.
     const bool split = is_split(s);
     const uint32_t parents = subtree.interior & subtree.level_slots(level - 1);
@@ -56,7 +56,9 @@ class BlockWeights {
     return out;
   }
 
-  DrawItem* weigh_roots(const SearchSubtree& subtree, uint32_t slots, DrawItem* out) {
+  DrawItem* weigh_roots(uint32_t s, uint32_t slots, DrawItem* out) {
+    const uint32_t place = search_tree_.places()(s);
+    const SearchSubtree& subtree = search_tree_.subtrees[place];
     if (subtree.entry == kNoRecord) {
       *out = whole(subtree.root);
       return out + 1;
@@ -64,7 +66,7 @@ class BlockWeights {
     // Neighbours may hang from one parent.
     if (subtree.entry != entry_) {
       entry_ = subtree.entry;
-      entry_family_ = family(entry_, links_.parent[subtree.root], true);
+      entry_family_ = family(entry_, links_.parent_of_root(place, subtree.root), true);
     }
     return weigh_slots(subtree, entry_family_, slots, out);
   }

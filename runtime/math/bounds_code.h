@@ -26,6 +26,8 @@ namespace voyager {
 // upper and the lower half of the extent's upper bits in axes 1 and 2.
 struct BoundsCode {
   uint32_t axis[3];
+
+  bool operator==(const BoundsCode&) const = default;
 };
 
 inline constexpr int kCornerBits = 18, kStepBits = 6;

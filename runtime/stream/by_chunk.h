@@ -13,6 +13,8 @@ template <class Known>
 class ByChunk {
  public:
   explicit ByChunk(size_t chunks) : at_(chunks), known_(1) {}
+  // So many can be known before it takes more memory.
+  void reserve(size_t most) { known_.reserve(most + 1); }
 
   // Known{} where nothing is known of the chunk. No reference outlives know() or forget().
   const Known& operator[](uint32_t chunk) const { return known_[at_[chunk]].of; }
@@ -34,6 +36,8 @@ class ByChunk {
     }
     known_.pop_back();
   }
+  // What one takes that is known.
+  static constexpr size_t known_bytes() { return sizeof(Entry); }
   // Those that are known, in any order: visit(chunk, Known&), which neither makes one known nor
   // forgets one.
   template <class Visit>

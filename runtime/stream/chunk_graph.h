@@ -56,6 +56,7 @@ class ChunkGraph {
   ChunkGraph(const ChunkDirectory& chunks, const Tiers& tiers);
 
   uint32_t size() const { return static_cast<uint32_t>(chunks_->size()); }
+  const Tiers& tiers() const { return tiers_; }
   // Ascending, each before the chunk, and none before `from`; none where it holds the tree's root
   // and all that it leads to hangs from itself. Between them may be chunks that lead nowhere: on a
   // level with few nodes a chunk hangs from places far apart, and what is between is none of its
@@ -74,6 +75,8 @@ class ChunkGraph {
   }
   // The same of the children of a node that `chunk` owns. Costs by how many chunks it leads to.
   ChunkRange with_family(uint32_t chunk, uint32_t first, uint32_t count) const;
+  // Where the first subtree of a chunk repeats a child, that one.
+  uint32_t repeated_child(uint32_t chunk) const { return chunks_->place(chunk).next[1] - 1; }
   // The chunk that owns the parent of a root, which is not the tree's.
   uint32_t owner_of_parent(uint32_t root) const;
 

@@ -1,8 +1,15 @@
 #pragma once
 // Where the chunks of a scene lie that are resident: on the host, or on a device.
-#include "runtime/stream/linker.h"
+#include "runtime/stream/link_patch.h"
+#include "runtime/stream/staged_chunk.h"
 
 namespace voyager {
+
+// Places in a slot, where a node's address is slot * that + its place, and what a chunk has of
+// search records at most.
+struct SlotShape {
+  uint32_t nodes, records;
+};
 
 // What a pool has room for: chunks, blocks of search records, and pages of subtrees where its
 // tables do not have all of the file's.
@@ -23,9 +30,11 @@ struct PoolBytes {
 class ChunkPool {
  public:
   virtual ~ChunkPool() = default;
-  // Slots that no frame reads, and blocks that none reads, which chunk.links names; several threads
+  // Slots that no frame reads, and blocks that none reads, which the chunk names; several threads
   // at once, each a slot of its own. Throws Error where the pool itself is at fault.
   virtual void fill(uint32_t slot, const StagedChunk& chunk) = 0;
+  // Of a search record of a chunk that was filled, as searches read it.
+  virtual const BoundsCode& bounds(uint32_t record) const = 0;
   // Between two frames: what was filled before and is linked now is there for the next one.
   virtual void apply(const LinkPatch& patch) = 0;
   // Until frames in flight that read the pool have ended, which may wait for the host; none begins

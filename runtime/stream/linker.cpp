@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "runtime/select/search_records.h"
+#include "runtime/lod/nesting.h"
 
 namespace voyager {
 namespace {
@@ -15,70 +15,99 @@ class Addresses {
  public:
   explicit Addresses(SlotShape shape) : shape_(shape) {}
 
-  SearchSubtree of(const LinkTable& table, uint32_t index, uint32_t entry) {
-    const StagedSubtree& s = table.subtrees[index];
+  // But for its records.
+  SearchSubtree of(const LinkTable& table, const LinkWalk& at, uint32_t entry) {
     const uint32_t base = table.slot * shape_.nodes;
-    if (!s.ids.repeats_root()) root_ = base + s.first_place[0];
-    if (s.ids.child_count != 0 && !s.ids.repeats_child()) first_child_ = base + s.first_place[1];
-    return {root_,
-            first_child_,
-            base + s.first_place[2],
-            slot_levels(s.ids) | (is_scattered(table, s) ? kScattered : 0),
-            s.interior == 0 ? 0 : table.record(s.first_record),
-            s.interior,
-            s.families,
-            entry};
+    if (!at.repeats_root()) root_ = base + at.place(0);
+    if (at.child_count() != 0 && !at.repeats_child()) first_child_ = base + at.place(1);
+    return {root_, first_child_,  base + at.place(2), at.levels(),
+            0,     at.interior(), at.families(),      entry};
   }
 
  private:
-  static bool is_scattered(const LinkTable& table, const StagedSubtree& s) {
-    const auto records = static_cast<uint32_t>(std::popcount(s.interior));
-    bool scattered = false;
-    for (uint32_t k = 1; k < records; ++k)
-      scattered |= table.record(s.first_record + k) != table.record(s.first_record) + k;
-    return scattered;
-  }
-
   SlotShape shape_;
   uint32_t root_ = 0, first_child_ = 0;
 };
 
 // Of what the chunk could not know by itself. number: the subtree's. parent: what the roots hang
 // from.
-LinkPatch::Outside outside_of(const StagedSubtree& from, const SearchSubtree& subtree,
-                              uint32_t number, uint32_t parent) {
-  switch (from.ids.repeated) {
-    case Repeats::nothing:
-      break;
-    case Repeats::root:
-      return {number, subtree.first_child, from.ids.child_count, subtree.root};
-    case Repeats::root_and_child:
-      return {number, subtree.first_grandchild, from.ids.grandchild_count, subtree.first_child};
-  }
-  return {number, subtree.root, from.ids.root_count, parent};
-}
-
-// The node that a root hangs from.
-uint32_t find_below(const std::vector<NodeBelow>& below, uint32_t root) {
-  const auto after =
-      std::upper_bound(below.begin(), below.end(), root,
-                       [](uint32_t r, const NodeBelow& node) { return r < node.first_child; });
-  return static_cast<uint32_t>(after - below.begin() - 1);
+LinkPatch::Outside outside_of(const LinkWalk& at, const SearchSubtree& subtree, uint32_t parent) {
+  if (at.repeats_child()) return {at.subtree(), subtree.first_child};
+  return {at.subtree(), at.repeats_root() ? subtree.root : parent};
 }
 
 }  // namespace
 
-Linker::Linker(const ChunkGraph& graph, SlotShape shape)
-    : graph_(&graph), shape_(shape), tables_(graph.size()) {}
+// Goes through the nodes of one chunk after another.
+class Linker::Parents {
+ public:
+  // own: a chunk that is not held yet, or null.
+  Parents(const Linker& linker, const StagedChunk* own) : linker_(linker), own_(own) {}
 
-Linker::Family Linker::family_of(uint32_t root) const {
-  const uint32_t chunk = graph_->owner_of_parent(root);
-  return {chunk, find_below(tables_[chunk]->below, root)};
+  // Null: the chunk that should lead to it does not.
+  const Family* of(uint32_t root) {
+    if (found_ && root < found_->end()) return &*found_;
+    found_.reset();
+    const uint32_t chunk = linker_.graph_->owner_of_parent(root);
+    if (!at_ || chunk != chunk_)
+      at_.emplace(own_ != nullptr && chunk == own_->chunk ? linker_.walk(*own_)
+                                                          : linker_.walk(chunk));
+    chunk_ = chunk;
+    while (!at_->at_end() && at_->below_end() <= root) at_->next();
+    if (at_->at_end()) return nullptr;
+    at_->each_below([&](const NodeBelow& node) {
+      if (node.first_child <= root && root - node.first_child < node.child_count)
+        found_ = Family{chunk, at_->index(), node};
+    });
+    return found_ ? &*found_ : nullptr;
+  }
+
+ private:
+  const Linker& linker_;
+  const StagedChunk* own_;
+  uint32_t chunk_ = 0;
+  std::optional<LinkWalk> at_;
+  std::optional<Family> found_;
+};
+
+Linker::Linker(const ChunkGraph& graph, SlotShape shape, const std::vector<uint32_t>& next_block)
+    : graph_(&graph), shape_(shape), next_block_(&next_block), tables_(graph.size()) {}
+
+LinkWalk Linker::walk(uint32_t chunk) const {
+  const LinkTable& table = tables_[chunk];
+  return {table, graph_->tiers(), {large_, table.slot * shape_.nodes}};
+}
+
+LinkWalk Linker::walk(const StagedChunk& chunk) const {
+  return {chunk.links, graph_->tiers(), {chunk.large, 0}};
+}
+
+uint32_t Linker::record(const LinkTable& table, uint32_t number) const {
+  uint32_t block = table.first_block;
+  for (; number >= kRecordBlock; number -= kRecordBlock) block = (*next_block_)[block];
+  return block * kRecordBlock + number;
+}
+
+uint32_t Linker::record_of(const Family& family) const {
+  return record(tables_[family.chunk], family.node.record);
+}
+
+// With its records; their places in its levels.
+void Linker::set_records(const LinkTable& table, const LinkWalk& at, SearchSubtree& subtree) const {
+  if (at.interior() == 0) return;
+  subtree.first_record = record(table, at.first_record());
+  const auto count = static_cast<uint32_t>(std::popcount(at.interior()));
+  uint32_t block = subtree.first_record / kRecordBlock;
+  const uint32_t blocks = record_blocks(subtree.first_record % kRecordBlock + count);
+  for (uint32_t i = 1; i < blocks; ++i) {
+    const uint32_t next = (*next_block_)[block];
+    if (next != block + 1) subtree.levels |= kScattered;
+    block = next;
+  }
 }
 
 ChunkRange Linker::chunks_of(const Family& family) const {
-  const NodeBelow& node = below_of(family);
-  return graph_->with_family(family.chunk, node.first_child, node.child_count);
+  return graph_->with_family(family.chunk, family.node.first_child, family.node.child_count);
 }
 
 bool Linker::complete(const Family& family) const {
@@ -88,169 +117,178 @@ bool Linker::complete(const Family& family) const {
   return true;
 }
 
+// Roots ascend in a tier, and those of a later tier are greater.
 template <class Visit>
-void Linker::each_subtree(const Family& family, const Visit& visit) const {
+void Linker::each_subtree(const Family& family, const Visit& visit) {
   const ChunkRange range = chunks_of(family);
-  const NodeBelow& node = below_of(family);
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     if (!holds(chunk)) continue;
-    LinkTable& table = *tables_[chunk];
-    const auto& all = table.subtrees;
-    // Roots ascend in a tier, and those of a later tier are greater.
-    auto s = std::lower_bound(
-        all.begin(), all.end(), node.first_child,
-        [](const StagedSubtree& subtree, uint32_t root) { return subtree.ids.root < root; });
-    for (; s != all.end() && s->ids.root - node.first_child < node.child_count; ++s)
-      visit(table, static_cast<uint32_t>(s - all.begin()));
+    LinkTable& table = tables_.know(chunk);
+    LinkWalk at = walk(chunk);
+    while (!at.at_end() && at.root() < family.node.first_child) at.next();
+    for (; !at.at_end() && at.root() < family.end(); at.next()) {
+      visit(table, at);
+      at.each_below([&](const NodeBelow& node) { work_.push_back({chunk, at.index(), node}); });
+    }
   }
 }
 
 // Those that the chunk's subtrees belong to, each once.
 template <class Work>
-void Linker::each_family_of(const LinkTable& table, const Work& work) const {
-  uint32_t done = 0;  // roots before this
-  for (const StagedSubtree& s : table.subtrees) {
-    if (s.ids.root == 0 || s.ids.root < done) continue;
-    const Family family = family_of(s.ids.root);
-    done = below_of(family).first_child + below_of(family).child_count;
+void Linker::each_family_of(uint32_t chunk, const Work& work) {
+  Parents parents(*this, nullptr);
+  uint32_t done = 1;  // roots before this; the tree's has no parent
+  for (LinkWalk at = walk(chunk); !at.at_end(); at.next()) {
+    if (at.root() < done) continue;
+    const Family family = *parents.of(at.root());
+    done = family.end();
     work(family);
   }
 }
 
-void Linker::add_below(const LinkTable& table, uint32_t subtree, std::vector<Family>& out) const {
-  const uint32_t end = subtree + 1 < table.subtrees.size()
-                           ? table.subtrees[subtree + 1].first_below
-                           : static_cast<uint32_t>(table.below.size());
-  for (uint32_t below = table.subtrees[subtree].first_below; below < end; ++below)
-    out.push_back({table.chunk, below});
-}
-
-// records: of the roots.
-void Linker::check_roots(const LinkTable& own, const Subtree& subtree, const NodeRecord* records,
+void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool,
                          const std::string& file) const {
-  const uint32_t owner = graph_->owner_of_parent(subtree.root);
-  const auto& below = owner == own.chunk ? own.below : tables_[owner]->below;
-  const NodeBelow& parent = below[find_below(below, subtree.root)];
-  if (subtree.root_count > parent.child_count - (subtree.root - parent.first_child))
-    refuse_roots(own.chunk, subtree.root, file);
-  for (uint32_t i = 0; i < subtree.root_count; ++i)
-    if (!is_inside(records[i], parent.box)) refuse_nesting(own.chunk, subtree.root + i, file);
-}
-
-void Linker::check(const StagedChunk& chunk, const std::string& file) const {
-  const LinkTable& own = chunk.links;
-  const auto& subtrees = own.subtrees;
-  if (subtrees[0].ids.root == 0 && own.chunk > 0 && !holds(own.chunk - 1))
-    refuse_gap(own.chunk, file);
+  Parents parents(*this, &chunk);
   const NodeRecord* record = chunk.roots.data();  // of the subtree's first root
-  for (const StagedSubtree& s : subtrees) {
-    if (s.ids.root != 0) check_roots(own, s.ids, record, file);
-    record += s.ids.root_count;
+  for (LinkWalk at = walk(chunk); !at.at_end(); record += at.root_count(), at.next()) {
+    if (at.root() == 0) continue;
+    const Family* family = parents.of(at.root());
+    if (family == nullptr || at.root_count() > family->end() - at.root())
+      refuse_roots(chunk.chunk, at.root(), file);
+    const LinkTable& owner = family->chunk == chunk.chunk ? chunk.links : tables_[family->chunk];
+    const NodeBounds bounds = decode_bounds(pool.bounds(this->record(owner, family->node.record)));
+    for (uint32_t i = 0; i < at.root_count(); ++i)
+      if (!is_inside(record[i], bounds)) refuse_nesting(chunk.chunk, at.root() + i, file);
   }
-  const auto check_repeat = [&](const Subtree& repeats, const LinkTable& before,
-                                const LinkTable& after) {
-    if (repeats.repeats_root() && !is_same(before.last_root, after.first_root))
-      refuse_repeat(own.chunk, repeats.root, file);
-    if (repeats.repeats_child() && !is_same(before.last_child, after.first_child))
-      refuse_repeat(own.chunk, repeats.first_child, file);
-  };
-  if (own.chunk > 0 && holds(own.chunk - 1))
-    check_repeat(subtrees[0].ids, *tables_[own.chunk - 1], own);
-  if (own.chunk + 1 < graph_->size() && holds(own.chunk + 1))
-    check_repeat(tables_[own.chunk + 1]->subtrees[0].ids, own, *tables_[own.chunk + 1]);
 }
 
-void Linker::add_large(const LinkTable& table, LinkPatch& patch) {
-  if (table.large.empty()) return;
-  for (const LargeFamily& family : table.large)
-    large_.push_back({table.slot * shape_.nodes + family.parent, family.children});
+// What a chunk begins with repeats what the one before ends with. chunk: the one to refuse.
+void Linker::check_repeat(uint32_t chunk, const Subtree& before, const Subtree& after,
+                          const ChunkPool& pool, const std::string& file) const {
+  const auto code = [&](const Subtree& of, uint32_t slot) {
+    const auto k = static_cast<uint32_t>(std::popcount(of.at.interior() & slots_before(slot)));
+    return pool.bounds(record(*of.table, of.at.first_record() + k));
+  };
+  const auto same = [&](uint32_t slot_before, uint32_t slot_after) {
+    return (before.at.interior() >> slot_before & 1) != 0 &&
+           (after.at.interior() >> slot_after & 1) != 0 &&
+           code(before, slot_before) == code(after, slot_after);
+  };
+  if (after.at.repeats_root() && !same(0, 0)) refuse_repeat(chunk, after.at.root(), file);
+  if (after.at.repeats_child() && !same(before.at.root_count(), 1))
+    refuse_repeat(chunk, graph_->repeated_child(after.chunk), file);
+}
+
+void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const {
+  const LinkWalk own = walk(chunk);
+  if (own.root() == 0 && chunk.chunk > 0 && !holds(chunk.chunk - 1)) refuse_gap(chunk.chunk, file);
+  check_roots(chunk, pool, file);
+  const auto last_of = [](LinkWalk at) {
+    LinkWalk last = at;
+    for (; !at.at_end(); at.next()) last = at;
+    return last;
+  };
+  const uint32_t before = chunk.chunk - 1, after = chunk.chunk + 1;
+  if (chunk.chunk > 0 && holds(before))
+    check_repeat(chunk.chunk, {before, &tables_[before], last_of(walk(before))},
+                 {chunk.chunk, &chunk.links, own}, pool, file);
+  if (after < graph_->size() && holds(after))
+    check_repeat(chunk.chunk, {chunk.chunk, &chunk.links, last_of(own)},
+                 {after, &tables_[after], walk(after)}, pool, file);
+}
+
+void Linker::add_large(const StagedChunk& chunk, LinkPatch& patch) {
+  if (chunk.large.empty()) return;
+  for (const LargeFamily& family : chunk.large)
+    large_.push_back({chunk.links.slot * shape_.nodes + family.parent, family.children});
   std::sort(large_.begin(), large_.end(),
             [](const LargeFamily& a, const LargeFamily& b) { return a.parent < b.parent; });
   patch.large = large_;
 }
 
-void Linker::remove_large(const LinkTable& table, LinkPatch& patch) {
-  if (table.large.empty()) return;
-  std::erase_if(large_, [&](const LargeFamily& family) {
-    return family.parent / shape_.nodes == table.slot;
-  });
+void Linker::remove_large(uint32_t slot, LinkPatch& patch) {
+  const auto from = [&](uint32_t address) {
+    return std::lower_bound(
+        large_.begin(), large_.end(), address,
+        [](const LargeFamily& family, uint32_t parent) { return family.parent < parent; });
+  };
+  const auto first = from(slot * shape_.nodes), last = from((slot + 1) * shape_.nodes);
+  if (first == last) return;
+  large_.erase(first, last);
   patch.large = large_;
 }
 
-void Linker::arrive(LinkTable&& table, LinkPatch& patch) {
-  const uint32_t chunk = table.chunk;
-  tables_.know(chunk) = std::make_unique<LinkTable>(std::move(table));
-  LinkTable& own = *tables_[chunk];
-  add_large(own, patch);
-  for (uint32_t i = 0; i < own.subtrees.size() && own.subtrees[i].ids.root == 0; ++i)
-    link_root(own, i, patch);
-  each_family_of(own, [&](const Family& family) { link(family, patch); });
+void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
+  add_large(chunk, patch);
+  tables_.know(chunk.chunk) = std::move(chunk.links);
+  if (walk(chunk.chunk).root() == 0) link_root(chunk.chunk, patch);
+  each_family_of(chunk.chunk, [&](const Family& family) { link(family, patch); });
 }
 
-// A subtree of the tree's root. Runs of it are in chunks that are never evicted and come in
+// Its subtrees of the tree's root. Runs of that are in chunks that are never evicted and come in
 // order, none without the one before (check()), so that the first of them has the node itself.
-void Linker::link_root(LinkTable& table, uint32_t subtree, LinkPatch& patch) {
+void Linker::link_root(uint32_t last, LinkPatch& patch) {
   Addresses addresses(shape_);
-  SearchSubtree linked{};
-  for (uint32_t chunk = 0; chunk <= table.chunk; ++chunk) {
-    const uint32_t end =
-        chunk == table.chunk ? subtree + 1 : static_cast<uint32_t>(tables_[chunk]->subtrees.size());
-    for (uint32_t i = 0; i < end; ++i) linked = addresses.of(*tables_[chunk], i, kNoRecord);
-  }
-  table.subtrees[subtree].linked = true;
-  const uint32_t number = table.first_subtree + subtree;
-  patch.outside.push_back(outside_of(table.subtrees[subtree], linked, number, kNoNode));
-  patch.linked.emplace_back(number, linked);
+  for (uint32_t chunk = 0; chunk <= last; ++chunk)
+    for (LinkWalk at = walk(chunk); !at.at_end() && at.root() == 0; at.next()) {
+      LinkTable& table = tables_.know(chunk);
+      SearchSubtree linked = addresses.of(table, at, kNoRecord);
+      if (chunk != last) continue;
+      set_records(table, at, linked);
+      table.set_leads_to(at.index(), true);
+      patch.outside.push_back(outside_of(at, linked, kNoNode));
+      patch.linked.emplace_back(at.subtree(), linked);
+    }
 }
 
-void Linker::link(Family first, LinkPatch& patch) {
+void Linker::link(const Family& first, LinkPatch& patch) {
   work_.assign(1, first);
   while (!work_.empty()) {
     const Family family = work_.back();
     work_.pop_back();
-    LinkTable& table = *tables_[family.chunk];
-    NodeBelow& node = table.below[family.below];
-    if (node.linked || !table.subtrees[node.subtree].linked || !complete(family)) continue;
-    node.linked = true;
-    const uint32_t record = table.record(node.record);
-    const uint32_t parent = table.slot * shape_.nodes + node.node;
+    LinkTable& table = tables_.know(family.chunk);
+    if (table.leads_on(family.node.index) || !table.leads_to(family.subtree) || !complete(family))
+      continue;
+    table.set_leads_on(family.node.index, true);
+    const uint32_t record = record_of(family);
+    const uint32_t parent = table.slot * shape_.nodes + family.node.place;
+    const uint32_t subtree = table.first_subtree + family.subtree;
     Addresses addresses(shape_);
     uint32_t first_below = kLowest;
-    each_subtree(family, [&](LinkTable& of, uint32_t i) {
-      const uint32_t subtree = of.first_subtree + i;
-      first_below = std::min(first_below, subtree);
-      const SearchSubtree linked = addresses.of(of, i, record);
-      of.subtrees[i].linked = true;
-      patch.outside.push_back(outside_of(of.subtrees[i], linked, subtree, parent));
-      patch.linked.emplace_back(subtree, linked);
-      add_below(of, i, work_);
+    each_subtree(family, [&](LinkTable& of, const LinkWalk& at) {
+      first_below = std::min(first_below, at.subtree());
+      SearchSubtree linked = addresses.of(of, at, record);
+      set_records(of, at, linked);
+      of.set_leads_to(at.index(), true);
+      patch.outside.push_back(outside_of(at, linked, parent));
+      patch.linked.emplace_back(at.subtree(), linked);
     });
     patch.tied.records.push_back({record, kLowest | first_below});
-    patch.tied.changed.push_back(table.first_subtree + node.subtree);
+    patch.tied.changed.push_back(subtree);
   }
 }
 
-void Linker::unlink(Family first, LinkPatch& patch) {
+void Linker::unlink(const Family& first, LinkPatch& patch) {
   work_.assign(1, first);
   while (!work_.empty()) {
     const Family family = work_.back();
     work_.pop_back();
-    LinkTable& table = *tables_[family.chunk];
-    NodeBelow& node = table.below[family.below];
-    if (!std::exchange(node.linked, false)) continue;
-    patch.cut.records.push_back({table.record(node.record), kBlocked});
-    patch.cut.changed.push_back(table.first_subtree + node.subtree);
-    each_subtree(family, [&](LinkTable& of, uint32_t i) {
-      of.subtrees[i].linked = false;
-      patch.unlinked.push_back(of.first_subtree + i);
-      add_below(of, i, work_);
+    LinkTable& table = tables_.know(family.chunk);
+    if (!table.leads_on(family.node.index)) continue;
+    table.set_leads_on(family.node.index, false);
+    patch.cut.records.push_back({record_of(family), kBlocked});
+    patch.cut.changed.push_back(table.first_subtree + family.subtree);
+    each_subtree(family, [&](LinkTable& of, const LinkWalk& at) {
+      of.set_leads_to(at.index(), false);
+      patch.unlinked.push_back(at.subtree());
     });
   }
 }
 
 void Linker::evict(uint32_t chunk, LinkPatch& patch) {
-  each_family_of(*tables_[chunk], [&](const Family& family) { unlink(family, patch); });
-  remove_large(*tables_[chunk], patch);
+  const uint32_t slot = tables_[chunk].slot;
+  each_family_of(chunk, [&](const Family& family) { unlink(family, patch); });
+  remove_large(slot, patch);
   tables_.forget(chunk);
 }
 

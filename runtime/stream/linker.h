@@ -2,95 +2,85 @@
 // What leads to what among the chunks that are resident. Nodes of one tier lead to subtrees
 // of the next; a node does so only when all subtrees below it are there, and all that leads
 // to itself, so that whatever search follows the links finds a cut that is whole.
-#include <memory>
+//
+// Of a chunk it keeps a LinkTable, and a large family's nodes in a list of all of them. Bounds of
+// nodes are the pool's.
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "runtime/stream/by_chunk.h"
 #include "runtime/stream/chunk_graph.h"
-#include "runtime/stream/staged_chunk.h"
-#include "runtime/stream/subtree_pages.h"
+#include "runtime/stream/chunk_pool.h"
 
 namespace voyager {
 
-// Places in a slot, where a node's address is slot * that + its place, and what a chunk has of
-// search records at most.
-struct SlotShape {
-  uint32_t nodes, records;
-};
-
-// Changes of a SearchTree whose nodes and records are addresses, and of its nodes' parents.
-// All of `cut` and `unlinked` is to be done before `pages`, and that before all of `tied` and
-// `linked`; in each, nothing is there twice with different values.
-struct LinkPatch {
-  struct Record {
-    uint32_t record, children;  // SearchRecord::children
-  };
-  // The nodes [first, first + count) of a subtree, whose parent it does not own.
-  struct Outside {
-    uint32_t subtree, first, count, parent;
-  };
-  struct Links {
-    std::vector<Record> records;
-    std::vector<uint32_t> changed;  // subtrees that hold those records
-  };
-  Links cut, tied;
-  std::vector<uint32_t> unlinked;  // subtrees to which nothing leads any more; for their entries
-  // Pages of subtrees that have another place. Nothing leads to what is there yet.
-  std::vector<PageChange> pages;
-  std::vector<std::pair<uint32_t, SearchSubtree>> linked;
-  std::vector<Outside> outside;
-  // All large families of nodes that are held, where those have changed.
-  std::optional<std::vector<LargeFamily>> large;
-
-  bool empty() const {
-    return cut.records.empty() && unlinked.empty() && pages.empty() && linked.empty() && !large;
-  }
-};
-
 class Linker {
  public:
-  // The graph outlives the linker.
-  Linker(const ChunkGraph& graph, SlotShape shape);
+  // graph and next_block outlive it. next_block: of each block of records, the chunk's next.
+  Linker(const ChunkGraph& graph, SlotShape shape, const std::vector<uint32_t>& next_block);
+  // No more chunks will be held.
+  void make_room(uint32_t slots) { tables_.reserve(slots); }
 
-  bool holds(uint32_t chunk) const { return tables_[chunk] != nullptr; }
-  uint32_t slot(uint32_t chunk) const { return tables_[chunk]->slot; }
-  // Of a chunk whose parents are all held: what it alone could not show, also that it goes on with
-  // the tree's root where the chunk before was refused. Throws Error(damaged_chunk) as
-  // stage_chunk() does.
-  void check(const StagedChunk& chunk, const std::string& file) const;
-  // A chunk whose parents are all held, in table.slot.
-  void arrive(LinkTable&& table, LinkPatch& patch);
+  bool holds(uint32_t chunk) const { return !tables_[chunk].empty(); }
+  uint32_t slot(uint32_t chunk) const { return tables_[chunk].slot; }
+  // Of a chunk whose parents are all held, and that has filled its slot: what it alone could not
+  // show, also that it goes on with the tree's root where the chunk before was refused. Throws
+  // Error(damaged_chunk) as stage_chunk() does.
+  void check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const;
+  // A chunk whose parents are all held, in links.slot.
+  void arrive(StagedChunk&& chunk, LinkPatch& patch);
   // None of its children is held.
   void evict(uint32_t chunk, LinkPatch& patch);
 
- private:
-  struct Family {
-    uint32_t chunk, below;  // of the node that leads to it
-  };
-
-  const NodeBelow& below_of(const Family& family) const {
-    return tables_[family.chunk]->below[family.below];
+  // What hangs from each node of a chunk that is held, on a tier's lowest level: visit(NodeBelow).
+  template <class Visit>
+  void each_below(uint32_t chunk, const Visit& visit) const {
+    for (LinkWalk at = walk(chunk); !at.at_end(); at.next()) at.each_below(visit);
   }
-  void check_roots(const LinkTable& own, const Subtree& subtree, const NodeRecord* records,
-                   const std::string& file) const;
-  Family family_of(uint32_t root) const;
+
+ private:
+  // The children of a node of a tier's lowest level.
+  struct Family {
+    uint32_t chunk, subtree;  // of the node; an index in the chunk
+    NodeBelow node;
+
+    uint32_t end() const { return node.first_child + node.child_count; }
+  };
+  struct Subtree {
+    uint32_t chunk;
+    const LinkTable* table;
+    LinkWalk at;
+  };
+  // The families of roots that ascend, from call to call.
+  class Parents;
+
+  LinkWalk walk(uint32_t chunk) const;
+  LinkWalk walk(const StagedChunk& chunk) const;
+  // The address of a chunk's record.
+  uint32_t record(const LinkTable& table, uint32_t number) const;
+  uint32_t record_of(const Family& family) const;
+  void set_records(const LinkTable& table, const LinkWalk& at, SearchSubtree& subtree) const;
+  void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const;
+  void check_repeat(uint32_t chunk, const Subtree& before, const Subtree& after,
+                    const ChunkPool& pool, const std::string& file) const;
   ChunkRange chunks_of(const Family& family) const;
   bool complete(const Family& family) const;
-  // Each subtree of the family in turn: visit(table, index in it).
+  // Each subtree of the family in turn: visit(table, walk at it). What hangs from it is work_.
   template <class Visit>
-  void each_subtree(const Family& family, const Visit& visit) const;
+  void each_subtree(const Family& family, const Visit& visit);
   template <class Work>
-  void each_family_of(const LinkTable& table, const Work& work) const;
-  void link(Family family, LinkPatch& patch);
-  void unlink(Family family, LinkPatch& patch);
-  void add_large(const LinkTable& table, LinkPatch& patch);
-  void remove_large(const LinkTable& table, LinkPatch& patch);
-  void link_root(LinkTable& table, uint32_t subtree, LinkPatch& patch);
-  void add_below(const LinkTable& table, uint32_t subtree, std::vector<Family>& out) const;
+  void each_family_of(uint32_t chunk, const Work& work);
+  void link(const Family& family, LinkPatch& patch);
+  void unlink(const Family& family, LinkPatch& patch);
+  void add_large(const StagedChunk& chunk, LinkPatch& patch);
+  void remove_large(uint32_t slot, LinkPatch& patch);
+  void link_root(uint32_t chunk, LinkPatch& patch);
 
   const ChunkGraph* graph_;
   SlotShape shape_;
-  ByChunk<std::unique_ptr<LinkTable>> tables_;
+  const std::vector<uint32_t>* next_block_;
+  ByChunk<LinkTable> tables_;
   std::vector<LargeFamily> large_;  // of what is held, by address
   std::vector<Family> work_;
 };

@@ -71,6 +71,8 @@ class Residency {
   uint32_t take_slot(uint32_t chunk);
   // Those that it has, in their order.
   std::vector<uint32_t> blocks(uint32_t chunk) const;
+  // By block that a chunk has, its next. The same array as long as this lives.
+  const std::vector<uint32_t>& next_blocks() const { return next_block_; }
   void filled(uint32_t chunk);
   // An absent chunk takes a slot at once, as if it had been read; one must be free. Then its
   // blocks; false where they are not free.

@@ -51,8 +51,10 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       pool_bytes_(desc.bytes.of(desc.room)),
       looks_(file_->chunks()),
       residency_(graph_, file_->chunks(), records_, desc.room, desc.pinned),
-      linker_(graph_, shape_),
-      pages_(no_pages(desc.room)) {}
+      linker_(graph_, shape_, residency_.next_blocks()),
+      pages_(no_pages(desc.room)) {
+  linker_.make_room(desc.room.slots);
+}
 
 SceneStream::~SceneStream() {
   stop();
@@ -148,16 +150,14 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
         const std::lock_guard lock(placing);
         if (!residency_.place_records(chunk, staged.record_blocks()))
           refuse_records(staged, file_->name());
-        staged.links.blocks = residency_.blocks(chunk);
+        staged.put(residency_.slot(chunk), residency_.blocks(chunk));
       } catch (const Error& error) {
         if (error.code() != ErrorCode::damaged_chunk || chunk < residency_.pinned()) throw;
         damage[chunk] = error;
         continue;
       }
-      staged.links.slot = residency_.slot(chunk);
       pool_.fill(staged.links.slot, staged);
-      staged.content = {};
-      staged.records = {};
+      staged.drop_content();
     }
   });
   for (uint32_t chunk = 0; chunk < count; ++chunk)
@@ -194,17 +194,18 @@ void SceneStream::resize(PoolRoom room, uint32_t pinned, Workers& workers) {
 void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
   pool_.await_frames();
   Residency residency(graph_, file_->chunks(), records_, room, std::min(pinned, desc_.pinned));
-  Linker linker(graph_, shape_);
+  Linker linker(graph_, shape_, residency_.next_blocks());
   std::optional<SubtreePages> pages = no_pages(room);
   unsound_ = std::make_exception_ptr(Error(
       ErrorCode::internal,
       file_->name() + ": found memory that was only partly filled again, expected all of it"));
+  linker_ = std::move(linker);
   pool_.resize(room);
+  linker_.make_room(room.slots);
   ++generation_;
   ++departures_;
   counted_ = total(counted_, residency_.counters());
   residency_ = std::move(residency);
-  linker_ = std::move(linker);
   pages_.reset();
   if (pages) pages_.emplace(std::move(*pages));
   coming_.clear();

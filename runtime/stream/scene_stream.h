@@ -18,6 +18,7 @@
 #include "runtime/format/reader.h"
 #include "runtime/stream/chunk_pool.h"
 #include "runtime/stream/failures.h"
+#include "runtime/stream/linker.h"
 #include "runtime/stream/residency.h"
 
 namespace voyager {
@@ -155,7 +156,7 @@ class SceneStream {
   std::unique_lock<std::shared_mutex> hold_alone() const;
   void apply(const LinkPatch& patch);
   bool accept(uint32_t chunk, LinkPatch& patch);
-  void learn_families(const LinkTable& table);
+  void learn_families(uint32_t chunk);
   void place_subtrees(const ChunkEntry& chunk);
   void reset(PoolRoom room, uint32_t pinned, Workers& workers);
   StagedChunk decode(uint32_t chunk, std::span<const std::byte> stored) const;

@@ -143,14 +143,14 @@ std::shared_ptr<const StreamChange> SceneStream::change_of(const LinkPatch& patc
 bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
   StagedChunk& staged = coming_.at(chunk).chunk;
   try {
-    linker_.check(staged, file_->name());
+    linker_.check(staged, pool_, file_->name());
   } catch (const Error& error) {
     add_failure(chunk, error);
     return false;
   }
-  learn_families(staged.links);
   if (pages_) place_subtrees(file_->chunks()[chunk]);
-  linker_.arrive(std::move(staged.links), patch);
+  linker_.arrive(std::move(staged), patch);
+  learn_families(chunk);
   return true;
 }
 
@@ -168,10 +168,11 @@ void SceneStream::place_subtrees(const ChunkEntry& chunk) {
   version_ += kChangesKept;
 }
 
-void SceneStream::learn_families(const LinkTable& table) {
-  for (const NodeBelow& node : table.below)
-    if (residency_.set_family(graph_.with_family(table.chunk, node.first_child, node.child_count)))
+void SceneStream::learn_families(uint32_t chunk) {
+  linker_.each_below(chunk, [&](const NodeBelow& node) {
+    if (residency_.set_family(graph_.with_family(chunk, node.first_child, node.child_count)))
       look_again();
+  });
 }
 
 bool SceneStream::changes_since(uint64_t version,

@@ -146,8 +146,7 @@ bool SceneStream::fill_some(Lock& lock) {
     Coming& coming = coming_.at(chunk);
     staged_bytes_ -= coming.stored_bytes;
     coming.stored_bytes = 0;
-    coming.chunk.links.slot = slot;
-    coming.chunk.links.blocks = residency_.blocks(chunk);
+    coming.chunk.put(slot, residency_.blocks(chunk));
     some.push_back({chunk, &coming.chunk, {}});
   }
   if (some.empty()) return false;
@@ -159,8 +158,7 @@ bool SceneStream::fill_some(Lock& lock) {
     } catch (...) {
       of.failure = std::current_exception();
     }
-    of.staged->content = {};
-    of.staged->records = {};
+    of.staged->drop_content();
   }
   lock.lock();
   --filling_;

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 #include "runtime/base/error.h"
-#include "runtime/lod/subtree_cursor.h"
+#include "runtime/lod/nesting.h"
 #include "runtime/select/search_records.h"
 
 namespace voyager {
@@ -21,8 +22,7 @@ class Stager {
   Stager(Chunk&& chunk, uint32_t index, const Tiers& tiers, const std::string& file)
       : tiers_(tiers), file_(file) {
     out_.content = std::move(chunk);
-    out_.links.chunk = index;
-    out_.links.first_subtree = out_.content.first_subtree;
+    out_.chunk = index;
   }
 
   StagedChunk stage() {
@@ -37,9 +37,11 @@ class Stager {
     }
     for (size_t i = 0; i < content.node.size(); ++i)
       if (const uint32_t children = content.record_of(i).child_count; children >= kManyChildren)
-        out_.links.large.push_back({out_.place[i], children});
-    out_.links.last_root = root_;
-    out_.links.last_child = child_;
+        out_.large.push_back({out_.place[i], children});
+    // Nodes of a chunk come subtree by subtree, those of a slot by their ids, as a table's.
+    std::sort(out_.large.begin(), out_.large.end(),
+              [](const LargeFamily& a, const LargeFamily& b) { return a.parent < b.parent; });
+    set_links();
     return std::move(out_);
   }
 
@@ -52,46 +54,41 @@ class Stager {
     for (const uint32_t id : node)
       out_.place.push_back(static_cast<uint32_t>(
           std::lower_bound(sorted.begin(), sorted.end(), id) - sorted.begin()));
-    if (!make_slot_ids(sorted, out_.ids)) refuse_runs(out_.links.chunk, file_);
+    if (!make_slot_ids(sorted, out_.ids)) refuse_runs(out_.chunk, file_);
   }
-  // Of a node that the subtree at next_node_ owns: the k-th of them. Behind the last it has none.
-  uint32_t place_of_owned(uint32_t k) const {
-    const size_t i = next_node_ + k;
-    return i < out_.place.size() ? out_.place[i] : 0;
+  void set_links() {
+    const uint32_t first = out_.content.first_subtree;
+    const Subtree& subtree = out_.content.subtrees.front();
+    out_.links = LinkTable(parts_, child_counts_);
+    out_.links.first_subtree = first;
+    out_.links.next_root = subtree.root + (subtree.repeats_root() ? 1 : 0);
+    out_.links.next_below = next_below_.value_or(0);
   }
 
   // records: of the subtree, by slot.
   void add(const Subtree& subtree, uint32_t index, const NodeRecord* records) {
-    LinkTable& links = out_.links;
     const uint32_t levels = index < tiers_.tier_begin[1] ? tiers_.first_tier_levels : kTierLevels;
     const auto record = [&](uint32_t slot) -> const NodeRecord& { return records[slot]; };
     check_repeats(subtree, records);
-    const uint32_t first = subtree.first_owned_slot();
-    StagedSubtree staged{
-        subtree,
-        {place_of_owned(0), place_of_owned(std::max(subtree.first_child_slot(), first) - first),
-         place_of_owned(subtree.first_grandchild_slot() - first)},
-        static_cast<uint32_t>(out_.records.size()),
-        static_cast<uint32_t>(links.below.size()),
-        interior_slots(subtree, record),
-        family_slots(subtree, record)};
-    out_.records.resize(out_.records.size() + static_cast<size_t>(std::popcount(staged.interior)));
-    fill_search_records(subtree, record, out_.records.data() + staged.first_record);
+    const LinkTable::Part part{slot_levels(subtree), interior_slots(subtree, record),
+                               family_slots(subtree, record)};
+    uint32_t search_record = static_cast<uint32_t>(out_.records.size());
+    out_.records.resize(out_.records.size() + static_cast<size_t>(std::popcount(part.interior)));
+    fill_search_records(subtree, record, out_.records.data() + search_record);
     set_parents(subtree, records);
-    uint32_t search_record = staged.first_record;
     for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
-      if ((staged.interior >> slot & 1) != 0) {
+      if ((part.interior >> slot & 1) != 0) {
         if (subtree.level(slot) + 1 == levels) {
           out_.records[search_record].children = kBlocked;
-          links.below.push_back({out_.place[next_node_], search_record,
-                                 out_.content.first_child[next_node_], records[slot].child_count,
-                                 static_cast<uint32_t>(links.subtrees.size()), records[slot]});
+          child_counts_.push_back(records[slot].child_count);
+          if (in_first_tier(index) && !next_below_)
+            next_below_ = out_.content.first_child[next_node_];
         }
         ++search_record;
       }
       if (!subtree.repeats(slot)) ++next_node_;
     }
-    links.subtrees.push_back(staged);
+    parts_.push_back(part);
     out_.roots.insert(out_.roots.end(), records, records + subtree.root_count);
   }
 
@@ -99,7 +96,7 @@ class Stager {
   void set_parents(const Subtree& subtree, const NodeRecord* records) {
     const uint32_t owned = subtree.first_owned_slot();
     out_.parent.resize(out_.parent.size() + subtree.node_count() - owned,
-                       StagedChunk::kOutside | static_cast<uint32_t>(out_.links.subtrees.size()));
+                       StagedChunk::kOutside | static_cast<uint32_t>(parts_.size()));
     each_family(
         subtree, [&](uint32_t slot) { return records[slot].child_count; },
         [&](uint32_t parent, uint32_t first, uint32_t count) {
@@ -113,27 +110,32 @@ class Stager {
 
   // The cut meets every path once only if sizes never grow downwards.
   void check_inside(uint32_t node, const NodeRecord& child, const NodeRecord& parent) const {
-    if (!is_inside(child, parent)) refuse_nesting(out_.links.chunk, node, file_);
+    if (!is_inside(child, parent)) refuse_nesting(out_.chunk, node, file_);
   }
 
   void check_repeats(const Subtree& subtree, const NodeRecord* records) {
-    const uint32_t chunk = out_.links.chunk;
-    const bool first = out_.links.subtrees.empty();
+    const bool first = parts_.empty();
     if (subtree.repeats_root() && !first && !is_same(records[0], root_))
-      refuse_repeat(chunk, subtree.root, file_);
+      refuse_repeat(out_.chunk, subtree.root, file_);
     if (subtree.repeats_child() && !first && !is_same(records[1], child_))
-      refuse_repeat(chunk, subtree.first_child, file_);
+      refuse_repeat(out_.chunk, subtree.first_child, file_);
     root_ = records[0];
     if (subtree.child_count != 0) child_ = records[subtree.first_child_slot()];
-    if (!first) return;
-    out_.links.first_root = root_;
-    out_.links.first_child = child_;
+  }
+
+  // Whether a subtree is in the tier that the chunk begins in.
+  bool in_first_tier(uint32_t index) const {
+    const auto& begin = tiers_.tier_begin;
+    return *std::upper_bound(begin.begin(), begin.end(), out_.content.first_subtree) > index;
   }
 
   const Tiers& tiers_;
   const std::string& file_;
   StagedChunk out_;
   uint32_t next_node_ = 0;
+  std::vector<LinkTable::Part> parts_;
+  std::vector<uint32_t> child_counts_;
+  std::optional<uint32_t> next_below_;
   // Of the subtree before.
   NodeRecord root_{}, child_{};
 };
@@ -166,9 +168,17 @@ void refuse_gap(uint32_t chunk, const std::string& file) {
 
 void refuse_records(const StagedChunk& staged, const std::string& file) {
   throw Error(ErrorCode::damaged_chunk,
-              file + ": chunk " + std::to_string(staged.links.chunk) + ": found " +
+              file + ": chunk " + std::to_string(staged.chunk) + ": found " +
                   std::to_string(staged.records.size()) +
                   " nodes with children, expected no more than the header and places allow");
+}
+
+void StagedChunk::drop_content() {
+  content = {};
+  records = {};
+  place = {};
+  parent = {};
+  blocks = {};
 }
 
 StagedChunk stage_chunk(Chunk&& chunk, uint32_t index, const Tiers& tiers,

@@ -7,6 +7,7 @@
 
 #include "runtime/frame/whole_tree.h"
 #include "runtime/math/screen_size.h"
+#include "runtime/stream/record_bounds.h"
 #include "tests/support/simulated_disk.h"
 #include "tests/support/stream_rig.h"
 #include "tests/support/tree_rules.h"
@@ -43,21 +44,29 @@ FrameInput ahead(const Vec3d& eye, const Vec3d& way, double tau = 3) {
   return frame_input(look(eye, eye + way, 61, 45, 60), tau);
 }
 
-// Holds nothing; fails while `fails`, or once.
+// Holds nothing but bounds; fails while `fails`, or once.
 class FailingPool final : public ChunkPool {
  public:
-  void fill(uint32_t, const StagedChunk&) override {
+  explicit FailingPool(PoolRoom room) { bounds_.make_room(room.blocks); }
+
+  void fill(uint32_t, const StagedChunk& chunk) override {
     if (late_once.exchange(false))
       throw Error(ErrorCode::timeout, "view: found a frame in flight that did not end");
+    bounds_.fill(chunk);
   }
+  const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
   void apply(const LinkPatch&) override {
     if (fails || fails_once.exchange(false))
       throw Error(ErrorCode::device_lost, "pool: found no device");
   }
-  void resize(PoolRoom) override {
+  void resize(PoolRoom room) override {
     if (refuses_once.exchange(false)) throw Error(ErrorCode::over_budget, "pool: found no memory");
+    bounds_.make_room(room.blocks);
   }
   std::atomic<bool> fails{false}, fails_once{false}, late_once{false}, refuses_once{false};
+
+ private:
+  RecordBounds bounds_;
 };
 
 // A scene on a disk, and a view of it that draws a frame each 1/60 s.
@@ -387,7 +396,6 @@ TEST(StreamingDisk, AFrameThatWaitsSaysWhatIsDamaged) {
 
 // A pool that could not take the links: what a frame would find is not what was linked.
 TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
-  FailingPool pool;
   const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
   const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
   StreamDesc desc;
@@ -398,6 +406,7 @@ TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
   double time = 0;
   desc.clock = [&] { return time; };
   Workers workers(1);
+  FailingPool pool(desc.room);
   SceneStream stream(file, desc, pool);
   stream.read_top(workers);
   stream.look(&pool, {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}});
@@ -430,7 +439,6 @@ TEST(StreamingDisk, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
 
 // A pool on threads of its own that fails once: nobody else need move for all to come again.
 TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
-  FailingPool pool;
   const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
   const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
   StreamDesc desc;
@@ -438,6 +446,7 @@ TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
   desc.room = RecordRoom(*file).of(chunks);
   desc.pinned = desc.first = SceneStream::top_chunks(*file);
   Workers workers(1);
+  FailingPool pool(desc.room);
   SceneStream stream(file, desc, pool);
   stream.read_top(workers);
   const std::vector<Viewer> viewers = {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}};

@@ -5,6 +5,7 @@
 #include <random>
 #include <set>
 
+#include "runtime/stream/record_bounds.h"
 #include "runtime/stream/scene_stream.h"
 #include "tests/support/scene_files.h"
 
@@ -27,8 +28,10 @@ class PagedPool final : public ChunkPool {
 
   PagedPool(uint32_t subtrees, PoolRoom room) : pages_(pages_of(subtrees)) { resize(room); }
 
-  void fill(uint32_t, const StagedChunk&) override {}
+  void fill(uint32_t, const StagedChunk& chunk) override { bounds_.fill(chunk); }
+  const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
   void resize(PoolRoom room) override {
+    bounds_.make_room(room.blocks);
     pages_.assign(pages_.size(), 0);
     at_.assign((room.pages + 1) * kPageSubtrees, kNobody);
     linked_.clear();
@@ -64,6 +67,7 @@ class PagedPool final : public ChunkPool {
   uint32_t most() const { return static_cast<uint32_t>(most_); }
 
  private:
+  RecordBounds bounds_;
   std::vector<uint32_t> pages_, at_;
   std::set<uint32_t> linked_;
   size_t moved_ = 0, most_ = 0;

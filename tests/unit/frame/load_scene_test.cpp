@@ -8,6 +8,7 @@
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_gaussians.h"
 #include "runtime/frame/whole_tree.h"
+#include "runtime/lod/nesting.h"
 #include "runtime/math/bounds_code.h"
 #include "runtime/scene/import/importer.h"
 #include "tests/support/random_trees.h"

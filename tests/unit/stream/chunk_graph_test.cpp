@@ -115,14 +115,17 @@ TEST(ChunkGraph, ParentsAndChildrenAreOneRelationWithAllThatNodesHangFrom) {
 TEST(ChunkGraph, AFamilyIsWhereItsRootsAre) {
   for_each_tree([](const SceneFile& file) {
     const ChunkGraph graph(file.chunks(), file.tiers());
-    for (uint32_t chunk = 0; chunk < graph.size(); ++chunk)
-      for (const NodeBelow& node :
-           stage_chunk(file.read_chunk(chunk), chunk, file.tiers(), file.name()).links.below) {
-        const ChunkRange found = graph.with_family(chunk, node.first_child, node.child_count);
-        const ChunkRange expected = graph.with_roots(node.first_child, node.child_count);
-        ASSERT_EQ(found.first, expected.first) << chunk;
-        ASSERT_EQ(found.last, expected.last) << chunk;
-      }
+    const Tiers tiers = file.tiers();
+    for (uint32_t chunk = 0; chunk < graph.size(); ++chunk) {
+      const StagedChunk staged = stage_chunk(file.read_chunk(chunk), chunk, tiers, file.name());
+      for (LinkWalk at(staged.links, tiers, {staged.large, 0}); !at.at_end(); at.next())
+        at.each_below([&](const NodeBelow& node) {
+          const ChunkRange found = graph.with_family(chunk, node.first_child, node.child_count);
+          const ChunkRange expected = graph.with_roots(node.first_child, node.child_count);
+          ASSERT_EQ(found.first, expected.first) << chunk;
+          ASSERT_EQ(found.last, expected.last) << chunk;
+        });
+    }
   });
 }
 

@@ -18,10 +18,12 @@ struct Pool {
   Pool(const SceneFile& file, uint32_t slot_nodes)
       : nodes(slot_nodes),
         graph(file.chunks(), file.tiers()),
-        linker(graph, {slot_nodes, slot_nodes}),
+        next_block(file.chunks().size() * slot_nodes),
+        linker(graph, {slot_nodes, slot_nodes}, next_block),
         address(file.info().node_count),
         codes(file.chunks().size() * slot_nodes),
         outside(file.info().subtree_count, kNoNode - 1) {
+    std::iota(next_block.begin(), next_block.end(), 1);
     for (uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk) {
       StagedChunk staged = stage_chunk(file.read_chunk(chunk), chunk, file.tiers(), file.name());
       for (size_t i = 0; i < staged.place.size(); ++i) {
@@ -32,11 +34,11 @@ struct Pool {
                         : outside_code(nodes, parent & ~StagedChunk::kOutside);
       }
       first_subtree.push_back(staged.links.first_subtree);
-      staged.links.slot = chunk;
-      staged.links.blocks.resize(staged.record_blocks());
-      std::iota(staged.links.blocks.begin(), staged.links.blocks.end(), chunk * nodes);
+      std::vector<uint32_t> blocks(staged.record_blocks());
+      std::iota(blocks.begin(), blocks.end(), chunk * nodes);
+      staged.put(chunk, std::move(blocks));
       LinkPatch patch;
-      linker.arrive(std::move(staged.links), patch);
+      linker.arrive(std::move(staged), patch);
       for (const LinkPatch::Outside& o : patch.outside) outside[o.subtree] = o.parent;
     }
   }
@@ -54,6 +56,7 @@ struct Pool {
 
   uint32_t nodes;
   ChunkGraph graph;
+  std::vector<uint32_t> next_block;
   Linker linker;
   std::vector<uint32_t> address, codes, outside, first_subtree;
 };

@@ -1,0 +1,170 @@
+#pragma once
+// What the host keeps of a resident chunk so that it can be linked (linker.h): some ten bytes for
+// each of its subtrees. All else follows from that, and is found by a walk from the first subtree.
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "runtime/lod/subtree_cursor.h"
+#include "runtime/math/large_families.h"
+#include "runtime/select/search_tree.h"
+
+namespace voyager {
+
+// An interior node on the lowest level of its tier: subtrees hang from it.
+struct NodeBelow {
+  uint32_t index;                     // among those of the chunk
+  uint32_t place, record;             // in the chunk
+  uint32_t first_child, child_count;  // as the file numbers them
+};
+
+// How many children nodes have with large families. parent: a place, counted from `base`.
+struct LargeFamilies {
+  std::span<const LargeFamily> families;
+  uint32_t base;
+
+  uint32_t children(uint32_t place) const {
+    return children_of(base + place, families.data(), static_cast<uint32_t>(families.size()));
+  }
+};
+
+class LinkTable {
+ public:
+  LinkTable() = default;
+  // Of a chunk's subtrees in turn, and of those on its tiers' lowest levels that have children, how
+  // many each has.
+  struct Part {
+    uint32_t levels;              // slot_levels()
+    uint32_t interior, families;  // as in SearchSubtree
+  };
+  LinkTable(std::span<const Part> parts, std::span<const uint32_t> child_counts);
+
+  uint32_t slot = 0, first_block = 0;  // of its records
+  uint32_t first_subtree = 0;
+  uint32_t next_root = 0;   // the first root that it owns in its first tier
+  uint32_t next_below = 0;  // the first root that hangs from a node of its first tier
+
+  bool empty() const { return words_ == nullptr; }
+  uint32_t subtrees() const { return subtrees_; }
+  uint32_t nodes_below() const { return nodes_below_; }
+
+  // Whether a refined node may lead to a subtree.
+  bool leads_to(uint32_t subtree) const { return (words_[subtree] & kLinked) != 0; }
+  void set_leads_to(uint32_t subtree, bool linked) {
+    words_[subtree] = (words_[subtree] & ~kLinked) | (linked ? kLinked : 0);
+  }
+  // Whether a node leads to what is below: that is there, and so is all above.
+  bool leads_on(uint32_t below) const { return (below_byte(below) & kLeadsOn) != 0; }
+  void set_leads_on(uint32_t below, bool linked) {
+    const uint32_t shift = 8 * (below % 4);
+    uint32_t& word = words_[below_at() + below / 4];
+    word = (word & ~(kLeadsOn << shift)) | (linked ? kLeadsOn << shift : 0);
+  }
+
+  uint32_t levels(uint32_t subtree) const { return words_[subtree] & ~kLinked; }
+  // kManyChildren: or more.
+  uint32_t few_children(uint32_t below) const { return below_byte(below) & kManyChildren; }
+  // Bits of `count` slots, of which so many are before.
+  uint32_t interior(uint32_t before, uint32_t count) const {
+    return bits(subtrees_, before, count);
+  }
+  uint32_t families(uint32_t before, uint32_t count) const {
+    return bits(subtrees_ + bit_words(), before, count);
+  }
+
+  // What a table takes: for each chunk of at most so many records, subtree, and node below.
+  static constexpr uint64_t kSubtreeBytes = sizeof(uint32_t), kBelowBytes = 1;
+  static constexpr uint64_t chunk_bytes(uint32_t records) {
+    return sizeof(LinkTable) + (2 * words_of(records) + 1) * sizeof(uint32_t) + sizeof(uint32_t);
+  }
+  uint64_t bytes() const { return sizeof(LinkTable) + word_count() * sizeof(uint32_t); }
+
+ private:
+  // In slot_levels() neither is used.
+  static constexpr uint32_t kLinked = 1u << 30;
+  static constexpr uint32_t kLeadsOn = 0x80;
+  static_assert(kManyChildren == kLeadsOn - 1);
+
+  // With one to spare, since slots may lie astride two.
+  static constexpr uint32_t words_of(uint32_t slots) { return slots / 32 + 1; }
+  uint32_t bit_words() const { return words_of(slots_); }
+  uint32_t below_at() const { return subtrees_ + 2 * bit_words() + 1; }
+  size_t word_count() const { return below_at() + (size_t{nodes_below_} + 3) / 4; }
+  uint32_t below_byte(uint32_t below) const {
+    return words_[below_at() + below / 4] >> 8 * (below % 4) & 0xff;
+  }
+  uint32_t bits(uint32_t from, uint32_t before, uint32_t count) const {
+    const uint32_t* word = &words_[from + before / 32];
+    const uint64_t two = word[0] | uint64_t{word[1]} << 32;
+    return static_cast<uint32_t>(two >> before % 32) & slots_before(count);
+  }
+  void put_bits(uint32_t from, uint32_t before, uint32_t slots);
+
+  uint32_t subtrees_ = 0, nodes_below_ = 0, slots_ = 0;
+  // Levels of each subtree; interior slots and first children of all; bytes of the nodes below.
+  std::unique_ptr<uint32_t[]> words_;
+};
+
+// From the first subtree of a chunk to its last.
+class LinkWalk {
+ public:
+  // All outlive it.
+  LinkWalk(const LinkTable& table, const Tiers& tiers, LargeFamilies large);
+
+  bool at_end() const { return index_ == table_->subtrees(); }
+  void next();
+
+  uint32_t index() const { return index_; }
+  uint32_t subtree() const { return table_->first_subtree + index_; }
+  uint32_t levels() const { return levels_; }
+  uint32_t interior() const { return interior_; }
+  uint32_t families() const { return table_->families(slots_, slot_count()); }
+  uint32_t root() const { return next_root_ - (repeats_root() ? 1 : 0); }
+  uint32_t root_count() const { return levels_ & 0xff; }
+  uint32_t child_count() const { return (levels_ >> 8 & 0xff) - (levels_ & 0xff); }
+  bool repeats_root() const { return (levels_ >> 24 & 3) != 0; }
+  bool repeats_child() const { return (levels_ >> 24 & 3) == 2; }
+  // The place of the first node of a level that it owns.
+  uint32_t place(uint32_t level) const { return place_[level]; }
+  uint32_t first_record() const { return record_; }
+  // The roots that hang from it, and from all before it in its tier, are before this one.
+  uint32_t below_end() const;
+  // visit(NodeBelow) for each, in their order.
+  template <class Visit>
+  void each_below(const Visit& visit) const {
+    uint32_t first_child = next_below_, below = below_;
+    for (uint32_t left = lowest(); left != 0; left &= left - 1, ++below) {
+      const auto slot = static_cast<uint32_t>(std::countr_zero(left));
+      const uint32_t place = place_[height_ - 1] + slot - first_slot(height_ - 1);
+      const uint32_t few = table_->few_children(below);
+      const uint32_t children = few == kManyChildren ? large_.children(place) : few;
+      const auto before = static_cast<uint32_t>(std::popcount(interior_ & slots_before(slot)));
+      visit(NodeBelow{below, place, record_ + before, first_child, children});
+      first_child += children;
+    }
+  }
+
+ private:
+  void start_tier();
+  void read();
+  uint32_t slot_count() const { return levels_ >> 16 & 0xff; }
+  uint32_t first_slot(uint32_t level) const {
+    return level == 0 ? 0 : level == 1 ? levels_ & 0xff : levels_ >> 8 & 0xff;
+  }
+  uint32_t lowest() const { return interior_ & level_slots(height_ - 1, levels_); }
+
+  const LinkTable* table_;
+  const Tiers* tiers_;
+  LargeFamilies large_;
+  uint32_t tier_ = 0, height_ = 0, tier_end_ = 0;  // the end in the chunk, as an index
+  uint32_t index_ = 0, levels_ = 0, interior_ = 0;
+  uint32_t slots_ = 0, record_ = 0, below_ = 0;  // of the subtrees before
+  uint32_t next_root_, next_below_;
+  std::array<uint32_t, 3> place_{};
+  uint32_t nodes_ = 0;  // of the tiers of the chunk that are begun
+};
+
+}  // namespace voyager
