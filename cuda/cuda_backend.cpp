@@ -70,8 +70,8 @@ class CudaBackend final : public Backend {
     device_->use();
     return std::make_unique<DevicePool>(device_, scene, file, shape, room);
   }
-  PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const override {
-    return DevicePool::bytes(*device_, scene, shape);
+  RoomBytes room_bytes(const Scene& scene, SlotShape shape) const override {
+    return with_view(DevicePool::bytes(*device_, scene, shape), scene, shape);
   }
 
   std::unique_ptr<NodeTrainer> create_trainer(const std::shared_ptr<const Scene>& scene,
@@ -132,7 +132,7 @@ class CudaBackend final : public Backend {
       return s.streamed() ? std::make_shared<const DeviceTree>(pool_of(s, *device_))
                           : upload_tree(s);
     });
-    return create_partitioned_search(device_, tree, scene, kind, desc.weights);
+    return create_partitioned_search(device_, tree, scene, kind, desc.weights, workers);
   }
 
   // Its tree is this view's alone.
@@ -144,7 +144,7 @@ class CudaBackend final : public Backend {
       return create_exhaustive_search(device_, *scene, detail.tree, desc.weights);
     return create_partitioned_search(device_,
                                      std::make_shared<const DeviceTree>(detail.search, detail.tree),
-                                     scene, desc.kind, desc.weights);
+                                     scene, desc.kind, desc.weights, workers);
   }
 
   std::shared_ptr<const Device> device_;

@@ -48,22 +48,39 @@ uint64_t Budget::left() const {
   return limit_ == 0 ? UINT64_MAX : limit_ - std::min(limit_, used);
 }
 
+void SceneMemory::count(uint64_t used, uint64_t reserved) {
+  const uint64_t before = std::max(used_, reserved_), now = std::max(used, reserved);
+  if (now > before) budget_.take(now - before);
+  if (now < before) budget_.give_back(before - now);
+  used_ = used;
+  reserved_ = reserved;
+}
+
+void SceneMemory::reserve(uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  count(used_, bytes);
+}
+
+uint64_t SceneMemory::counted() const {
+  const std::lock_guard lock(mutex_);
+  return std::max(used_, reserved_);
+}
+
 void* SceneMemory::do_allocate(size_t size, size_t alignment) {
-  budget_.take(size);
+  const std::lock_guard lock(mutex_);
+  count(used_ + size, reserved_);
   try {
-    void* memory = upstream_->allocate(size, alignment);
-    used_.fetch_add(size, std::memory_order_relaxed);
-    return memory;
+    return upstream_->allocate(size, alignment);
   } catch (...) {
-    budget_.give_back(size);
+    count(used_ - size, reserved_);
     throw;
   }
 }
 
 void SceneMemory::do_deallocate(void* memory, size_t size, size_t alignment) {
   upstream_->deallocate(memory, size, alignment);
-  used_.fetch_sub(size, std::memory_order_relaxed);
-  budget_.give_back(size);
+  const std::lock_guard lock(mutex_);
+  count(used_ - size, reserved_);
 }
 
 }  // namespace voyager

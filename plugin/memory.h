@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory_resource>
+#include <mutex>
 
 #include "voyager/voyager.h"
 
@@ -35,21 +36,29 @@ class Budget {
   std::atomic<uint64_t> used_{0};
 };
 
-// The memory of one scene: counted, and held to the device's budget.
+// The memory of one scene: counted, and held to the device's budget. Thread-safe.
 class SceneMemory final : public std::pmr::memory_resource {
  public:
   SceneMemory(std::pmr::memory_resource* upstream, Budget& budget)
       : upstream_(upstream), budget_(budget) {}
-  uint64_t used() const { return used_.load(std::memory_order_relaxed); }
+  // Counts so many bytes at least: of a scene that is streamed, what its views have not taken yet,
+  // and what comes from elsewhere. Throws Error(over_budget), and nothing has changed.
+  void reserve(uint64_t bytes);
+  // What it takes of the budget.
+  uint64_t counted() const;
 
  private:
   void* do_allocate(size_t size, size_t alignment) override;
   void do_deallocate(void* memory, size_t size, size_t alignment) override;
   bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
 
+  // With the lock held.
+  void count(uint64_t used, uint64_t reserved);
+
   std::pmr::memory_resource* upstream_;
   Budget& budget_;
-  std::atomic<uint64_t> used_{0};
+  mutable std::mutex mutex_;
+  uint64_t used_ = 0, reserved_ = 0;  // the greater counts
 };
 
 }  // namespace voyager

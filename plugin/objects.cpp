@@ -27,7 +27,7 @@ void finish(vulkan::Ring& ring, DeviceObject& device) noexcept {
 
 SceneObject::~SceneObject() {
   scene.reset();
-  device().device_budget.give_back(device_bytes);
+  device().device_budget.give_back(device_bytes_);
 }
 
 // Frames that wait for what will not come would be waited for.

@@ -53,7 +53,7 @@ struct DeviceObject final : Object {
   std::unique_ptr<Backend> backend;
   std::atomic<bool> abandoned{false};
   // Held while an open scene's pool changes its size, so that no two share out the same rest of a
-  // budget. Guards SceneObject::device_bytes.
+  // budget.
   std::mutex resizing;
   std::shared_ptr<const vulkan::Device> vulkan;  // or NULL
 
@@ -82,8 +82,9 @@ struct SceneObject final : Child {
 
   ~SceneObject() override;
   Budget& pool_budget() const;  // that a streamed scene's pool counts on
-  // The pool in a device's own memory, which `memory` does not count.
-  uint64_t device_bytes = 0;
+  // What the pool and the views that read it take from now on. Throws Error(over_budget) where
+  // other scenes have taken what it would need, and nothing has changed. One call at a time.
+  void count(uint64_t bytes);
 
   // Of a streamed scene: nothing calls its source any more. Whoever still holds it draws what is
   // there.
@@ -93,6 +94,7 @@ struct SceneObject final : Child {
   std::shared_ptr<Scene> scene;  // lives in `memory`, so is declared after it
 
  private:
+  uint64_t device_bytes_ = 0;  // counted that `memory` does not count: in a device's own memory
   void removed() noexcept override;
   bool stays_at_unload() noexcept override;
 };

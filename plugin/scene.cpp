@@ -164,7 +164,7 @@ VoyResult VOY_CALL voyGetSceneInfo(VoyScene scene, VoySceneInfo* info) {
     check_structure(info, VOY_STRUCTURE_TYPE_SCENE_INFO, "VoySceneInfo",
                     Extension{VOY_STRUCTURE_TYPE_SCENE_PROFILE, profile});
     void* const next = info->next;
-    *info = info_of(*object->scene, object->memory.used());
+    *info = info_of(*object->scene, object->memory.counted());
     info->next = next;
     if (profile != nullptr) put_profile(*object->scene, *profile);
     return VOY_SUCCESS;

@@ -21,17 +21,6 @@ bool is_on_device(const SceneObject& object) {
   return object.device().backend_kind == VOY_BACKEND_CUDA;
 }
 
-// What the pool takes on a device; its memory was found before it was counted. Under
-// DeviceObject::resizing.
-void count_device_bytes(SceneObject& object) {
-  if (!is_on_device(object) || !object.scene->streamed()) return;
-  const uint64_t bytes = object.scene->stream->pool_bytes();
-  if (bytes > object.device_bytes) object.device().device_budget.take(bytes - object.device_bytes);
-  if (bytes < object.device_bytes)
-    object.device().device_budget.give_back(object.device_bytes - bytes);
-  object.device_bytes = bytes;
-}
-
 }  // namespace
 
 void check_streaming(const VoySceneStreaming& streaming) {
@@ -45,6 +34,13 @@ Budget& SceneObject::pool_budget() const {
   return is_on_device(*this) ? device().device_budget : device().budget;
 }
 
+void SceneObject::count(uint64_t bytes) {
+  if (!is_on_device(*this)) return memory.reserve(bytes);
+  if (bytes > device_bytes_) device().device_budget.take(bytes - device_bytes_);
+  if (bytes < device_bytes_) device().device_budget.give_back(device_bytes_ - bytes);
+  device_bytes_ = bytes;
+}
+
 void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>& source,
                    const VoySceneStreaming& streaming) {
   StreamingDesc desc;
@@ -53,10 +49,9 @@ void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>&
     desc.start = {streaming.startPosition[0], streaming.startPosition[1],
                   streaming.startPosition[2]};
   desc.readers = streaming.readerThreadCount == 0 ? kDefaultReaders : streaming.readerThreadCount;
+  desc.count = [&object](uint64_t bytes) { object.count(bytes); };
   object.scene = open_streamed(source, desc, *object.device().backend, &object.memory,
                                object.device().workers);
-  const std::lock_guard resizing(object.device().resizing);
-  count_device_bytes(object);
 }
 
 void log_streaming(const DeviceObject& device, const Scene& scene) {
@@ -84,11 +79,10 @@ VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes) {
     const auto object = call.use<SceneObject>(scene);
     check_streamed(*object);
     const std::lock_guard resizing(object->device().resizing);
-    const uint64_t own = object->scene->stream->pool_bytes(), left = object->pool_budget().left();
-    resize_streamed(*object->scene,
-                    allowed(bytes, left > UINT64_MAX - own ? UINT64_MAX : left + own),
-                    *object->device().backend, object->device().workers);
-    count_device_bytes(*object);
+    SceneStream& stream = *object->scene->stream;
+    const uint64_t own = stream.bytes(), left = object->pool_budget().left();
+    stream.set_budget(allowed(bytes, left > UINT64_MAX - own ? UINT64_MAX : left + own),
+                      object->device().workers);
     return VOY_SUCCESS;
   });
 }
@@ -101,7 +95,7 @@ VoyResult VOY_CALL voyGetStreamingStats(VoyScene scene, VoyStreamingStats* stats
     const StreamCounters found = object->scene->stream->counters();
     VoyStreamingStats out = VOY_STREAMING_STATS_INIT;
     out.next = stats->next;
-    out.budgetBytes = object->scene->stream->pool_bytes();
+    out.budgetBytes = object->scene->stream->bytes();
     out.chunkSlots = found.slots;
     out.residentChunks = found.resident;
     out.neededChunks = found.need.chunks;

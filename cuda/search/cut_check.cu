@@ -30,7 +30,8 @@ struct Found {
     uint32_t place = 0;
     if (lane_in_warp() == 0) place = atomicAdd(&state.counting->due_count, count);
     place = __shfl_sync(kAllLanes, place, 0);
-    for (uint32_t k = lane_in_warp(); k < count; k += 32) state.due[place + k] = subtrees[k];
+    for (uint32_t k = lane_in_warp(); k < count; k += 32)
+      if (place + k < state.due_room) state.due[place + k] = subtrees[k];
     __syncwarp();
     count = 0;
   }

@@ -27,9 +27,35 @@ Layout make_layout(const SearchTree& tree) {
   return layout;
 }
 
+uint64_t block_count(const SearchTree& tree) {
+  uint64_t blocks = 0;
+  for (size_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier)
+    blocks +=
+        (tree.tier_begin[tier + 1] - tree.tier_begin[tier] + kBlockSubtrees - 1) / kBlockSubtrees;
+  return blocks;
+}
+
+// What search_place gives all segments at most.
+uint64_t most_places(const SearchTree& tree, uint64_t most) {
+  return most + most / 8 + 2 * kRowPlaces * kLevels * block_count(tree);
+}
+
 }  // namespace
 
-CutState::CutState(const SearchTree& tree, uint32_t places, size_t most, bool weights) {
+uint64_t CutState::list_bytes(uint64_t places) {
+  return places * (3 * sizeof(uint32_t) + sizeof(CutOrigin) + sizeof(MeanBounds) / kRowPlaces);
+}
+
+uint64_t CutState::fixed_bytes(const SearchTree& tree) {
+  constexpr uint64_t kBlock = sizeof(Block) + kBlockRows * sizeof(WatchRow) +
+                              kLevels * sizeof(Segment) + 4 * sizeof(uint32_t);
+  return block_count(tree) * kBlock + tree.tier_begin.size() * sizeof(Tier) +
+         2 * sizeof(FrameCounters) + 2 * sizeof(uint32_t) + sizeof(MeanBounds) +
+         list_bytes(most_places(tree, 0));
+}
+
+CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most,
+                   bool weights) {
   const Layout layout = make_layout(tree);
   const size_t blocks = layout.blocks.size();
   blocks_ = upload(std::span<const Block>(layout.blocks));
@@ -45,11 +71,10 @@ CutState::CutState(const SearchTree& tree, uint32_t places, size_t most, bool we
   open_block_count_ = Buffer<uint32_t>(1);
   dirty_flags_ = Buffer<uint32_t>(blocks);
   dirty_ = Buffer<uint32_t>(blocks);
-  due_ = Buffer<uint32_t>(places);
+  due_ = Buffer<uint32_t>(due);
   signals_ = Buffer<uint32_t>(places);
   counters_ = Buffer<FrameCounters>(2);  // counting, counted
-  // What search_place gives all segments at least, and more.
-  const size_t room = most + most / 8 + 2 * kRowPlaces * kLevels * blocks;
+  const size_t room = most_places(tree, most);
   nodes_ = Buffer<uint32_t>(room);
   origin_ = Buffer<CutOrigin>(weights ? room : 0);
   weights_ = Buffer<float>(weights ? room : 0);
@@ -86,6 +111,7 @@ StateView CutState::view(SubtreePlaces places) const {
           dirty_flags_.data(),
           dirty_.data(),
           due_.data(),
+          static_cast<uint32_t>(due_.size()),
           signals_.data(),
           counters_.data(),
           counters_.data() + 1,

@@ -74,6 +74,7 @@ struct StateView {
   uint32_t* dirty_flags;  // by block: in dirty[]
   uint32_t* dirty;        // blocks with nodes that entered or left
   uint32_t* due;          // subtrees to visit
+  uint32_t due_room;      // of more of them none is visited: the search streams instead
   uint32_t* signals;      // to open or close a subtree; kNoSignal where not written yet
   FrameCounters *counting, *counted;
   uint32_t* nodes;     // the cut list: ascending, with kNoNode in between
@@ -88,9 +89,14 @@ inline constexpr uint32_t kClose = 0x80000000u;  // beside the subtree; else it 
 
 class CutState {
  public:
-  // places: that subtrees have in the device's tree. most: no cut has more nodes. All memory is
-  // taken here.
-  CutState(const SearchTree& tree, uint32_t places, size_t most, bool weights);
+  // places: that subtrees have in the device's tree. due: so many are visited at most. most: no cut
+  // has more nodes. All memory is taken here.
+  CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most, bool weights);
+  // What it takes of a streamed scene, with weights: for each place, where one subtree in eight may
+  // be due; for so many places in the list; and beside them, with places for all segments' ends.
+  static constexpr uint64_t kPlaceBytes = sizeof(Watch) + 4 * sizeof(uint32_t) + 1;
+  static uint64_t list_bytes(uint64_t places);
+  static uint64_t fixed_bytes(const SearchTree& tree);
 
   // places: the device's tree's, where its subtrees are read or written.
   StateView view(SubtreePlaces places = {}) const;

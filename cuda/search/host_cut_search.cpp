@@ -25,10 +25,10 @@ class HostCutSearch final : public CutSearch {
     SentCut& sent = sent_[next];
     wait_for_host(sent.taken);
     // What frames in flight read is not freed beside them, nor what a call that failed has sent.
-    const size_t size = search_.cut().size();
+    const size_t size = search_.items().size();
     if (sending_ || sent.outgrown(size)) wait_for_host(stream);
     sending_ = true;
-    sent.set(search_.cut(), search_.items());
+    sent.set(search_.items());
     send(nodes_, sent.nodes(), size, stream);
     send(weights_, sent.weights(), size, stream);
     send(size_, sent.size_word(), 1, stream);
@@ -62,10 +62,11 @@ class HostCutSearch final : public CutSearch {
   class SentCut {
    public:
     bool outgrown(size_t size) const { return memory_ && room_ < size; }
-    void set(std::span<const uint32_t> cut, std::span<const DrawItem> items) {
-      if (!memory_ || room_ < cut.size()) grow(cut.size() + cut.size() / 2);
-      *size_word() = static_cast<uint32_t>(cut.size());
-      std::copy(cut.begin(), cut.end(), nodes());
+    void set(std::span<const DrawItem> items) {
+      if (!memory_ || room_ < items.size()) grow(items.size() + items.size() / 2);
+      *size_word() = static_cast<uint32_t>(items.size());
+      std::transform(items.begin(), items.end(), nodes(),
+                     [](const DrawItem& d) { return d.gaussian; });
       std::transform(items.begin(), items.end(), weights(), [](const DrawItem& d) { return d.t; });
     }
     // Before the first cut: 0.

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "cuda/interop/external_ring.h"
@@ -6,7 +9,9 @@
 #include "cuda/search/search.h"
 #include "cuda/stream/device_pool.h"
 #include "cuda/stream/stream_changes.h"
+#include "runtime/base/error.h"
 #include "runtime/select/references.h"
+#include "runtime/stream/pool_share.h"
 
 namespace voyager::cuda {
 namespace {
@@ -25,19 +30,23 @@ struct Streamed {
   StreamChanges changes;
 };
 
-class PartitionedSearch final : public CutSearch {
+class PartitionedSearch final : public CutSearch, public PoolReaderState {
  public:
   PartitionedSearch(std::shared_ptr<const Device> device, std::shared_ptr<const DeviceTree> tree,
-                    std::shared_ptr<const Scene> scene, Search kind, bool weights)
+                    std::shared_ptr<const Scene> scene, Search kind, bool weights, Workers& workers)
       : device_(std::move(device)),
         tree_(std::move(tree)),
         scene_(std::move(scene)),
         kind_(without_sweep(kind)),
         weights_(weights),
-        streamed_(scene_->streamed() ? std::make_unique<Streamed>(*scene_, *device_) : nullptr),
-        most_(most_nodes()),
-        state_(std::make_unique<CutState>(scene_->search, tree_->view().place_count, most_,
-                                          weights)) {}
+        streamed_(scene_->streamed() ? std::make_unique<Streamed>(*scene_, *device_) : nullptr) {
+    std::shared_lock<std::shared_mutex> hold;
+    if (streamed_) {
+      share_.emplace(*scene_->stream, *this, workers);
+      hold = scene_->stream->hold();
+    }
+    make_state();
+  }
 
   // What it frees belongs to the device's context.
   ~PartitionedSearch() override { device_->use_quietly(); }
@@ -54,13 +63,15 @@ class PartitionedSearch final : public CutSearch {
   void report(void* into, cudaStream_t stream) const override;
   CutFound found(const void* report) const override;
   bool counts_changes() const override { return true; }
+  void drop() noexcept override;
   void read(std::vector<uint32_t>& cut, std::vector<float>& weights) override;
 
  private:
   FrameCounters counters() const;
   SearchFrame frame(const CutQuery& query, cudaStream_t stream) const;
   uint64_t most_nodes() const;
-  bool fit_pool(cudaStream_t stream);
+  void make_state();
+  bool fit_pool();
   bool follow_stream(const SearchFrame& now, bool goes_on);
 
   std::shared_ptr<const Device> device_;
@@ -69,10 +80,15 @@ class PartitionedSearch final : public CutSearch {
   Search kind_;
   bool weights_;
   const std::unique_ptr<Streamed> streamed_;  // where the scene is
-  uint64_t most_;                             // nodes of a cut
+  // None after drop(), which comes between frames, from any thread.
   std::unique_ptr<CutState> state_;
+  std::mutex state_mutex_;
+  // Of the last state, for those who ask between frames what there is, and read none of it.
+  StateView view_{};
+  uint32_t list_room_ = 0;
   References references_;
   bool started_ = false;
+  std::optional<PoolShare> share_;  // last: what goes first frees the state
 };
 
 SearchFrame PartitionedSearch::frame(const CutQuery& query, cudaStream_t stream) const {
@@ -84,18 +100,30 @@ SearchFrame PartitionedSearch::frame(const CutQuery& query, cudaStream_t stream)
 // is known only where all of it was read.
 uint64_t PartitionedSearch::most_nodes() const {
   if (!streamed_) return scene_->leaf_count;
-  return std::min<uint64_t>(scene_->node_count, streamed_->pool.gaussians().count);
+  return std::min<uint64_t>(scene_->node_count, scene_->stream->cut_nodes());
 }
 
-// Whether there was room for a cut of the pool, which may have grown.
-bool PartitionedSearch::fit_pool(cudaStream_t stream) {
-  const uint64_t most = most_nodes();
+void PartitionedSearch::make_state() {
   const uint32_t places = tree_->view().place_count;
-  if (state_ && most <= most_ && places <= state_->view().place_count) return true;
-  wait_for_host(stream);
+  const uint32_t due = kind_ == Search::temporal_visit ? places : places / kSubtreesADue;
+  auto state = std::make_unique<CutState>(scene_->search, places, due, most_nodes(), weights_);
+  const std::lock_guard lock(state_mutex_);
+  state_ = std::move(state);
+  view_ = state_->view();
+  list_room_ = state_->list_room();
+}
+
+// No frame reads it: who calls has waited for them.
+void PartitionedSearch::drop() noexcept {
+  device_->use_quietly();
+  const std::lock_guard lock(state_mutex_);
   state_.reset();
-  state_ = std::make_unique<CutState>(scene_->search, places, most, weights_);
-  most_ = most;
+}
+
+// Whether its state is still there.
+bool PartitionedSearch::fit_pool() {
+  if (state_) return true;
+  make_state();
   return false;
 }
 
@@ -117,7 +145,7 @@ void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
   bool goes_on = std::exchange(started_, false);  // should a launch fail, it does not
   if (streamed_) {
     streamed_->reader.begin(stream);
-    goes_on = fit_pool(stream) && goes_on;
+    goes_on = fit_pool() && goes_on;
   }
   const SearchFrame now = frame(query, stream);
   if (streamed_) goes_on = follow_stream(now, goes_on);
@@ -152,14 +180,12 @@ void PartitionedSearch::weigh(const CutQuery& query, cudaStream_t stream) {
 
 WeightSource PartitionedSearch::weight_source(const CutQuery& query) const {
   if (!weights_) return {};
-  const StateView state = state_->view();
-  return {state.origin, tree_->view(), make_sight(query), state.weights};
+  return {view_.origin, tree_->view(), make_sight(query), view_.weights};
 }
 
 CutList PartitionedSearch::list() const {
-  const StateView state = state_->view();
-  return {state.nodes, weights_ ? state.weights : nullptr, &state.counted->list_size,
-          state_->list_room(), state.bounds};
+  return {view_.nodes, weights_ ? view_.weights : nullptr, &view_.counted->list_size, list_room_,
+          view_.bounds};
 }
 
 FrameCounters PartitionedSearch::counters() const {
@@ -191,6 +217,11 @@ CutFound PartitionedSearch::found(const void* report) const {
 
 // Ids that were found with the list: what an address held then may be gone now.
 void PartitionedSearch::read(std::vector<uint32_t>& cut, std::vector<float>& weights) {
+  const std::lock_guard lock(state_mutex_);
+  if (!state_)
+    throw Error(ErrorCode::unsupported,
+                "cut: found that the scene's memory was shared out anew since the last frame, "
+                "expected a frame since");
   const size_t places = counters().list_size;
   const StateView state = state_->view();
   cut.resize(places);
@@ -222,10 +253,30 @@ std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene) {
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,
                                                      std::shared_ptr<const DeviceTree> tree,
                                                      std::shared_ptr<const Scene> scene,
-                                                     Search kind, bool weights) {
+                                                     Search kind, bool weights, Workers& workers) {
   device->use();
   return std::make_unique<PartitionedSearch>(std::move(device), std::move(tree), std::move(scene),
-                                             kind, weights);
+                                             kind, weights, workers);
+}
+
+// A cut has no more nodes than there are whose children are not linked (Linker). Where families are
+// as large as in the file as a whole, that is its share of leaves; a sixteenth is to spare. What
+// the top of the tree, and a pool of a few chunks, may have comes on top of that.
+RoomBytes with_view(const PoolBytes& pool, const Scene& scene, SlotShape shape) {
+  constexpr double kSpare = 17.0 / 16;
+  constexpr uint32_t kFewChunks = 64;
+  const double share = std::min(
+      1.0, kSpare * static_cast<double>(scene.leaf_count) / static_cast<double>(scene.node_count));
+  RoomBytes bytes{pool, {}};
+  bytes.cut_slot = static_cast<uint64_t>(std::ceil(share * shape.nodes));
+  bytes.cut_fixed =
+      uint64_t{kFewChunks} * shape.nodes + uint64_t{kSubtreeNodes} * scene.search.tier_begin[1];
+  const uint64_t page = kPageSubtrees * CutState::kPlaceBytes;
+  bytes.view = {CutState::list_bytes(bytes.cut_slot + bytes.cut_slot / 8 + 1), 0,
+                CutState::fixed_bytes(scene.search) + page +
+                    CutState::list_bytes(bytes.cut_fixed + bytes.cut_fixed / 8 + 1),
+                page};
+  return bytes;
 }
 
 }  // namespace voyager::cuda

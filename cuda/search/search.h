@@ -81,14 +81,15 @@ class CutSearch {
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // kind: any but exhaustive; temporal in place of a sweep. Device memory besides the scene's arrays:
-// 32.4 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 19. Of a streamed scene it
-// is 8.5 bytes for each subtree of the file, 28 for each that its pool has a place for, and 4.5
-// more for each node that there are places for. Such a scene's search runs under
+// 29 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 19. Of a streamed scene it
+// is view_bytes(), which are part of the scene's budget. Such a scene's search runs under
 // SceneStream::hold(), and ends each run with end_frame().
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,
                                                      std::shared_ptr<const DeviceTree> tree,
                                                      std::shared_ptr<const Scene> scene,
-                                                     Search kind, bool weights);
+                                                     Search kind, bool weights, Workers& workers);
+// What each takes of a streamed scene beside the pool, and of how large a cut it has room for.
+RoomBytes with_view(const PoolBytes& pool, const Scene& scene, SlotShape shape);
 
 // Uploads every node's record and parent for itself: it is a baseline, not what a frame uses.
 // tree: the scene's own, or a DetailTree's; not kept.

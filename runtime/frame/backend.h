@@ -204,8 +204,8 @@ class Backend {
   virtual std::unique_ptr<ChunkPool> create_pool(Scene& scene,
                                                  const std::shared_ptr<const SceneFile>& file,
                                                  SlotShape shape, PoolRoom room);
-  // What that takes of the memory that a budget for streaming bounds.
-  virtual PoolBytes pool_bytes(const Scene& scene, SlotShape shape) const;
+  // What that takes of the memory that a budget for streaming bounds, and each instance in a view.
+  virtual RoomBytes room_bytes(const Scene& scene, SlotShape shape) const;
   // Of a resident scene with a tree, which stays as it is. Throws Error(unsupported) where the
   // backend has none, Error(over_budget).
   virtual std::unique_ptr<NodeTrainer> create_trainer(const std::shared_ptr<const Scene>& scene,

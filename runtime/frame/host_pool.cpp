@@ -4,6 +4,8 @@
 
 #include "runtime/frame/load.h"
 #include "runtime/frame/scene_gaussians.h"
+#include "runtime/select/partitioned.h"
+#include "runtime/stream/linker.h"
 #include "runtime/stream/search_chunks.h"
 
 namespace voyager {
@@ -106,7 +108,9 @@ class HostPool final : public ChunkPool {
 
 }  // namespace
 
-PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
+namespace {
+
+PoolBytes pool_bytes(const Scene& scene, SlotShape shape) {
   const uint64_t node = gaussian_bytes(scene.storage, scene.sh_degree) +
                         (counts_children(scene) ? sizeof(uint32_t) : 0) +
                         (scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0);
@@ -122,6 +126,18 @@ PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape) {
           page};
 }
 
+PoolBytes view_bytes(const SearchTree& tree) {
+  const uint64_t page = kPageSubtrees * PartitionedSearch::kPlaceBytes;
+  return {0, 0, PartitionedSearch::fixed_bytes(tree) + page, page};
+}
+
+}  // namespace
+
+RoomBytes host_room_bytes(const Scene& scene, SlotShape shape) {
+  const PoolBytes links = Linker::bytes(shape, is_coded(scene) ? scene.node_count : 0);
+  return {pool_bytes(scene, shape) + links, view_bytes(scene.search)};
+}
+
 std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, const SceneFile& file, SlotShape shape,
                                             PoolRoom room) {
   return std::make_unique<HostPool>(scene, file, shape, room);
@@ -133,8 +149,8 @@ std::unique_ptr<ChunkPool> Backend::create_pool(Scene& scene,
   return create_host_pool(scene, *file, shape, room);
 }
 
-PoolBytes Backend::pool_bytes(const Scene& scene, SlotShape shape) const {
-  return host_pool_bytes(scene, shape);
+RoomBytes Backend::room_bytes(const Scene& scene, SlotShape shape) const {
+  return host_room_bytes(scene, shape);
 }
 
 }  // namespace voyager

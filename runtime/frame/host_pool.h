@@ -4,7 +4,7 @@
 
 namespace voyager {
 
-PoolBytes host_pool_bytes(const Scene& scene, SlotShape shape);
+RoomBytes host_room_bytes(const Scene& scene, SlotShape shape);
 
 // Makes room in the scene's arrays, for its memory resource to hold to a budget. The scene
 // outlives the pool.

@@ -1,5 +1,6 @@
 #include "runtime/frame/host_search.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "runtime/base/clock.h"
@@ -21,7 +22,9 @@ HostSearch::HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& des
     detail_.emplace(
         make_detail_tree(*whole_tree(*scene_), scene_->partition, desc.lod, workers, memory));
   if (desc.kind != Search::exhaustive) {
-    partitioned_.emplace(search_tree(), memory);
+    auto* const state = scene_->streamed() ? scene_->slot_ids.get_allocator().resource() : memory;
+    partitioned_.emplace(search_tree(), memory, state, !desc_.weights);
+    if (scene_->streamed()) share_.emplace(*scene_->stream, *this, workers);
     return;
   }
   exhaustive_.emplace(memory);
@@ -52,6 +55,10 @@ void HostSearch::find(const CutQuery& query, Workers& workers) {
     refuse_damaged();
 }
 
+void HostSearch::drop() noexcept {
+  partitioned_->drop();
+}
+
 void HostSearch::follow_stream() {
   const SceneStream& stream = *scene_->stream;
   if (!stream.changes_since(version_, changes_)) partitioned_->forget();
@@ -61,19 +68,29 @@ void HostSearch::follow_stream() {
 }
 
 void HostSearch::read_cut(std::pmr::vector<uint32_t>& nodes) const {
-  nodes = cut();
+  if (desc_.weights) {
+    nodes.resize(items_.size());
+    std::transform(items_.begin(), items_.end(), nodes.begin(),
+                   [](const DrawItem& item) { return item.gaussian; });
+  } else {
+    nodes = partitioned_ ? partitioned_->cut() : exhaustive_->cut();
+  }
   if (!scene_->streamed()) return;
   const uint32_t slot_nodes = scene_->slot_nodes;
   for (uint32_t& node : nodes) node = scene_->slot_ids[node / slot_nodes].id(node % slot_nodes);
 }
 
 void HostSearch::weigh(const CutQuery& query, Workers& workers) {
-  items_.resize(cut().size());
-  if (partitioned_) return weigh_cut(links(), search_tree(), *partitioned_, query, items_, workers);
+  if (partitioned_) {
+    items_.resize(partitioned_->cut_size());
+    return weigh_cut(links(), search_tree(), *partitioned_, query, items_, workers);
+  }
+  const auto& cut = exhaustive_->cut();
+  items_.resize(cut.size());
   const WeightParams weights{whole_->records.data(), whole_->parent.data(),
                              exhaustive_->sizes().data(), query.target_size, whole_->blend_share};
   workers.for_blocks(items_.size(), 16384, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) items_[i] = voyager::weigh(weights, cut()[i]);
+    for (size_t i = begin; i < end; ++i) items_[i] = voyager::weigh(weights, cut[i]);
   });
 }
 

@@ -10,15 +10,17 @@
 #include "runtime/frame/weigh_cut.h"
 #include "runtime/select/partitioned.h"
 #include "runtime/stages/interpolate.h"
+#include "runtime/stream/pool_share.h"
 
 namespace voyager {
 
 // Not thread-safe. Scratch, from the given resource, is that of the search that it
-// runs, and 16 bytes a node of the largest cut.
-class HostSearch {
+// runs, and 16 bytes a node of the largest cut. Of a streamed scene the search's state comes from
+// the scene's resource, and is part of the scene's budget.
+class HostSearch final : public PoolReaderState {
  public:
   // Throws Error(unsupported) for what check_detail() refuses, and for the exhaustive search of a
-  // streamed scene. A baseline's tree is made by the workers given.
+  // streamed scene; as PoolShare does. A baseline's tree is made by the workers given.
   HostSearch(std::shared_ptr<const Scene> scene, const SearchDesc& desc,
              std::pmr::memory_resource* memory, Workers& workers);
 
@@ -26,11 +28,7 @@ class HostSearch {
   // std::bad_alloc; the next run is right all the same.
   void run(const CutQuery& query, Workers& workers);
 
-  // Of the last run, in the order of node ids: ids, or addresses of a streamed scene. items()[i]
-  // draws cut()[i], where weights are wanted.
-  const std::pmr::vector<uint32_t>& cut() const {
-    return partitioned_ ? partitioned_->cut() : exhaustive_->cut();
-  }
+  // Of the last run, in the order of node ids, where weights are wanted.
   const std::pmr::vector<DrawItem>& items() const { return items_; }
   // Node ids, ascending.
   void read_cut(std::pmr::vector<uint32_t>& nodes) const;
@@ -38,6 +36,7 @@ class HostSearch {
   // An exhaustive search keeps nothing to count what entered and left: 0.
   SearchStats stats() const;
   bool counts_changes() const { return partitioned_.has_value(); }
+  void drop() noexcept override;
 
  private:
   void follow_stream();
@@ -60,6 +59,7 @@ class HostSearch {
   uint64_t version_ = 0;
   std::vector<std::shared_ptr<const StreamChange>> changes_;
   SearchTimes times_;
+  std::optional<PoolShare> share_;  // last: what goes first frees the state
 };
 
 // HostSearch as a SceneSearch: what the backends of the host give out.

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "runtime/base/megabytes.h"
-#include "runtime/format/check_claims.h"
 #include "runtime/frame/load.h"
 
 namespace voyager {
@@ -18,33 +16,6 @@ void set_search(const SceneFile& file, SearchTree& search) {
   const Tiers tiers = file.tiers();
   search.chunk_count = file.info().chunk_count;
   search.tier_begin.assign(tiers.tier_begin.begin(), tiers.tier_begin.end());
-}
-
-// All slots have room for the largest chunk. A file whose other chunks are far smaller would ask
-// for memory of which next to nothing is ever used: no bake makes one that takes more than this.
-uint64_t most_bytes(const SceneFile& file) {
-  constexpr uint64_t kAnyScene = 16 << 20;
-  return kAnyScene + 2 * claimed_bytes(file);
-}
-
-// The most that fits.
-PoolRoom room_for(const SceneFile& file, const PoolBytes& bytes, uint64_t wanted) {
-  const RecordRoom records(file);
-  const uint64_t most = most_bytes(file), budget = wanted == 0 ? most : std::min(wanted, most);
-  uint32_t fits = SceneStream::top_chunks(file);
-  if (const uint64_t least = bytes.of(records.of(fits)); least > budget)
-    throw Error(ErrorCode::over_budget, file.name() + ": the top of the tree takes " +
-                                            megabytes_text(least) + ", the memory budget allows " +
-                                            megabytes_text(budget));
-  auto last = static_cast<uint32_t>(file.chunks().size());
-  while (fits < last) {
-    const uint32_t middle = last - (last - fits) / 2;
-    if (bytes.of(records.of(middle)) <= budget)
-      fits = middle;
-    else
-      last = middle - 1;
-  }
-  return records.of(fits);
 }
 
 // Before they are read it is not known how many blocks they take.
@@ -77,27 +48,22 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   if (file->chunks().empty()) return scene;
   set_search(*file, scene->search);
   const SlotShape shape = SceneStream::slot_shape(*file);
-  const PoolBytes bytes = backend.pool_bytes(*scene, shape);
   StreamDesc stream;
-  stream.room = room_for(*file, bytes, desc.budget);
+  stream.bytes = backend.room_bytes(*scene, shape);
+  stream.budget = desc.budget;
+  stream.room = fit_room(*file, RecordRoom(*file), stream.bytes, stream.budget, 0);
   stream.pinned = SceneStream::pinned_chunks(*file, stream.room.slots);
   stream.first = desc.start ? stream.pinned : first_of(*file, stream, desc.first_bytes);
   stream.readers = desc.readers;
-  stream.bytes = bytes;
   stream.clock = desc.clock;
+  stream.count = desc.count;
+  if (stream.count) stream.count(stream.bytes.of(stream.room));
   scene->pool = backend.create_pool(*scene, file, shape, stream.room);
   scene->stream = std::make_unique<SceneStream>(file, stream, *scene->pool);
   scene->stream->read_top(workers);
   if (desc.start)
     scene->stream->read_around(cut_centre(*desc.start, scene->origin), desc.start_bytes);
   return scene;
-}
-
-void resize_streamed(Scene& scene, uint64_t budget, Backend& backend, Workers& workers) {
-  const SceneFile& file = scene.stream->file();
-  const PoolBytes bytes = backend.pool_bytes(scene, SceneStream::slot_shape(file));
-  const PoolRoom room = room_for(file, bytes, budget);
-  scene.stream->resize(room, SceneStream::pinned_chunks(file, room.slots), workers);
 }
 
 }  // namespace voyager

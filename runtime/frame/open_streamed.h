@@ -6,7 +6,9 @@
 namespace voyager {
 
 struct StreamingDesc {
-  uint64_t budget = 0;   // bytes of the pool, on the device that renders; 0: room for all
+  // Bytes, on the device that renders, of the pool, its links, and what views keep; 0: no limit.
+  uint64_t budget = 0;
+  std::function<void(uint64_t)> count;  // as StreamDesc has it
   unsigned readers = 2;  // threads that read and decode; 0: none, SceneStream::step() does it
   // What is read at once, from the top of the tree, if there are slots: stored bytes.
   uint64_t first_bytes = 32 << 20;
@@ -23,9 +25,5 @@ struct StreamingDesc {
 std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& source,
                                      const StreamingDesc& desc, Backend& backend,
                                      std::pmr::memory_resource* memory, Workers& workers);
-
-// Another budget for a scene that open_streamed() has made: all but the top is dropped. Waits for
-// frames that draw it. Throws Error(over_budget), and nothing has changed.
-void resize_streamed(Scene& scene, uint64_t budget, Backend& backend, Workers& workers);
 
 }  // namespace voyager

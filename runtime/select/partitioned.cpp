@@ -6,23 +6,38 @@
 #include <utility>
 
 #include "runtime/select/partitioned_blocks.h"
+#include "runtime/select/set_bits.h"
 
 namespace voyager {
+namespace {
 
-PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_resource* memory)
+size_t block_count(const SearchTree& tree) {
+  size_t blocks = 0;
+  for (size_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier)
+    blocks +=
+        (tree.tier_begin[tier + 1] - tree.tier_begin[tier] + kBlockSubtrees - 1) / kBlockSubtrees;
+  return blocks;
+}
+
+}  // namespace
+
+PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_resource* memory,
+                                     std::pmr::memory_resource* state, bool lists_cut)
     : tree_(tree),
-      watch_(memory),
-      refined_(memory),
-      cut_slots_(memory),
-      last_cut_slots_(memory),
-      stand_ins_(memory),
-      work_(memory),
-      signals_(memory),
-      blocks_(memory),
-      tier_block_(memory),
-      touched_(memory),
-      chunk_stamp_(memory),
-      cut_(memory) {
+      watch_(state == nullptr ? memory : state),
+      refined_(watch_.get_allocator()),
+      cut_slots_(watch_.get_allocator()),
+      last_cut_slots_(watch_.get_allocator()),
+      stand_ins_(watch_.get_allocator()),
+      work_(watch_.get_allocator()),
+      signals_(watch_.get_allocator()),
+      blocks_(watch_.get_allocator()),
+      tier_block_(watch_.get_allocator()),
+      touched_(watch_.get_allocator()),
+      chunk_stamp_(watch_.get_allocator()),
+      cut_(memory),
+      lists_cut_(lists_cut) {
+  blocks_.reserve(block_count(tree));
   for (uint32_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier) {
     tier_block_.push_back(static_cast<uint32_t>(blocks_.size()));
     const uint32_t end = tree.tier_begin[tier + 1];
@@ -35,22 +50,31 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
   if (!tree.chunks_come_and_go) make_room();
 }
 
-void PartitionedSearch::make_room() {
-  const size_t places = tree_.subtrees.size();
+// But for less than a byte a place of signals_, which kPlaceBytes has.
+uint64_t PartitionedSearch::fixed_bytes(const SearchTree& tree) {
+  static_assert(sizeof(Signals) <= kRoundSubtrees);
+  return sizeof(PartitionedSearch) + (block_count(tree) + 1) * sizeof(Signals) +
+         block_count(tree) * (sizeof(Block) + sizeof(uint8_t)) +
+         2 * tree.tier_begin.size() * sizeof(uint32_t) + tree.chunk_count * sizeof(uint32_t);
+}
+
+void PartitionedSearch::drop() noexcept {
   known_ = false;
   const auto empty = [](auto& array) {
     std::decay_t<decltype(array)>(array.get_allocator()).swap(array);
   };
-  const auto fit = [&](auto& array) {
-    empty(array);
-    array.resize(places);
-  };
-  empty(watch_);  // until all of the others have room
-  fit(refined_);
-  fit(cut_slots_);
-  fit(last_cut_slots_);
-  fit(work_);
-  if (tree_.chunks_come_and_go) fit(stand_ins_);
+  empty(watch_), empty(refined_), empty(cut_slots_), empty(last_cut_slots_), empty(work_);
+  empty(stand_ins_), empty(signals_);
+}
+
+void PartitionedSearch::make_room() {
+  const size_t places = tree_.subtrees.size();
+  drop();  // watch_ comes last: where it has room all have
+  refined_.resize(places);
+  cut_slots_.resize(places);
+  last_cut_slots_.resize(places);
+  work_.resize(places);
+  if (tree_.chunks_come_and_go) stand_ins_.resize(places);
   const size_t runs = std::max(blocks_.size(), places / kRoundSubtrees + 1);
   signals_.reserve(runs);
   while (signals_.size() < runs) signals_.emplace_back(cut_.get_allocator().resource());
@@ -170,7 +194,7 @@ uint32_t PartitionedSearch::look(uint32_t subtree, Tally& tally) {
   const uint32_t before = refined_[place];
   refined_[place] = found.refined;
   cut_slots_[place] = found.cut;
-  if (!stand_ins_.empty()) stand_ins_[place] = found.stand_ins;
+  if (!stand_ins_.empty()) stand_ins_[place] = static_cast<uint8_t>(count_bits(found.stand_ins));
   watch_[place] = make_watch(found.slack, found.extent, references_.current());
   return (before ^ found.refined) & s.interior;
 }

@@ -17,11 +17,12 @@
 namespace voyager {
 
 // One view's cut of one tree, kept from run to run. Not thread-safe; the work is
-// spread over `workers`, and no result depends on their number. From the given resource it
-// takes 24 bytes a place of the tree's subtrees (28 where chunks come and go), 4 a node of the
-// largest cut and 4 a subtree of the largest change that it has seen; once they were seen a run
-// allocates nothing, until a pool has another number of places. Throws only std::bad_alloc; the
-// next run then starts from nothing, and is right.
+// spread over `workers`, and no result depends on their number. It keeps fixed_bytes() and
+// kPlaceBytes a place of the tree's subtrees, from the resource for state. From that for scratch it
+// takes 4 bytes a node of the largest cut, where that is listed, and 4 a subtree of the largest
+// change that it has seen; once they were seen a run allocates nothing, until a pool has another
+// number of places. Throws only std::bad_alloc; the next run then starts from nothing, and is
+// right.
 class PartitionedSearch {
  public:
   // Consecutive subtrees of one tier. Their cut nodes are in cut() in three pieces:
@@ -35,14 +36,18 @@ class PartitionedSearch {
     std::array<uint32_t, 3> at;    // where each piece starts in cut()
   };
 
-  // The tree must outlive the search.
+  // The tree must outlive the search. state: null for the same. lists_cut: else cut() is empty, for
+  // those who list it as they weigh it (weigh_cut.h).
   explicit PartitionedSearch(const SearchTree& tree,
-                             std::pmr::memory_resource* memory = std::pmr::get_default_resource());
+                             std::pmr::memory_resource* memory = std::pmr::get_default_resource(),
+                             std::pmr::memory_resource* state = nullptr, bool lists_cut = true);
 
   // kind: streaming or one of the temporal ones.
   void run(const CutQuery& query, Search kind, Workers& workers);
   // The next run starts from nothing.
   void forget() { known_ = false; }
+  // And what goes by place is freed until then.
+  void drop() noexcept;
   // Between two runs the tree has changed, and is what it is now: nothing led to the subtrees of
   // `unlinked` for a time, or does now, and those of `changed` have a record that is blocked, or
   // no longer is. Where it has another number of places, forget() comes first.
@@ -52,7 +57,8 @@ class PartitionedSearch {
   // Node ids, ascending. Where needed_missing() is a node, what is below it and its
   // siblings is left out.
   const std::pmr::vector<uint32_t>& cut() const { return cut_; }
-  // False: cut() is what the run before left.
+  size_t cut_size() const { return cut_size_; }
+  // False: the cut is what the run before left.
   bool relisted() const { return relisted_; }
   const SearchStats& stats() const { return stats_; }
   // The first of the missing subtrees that this cut needs, and its root: the smallest
@@ -64,6 +70,11 @@ class PartitionedSearch {
   // The cut, subtree by subtree.
   std::span<const Block> blocks() const { return blocks_; }
   uint32_t cut_slots(uint32_t subtree) const { return cut_slots_[places_(subtree)]; }
+
+  // What it keeps for each place, where chunks come and go, and beside that.
+  static constexpr uint64_t kPlaceBytes =
+      sizeof(Watch) + 4 * sizeof(uint32_t) + sizeof(uint8_t) + 1;
+  static uint64_t fixed_bytes(const SearchTree& tree);
 
  private:
   // What a task counts; sums, so that their order does not matter.
@@ -124,7 +135,7 @@ class PartitionedSearch {
   std::pmr::vector<uint32_t> refined_;    // bits of slots, and kOpen
   std::pmr::vector<uint32_t> cut_slots_;  // bits of slots
   std::pmr::vector<uint32_t> last_cut_slots_;
-  std::pmr::vector<uint32_t> stand_ins_;  // bits of slots; empty where no record is ever blocked
+  std::pmr::vector<uint8_t> stand_ins_;  // nodes; empty where no record is ever blocked
   // Scratch, as many as there are places: subtrees that are due, by block, then those just opened.
   std::pmr::vector<uint32_t> work_;
   // Of a run of subtrees: which of work_ it visits, and what they opened and closed.
@@ -141,6 +152,8 @@ class PartitionedSearch {
   uint32_t stamp_ = 0;
 
   std::pmr::vector<uint32_t> cut_;
+  const bool lists_cut_;
+  size_t cut_size_ = 0;
   std::mutex total_mutex_;
   Tally total_;
   SearchStats stats_;

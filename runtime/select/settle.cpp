@@ -16,7 +16,7 @@ void PartitionedSearch::settle(size_t index, Tally& tally) {
   each_place(places_, block.first, block.last, [&](uint32_t, uint32_t place) {
     const uint32_t now = cut_slots_[place], before = last_cut_slots_[place];
     block.open += refined_[place] != 0;
-    if (!stand_ins_.empty()) block.stand_ins += count_bits(stand_ins_[place]);
+    if (!stand_ins_.empty()) block.stand_ins += stand_ins_[place];
     if (now != before) {
       tally.entered += count_bits(now & ~before);
       tally.left += count_bits(before & ~now);
@@ -39,6 +39,8 @@ void PartitionedSearch::list_cut(Workers& workers) {
         at += blocks_[b].size[level];
       }
   }
+  cut_size_ = at;
+  if (!lists_cut_) return;
   cut_.resize(at);
   workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b) list_block(blocks_[b]);

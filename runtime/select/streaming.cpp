@@ -51,7 +51,7 @@ void PartitionedSearch::clear(Workers& workers) {
     fill(refined_, 0u);
     fill(cut_slots_, 0u);
     fill(last_cut_slots_, 0u);
-    if (!stand_ins_.empty()) fill(stand_ins_, 0u);
+    if (!stand_ins_.empty()) fill(stand_ins_, uint8_t{0});
   });
 }
 

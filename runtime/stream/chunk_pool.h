@@ -17,14 +17,26 @@ struct PoolRoom {
   uint32_t slots, blocks, pages = 0;
 };
 
-// What a pool takes: each slot, each block, beside them, and each page; 0 where its tables have all
-// subtrees.
+// What goes with a pool's room: for each slot, each block, beside them, and for each page; 0 where
+// its tables have all subtrees.
 struct PoolBytes {
   uint64_t slot, block, fixed, page = 0;
 
   uint64_t of(PoolRoom room) const {
     return fixed + room.slots * slot + room.blocks * block + room.pages * page;
   }
+  PoolBytes operator+(const PoolBytes& other) const {
+    return {slot + other.slot, block + other.block, fixed + other.fixed, page + other.page};
+  }
+};
+
+// What an instance in a view keeps of a pool from frame to frame.
+class PoolReaderState {
+ public:
+  virtual ~PoolReaderState() = default;
+  // Frees what grows with the pool's room: that is about to change. No frame is being drawn, but
+  // what was drawn last may be asked for meanwhile. The next frame takes what it needs.
+  virtual void drop() noexcept = 0;
 };
 
 class ChunkPool {

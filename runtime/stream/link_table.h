@@ -127,6 +127,11 @@ class LinkWalk {
   uint32_t child_count() const { return (levels_ >> 8 & 0xff) - (levels_ & 0xff); }
   bool repeats_root() const { return (levels_ >> 24 & 3) != 0; }
   bool repeats_child() const { return (levels_ >> 24 & 3) == 2; }
+  // Of its nodes, those that nothing hangs from in its tier.
+  uint32_t ends() const {
+    const uint32_t owned = slots_before(slot_count()) & ~slots_before(levels_ >> 24 & 3);
+    return static_cast<uint32_t>(std::popcount(owned & ~(interior_ & ~lowest())));
+  }
   // The place of the first node of a level that it owns.
   uint32_t place(uint32_t level) const { return place_[level]; }
   uint32_t first_record() const { return record_; }

@@ -73,6 +73,13 @@ class Linker::Parents {
 Linker::Linker(const ChunkGraph& graph, SlotShape shape, const std::vector<uint32_t>& next_block)
     : graph_(&graph), shape_(shape), next_block_(&next_block), tables_(graph.size()) {}
 
+PoolBytes Linker::bytes(SlotShape shape, uint64_t nodes) {
+  const uint64_t entry = ByChunk<LinkTable>::known_bytes() - sizeof(LinkTable);
+  return {LinkTable::chunk_bytes(shape.records) + entry, kRecordBlock * LinkTable::kBelowBytes,
+          ByChunk<LinkTable>::known_bytes() + most_large_families(nodes) * sizeof(LargeFamily),
+          kPageSubtrees * LinkTable::kSubtreeBytes};
+}
+
 LinkWalk Linker::walk(uint32_t chunk) const {
   const LinkTable& table = tables_[chunk];
   return {table, graph_->tiers(), {large_, table.slot * shape_.nodes}};
@@ -119,18 +126,18 @@ bool Linker::complete(const Family& family) const {
 
 // Roots ascend in a tier, and those of a later tier are greater.
 template <class Visit>
-void Linker::each_subtree(const Family& family, const Visit& visit) {
+void Linker::each_subtree(const Family& family, const Visit& visit) const {
   const ChunkRange range = chunks_of(family);
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     if (!holds(chunk)) continue;
-    LinkTable& table = tables_.know(chunk);
     LinkWalk at = walk(chunk);
     while (!at.at_end() && at.root() < family.node.first_child) at.next();
-    for (; !at.at_end() && at.root() < family.end(); at.next()) {
-      visit(table, at);
-      at.each_below([&](const NodeBelow& node) { work_.push_back({chunk, at.index(), node}); });
-    }
+    for (; !at.at_end() && at.root() < family.end(); at.next()) visit(chunk, at);
   }
+}
+
+void Linker::add_below(uint32_t chunk, const LinkWalk& at) {
+  at.each_below([&](const NodeBelow& node) { work_.push_back({chunk, at.index(), node}); });
 }
 
 // Those that the chunk's subtrees belong to, each once.
@@ -236,9 +243,20 @@ void Linker::link_root(uint32_t last, LinkPatch& patch) {
       if (chunk != last) continue;
       set_records(table, at, linked);
       table.set_leads_to(at.index(), true);
+      most_cut_ += at.ends();
       patch.outside.push_back(outside_of(at, linked, kNoNode));
       patch.linked.emplace_back(at.subtree(), linked);
     }
+}
+
+// Where it is linked, its nodes take the place of the one that they hang from.
+bool Linker::has_room_for_cut(const Family& family) {
+  if (room_for_cut_ == UINT64_MAX) return true;
+  uint64_t nodes = 0;
+  each_subtree(family, [&](uint32_t, const LinkWalk& at) { nodes += at.ends(); });
+  const bool has = most_cut_ - 1 + nodes <= room_for_cut_;
+  lacks_room_for_cut_ |= !has;
+  return has;
 }
 
 void Linker::link(const Family& first, LinkPatch& patch) {
@@ -247,21 +265,26 @@ void Linker::link(const Family& first, LinkPatch& patch) {
     const Family family = work_.back();
     work_.pop_back();
     LinkTable& table = tables_.know(family.chunk);
-    if (table.leads_on(family.node.index) || !table.leads_to(family.subtree) || !complete(family))
+    if (table.leads_on(family.node.index) || !table.leads_to(family.subtree) || !complete(family) ||
+        !has_room_for_cut(family))
       continue;
     table.set_leads_on(family.node.index, true);
     const uint32_t record = record_of(family);
     const uint32_t parent = table.slot * shape_.nodes + family.node.place;
     const uint32_t subtree = table.first_subtree + family.subtree;
+    --most_cut_;
     Addresses addresses(shape_);
     uint32_t first_below = kLowest;
-    each_subtree(family, [&](LinkTable& of, const LinkWalk& at) {
+    each_subtree(family, [&](uint32_t chunk, const LinkWalk& at) {
+      LinkTable& of = tables_.know(chunk);
+      most_cut_ += at.ends();
       first_below = std::min(first_below, at.subtree());
       SearchSubtree linked = addresses.of(of, at, record);
       set_records(of, at, linked);
       of.set_leads_to(at.index(), true);
       patch.outside.push_back(outside_of(at, linked, parent));
       patch.linked.emplace_back(at.subtree(), linked);
+      add_below(chunk, at);
     });
     patch.tied.records.push_back({record, kLowest | first_below});
     patch.tied.changed.push_back(subtree);
@@ -278,9 +301,12 @@ void Linker::unlink(const Family& first, LinkPatch& patch) {
     table.set_leads_on(family.node.index, false);
     patch.cut.records.push_back({record_of(family), kBlocked});
     patch.cut.changed.push_back(table.first_subtree + family.subtree);
-    each_subtree(family, [&](LinkTable& of, const LinkWalk& at) {
-      of.set_leads_to(at.index(), false);
+    ++most_cut_;
+    each_subtree(family, [&](uint32_t chunk, const LinkWalk& at) {
+      tables_.know(chunk).set_leads_to(at.index(), false);
+      most_cut_ -= at.ends();
       patch.unlinked.push_back(at.subtree());
+      add_below(chunk, at);
     });
   }
 }

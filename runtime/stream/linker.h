@@ -19,8 +19,17 @@ class Linker {
  public:
   // graph and next_block outlive it. next_block: of each block of records, the chunk's next.
   Linker(const ChunkGraph& graph, SlotShape shape, const std::vector<uint32_t>& next_block);
-  // No more chunks will be held.
-  void make_room(uint32_t slots) { tables_.reserve(slots); }
+  // What it takes at most where a pool has so much room: a subtree has a place, and a node of a
+  // tier's lowest level a record. nodes: of the file, that may have large families.
+  static PoolBytes bytes(SlotShape shape, uint64_t nodes);
+  // No more chunks will be held, and views have room for cuts of so many nodes: what could make
+  // them larger is not linked.
+  void make_room(uint32_t slots, uint64_t cut_nodes) {
+    tables_.reserve(slots);
+    room_for_cut_ = cut_nodes;
+  }
+  // Whether that has happened.
+  bool lacks_room_for_cut() const { return lacks_room_for_cut_; }
 
   bool holds(uint32_t chunk) const { return !tables_[chunk].empty(); }
   uint32_t slot(uint32_t chunk) const { return tables_[chunk].slot; }
@@ -66,9 +75,10 @@ class Linker {
                     const ChunkPool& pool, const std::string& file) const;
   ChunkRange chunks_of(const Family& family) const;
   bool complete(const Family& family) const;
-  // Each subtree of the family in turn: visit(table, walk at it). What hangs from it is work_.
+  // Each subtree of the family in turn: visit(chunk, walk at it).
   template <class Visit>
-  void each_subtree(const Family& family, const Visit& visit);
+  void each_subtree(const Family& family, const Visit& visit) const;
+  void add_below(uint32_t chunk, const LinkWalk& at);
   template <class Work>
   void each_family_of(uint32_t chunk, const Work& work);
   void link(const Family& family, LinkPatch& patch);
@@ -76,6 +86,7 @@ class Linker {
   void add_large(const StagedChunk& chunk, LinkPatch& patch);
   void remove_large(uint32_t slot, LinkPatch& patch);
   void link_root(uint32_t chunk, LinkPatch& patch);
+  bool has_room_for_cut(const Family& family);
 
   const ChunkGraph* graph_;
   SlotShape shape_;
@@ -83,6 +94,9 @@ class Linker {
   ByChunk<LinkTable> tables_;
   std::vector<LargeFamily> large_;  // of what is held, by address
   std::vector<Family> work_;
+  // Of what is linked: that no cut has more nodes, those which nothing leads on from.
+  uint64_t most_cut_ = 0, room_for_cut_ = UINT64_MAX;
+  bool lacks_room_for_cut_ = false;
 };
 
 }  // namespace voyager

@@ -48,12 +48,14 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       shape_(slot_shape(*file_)),
       records_(*file_),
       pool_(pool),
-      pool_bytes_(desc.bytes.of(desc.room)),
+      budget_(desc.budget),
+      room_(desc.room),
+      bytes_(desc.bytes.of(desc.room)),
       looks_(file_->chunks()),
       residency_(graph_, file_->chunks(), records_, desc.room, desc.pinned),
       linker_(graph_, shape_, residency_.next_blocks()),
       pages_(no_pages(desc.room)) {
-  linker_.make_room(desc.room.slots);
+  linker_.make_room(desc.room.slots, desc.bytes.cut_nodes(desc.room));
 }
 
 SceneStream::~SceneStream() {
@@ -107,7 +109,7 @@ void SceneStream::signal() {
 
 // None has a place yet.
 std::optional<SubtreePages> SceneStream::no_pages(PoolRoom room) const {
-  if (desc_.bytes.page == 0) return std::nullopt;
+  if (desc_.bytes.pool.page == 0) return std::nullopt;
   return SubtreePages(file_->info().subtree_count, room.pages, kChangesKept);
 }
 
@@ -170,24 +172,77 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
     if (!residency_.is_resident(chunk)) failures_.rethrow(chunk);
 }
 
+// To so much room and so many states.
+template <class Change>
+void SceneStream::change_bytes(PoolRoom room, size_t states, const Change& change) {
+  const uint64_t before = bytes_, after = desc_.bytes.of(room, states);
+  const auto count = [&](uint64_t bytes) {
+    if (desc_.count) desc_.count(bytes);
+  };
+  if (after > before) count(after);
+  try {
+    change();
+  } catch (...) {
+    if (after > before) count(before);
+    throw;
+  }
+  if (after < before) count(after);
+  state_count_ = states;
+  bytes_ = after;
+}
+
+void SceneStream::set_budget(uint64_t budget, Workers& workers) {
+  const std::lock_guard sharing(sharing_);
+  const PoolRoom room = fit_room(*file_, records_, desc_.bytes, budget, states_.size());
+  change_bytes(room, states_.size(),
+               [&] { change_room(room, pinned_chunks(*file_, room.slots), workers); });
+  budget_ = budget;
+}
+
 void SceneStream::resize(PoolRoom room, uint32_t pinned, Workers& workers) {
+  const std::lock_guard sharing(sharing_);
+  change_bytes(room, states_.size(), [&] { change_room(room, pinned, workers); });
+}
+
+void SceneStream::add_state(PoolReaderState& state, Workers& workers) {
+  const std::lock_guard sharing(sharing_);
+  const size_t states = states_.size() + 1;
+  states_.reserve(states);
+  const bool fits = budget_ == 0 || desc_.bytes.of(room_, states) <= budget_;
+  const PoolRoom room = fits ? room_ : fit_room(*file_, records_, desc_.bytes, budget_, states);
+  change_bytes(room, states, [&] {
+    if (!fits) change_room(room, pinned_chunks(*file_, room.slots), workers);
+    states_.push_back(&state);
+  });
+}
+
+// To count less throws nothing.
+void SceneStream::remove_state(PoolReaderState& state) noexcept {
+  const std::lock_guard sharing(sharing_);
+  state.drop();
+  std::erase(states_, &state);
+  change_bytes(room_, states_.size(), [] {});
+}
+
+void SceneStream::change_room(PoolRoom room, uint32_t pinned, Workers& workers) {
   const auto pool = hold_alone();
   pool_.await_frames();  // before `mutex_`, which others want
   Lock lock(mutex_);
   filled_.wait(lock, [&] { return filling_ == 0; });
-  const PoolRoom room_before = residency_.room();
   const uint32_t pinned_before = residency_.pinned();
+  for (PoolReaderState* state : states_) state->drop();
   try {
     reset(room, pinned, workers);
   } catch (...) {
     try {
-      reset(room_before, pinned_before, workers);
+      reset(room_, pinned_before, workers);
     } catch (...) {
       if (unsound_) unsound_ = std::current_exception();
       lose(std::current_exception());
     }
     throw;
   }
+  room_ = room;
 }
 
 // All anew, with what is pinned in it. Where it throws, the pool is as it was, or unsound.
@@ -201,7 +256,7 @@ void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
       file_->name() + ": found memory that was only partly filled again, expected all of it"));
   linker_ = std::move(linker);
   pool_.resize(room);
-  linker_.make_room(room.slots);
+  linker_.make_room(room.slots, desc_.bytes.cut_nodes(room));
   ++generation_;
   ++departures_;
   counted_ = total(counted_, residency_.counters());
@@ -212,7 +267,6 @@ void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
   ready_.clear();
   failures_.forget_chunks();
   staged_bytes_ = 0;
-  pool_bytes_ = desc_.bytes.of(room);
   lost_ = nullptr;
   // No search can go on from what it has.
   changes_.clear();

@@ -18,6 +18,7 @@
 #include "runtime/format/reader.h"
 #include "runtime/stream/chunk_pool.h"
 #include "runtime/stream/failures.h"
+#include "runtime/stream/fit_room.h"
 #include "runtime/stream/linker.h"
 #include "runtime/stream/residency.h"
 
@@ -30,8 +31,12 @@ struct StreamDesc {
   unsigned readers = 2;              // threads; 0: step() does it all
   uint64_t read_bytes = 1 << 18;     // of one read, at most, unless one chunk has more
   uint64_t staged_bytes = 32 << 20;  // stored bytes of what was read and has no slot yet
-  PoolBytes bytes{};                 // of the pool, for messages
-  std::function<double()> clock;     // seconds, for what is tried again; none: the machine's
+  RoomBytes bytes{};
+  uint64_t budget = 0;  // for all of them; 0: no limit
+  // Told what all of them take: before that is more, for which it may throw, and after it is less.
+  // What they take at first it knows.
+  std::function<void(uint64_t)> count;
+  std::function<double()> clock;  // seconds, for what is tried again; none: the machine's
 };
 
 // Of the scene, since it was opened.
@@ -70,10 +75,16 @@ class SceneStream {
   // Then: what is large from a point, in the scene's own coordinates, until about so many stored
   // bytes of it are there, or a second has passed. What cannot be had is left out.
   void read_around(const Vec3f& centre, uint64_t bytes);
-  // Other room, as StreamDesc has it, and no more pinned than at first: what was there goes,
-  // but for what is pinned. Waits for frames that hold the pool, and for no source. Throws as
-  // ChunkPool::resize() does; the stream has then as much room as before, if that was to be had.
+  // Another budget, with as much room as fits, and no more pinned than at first: what was there
+  // goes, but for what is pinned. Waits for frames that hold the pool, and for no source. Throws
+  // as fit_room() and ChunkPool::resize() do; the stream has then as much room as before, if that
+  // was to be had.
+  void set_budget(uint64_t budget, Workers& workers);
+  // Other room, whatever the budget, and so many pinned.
   void resize(PoolRoom room, uint32_t pinned, Workers& workers);
+  // As PoolShare has them. Any thread.
+  void add_state(PoolReaderState& state, Workers& workers);
+  void remove_state(PoolReaderState& state) noexcept;
   // Ends the threads; nothing comes any more. Also done when it is destroyed.
   void stop();
   // Nobody should wait for anything any more: wait() throws Error(scene_closed), and reads end.
@@ -106,8 +117,10 @@ class SceneStream {
 
   const SceneFile& file() const { return *file_; }
   uint32_t pinned() const { return desc_.pinned; }
-  // What the pool takes.
-  uint64_t pool_bytes() const { return pool_bytes_; }
+  // What the pool takes, and its views, of which there is room for one at least.
+  uint64_t bytes() const { return bytes_; }
+  // No cut has more nodes. Under hold().
+  uint64_t cut_nodes() const { return desc_.bytes.cut_nodes(room_); }
   // As of the last step or commit. Any thread.
   StreamCounters counters() const;
   // What went wrong, each cause once. Any thread.
@@ -158,6 +171,9 @@ class SceneStream {
   bool accept(uint32_t chunk, LinkPatch& patch);
   void learn_families(uint32_t chunk);
   void place_subtrees(const ChunkEntry& chunk);
+  void change_room(PoolRoom room, uint32_t pinned, Workers& workers);
+  template <class Change>
+  void change_bytes(PoolRoom room, size_t states, const Change& change);
   void reset(PoolRoom room, uint32_t pinned, Workers& workers);
   StagedChunk decode(uint32_t chunk, std::span<const std::byte> stored) const;
   template <class Done>
@@ -183,7 +199,14 @@ class SceneStream {
   const SlotShape shape_;
   const RecordRoom records_;
   ChunkPool& pool_;
-  std::atomic<uint64_t> pool_bytes_;
+
+  // Of what the budget is shared out to; before all other locks.
+  std::mutex sharing_;
+  uint64_t budget_;
+  PoolRoom room_;
+  std::vector<PoolReaderState*> states_;
+  std::atomic<size_t> state_count_{0};
+  std::atomic<uint64_t> bytes_;
 
   // The pool's: held alone while that changes, before mutex_. Whoever takes it passes the door, so
   // that frames that follow one another without end keep nobody out.

@@ -189,16 +189,21 @@ void SceneStream::check_fits() const {
   const ResidencyNeed& need = residency_.need();
   const PoolRoom room = residency_.room();
   const uint64_t seen = need.seen - need.seen_failed.size();
-  if (seen + residency_.pinned() <= room.slots &&
-      need.seen_blocks + residency_.pinned_blocks() <= room.blocks)
-    return;
+  const bool fits = seen + residency_.pinned() <= room.slots &&
+                    need.seen_blocks + residency_.pinned_blocks() <= room.blocks;
+  const bool lacks = linker_.lacks_room_for_cut();
+  if (fits && !lacks) return;
   const uint64_t blocks = need.seen_blocks + records_.likely_blocks(need.seen_unread_blocks);
-  const auto megabytes = [&](PoolRoom of) { return static_cast<double>(desc_.bytes.of(of)) / 1e6; };
+  // No cut of a scene that is all there lacks room.
+  const PoolRoom enough = lacks ? records_.of(graph_.size()) : records_.enough(seen, blocks);
+  const auto megabytes = [&](PoolRoom of) {
+    return static_cast<double>(desc_.bytes.of(of, state_count_)) / 1e6;
+  };
   char message[160];
   std::snprintf(message, sizeof message,
                 ": what the view frustum needs takes %.3f MB, the memory budget has room for "
                 "%.3f MB",
-                std::ceil(1e3 * megabytes(records_.enough(seen, blocks))) / 1e3, megabytes(room));
+                std::ceil(1e3 * megabytes(enough)) / 1e3, megabytes(room));
   throw Error(ErrorCode::over_budget, file_->name() + message);
 }
 

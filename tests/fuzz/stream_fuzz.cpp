@@ -95,9 +95,9 @@ class Walk {
 
   bool leave_room(Scene& scene) {
     const SceneFile& file = scene.stream->file();
-    const PoolBytes pool = backend_->pool_bytes(scene, SceneStream::slot_shape(file));
+    const RoomBytes room = backend_->room_bytes(scene, SceneStream::slot_shape(file));
     const uint32_t slots = SceneStream::top_chunks(file) + 1;
-    resize_streamed(scene, pool.of(RecordRoom(file).of(slots)), *backend_, workers());
+    scene.stream->set_budget(room.of(RecordRoom(file).of(slots)), workers());
     return true;
   }
 

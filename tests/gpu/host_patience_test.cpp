@@ -69,7 +69,7 @@ TEST_F(HostPatience, EndsAndWhatWasAskedForCanBeAskedForAgain) {
   add("other scenes", {whole}, [](View& of) { of.set_scenes({}); });
   add("a larger frame", {whole}, [&](View& of) { of.render(into(*wide, large)); });
   add("a scene's budget", {part},
-      [&](View&) { resize_streamed(*part, uint64_t{8} << 20, *cuda, workers); });
+      [&](View&) { part->stream->set_budget(uint64_t{8} << 20, workers); });
   add("more launches than a stream takes", Scenes(kMaxInstances, whole),
       [&](View& of) { of.render(into(*ring, small)); });
   add("a third frame of twelve instances", Scenes(12, whole), [&](View& of) {

@@ -84,7 +84,9 @@ class SearchTest : public DeviceTest {
     if (kind == Search::sweep && !scene->search.leaves_have_extent)
       return cuda::create_sweep_search(on, std::make_shared<cuda::SweepTree>(scene->tree), *scene,
                                        true);
-    return cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true);
+    Workers workers(1);
+    return cuda::create_partitioned_search(on, cuda::upload_tree(*scene), scene, kind, true,
+                                           workers);
   }
 
   static Result run(SceneSearch& search, const CutQuery& query) {

@@ -35,9 +35,9 @@ class Streaming : public SplatTest {
 
   uint64_t budget_of(Backend& backend, const Bytes& bytes, double share) {
     const SceneFile file(source_of(bytes));
-    const PoolBytes pool = backend.pool_bytes(*resident(bytes), SceneStream::slot_shape(file));
+    const RoomBytes room = backend.room_bytes(*resident(bytes), SceneStream::slot_shape(file));
     const auto chunks = static_cast<double>(file.chunks().size());
-    return pool.of(RecordRoom(file).of(
+    return room.of(RecordRoom(file).of(
         std::max(SceneStream::top_chunks(file), static_cast<uint32_t>(share * chunks + 1))));
   }
 
@@ -403,13 +403,13 @@ TEST_F(Streaming, AnotherBudgetHoldsFromThenOn) {
   for (size_t i = 0; i < path.size(); ++i) {
     const double shares[] = {0.3, 0.05, 1, 0.5};
     if (i % 10 == 9)
-      resize_streamed(*streamed, budget_of(*cuda, bytes, shares[i / 10 % 4]), *cuda, workers);
+      streamed->stream->set_budget(budget_of(*cuda, bytes, shares[i / 10 % 4]), workers);
     const Frame frame = render(*part, path[i]);
     ASSERT_TRUE(is_cut(*whole_tree(*whole), frame.cut));
     EXPECT_EQ(frame.stats.cut_size, frame.cut.size());
     while (streamed->stream->step()) continue;
   }
-  resize_streamed(*streamed, 0, *cuda, workers);
+  streamed->stream->set_budget(0, workers);
   FrameInput input = path.back();
   const Frame expected = render(*all, input);
   input.wait_resident = true;
@@ -438,7 +438,7 @@ TEST_F(Streaming, RecordsMayRunOutBeforeSlots) {
     EXPECT_LT(streamed->stream->counters().resident, few.slots);
   }
   EXPECT_GT(missing, 0u);
-  resize_streamed(*streamed, budget_of(*cuda, bytes, 0.6), *cuda, workers);
+  streamed->stream->set_budget(budget_of(*cuda, bytes, 0.6), workers);
   for (const FrameInput& input : walk(60, 12, 9)) {
     const Frame expected = render(*all, input);
     Frame frame;

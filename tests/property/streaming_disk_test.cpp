@@ -241,15 +241,15 @@ TEST(StreamingDisk, ABudgetBelowTheWorkingSetIsCoarseAndAtRest) {
 TEST(StreamingDisk, ABudgetMayShrinkAndGrowInMidFlight) {
   Flight flight(0.6);
   test::StreamRig& rig = flight.rig();
-  const PoolBytes pool =
-      rig.backend->pool_bytes(flight.scene(), SceneStream::slot_shape(flight.stream().file()));
+  const RoomBytes bytes =
+      rig.backend->room_bytes(flight.scene(), SceneStream::slot_shape(flight.stream().file()));
   const auto chunks = flight.stream().file().chunks().size();
   Vec3d eye{0, -3, -100};
   for (const double share : {0.05, 1.0, 0.02, 1.0}) {
     for (int i = 0; i < 30; ++i, eye.z += 0.5) flight.draw(ahead(eye, kForward));
     const auto slots = static_cast<uint32_t>(share * static_cast<double>(chunks));
     const PoolRoom room = RecordRoom(flight.stream().file()).of(slots);
-    resize_streamed(flight.scene(), pool.of(room), *rig.backend, rig.workers);
+    flight.scene().stream->set_budget(bytes.of(room), rig.workers);
     EXPECT_EQ(flight.draw(ahead(eye, kForward)).stats.missing > 0, true);
     ASSERT_EQ(flight.counters().slots, slots);
   }
@@ -261,9 +261,7 @@ TEST(StreamingDisk, ABudgetWithoutRoomForTheTopIsRefusedAndChangesNothing) {
   Flight flight(0.6);
   const FrameInput input = ahead({0, -3, -60}, kForward);
   const Frame before = flight.stand(input);
-  EXPECT_EQ(test::error_code([&] {
-              resize_streamed(flight.scene(), 100, *flight.rig().backend, flight.rig().workers);
-            }),
+  EXPECT_EQ(test::error_code([&] { flight.scene().stream->set_budget(100, flight.rig().workers); }),
             ErrorCode::over_budget);
   expect_same_bits(flight.draw(input), before);
 }
@@ -522,7 +520,7 @@ TEST(StreamingDisk, AnOutageThatIsOverIsForgotten) {
     expect_same_bits(render(flight.view(), there), flight.whole(there));
     EXPECT_EQ(flight.counters().need.seen_missing, 0u);
     away = true;
-    resize_streamed(flight.scene(), 0, *flight.rig().backend, flight.rig().workers);
+    flight.scene().stream->set_budget(0, flight.rig().workers);
     EXPECT_EQ(test::error_code([&] { render(flight.view(), there); }), ErrorCode::io_transient);
   }
 }
@@ -612,8 +610,7 @@ TEST(StreamingDisk, ARefusedBudgetSaysWhatIsEnough) {
   const size_t takes = message.find("takes ");
   ASSERT_NE(takes, std::string::npos) << message;
   const double megabytes = std::stod(message.substr(takes + 6));
-  resize_streamed(flight.scene(), static_cast<uint64_t>(megabytes * 1e6), *flight.rig().backend,
-                  flight.rig().workers);
+  flight.scene().stream->set_budget(static_cast<uint64_t>(megabytes * 1e6), flight.rig().workers);
   expect_same_bits(render(flight.view(), input), flight.whole(input));
 }
 

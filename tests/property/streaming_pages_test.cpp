@@ -126,7 +126,7 @@ Flown fly(double share, uint32_t pages = 0) {
   if (pages != 0) desc.room.pages = pages;
   desc.pinned = desc.first = SceneStream::top_chunks(*file);
   desc.readers = 0;
-  desc.bytes.page = 1;
+  desc.bytes.pool.page = 1;
   double time = 0;
   desc.clock = [&] { return time += 1e-4; };
   Workers workers(1);

@@ -78,9 +78,8 @@ TEST(StreamingRecords, AFrameThatWaitsSaysWhatIsEnough) {
     }
     const size_t takes = message.find("takes ");
     ASSERT_NE(takes, std::string::npos) << message;
-    resize_streamed(*few.rig.streamed,
-                    static_cast<uint64_t>(std::stod(message.substr(takes + 6)) * 1e6),
-                    *few.rig.backend, few.rig.workers);
+    few.rig.streamed->stream->set_budget(
+        static_cast<uint64_t>(std::stod(message.substr(takes + 6)) * 1e6), few.rig.workers);
   }
   FAIL() << "it was refused three times";
 }
@@ -142,7 +141,7 @@ TEST(StreamingRecords, LargeFamiliesComeAndGo) {
       input.wait_resident = true;
       expect_same_bits(render(rig.part, input), render(rig.whole, input));
       blended += rig.streamed->large_families.size();
-      if (i % 5 == 4) resize_streamed(*rig.streamed, 0, *rig.backend, rig.workers);
+      if (i % 5 == 4) rig.streamed->stream->set_budget(0, rig.workers);
     }
     EXPECT_GT(blended, 0u);
   }

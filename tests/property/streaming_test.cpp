@@ -354,12 +354,12 @@ TEST(Streaming, WhatAViewKeepsByPlaceIsRightHoweverSeldomItDraws) {
   const SceneFile& file = rig.stream().file();
   PoolRoom room = RecordRoom(file).of(static_cast<uint32_t>(rig.streamed->slot_ids.size()));
   room.pages = room.pages / 2;  // fewer than any so many chunks take, but enough for these
-  rig.stream().resize(room, SceneStream::pinned_chunks(file, room.slots), rig.workers);
-  ASSERT_LT(search.subtrees.size(), size_t{search.subtree_count()} / 3);
   const auto view = [&](Search kind) {
     return View(rig.streamed, *rig.backend, searching(kind), rig.memory(), rig.workers);
   };
   View streaming = view(Search::streaming), seldom = view(Search::temporal);
+  rig.stream().resize(room, SceneStream::pinned_chunks(file, room.slots), rig.workers);
+  ASSERT_LT(search.subtrees.size(), size_t{search.subtree_count()} / 3);
   std::mt19937 random(3);
   const auto within = [&](double end) { return end * (2 * test::unit(random) - 1); };
   size_t compared = 0, taken = 0;

@@ -35,19 +35,19 @@ class StreamRig {
     desc.start_bytes = first_bytes;
     desc.clock = [this] { return time += 1e-5; };  // each look at it takes a moment
     const SceneFile file(source);
-    const PoolBytes pool = backend->pool_bytes(*resident, SceneStream::slot_shape(file));
+    const RoomBytes room = backend->room_bytes(*resident, SceneStream::slot_shape(file));
     const double chunks = static_cast<double>(file.chunks().size());
     const auto least =
         std::max(SceneStream::top_chunks(file), static_cast<uint32_t>(std::ceil(share * chunks)));
-    desc.budget = pool.of(RecordRoom(file).of(least));
+    desc.budget = room.of(RecordRoom(file).of(least));
     return open_streamed(source, desc, *backend, memory(), workers);
   }
 
   // Resizes the pool to `slots` chunks, but at least to the pinned ones.
   void give_room(Scene& scene, uint32_t slots) {
     const SceneFile& file = scene.stream->file();
-    const PoolBytes pool = backend->pool_bytes(scene, SceneStream::slot_shape(file));
-    resize_streamed(scene, pool.of(RecordRoom(file).of(slots)), *backend, workers);
+    const RoomBytes room = backend->room_bytes(scene, SceneStream::slot_shape(file));
+    scene.stream->set_budget(room.of(RecordRoom(file).of(slots)), workers);
   }
   void give_room(uint32_t slots) { give_room(*streamed, slots); }
 

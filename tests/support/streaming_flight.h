@@ -88,9 +88,9 @@ inline void fly_streamed(Backend& backend, const std::function<double()>& megaby
   Workers workers(2);
   const auto resident = load_scene(source, memory, workers);
   const SceneFile file(source);
-  const PoolBytes pool = backend.pool_bytes(*resident, SceneStream::slot_shape(file));
+  const RoomBytes bytes = backend.room_bytes(*resident, SceneStream::slot_shape(file));
   const auto budget_of = [&](double share) {
-    return pool.of(RecordRoom(file).of(
+    return bytes.of(RecordRoom(file).of(
         static_cast<uint32_t>(share * static_cast<double>(file.chunks().size()))));
   };
   StreamingDesc desc;
@@ -120,7 +120,7 @@ inline void fly_streamed(Backend& backend, const std::function<double()>& megaby
   std::thread budgets([&] {
     std::mt19937 random(seed);
     for (double now = flown(); now < 1; now = flown()) {
-      resize_streamed(*scene, budget_of(0.05 + 0.9 * double{unit(random)}), backend, workers);
+      scene->stream->set_budget(budget_of(0.05 + 0.9 * double{unit(random)}), workers);
       double& peak = peaks[static_cast<size_t>(10 * now)];
       peak = std::max(peak, megabytes());
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
@@ -135,7 +135,7 @@ inline void fly_streamed(Backend& backend, const std::function<double()>& megaby
   }
 
   source->faulty = false;
-  resize_streamed(*scene, 0, backend, workers);
+  scene->stream->set_budget(0, workers);
   FrameInput input = frame_input(look({0, -3, -150}, {0, -3, 0}, 32, 24, 70), 2);
   View part(scene, backend, {}, memory, workers), whole(resident, backend, {}, memory, workers);
   input.wait_resident = true;

@@ -236,8 +236,9 @@ typedef struct VoyDeviceDesc {
   const uint8_t* deviceUuid;
   /* Bytes of host memory that scene data may take, over all scenes of this device. 0: no limit. */
   uint64_t hostMemoryBudget;
-  /* Bytes of CUDA device memory that streamed scenes may take. 0: no limit. Scenes that are loaded
-   * whole are copied to the device without counting here. Other backends ignore it. */
+  /* Bytes of CUDA device memory that streamed scenes may take, with what views keep of them. 0: no
+   * limit. Scenes that are loaded whole are copied to the device without counting here. Other
+   * backends ignore it. */
   uint64_t deviceMemoryBudget;
   uint32_t workerThreadCount;    /* 1 to 1024, capped at the number of processors; 0: one each */
   VoyLogLevel logLevel;          /* the most verbose level to log */
@@ -356,7 +357,12 @@ typedef struct VoySceneStreaming {
   const void* next;
   /* Bytes that the scene may take in the memory that it is drawn from. They are part of
    * VoyDeviceDesc.hostMemoryBudget, or of deviceMemoryBudget on CUDA. 0, or more than is left
-   * there: all that is left there. */
+   * there: all that is left there.
+   * What counts is the memory for chunks, the tables that link them, and what each view keeps of
+   * each instance of the scene between frames. From the start there is room for one instance; for
+   * more of them voyCreateView and voySetViewInstances leave less to chunks. What a frame makes
+   * anew does not count (images, splats, lists of what is drawn), nor what the host keeps of a file
+   * beside that; docs/streaming.md tells how much that is. */
   uint64_t memoryBudget;
   /* NULL, or where the first frames look from: x, y, z in the scene's own axes, metres, each below
    * 1e18 in magnitude. Like VoySceneInfo.boundsMin, it includes the scene's origin. voyOpenScene
@@ -392,7 +398,8 @@ VOY_API VoyResult VOY_CALL voyOpenScene(VoyDevice device, const VoySceneDesc* de
                                         VoyScene* scene);
 
 /* Changes VoySceneStreaming.memoryBudget, in bytes. Everything but the top of the tree is dropped
- * and read again as frames need it. The call waits for frames that draw the scene.
+ * and read again as frames need it. The call waits for frames that draw the scene. On CUDA
+ * voyGetViewCut of its views then fails until their next frame.
  * Errors: UNSUPPORTED (a scene that is not streamed), OVER_BUDGET (as voyOpenScene; nothing has
  * changed), TIMEOUT (as voyRenderFrame; nothing has changed). */
 VOY_API VoyResult VOY_CALL voySetSceneMemoryBudget(VoyScene scene, uint64_t bytes);
@@ -519,7 +526,7 @@ VOY_API VoyResult VOY_CALL voyGetSceneNotes(VoyScene scene, uint32_t capacity, V
 typedef struct VoyStreamingStats {
   VoyStructureType type; /* VOY_STRUCTURE_TYPE_STREAMING_STATS */
   void* next;
-  uint64_t budgetBytes;       /* the scene's part of its budget: slots and tables */
+  uint64_t budgetBytes;       /* what VoySceneStreaming.memoryBudget counts; one view at least */
   uint64_t chunkSlots,        /* chunks that fit into the budget at once */
       residentChunks;         /* chunks in memory, which frames can draw */
   uint64_t neededChunks;      /* that the latest frames need, whatever the budget */
@@ -663,7 +670,9 @@ typedef struct VoyViewDesc {
 /* Creates a view. The host destroys it with voyDestroyView.
  * Errors: INVALID_ARGUMENT, UNSUPPORTED (more than VoyCapabilities allows; a time budget or a
  * streamed scene for a view of every leaf; lists of 2^32 Gaussians or more), OUT_OF_HOST_MEMORY,
- * OVER_BUDGET (CUDA: the scene does not fit into the GPU's memory). */
+ * OVER_BUDGET (CUDA: the scene does not fit into the GPU's memory; a streamed scene's budget has no
+ * room for what the view keeps, and the message says how much it would take), TIMEOUT (as
+ * voySetSceneMemoryBudget, where a streamed scene leaves less to chunks for the view). */
 VOY_API VoyResult VOY_CALL voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
 
 /* Waits for the view's frame in progress and destroys the view. */
