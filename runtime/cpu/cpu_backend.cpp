@@ -2,6 +2,7 @@
 #include "runtime/cpu/node_trainer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <deque>
 
 #include "runtime/base/error.h"
@@ -65,21 +66,26 @@ class CpuPipeline final : public HostPipeline {
   void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const override {
     instances_.read_cut(instance, cut);
   }
+  const ShownChunks* shown_chunks(size_t instance) const override {
+    const ShownChunks& shown = instances_.all()[instance]->shown;
+    return shown.empty() ? nullptr : &shown;
+  }
   bool cut_is_near() const override { return true; }
   std::vector<Omission> omissions() const override;
 
  private:
   struct Eye {
     explicit Eye(std::pmr::memory_resource* memory)
-        : splats(memory), visible(memory), pixels(memory), depth(memory) {}
+        : splats(memory), visible(memory), shown(memory), pixels(memory), depth(memory) {}
     std::pmr::vector<Splat> splats;      // of a block of places, from its first on
     std::pmr::vector<uint32_t> visible;  // splats of each block
+    std::pmr::vector<Shown*> shown;      // by splat, what is told of it; none where nothing is
     std::pmr::vector<Pixel> pixels;
     std::pmr::vector<float> depth;
   };
 
   template <int kEyes>
-  void project_instance(const HostInstance& instance);
+  void project_instance(HostInstance& instance);
 
   PipelineDesc desc_;
   Workers& workers_;
@@ -95,7 +101,15 @@ class CpuPipeline final : public HostPipeline {
 
 void CpuPipeline::project(const FrameInput&) {
   const size_t places = instances_.places();
+  bool tells = false;
+  for (const auto& instance : instances_.all()) {
+    const Scene& scene = *instance->scene;
+    const bool wanted = scene.streamed() && scene.stream->wants_shown();
+    instance->shown.assign(wanted ? scene.slot_ids.size() : 0, Shown::unknown);
+    tells = tells || wanted;
+  }
   for (Eye& eye : eyes_) {
+    eye.shown.assign(tells ? places : 0, nullptr);
     if (eye.splats.size() < places) eye.splats.resize(places);
     eye.visible.assign((places + kProjectBlock - 1) / kProjectBlock, 0);
   }
@@ -104,7 +118,7 @@ void CpuPipeline::project(const FrameInput&) {
 }
 
 template <int kEyes>
-void CpuPipeline::project_instance(const HostInstance& instance) {
+void CpuPipeline::project_instance(HostInstance& instance) {
   const auto& items = instance.draws.items();
   ProjectParams params[kEyes];
   for (size_t eye = 0; eye < kEyes; ++eye)
@@ -130,8 +144,18 @@ void CpuPipeline::project_instance(const HostInstance& instance) {
       if (std::none_of(params, params + kEyes, sees) ||
           !read_gaussian(params[0], arrays, item, drawn))
         continue;
-      for (size_t eye = 0; eye < kEyes; ++eye)
-        out[eye] += voyager::project(params[eye], arrays, item, drawn, eyes_[eye].splats[out[eye]]);
+      Shown* const shown = instance.shown.empty()
+                               ? nullptr
+                               : &instance.shown[item.gaussian / instance.scene->slot_nodes];
+      for (size_t eye = 0; eye < kEyes; ++eye) {
+        Eye& of = eyes_[eye];
+        if (!voyager::project(params[eye], arrays, item, drawn, of.splats[out[eye]])) continue;
+        if (shown != nullptr) {
+          std::atomic_ref(*shown).store(Shown::no, std::memory_order_relaxed);
+          of.shown[out[eye]] = shown;
+        }
+        ++out[eye];
+      }
     }
     for (size_t eye = 0; eye < kEyes; ++eye)
       eyes_[eye].visible[first / kProjectBlock] = static_cast<uint32_t>(out[eye] - first);
@@ -173,7 +197,8 @@ void CpuPipeline::rasterize(const FrameInput& frame, size_t eye) {
                             height,
                             of.pixels.data(),
                             depth ? of.depth.data() : nullptr,
-                            wanted.limits};
+                            wanted.limits,
+                            of.shown.empty() ? nullptr : of.shown.data()};
   const RasterizeTile run = pick_rasterizer(desc_.exponential, desc_.alpha_filter, depth, limits);
   const TileGrid grid = tile_grid(width, height);
   const auto columns = static_cast<uint32_t>(grid.columns);

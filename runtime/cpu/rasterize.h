@@ -7,6 +7,7 @@
 
 #include "runtime/frame/backend.h"
 #include "runtime/stages/bin.h"
+#include "runtime/stream/shown_chunks.h"
 
 namespace voyager::cpu {
 
@@ -23,6 +24,7 @@ struct RasterParams {
   Pixel* pixels;  // width * height
   float* depth;   // width * height, or null
   DepthLimits limits;
+  Shown* const* shown = nullptr;  // by splat, what is told of it, or null; null: of none
 };
 
 struct Tile {

@@ -3,6 +3,7 @@
 // Loops over a row's pixels are plain arrays of kTile, which the compiler turns
 // into SIMD; every operation is explicit, so each width rounds alike.
 #include <algorithm>
+#include <atomic>
 #include <limits>
 
 #include "runtime/cpu/rasterize.h"
@@ -49,23 +50,58 @@ inline Limits tile_limits(const DepthLimits& limits, uint32_t x0, uint32_t y0, i
   return found;
 }
 
-// Blends one splat into one row; with kLimits only where it lies within `limit`. Returns
-// true if a pixel ended.
-template <Exponential E, bool kFilter, bool kDepth, bool kLimits, bool kSiblings>
-inline bool blend_row(const RasterParams& params, const Splat& s, const float* dx, float dy,
-                      const float* limit, Row& row) {
+// Of one splat in the pixels of one row.
+struct RowHits {
   float rho[kTile];
   int32_t hit[kTile];
+};
+
+// True if it hits a pixel; with kLimits only where it lies within `limit`.
+template <bool kLimits>
+inline bool find_hits(const Splat& s, const float* dx, float dy, const float* limit, const Row& row,
+                      RowHits& of) {
   int32_t hits = 0;
   for (int i = 0; i < kTile; ++i) {
     const float p = dx[i] * s.conic.p_x;
     const float q = std::fma(-s.conic.skew, dx[i], dy) * s.conic.q_y;
-    rho[i] = -std::fma(q, q, p * p);
-    hit[i] = (rho[i] >= s.rho_min) & (rho[i] >= row.floor[i]);
-    if constexpr (kLimits) hit[i] &= s.depth <= limit[i];
-    hits |= hit[i];
+    of.rho[i] = -std::fma(q, q, p * p);
+    of.hit[i] = (of.rho[i] >= s.rho_min) & (of.rho[i] >= row.floor[i]);
+    if constexpr (kLimits) of.hit[i] &= s.depth <= limit[i];
+    hits |= of.hit[i];
   }
-  if (kFilter && hits == 0) return false;
+  return hits != 0;
+}
+
+// Whether light reaches the splat in the row: behind less than α* of it nothing is told apart.
+template <bool kLimits>
+inline bool is_shown(const Splat& s, const float* dx, float dy, const float* limit,
+                     const Row& row) {
+  RowHits of;
+  find_hits<kLimits>(s, dx, dy, limit, row, of);
+  int32_t shown = 0;
+  for (int i = 0; i < kTile; ++i) shown |= of.hit[i] & (row.transmittance[i] >= kAlphaThreshold);
+  return shown != 0;
+}
+
+// What is to be told of a splat, unless it was told already. Tiles that tell it at once tell the
+// same.
+inline Shown* untold(const RasterParams& params, uint32_t splat) {
+  if (params.shown == nullptr) return nullptr;
+  Shown* const shown = params.shown[splat];
+  const bool told =
+      shown == nullptr || std::atomic_ref(*shown).load(std::memory_order_relaxed) == Shown::yes;
+  return told ? nullptr : shown;
+}
+
+// Blends one splat into one row. Returns true if a pixel ended.
+template <Exponential E, bool kFilter, bool kDepth, bool kLimits, bool kSiblings>
+inline bool blend_row(const RasterParams& params, const Splat& s, const float* dx, float dy,
+                      const float* limit, Row& row) {
+  RowHits of;
+  const bool hits = find_hits<kLimits>(s, dx, dy, limit, row, of);
+  if (kFilter && !hits) return false;
+  const float* const rho = of.rho;
+  const int32_t* const hit = of.hit;
 
   int32_t ended = 0;
   for (int i = 0; i < kTile; ++i) {
@@ -125,6 +161,7 @@ void rasterize_tile(const RasterParams& params, const Tile& tile) {
     float dx[kTile];
     for (int i = 0; i < kTile; ++i)
       dx[i] = (static_cast<float>(x0) + static_cast<float>(i) + 0.5f) - s.x;
+    Shown* shown = untold(params, index);
     const TileRange reach =
         kFilter ? splat_rows(s, static_cast<float>(y0), rows) : TileRange{0, rows};
     for (int y = reach.begin; y < reach.end; ++y) {
@@ -132,6 +169,10 @@ void rasterize_tile(const RasterParams& params, const Tile& tile) {
       const float dy = (static_cast<float>(y0) + static_cast<float>(y) + 0.5f) - s.y;
       const float* limit = kLimits ? limits.z[y] : nullptr;
       Row& row = image[y];
+      if (shown != nullptr && is_shown<kLimits>(s, dx, dy, limit, row)) {
+        std::atomic_ref(*shown).store(Shown::yes, std::memory_order_relaxed);
+        shown = nullptr;
+      }
       const bool ended =
           s.t == 1.0f ? blend_row<E, kFilter, kDepth, kLimits, false>(params, s, dx, dy, limit, row)
                       : blend_row<E, kFilter, kDepth, kLimits, true>(params, s, dx, dy, limit, row);

@@ -167,6 +167,9 @@ class Pipeline {
   virtual bool counts_changes() const { return false; }
   // An instance's of the last frame, ascending; none where it draws no cut.
   virtual void read_cut(size_t instance, std::pmr::vector<uint32_t>& cut) const = 0;
+  // What the last frame that has ended showed of a streamed instance's chunks, if its stream wanted
+  // to know.
+  virtual const ShownChunks* shown_chunks(size_t) const { return nullptr; }
   // Reading a cut is a copy in memory, and waits for no device.
   virtual bool cut_is_near() const = 0;
   // What the frames so far did without, beside what their scenes do without.

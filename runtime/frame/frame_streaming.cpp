@@ -172,6 +172,16 @@ FrameStreaming::Holds FrameStreaming::hold_all() const {
   return holds;
 }
 
+void FrameStreaming::tell_shown(const Pipeline& pipeline) const noexcept {
+  try {
+    for (size_t i = 0; i < instances_.size(); ++i)
+      if (const ShownChunks* shown = pipeline.shown_chunks(i))
+        instances_[i].scene->stream->tell_shown(instances_[i].name.get(), *shown);
+  } catch (const std::bad_alloc&) {
+    return;
+  }
+}
+
 void FrameStreaming::collect(FrameStats& stats) {
   for (size_t i = 0; i < streamed_.size(); ++i) {
     const StreamCounters counters = streamed_[i]->stream->counters();

@@ -31,6 +31,9 @@ class FrameStreaming {
   Holds begin(const FrameInput& frame);
   // Of the frame.
   void collect(FrameStats& stats);
+  // Behind a frame that has ended. What there is no memory for is not told: others are asked for
+  // first, and no frame fails.
+  void tell_shown(const Pipeline& pipeline) const noexcept;
 
  private:
   struct Instance {

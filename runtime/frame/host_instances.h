@@ -19,7 +19,8 @@ struct HostInstance {
   // Of the frame.
   std::array<Camera, kMaxEyes> cameras;  // in the scene's coordinates
   InstanceLook look;
-  size_t first = 0;  // the place of the first item
+  size_t first = 0;   // the place of the first item
+  ShownChunks shown;  // for who draws to tell; none where nobody wants it
 };
 
 // Places are where items are projected to: they ascend with (instance, id), which breaks

@@ -152,6 +152,7 @@ void View::draw(const FrameInput& frame, bool follows) {
   while (finish_one(true)) continue;
   FrameStats stats = known_stats(frame);
   pipeline_->draw(frame, stats);
+  streaming_->tell_shown(*pipeline_);
   const bool read = read_changes(follows, stats);
   pipeline_->resolve(frame, stats);
   stats.frame_index = frames_++;
@@ -191,6 +192,7 @@ bool View::finish_one(bool wait) {
   UnderWay& oldest = under_way_.front();
   const uint64_t entered = oldest.stats.entered, left = oldest.stats.left;
   if (!pipeline_->finish(wait, oldest.stats)) return false;
+  streaming_->tell_shown(*pipeline_);
   if (oldest.changes_known) oldest.stats.entered = entered, oldest.stats.left = left;
   keep_stats(oldest.stats);
   under_way_.pop_front();

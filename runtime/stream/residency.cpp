@@ -37,8 +37,11 @@ Residency::Residency(const ChunkGraph& graph, const ChunkDirectory& chunks,
 ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
   while (!requests_.empty() && known(requests_.back()).state != State::absent) requests_.pop_back();
   if (requests_.empty()) return {0, 0};
+  // What is hidden would only hold up what is not.
+  const bool hidden = known(requests_.back()).hidden;
   const auto to_read = [&](uint32_t chunk) {
-    return chunk < graph_->size() && known(chunk).state == State::absent && is_wanted(chunk);
+    return chunk < graph_->size() && known(chunk).state == State::absent && is_wanted(chunk) &&
+           (hidden || !known(chunk).hidden);
   };
   ChunkRange range{requests_.back(), requests_.back() + 1};
   uint64_t taken = chunks_->bytes(range.first);
@@ -297,6 +300,7 @@ bool Residency::has_leftovers() const {
 void Residency::remove(uint32_t chunk, std::vector<Evicted>& evicted) {
   for (const uint32_t p : graph_->parents(chunk)) --know(p).children_there;
   evicted.push_back({chunk, known(chunk).slot, known(chunk).first_block});
+  if (known(chunk).slot < shown_.size()) shown_[known(chunk).slot] = Shown::unknown;
   know(chunk).slot = kNoSlot;
   know(chunk).first_block = kNoBlock;
   know(chunk).state = State::absent;

@@ -24,6 +24,7 @@
 #include "runtime/stream/chunk_graph.h"
 #include "runtime/stream/chunk_looks.h"
 #include "runtime/stream/record_room.h"
+#include "runtime/stream/shown_chunks.h"
 #include "runtime/stream/sparse_array.h"
 
 namespace voyager {
@@ -58,6 +59,11 @@ class Residency {
   void plan(ChunkLooks& looks);
   // Those that the last plan needed: the next looks at them, and at what they lead to.
   std::vector<uint32_t> needed() const;
+
+  // What is shown of what is resident, all viewers together. Only the order of requests goes by it:
+  // what is seen, but hangs from nothing that was shown, comes behind what will be seen soon.
+  void set_shown(ShownChunks shown);
+  bool has_requests() const { return !requests_.empty(); }
 
   // The most urgent chunks that are to be read: consecutive, at most `most`, and of at most
   // `bytes` in the file unless one alone has more. They are on their way then.
@@ -140,10 +146,11 @@ class Residency {
   // Of a chunk that is not absent, or that the last plan needed or might have needed.
   struct Known {
     State state = State::absent;
-    uint8_t counted = 0;  // in need_, if the last plan needed it; kSeen: as seen, too
-    bool leaves = false;  // scratch
-    bool was_read = false;
-    float score = 0;  // scratch
+    uint8_t counted = 0;      // in need_, if the last plan needed it; kSeen: as seen, too
+    bool leaves : 1 = false;  // scratch
+    bool was_read : 1 = false;
+    bool hidden : 1 = false;  // where it is not resident: as order_requests() found it last
+    float score = 0;          // scratch
     uint32_t slot = kNoSlot;
     uint32_t first_block = kNoBlock;
     uint32_t blocks = kUnknown;  // how many it takes; before it was read, at most
@@ -171,6 +178,12 @@ class Residency {
   void count_need();
   void choose_target();
   void queue_requests();
+  void order_requests();
+  // In which a chunk is asked for, the last first: by its class, but for what is hidden.
+  enum class Turn : uint8_t { around, turned, hidden, soon, seen, pinned };
+  Turn turn(uint32_t chunk) const;
+  void find_hidden();
+  bool is_hidden(uint32_t chunk) const;
   std::vector<uint32_t> unwanted();
   void list_victims();
   struct Wanted {
@@ -228,7 +241,9 @@ class Residency {
   std::vector<Needed> failed_;                // and what it would have needed
   std::vector<Needed> extra_;                 // scratch
   std::vector<Climb> climb_;                  // scratch
+  std::vector<uint32_t> asked_;               // by the last plan, the most urgent last
   std::vector<uint32_t> requests_, victims_;  // the first to go last
+  ShownChunks shown_;                         // of all viewers
   std::vector<uint32_t> leftovers_;           // the same, and not because room is short
   std::vector<uint32_t> filled_;              // since the last arrivals
   std::vector<uint32_t> waiting_;  // all that are filled before their parents are there, and others

@@ -204,8 +204,9 @@ void Residency::queue_requests() {
   std::sort(extra_.begin(), extra_.end(), [&](const Needed& a, const Needed& b) {
     return urgency(a) != urgency(b) ? urgency(a) < urgency(b) : a.chunk > b.chunk;
   });
-  requests_.clear();
-  for (const Needed& needed : extra_) requests_.push_back(needed.chunk);
+  asked_.clear();
+  for (const Needed& needed : extra_) asked_.push_back(needed.chunk);
+  order_requests();
   for (const Needed& needed : needed_)
     if (needed.now && ChunkLooks::class_of(needed.urgency) == ChunkLooks::Class::seen &&
         known(needed.chunk).state != State::resident)

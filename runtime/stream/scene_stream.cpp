@@ -92,7 +92,7 @@ double SceneStream::next_due() const {
   if (lost_) return std::max(0.0, rebuild_due_ - now());
   double wait = failures_.next_due(now());
   const std::lock_guard small(small_mutex_);
-  if (!look_again_ || planning_) return wait;  // whoever plans wakes the others
+  if (!(look_again_ && !planning_) && !told_) return wait;  // whoever plans wakes the others
   const auto rest = next_plan_ - std::chrono::steady_clock::now();
   const double plan = std::max(0.0, std::chrono::duration<double>(rest).count());
   return wait < 0 ? plan : std::min(wait, plan);
@@ -271,10 +271,17 @@ void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
   // No search can go on from what it has.
   changes_.clear();
   version_ += kChangesKept;
+  forget_shown();
   look_again();
   put_first(residency_.pinned(), top_, workers);
   unsound_ = nullptr;
   signal();
+}
+
+// They are of slots that hold others now.
+void SceneStream::forget_shown() {
+  const std::lock_guard small(small_mutex_);
+  for (auto& [who, of] : lookers_) of.shown.clear();
 }
 
 // From within a catch, or with what one has caught.
@@ -323,6 +330,7 @@ void SceneStream::publish() {
   now.failures = failures_.count();
   now.resident = residency_.resident();
   now.need = residency_.need();
+  shown_wanted_ = now.need.seen_missing != 0 && residency_.has_requests();
   std::vector<std::string> messages = failures_.take_messages();
   const std::lock_guard small(small_mutex_);
   published_ = std::move(now);

@@ -94,6 +94,11 @@ class SceneStream {
   // Who looks, for one view's instance; it replaces what was said before. No viewers: nobody.
   // Any thread.
   void look(const void* who, std::vector<Viewer> viewers);
+  // Whether a frame is to tell what it shows: something that is seen is to be asked for. Any
+  // thread.
+  bool wants_shown() const { return shown_wanted_; }
+  // What a frame of `who` has shown, where it was wanted. Any thread.
+  void tell_shown(const void* who, const ShownChunks& shown);
   // What has come becomes resident, as far as the stream's own threads have not seen to that
   // between frames. Frames that read the pool just now put that off, for a tenth of a second; then
   // the call waits for them to end. Any thread.
@@ -145,6 +150,9 @@ class SceneStream {
   bool work(Lock& lock);
   bool plan_is_asked();
   bool plan_if_asked(Lock* lock);
+  bool plans_rest() const;
+  bool order_if_told();
+  void forget_shown();
   void look_at_likely(Lock& lock);
   bool retry_due();
   bool fill_some(Lock& lock);
@@ -212,7 +220,7 @@ class SceneStream {
   // that frames that follow one another without end keep nobody out.
   mutable std::mutex door_;
   mutable std::shared_mutex pool_mutex_;
-  std::atomic<bool> commit_due_{false};
+  std::atomic<bool> commit_due_{false}, shown_wanted_{false};
   std::atomic<size_t> filled_count_{0};  // chunks for the next commit
   std::atomic<double> put_off_{-1};      // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
@@ -226,7 +234,12 @@ class SceneStream {
   uint64_t signals_ = 0;
   bool stopping_ = false, abandoned_ = false;
   bool look_again_ = false;
-  std::map<const void*, std::vector<Viewer>> viewers_;
+  struct Looker {
+    std::vector<Viewer> viewers;
+    ShownChunks shown;  // none: no frame has told
+  };
+  std::map<const void*, Looker> lookers_;
+  bool told_ = false;  // one of those has changed
   StreamCounters published_;
   std::vector<std::string> messages_;
 

@@ -16,13 +16,25 @@ constexpr float kStartTarget = 1e-3f;  // τ* where no frame has told: a pixel o
 void SceneStream::look(const void* who, std::vector<Viewer> viewers) {
   {
     const std::lock_guard small(small_mutex_);
-    const auto found = viewers_.find(who);
-    if (found == viewers_.end() ? viewers.empty() : found->second == viewers) return;
+    const auto found = lookers_.find(who);
+    if (found == lookers_.end() ? viewers.empty() : found->second.viewers == viewers) return;
+    told_ = told_ || found == lookers_.end() || viewers.empty();  // for all that look
     if (viewers.empty())
-      viewers_.erase(found);
+      lookers_.erase(found);
     else
-      viewers_[who] = std::move(viewers);
+      lookers_[who].viewers = std::move(viewers);
     look_again_ = true;
+  }
+  signal();
+}
+
+void SceneStream::tell_shown(const void* who, const ShownChunks& shown) {
+  {
+    const std::lock_guard small(small_mutex_);
+    const auto found = lookers_.find(who);
+    if (found == lookers_.end() || found->second.shown == shown) return;
+    found->second.shown = shown;
+    told_ = true;
   }
   signal();
 }

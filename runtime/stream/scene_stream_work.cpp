@@ -61,7 +61,8 @@ bool SceneStream::step(Lock& lock) {
 }
 
 bool SceneStream::work(Lock& lock) {
-  const bool done = plan_if_asked(&lock) || retry_due() || fill_some(lock) || read_some(lock);
+  const bool done =
+      plan_if_asked(&lock) || order_if_told() || retry_due() || fill_some(lock) || read_some(lock);
   commit_due_ = residency_.has_changes();
   filled_count_ = residency_.filled_count();
   if (done) {
@@ -74,14 +75,13 @@ bool SceneStream::work(Lock& lock) {
 // lock: let go while chunks are looked at; null for those who hold the pool, too.
 bool SceneStream::plan_if_asked(Lock* lock) {
   std::vector<Viewer> viewers;
-  // Others wait for a plan: it must not take all of their time, however many chunks a scene has.
-  if (planning_ || (desc_.readers != 0 && std::chrono::steady_clock::now() < next_plan_))
-    return false;
+  if (planning_ || plans_rest()) return false;
   {
     const std::lock_guard small(small_mutex_);
     if (!look_again_) return false;
     look_again_ = false;
-    for (const auto& [who, of] : viewers_) viewers.insert(viewers.end(), of.begin(), of.end());
+    for (const auto& [who, of] : lookers_)
+      viewers.insert(viewers.end(), of.viewers.begin(), of.viewers.end());
   }
   looks_.begin(std::move(viewers));
   const auto look = std::chrono::steady_clock::now();
@@ -93,6 +93,35 @@ bool SceneStream::plan_if_asked(Lock* lock) {
   const auto end = std::chrono::steady_clock::now();
   // And as long as it looked, so that no thread does nothing else.
   next_plan_ = end + kPlanRest * (end - begin) + (begin - look);
+  return true;
+}
+
+// Others wait for a plan: it must not take all of their time, however many chunks a scene has.
+bool SceneStream::plans_rest() const {
+  return desc_.readers != 0 && std::chrono::steady_clock::now() < next_plan_;
+}
+
+// As long as a frame of somebody's has told nothing, nothing is hidden.
+bool SceneStream::order_if_told() {
+  if (plans_rest()) return false;
+  ShownChunks all;
+  {
+    const std::lock_guard small(small_mutex_);
+    if (!std::exchange(told_, false)) return false;
+    for (const auto& [who, of] : lookers_) {
+      if (of.shown.empty()) {
+        all.clear();
+        break;
+      }
+      all.resize(std::max(all.size(), of.shown.size()));
+      std::transform(of.shown.begin(), of.shown.end(), all.begin(), all.begin(),
+                     [](Shown a, Shown b) { return std::max(a, b); });
+    }
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  residency_.set_shown(std::move(all));
+  const auto end = std::chrono::steady_clock::now();
+  next_plan_ = end + kPlanRest * (end - begin);
   return true;
 }
 
