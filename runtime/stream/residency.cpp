@@ -10,6 +10,8 @@ namespace {
 
 // How many requests evictions make room for ahead of their reading.
 constexpr size_t kRoomAhead = 256;
+// A read of fewer bytes takes about as long as one of so many.
+constexpr uint64_t kShortRead = 64 << 10;
 
 }  // namespace
 
@@ -37,21 +39,23 @@ Residency::Residency(const ChunkGraph& graph, const ChunkDirectory& chunks,
 ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {
   while (!requests_.empty() && known(requests_.back()).state != State::absent) requests_.pop_back();
   if (requests_.empty()) return {0, 0};
-  // What is hidden would only hold up what is not.
-  const bool hidden = known(requests_.back()).hidden;
   const auto to_read = [&](uint32_t chunk) {
-    return chunk < graph_->size() && known(chunk).state == State::absent && is_wanted(chunk) &&
-           (hidden || !known(chunk).hidden);
+    return chunk < graph_->size() && known(chunk).state == State::absent && is_wanted(chunk);
   };
   ChunkRange range{requests_.back(), requests_.back() + 1};
   uint64_t taken = chunks_->bytes(range.first);
-  const auto fits = [&](uint32_t chunk) {
-    return range.last - range.first < most && to_read(chunk) &&
-           taken + chunks_->bytes(chunk) <= bytes;
+  // Neighbours whose turn is no later than that.
+  const auto extend = [&](Turn last, uint64_t enough) {
+    const auto fits = [&](uint32_t chunk) {
+      return range.last - range.first < most && to_read(chunk) && turn(chunk) >= last &&
+             taken + chunks_->bytes(chunk) <= enough;
+    };
+    for (; fits(range.last); ++range.last) taken += chunks_->bytes(range.last);
+    for (; range.first > 0 && fits(range.first - 1); --range.first)
+      taken += chunks_->bytes(range.first - 1);
   };
-  for (; fits(range.last); ++range.last) taken += chunks_->bytes(range.last);
-  for (; range.first > 0 && fits(range.first - 1); --range.first)
-    taken += chunks_->bytes(range.first - 1);
+  extend(turn(requests_.back()), bytes);
+  extend(Turn::around, std::min(bytes, kShortRead));
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     know(chunk).state = State::on_its_way;
     coming_blocks_ += most_blocks(chunk);
