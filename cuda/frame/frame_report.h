@@ -35,6 +35,7 @@ class FrameReport {
   SplatRoom room;
   uint32_t redraws = 0;       // of the frame, since buffers had no room
   bool limited = false;       // its tiles had limits
+  bool tells = false;         // what it shows of chunks
   uint64_t target_bytes = 0;  // of the images
 
  private:

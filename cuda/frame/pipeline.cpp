@@ -9,6 +9,7 @@
 #include "cuda/frame/frame_image.h"
 #include "cuda/frame/frame_limits.h"
 #include "cuda/frame/frame_report.h"
+#include "cuda/frame/shown_report.h"
 #include "cuda/interop/external_ring.h"
 #include "cuda/splat/occlusion.h"
 #include "cuda/splat/splat_state.h"
@@ -54,6 +55,7 @@ class SplatPipeline final : public Pipeline {
         splats_(bin_blocks(device_->multiprocessors()), desc.eyes),
         images_(desc.eyes),
         limits_(desc.eyes),
+        shown_(device_),
         occlusion_choice_(desc.count_pixels ? Occlusion::off : desc.occlusion) {}
 
   // What it frees belongs to the device's context, and to frames that may be in flight.
@@ -75,6 +77,7 @@ class SplatPipeline final : public Pipeline {
     device_->use();
     instances_.all()[instance].draws->read_cut(cut);
   }
+  const ShownChunks* shown_chunks(size_t instance) const override { return shown_.of(instance); }
   bool cut_is_near() const override { return false; }
   std::vector<Omission> omissions() const override;
 
@@ -96,6 +99,8 @@ class SplatPipeline final : public Pipeline {
                             FrameReport& report);
   void launch_projections(const SceneReading&, const FrameInput& frame, SplatFrame& work);
   static Eyes external_eyes(const FrameInput& frame);
+  RasterChoices raster_choices() const;
+  void launch_told(const FrameInput& frame, const FrameReport& report);
   void launch_image(const SceneReading& reading, const FrameInput& frame, const Eyes& eyes,
                     FrameReport& report);
   void launch_fetch(const FrameInput& frame, FrameReport& report);
@@ -119,6 +124,7 @@ class SplatPipeline final : public Pipeline {
   SplatState splats_;
   std::vector<FrameImage> images_;  // of each eye, as limits
   std::vector<FrameLimits> limits_;
+  ShownReport shown_;
   OcclusionState occlusion_;
   OcclusionChoice occlusion_choice_;
   Stream stream_;
@@ -192,19 +198,30 @@ void SplatPipeline::launch_checked_lists(const SceneReading& reading, const Fram
   }
 }
 
+RasterChoices SplatPipeline::raster_choices() const {
+  return {desc_.exponential,
+          desc_.alpha_filter,
+          desc_.count_pixels,
+          instances_.siblings(),
+          lut_.data(),
+          desc_.lut_size,
+          log_threshold(desc_.antialias)};
+}
+
 void SplatPipeline::launch_image(const SceneReading& reading, const FrameInput& frame,
                                  const Eyes& eyes, FrameReport& report) {
-  const RasterChoices choices{desc_.exponential,
-                              desc_.alpha_filter,
-                              desc_.count_pixels,
-                              instances_.siblings(),
-                              lut_.data(),
-                              desc_.lut_size,
-                              log_threshold(desc_.antialias)};
+  const RasterChoices choices = raster_choices();
   run_stage(kRasterize, report, [&] {
     launch_rasterize(work(report.tiles, 0), choices, eyes.data());
     if (occlusion_.limited()) launch_second_pass(reading, frame, choices, eyes, report);
   });
+}
+
+// Behind the image, which does not wait for it. Reads nothing of a scene.
+void SplatPipeline::launch_told(const FrameInput& frame, const FrameReport& report) {
+  if (report.tells)
+    shown_.launch(instances_, splats_.view(report.tiles, 0), frame, raster_choices(),
+                  stream_.get());
 }
 
 // What resolve() hands on.
@@ -269,6 +286,9 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
     free_.pop_back();
   }
   report->redraws = 0;
+  const auto tells = [](const Report& other) { return other->tells; };
+  report->tells =
+      std::none_of(under_way_.begin(), under_way_.end(), tells) && shown_.wanted(instances_);
   report->tiles = tiles;
   report->target_bytes = 0;
   for (const FrameEye& eye : frame.eyes)
@@ -279,13 +299,15 @@ SplatPipeline::Report SplatPipeline::begin_frame(const FrameInput& frame) {
 
 // To the frame's size. What is too small is replaced, and frames in flight still use it.
 void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
-  bool fits = splats_.fits(tiles) && (!occlusion_choice_.possible() || occlusion_.fits(tiles));
+  bool fits = splats_.fits(tiles) && shown_.fits(instances_) &&
+              (!occlusion_choice_.possible() || occlusion_.fits(tiles));
   for (size_t eye = 0; eye < frame.eyes.size(); ++eye)
     fits = fits && limits_[eye].fits(frame.eyes[eye]) && images_[eye].fits(frame.eyes[eye]);
   if (fits) return;
   wait_for_host(stream_);
   if (!splats_.fits(tiles)) occlusion_.forget();  // the ends that it knows are in these
   splats_.fit(tiles);
+  shown_.fit(instances_);
   if (occlusion_choice_.possible()) occlusion_.fit(tiles);
   for (size_t eye = 0; eye < frame.eyes.size(); ++eye) {
     limits_[eye].fit(frame.eyes[eye]);
@@ -298,7 +320,8 @@ void SplatPipeline::launch_search(const SceneReading&, const FrameInput& frame,
   report.timer.begin();
   run_stage(kSearch, report, [&] {
     // Reads where the tiles of the frame before ended, which begin_frame() of the splats clears.
-    occlusion_.begin(occlusion_choice_.next(), frame, report.tiles,
+    // Lists that tell have all that is hidden.
+    occlusion_.begin(!report.tells && occlusion_choice_.next(), frame, report.tiles,
                      splats_.view(report.tiles, 0).ends, stream_.get());
     report.limited = occlusion_.limited();
     instances_.update(frame, stream_.get());
@@ -329,12 +352,14 @@ void SplatPipeline::draw(const FrameInput& frame, FrameStats& stats) {
     launch_lists(reading, frame, *report);
     launch_image(reading, frame, eyes, *report);
     launch_fetch(frame, *report);
+    launch_told(frame, *report);
     copy(*report);
     report->wait();
     if (!splats_.grow(room_for(report->counters()))) break;
     draw_again(*report);
   }
   collect(*report, stats);
+  shown_.collect(report->tells);
   learn(*report);
   free_.push_back(std::move(report));
 }
@@ -396,6 +421,7 @@ void SplatPipeline::submit(const FrameInput& frame, bool checked) {
       launch_image(reading, frame, external_eyes(frame), report);  // a second pass reads, too
     }
     each_ring(frame, [&](const ExternalTarget& target) { signal_rendered(target, stream); });
+    launch_told(frame, report);
     copy(report);  // the host that waits for the image does not wait for this
     each_ring(frame, [&](const ExternalTarget& target) { mark_end(target, stream); });
   } catch (...) {
@@ -413,6 +439,7 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   if (wait) oldest.wait_for_host();
   if (!oldest.passed()) return false;
   collect(oldest, stats);
+  shown_.collect(oldest.tells);
   learn(oldest);
   const SplatRoom used = room_for(oldest.counters());
   const auto ahead = [](size_t& wanted, size_t needed) {

@@ -48,6 +48,8 @@ class DevicePool final : public ChunkPool {
   // Until it is resized.
   GaussianView gaussians() const;
   TreeView tree() const;
+  uint32_t slots() const { return slots_; }
+  uint32_t slot_nodes() const { return shape_.nodes; }
 
  private:
   friend class PoolReader;
