@@ -66,21 +66,29 @@ uint64_t SceneMemory::counted() const {
   return std::max(used_, reserved_);
 }
 
-void* SceneMemory::do_allocate(size_t size, size_t alignment) {
+void SceneMemory::add(uint64_t bytes) {
   const std::lock_guard lock(mutex_);
-  count(used_ + size, reserved_);
+  count(used_ + bytes, reserved_);
+}
+
+void SceneMemory::subtract(uint64_t bytes) {
+  const std::lock_guard lock(mutex_);
+  count(used_ - bytes, reserved_);
+}
+
+void* SceneMemory::do_allocate(size_t size, size_t alignment) {
+  add(size);
   try {
     return upstream_->allocate(size, alignment);
   } catch (...) {
-    count(used_ - size, reserved_);
+    subtract(size);
     throw;
   }
 }
 
 void SceneMemory::do_deallocate(void* memory, size_t size, size_t alignment) {
   upstream_->deallocate(memory, size, alignment);
-  const std::lock_guard lock(mutex_);
-  count(used_ - size, reserved_);
+  subtract(size);
 }
 
 }  // namespace voyager

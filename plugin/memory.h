@@ -52,8 +52,10 @@ class SceneMemory final : public std::pmr::memory_resource {
   void do_deallocate(void* memory, size_t size, size_t alignment) override;
   bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
 
-  // With the lock held.
+  // With the lock held; no call of the host's is made then.
   void count(uint64_t used, uint64_t reserved);
+  void add(uint64_t bytes);
+  void subtract(uint64_t bytes);
 
   std::pmr::memory_resource* upstream_;
   Budget& budget_;

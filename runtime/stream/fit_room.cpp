@@ -30,10 +30,10 @@ PoolRoom fit_room(const SceneFile& file, const RecordRoom& records, const RoomBy
   if (!fits(slots)) {
     const uint64_t allowed = budget == 0 ? most : std::min(budget, most);
     throw Error(ErrorCode::over_budget,
-                file.name() + ": the top of the tree and what " +
-                    std::to_string(std::max<size_t>(views, 1)) + " of its instances keep take " +
-                    megabytes_text(bytes.of(records.of(slots), views)) +
-                    ", the memory budget allows " + megabytes_text(allowed));
+                file.name() + ": the top of the tree takes " +
+                    megabytes_text(bytes.of(records.of(slots), views)) + " with what " +
+                    std::to_string(std::max<size_t>(views, 1)) +
+                    " of its instances keep, the memory budget allows " + megabytes_text(allowed));
   }
   auto last = static_cast<uint32_t>(file.chunks().size());
   while (slots < last) {

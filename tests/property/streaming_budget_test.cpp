@@ -173,10 +173,10 @@ TEST(StreamingBudget, AViewWithoutRoomIsRefusedWithWhatItTakesAndComesOnceThatIs
     EXPECT_EQ(error.code(), ErrorCode::over_budget);
     message = error.what();
   }
-  const size_t takes = message.find("take ");
+  const size_t takes = message.find("takes ");
   ASSERT_NE(takes, std::string::npos) << message;
   rig.draw(*first, {0, -5, 40});
-  const auto enough = static_cast<uint64_t>(1e6 * std::stod(message.substr(takes + 5)) + 1000);
+  const auto enough = static_cast<uint64_t>(1e6 * std::stod(message.substr(takes + 6)) + 1000);
   EXPECT_LT(enough, rig.bytes.of(rig.room(0), 3));
   rig.set_budget(enough);
   const auto second = rig.make_view();
