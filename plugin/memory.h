@@ -41,6 +41,7 @@ class SceneMemory final : public std::pmr::memory_resource {
  public:
   SceneMemory(std::pmr::memory_resource* upstream, Budget& budget)
       : upstream_(upstream), budget_(budget) {}
+  ~SceneMemory() override { budget_.give_back(counted()); }
   // Counts so many bytes at least: of a scene that is streamed, what its views have not taken yet,
   // and what comes from elsewhere. Throws Error(over_budget), and nothing has changed.
   void reserve(uint64_t bytes);

@@ -307,6 +307,7 @@ void SplatPipeline::fit(const FrameInput& frame, const FrameTiles& tiles) {
   wait_for_host(stream_);
   if (!splats_.fits(tiles)) occlusion_.forget();  // the ends that it knows are in these
   splats_.fit(tiles);
+  for (const Report& report : under_way_) report->tells = false;  // what they copied goes
   shown_.fit(instances_);
   if (occlusion_choice_.possible()) occlusion_.fit(tiles);
   for (size_t eye = 0; eye < frame.eyes.size(); ++eye) {
@@ -320,10 +321,12 @@ void SplatPipeline::launch_search(const SceneReading&, const FrameInput& frame,
   report.timer.begin();
   run_stage(kSearch, report, [&] {
     // Reads where the tiles of the frame before ended, which begin_frame() of the splats clears.
-    // Lists that tell have all that is hidden.
-    occlusion_.begin(!report.tells && occlusion_choice_.next(), frame, report.tiles,
+    occlusion_.begin(occlusion_choice_.next(), frame, report.tiles,
                      splats_.view(report.tiles, 0).ends, stream_.get());
     report.limited = occlusion_.limited();
+    // Lists with limits lack what is hidden. Nor may telling change them: a frame that is not drawn
+    // again has no room for more than what such frames had.
+    report.tells = report.tells && !report.limited;
     instances_.update(frame, stream_.get());
   });
 }

@@ -1,5 +1,6 @@
 #include "cuda/frame/shown_report.h"
 
+#include <algorithm>
 #include <new>
 
 #include "cuda/stream/device_pool.h"
@@ -7,8 +8,8 @@
 namespace voyager::cuda {
 namespace {
 
-// Of frames that are asked, one in so many tells: it takes about as long again to blend.
-constexpr unsigned kTellEvery = 4;
+// From one frame that tells to the next: it takes about as long again to blend.
+constexpr unsigned kTellEvery = 16;
 
 }  // namespace
 
@@ -38,16 +39,17 @@ void ShownReport::fit(const DeviceInstances& instances) {
 }
 
 bool ShownReport::wanted(const DeviceInstances& instances) {
-  for (const DeviceInstance& instance : instances.all())
-    if (instance.scene->streamed() && instance.scene->stream->wants_shown())
-      return asked_++ % kTellEvery == 0;
-  asked_ = 0;
-  return false;
+  if (untold_ != 0) --untold_;
+  const auto& all = instances.all();
+  return untold_ == 0 && std::any_of(all.begin(), all.end(), [](const DeviceInstance& instance) {
+           return instance.scene->streamed() && instance.scene->stream->wants_shown();
+         });
 }
 
 void ShownReport::launch(const DeviceInstances& instances, const SplatView& splats,
                          const FrameInput& frame, const RasterChoices& choices,
                          cudaStream_t stream) {
+  untold_ = kTellEvery;
   slots_ = slots_of(instances);
   const size_t slots = count(slots_);
   const bool base_2 = is_base_2(choices.exponential);

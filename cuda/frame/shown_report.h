@@ -49,7 +49,7 @@ class ShownReport {
   std::optional<PinnedMemory> copy_;
   std::vector<Slots> slots_;  // of the frame that tells
   std::vector<ShownChunks> shown_;
-  unsigned asked_ = 0;  // frames, since nobody wanted to know
+  unsigned untold_ = 0;  // frames that are not to tell, from the next on
 };
 
 }  // namespace voyager::cuda

@@ -113,7 +113,9 @@ void PartitionedSearch::make_state() {
   list_room_ = state_->list_room();
 }
 
-// No frame reads it: who calls has waited for them.
+// No frame reads it: who calls has waited for them. Their counters may still be on their way to the
+// host, and they may still tell what they have shown, for which the freeing of memory waits, as for
+// all that the device does.
 void PartitionedSearch::drop() noexcept {
   device_->use_quietly();
   const std::lock_guard lock(state_mutex_);
@@ -269,8 +271,9 @@ RoomBytes with_view(const PoolBytes& pool, const Scene& scene, SlotShape shape) 
       1.0, kSpare * static_cast<double>(scene.leaf_count) / static_cast<double>(scene.node_count));
   RoomBytes bytes{pool, {}};
   bytes.cut_slot = static_cast<uint64_t>(std::ceil(share * shape.nodes));
-  bytes.cut_fixed =
-      uint64_t{kFewChunks} * shape.nodes + uint64_t{kSubtreeNodes} * scene.search.tier_begin[1];
+  bytes.cut_fixed = std::min<uint64_t>(
+      uint64_t{kFewChunks} * shape.nodes + uint64_t{kSubtreeNodes} * scene.search.tier_begin[1],
+      scene.node_count);
   const uint64_t page = kPageSubtrees * CutState::kPlaceBytes;
   bytes.view = {CutState::list_bytes(bytes.cut_slot + bytes.cut_slot / 8 + 1), 0,
                 CutState::fixed_bytes(scene.search) + page +

@@ -134,7 +134,7 @@ PoolBytes view_bytes(const SearchTree& tree) {
 }  // namespace
 
 RoomBytes host_room_bytes(const Scene& scene, SlotShape shape) {
-  const PoolBytes links = Linker::bytes(shape, is_coded(scene) ? scene.node_count : 0);
+  const PoolBytes links = Linker::bytes(shape, scene.node_count);
   return {pool_bytes(scene, shape) + links, view_bytes(scene.search)};
 }
 

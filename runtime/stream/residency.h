@@ -63,7 +63,8 @@ class Residency {
   // What is shown of what is resident, all viewers together. Only the order of requests goes by it:
   // what is seen, but hangs from nothing that was shown, comes behind what will be seen soon.
   void set_shown(ShownChunks shown);
-  bool has_requests() const { return !requests_.empty(); }
+  // Whether that is worth knowing: fewer are read within a frame or two in any order.
+  bool wants_shown() const { return need_.seen_missing > 64 && !requests_.empty(); }
 
   // The most urgent chunks that are to be read: consecutive, at most `most`, and of at most
   // `bytes` in the file unless one alone has more. They are on their way then.

@@ -41,7 +41,9 @@ void Residency::find_hidden() {
 // In the place of a chunk that is not there its parents are drawn.
 bool Residency::is_hidden(uint32_t chunk) const {
   using Class = ChunkLooks::Class;
-  if (chunk < pinned_ || ChunkLooks::class_of(known(chunk).urgency) != Class::seen) return false;
+  if (!wants_shown() || chunk < pinned_ ||
+      ChunkLooks::class_of(known(chunk).urgency) != Class::seen)
+    return false;
   bool hidden = false;
   for (const uint32_t p : graph_->parents(chunk)) {
     const Known& parent = known(p);

@@ -50,6 +50,7 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       pool_(pool),
       budget_(desc.budget),
       room_(desc.room),
+      room_pinned_(desc.pinned),
       bytes_(desc.bytes.of(desc.room)),
       looks_(file_->chunks()),
       residency_(graph_, file_->chunks(), records_, desc.room, desc.pinned),
@@ -208,12 +209,20 @@ void SceneStream::add_state(PoolReaderState& state, Workers& workers) {
   const std::lock_guard sharing(sharing_);
   const size_t states = states_.size() + 1;
   states_.reserve(states);
-  const bool fits = budget_ == 0 || desc_.bytes.of(room_, states) <= budget_;
-  const PoolRoom room = fits ? room_ : fit_room(*file_, records_, desc_.bytes, budget_, states);
-  change_bytes(room, states, [&] {
-    if (!fits) change_room(room, pinned_chunks(*file_, room.slots), workers);
-    states_.push_back(&state);
-  });
+  const auto add_within = [&](uint64_t budget) {
+    const bool fits = budget == 0 || desc_.bytes.of(room_, states) <= budget;
+    const PoolRoom room = fits ? room_ : fit_room(*file_, records_, desc_.bytes, budget, states);
+    change_bytes(room, states, [&] {
+      if (!fits) change_room(room, pinned_chunks(*file_, room.slots), workers);
+      states_.push_back(&state);
+    });
+  };
+  try {
+    add_within(budget_);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::over_budget) throw;
+    add_within(bytes_);  // other scenes may have taken what the budget had left
+  }
 }
 
 // To count less throws nothing.
@@ -229,13 +238,12 @@ void SceneStream::change_room(PoolRoom room, uint32_t pinned, Workers& workers) 
   pool_.await_frames();  // before `mutex_`, which others want
   Lock lock(mutex_);
   filled_.wait(lock, [&] { return filling_ == 0; });
-  const uint32_t pinned_before = residency_.pinned();
   for (PoolReaderState* state : states_) state->drop();
   try {
     reset(room, pinned, workers);
   } catch (...) {
     try {
-      reset(room_, pinned_before, workers);
+      reset(room_, room_pinned_, workers);
     } catch (...) {
       if (unsound_) unsound_ = std::current_exception();
       lose(std::current_exception());
@@ -243,6 +251,7 @@ void SceneStream::change_room(PoolRoom room, uint32_t pinned, Workers& workers) 
     throw;
   }
   room_ = room;
+  room_pinned_ = residency_.pinned();
 }
 
 // All anew, with what is pinned in it. Where it throws, the pool is as it was, or unsound.
@@ -284,6 +293,14 @@ void SceneStream::forget_shown() {
   for (auto& [who, of] : lookers_) of.shown.clear();
 }
 
+void SceneStream::forget_shown(const std::vector<Residency::Evicted>& evicted) {
+  if (evicted.empty()) return;
+  const std::lock_guard small(small_mutex_);
+  for (auto& [who, of] : lookers_)
+    for (const Residency::Evicted& e : evicted)
+      if (e.slot < of.shown.size()) of.shown[e.slot] = Shown::unknown;
+}
+
 // From within a catch, or with what one has caught.
 void SceneStream::lose(std::exception_ptr what) noexcept {
   constexpr double kRest = 1;  // second: memory may be had again
@@ -292,11 +309,12 @@ void SceneStream::lose(std::exception_ptr what) noexcept {
   signal();  // whoever rebuilds may be asleep
 }
 
-// Both locks are held. As much room as before, and nothing in them but the top.
+// Both locks are held. As much room as is counted, and nothing in it but the top: other room that
+// was to be had may have come half of the way.
 void SceneStream::rebuild() {
   try {
     Workers workers(1);
-    reset(residency_.room(), residency_.pinned(), workers);
+    reset(room_, room_pinned_, workers);
   } catch (...) {
     if (unsound_) unsound_ = std::current_exception();
     lose(std::current_exception());
@@ -330,7 +348,7 @@ void SceneStream::publish() {
   now.failures = failures_.count();
   now.resident = residency_.resident();
   now.need = residency_.need();
-  shown_wanted_ = now.need.seen_missing != 0 && residency_.has_requests();
+  shown_wanted_ = residency_.wants_shown();
   std::vector<std::string> messages = failures_.take_messages();
   const std::lock_guard small(small_mutex_);
   published_ = std::move(now);

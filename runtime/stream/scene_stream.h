@@ -153,6 +153,7 @@ class SceneStream {
   bool plans_rest() const;
   bool order_if_told();
   void forget_shown();
+  void forget_shown(const std::vector<Residency::Evicted>& evicted);
   void look_at_likely(Lock& lock);
   bool retry_due();
   bool fill_some(Lock& lock);
@@ -211,7 +212,8 @@ class SceneStream {
   // Of what the budget is shared out to; before all other locks.
   std::mutex sharing_;
   uint64_t budget_;
-  PoolRoom room_;
+  PoolRoom room_;  // changed under the pool's lock and mutex_, too
+  uint32_t room_pinned_;
   std::vector<PoolReaderState*> states_;
   std::atomic<size_t> state_count_{0};
   std::atomic<uint64_t> bytes_;
@@ -221,8 +223,9 @@ class SceneStream {
   mutable std::mutex door_;
   mutable std::shared_mutex pool_mutex_;
   std::atomic<bool> commit_due_{false}, shown_wanted_{false};
-  std::atomic<size_t> filled_count_{0};  // chunks for the next commit
-  std::atomic<double> put_off_{-1};      // since when a commit is due; negative: none was put off
+  std::atomic<size_t> filled_count_{0};      // chunks for the next commit
+  std::atomic<unsigned> between_frames_{0};  // commits since the last frame
+  std::atomic<double> put_off_{-1};  // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0, departures_ = 0;
   // What kept the pool from being what is linked. Changed under both locks, read under either.

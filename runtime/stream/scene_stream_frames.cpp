@@ -57,6 +57,7 @@ std::shared_lock<std::shared_mutex> SceneStream::hold() const {
 // Where views draw by turns there is always one that holds the pool.
 void SceneStream::commit() {
   constexpr double kPutOff = 0.1;  // seconds
+  between_frames_ = 0;
   if (!commit_due_) return;
   std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) {
@@ -68,13 +69,16 @@ void SceneStream::commit() {
   commit_if_free();
 }
 
-// So that a frame finds few chunks to link, while many come. Fewer at once would be more changes
-// than a view that draws seldom can follow.
+// So that a frame finds few chunks to link, while many come. Each time without a frame it takes
+// twice as many: a view that draws seldom can follow few changes.
 void SceneStream::commit_between_frames() {
   constexpr size_t kEnough = 32;
-  if (filled_count_ < kEnough) return;
+  constexpr unsigned kMostDoublings = 16;
+  if (filled_count_ < kEnough << std::min(between_frames_.load(), kMostDoublings)) return;
   const std::unique_lock pool(pool_mutex_, std::try_to_lock);
-  if (pool.owns_lock()) commit_if_free();
+  if (!pool.owns_lock()) return;
+  ++between_frames_;
+  commit_if_free();
 }
 
 // The pool is held alone.
@@ -133,6 +137,7 @@ void SceneStream::commit_changes() {
     if (changes_.size() > kChangesKept) changes_.pop_front();
   }
   for (const Residency::Evicted& e : evicted) residency_.free(e);
+  forget_shown(evicted);
   departures_ += std::any_of(evicted.begin(), evicted.end(), [&](const Residency::Evicted& e) {
     return residency_.is_seen(e.chunk);
   });

@@ -109,11 +109,12 @@ bool SceneStream::order_if_told() {
     const std::lock_guard small(small_mutex_);
     if (!std::exchange(told_, false)) return false;
     for (const auto& [who, of] : lookers_) {
-      if (of.shown.empty()) {
+      // Nothing, or of a pool of another size.
+      if (of.shown.size() != residency_.slots()) {
         all.clear();
         break;
       }
-      all.resize(std::max(all.size(), of.shown.size()));
+      all.resize(of.shown.size());
       std::transform(of.shown.begin(), of.shown.end(), all.begin(), all.begin(),
                      [](Shown a, Shown b) { return std::max(a, b); });
     }

@@ -208,5 +208,27 @@ TEST(StreamingBudget, ACountThatIsRefusedChangesNothing) {
   EXPECT_LE(scene->stream->bytes(), before);
 }
 
+// The budget has more than that, but other scenes took it since.
+TEST(StreamingBudget, AViewThatFindsNothingLeftTakesItFromChunks) {
+  Rig rig(0);
+  StreamingDesc desc;
+  desc.readers = 0;
+  uint64_t left = UINT64_MAX;
+  desc.count = [&](uint64_t bytes) {
+    if (bytes > left) throw Error(ErrorCode::over_budget, "others have it");
+  };
+  desc.budget = rig.bytes.of(rig.room(0.5));
+  const auto scene =
+      open_streamed(test::source_of(scene_bytes()), desc, *rig.backend, &rig.memory, rig.workers);
+  SceneStream& stream = *scene->stream;
+  stream.set_budget(2 * desc.budget, rig.workers);
+  stream.resize(rig.room(0.5), 1, rig.workers);
+  left = stream.bytes();
+  const auto first = rig.make_view({scene}), second = rig.make_view({scene});
+  EXPECT_LE(stream.bytes(), left);
+  EXPECT_LT(stream.counters().slots, rig.room(0.5).slots);
+  rig.draw(*second, {0, -5, -40});
+}
+
 }  // namespace
 }  // namespace voyager::streaming_budget_test

@@ -118,7 +118,7 @@ class StreamedWall {
       const SceneFile file(source_);
       const auto slots = static_cast<uint32_t>(share * static_cast<double>(file.chunks().size()));
       const auto resident = load_scene(source_, memory(), workers_);
-      desc.budget = backend.pool_bytes(*resident, SceneStream::slot_shape(file))
+      desc.budget = backend.room_bytes(*resident, SceneStream::slot_shape(file))
                         .of(RecordRoom(file).of(slots));
     }
     return open_streamed(source_, desc, backend, memory(), workers_);

@@ -667,7 +667,8 @@ typedef struct VoyViewDesc {
 #define VOY_VIEW_DESC_INIT \
   { VOY_STRUCTURE_TYPE_VIEW_DESC, NULL, 0, NULL, 1, 0, 0, VOY_LOD_AUTO, 3.0, VOY_ANTIALIAS_ON, 0 }
 
-/* Creates a view. The host destroys it with voyDestroyView.
+/* Creates a view. The host destroys it with voyDestroyView. A streamed scene whose budget has no
+ * room for what the view keeps first gives up chunks, as voySetSceneMemoryBudget does.
  * Errors: INVALID_ARGUMENT, UNSUPPORTED (more than VoyCapabilities allows; a time budget or a
  * streamed scene for a view of every leaf; lists of 2^32 Gaussians or more), OUT_OF_HOST_MEMORY,
  * OVER_BUDGET (CUDA: the scene does not fit into the GPU's memory; a streamed scene's budget has no
@@ -957,7 +958,8 @@ VOY_API VoyResult VOY_CALL voyRenderFrame(VoyView view, const VoyFrame* frame);
  * *count to the size of the cut. It returns VOY_INCOMPLETE if that is more than `capacity`.
  * Errors: INVALID_ARGUMENT (no such instance; no frame yet, or none since voySetViewInstances
  * changed the scenes), UNSUPPORTED (the view draws no cut of this instance; on CUDA also after a
- * frame failed, until the next one succeeds), TIMEOUT (as voyRenderFrame). */
+ * frame failed, or a streamed scene gave up chunks for its budget or for another view, until the
+ * next frame succeeds), TIMEOUT (as voyRenderFrame). */
 VOY_API VoyResult VOY_CALL voyGetViewCut(VoyView view, uint32_t instance, uint32_t capacity,
                                          uint32_t* nodes, uint32_t* count);
 
