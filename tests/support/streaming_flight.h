@@ -89,9 +89,11 @@ inline void fly_streamed(Backend& backend, const std::function<double()>& megaby
   const auto resident = load_scene(source, memory, workers);
   const SceneFile file(source);
   const RoomBytes bytes = backend.room_bytes(*resident, SceneStream::slot_shape(file));
+  constexpr size_t kViews = 2;
   const auto budget_of = [&](double share) {
     return bytes.of(RecordRoom(file).of(
-        static_cast<uint32_t>(share * static_cast<double>(file.chunks().size()))));
+                        static_cast<uint32_t>(share * static_cast<double>(file.chunks().size()))),
+                    kViews);
   };
   StreamingDesc desc;
   desc.budget = budget_of(0.5);
