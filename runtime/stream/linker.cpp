@@ -36,6 +36,30 @@ LinkPatch::Outside outside_of(const LinkWalk& at, const SearchSubtree& subtree, 
   return {at.subtree(), at.repeats_root() ? subtree.root : parent};
 }
 
+// What the patch has linked already, and has then unlinked: from these positions in patch.cut and
+// patch.unlinked on.
+void drop_unlinked(size_t first_cut, size_t first_unlinked, LinkPatch& patch) {
+  std::vector<uint32_t> records,
+      subtrees(patch.unlinked.begin() + first_unlinked, patch.unlinked.end());
+  for (size_t i = first_cut; i < patch.cut.records.size(); ++i)
+    records.push_back(patch.cut.records[i].record);
+  std::sort(records.begin(), records.end());
+  std::sort(subtrees.begin(), subtrees.end());
+  const auto is_unlinked = [&](uint32_t subtree) {
+    return std::binary_search(subtrees.begin(), subtrees.end(), subtree);
+  };
+  std::erase_if(patch.linked, [&](const auto& linked) { return is_unlinked(linked.first); });
+  std::erase_if(patch.outside, [&](const auto& outside) { return is_unlinked(outside.subtree); });
+  LinkPatch::Links tied;
+  for (size_t i = 0; i < patch.tied.records.size(); ++i) {
+    const LinkPatch::Record& record = patch.tied.records[i];
+    if (std::binary_search(records.begin(), records.end(), record.record)) continue;
+    tied.records.push_back(record);
+    tied.changed.push_back(patch.tied.changed[i]);
+  }
+  patch.tied = std::move(tied);
+}
+
 }  // namespace
 
 // Goes through the nodes of one chunk after another.
@@ -230,6 +254,7 @@ void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
   tables_.know(chunk.chunk) = std::move(chunk.links);
   if (walk(chunk.chunk).root() == 0) link_root(chunk.chunk, patch);
   each_family_of(chunk.chunk, [&](const Family& family) { link(family, patch); });
+  link_refused(patch);
 }
 
 // Its subtrees of the tree's root. Runs of that are in chunks that are never evicted and come in
@@ -249,14 +274,27 @@ void Linker::link_root(uint32_t last, LinkPatch& patch) {
     }
 }
 
-// Where it is linked, its nodes take the place of the one that they hang from.
-bool Linker::has_room_for_cut(const Family& family) {
-  if (room_for_cut_ == UINT64_MAX) return true;
-  uint64_t nodes = 0;
-  each_subtree(family, [&](uint32_t, const LinkWalk& at) { nodes += at.ends(); });
-  const bool has = most_cut_ - 1 + nodes <= room_for_cut_;
-  lacks_room_for_cut_ |= !has;
-  return has;
+// Where it is linked, so many nodes take the place of the one that they hang from.
+uint64_t Linker::ends_of(const Family& family) const {
+  uint64_t ends = 0;
+  each_subtree(family, [&](uint32_t, const LinkWalk& at) { ends += at.ends(); });
+  return ends;
+}
+
+bool Linker::refuse_if_large(const Family& family) {
+  if (room_for_cut_ == UINT64_MAX) return false;
+  const uint64_t ends = ends_of(family);
+  if (has_room_for_cut(ends)) return false;
+  refused_.insert({ends, family});
+  return true;
+}
+
+void Linker::link_refused(LinkPatch& patch) {
+  while (!refused_.empty() && has_room_for_cut(refused_.begin()->ends)) {
+    const Family family = refused_.begin()->family;
+    refused_.erase(refused_.begin());
+    link(family, patch);
+  }
 }
 
 void Linker::link(const Family& first, LinkPatch& patch) {
@@ -266,7 +304,7 @@ void Linker::link(const Family& first, LinkPatch& patch) {
     work_.pop_back();
     LinkTable& table = tables_.know(family.chunk);
     if (table.leads_on(family.node.index) || !table.leads_to(family.subtree) || !complete(family) ||
-        !has_room_for_cut(family))
+        refuse_if_large(family))
       continue;
     table.set_leads_on(family.node.index, true);
     const uint32_t record = record_of(family);
@@ -297,7 +335,10 @@ void Linker::unlink(const Family& first, LinkPatch& patch) {
     const Family family = work_.back();
     work_.pop_back();
     LinkTable& table = tables_.know(family.chunk);
-    if (!table.leads_on(family.node.index)) continue;
+    if (!table.leads_on(family.node.index)) {
+      if (!refused_.empty()) refused_.erase({ends_of(family), family});
+      continue;
+    }
     table.set_leads_on(family.node.index, false);
     patch.cut.records.push_back({record_of(family), kBlocked});
     patch.cut.changed.push_back(table.first_subtree + family.subtree);
@@ -311,11 +352,16 @@ void Linker::unlink(const Family& first, LinkPatch& patch) {
   }
 }
 
+// What there is room for now is linked at once. Another chunk that goes in the same patch may
+// unlink it again.
 void Linker::evict(uint32_t chunk, LinkPatch& patch) {
   const uint32_t slot = tables_[chunk].slot;
+  const size_t cut = patch.cut.records.size(), unlinked = patch.unlinked.size();
   each_family_of(chunk, [&](const Family& family) { unlink(family, patch); });
+  if (!patch.tied.records.empty()) drop_unlinked(cut, unlinked, patch);
   remove_large(slot, patch);
   tables_.forget(chunk);
+  link_refused(patch);
 }
 
 }  // namespace voyager

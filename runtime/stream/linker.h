@@ -5,7 +5,9 @@
 //
 // Of a chunk it keeps a LinkTable, and a large family's nodes in a list of all of them. Bounds of
 // nodes are the pool's.
+#include <compare>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,13 +25,13 @@ class Linker {
   // tier's lowest level a record. nodes: of the file, that may have large families.
   static PoolBytes bytes(SlotShape shape, uint64_t nodes);
   // No more chunks will be held, and views have room for cuts of so many nodes: what could make
-  // them larger is not linked.
+  // them larger is not linked before there is room for it.
   void make_room(uint32_t slots, uint64_t cut_nodes) {
     tables_.reserve(slots);
     room_for_cut_ = cut_nodes;
   }
-  // Whether that has happened.
-  bool lacks_room_for_cut() const { return lacks_room_for_cut_; }
+  // Whether something is not linked for that reason alone.
+  bool lacks_room_for_cut() const { return !refused_.empty(); }
 
   bool holds(uint32_t chunk) const { return !tables_[chunk].empty(); }
   uint32_t slot(uint32_t chunk) const { return tables_[chunk].slot; }
@@ -39,7 +41,7 @@ class Linker {
   void check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const;
   // A chunk whose parents are all held, in links.slot.
   void arrive(StagedChunk&& chunk, LinkPatch& patch);
-  // None of its children is held.
+  // None of its children is held. In a patch, chunks go before others come.
   void evict(uint32_t chunk, LinkPatch& patch);
 
   // What hangs from each node of a chunk that is held, on a tier's lowest level: visit(NodeBelow).
@@ -55,6 +57,18 @@ class Linker {
     NodeBelow node;
 
     uint32_t end() const { return node.first_child + node.child_count; }
+  };
+  // One that is all there, and that a linked subtree would lead to if a cut had room for it.
+  struct Refused {
+    uint64_t ends;  // as ends_of() counts them
+    Family family;
+
+    // The smallest is first, so that nothing has room where that has none.
+    std::strong_ordering operator<=>(const Refused& other) const {
+      if (const auto order = ends <=> other.ends; order != 0) return order;
+      if (const auto order = family.chunk <=> other.family.chunk; order != 0) return order;
+      return family.node.index <=> other.family.node.index;
+    }
   };
   struct Subtree {
     uint32_t chunk;
@@ -86,7 +100,10 @@ class Linker {
   void add_large(const StagedChunk& chunk, LinkPatch& patch);
   void remove_large(uint32_t slot, LinkPatch& patch);
   void link_root(uint32_t chunk, LinkPatch& patch);
-  bool has_room_for_cut(const Family& family);
+  uint64_t ends_of(const Family& family) const;
+  bool has_room_for_cut(uint64_t ends) const { return most_cut_ - 1 + ends <= room_for_cut_; }
+  bool refuse_if_large(const Family& family);
+  void link_refused(LinkPatch& patch);
 
   const ChunkGraph* graph_;
   SlotShape shape_;
@@ -96,7 +113,7 @@ class Linker {
   std::vector<Family> work_;
   // Of what is linked: that no cut has more nodes, those which nothing leads on from.
   uint64_t most_cut_ = 0, room_for_cut_ = UINT64_MAX;
-  bool lacks_room_for_cut_ = false;
+  std::set<Refused> refused_;
 };
 
 }  // namespace voyager

@@ -208,7 +208,8 @@ void SceneStream::check_fits() const {
   const uint64_t seen = need.seen - need.seen_failed.size();
   const bool fits = seen + residency_.pinned() <= room.slots &&
                     need.seen_blocks + residency_.pinned_blocks() <= room.blocks;
-  const bool lacks = linker_.lacks_room_for_cut();
+  // Before all is there that can come, what is to go may have what is to be linked wait for room.
+  const bool lacks = linker_.lacks_room_for_cut() && is_settled(0);
   if (fits && !lacks) return;
   const uint64_t blocks = need.seen_blocks + records_.likely_blocks(need.seen_unread_blocks);
   // No cut of a scene that is all there lacks room.
