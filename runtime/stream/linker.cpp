@@ -60,6 +60,11 @@ void drop_unlinked(size_t first_cut, size_t first_unlinked, LinkPatch& patch) {
   patch.tied = std::move(tied);
 }
 
+// Of families in a heap: roots ascend, and what hangs from them comes later.
+constexpr auto kIsLater = [](const auto& a, const auto& b) {
+  return a.node.first_child > b.node.first_child;
+};
+
 }  // namespace
 
 // Goes through the nodes of one chunk after another.
@@ -73,15 +78,15 @@ class Linker::Parents {
     if (found_ && root < found_->end()) return &*found_;
     found_.reset();
     const uint32_t chunk = linker_.graph_->owner_of_parent(root);
-    if (!at_ || chunk != chunk_)
-      at_.emplace(own_ != nullptr && chunk == own_->chunk ? linker_.walk(*own_)
-                                                          : linker_.walk(chunk));
-    chunk_ = chunk;
-    while (!at_->at_end() && at_->below_end() <= root) at_->next();
-    if (at_->at_end()) return nullptr;
-    at_->each_below([&](const NodeBelow& node) {
+    if (!walk_ || chunk != walk_->chunk)
+      walk_.emplace(own_ != nullptr && chunk == own_->chunk ? linker_.walk(*own_)
+                                                            : linker_.walk(chunk));
+    LinkWalk& at = walk_->at;
+    while (!at.at_end() && at.below_end() <= root) at.next();
+    if (at.at_end()) return nullptr;
+    at.each_below([&](const NodeBelow& node) {
       if (node.first_child <= root && root - node.first_child < node.child_count)
-        found_ = Family{chunk, at_->index(), node};
+        found_ = Family{chunk, at.index(), walk_->records(node.record), node};
     });
     return found_ ? &*found_ : nullptr;
   }
@@ -89,9 +94,30 @@ class Linker::Parents {
  private:
   const Linker& linker_;
   const StagedChunk* own_;
-  uint32_t chunk_ = 0;
-  std::optional<LinkWalk> at_;
+  std::optional<Walk> walk_;
   std::optional<Family> found_;
+};
+
+// Goes through the subtrees of one chunk after another, so that all families of a chunk together
+// cost as much as one walk. What does not ascend costs a walk more.
+class Linker::Roots {
+ public:
+  explicit Roots(const Linker& linker) : linker_(linker) {}
+
+  // At the first subtree of a chunk whose root is this one or a later one.
+  const Walk& of(uint32_t chunk, uint32_t root) {
+    if (!walk_ || chunk != walk_->chunk || root < root_) walk_.emplace(linker_.walk(chunk));
+    root_ = root;
+    LinkWalk& at = walk_->at;
+    while (!at.at_end() && at.root() < root) at.next();
+    if (!at.at_end() && at.interior() != 0) walk_->records(at.first_record());
+    return *walk_;
+  }
+
+ private:
+  const Linker& linker_;
+  uint32_t root_ = 0;
+  std::optional<Walk> walk_;
 };
 
 Linker::Linker(const ChunkGraph& graph, SlotShape shape, const std::vector<uint32_t>& next_block)
@@ -104,30 +130,24 @@ PoolBytes Linker::bytes(SlotShape shape, uint64_t nodes) {
           kPageSubtrees * LinkTable::kSubtreeBytes};
 }
 
-LinkWalk Linker::walk(uint32_t chunk) const {
+Linker::Walk Linker::walk(uint32_t chunk) const {
   const LinkTable& table = tables_[chunk];
-  return {table, graph_->tiers(), {large_, table.slot * shape_.nodes}};
+  return {chunk,
+          {table, graph_->tiers(), {large_, table.slot * shape_.nodes}},
+          {*next_block_, table.first_block}};
 }
 
-LinkWalk Linker::walk(const StagedChunk& chunk) const {
-  return {chunk.links, graph_->tiers(), {chunk.large, 0}};
-}
-
-uint32_t Linker::record(const LinkTable& table, uint32_t number) const {
-  uint32_t block = table.first_block;
-  for (; number >= kRecordBlock; number -= kRecordBlock) block = (*next_block_)[block];
-  return block * kRecordBlock + number;
-}
-
-uint32_t Linker::record_of(const Family& family) const {
-  return record(tables_[family.chunk], family.node.record);
+Linker::Walk Linker::walk(const StagedChunk& chunk) const {
+  return {chunk.chunk,
+          {chunk.links, graph_->tiers(), {chunk.large, 0}},
+          {*next_block_, chunk.links.first_block}};
 }
 
 // With its records; their places in its levels.
-void Linker::set_records(const LinkTable& table, const LinkWalk& at, SearchSubtree& subtree) const {
-  if (at.interior() == 0) return;
-  subtree.first_record = record(table, at.first_record());
-  const auto count = static_cast<uint32_t>(std::popcount(at.interior()));
+void Linker::set_records(Walk& walk, SearchSubtree& subtree) const {
+  if (walk.at.interior() == 0) return;
+  subtree.first_record = walk.records(walk.at.first_record());
+  const auto count = static_cast<uint32_t>(std::popcount(walk.at.interior()));
   uint32_t block = subtree.first_record / kRecordBlock;
   const uint32_t blocks = record_blocks(subtree.first_record % kRecordBlock + count);
   for (uint32_t i = 1; i < blocks; ++i) {
@@ -150,30 +170,42 @@ bool Linker::complete(const Family& family) const {
 
 // Roots ascend in a tier, and those of a later tier are greater.
 template <class Visit>
-void Linker::each_subtree(const Family& family, const Visit& visit) const {
+void Linker::each_subtree(const Family& family, Roots& roots, const Visit& visit) const {
   const ChunkRange range = chunks_of(family);
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     if (!holds(chunk)) continue;
-    LinkWalk at = walk(chunk);
-    while (!at.at_end() && at.root() < family.node.first_child) at.next();
-    for (; !at.at_end() && at.root() < family.end(); at.next()) visit(chunk, at);
+    Walk walk = roots.of(chunk, family.node.first_child);
+    for (; !walk.at.at_end() && walk.at.root() < family.end(); walk.at.next()) visit(walk);
   }
 }
 
-void Linker::add_below(uint32_t chunk, const LinkWalk& at) {
-  at.each_below([&](const NodeBelow& node) { work_.push_back({chunk, at.index(), node}); });
+void Linker::add_work(const Family& family) {
+  work_.push_back(family);
+  std::push_heap(work_.begin(), work_.end(), kIsLater);
+}
+
+Linker::Family Linker::take_work() {
+  std::pop_heap(work_.begin(), work_.end(), kIsLater);
+  const Family family = work_.back();
+  work_.pop_back();
+  return family;
+}
+
+void Linker::add_below(Walk& walk) {
+  walk.at.each_below([&](const NodeBelow& node) {
+    add_work({walk.chunk, walk.at.index(), walk.records(node.record), node});
+  });
 }
 
 // Those that the chunk's subtrees belong to, each once.
-template <class Work>
-void Linker::each_family_of(uint32_t chunk, const Work& work) {
+void Linker::add_families_of(uint32_t chunk) {
   Parents parents(*this, nullptr);
   uint32_t done = 1;  // roots before this; the tree's has no parent
-  for (LinkWalk at = walk(chunk); !at.at_end(); at.next()) {
+  for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next()) {
     if (at.root() < done) continue;
-    const Family family = *parents.of(at.root());
+    const Family& family = *parents.of(at.root());
     done = family.end();
-    work(family);
+    add_work(family);
   }
 }
 
@@ -181,24 +213,23 @@ void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool,
                          const std::string& file) const {
   Parents parents(*this, &chunk);
   const NodeRecord* record = chunk.roots.data();  // of the subtree's first root
-  for (LinkWalk at = walk(chunk); !at.at_end(); record += at.root_count(), at.next()) {
+  for (LinkWalk at = walk(chunk).at; !at.at_end(); record += at.root_count(), at.next()) {
     if (at.root() == 0) continue;
     const Family* family = parents.of(at.root());
     if (family == nullptr || at.root_count() > family->end() - at.root())
       refuse_roots(chunk.chunk, at.root(), file);
-    const LinkTable& owner = family->chunk == chunk.chunk ? chunk.links : tables_[family->chunk];
-    const NodeBounds bounds = decode_bounds(pool.bounds(this->record(owner, family->node.record)));
+    const NodeBounds bounds = decode_bounds(pool.bounds(family->record));
     for (uint32_t i = 0; i < at.root_count(); ++i)
       if (!is_inside(record[i], bounds)) refuse_nesting(chunk.chunk, at.root() + i, file);
   }
 }
 
 // What a chunk begins with repeats what the one before ends with. chunk: the one to refuse.
-void Linker::check_repeat(uint32_t chunk, const Subtree& before, const Subtree& after,
-                          const ChunkPool& pool, const std::string& file) const {
-  const auto code = [&](const Subtree& of, uint32_t slot) {
+void Linker::check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
+                          const std::string& file) const {
+  const auto code = [&](Walk& of, uint32_t slot) {
     const auto k = static_cast<uint32_t>(std::popcount(of.at.interior() & slots_before(slot)));
-    return pool.bounds(record(*of.table, of.at.first_record() + k));
+    return pool.bounds(of.records(of.at.first_record() + k));
   };
   const auto same = [&](uint32_t slot_before, uint32_t slot_after) {
     return (before.at.interior() >> slot_before & 1) != 0 &&
@@ -211,21 +242,20 @@ void Linker::check_repeat(uint32_t chunk, const Subtree& before, const Subtree& 
 }
 
 void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const {
-  const LinkWalk own = walk(chunk);
-  if (own.root() == 0 && chunk.chunk > 0 && !holds(chunk.chunk - 1)) refuse_gap(chunk.chunk, file);
+  const Walk own = walk(chunk);
+  if (own.at.root() == 0 && chunk.chunk > 0 && !holds(chunk.chunk - 1))
+    refuse_gap(chunk.chunk, file);
   check_roots(chunk, pool, file);
-  const auto last_of = [](LinkWalk at) {
-    LinkWalk last = at;
-    for (; !at.at_end(); at.next()) last = at;
+  const auto last_of = [](Walk walk) {
+    Walk last = walk;
+    for (; !walk.at.at_end(); walk.at.next()) last.at = walk.at;
     return last;
   };
   const uint32_t before = chunk.chunk - 1, after = chunk.chunk + 1;
   if (chunk.chunk > 0 && holds(before))
-    check_repeat(chunk.chunk, {before, &tables_[before], last_of(walk(before))},
-                 {chunk.chunk, &chunk.links, own}, pool, file);
+    check_repeat(chunk.chunk, last_of(walk(before)), own, pool, file);
   if (after < graph_->size() && holds(after))
-    check_repeat(chunk.chunk, {chunk.chunk, &chunk.links, last_of(own)},
-                 {after, &tables_[after], walk(after)}, pool, file);
+    check_repeat(chunk.chunk, last_of(own), walk(after), pool, file);
 }
 
 void Linker::add_large(const StagedChunk& chunk, LinkPatch& patch) {
@@ -252,8 +282,9 @@ void Linker::remove_large(uint32_t slot, LinkPatch& patch) {
 void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
   add_large(chunk, patch);
   tables_.know(chunk.chunk) = std::move(chunk.links);
-  if (walk(chunk.chunk).root() == 0) link_root(chunk.chunk, patch);
-  each_family_of(chunk.chunk, [&](const Family& family) { link(family, patch); });
+  if (walk(chunk.chunk).at.root() == 0) link_root(chunk.chunk, patch);
+  add_families_of(chunk.chunk);
+  link(patch);
   link_refused(patch);
 }
 
@@ -261,93 +292,97 @@ void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
 // order, none without the one before (check()), so that the first of them has the node itself.
 void Linker::link_root(uint32_t last, LinkPatch& patch) {
   Addresses addresses(shape_);
-  for (uint32_t chunk = 0; chunk <= last; ++chunk)
-    for (LinkWalk at = walk(chunk); !at.at_end() && at.root() == 0; at.next()) {
+  for (uint32_t chunk = 0; chunk <= last; ++chunk) {
+    Walk walk = this->walk(chunk);
+    for (LinkWalk& at = walk.at; !at.at_end() && at.root() == 0; at.next()) {
       LinkTable& table = tables_.know(chunk);
       SearchSubtree linked = addresses.of(table, at, kNoRecord);
       if (chunk != last) continue;
-      set_records(table, at, linked);
+      set_records(walk, linked);
       table.set_leads_to(at.index(), true);
       most_cut_ += at.ends();
       patch.outside.push_back(outside_of(at, linked, kNoNode));
       patch.linked.emplace_back(at.subtree(), linked);
     }
+  }
 }
 
 // Where it is linked, so many nodes take the place of the one that they hang from.
-uint64_t Linker::ends_of(const Family& family) const {
+uint64_t Linker::ends_of(const Family& family, Roots& roots) const {
   uint64_t ends = 0;
-  each_subtree(family, [&](uint32_t, const LinkWalk& at) { ends += at.ends(); });
+  each_subtree(family, roots, [&](const Walk& walk) { ends += walk.at.ends(); });
   return ends;
 }
 
-bool Linker::refuse_if_large(const Family& family) {
+bool Linker::refuse_if_large(const Family& family, Roots& roots) {
   if (room_for_cut_ == UINT64_MAX) return false;
-  const uint64_t ends = ends_of(family);
+  const uint64_t ends = ends_of(family, roots);
   if (has_room_for_cut(ends)) return false;
   refused_.insert({ends, family});
   return true;
 }
 
+// At a time as many as have room together; what is linked below one may take another's.
 void Linker::link_refused(LinkPatch& patch) {
   while (!refused_.empty() && has_room_for_cut(refused_.begin()->ends)) {
-    const Family family = refused_.begin()->family;
-    refused_.erase(refused_.begin());
-    link(family, patch);
+    uint64_t more = 0;
+    while (!refused_.empty() && has_room_for_cut(more + refused_.begin()->ends)) {
+      more += refused_.begin()->ends - 1;
+      add_work(refused_.begin()->family);
+      refused_.erase(refused_.begin());
+    }
+    link(patch);
   }
 }
 
-void Linker::link(const Family& first, LinkPatch& patch) {
-  work_.assign(1, first);
+void Linker::link(LinkPatch& patch) {
+  Roots roots(*this);
   while (!work_.empty()) {
-    const Family family = work_.back();
-    work_.pop_back();
+    const Family family = take_work();
     LinkTable& table = tables_.know(family.chunk);
     if (table.leads_on(family.node.index) || !table.leads_to(family.subtree) || !complete(family) ||
-        refuse_if_large(family))
+        refuse_if_large(family, roots))
       continue;
     table.set_leads_on(family.node.index, true);
-    const uint32_t record = record_of(family);
     const uint32_t parent = table.slot * shape_.nodes + family.node.place;
-    const uint32_t subtree = table.first_subtree + family.subtree;
     --most_cut_;
     Addresses addresses(shape_);
     uint32_t first_below = kLowest;
-    each_subtree(family, [&](uint32_t chunk, const LinkWalk& at) {
-      LinkTable& of = tables_.know(chunk);
+    each_subtree(family, roots, [&](Walk& walk) {
+      const LinkWalk& at = walk.at;
+      LinkTable& of = tables_.know(walk.chunk);
       most_cut_ += at.ends();
       first_below = std::min(first_below, at.subtree());
-      SearchSubtree linked = addresses.of(of, at, record);
-      set_records(of, at, linked);
+      SearchSubtree linked = addresses.of(of, at, family.record);
+      set_records(walk, linked);
       of.set_leads_to(at.index(), true);
       patch.outside.push_back(outside_of(at, linked, parent));
       patch.linked.emplace_back(at.subtree(), linked);
-      add_below(chunk, at);
+      add_below(walk);
     });
-    patch.tied.records.push_back({record, kLowest | first_below});
-    patch.tied.changed.push_back(subtree);
+    patch.tied.records.push_back({family.record, kLowest | first_below});
+    patch.tied.changed.push_back(table.first_subtree + family.subtree);
   }
 }
 
-void Linker::unlink(const Family& first, LinkPatch& patch) {
-  work_.assign(1, first);
+void Linker::unlink(LinkPatch& patch) {
+  Roots roots(*this);
   while (!work_.empty()) {
-    const Family family = work_.back();
-    work_.pop_back();
+    const Family family = take_work();
     LinkTable& table = tables_.know(family.chunk);
     if (!table.leads_on(family.node.index)) {
-      if (!refused_.empty()) refused_.erase({ends_of(family), family});
+      if (!refused_.empty()) refused_.erase({ends_of(family, roots), family});
       continue;
     }
     table.set_leads_on(family.node.index, false);
-    patch.cut.records.push_back({record_of(family), kBlocked});
+    patch.cut.records.push_back({family.record, kBlocked});
     patch.cut.changed.push_back(table.first_subtree + family.subtree);
     ++most_cut_;
-    each_subtree(family, [&](uint32_t chunk, const LinkWalk& at) {
-      tables_.know(chunk).set_leads_to(at.index(), false);
-      most_cut_ -= at.ends();
-      patch.unlinked.push_back(at.subtree());
-      add_below(chunk, at);
+    each_subtree(family, roots, [&](Walk& walk) {
+      tables_.know(walk.chunk).set_leads_to(walk.at.index(), false);
+      most_cut_ -= walk.at.ends();
+      patch.unlinked.push_back(walk.at.subtree());
+      add_below(walk);
     });
   }
 }
@@ -357,7 +392,8 @@ void Linker::unlink(const Family& first, LinkPatch& patch) {
 void Linker::evict(uint32_t chunk, LinkPatch& patch) {
   const uint32_t slot = tables_[chunk].slot;
   const size_t cut = patch.cut.records.size(), unlinked = patch.unlinked.size();
-  each_family_of(chunk, [&](const Family& family) { unlink(family, patch); });
+  add_families_of(chunk);
+  unlink(patch);
   if (!patch.tied.records.empty()) drop_unlinked(cut, unlinked, patch);
   remove_large(slot, patch);
   tables_.forget(chunk);

@@ -47,13 +47,14 @@ class Linker {
   // What hangs from each node of a chunk that is held, on a tier's lowest level: visit(NodeBelow).
   template <class Visit>
   void each_below(uint32_t chunk, const Visit& visit) const {
-    for (LinkWalk at = walk(chunk); !at.at_end(); at.next()) at.each_below(visit);
+    for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next()) at.each_below(visit);
   }
 
  private:
   // The children of a node of a tier's lowest level.
   struct Family {
     uint32_t chunk, subtree;  // of the node; an index in the chunk
+    uint32_t record;          // the node's address
     NodeBelow node;
 
     uint32_t end() const { return node.first_child + node.child_count; }
@@ -70,39 +71,60 @@ class Linker {
       return family.node.index <=> other.family.node.index;
     }
   };
-  struct Subtree {
+  // Addresses of a chunk's records: at once where each is in the block of the one before, or a
+  // later one.
+  class Records {
+   public:
+    Records(const std::vector<uint32_t>& next_block, uint32_t first_block)
+        : next_block_(&next_block), first_block_(first_block), block_(first_block) {}
+    uint32_t operator()(uint32_t number) {
+      const uint32_t before = number / kRecordBlock;
+      if (before < before_) {
+        block_ = first_block_;
+        before_ = 0;
+      }
+      for (; before_ != before; ++before_) block_ = (*next_block_)[block_];
+      return block_ * kRecordBlock + number % kRecordBlock;
+    }
+
+   private:
+    const std::vector<uint32_t>* next_block_;
+    uint32_t first_block_, block_;
+    uint32_t before_ = 0;  // blocks before that
+  };
+  struct Walk {
     uint32_t chunk;
-    const LinkTable* table;
     LinkWalk at;
+    Records records;
   };
   // The families of roots that ascend, from call to call.
   class Parents;
+  // Where roots are that ascend, from call to call.
+  class Roots;
 
-  LinkWalk walk(uint32_t chunk) const;
-  LinkWalk walk(const StagedChunk& chunk) const;
-  // The address of a chunk's record.
-  uint32_t record(const LinkTable& table, uint32_t number) const;
-  uint32_t record_of(const Family& family) const;
-  void set_records(const LinkTable& table, const LinkWalk& at, SearchSubtree& subtree) const;
+  Walk walk(uint32_t chunk) const;
+  Walk walk(const StagedChunk& chunk) const;
+  void set_records(Walk& walk, SearchSubtree& subtree) const;
   void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const;
-  void check_repeat(uint32_t chunk, const Subtree& before, const Subtree& after,
-                    const ChunkPool& pool, const std::string& file) const;
+  void check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
+                    const std::string& file) const;
   ChunkRange chunks_of(const Family& family) const;
   bool complete(const Family& family) const;
-  // Each subtree of the family in turn: visit(chunk, walk at it).
+  // Each subtree of the family in turn: visit(walk at it).
   template <class Visit>
-  void each_subtree(const Family& family, const Visit& visit) const;
-  void add_below(uint32_t chunk, const LinkWalk& at);
-  template <class Work>
-  void each_family_of(uint32_t chunk, const Work& work);
-  void link(const Family& family, LinkPatch& patch);
-  void unlink(const Family& family, LinkPatch& patch);
+  void each_subtree(const Family& family, Roots& roots, const Visit& visit) const;
+  void add_work(const Family& family);
+  Family take_work();
+  void add_below(Walk& walk);
+  void add_families_of(uint32_t chunk);
+  void link(LinkPatch& patch);
+  void unlink(LinkPatch& patch);
   void add_large(const StagedChunk& chunk, LinkPatch& patch);
   void remove_large(uint32_t slot, LinkPatch& patch);
   void link_root(uint32_t chunk, LinkPatch& patch);
-  uint64_t ends_of(const Family& family) const;
+  uint64_t ends_of(const Family& family, Roots& roots) const;
   bool has_room_for_cut(uint64_t ends) const { return most_cut_ - 1 + ends <= room_for_cut_; }
-  bool refuse_if_large(const Family& family);
+  bool refuse_if_large(const Family& family, Roots& roots);
   void link_refused(LinkPatch& patch);
 
   const ChunkGraph* graph_;
@@ -110,7 +132,7 @@ class Linker {
   const std::vector<uint32_t>* next_block_;
   ByChunk<LinkTable> tables_;
   std::vector<LargeFamily> large_;  // of what is held, by address
-  std::vector<Family> work_;
+  std::vector<Family> work_;        // a heap: the one whose roots are first
   // Of what is linked: that no cut has more nodes, those which nothing leads on from.
   uint64_t most_cut_ = 0, room_for_cut_ = UINT64_MAX;
   std::set<Refused> refused_;

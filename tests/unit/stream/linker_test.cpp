@@ -16,7 +16,7 @@
 namespace voyager::linker_test {
 namespace {
 
-// Every chunk has the slot of its own number, and its records are in its own blocks.
+// Every chunk has the slot of its own number. Its records are in blocks of its own, in any order.
 class Linked {
  public:
   Linked(const SceneFile& file, uint64_t cut_nodes)
@@ -25,7 +25,6 @@ class Linked {
         graph_(file.chunks(), file.tiers()),
         next_block_(file.chunks().size() * shape_.records),
         linker_(graph_, shape_, next_block_) {
-    std::iota(next_block_.begin(), next_block_.end(), 1);
     linker_.make_room(graph_.size(), cut_nodes);
   }
 
@@ -41,7 +40,12 @@ class Linked {
     StagedChunk staged = stage_chunk(file_.read_chunk(chunk), chunk, file_.tiers(), file_.name());
     std::vector<uint32_t> blocks(staged.record_blocks());
     std::iota(blocks.begin(), blocks.end(), chunk * shape_.records);
+    std::shuffle(blocks.begin(), blocks.end(), std::mt19937(chunk));
+    for (size_t i = 1; i < blocks.size(); ++i) next_block_[blocks[i - 1]] = blocks[i];
     staged.put(chunk, std::move(blocks));
+    const Tiers tiers = file_.tiers();
+    for (LinkWalk at(staged.links, tiers, {staged.large, 0}); !at.at_end(); at.next())
+      first_record_[at.subtree()] = at.interior() == 0 ? 0 : staged.record(at.first_record());
     linker_.arrive(std::move(staged), patch);
   }
   void evict(uint32_t chunk) {
@@ -56,7 +60,11 @@ class Linked {
     for (const uint32_t subtree : patch.unlinked) linked_.erase(subtree);
     for (const LinkPatch::Record& record : patch.tied.records)
       EXPECT_TRUE(leading_.insert(record.record).second);
-    for (const auto& [subtree, linked] : patch.linked) EXPECT_TRUE(linked_.insert(subtree).second);
+    for (const auto& [subtree, linked] : patch.linked) {
+      EXPECT_TRUE(linked_.insert(subtree).second);
+      EXPECT_TRUE(linked.entry == kNoRecord || leading_.count(linked.entry) != 0);
+      EXPECT_EQ(linked.first_record, first_record_.at(subtree));
+    }
   }
   const std::set<uint32_t>& linked() const { return linked_; }
   // How many nodes lead to subtrees.
@@ -79,7 +87,8 @@ class Linked {
   ChunkGraph graph_;
   std::vector<uint32_t> next_block_;
   Linker linker_;
-  std::set<uint32_t> linked_, leading_;  // subtrees; records
+  std::map<uint32_t, uint32_t> first_record_;  // by subtree
+  std::set<uint32_t> linked_, leading_;        // subtrees; records
 };
 
 // What a linker should have linked, found node by node.
