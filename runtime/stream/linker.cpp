@@ -36,30 +36,6 @@ LinkPatch::Outside outside_of(const LinkWalk& at, const SearchSubtree& subtree, 
   return {at.subtree(), at.repeats_root() ? subtree.root : parent};
 }
 
-// What the patch has linked already, and has then unlinked: from these positions in patch.cut and
-// patch.unlinked on.
-void drop_unlinked(size_t first_cut, size_t first_unlinked, LinkPatch& patch) {
-  std::vector<uint32_t> records,
-      subtrees(patch.unlinked.begin() + first_unlinked, patch.unlinked.end());
-  for (size_t i = first_cut; i < patch.cut.records.size(); ++i)
-    records.push_back(patch.cut.records[i].record);
-  std::sort(records.begin(), records.end());
-  std::sort(subtrees.begin(), subtrees.end());
-  const auto is_unlinked = [&](uint32_t subtree) {
-    return std::binary_search(subtrees.begin(), subtrees.end(), subtree);
-  };
-  std::erase_if(patch.linked, [&](const auto& linked) { return is_unlinked(linked.first); });
-  std::erase_if(patch.outside, [&](const auto& outside) { return is_unlinked(outside.subtree); });
-  LinkPatch::Links tied;
-  for (size_t i = 0; i < patch.tied.records.size(); ++i) {
-    const LinkPatch::Record& record = patch.tied.records[i];
-    if (std::binary_search(records.begin(), records.end(), record.record)) continue;
-    tied.records.push_back(record);
-    tied.changed.push_back(patch.tied.changed[i]);
-  }
-  patch.tied = std::move(tied);
-}
-
 // Of families in a heap: roots ascend, and what hangs from them comes later.
 constexpr auto kIsLater = [](const auto& a, const auto& b) {
   return a.node.first_child > b.node.first_child;
@@ -285,7 +261,6 @@ void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
   if (walk(chunk.chunk).at.root() == 0) link_root(chunk.chunk, patch);
   add_families_of(chunk.chunk);
   link(patch);
-  link_refused(patch);
 }
 
 // Its subtrees of the tree's root. Runs of that are in chunks that are never evicted and come in
@@ -387,17 +362,12 @@ void Linker::unlink(LinkPatch& patch) {
   }
 }
 
-// What there is room for now is linked at once. Another chunk that goes in the same patch may
-// unlink it again.
 void Linker::evict(uint32_t chunk, LinkPatch& patch) {
   const uint32_t slot = tables_[chunk].slot;
-  const size_t cut = patch.cut.records.size(), unlinked = patch.unlinked.size();
   add_families_of(chunk);
   unlink(patch);
-  if (!patch.tied.records.empty()) drop_unlinked(cut, unlinked, patch);
   remove_large(slot, patch);
   tables_.forget(chunk);
-  link_refused(patch);
 }
 
 }  // namespace voyager

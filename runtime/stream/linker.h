@@ -43,6 +43,8 @@ class Linker {
   void arrive(StagedChunk&& chunk, LinkPatch& patch);
   // None of its children is held. In a patch, chunks go before others come.
   void evict(uint32_t chunk, LinkPatch& patch);
+  // Behind all that goes and comes in a patch: what has room in a cut now, and had none.
+  void link_refused(LinkPatch& patch);
 
   // What hangs from each node of a chunk that is held, on a tier's lowest level: visit(NodeBelow).
   template <class Visit>
@@ -125,7 +127,6 @@ class Linker {
   uint64_t ends_of(const Family& family, Roots& roots) const;
   bool has_room_for_cut(uint64_t ends) const { return most_cut_ - 1 + ends <= room_for_cut_; }
   bool refuse_if_large(const Family& family, Roots& roots);
-  void link_refused(LinkPatch& patch);
 
   const ChunkGraph* graph_;
   SlotShape shape_;

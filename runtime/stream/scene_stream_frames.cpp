@@ -124,6 +124,7 @@ void SceneStream::commit_changes() {
   }
   const Residency::Arrivals arrived =
       residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
+  linker_.link_refused(patch);
   for (const uint32_t chunk : arrived.resident) {
     coming_.erase(chunk);
     failures_.remove(chunk);
