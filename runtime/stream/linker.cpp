@@ -139,7 +139,7 @@ ChunkRange Linker::chunks_of(const Family& family) const {
 
 bool Linker::complete(const Family& family) const {
   const ChunkRange range = chunks_of(family);
-  for (uint32_t chunk = range.first; chunk < range.last; ++chunk)
+  for (uint32_t chunk = range.last; chunk-- > range.first;)  // the last comes last
     if (!holds(chunk)) return false;
   return true;
 }
@@ -346,7 +346,7 @@ void Linker::unlink(LinkPatch& patch) {
     const Family family = take_work();
     LinkTable& table = tables_.know(family.chunk);
     if (!table.leads_on(family.node.index)) {
-      if (!refused_.empty()) refused_.erase({ends_of(family, roots), family});
+      if (!refused_.empty() && complete(family)) refused_.erase({ends_of(family, roots), family});
       continue;
     }
     table.set_leads_on(family.node.index, false);

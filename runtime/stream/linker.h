@@ -5,6 +5,7 @@
 //
 // Of a chunk it keeps a LinkTable, and a large family's nodes in a list of all of them. Bounds of
 // nodes are the pool's.
+#include <algorithm>
 #include <compare>
 #include <optional>
 #include <set>
@@ -32,6 +33,16 @@ class Linker {
   }
   // Whether something is not linked for that reason alone.
   bool lacks_room_for_cut() const { return !refused_.empty(); }
+  // Whether that is so of a family with such a chunk.
+  template <class Such>
+  bool refuses(const Such& such) const {
+    return std::any_of(refused_.begin(), refused_.end(), [&](const Refused& refused) {
+      const ChunkRange range = chunks_of(refused.family);
+      for (uint32_t chunk = range.first; chunk < range.last; ++chunk)
+        if (such(chunk)) return true;
+      return false;
+    });
+  }
 
   bool holds(uint32_t chunk) const { return !tables_[chunk].empty(); }
   uint32_t slot(uint32_t chunk) const { return tables_[chunk].slot; }

@@ -33,7 +33,7 @@ Residency::Residency(const ChunkGraph& graph, const ChunkDirectory& chunks,
   free_blocks_.reserve(room.blocks);
   for (uint32_t block = 0; block < room.blocks; ++block) free_blocks_.push_back(block);
   ChunkLooks nobody(chunks);
-  plan(nobody);
+  plan(nobody, false);
 }
 
 ChunkRange Residency::take_requests(uint32_t most, uint64_t bytes) {

@@ -55,8 +55,9 @@ class Residency {
   Residency(const ChunkGraph& graph, const ChunkDirectory& chunks, const RecordRoom& records,
             PoolRoom room, uint32_t pinned);
 
-  // Who looks now. What is no longer wanted is no longer requested.
-  void plan(ChunkLooks& looks);
+  // Who looks now. What is no longer wanted is no longer requested. cuts_are_full: what is there
+  // has no room in a view's cut, so that what nobody wants goes once the target is there.
+  void plan(ChunkLooks& looks, bool cuts_are_full);
   // Those that the last plan needed: the next looks at them, and at what they lead to.
   std::vector<uint32_t> needed() const;
 
@@ -216,7 +217,7 @@ class Residency {
   void take_blocks(uint32_t chunk);
   void free_blocks(uint32_t first);
   void drop_waiting();
-  void list_leftovers();
+  void list_leftovers(bool cuts_are_full);
   void remove(uint32_t chunk, std::vector<Evicted>& evicted);
   bool parents_there(uint32_t chunk) const;
   void count_missing(uint32_t chunk, bool missing);

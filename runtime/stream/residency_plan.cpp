@@ -8,7 +8,7 @@
 
 namespace voyager {
 
-void Residency::plan(ChunkLooks& looks) {
+void Residency::plan(ChunkLooks& looks, bool cuts_are_full) {
   forget_absent();
   ++plan_;
   find_needed(looks);
@@ -19,7 +19,7 @@ void Residency::plan(ChunkLooks& looks) {
   drop_waiting();
   queue_requests();
   list_victims();
-  list_leftovers();
+  list_leftovers(cuts_are_full);
 }
 
 // What the last plan did not need either.
@@ -247,13 +247,13 @@ void Residency::list_victims() {
 // All of the target fits, so that nothing of this is a victim. Where some of what is needed does
 // not, what of it is there has come when others looked, and draws a cut that others would not see.
 // With it goes what hangs from it.
-void Residency::list_leftovers() {
+void Residency::list_leftovers(bool cuts_are_full) {
   leftovers_.clear();
-  if (!crowded_) return;
+  if (!crowded_ && !cuts_are_full) return;
   for (const uint32_t chunk : unwanted()) {
     const ChunkGraph::Parents parents = graph_->parents(chunk);
     const bool leaves =
-        known(chunk).needed_plan == plan_ ||
+        cuts_are_full || known(chunk).needed_plan == plan_ ||
         std::any_of(parents.begin(), parents.end(), [&](uint32_t p) { return known(p).leaves; });
     know(chunk).leaves = leaves;
     if (leaves) leftovers_.push_back(chunk);

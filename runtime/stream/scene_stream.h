@@ -190,6 +190,8 @@ class SceneStream {
   template <class Done>
   bool work_once(const Done& done, bool& first, bool& stepped);
   void check_fits() const;
+  void check_cut() const;
+  [[noreturn]] void refuse_room(PoolRoom enough) const;
   bool is_settled(double since) const;
   void check_seen() const;
   std::vector<std::byte> read(ChunkRange range, std::optional<Error>& failure, Lock& lock);

@@ -112,6 +112,7 @@ void SceneStream::commit_all() {
 
 void SceneStream::commit_changes() {
   LinkPatch patch;
+  const bool lacked = linker_.lacks_room_for_cut();
   moved_pages_.clear();
   put_off_ = -1;
   commit_due_ = false;
@@ -125,6 +126,7 @@ void SceneStream::commit_changes() {
   const Residency::Arrivals arrived =
       residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
   linker_.link_refused(patch);
+  if (!lacked && linker_.lacks_room_for_cut()) look_again();
   for (const uint32_t chunk : arrived.resident) {
     coming_.erase(chunk);
     failures_.remove(chunk);
@@ -209,12 +211,19 @@ void SceneStream::check_fits() const {
   const uint64_t seen = need.seen - need.seen_failed.size();
   const bool fits = seen + residency_.pinned() <= room.slots &&
                     need.seen_blocks + residency_.pinned_blocks() <= room.blocks;
-  // Before all is there that can come, what is to go may have what is to be linked wait for room.
-  const bool lacks = linker_.lacks_room_for_cut() && is_settled(0);
-  if (fits && !lacks) return;
+  if (fits) return;
   const uint64_t blocks = need.seen_blocks + records_.likely_blocks(need.seen_unread_blocks);
-  // No cut of a scene that is all there lacks room.
-  const PoolRoom enough = lacks ? records_.of(graph_.size()) : records_.enough(seen, blocks);
+  refuse_room(records_.enough(seen, blocks));
+}
+
+// Of what is settled: a view's cut has no room for something that is seen. No cut of a scene that
+// is all there lacks room.
+void SceneStream::check_cut() const {
+  if (linker_.refuses([&](uint32_t chunk) { return residency_.is_seen(chunk); }))
+    refuse_room(records_.of(graph_.size()));
+}
+
+void SceneStream::refuse_room(PoolRoom enough) const {
   const auto megabytes = [&](PoolRoom of) {
     return static_cast<double>(desc_.bytes.of(of, state_count_)) / 1e6;
   };
@@ -222,7 +231,7 @@ void SceneStream::check_fits() const {
   std::snprintf(message, sizeof message,
                 ": what the view frustum needs takes %.3f MB, the memory budget has room for "
                 "%.3f MB",
-                std::ceil(1e3 * megabytes(enough)) / 1e3, megabytes(room));
+                std::ceil(1e3 * megabytes(enough)) / 1e3, megabytes(residency_.room()));
   throw Error(ErrorCode::over_budget, file_->name() + message);
 }
 
@@ -300,7 +309,7 @@ uint64_t SceneStream::wait(bool stand_in) {
   work_until([&] {
     check_fits();
     if (!is_settled(since)) return false;
-    if (!stand_in) check_seen();
+    if (!stand_in) check_seen(), check_cut();
     departures = departures_;
     return true;
   });

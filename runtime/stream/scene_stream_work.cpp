@@ -87,7 +87,7 @@ bool SceneStream::plan_if_asked(Lock* lock) {
   const auto look = std::chrono::steady_clock::now();
   if (lock != nullptr) look_at_likely(*lock);
   const auto begin = std::chrono::steady_clock::now();
-  residency_.plan(looks_);
+  residency_.plan(looks_, linker_.lacks_room_for_cut());
   // Those that nobody wants any more.
   std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
   const auto end = std::chrono::steady_clock::now();

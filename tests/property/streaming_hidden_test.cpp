@@ -57,7 +57,7 @@ class Planned {
     const Vec3f right{1, 0, 0};  // all of what it sees
     viewer.eyes = {{viewer.query.centre, {right, right, right, right, right}}};
     looks_.begin({viewer});
-    residency_.plan(looks_);
+    residency_.plan(looks_, false);
   }
   // All that is asked for. shown(): from then on, before each read.
   template <class Told>

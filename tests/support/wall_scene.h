@@ -1,5 +1,6 @@
 #pragma once
 // A wall with a scene in its shadow, streamed so that a test sees in which order it is read.
+#include <mutex>
 #include <random>
 
 #include "runtime/frame/open_streamed.h"
@@ -52,6 +53,7 @@ class LoggedSource final : public ByteSource {
   uint64_t size() const override { return source_->size(); }
   void read(uint64_t offset, std::span<std::byte> into) const override {
     source_->read(offset, into);
+    const std::lock_guard lock(mutex_);
     reads_.emplace_back(offset, offset + into.size());
   }
   // Of a chunk of the wall and one behind it, how likely the latter was read later.
@@ -71,6 +73,7 @@ class LoggedSource final : public ByteSource {
 
  private:
   std::shared_ptr<const ByteSource> source_ = source_of(wall_bytes());
+  mutable std::mutex mutex_;
   mutable std::vector<std::pair<uint64_t, uint64_t>> reads_;
 };
 

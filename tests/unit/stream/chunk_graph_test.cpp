@@ -140,7 +140,7 @@ TEST(ChunkGraph, ChunksThatArriveInAnyOrderAllBecomeResident) {
                         PoolRoom{graph.size(), graph.size() * records.most_blocks()}, top);
     ChunkLooks looks(file.chunks());
     looks.begin({Viewer{{{0, 0, 0}, 1e-30f}, {}, false}});
-    residency.plan(looks);
+    residency.plan(looks, false);
     std::vector<uint32_t> come;
     for (;;) {
       const ChunkRange range = residency.take_requests(1, UINT64_MAX);
@@ -156,6 +156,19 @@ TEST(ChunkGraph, ChunksThatArriveInAnyOrderAllBecomeResident) {
     }
     EXPECT_EQ(residency.resident(), come.size());
     EXPECT_EQ(residency.need().missing, 0u);
+    // Where nobody looks they stay, unless cuts have no room for them: then all but the top goes.
+    looks.begin({});
+    residency.plan(looks, false);
+    EXPECT_TRUE(residency.evict().empty());
+    residency.plan(looks, true);
+    const std::vector<Residency::Evicted> gone = residency.evict();
+    EXPECT_EQ(gone.size(), come.size() - top);
+    std::set<uint32_t> left;
+    for (const Residency::Evicted& e : gone) {
+      for (const uint32_t p : graph.parents(e.chunk)) EXPECT_EQ(left.count(p), 0u);
+      left.insert(e.chunk);
+      residency.free(e);
+    }
   });
 }
 
