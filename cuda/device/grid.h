@@ -7,17 +7,18 @@
 
 namespace voyager::cuda {
 
-// Thread blocks of a kernel that are resident on a multiprocessor at once: its loops share the
-// work out, and a second wave would find none left. Of the current device. Any thread. Throws
-// Error.
-template <auto kKernel>
-unsigned resident_blocks(int threads) {
+// Thread blocks of so many threads that are resident on a multiprocessor at once, for a kernel with
+// no or little dynamic shared memory: its loops share the work out, and a second wave would find
+// none left. Of the current device. Any thread. Throws Error.
+template <auto kKernel, int kThreads>
+unsigned resident_blocks() {
   static PerDevice<unsigned> known;
   int device = 0;
   check(cudaGetDevice(&device), "device");
-  return known.of(device, [threads] {
+  return known.of(device, [] {
     int blocks = 0;
-    check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kKernel, threads, 0), "occupancy");
+    check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kKernel, kThreads, 0),
+          "occupancy");
     return static_cast<unsigned>(blocks);
   });
 }

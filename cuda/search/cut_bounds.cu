@@ -83,7 +83,7 @@ __global__ void __launch_bounds__(kThreads)
 
 void launch_bound(const StateView& state, const GaussianView& gaussians, bool weights,
                   unsigned multiprocessors, cudaStream_t stream) {
-  const unsigned resident = resident_blocks<search_bound>(kThreads);
+  const unsigned resident = resident_blocks<search_bound, kThreads>();
   launch_kernel(
       "search_bound", search_bound,
       {std::min(kShares * state.block_count, multiprocessors * resident), kThreads, stream}, state,

@@ -114,13 +114,13 @@ uint32_t blocks_for(const SearchFrame& f, unsigned resident) {
 
 void launch_check(const SearchFrame& f, const Travels& travels, const Journey& now) {
   launch_kernel("search_check", search_check,
-                {blocks_for(f, resident_blocks<search_check>(kThreads)), kThreads, f.stream},
+                {blocks_for(f, resident_blocks<search_check, kThreads>()), kThreads, f.stream},
                 f.state, travels, now, f.reference);
 }
 
 void launch_list_open(const SearchFrame& f) {
   launch_kernel("search_list_open", search_list_open,
-                {blocks_for(f, resident_blocks<search_list_open>(kThreads)), kThreads, f.stream},
+                {blocks_for(f, resident_blocks<search_list_open, kThreads>()), kThreads, f.stream},
                 f.state);
 }
 

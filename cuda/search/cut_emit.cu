@@ -146,7 +146,7 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
 
 void launch_emit(const SearchFrame& f, bool weights) {
   const auto kernel = weights ? search_emit<true> : search_emit<false>;
-  const unsigned resident = resident_blocks<search_emit<true>>(kEmitThreads);
+  const unsigned resident = resident_blocks<search_emit<true>, kEmitThreads>();
   launch_kernel(
       "search_emit", kernel,
       {std::min(f.state.block_count, f.multiprocessors * resident), kEmitThreads, f.stream}, f.tree,

@@ -74,7 +74,7 @@ __global__ void __launch_bounds__(kThreads) search_forget(StateView state) {
 }  // namespace
 
 void launch_relink(const SearchFrame& f, const Relinked& relinked) {
-  const unsigned resident = resident_blocks<search_relink>(kThreads);
+  const unsigned resident = resident_blocks<search_relink, kThreads>();
   const uint32_t threads = std::max(relinked.unlinked_count * kGroupLanes, relinked.changed_count);
   if (threads == 0) return;
   launch_kernel("search_relink", search_relink,
@@ -84,7 +84,7 @@ void launch_relink(const SearchFrame& f, const Relinked& relinked) {
 }
 
 void launch_forget(const SearchFrame& f) {
-  const unsigned resident = resident_blocks<search_forget>(kThreads);
+  const unsigned resident = resident_blocks<search_forget, kThreads>();
   launch_kernel("search_forget", search_forget, {f.multiprocessors * resident, kThreads, f.stream},
                 f.state);
 }

@@ -19,7 +19,7 @@ __global__ void __launch_bounds__(kThreads)
 }  // namespace
 
 void launch_streaming(const SearchFrame& f) {
-  const unsigned resident = resident_blocks<search_streaming>(kThreads);
+  const unsigned resident = resident_blocks<search_streaming, kThreads>();
   launch_kernel("search_streaming", search_streaming,
                 {f.multiprocessors * resident, kThreads, f.stream}, f.tree, f.state, f.sight,
                 f.reference);

@@ -158,8 +158,8 @@ size_t sweep_tiles(uint32_t nodes) {
 
 void launch_sweep(const SweepView& tree, const SweepState& state, const Sight& sight, uint32_t run,
                   unsigned multiprocessors, cudaStream_t stream) {
-  const unsigned measure_blocks = resident_blocks<search_measure>(kThreads);
-  const unsigned collect_blocks = resident_blocks<search_collect>(kThreads);
+  const unsigned measure_blocks = resident_blocks<search_measure, kThreads>();
+  const unsigned collect_blocks = resident_blocks<search_collect, kThreads>();
   const uint32_t records = std::max(tree.records, 1u);
   launch_kernel("search_measure", search_measure,
                 {std::min((records + kThreads - 1) / kThreads, multiprocessors * measure_blocks),

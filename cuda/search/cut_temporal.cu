@@ -183,8 +183,8 @@ __global__ void __launch_bounds__(kThreads)
 }  // namespace
 
 void launch_temporal(const SearchFrame& f, uint32_t max_due) {
-  const unsigned visit_blocks = resident_blocks<search_visit>(kThreads);
-  const unsigned descend_blocks = resident_blocks<search_descend>(kThreads);
+  const unsigned visit_blocks = resident_blocks<search_visit, kThreads>();
+  const unsigned descend_blocks = resident_blocks<search_descend, kThreads>();
   launch_kernel("search_visit", search_visit,
                 {f.multiprocessors * visit_blocks, kThreads, f.stream}, f.tree, f.state, f.sight,
                 f.reference, max_due);

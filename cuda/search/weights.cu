@@ -22,7 +22,7 @@ __global__ void __launch_bounds__(kWeightThreads)
 
 void launch_weigh(const WeightSource& from, const StateView& state, unsigned multiprocessors,
                   cudaStream_t stream) {
-  const unsigned resident = resident_blocks<search_weigh>(kWeightThreads);
+  const unsigned resident = resident_blocks<search_weigh, kWeightThreads>();
   launch_kernel("search_weigh", search_weigh, {multiprocessors * resident, kWeightThreads, stream},
                 from, state.nodes, state.counted);
 }

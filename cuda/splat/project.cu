@@ -202,7 +202,7 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
 template <class Sh, bool kLod, int kEyes>
 void launch(const SplatFrame& f, bool boxes) {
   constexpr auto kernel = project_splats<Sh, kLod, kEyes>;
-  const unsigned resident = resident_blocks<kernel>(kProjectThreads);
+  const unsigned resident = resident_blocks<kernel, kProjectThreads>();
   launch_kernel("project_splats", kernel, {f.multiprocessors * resident, kProjectThreads, f.stream},
                 f, boxes);
 }
@@ -210,7 +210,7 @@ void launch(const SplatFrame& f, bool boxes) {
 template <bool kLod, int kEyes, bool kSecond>
 void launch_cull(const SplatFrame& f) {
   constexpr auto cull = project_cull<kLod, kEyes, kSecond>;
-  const unsigned resident = resident_blocks<cull>(kCullThreads);
+  const unsigned resident = resident_blocks<cull, kCullThreads>();
   launch_kernel("project_cull", cull, {f.multiprocessors * resident, kCullThreads, f.stream}, f);
 }
 

@@ -46,7 +46,7 @@ __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
 template <bool kSecond>
 void launch(const SplatFrame& f) {
   constexpr auto rows = project_rows<kSecond>;
-  const unsigned resident = resident_blocks<rows>(kThreads);
+  const unsigned resident = resident_blocks<rows, kThreads>();
   launch_kernel("project_rows", rows, {f.multiprocessors * resident, kThreads, f.stream}, f);
 }
 

@@ -376,7 +376,7 @@ void launch(const SplatFrame& f, const RasterParams& params) {
 
 template <class M>
 void launch_open(const SplatFrame& f, const RasterParams& params) {
-  const unsigned resident = resident_blocks<rasterize_open_tiles<M>>(kThreads);
+  const unsigned resident = resident_blocks<rasterize_open_tiles<M>, kThreads>();
   launch_kernel("rasterize_open_tiles", rasterize_open_tiles<M>,
                 {f.multiprocessors * resident, kThreads, f.stream, lut_bytes<M>(params)}, params);
 }

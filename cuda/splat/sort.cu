@@ -211,7 +211,7 @@ void launch_sort(const SplatFrame& f) {
   // Two on a multiprocessor are what the shared memory of an Orin's has room for.
   launch_kernel("sort_large", sort_large, {2 * f.multiprocessors, kLargeThreads, f.stream, kBytes},
                 f.splats);
-  const unsigned resident = resident_blocks<sort_tiles>(kSortThreads);
+  const unsigned resident = resident_blocks<sort_tiles, kSortThreads>();
   // Each queue has a warp.
   const unsigned blocks = std::max(f.multiprocessors * resident, kSortQueues / kSortWarps);
   launch_kernel("sort_tiles", sort_tiles, {blocks, kSortThreads, f.stream}, f.splats);

@@ -80,7 +80,7 @@ __global__ void __launch_bounds__(kThreads)
 }  // namespace
 
 void launch_train_project(const SplatFrame& f, const FixedSum* sums, float* gradients) {
-  const unsigned resident = resident_blocks<train_project>(kThreads);
+  const unsigned resident = resident_blocks<train_project, kThreads>();
   launch_kernel("train_project", train_project, {f.multiprocessors * resident, kThreads, f.stream},
                 f, sums, gradients);
 }

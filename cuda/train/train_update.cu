@@ -118,7 +118,7 @@ __global__ void __launch_bounds__(kThreads) train_update(UpdateParams p, bool pa
 // Parents first: their children's own numbers are then as they were drawn.
 void launch_train_update(const SplatFrame& f, const float* gradients, const TrainedArrays& arrays,
                          const LearningRates& rates) {
-  const unsigned resident = resident_blocks<train_update>(kThreads);
+  const unsigned resident = resident_blocks<train_update, kThreads>();
   const UpdateParams params{f.gaussians, f.draws.list, gradients, arrays, rates};
   for (const bool parents : {true, false}) {
     launch_kernel("train_update", train_update, {f.multiprocessors * resident, kThreads, f.stream},
