@@ -52,8 +52,7 @@ struct DeviceObject final : Object {
   VoyBackend backend_kind;
   std::unique_ptr<Backend> backend;
   std::atomic<bool> abandoned{false};
-  // Held while an open scene's pool changes its size, so that no two share out the same rest of a
-  // budget.
+  // Held while a scene's budget is changed, so that no two share out the same rest of the device's.
   std::mutex resizing;
   std::shared_ptr<const vulkan::Device> vulkan;  // or NULL
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "runtime/select/partitioned_blocks.h"
+
 namespace voyager::cuda {
 namespace {
 
@@ -27,17 +29,9 @@ Layout make_layout(const SearchTree& tree) {
   return layout;
 }
 
-uint64_t block_count(const SearchTree& tree) {
-  uint64_t blocks = 0;
-  for (size_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier)
-    blocks +=
-        (tree.tier_begin[tier + 1] - tree.tier_begin[tier] + kBlockSubtrees - 1) / kBlockSubtrees;
-  return blocks;
-}
-
 // What search_place gives all segments at most.
 uint64_t most_places(const SearchTree& tree, uint64_t most) {
-  return most + most / 8 + 2 * kRowPlaces * kLevels * block_count(tree);
+  return most + most / 8 + 2 * kRowPlaces * kLevels * block_count(tree, kBlockSubtrees);
 }
 
 }  // namespace
@@ -49,7 +43,7 @@ uint64_t CutState::list_bytes(uint64_t places) {
 uint64_t CutState::fixed_bytes(const SearchTree& tree) {
   constexpr uint64_t kBlock = sizeof(Block) + kBlockRows * sizeof(WatchRow) +
                               kLevels * sizeof(Segment) + 4 * sizeof(uint32_t);
-  return block_count(tree) * kBlock + tree.tier_begin.size() * sizeof(Tier) +
+  return block_count(tree, kBlockSubtrees) * kBlock + tree.tier_begin.size() * sizeof(Tier) +
          2 * sizeof(FrameCounters) + 2 * sizeof(uint32_t) + sizeof(MeanBounds) +
          list_bytes(most_places(tree, 0));
 }

@@ -9,17 +9,6 @@
 #include "runtime/select/set_bits.h"
 
 namespace voyager {
-namespace {
-
-size_t block_count(const SearchTree& tree) {
-  size_t blocks = 0;
-  for (size_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier)
-    blocks +=
-        (tree.tier_begin[tier + 1] - tree.tier_begin[tier] + kBlockSubtrees - 1) / kBlockSubtrees;
-  return blocks;
-}
-
-}  // namespace
 
 PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_resource* memory,
                                      std::pmr::memory_resource* state, bool lists_cut)
@@ -37,7 +26,7 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
       chunk_stamp_(watch_.get_allocator()),
       cut_(memory),
       lists_cut_(lists_cut) {
-  blocks_.reserve(block_count(tree));
+  blocks_.reserve(block_count(tree, kBlockSubtrees));
   for (uint32_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier) {
     tier_block_.push_back(static_cast<uint32_t>(blocks_.size()));
     const uint32_t end = tree.tier_begin[tier + 1];
@@ -53,8 +42,8 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
 // But for less than a byte a place of signals_, which kPlaceBytes has.
 uint64_t PartitionedSearch::fixed_bytes(const SearchTree& tree) {
   static_assert(sizeof(Signals) <= kRoundSubtrees);
-  return sizeof(PartitionedSearch) + (block_count(tree) + 1) * sizeof(Signals) +
-         block_count(tree) * (sizeof(Block) + sizeof(uint8_t)) +
+  return sizeof(PartitionedSearch) + (block_count(tree, kBlockSubtrees) + 1) * sizeof(Signals) +
+         block_count(tree, kBlockSubtrees) * (sizeof(Block) + sizeof(uint8_t)) +
          2 * tree.tier_begin.size() * sizeof(uint32_t) + tree.chunk_count * sizeof(uint32_t);
 }
 

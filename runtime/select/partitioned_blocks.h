@@ -23,6 +23,14 @@ inline constexpr uint32_t kNoChunk = 0xffffffffu;
 inline constexpr Watch kNever{INFINITY, 0};  // of a subtree that is closed
 inline constexpr Watch kDue{-1, 0};  // of one that is to be visited, however little has moved
 
+// How many blocks of so many subtrees there are: none has subtrees of two tiers.
+inline uint64_t block_count(const SearchTree& tree, uint32_t subtrees) {
+  uint64_t blocks = 0;
+  for (size_t tier = 0; tier + 1 < tree.tier_begin.size(); ++tier)
+    blocks += (tree.tier_begin[tier + 1] - tree.tier_begin[tier] + subtrees - 1) / subtrees;
+  return blocks;
+}
+
 // visit(subtree, its place) for the subtrees [first, last). Tables of all subtrees have a loop of
 // their own, since they are read often.
 template <class Visit>

@@ -8,6 +8,7 @@
 #include "runtime/frame/open_streamed.h"
 #include "runtime/frame/whole_tree.h"
 #include "runtime/stream/linker.h"
+#include "tests/support/counting_memory.h"
 #include "tests/support/is_cut.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/render_scene.h"
@@ -15,23 +16,6 @@
 
 namespace voyager::streaming_budget_test {
 namespace {
-
-class CountingResource final : public std::pmr::memory_resource {
- public:
-  uint64_t bytes = 0, most = 0;
-
- private:
-  void* do_allocate(size_t size, size_t alignment) override {
-    bytes += size;
-    most = std::max(most, bytes);
-    return std::pmr::new_delete_resource()->allocate(size, alignment);
-  }
-  void do_deallocate(void* memory, size_t size, size_t alignment) override {
-    bytes -= size;
-    std::pmr::new_delete_resource()->deallocate(memory, size, alignment);
-  }
-  bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
-};
 
 const test::Bytes& scene_bytes() {
   static const test::Bytes bytes = [] {
@@ -84,15 +68,15 @@ struct Rig {
   void expect_kept(uint64_t most) {
     const PoolRoom now = RecordRoom(file).of(scene->stream->counters().slots);
     const uint64_t links = Linker::bytes(shape, scene->node_count).of(now);
-    EXPECT_LE(memory.most + links, most);
-    EXPECT_LE(memory.bytes + links, counted);
+    EXPECT_LE(memory.most() + links, most);
+    EXPECT_LE(memory.used() + links, counted);
     EXPECT_LE(counted, budget);
     EXPECT_EQ(counted, scene->stream->bytes());
-    memory.most = memory.bytes;
+    memory.start_again();
   }
 
   double time = 0;
-  CountingResource memory;
+  test::CountingMemory memory;
   Workers workers{1};
   const SceneFile file;
   SlotShape shape{};

@@ -2,6 +2,7 @@
 
 #include "runtime/scene/export/writer.h"
 #include "runtime/scene/import/format_name.h"
+#include "tests/support/counting_memory.h"
 #include "tests/support/sample_files.h"
 #include "tests/support/test_support.h"
 
@@ -104,37 +105,18 @@ TEST(Importer, ReportsProgressUpToTheTotal) {
   }
 }
 
-// Counts what it hands out, so that a test can see how much was held at once.
-class CountingResource final : public std::pmr::memory_resource {
- public:
-  size_t most = 0;
-
- private:
-  void* do_allocate(size_t bytes, size_t alignment) override {
-    held_ += bytes;
-    most = std::max(most, held_);
-    return std::pmr::new_delete_resource()->allocate(bytes, alignment);
-  }
-  void do_deallocate(void* at, size_t bytes, size_t alignment) override {
-    held_ -= bytes;
-    std::pmr::new_delete_resource()->deallocate(at, bytes, alignment);
-  }
-  bool do_is_equal(const memory_resource& other) const noexcept override { return this == &other; }
-  size_t held_ = 0;
-};
-
 TEST(Importer, HoldsLittleMoreThanTheCloud) {
   const GaussianCloud cloud = test::random_cloud(40000, 9, 3);
   const size_t whole = cloud.size() * 236;
   for (const Bytes& bytes : {test::ply_of(cloud), test::spz_v4(cloud)}) {
-    CountingResource known, piped;
+    test::CountingMemory known, piped;
     ImportOptions options;
     options.memory = &known;
     EXPECT_EQ(test::import_bytes(bytes, options).size(), cloud.size());
     options.memory = &piped;
     EXPECT_EQ(test::import_piped(bytes, options).size(), cloud.size());
-    EXPECT_LE(known.most, whole * 5 / 4);
-    EXPECT_LE(piped.most, whole * 5 / 4);
+    EXPECT_LE(known.most(), whole * 5 / 4);
+    EXPECT_LE(piped.most(), whole * 5 / 4);
   }
 }
 
@@ -147,12 +129,12 @@ TEST(Importer, AllocatesNothingOnTheWordOfAHeader) {
   const uint32_t many = 0xffffffffu;
   std::memcpy(spz.data() + 8, &many, 4);
   for (const Bytes& bytes : {test::bytes_of(ply + "end_header\nabc"), spz, test::gzip(spz)}) {
-    CountingResource memory;
+    test::CountingMemory memory;
     ImportOptions options;
     options.memory = &memory;
     EXPECT_NE(test::refusal_of([&] { test::import_bytes(bytes, options); }), "");
     EXPECT_NE(test::refusal_of([&] { test::import_piped(bytes, options); }), "");
-    EXPECT_LE(memory.most, 4096u);
+    EXPECT_LE(memory.most(), 4096u);
   }
 }
 
