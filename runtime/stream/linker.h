@@ -84,8 +84,8 @@ class Linker {
       return family.node.index <=> other.family.node.index;
     }
   };
-  // Addresses of a chunk's records: at once where each is in the block of the one before, or a
-  // later one.
+  // Addresses of a chunk's records. Numbers that ascend go through its blocks once, others from the
+  // first block again.
   class Records {
    public:
     Records(const std::vector<uint32_t>& next_block, uint32_t first_block)
@@ -110,9 +110,9 @@ class Linker {
     LinkWalk at;
     Records records;
   };
-  // The families of roots that ascend, from call to call.
+  // Finds the family of a root. Roots that ascend go through a chunk once.
   class Parents;
-  // Where roots are that ascend, from call to call.
+  // Finds a root in a chunk. Roots that ascend go through it once.
   class Roots;
 
   Walk walk(uint32_t chunk) const;

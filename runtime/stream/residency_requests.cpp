@@ -11,8 +11,8 @@ void Residency::set_shown(ShownChunks shown) {
   order_requests();
 }
 
-// Costs by what is asked for, and sorts nothing. What is hidden lies behind all that is not even
-// soon to be seen, so it only has to come in front of the others.
+// The last request is read first. asked_ ends with what will be seen soon and what is seen: hidden
+// chunks only move in front of these, and nothing is sorted.
 void Residency::order_requests() {
   std::erase_if(asked_, [&](uint32_t chunk) { return known(chunk).state != State::absent; });
   find_hidden();

@@ -211,7 +211,7 @@ class SceneStream {
   const RecordRoom records_;
   ChunkPool& pool_;
 
-  // Of what the budget is shared out to; before all other locks.
+  // Guards what the budget is shared out to. Taken before all other locks.
   std::mutex sharing_;
   uint64_t budget_;
   PoolRoom room_;  // changed under the pool's lock and mutex_, too

@@ -673,7 +673,7 @@ typedef struct VoyViewDesc {
  * streamed scene for a view of every leaf; lists of 2^32 Gaussians or more), OUT_OF_HOST_MEMORY,
  * OVER_BUDGET (CUDA: the scene does not fit into the GPU's memory; a streamed scene's budget has no
  * room for what the view keeps, and the message says how much it would take), TIMEOUT (as
- * voySetSceneMemoryBudget, where a streamed scene leaves less to chunks for the view). */
+ * voySetSceneMemoryBudget, where a streamed scene gives up chunks for the view). */
 VOY_API VoyResult VOY_CALL voyCreateView(VoyDevice device, const VoyViewDesc* desc, VoyView* view);
 
 /* Waits for the view's frame in progress and destroys the view. */
