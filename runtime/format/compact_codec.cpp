@@ -168,10 +168,9 @@ void take_geometry(GaussianPlanes& planes, const ChunkHeader& header, Chunk& chu
 }
 
 // In memory a step has as many bits as its range takes (runtime/math/sh_code.h).
-void check_step(int8_t step, int most, const ChunkLocation& location) {
-  if (std::abs(step) > most)
-    location.damaged("an SH step of " + std::to_string(step),
-                     std::to_string(-most) + " to " + std::to_string(most));
+[[noreturn]] void refuse_step(int8_t step, int most, const ChunkLocation& location) {
+  location.damaged("an SH step of " + std::to_string(step),
+                   std::to_string(-most) + " to " + std::to_string(most));
 }
 
 void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficients,
@@ -182,13 +181,20 @@ void take_sh(GaussianPlanes& planes, const ChunkHeader& header, size_t coefficie
     planes.take(2, [&](size_t i, uint32_t q) {
       sh[i * stride + c] = half_to_float(static_cast<uint16_t>(q));
     });
-  for (size_t band = 0; band_start(band) < coefficients; ++band)
+  for (size_t band = 0; band_start(band) < coefficients; ++band) {
+    const int most = kShSteps[band];
+    std::array<float, 256> restored;  // by step, from -most
+    for (int step = -most; step <= most; ++step)
+      restored[static_cast<size_t>(step + most)] =
+          restore_sh(static_cast<int8_t>(step), header.sh_scale[band], most);
     for (size_t k = 3 * band_start(band); k < 3 * band_start(band + 1); ++k)
       planes.take(1, [&](size_t i, uint32_t q) {
         const auto step = static_cast<int8_t>(q);
-        check_step(step, kShSteps[band], location);
-        sh[i * stride + k] = restore_sh(step, header.sh_scale[band], kShSteps[band]);
+        const auto at = static_cast<size_t>(step + most);
+        if (at > static_cast<size_t>(2 * most)) refuse_step(step, most, location);
+        sh[i * stride + k] = restored[at];
       });
+  }
 }
 
 }  // namespace

@@ -83,6 +83,17 @@ constexpr std::array<double, kCount> sh_shares(int steps) {
 inline constexpr auto kShBandOneShares = sh_shares<256>(kShSteps[0]);
 inline constexpr auto kShSixBitShares = sh_shares<64>(kShSteps[1]);
 
+// What restored coefficients times that are, but for rounding: their steps.
+inline double steps_a_unit(float scale, int steps) {
+  return scale == 0 ? 0 : steps / double{scale};
+}
+inline int restored_step(float coefficient, double steps_a_unit) {
+  // Of so large a number the last bit is worth one: adding rounds, without a branch on the sign.
+  constexpr double kWhole = 0x1.8p52;
+  const double rounded = coefficient * steps_a_unit + kWhole;
+  return static_cast<int>(std::bit_cast<int64_t>(rounded) - std::bit_cast<int64_t>(kWhole));
+}
+
 // sh: [k][rgb], restored with these scales before. They come back to the bit. The last word is 0.
 inline void pack_sh(const float* sh, int degree, const ShScales& scale, uint8_t* row) {
   std::memset(row, 0, sh_row_bytes(degree));
@@ -91,12 +102,14 @@ inline void pack_sh(const float* sh, int degree, const ShScales& scale, uint8_t*
     std::memcpy(row + 2 * c, &constant, sizeof constant);
   }
   if (degree == 0) return;
+  const double a_unit[] = {steps_a_unit(scale[0], kShSteps[0]), steps_a_unit(scale[1], kShSteps[1]),
+                           steps_a_unit(scale[2], kShSteps[2])};
   for (int i = 0; i < 9; ++i)
-    row[kShBandOneAt + i] = static_cast<uint8_t>(quantise_sh(sh[3 + i], scale[0], kShSteps[0]));
+    row[kShBandOneAt + i] = static_cast<uint8_t>(restored_step(sh[3 + i], a_unit[0]));
   const int first = 3 * kShBandStart[1], count = 3 * sh_coefficients(degree) - first;
   for (int i = 0; i < count; ++i) {
-    const float of = first + i < 3 * kShBandStart[2] ? scale[1] : scale[2];
-    const int step = quantise_sh(sh[first + i], of, kShSteps[1]) + kShOffset;
+    const double of = first + i < 3 * kShBandStart[2] ? a_unit[1] : a_unit[2];
+    const int step = restored_step(sh[first + i], of) + kShOffset;
     uint8_t* const at = row + kShSixBitsAt + 6 * i / 8;
     const int up = 6 * i % 8;
     at[0] = static_cast<uint8_t>(at[0] | step << up);
