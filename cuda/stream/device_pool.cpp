@@ -15,9 +15,19 @@ namespace {
 
 // Enough to keep the bus busy, and no more: what links chunks waits for those before it.
 constexpr size_t kMostPieces = 32, kLeastPieces = 4, kRingBytes = size_t{8} << 20;
+constexpr size_t kPieceBytes = size_t{256} << 10;  // unless one chunk takes more
 
-size_t pieces_of(const PoolLayout& piece) {
-  return std::clamp(kRingBytes / piece.filled_bytes(), kLeastPieces, kMostPieces);
+// Of the ring: a launch and an event for each.
+size_t chunks_a_piece(const PoolLayout& chunk) {
+  return std::clamp<size_t>(kPieceBytes / chunk.filled_bytes(), 1, PoolFill::kMostChunks);
+}
+
+size_t piece_bytes(const PoolLayout& chunk) {
+  return chunks_a_piece(chunk) * chunk.filled_bytes();
+}
+
+size_t pieces_of(const PoolLayout& chunk) {
+  return std::clamp(kRingBytes / piece_bytes(chunk), kLeastPieces, kMostPieces);
 }
 
 bool shares_memory(const Device& device) {
@@ -45,17 +55,17 @@ void check_addresses(SlotShape shape, PoolRoom room) {
 }
 
 // Of one chunk.
-PoolLayout piece_layout(const Scene& scene, SlotShape shape) {
+PoolLayout chunk_layout(const Scene& scene, SlotShape shape) {
   return {scene, shape, {1, record_blocks(shape.records)}};
 }
 
 }  // namespace
 
 PoolBytes DevicePool::bytes(const Device& device, const Scene& scene, SlotShape shape) {
-  const PoolLayout piece = piece_layout(scene, shape);
-  PoolBytes bytes = piece.pool_bytes();
+  const PoolLayout chunk = chunk_layout(scene, shape);
+  PoolBytes bytes = chunk.pool_bytes();
   if (is_coded(scene)) bytes.fixed += CodeTables::kBytes;
-  if (shares_memory(device)) bytes.fixed += pieces_of(piece) * piece.filled_bytes();
+  if (shares_memory(device)) bytes.fixed += pieces_of(chunk) * piece_bytes(chunk);
   return bytes;
 }
 
@@ -70,9 +80,9 @@ DevicePool::DevicePool(std::shared_ptr<const Device> device, const Scene& scene,
       footprints_(footprints_differ(scene)),
       blend_share_(scene.tree.blend_share),
       file_(std::move(file)),
-      piece_layout_(piece_layout(scene, shape)),
-      layout_(piece_layout_),
-      ring_(piece_layout_.filled_bytes(), pieces_of(piece_layout_)) {
+      chunk_layout_(chunk_layout(scene, shape)),
+      layout_(chunk_layout_),
+      ring_(piece_bytes(chunk_layout_), pieces_of(chunk_layout_)) {
   make_room(room);
 }
 
@@ -175,7 +185,7 @@ TreeView DevicePool::tree() const {
 // As pool_fill copies it into the slot.
 void DevicePool::pack(const StagedChunk& staged, unsigned char* into) const {
   const Chunk& chunk = staged.content;
-  const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
+  const auto at = [&](PoolArray which) { return into + chunk_layout_.begin(which); };
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const uint32_t parent = staged.parent[i], place = staged.place[i];
     const bool outside = (parent & StagedChunk::kOutside) != 0;
@@ -199,7 +209,7 @@ void DevicePool::pack(const StagedChunk& staged, unsigned char* into) const {
 
 void DevicePool::pack_codes(const StagedChunk& staged, unsigned char* into) const {
   const Chunk& chunk = staged.content;
-  const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
+  const auto at = [&](PoolArray which) { return into + chunk_layout_.begin(which); };
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const ShapeCode code = shape_code(chunk, i);
     const uint32_t place = staged.place[i];
@@ -212,7 +222,7 @@ void DevicePool::pack_codes(const StagedChunk& staged, unsigned char* into) cons
 
 void DevicePool::pack_floats(const StagedChunk& staged, unsigned char* into) const {
   const Chunk& chunk = staged.content;
-  const auto at = [&](PoolArray which) { return into + piece_layout_.begin(which); };
+  const auto at = [&](PoolArray which) { return into + chunk_layout_.begin(which); };
   const size_t floats = 3 * static_cast<size_t>(sh_coefficients(sh_degree_));
   for (size_t i = 0; i < chunk.node.size(); ++i) {
     const Gaussian g = activate(chunk.words[i], chunk.has_logit(i));
@@ -231,32 +241,34 @@ void DevicePool::pack_floats(const StagedChunk& staged, unsigned char* into) con
   }
 }
 
-PoolFill DevicePool::copies(uint32_t slot, const StagedChunk& staged,
-                            const unsigned char* from) const {
-  PoolFill fill{};
-  for (uint32_t a = 0; a < kFilledArrays; ++a) {
-    const auto which = static_cast<PoolArray>(a);
-    const size_t unit = layout_.unit(which);
-    const size_t count = which == kRecords      ? staged.records.size()
-                         : which == kNextBlocks ? staged.blocks.size()
-                         : is_one_a_slot(which) ? 1
-                                                : staged.content.node.size();
-    const size_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
-    fill.copies[a] = {from + piece_layout_.begin(which),
-                      array<unsigned char>(which) + slot * layout_.slot_bytes(which),
-                      static_cast<uint32_t>(count * unit / word), static_cast<uint32_t>(word)};
-  }
-  return fill;
-}
-
-void DevicePool::fill(uint32_t slot, const StagedChunk& chunk) {
+void DevicePool::fill(std::span<const StagedChunk* const> chunks) {
   const std::shared_ptr<void> kept = keep_context();  // the thread may be the host's
   device_->use();
   require_room();
+  const size_t most = chunks_a_piece(chunk_layout_);
+  for (; !chunks.empty(); chunks = chunks.subspan(std::min(most, chunks.size())))
+    fill_piece(chunks.first(std::min(most, chunks.size())));
+}
+
+void DevicePool::fill_piece(std::span<const StagedChunk* const> chunks) {
   const UploadRing::Piece piece = ring_.take();
-  pack(chunk, piece.host());
-  bounds_.fill(chunk);
-  launch_fill(copies(slot, chunk, piece.device()), stream_.get());
+  PoolFill fill{piece.device(), memory_.data(), chunk_layout_.filled_bytes(),
+                static_cast<uint32_t>(chunks.size()), {}, {}};
+  for (uint32_t a = 0; a < kFilledArrays; ++a) {
+    const auto which = static_cast<PoolArray>(a);
+    fill.arrays[a] = {chunk_layout_.begin(which), layout_.begin(which),
+                      static_cast<uint32_t>(layout_.slot_bytes(which)),
+                      static_cast<uint32_t>(layout_.unit(which))};
+  }
+  const auto count = [](const auto& all) { return static_cast<uint32_t>(all.size()); };
+  for (size_t c = 0; c < chunks.size(); ++c) {
+    const StagedChunk& chunk = *chunks[c];
+    pack(chunk, piece.host() + c * fill.chunk_bytes);
+    bounds_.fill(chunk);
+    fill.chunks[c] = {chunk.links.slot,
+                      {count(chunk.content.node), count(chunk.records), count(chunk.blocks), 1}};
+  }
+  launch_fill(fill, stream_.get());
   piece.read_by(stream_.get());
 }
 

@@ -35,7 +35,7 @@ class DevicePool final : public ChunkPool {
 
   // May wait for a piece of the ring, which is to say for chunks that came before it, and for the
   // frames that those wait for: throws Error(timeout), too.
-  void fill(uint32_t slot, const StagedChunk& chunk) override;
+  void fill(std::span<const StagedChunk* const> chunks) override;
   const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
   void apply(const LinkPatch& patch) override;
   void await_frames() override;
@@ -61,7 +61,7 @@ class DevicePool final : public ChunkPool {
   void pack(const StagedChunk& chunk, unsigned char* into) const;
   void pack_codes(const StagedChunk& chunk, unsigned char* into) const;
   void pack_floats(const StagedChunk& chunk, unsigned char* into) const;
-  PoolFill copies(uint32_t slot, const StagedChunk& chunk, const unsigned char* from) const;
+  void fill_piece(std::span<const StagedChunk* const> chunks);
   // With the page that stands for all that has no place.
   uint32_t place_count() const { return (pages_ + 1) * kPageSubtrees; }
   // Throws Error(over_budget) where a resize has left no memory.
@@ -78,7 +78,7 @@ class DevicePool final : public ChunkPool {
   const bool doubles_, footprints_;
   const float blend_share_;
   const std::shared_ptr<const SceneFile> file_;
-  const PoolLayout piece_layout_;  // of one chunk
+  const PoolLayout chunk_layout_;  // of one on its way
   PoolLayout layout_;
   uint32_t slots_ = 0, pages_ = 0;
   Buffer<unsigned char> memory_;

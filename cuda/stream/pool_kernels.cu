@@ -7,7 +7,7 @@ namespace voyager::cuda {
 namespace {
 
 constexpr unsigned kThreads = 256;
-// A chunk is some 8 KB in a dozen arrays: that many blocks ask for all of it at once.
+// Of what is copied for one chunk, or linked.
 constexpr unsigned kMostBlocks = 64;
 
 unsigned blocks_for(uint32_t threads) {
@@ -22,42 +22,42 @@ __device__ uint32_t stride() {
 }
 
 template <class Word>
-__device__ void copy_words(const PoolCopy& copy) {
-  const Word* from = static_cast<const Word*>(copy.from);
-  Word* to = static_cast<Word*>(copy.to);
-  for (uint32_t i = first_index(); i < copy.words; i += stride()) to[i] = from[i];
+__device__ void copy_words(const unsigned char* from, unsigned char* to, uint32_t bytes) {
+  for (uint32_t i = first_index(); i < bytes / sizeof(Word); i += stride())
+    reinterpret_cast<Word*>(to)[i] = reinterpret_cast<const Word*>(from)[i];
 }
 
 // A chunk's records go to its blocks, of which each says which is next.
-__device__ void copy_records(const PoolFill& fill) {
+__device__ void copy_records(const uint32_t* blocks, const unsigned char* from, unsigned char* to,
+                             uint32_t bytes) {
   constexpr uint32_t kWords = kRecordBlock * sizeof(SearchRecord) / sizeof(uint4);
-  const auto* blocks = static_cast<const uint32_t*>(fill.copies[kNextBlocks].from);
-  const PoolCopy& copy = fill.copies[kRecords];
-  const uint4* from = static_cast<const uint4*>(copy.from);
-  uint4* to = static_cast<uint4*>(copy.to);
-  for (uint32_t i = first_index(); i < copy.words; i += stride())
-    to[size_t{blocks[i / kWords]} * kWords + i % kWords] = from[i];
+  for (uint32_t i = first_index(); i < bytes / sizeof(uint4); i += stride())
+    reinterpret_cast<uint4*>(to)[size_t{blocks[i / kWords]} * kWords + i % kWords] =
+        reinterpret_cast<const uint4*>(from)[i];
 }
-__device__ void chain_blocks(const PoolCopy& copy) {
-  const auto* blocks = static_cast<const uint32_t*>(copy.from);
-  uint32_t* next = static_cast<uint32_t*>(copy.to);
-  for (uint32_t i = first_index(); i + 1 < copy.words; i += stride())
-    next[blocks[i]] = blocks[i + 1];
+__device__ void chain_blocks(const uint32_t* blocks, uint32_t* next, uint32_t count) {
+  for (uint32_t i = first_index(); i + 1 < count; i += stride()) next[blocks[i]] = blocks[i + 1];
 }
 
-// An array each row of thread blocks, so that none waits for another's reads.
+// An array and a chunk each row of thread blocks, so that none waits for another's reads.
 __global__ void __launch_bounds__(kThreads) pool_fill(PoolFill fill) {
-  const PoolCopy& copy = fill.copies[blockIdx.y];
+  const PoolFill::Array& array = fill.arrays[blockIdx.y];
+  const PoolFill::Chunk& chunk = fill.chunks[blockIdx.z];
+  const unsigned char* piece = fill.from + blockIdx.z * fill.chunk_bytes;
+  const unsigned char* from = piece + array.from;
+  unsigned char* to = fill.to + array.to + size_t{chunk.slot} * array.slot_bytes;
+  const uint32_t count = chunk.counts[counted_by(blockIdx.y)], bytes = count * array.unit;
+  const auto* blocks = reinterpret_cast<const uint32_t*>(piece + fill.arrays[kNextBlocks].from);
   if (blockIdx.y == kRecords)
-    copy_records(fill);
+    copy_records(blocks, from, to, bytes);
   else if (blockIdx.y == kNextBlocks)
-    chain_blocks(copy);
-  else if (copy.word_bytes == sizeof(uint4))
-    copy_words<uint4>(copy);
-  else if (copy.word_bytes == sizeof(uint32_t))
-    copy_words<uint32_t>(copy);
+    chain_blocks(blocks, reinterpret_cast<uint32_t*>(to), count);
+  else if (array.unit % sizeof(uint4) == 0)
+    copy_words<uint4>(from, to, bytes);
+  else if (array.unit % sizeof(uint32_t) == 0)
+    copy_words<uint32_t>(from, to, bytes);
   else
-    copy_words<uint8_t>(copy);
+    copy_words<uint8_t>(from, to, bytes);
 }
 
 __device__ SubtreePlaces places_of(const PoolTables& tables) {
@@ -111,10 +111,15 @@ __global__ void __launch_bounds__(kThreads)
 }  // namespace
 
 void launch_fill(const PoolFill& fill, cudaStream_t stream) {
-  uint32_t most = 0;
-  for (const PoolCopy& copy : fill.copies) most = std::max(most, copy.words);
-  launch_kernel("pool_fill", pool_fill, {dim3(blocks_for(most), kFilledArrays), kThreads, stream},
-                fill);
+  uint32_t most = 1;
+  for (uint32_t a = 0; a < kFilledArrays; ++a)
+    for (uint32_t c = 0; c < fill.chunk_count; ++c) {
+      const uint32_t unit = fill.arrays[a].unit, count = fill.chunks[c].counts[counted_by(a)];
+      const uint32_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
+      most = std::max(most, count * unit / word);
+    }
+  launch_kernel("pool_fill", pool_fill,
+                {dim3(blocks_for(most), kFilledArrays, fill.chunk_count), kThreads, stream}, fill);
 }
 
 void launch_patch(const PoolTables& tables, const PoolPatch& patch, cudaStream_t stream) {

@@ -7,14 +7,25 @@
 
 namespace voyager::cuda {
 
-// Words of 16, 4 or 1 bytes, both sides aligned to them.
-struct PoolCopy {
-  const void* from;
-  void* to;
-  uint32_t words, word_bytes;
-};
+// Chunks that are filled together. They lie one behind another, each as PoolLayout has one chunk.
 struct PoolFill {
-  PoolCopy copies[kFilledArrays];
+  static constexpr uint32_t kMostChunks = 16;
+
+  struct Array {
+    size_t from, to;      // where it begins in a chunk's memory, and in the pool's
+    uint32_t slot_bytes;  // in the pool; 0 of blocks
+    uint32_t unit;        // bytes of an element; a multiple of 16, of 4, or any
+  };
+  struct Chunk {
+    uint32_t slot;
+    uint32_t counts[kPoolCounts];
+  };
+  const unsigned char* from;
+  unsigned char* to;
+  size_t chunk_bytes;
+  uint32_t chunk_count;
+  Array arrays[kFilledArrays];
+  Chunk chunks[kMostChunks];
 };
 
 // What links chunks, to be written to.

@@ -56,9 +56,8 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
     fixed_bytes_[a] = page_bytes_[a];  // of the page that stands for all that has no place
   }
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
-    const auto which = static_cast<PoolArray>(a);
     const bool filled = a < kFilledArrays && block_bytes_[a] == 0;
-    slot_bytes_[a] = (!filled ? 0 : is_one_a_slot(which) ? 1 : shape.nodes) * unit_[a];
+    slot_bytes_[a] = (!filled ? 0 : counted_by(a) == kOnce ? 1 : shape.nodes) * unit_[a];
   }
   set_room(room);
 }

@@ -37,8 +37,12 @@ enum PoolArray : uint32_t {
   kPoolArrays
 };
 
-inline bool is_one_a_slot(PoolArray array) {
-  return array == kStepSizes || array == kSlotIds || array == kFirstSubtrees;
+// What there is of an array that a chunk brings: as many elements as it has of these.
+enum PoolCount : uint32_t { kNodes, kRecordsOwned, kBlocks, kOnce, kPoolCounts };
+constexpr PoolCount counted_by(uint32_t array) {
+  if (array == kRecords) return kRecordsOwned;
+  if (array == kNextBlocks) return kBlocks;
+  return array == kStepSizes || array == kSlotIds || array == kFirstSubtrees ? kOnce : kNodes;
 }
 
 // Of the coefficients of a streamed scene, as a resident one decides it.

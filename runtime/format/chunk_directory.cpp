@@ -91,10 +91,9 @@ ChunkEntry ChunkDirectory::at(size_t chunk) const {
 
 SubtreePlace ChunkDirectory::place(size_t chunk) const {
   if (const ChunkEntry* entry = wide(chunk)) return entry->place;
-  const Block& block = blocks_[chunk / kBlockRows];
   const Row& row = rows_[chunk];
   SubtreePlace place{{}, row.listed_children, row.listed_grandchildren};
-  for (int level = 0; level < 4; ++level) place.next[level] = block.next[level] + row.next[level];
+  for (int level = 0; level < 4; ++level) place.next[level] = next(chunk, level);
   return place;
 }
 

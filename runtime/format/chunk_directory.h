@@ -28,6 +28,12 @@ class ChunkDirectory {
   // Of its entry, at less cost.
   EntryHull hull(size_t chunk) const { return decode_bounds(rows_[chunk].hull); }
   SubtreePlace place(size_t chunk) const;
+  // place().next[level].
+  uint32_t next(size_t chunk, int level) const {
+    const Block& block = blocks_[chunk / kBlockRows];
+    if (block.wide != kPacked) return wide_[block.wide + chunk % kBlockRows].place.next[level];
+    return block.next[level] + rows_[chunk].next[level];
+  }
   uint32_t first_subtree(size_t chunk) const;
   uint32_t bytes(size_t chunk) const;
   // Whether its first subtree goes on with a root of the chunk before.

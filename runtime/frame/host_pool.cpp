@@ -35,21 +35,8 @@ class HostPool final : public ChunkPool {
     std::fill(search.pages.begin(), search.pages.end(), 0);
   }
 
-  void fill(uint32_t slot, const StagedChunk& staged) override {
-    const Chunk& chunk = staged.content;
-    const size_t base = size_t{slot} * shape_.nodes;
-    scene_.slot_ids[slot] = staged.ids;
-    if (is_coded(scene_)) scene_.sh_scales[slot] = chunk.sh_scale;
-    for (size_t i = 0; i < chunk.node.size(); ++i) {
-      const size_t at = base + staged.place[i];
-      set_gaussian(chunk, i, at, scene_);
-      if (scene_.search.leaves_have_extent) scene_.tree.records[at] = chunk.record_of(i);
-      if (counts_children(scene_)) scene_.child_count[at] = chunk.record_of(i).child_count;
-    }
-    for (uint32_t i = 0; i < staged.records.size(); ++i)
-      scene_.search.records[staged.record(i)] = staged.records[i];
-    const std::vector<uint32_t>& blocks = staged.blocks;
-    for (size_t i = 1; i < blocks.size(); ++i) scene_.search.next_block[blocks[i - 1]] = blocks[i];
+  void fill(std::span<const StagedChunk* const> chunks) override {
+    for (const StagedChunk* chunk : chunks) fill(*chunk);
   }
 
   const BoundsCode& bounds(uint32_t record) const override {
@@ -79,6 +66,24 @@ class HostPool final : public ChunkPool {
   }
 
  private:
+  void fill(const StagedChunk& staged) {
+    const Chunk& chunk = staged.content;
+    const uint32_t slot = staged.links.slot;
+    const size_t base = size_t{slot} * shape_.nodes;
+    scene_.slot_ids[slot] = staged.ids;
+    if (is_coded(scene_)) scene_.sh_scales[slot] = chunk.sh_scale;
+    for (size_t i = 0; i < chunk.node.size(); ++i) {
+      const size_t at = base + staged.place[i];
+      set_gaussian(chunk, i, at, scene_);
+      if (scene_.search.leaves_have_extent) scene_.tree.records[at] = chunk.record_of(i);
+      if (counts_children(scene_)) scene_.child_count[at] = chunk.record_of(i).child_count;
+    }
+    for (uint32_t i = 0; i < staged.records.size(); ++i)
+      scene_.search.records[staged.record(i)] = staged.records[i];
+    const std::vector<uint32_t>& blocks = staged.blocks;
+    for (size_t i = 1; i < blocks.size(); ++i) scene_.search.next_block[blocks[i - 1]] = blocks[i];
+  }
+
   // Beside the first page, which is that of all that have none.
   static size_t places_of(PoolRoom room) { return (size_t{room.pages} + 1) * kPageSubtrees; }
 

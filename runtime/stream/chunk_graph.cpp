@@ -27,7 +27,7 @@ ChunkGraph::ChunkGraph(const ChunkDirectory& chunks, const Tiers& tiers)
 }
 
 ChunkRange ChunkGraph::find_children(uint32_t chunk, uint32_t near) const {
-  const uint32_t below = chunks_->place(chunk).next[3], after = place_after(chunk).next[3];
+  const uint32_t below = chunks_->next(chunk, 3), after = next_after(chunk, 3);
   if (below == after) return {0, 0};
   const uint32_t first =
       first_near(near, size(), [&](uint32_t other) { return last_root(other) >= below; });
@@ -46,8 +46,9 @@ ChunkRange ChunkGraph::among_parents(uint32_t chunk, ChunkRange near) const {
   return {std::min(begin, end), end};
 }
 
-SubtreePlace ChunkGraph::place_after(uint32_t chunk) const {
-  return chunk + 1 < size() ? chunks_->place(chunk + 1) : SubtreePlace::end_of(tiers_);
+uint32_t ChunkGraph::next_after(uint32_t chunk, int level) const {
+  if (chunk + 1 < size()) return chunks_->next(chunk + 1, level);
+  return SubtreePlace::end_of(tiers_).next[level];
 }
 
 uint32_t ChunkGraph::tier_of(uint32_t subtree) const {
@@ -58,31 +59,32 @@ uint32_t ChunkGraph::tier_of(uint32_t subtree) const {
 
 // Repeated or not.
 uint32_t ChunkGraph::first_root(uint32_t chunk) const {
-  const SubtreePlace place = chunks_->place(chunk);
-  return place.next[0] - (place.listed_children != 0 ? 1 : 0);
+  return chunks_->next(chunk, 0) - (chunks_->goes_on_with_root(chunk) ? 1 : 0);
 }
 
 uint32_t ChunkGraph::last_root(uint32_t chunk) const {
   const uint32_t end =
       chunk + 1 < size() ? chunks_->first_subtree(chunk + 1) : tiers_.tier_begin.back();
   const uint32_t tier = tier_of(end - 1);
-  if (chunk + 1 < size() && tier_of(end) == tier) return place_after(chunk).next[0] - 1;
+  if (chunk + 1 < size() && tier_of(end) == tier) return next_after(chunk, 0) - 1;
   const uint32_t level = tier == 0 ? 0 : tiers_.first_tier_levels + (tier - 1) * kTierLevels;
   return tiers_.level_begin[level + 1] - 1;
 }
 
 // next[3] ascends over all chunks; a chunk that nothing hangs from has its successor's.
 bool ChunkGraph::leads_beyond(uint32_t chunk, uint32_t root) const {
-  return chunks_->place(chunk).next[3] > root;
+  return chunks_->next(chunk, 3) > root;
 }
 
-uint32_t ChunkGraph::owner_of_parent(uint32_t root) const {
-  const uint32_t after =
-      first_that(0u, size(), [&](uint32_t chunk) { return leads_beyond(chunk, root); });
-  return after == 0 ? 0 : after - 1;
+// What owns it is among the parents, or the chunk itself.
+uint32_t ChunkGraph::owner_of_parent(uint32_t chunk, uint32_t root) const {
+  const ChunkRange among = parents_[chunk];
+  const auto leads = [&](uint32_t other) { return leads_beyond(other, root); };
+  if (among.empty() || !leads(among.last)) return chunk;
+  return first_that(among.first + 1, among.last, leads) - 1;
 }
 
-// The same, sought from a chunk that is probably near.
+// Of any chunk's root, sought from a chunk that is probably near.
 uint32_t ChunkGraph::owner_near(uint32_t root, uint32_t near) const {
   const uint32_t after =
       first_near(near, size(), [&](uint32_t chunk) { return leads_beyond(chunk, root); });
@@ -94,6 +96,10 @@ ChunkRange ChunkGraph::with_roots(uint32_t first, uint32_t count, ChunkRange amo
                                     [&](uint32_t chunk) { return last_root(chunk) >= first; });
   return {begin, first_that(begin, among.last,
                             [&](uint32_t chunk) { return first_root(chunk) >= first + count; })};
+}
+
+bool ChunkGraph::leads_to_itself(uint32_t chunk) const {
+  return children_.is_empty(chunk) || last_root(chunk) >= chunks_->next(chunk, 3);
 }
 
 ChunkRange ChunkGraph::with_family(uint32_t chunk, uint32_t first, uint32_t count) const {

@@ -75,10 +75,13 @@ class ChunkGraph {
   }
   // The same of the children of a node that `chunk` owns. Costs by how many chunks it leads to.
   ChunkRange with_family(uint32_t chunk, uint32_t first, uint32_t count) const;
+  // Whether some of what hangs from a chunk may be in that chunk.
+  bool leads_to_itself(uint32_t chunk) const;
   // Where the first subtree of a chunk repeats a child, that one.
-  uint32_t repeated_child(uint32_t chunk) const { return chunks_->place(chunk).next[1] - 1; }
-  // The chunk that owns the parent of a root, which is not the tree's.
-  uint32_t owner_of_parent(uint32_t root) const;
+  uint32_t repeated_child(uint32_t chunk) const { return chunks_->next(chunk, 1) - 1; }
+  // The chunk that owns the parent of a root of `chunk`, which is not the tree's. Costs by how many
+  // parents that has.
+  uint32_t owner_of_parent(uint32_t chunk, uint32_t root) const;
 
  private:
   ChunkRange with_roots(uint32_t first, uint32_t count, ChunkRange among) const;
@@ -88,7 +91,7 @@ class ChunkGraph {
   bool leads_beyond(uint32_t chunk, uint32_t root) const;
   uint32_t first_root(uint32_t chunk) const;
   uint32_t last_root(uint32_t chunk) const;
-  SubtreePlace place_after(uint32_t chunk) const;
+  uint32_t next_after(uint32_t chunk, int level) const;
   uint32_t tier_of(uint32_t subtree) const;
 
   const ChunkDirectory* chunks_;

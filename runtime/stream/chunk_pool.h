@@ -1,5 +1,7 @@
 #pragma once
 // Where the chunks of a scene lie that are resident: on the host, or on a device.
+#include <span>
+
 #include "runtime/stream/link_patch.h"
 #include "runtime/stream/staged_chunk.h"
 
@@ -42,9 +44,10 @@ class PoolReaderState {
 class ChunkPool {
  public:
   virtual ~ChunkPool() = default;
-  // Slots that no frame reads, and blocks that none reads, which the chunk names; several threads
-  // at once, each a slot of its own. Throws Error where the pool itself is at fault.
-  virtual void fill(uint32_t slot, const StagedChunk& chunk) = 0;
+  // Slots that no frame reads, and blocks that none reads, which each of the chunks names; several
+  // threads at once, each slots of its own. Throws Error where the pool itself is at fault; then
+  // none of them is filled.
+  virtual void fill(std::span<const StagedChunk* const> chunks) = 0;
   // Of a search record of a chunk that was filled, as searches read it.
   virtual const BoundsCode& bounds(uint32_t record) const = 0;
   // Between two frames: what was filled before and is linked now is there for the next one.

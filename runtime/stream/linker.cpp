@@ -43,17 +43,18 @@ constexpr auto kIsLater = [](const auto& a, const auto& b) {
 
 }  // namespace
 
-// Goes through the nodes of one chunk after another.
+// What the roots of one chunk hang from: goes through the nodes of one chunk after another.
 class Linker::Parents {
  public:
-  // own: a chunk that is not held yet, or null.
-  Parents(const Linker& linker, const StagedChunk* own) : linker_(linker), own_(own) {}
+  // own: the chunk, where it is not held yet, or null.
+  Parents(const Linker& linker, uint32_t below, const StagedChunk* own)
+      : linker_(linker), below_(below), own_(own) {}
 
   // Null: the chunk that should lead to it does not.
-  const Family* of(uint32_t root) {
+  const Parent* of(uint32_t root) {
     if (found_ && root < found_->end()) return &*found_;
     found_.reset();
-    const uint32_t chunk = linker_.graph_->owner_of_parent(root);
+    const uint32_t chunk = linker_.graph_->owner_of_parent(below_, root);
     if (!walk_ || chunk != walk_->chunk)
       walk_.emplace(own_ != nullptr && chunk == own_->chunk ? linker_.walk(*own_)
                                                             : linker_.walk(chunk));
@@ -62,16 +63,17 @@ class Linker::Parents {
     if (at.at_end()) return nullptr;
     at.each_below([&](const NodeBelow& node) {
       if (node.first_child <= root && root - node.first_child < node.child_count)
-        found_ = Family{chunk, at.index(), walk_->records(node.record), node};
+        found_ = Parent{chunk, at.index(), walk_->records(node.record), node};
     });
     return found_ ? &*found_ : nullptr;
   }
 
  private:
   const Linker& linker_;
+  const uint32_t below_;
   const StagedChunk* own_;
   std::optional<Walk> walk_;
-  std::optional<Family> found_;
+  std::optional<Parent> found_;
 };
 
 // Goes through the subtrees of one chunk after another, so that all families of a chunk together
@@ -133,12 +135,13 @@ void Linker::set_records(Walk& walk, SearchSubtree& subtree) const {
   }
 }
 
-ChunkRange Linker::chunks_of(const Family& family) const {
-  return graph_->with_family(family.chunk, family.node.first_child, family.node.child_count);
+Linker::Family Linker::family(const Parent& parent) const {
+  const NodeBelow& node = parent.node;
+  return {parent, graph_->with_family(parent.chunk, node.first_child, node.child_count)};
 }
 
 bool Linker::complete(const Family& family) const {
-  const ChunkRange range = chunks_of(family);
+  const ChunkRange range = family.chunks;
   for (uint32_t chunk = range.last; chunk-- > range.first;)  // the last comes last
     if (!holds(chunk)) return false;
   return true;
@@ -147,7 +150,7 @@ bool Linker::complete(const Family& family) const {
 // Roots ascend in a tier, and those of a later tier are greater.
 template <class Visit>
 void Linker::each_subtree(const Family& family, Roots& roots, const Visit& visit) const {
-  const ChunkRange range = chunks_of(family);
+  const ChunkRange range = family.chunks;
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     if (!holds(chunk)) continue;
     Walk walk = roots.of(chunk, family.node.first_child);
@@ -155,8 +158,8 @@ void Linker::each_subtree(const Family& family, Roots& roots, const Visit& visit
   }
 }
 
-void Linker::add_work(const Family& family) {
-  work_.push_back(family);
+void Linker::add_work(const Parent& parent) {
+  work_.push_back(family(parent));
   std::push_heap(work_.begin(), work_.end(), kIsLater);
 }
 
@@ -167,34 +170,37 @@ Linker::Family Linker::take_work() {
   return family;
 }
 
-void Linker::add_below(Walk& walk) {
-  walk.at.each_below([&](const NodeBelow& node) {
-    add_work({walk.chunk, walk.at.index(), walk.records(node.record), node});
-  });
+// False: no family that hangs from the chunk is there.
+bool Linker::may_lead_on(uint32_t chunk) const {
+  const ChunkRange children = graph_->children(chunk);
+  if (graph_->leads_to_itself(chunk)) return true;
+  for (uint32_t child = children.first; child < children.last; ++child)
+    if (holds(child)) return true;
+  return false;
 }
 
 // Those that the chunk's subtrees belong to, each once.
 void Linker::add_families_of(uint32_t chunk) {
-  Parents parents(*this, nullptr);
+  Parents parents(*this, chunk, nullptr);
   uint32_t done = 1;  // roots before this; the tree's has no parent
   for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next()) {
     if (at.root() < done) continue;
-    const Family& family = *parents.of(at.root());
-    done = family.end();
-    add_work(family);
+    const Parent& parent = *parents.of(at.root());
+    done = parent.end();
+    add_work(parent);
   }
 }
 
 void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool,
                          const std::string& file) const {
-  Parents parents(*this, &chunk);
+  Parents parents(*this, chunk.chunk, &chunk);
   const NodeRecord* record = chunk.roots.data();  // of the subtree's first root
   for (LinkWalk at = walk(chunk).at; !at.at_end(); record += at.root_count(), at.next()) {
     if (at.root() == 0) continue;
-    const Family* family = parents.of(at.root());
-    if (family == nullptr || at.root_count() > family->end() - at.root())
+    const Parent* parent = parents.of(at.root());
+    if (parent == nullptr || at.root_count() > parent->end() - at.root())
       refuse_roots(chunk.chunk, at.root(), file);
-    const NodeBounds bounds = decode_bounds(pool.bounds(family->record));
+    const NodeBounds bounds = decode_bounds(pool.bounds(parent->record));
     for (uint32_t i = 0; i < at.root_count(); ++i)
       if (!is_inside(record[i], bounds)) refuse_nesting(chunk.chunk, at.root() + i, file);
   }
@@ -219,6 +225,7 @@ void Linker::check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPo
 
 void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const {
   const Walk own = walk(chunk);
+  const auto repeats = [](const Walk& of) { return of.at.repeats_root(); };
   if (own.at.root() == 0 && chunk.chunk > 0 && !holds(chunk.chunk - 1))
     refuse_gap(chunk.chunk, file);
   check_roots(chunk, pool, file);
@@ -228,9 +235,9 @@ void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::s
     return last;
   };
   const uint32_t before = chunk.chunk - 1, after = chunk.chunk + 1;
-  if (chunk.chunk > 0 && holds(before))
+  if (chunk.chunk > 0 && repeats(own) && holds(before))
     check_repeat(chunk.chunk, last_of(walk(before)), own, pool, file);
-  if (after < graph_->size() && holds(after))
+  if (after < graph_->size() && holds(after) && repeats(walk(after)))
     check_repeat(chunk.chunk, last_of(own), walk(after), pool, file);
 }
 
@@ -322,7 +329,8 @@ void Linker::link(LinkPatch& patch) {
     const uint32_t parent = table.slot * shape_.nodes + family.node.place;
     --most_cut_;
     Addresses addresses(shape_);
-    uint32_t first_below = kLowest;
+    uint32_t first_below = kLowest, asked = kNoNode;
+    bool leads_on = false;
     each_subtree(family, roots, [&](Walk& walk) {
       const LinkWalk& at = walk.at;
       LinkTable& of = tables_.know(walk.chunk);
@@ -333,7 +341,11 @@ void Linker::link(LinkPatch& patch) {
       of.set_leads_to(at.index(), true);
       patch.outside.push_back(outside_of(at, linked, parent));
       patch.linked.emplace_back(at.subtree(), linked);
-      add_below(walk);
+      if (std::exchange(asked, walk.chunk) != walk.chunk) leads_on = may_lead_on(walk.chunk);
+      if (!leads_on) return;
+      at.each_below([&](const NodeBelow& node) {
+        add_work({walk.chunk, at.index(), walk.records(node.record), node});
+      });
     });
     patch.tied.records.push_back({family.record, kLowest | first_below});
     patch.tied.changed.push_back(table.first_subtree + family.subtree);
@@ -357,7 +369,10 @@ void Linker::unlink(LinkPatch& patch) {
       tables_.know(walk.chunk).set_leads_to(walk.at.index(), false);
       most_cut_ -= walk.at.ends();
       patch.unlinked.push_back(walk.at.subtree());
-      add_below(walk);
+      walk.at.each_below([&](const NodeBelow& node) {
+        if (!refused_.empty() || tables_[walk.chunk].leads_on(node.index))
+          add_work({walk.chunk, walk.at.index(), walk.records(node.record), node});
+      });
     });
   }
 }

@@ -37,7 +37,7 @@ class Linker {
   template <class Such>
   bool refuses(const Such& such) const {
     return std::any_of(refused_.begin(), refused_.end(), [&](const Refused& refused) {
-      const ChunkRange range = chunks_of(refused.family);
+      const ChunkRange range = refused.family.chunks;
       for (uint32_t chunk = range.first; chunk < range.last; ++chunk)
         if (such(chunk)) return true;
       return false;
@@ -57,20 +57,28 @@ class Linker {
   // Behind all that goes and comes in a patch: what has room in a cut now, and had none.
   void link_refused(LinkPatch& patch);
 
-  // What hangs from each node of a chunk that is held, on a tier's lowest level: visit(NodeBelow).
+  // Where the families are that hang from a chunk that is held, of those that lie in several
+  // chunks: visit(ChunkRange).
   template <class Visit>
-  void each_below(uint32_t chunk, const Visit& visit) const {
-    for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next()) at.each_below(visit);
+  void each_divided_family(uint32_t chunk, const Visit& visit) const {
+    for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next())
+      at.each_below([&](const NodeBelow& node) {
+        const ChunkRange range = graph_->with_family(chunk, node.first_child, node.child_count);
+        if (range.last - range.first > 1) visit(range);
+      });
   }
 
  private:
-  // The children of a node of a tier's lowest level.
-  struct Family {
-    uint32_t chunk, subtree;  // of the node; an index in the chunk
-    uint32_t record;          // the node's address
+  // A node of a tier's lowest level, with its children's subtrees: a family.
+  struct Parent {
+    uint32_t chunk, subtree;  // an index in the chunk
+    uint32_t record;          // its address
     NodeBelow node;
 
     uint32_t end() const { return node.first_child + node.child_count; }
+  };
+  struct Family : Parent {
+    ChunkRange chunks;  // that it lies in
   };
   // One that is all there, and that a linked subtree would lead to if a cut had room for it.
   struct Refused {
@@ -110,7 +118,7 @@ class Linker {
     LinkWalk at;
     Records records;
   };
-  // Finds the family of a root. Roots that ascend go through a chunk once.
+  // Finds what a root hangs from. Roots that ascend go through a chunk once.
   class Parents;
   // Finds a root in a chunk. Roots that ascend go through it once.
   class Roots;
@@ -121,14 +129,14 @@ class Linker {
   void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const;
   void check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
                     const std::string& file) const;
-  ChunkRange chunks_of(const Family& family) const;
+  Family family(const Parent& parent) const;
   bool complete(const Family& family) const;
   // Each subtree of the family in turn: visit(walk at it).
   template <class Visit>
   void each_subtree(const Family& family, Roots& roots, const Visit& visit) const;
-  void add_work(const Family& family);
+  void add_work(const Parent& parent);
   Family take_work();
-  void add_below(Walk& walk);
+  bool may_lead_on(uint32_t chunk) const;
   void add_families_of(uint32_t chunk);
   void link(LinkPatch& patch);
   void unlink(LinkPatch& patch);

@@ -200,9 +200,9 @@ void Residency::retry(uint32_t chunk) {
   if (known(chunk).state == State::failed) know(chunk).state = State::absent;
 }
 
-bool Residency::parents_there(uint32_t chunk) const {
+bool Residency::parents_arrive(uint32_t chunk) const {
   for (const uint32_t p : graph_->parents(chunk))
-    if (known(p).state != State::resident) return false;
+    if (known(p).state != State::resident && known(p).state != State::arriving) return false;
   return true;
 }
 
@@ -216,11 +216,12 @@ void Residency::drop_waiting() {
   });
 }
 
-Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accept) {
+Residency::Arrivals Residency::begin_arrivals(size_t most) {
   Arrivals out;
   std::vector<uint32_t> next = std::exchange(filled_, {});
   std::sort(next.begin(), next.end());
-  for (size_t i = 0; i < next.size(); ++i) {
+  size_t i = 0;
+  for (; i < next.size() && out.arriving.size() < most; ++i) {
     const uint32_t chunk = next[i];
     if (known(chunk).state != State::filled) continue;  // came after its parent as well
     if (!is_wanted(chunk)) {
@@ -228,28 +229,35 @@ Residency::Arrivals Residency::arrive(const std::function<bool(uint32_t)>& accep
       out.given_up.push_back(chunk);
       continue;
     }
-    if (!parents_there(chunk)) {
+    if (!parents_arrive(chunk)) {
       waiting_.push_back(chunk);
       continue;
     }
-    if (!accept(chunk)) {
-      give_up(chunk, State::failed);
-      out.given_up.push_back(chunk);
-      continue;
-    }
-    know(chunk).state = State::resident;
-    count_missing(chunk, false);
-    ++resident_;
-    ++counters_.arrived;
-    counters_.late += missed_[chunk];
-    missed_[chunk] = false;
+    know(chunk).state = State::arriving;
     const ChunkRange children = graph_->children(chunk);
-    for (const uint32_t p : graph_->parents(chunk)) ++know(p).children_there;
     for (uint32_t c = children.first; c < children.last; ++c)
       if (known(c).state == State::filled) next.push_back(c);
-    out.resident.push_back(chunk);
+    out.arriving.push_back(chunk);
   }
+  filled_.assign(next.begin() + static_cast<std::ptrdiff_t>(i), next.end());
   return out;
+}
+
+void Residency::end_arrival(uint32_t chunk, Arrival how) {
+  assert(known(chunk).state == State::arriving);
+  if (how == Arrival::failed) return give_up(chunk, State::failed);
+  if (how == Arrival::waiting) {
+    know(chunk).state = State::filled;
+    waiting_.push_back(chunk);
+    return;
+  }
+  know(chunk).state = State::resident;
+  count_missing(chunk, false);
+  ++resident_;
+  ++counters_.arrived;
+  counters_.late += missed_[chunk];
+  missed_[chunk] = false;
+  for (const uint32_t p : graph_->parents(chunk)) ++know(p).children_there;
 }
 
 // By what is coming, and by the most urgent requests.
@@ -264,19 +272,26 @@ bool Residency::is_short(const Wanted& wanted) const {
   return free_slots_.size() < wanted.slots || free_blocks_.size() < wanted.blocks;
 }
 
-bool Residency::has_changes() const {
-  return !filled_.empty() || has_leftovers() ||
-         (!victims_.empty() && is_short(wanted(std::min(requests_.size(), kRoomAhead))));
+size_t Residency::changes() const {
+  const size_t others = filled_.size() + (has_leftovers() ? leftovers_.size() : 0);
+  if (victims_.empty()) return others;
+  const Wanted ahead = wanted(std::min(requests_.size(), kRoomAhead));
+  if (!is_short(ahead)) return others;
+  const auto missing = [](uint64_t of, uint64_t found) { return of - std::min(of, found); };
+  const uint64_t for_blocks =
+      missing(ahead.blocks, free_blocks_.size()) * ahead.slots / std::max<uint64_t>(ahead.blocks, 1);
+  const uint64_t goes = std::max(missing(ahead.slots, free_slots_.size()), for_blocks);
+  return others + std::clamp<size_t>(goes, 1, victims_.size());
 }
 
-std::vector<Residency::Evicted> Residency::evict() {
+std::vector<Residency::Evicted> Residency::evict(size_t most) {
   std::vector<Evicted> evicted;
   Wanted still = wanted(std::min(requests_.size(), kRoomAhead));
   const auto may_go = [&](uint32_t chunk) {
     return known(chunk).state == State::resident && !is_wanted(chunk) &&
            known(chunk).children_there == 0;
   };
-  while (!victims_.empty() && is_short(still)) {
+  while (evicted.size() < most && !victims_.empty() && is_short(still)) {
     const uint32_t chunk = victims_.back();
     victims_.pop_back();
     if (!may_go(chunk)) continue;
@@ -284,7 +299,7 @@ std::vector<Residency::Evicted> Residency::evict() {
     still.blocks -= std::min<uint64_t>(still.blocks, known(chunk).blocks);
     remove(chunk, evicted);
   }
-  while (has_leftovers()) {
+  while (evicted.size() < most && has_leftovers()) {
     const uint32_t chunk = leftovers_.back();
     leftovers_.pop_back();
     if (may_go(chunk)) remove(chunk, evicted);

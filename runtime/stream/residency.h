@@ -15,7 +15,7 @@
 // is read. The target takes no more of them than there are: what is not known yet counts as
 // nothing, and where it proves to be too much the least urgent are left out (overfull()).
 //
-//     absent -> on its way -> read -> filled -> resident -> absent
+//     absent -> on its way -> read -> filled -> arriving -> resident -> absent
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -90,25 +90,26 @@ class Residency {
   void failed(uint32_t chunk);
   void retry(uint32_t chunk);
 
-  // Filled chunks that become resident, parents before children; those that accept(chunk)
-  // refuses have failed. Costs by what has been filled, and has arrived, since the last time.
+  // Filled chunks that may become resident, parents before children, at most `most`; and those that
+  // nobody wants any more. Costs by what has been filled, and has arrived, since the last time.
   struct Arrivals {
-    std::vector<uint32_t> resident, given_up;
+    std::vector<uint32_t> arriving, given_up;
   };
-  Arrivals arrive(const std::function<bool(uint32_t)>& accept);
+  Arrivals begin_arrivals(size_t most);
+  // What has become of each of them, in their order. Before that nothing is planned.
+  enum class Arrival : uint8_t { resident, failed, waiting };  // waiting: a parent has failed
+  void end_arrival(uint32_t chunk, Arrival how);
   struct Evicted {
     uint32_t chunk, slot, first_block;
   };
-  // Residents that make room for what is to come, children before parents. That is taken
-  // again only after free(): when no frame reads it any more.
-  std::vector<Evicted> evict();
+  // Residents that make room for what is to come, children before parents, at most `most`. That is
+  // taken again only after free(): when no frame reads it any more.
+  std::vector<Evicted> evict(size_t most);
   // Whether evict() has something to do once the target is there: what is needed and has no room.
   bool has_leftovers() const;
   void free(const Evicted& evicted);
-  // Whether arrive() or evict() has something to do.
-  bool has_changes() const;
-  // How many chunks arrive() has to do with.
-  size_t filled_count() const { return filled_.size(); }
+  // How many chunks begin_arrivals() and evict() have to do with, or a few more.
+  size_t changes() const;
   // The target takes more blocks than there are, which the next plan does something about.
   bool overfull() const { return target_blocks_ > room_.blocks; }
 
@@ -144,7 +145,7 @@ class Residency {
   static constexpr uint8_t kSeen = 2;
   static constexpr uint32_t kMany = 0xff;
 
-  enum class State : uint8_t { absent, on_its_way, read, filled, resident, failed };
+  enum class State : uint8_t { absent, on_its_way, read, filled, arriving, resident, failed };
   // Of a chunk that is not absent, or that the last plan needed or might have needed.
   struct Known {
     State state = State::absent;
@@ -219,7 +220,7 @@ class Residency {
   void drop_waiting();
   void list_leftovers(bool cuts_are_full);
   void remove(uint32_t chunk, std::vector<Evicted>& evicted);
-  bool parents_there(uint32_t chunk) const;
+  bool parents_arrive(uint32_t chunk) const;
   void count_missing(uint32_t chunk, bool missing);
   void give_up(uint32_t chunk, State now);
   void drop(uint32_t chunk);
@@ -247,7 +248,7 @@ class Residency {
   std::vector<uint32_t> requests_, victims_;  // the first to go last
   ShownChunks shown_;                         // of all viewers
   std::vector<uint32_t> leftovers_;           // the same, and not because room is short
-  std::vector<uint32_t> filled_;              // since the last arrivals
+  std::vector<uint32_t> filled_;              // and not looked at by begin_arrivals()
   std::vector<uint32_t> waiting_;  // all that are filled before their parents are there, and others
   std::vector<uint32_t> free_slots_;
   std::vector<uint32_t> free_blocks_;  // a heap, the least first

@@ -95,7 +95,9 @@ double SceneStream::next_due() const {
   const std::lock_guard small(small_mutex_);
   if (!(look_again_ && !planning_) && !told_) return wait;  // whoever plans wakes the others
   const auto rest = next_plan_ - std::chrono::steady_clock::now();
-  const double plan = std::max(0.0, std::chrono::duration<double>(rest).count());
+  constexpr double kLinking = 1e-3;  // it takes one or two, and then wakes nobody
+  const double plan =
+      std::max(linking_ ? kLinking : 0.0, std::chrono::duration<double>(rest).count());
   return wait < 0 ? plan : std::min(wait, plan);
 }
 
@@ -159,7 +161,8 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
         damage[chunk] = error;
         continue;
       }
-      pool_.fill(staged.links.slot, staged);
+      const StagedChunk* const one = &staged;
+      pool_.fill({&one, 1});
       staged.drop_content();
     }
   });
@@ -168,7 +171,7 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
       fail(chunk, *damage[chunk]);
     else
       residency_.filled(chunk);
-  commit_all();
+  commit_all(kAllChunks, nullptr);
   for (uint32_t chunk = 0; chunk < residency_.pinned(); ++chunk)
     if (!residency_.is_resident(chunk)) failures_.rethrow(chunk);
 }

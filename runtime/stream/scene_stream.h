@@ -138,6 +138,8 @@ class SceneStream {
  private:
   using Lock = std::unique_lock<std::mutex>;
   static constexpr size_t kChangesKept = 64;
+  // How many chunks a commit links at most, and unlinks: in two milliseconds; whatever it takes.
+  static constexpr size_t kFewChunks = 64, kAllChunks = SIZE_MAX;
 
   // Read, and not resident yet.
   struct Coming {
@@ -159,17 +161,24 @@ class SceneStream {
   bool fill_some(Lock& lock);
   bool read_some(Lock& lock);
   void stage(ChunkRange range, std::span<const std::byte> stored, Lock& lock);
-  void add_ready(uint32_t chunk, StagedChunk&& staged);
+  StagedChunk* add_coming(uint32_t chunk, StagedChunk&& staged);
+  StagedChunk* put(uint32_t chunk);
+  void fill(const std::vector<StagedChunk*>& some, Lock& lock);
   void put_first(uint32_t count, std::span<const std::byte> stored, Workers& workers);
   void fail(uint32_t chunk, const std::exception& error);
   void fail(uint32_t chunk, const std::exception_ptr& failure);
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
   void look_again();
-  void commit_between_frames();
-  void commit_if_free();
-  void commit_all();
-  void commit_changes();
+  bool commit_between_frames();
+  struct Commit;
+  void commit_if_free(size_t most);
+  void commit_all(size_t most, Lock* lock);
+  void commit_changes(size_t most, Lock* lock);
+  Commit begin_commit(size_t most);
+  void link(Commit& commit);
+  void end_commit(const Commit& commit);
+  void note_changes();
   std::shared_ptr<const StreamChange> change_of(const LinkPatch& patch) const;
   std::optional<SubtreePages> no_pages(PoolRoom room) const;
   void lose(std::exception_ptr what) noexcept;
@@ -177,9 +186,7 @@ class SceneStream {
   void rebuild();
   std::unique_lock<std::shared_mutex> hold_alone() const;
   void apply(const LinkPatch& patch);
-  bool accept(uint32_t chunk, LinkPatch& patch);
-  void learn_families(uint32_t chunk);
-  void place_subtrees(const ChunkEntry& chunk);
+  void place_subtrees(const ChunkEntry& chunk, std::vector<uint32_t>& moved_pages);
   void change_room(PoolRoom room, uint32_t pinned, Workers& workers);
   template <class Change>
   void change_bytes(PoolRoom room, size_t states, const Change& change);
@@ -225,9 +232,10 @@ class SceneStream {
   mutable std::mutex door_;
   mutable std::shared_mutex pool_mutex_;
   std::atomic<bool> commit_due_{false}, shown_wanted_{false};
-  std::atomic<size_t> filled_count_{0};      // chunks for the next commit
+  std::atomic<size_t> changes_due_{0};       // chunks for the next commit
   std::atomic<unsigned> between_frames_{0};  // commits since the last frame
-  std::atomic<double> put_off_{-1};  // since when a commit is due; negative: none was put off
+  std::atomic<double> last_frame_{0};  // when it committed
+  std::atomic<double> put_off_{-1};    // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0, departures_ = 0;
   // What kept the pool from being what is linked. Changed under both locks, read under either.
@@ -252,10 +260,13 @@ class SceneStream {
   std::mutex mutex_;
   ChunkLooks looks_;       // also without the lock, by the thread that has set planning_
   bool planning_ = false;  // a thread looks at chunks without the lock; no other may plan
+  // A commit links without the lock, but with the pool held alone; no one may plan, and no one else
+  // touches linker_, pages_ or what the commit has taken of coming_.
+  bool linking_ = false;
+  std::condition_variable linked_;
   Residency residency_;
   Linker linker_;
   std::optional<SubtreePages> pages_;  // where the pool's tables are by page
-  std::vector<uint32_t> moved_pages_;  // of the commit that is being made
   std::map<uint32_t, Coming> coming_;  // by chunk
   std::deque<uint32_t> ready_;         // those of them without a slot
   uint64_t staged_bytes_ = 0;

@@ -1,4 +1,4 @@
-// What a frame does: it says where it looks, and links what has come.
+// What a frame does: it says where it looks, holds the pool, and may wait.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -52,157 +52,6 @@ std::shared_lock<std::shared_mutex> SceneStream::hold() const {
   }
   if (unsound_) std::rethrow_exception(unsound_);
   return lock;
-}
-
-// Where views draw by turns there is always one that holds the pool.
-void SceneStream::commit() {
-  constexpr double kPutOff = 0.1;  // seconds
-  between_frames_ = 0;
-  if (!commit_due_) return;
-  std::unique_lock pool(pool_mutex_, std::try_to_lock);
-  if (!pool.owns_lock()) {
-    const double since = put_off_;
-    if (since < 0) put_off_ = now();
-    if (since < 0 || now() < since + kPutOff) return;
-    pool = hold_alone();
-  }
-  commit_if_free();
-}
-
-// So that a frame finds few chunks to link, while many come. Each time without a frame it takes
-// twice as many: a view that draws seldom can follow few changes.
-void SceneStream::commit_between_frames() {
-  constexpr size_t kEnough = 32;
-  constexpr unsigned kMostDoublings = 16;
-  if (filled_count_ < kEnough << std::min(between_frames_.load(), kMostDoublings)) return;
-  const std::unique_lock pool(pool_mutex_, std::try_to_lock);
-  if (!pool.owns_lock()) return;
-  ++between_frames_;
-  commit_if_free();
-}
-
-// The pool is held alone.
-void SceneStream::commit_if_free() {
-  const Lock lock(mutex_, std::try_to_lock);
-  if (!lock.owns_lock() || lost_) return;
-  try {
-    commit_all();
-  } catch (...) {
-    lose(std::current_exception());
-  }
-}
-
-void SceneStream::apply(const LinkPatch& patch) {
-  try {
-    pool_.apply(patch);
-  } catch (...) {
-    unsound_ = std::current_exception();
-    lose(unsound_);
-    throw;
-  }
-}
-
-// What it throws leaves the pool as it is, and what is known of it, or unsound.
-void SceneStream::commit_all() {
-  commit_changes();
-  // What has come may be the last that leftovers waited for. Another patch, since what that links
-  // they may unlink.
-  if (residency_.has_leftovers()) commit_changes();
-}
-
-void SceneStream::commit_changes() {
-  LinkPatch patch;
-  const bool lacked = linker_.lacks_room_for_cut();
-  moved_pages_.clear();
-  put_off_ = -1;
-  commit_due_ = false;
-  filled_count_ = 0;
-  const std::vector<Residency::Evicted> evicted = residency_.evict();
-  for (const Residency::Evicted& e : evicted) {
-    linker_.evict(e.chunk, patch);
-    const ChunkEntry& chunk = file_->chunks()[e.chunk];
-    if (pages_) pages_->release(chunk.first_subtree, chunk.subtree_count, version_ + 1);
-  }
-  const Residency::Arrivals arrived =
-      residency_.arrive([&](uint32_t chunk) { return accept(chunk, patch); });
-  linker_.link_refused(patch);
-  if (!lacked && linker_.lacks_room_for_cut()) look_again();
-  for (const uint32_t chunk : arrived.resident) {
-    coming_.erase(chunk);
-    failures_.remove(chunk);
-  }
-  for (const uint32_t chunk : arrived.given_up) coming_.erase(chunk);
-  if (pages_) patch.pages = pages_->changes(std::exchange(moved_pages_, {}));
-  if (!patch.empty()) {
-    changes_.push_back(change_of(patch));
-    apply(patch);
-    ++version_;
-    if (changes_.size() > kChangesKept) changes_.pop_front();
-  }
-  for (const Residency::Evicted& e : evicted) residency_.free(e);
-  forget_shown(evicted);
-  departures_ += std::any_of(evicted.begin(), evicted.end(), [&](const Residency::Evicted& e) {
-    return residency_.is_seen(e.chunk);
-  });
-  if (evicted.empty() && arrived.resident.empty() && arrived.given_up.empty()) return;
-  publish();
-  signal();
-}
-
-// That which the next version will be.
-std::shared_ptr<const StreamChange> SceneStream::change_of(const LinkPatch& patch) const {
-  auto change = std::make_shared<StreamChange>();
-  change->version = version_ + 1;
-  change->unlinked = patch.unlinked;
-  change->changed = patch.cut.changed;
-  change->changed.insert(change->changed.end(), patch.tied.changed.begin(),
-                         patch.tied.changed.end());
-  return change;
-}
-
-bool SceneStream::accept(uint32_t chunk, LinkPatch& patch) {
-  StagedChunk& staged = coming_.at(chunk).chunk;
-  try {
-    linker_.check(staged, pool_, file_->name());
-  } catch (const Error& error) {
-    add_failure(chunk, error);
-    return false;
-  }
-  if (pages_) place_subtrees(file_->chunks()[chunk]);
-  linker_.arrive(std::move(staged), patch);
-  learn_families(chunk);
-  return true;
-}
-
-void SceneStream::place_subtrees(const ChunkEntry& chunk) {
-  bool follows = false;
-  try {
-    follows = pages_->take(chunk.first_subtree, chunk.subtree_count, version_ + 1, moved_pages_);
-  } catch (const Error&) {
-    lose(std::current_exception());
-    throw;
-  }
-  if (follows) return;
-  // Searches start from nothing.
-  changes_.clear();
-  version_ += kChangesKept;
-}
-
-void SceneStream::learn_families(uint32_t chunk) {
-  linker_.each_below(chunk, [&](const NodeBelow& node) {
-    if (residency_.set_family(graph_.with_family(chunk, node.first_child, node.child_count)))
-      look_again();
-  });
-}
-
-bool SceneStream::changes_since(uint64_t version,
-                                std::vector<std::shared_ptr<const StreamChange>>& out) const {
-  out.clear();
-  if (version == version_) return true;
-  if (changes_.empty() || changes_.front()->version > version + 1) return false;
-  for (const auto& change : changes_)
-    if (change->version > version) out.push_back(change);
-  return true;
 }
 
 void SceneStream::check_fits() const {
@@ -269,9 +118,9 @@ bool SceneStream::work_once(const Done& done, bool& first, bool& stepped) {
     if (first) next_plan_ = {};
     first = planning_;  // what is being planned may not know of this call
     stepped = plan_if_asked(nullptr);
-    commit_all();
+    commit_all(kAllChunks, &lock);
     publish();
-    if (!plan_is_asked() && !planning_ && done()) return true;
+    if (!lost_ && !plan_is_asked() && !planning_ && done()) return true;
   } catch (const Error&) {
     throw;
   } catch (...) {

@@ -20,6 +20,7 @@ bool is_of_source(const Error& error) {
 }  // namespace
 
 void SceneStream::run() {
+  constexpr double kFrame = 1e-3;  // seconds that one holds the pool
   const FloatingPointMode mode;
   for (;;) {
     uint64_t seen = 0;
@@ -28,13 +29,14 @@ void SceneStream::run() {
       if (stopping_) return;
       seen = signals_;
     }
-    commit_between_frames();
+    const bool committed = commit_between_frames();
     double wait = 0;
     {
       Lock lock(mutex_);
       if (step(lock)) continue;
       wait = next_due();
     }
+    if (!committed) wait = wait < 0 ? kFrame : std::min(wait, kFrame);
     std::unique_lock small(small_mutex_);
     const auto woken = [&] { return stopping_ || signals_ != seen; };
     if (wait < 0)
@@ -63,8 +65,7 @@ bool SceneStream::step(Lock& lock) {
 bool SceneStream::work(Lock& lock) {
   const bool done =
       plan_if_asked(&lock) || order_if_told() || retry_due() || fill_some(lock) || read_some(lock);
-  commit_due_ = residency_.has_changes();
-  filled_count_ = residency_.filled_count();
+  note_changes();
   if (done) {
     publish();
     signal();
@@ -75,7 +76,7 @@ bool SceneStream::work(Lock& lock) {
 // lock: let go while chunks are looked at; null for those who hold the pool, too.
 bool SceneStream::plan_if_asked(Lock* lock) {
   std::vector<Viewer> viewers;
-  if (planning_ || plans_rest()) return false;
+  if (planning_ || linking_ || plans_rest()) return false;
   {
     const std::lock_guard small(small_mutex_);
     if (!look_again_) return false;
@@ -103,7 +104,7 @@ bool SceneStream::plans_rest() const {
 
 // As long as a frame of somebody's has told nothing, nothing is hidden.
 bool SceneStream::order_if_told() {
-  if (plans_rest()) return false;
+  if (linking_ || plans_rest()) return false;
   ShownChunks all;
   {
     const std::lock_guard small(small_mutex_);
@@ -142,6 +143,7 @@ void SceneStream::look_at_likely(Lock& lock) {
     failure = std::current_exception();
   }
   lock.lock();
+  linked_.wait(lock, [&] { return !linking_; });
   planning_ = false;
   if (failure) std::rethrow_exception(failure);
 }
@@ -155,14 +157,9 @@ bool SceneStream::retry_due() {
 }
 
 // Some at once: threads that take turns at the lock for each chunk wait for one another longer than
-// they work. It is let go while the slots are filled: no one else knows of them.
+// they work.
 bool SceneStream::fill_some(Lock& lock) {
-  struct Filling {
-    uint32_t chunk;
-    StagedChunk* staged;
-    std::exception_ptr failure;
-  };
-  std::vector<Filling> some;
+  std::vector<StagedChunk*> some;
   while (some.size() < kMostAtOnce && !ready_.empty()) {
     const uint32_t chunk = ready_.front();
     if (!residency_.keep(chunk)) {
@@ -170,35 +167,47 @@ bool SceneStream::fill_some(Lock& lock) {
       ready_.pop_front();
       continue;
     }
-    const uint32_t slot = residency_.take_slot(chunk);
-    if (slot == Residency::kNoSlot) break;
+    StagedChunk* const staged = put(chunk);
+    if (staged == nullptr) break;
     ready_.pop_front();
-    Coming& coming = coming_.at(chunk);
-    staged_bytes_ -= coming.stored_bytes;
-    coming.stored_bytes = 0;
-    coming.chunk.put(slot, residency_.blocks(chunk));
-    some.push_back({chunk, &coming.chunk, {}});
+    some.push_back(staged);
   }
   if (some.empty()) return false;
+  fill(some, lock);
+  return true;
+}
+
+// Null: no slot is free.
+StagedChunk* SceneStream::put(uint32_t chunk) {
+  const uint32_t slot = residency_.take_slot(chunk);
+  if (slot == Residency::kNoSlot) return nullptr;
+  Coming& coming = coming_.at(chunk);
+  staged_bytes_ -= coming.stored_bytes;
+  coming.stored_bytes = 0;
+  coming.chunk.put(slot, residency_.blocks(chunk));
+  return &coming.chunk;
+}
+
+// The lock is let go meanwhile: no one else knows of the slots.
+void SceneStream::fill(const std::vector<StagedChunk*>& some, Lock& lock) {
   ++filling_;
   lock.unlock();
-  for (Filling& of : some) {
-    try {
-      pool_.fill(of.staged->links.slot, *of.staged);
-    } catch (...) {
-      of.failure = std::current_exception();
-    }
-    of.staged->drop_content();
+  std::exception_ptr failure;
+  try {
+    pool_.fill(std::span<const StagedChunk* const>(some.data(), some.size()));
+  } catch (...) {
+    failure = std::current_exception();
   }
+  for (StagedChunk* staged : some) staged->drop_content();
   lock.lock();
   --filling_;
   filled_.notify_all();
-  for (const Filling& of : some)
-    if (of.failure)
-      fail(of.chunk, of.failure);
+  for (const StagedChunk* staged : some)
+    if (failure)
+      fail(uint32_t{staged->chunk}, failure);
     else
-      residency_.filled(of.chunk);
-  return true;
+      residency_.filled(staged->chunk);
+  note_changes();
 }
 
 // The lock is let go meanwhile. No bytes where it fails.
@@ -291,23 +300,29 @@ void SceneStream::stage(ChunkRange range, std::span<const std::byte> stored, Loc
   }
   lock.lock();
   if (generation_ != generation) return;
+  std::vector<StagedChunk*> some;
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     Decoded& of = decoded[chunk - range.first];
     if (of.failure)
       fail(chunk, of.failure);
-    else
-      add_ready(chunk, std::move(of.staged));
+    else if (StagedChunk* const staged = add_coming(chunk, std::move(of.staged)))
+      some.push_back(staged);
   }
+  if (!some.empty()) fill(some, lock);
 }
 
-void SceneStream::add_ready(uint32_t chunk, StagedChunk&& staged) {
+// Where it has its turn and a slot: then it is to be filled at once, by the thread that has just
+// decoded it. Null: it waits, or nobody wants it.
+StagedChunk* SceneStream::add_coming(uint32_t chunk, StagedChunk&& staged) {
   const bool wanted = residency_.read(chunk, staged.record_blocks());
   if (residency_.overfull()) look_again();
-  if (!wanted) return;
-  const uint64_t bytes = file_->chunks()[chunk].bytes;
+  if (!wanted) return nullptr;
+  const uint64_t bytes = file_->chunks().bytes(chunk);
   coming_[chunk] = {std::move(staged), bytes};
   staged_bytes_ += bytes;
-  ready_.push_back(chunk);
+  StagedChunk* const has_slot = ready_.empty() ? put(chunk) : nullptr;
+  if (has_slot == nullptr) ready_.push_back(chunk);
+  return has_slot;
 }
 
 void SceneStream::fail(uint32_t chunk, const std::exception_ptr& failure) {

@@ -49,10 +49,10 @@ class FailingPool final : public ChunkPool {
  public:
   explicit FailingPool(PoolRoom room) { bounds_.make_room(room.blocks); }
 
-  void fill(uint32_t, const StagedChunk& chunk) override {
+  void fill(std::span<const StagedChunk* const> chunks) override {
     if (late_once.exchange(false))
       throw Error(ErrorCode::timeout, "view: found a frame in flight that did not end");
-    bounds_.fill(chunk);
+    for (const StagedChunk* chunk : chunks) bounds_.fill(*chunk);
   }
   const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
   void apply(const LinkPatch&) override {

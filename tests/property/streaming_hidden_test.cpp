@@ -71,8 +71,11 @@ class Planned {
       residency_.read(range.first, records_.most_blocks(range.first));
       residency_.take_slot(range.first);
       residency_.filled(range.first);
-      EXPECT_EQ(residency_.arrive([](uint32_t) { return true; }).resident.size(), 1u)
+      const Residency::Arrivals arrivals = residency_.begin_arrivals(SIZE_MAX);
+      EXPECT_EQ(arrivals.arriving.size(), 1u)
           << range.first << " came before what it hangs from";
+      for (const uint32_t chunk : arrivals.arriving)
+        residency_.end_arrival(chunk, Residency::Arrival::resident);
     }
   }
   bool is_seen(uint32_t chunk) const { return residency_.is_seen(chunk); }

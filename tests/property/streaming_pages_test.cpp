@@ -28,7 +28,9 @@ class PagedPool final : public ChunkPool {
 
   PagedPool(uint32_t subtrees, PoolRoom room) : pages_(pages_of(subtrees)) { resize(room); }
 
-  void fill(uint32_t, const StagedChunk& chunk) override { bounds_.fill(chunk); }
+  void fill(std::span<const StagedChunk* const> chunks) override {
+    for (const StagedChunk* chunk : chunks) bounds_.fill(*chunk);
+  }
   const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
   void resize(PoolRoom room) override {
     bounds_.make_room(room.blocks);

@@ -34,14 +34,23 @@ void for_each_tree(const Check& check) {
 
 using Leads = std::set<std::pair<uint32_t, uint32_t>>;  // from, to
 
+// The chunk that owns the parent of a root: the last whose nodes' children begin no later.
+uint32_t owner_by_directory(const SceneFile& file, uint32_t root) {
+  uint32_t owner = 0;
+  for (uint32_t chunk = 1; chunk < file.chunks().size(); ++chunk)
+    if (file.chunks().place(chunk).next[3] <= root) owner = chunk;
+  return owner;
+}
+
 Leads by_nodes(const SceneFile& file, const ChunkGraph& graph) {
   Leads leads;
-  for (uint32_t chunk = 0; chunk < graph.size(); ++chunk) {
-    const Chunk content = file.read_chunk(chunk);
-    for (const Subtree& subtree : content.subtrees)
-      if (subtree.root != 0 && graph.owner_of_parent(subtree.root) != chunk)
-        leads.emplace(graph.owner_of_parent(subtree.root), chunk);
-  }
+  for (uint32_t chunk = 0; chunk < graph.size(); ++chunk)
+    for (const Subtree& subtree : file.read_chunk(chunk).subtrees) {
+      if (subtree.root == 0) continue;
+      const uint32_t owner = owner_by_directory(file, subtree.root);
+      EXPECT_EQ(graph.owner_of_parent(chunk, subtree.root), owner);
+      if (owner != chunk) leads.emplace(owner, chunk);
+    }
   return leads;
 }
 
@@ -78,7 +87,8 @@ TEST(ChunkGraph, WhatARootHangsFromIsAParentAlsoIfTheDirectoryHidesARepeat) {
         const ChunkGraph::Parents parents = graph.parents(chunk);
         for (const Subtree& subtree : file->read_chunk(chunk).subtrees) {
           if (subtree.root == 0) continue;
-          const uint32_t owner = graph.owner_of_parent(subtree.root);
+          const uint32_t owner = owner_by_directory(*file, subtree.root);
+          EXPECT_EQ(graph.owner_of_parent(chunk, subtree.root), owner);
           EXPECT_TRUE(owner == chunk ||
                       std::find(parents.begin(), parents.end(), owner) != parents.end())
               << test::name_of(shape) << ": chunk " << chunk << ", edited " << edited;
@@ -152,16 +162,17 @@ TEST(ChunkGraph, ChunksThatArriveInAnyOrderAllBecomeResident) {
       ASSERT_TRUE(residency.read(chunk, records.most_blocks(chunk)));
       ASSERT_NE(residency.take_slot(chunk), Residency::kNoSlot);
       residency.filled(chunk);
-      residency.arrive([](uint32_t) { return true; });
+      for (const uint32_t arrived : residency.begin_arrivals(SIZE_MAX).arriving)
+        residency.end_arrival(arrived, Residency::Arrival::resident);
     }
     EXPECT_EQ(residency.resident(), come.size());
     EXPECT_EQ(residency.need().missing, 0u);
     // Where nobody looks they stay, unless cuts have no room for them: then all but the top goes.
     looks.begin({});
     residency.plan(looks, false);
-    EXPECT_TRUE(residency.evict().empty());
+    EXPECT_TRUE(residency.evict(SIZE_MAX).empty());
     residency.plan(looks, true);
-    const std::vector<Residency::Evicted> gone = residency.evict();
+    const std::vector<Residency::Evicted> gone = residency.evict(SIZE_MAX);
     EXPECT_EQ(gone.size(), come.size() - top);
     std::set<uint32_t> left;
     for (const Residency::Evicted& e : gone) {

@@ -1,0 +1,216 @@
+// What has come becomes resident, and what goes makes room: links, which frames follow.
+#include <algorithm>
+#include <utility>
+
+#include "runtime/stream/scene_stream.h"
+
+namespace voyager {
+
+// What one commit does. It is taken from what is resident and given back to that under mutex_; in
+// between it is linked, without that lock.
+struct SceneStream::Commit {
+  struct Arriving {
+    uint32_t chunk;
+    StagedChunk* staged;
+    Residency::Arrival how = Residency::Arrival::waiting;
+    std::optional<Error> failure = {};
+  };
+  std::vector<Residency::Evicted> evicted;
+  std::vector<uint32_t> given_up;
+  std::vector<Arriving> arriving;
+  bool lacked_room;  // for what is linked, before
+
+  LinkPatch patch;
+  std::vector<uint32_t> moved_pages;
+  std::vector<ChunkRange> divided;  // families
+  bool refused = false;             // one of those that arrive
+};
+
+// Where views draw by turns there is always one that holds the pool.
+void SceneStream::commit() {
+  constexpr double kPutOff = 0.1;  // seconds
+  // A frame waits two milliseconds, or a tenth of what it takes from one to the next.
+  constexpr double kLinksASecond = 4000;
+  between_frames_ = 0;
+  const double at = now(), since_last = std::clamp(at - last_frame_.exchange(at), 0.0, 1.0);
+  if (!commit_due_) return;
+  std::unique_lock pool(pool_mutex_, std::try_to_lock);
+  if (!pool.owns_lock()) {
+    const double since = put_off_;
+    if (since < 0) put_off_ = now();
+    if (since < 0 || now() < since + kPutOff) return;
+    pool = hold_alone();
+  }
+  commit_if_free(std::max(kFewChunks, static_cast<size_t>(kLinksASecond * since_last)));
+}
+
+// So that a frame finds few chunks to link, while many come, and waits for few. After some times
+// without a frame it takes twice as many: a view that draws seldom can follow few changes.
+// False: frames kept it from that.
+bool SceneStream::commit_between_frames() {
+  constexpr unsigned kTimes = 8, kMostDoublings = 16;
+  const size_t enough = kFewChunks / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
+  if (changes_due_ < enough) return true;
+  const std::unique_lock pool(pool_mutex_, std::try_to_lock);
+  if (!pool.owns_lock()) return false;
+  ++between_frames_;
+  commit_if_free(std::max(enough, kFewChunks));
+  return true;
+}
+
+// The pool is held alone.
+void SceneStream::commit_if_free(size_t most) {
+  Lock lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock() || lost_) return;
+  try {
+    commit_all(most, &lock);
+  } catch (...) {
+    lose(std::current_exception());
+  }
+}
+
+// most: chunks that come, and chunks that go. What it throws leaves the pool as it is, and what is
+// known of it, or lost. lock: let go while chunks are linked; null where others must not go on.
+void SceneStream::commit_all(size_t most, Lock* lock) {
+  commit_changes(most, lock);
+  // What has come may be the last that leftovers waited for. Another patch, since what that links
+  // they may unlink.
+  if (!lost_ && residency_.has_leftovers()) commit_changes(most, lock);
+}
+
+void SceneStream::commit_changes(size_t most, Lock* lock) {
+  Commit commit = begin_commit(most);
+  std::exception_ptr failure;
+  linking_ = true;
+  if (lock != nullptr) lock->unlock();
+  try {
+    link(commit);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  if (lock != nullptr) lock->lock();
+  linking_ = false;
+  linked_.notify_all();
+  if (failure) {
+    lose(failure);
+    std::rethrow_exception(failure);
+  }
+  if (!lost_) end_commit(commit);
+}
+
+SceneStream::Commit SceneStream::begin_commit(size_t most) {
+  Commit commit;
+  put_off_ = -1;
+  commit.lacked_room = linker_.lacks_room_for_cut();
+  commit.evicted = residency_.evict(most);
+  Residency::Arrivals arrivals = residency_.begin_arrivals(most);
+  commit.given_up = std::move(arrivals.given_up);
+  commit.arriving.reserve(arrivals.arriving.size());
+  for (const uint32_t chunk : arrivals.arriving)
+    commit.arriving.push_back({chunk, &coming_.at(chunk).chunk});
+  return commit;
+}
+
+void SceneStream::link(Commit& commit) {
+  for (const Residency::Evicted& e : commit.evicted) {
+    linker_.evict(e.chunk, commit.patch);
+    const ChunkEntry& chunk = file_->chunks()[e.chunk];
+    if (pages_) pages_->release(chunk.first_subtree, chunk.subtree_count, version_ + 1);
+  }
+  for (Commit::Arriving& arriving : commit.arriving) {
+    const auto parents = graph_.parents(arriving.chunk);
+    const auto holds = [&](uint32_t parent) { return linker_.holds(parent); };
+    if (commit.refused && !std::all_of(parents.begin(), parents.end(), holds)) continue;
+    try {
+      linker_.check(*arriving.staged, pool_, file_->name());
+    } catch (const Error& error) {
+      arriving.how = Residency::Arrival::failed;
+      arriving.failure = error;
+      commit.refused = true;
+      continue;
+    }
+    arriving.how = Residency::Arrival::resident;
+    if (pages_) place_subtrees(file_->chunks()[arriving.chunk], commit.moved_pages);
+    linker_.arrive(std::move(*arriving.staged), commit.patch);
+    *arriving.staged = {};
+    linker_.each_divided_family(arriving.chunk,
+                                [&](ChunkRange family) { commit.divided.push_back(family); });
+  }
+  linker_.link_refused(commit.patch);
+  if (pages_) commit.patch.pages = pages_->changes(commit.moved_pages);
+}
+
+void SceneStream::place_subtrees(const ChunkEntry& chunk, std::vector<uint32_t>& moved_pages) {
+  if (pages_->take(chunk.first_subtree, chunk.subtree_count, version_ + 1, moved_pages)) return;
+  // Searches start from nothing.
+  changes_.clear();
+  version_ += kChangesKept;
+}
+
+void SceneStream::end_commit(const Commit& commit) {
+  for (const Commit::Arriving& arriving : commit.arriving) {
+    residency_.end_arrival(arriving.chunk, arriving.how);
+    if (arriving.how == Residency::Arrival::waiting) continue;
+    coming_.erase(arriving.chunk);
+    if (arriving.failure)
+      add_failure(arriving.chunk, *arriving.failure);
+    else
+      failures_.remove(arriving.chunk);
+  }
+  for (const uint32_t chunk : commit.given_up) coming_.erase(chunk);
+  for (const ChunkRange& family : commit.divided)
+    if (residency_.set_family(family)) look_again();
+  if (!commit.lacked_room && linker_.lacks_room_for_cut()) look_again();
+  if (!commit.patch.empty()) {
+    changes_.push_back(change_of(commit.patch));
+    apply(commit.patch);
+    ++version_;
+    if (changes_.size() > kChangesKept) changes_.pop_front();
+  }
+  for (const Residency::Evicted& e : commit.evicted) residency_.free(e);
+  forget_shown(commit.evicted);
+  const auto is_seen = [&](const Residency::Evicted& e) { return residency_.is_seen(e.chunk); };
+  departures_ += std::any_of(commit.evicted.begin(), commit.evicted.end(), is_seen);
+  note_changes();
+  if (commit.evicted.empty() && commit.arriving.empty() && commit.given_up.empty()) return;
+  publish();
+  signal();
+}
+
+void SceneStream::note_changes() {
+  changes_due_ = residency_.changes();
+  commit_due_ = changes_due_ != 0;
+}
+
+void SceneStream::apply(const LinkPatch& patch) {
+  try {
+    pool_.apply(patch);
+  } catch (...) {
+    unsound_ = std::current_exception();
+    lose(unsound_);
+    throw;
+  }
+}
+
+// That which the next version will be.
+std::shared_ptr<const StreamChange> SceneStream::change_of(const LinkPatch& patch) const {
+  auto change = std::make_shared<StreamChange>();
+  change->version = version_ + 1;
+  change->unlinked = patch.unlinked;
+  change->changed = patch.cut.changed;
+  change->changed.insert(change->changed.end(), patch.tied.changed.begin(),
+                         patch.tied.changed.end());
+  return change;
+}
+
+bool SceneStream::changes_since(uint64_t version,
+                                std::vector<std::shared_ptr<const StreamChange>>& out) const {
+  out.clear();
+  if (version == version_) return true;
+  if (changes_.empty() || changes_.front()->version > version + 1) return false;
+  for (const auto& change : changes_)
+    if (change->version > version) out.push_back(change);
+  return true;
+}
+
+}  // namespace voyager
