@@ -1,6 +1,6 @@
 // A walk through a streamed scene at the pace of a headset: what each frame took, and what it
 // showed coarser than τ. Then whoever walks stands still for three seconds and turns round.
-//   stream_walk SCENE CAMERAS.json MEGABYTES [FPS] [WxH] [TAU] [SECONDS]
+//   stream_walk SCENE CAMERAS.json MEGABYTES [FPS] [WxH] [TAU] [SECONDS] [READERS]
 // The cameras are a path that is walked at 1.4 m a second of its length, back and forth.
 #include <algorithm>
 #include <chrono>
@@ -119,7 +119,8 @@ Turn turn_round(voyager::bench::StreamedView& streamed, const Camera& from, doub
 
 int main(int argc, char** argv) try {
   if (argc < 4) {
-    std::fprintf(stderr, "stream_walk SCENE CAMERAS.json MEGABYTES [FPS] [WxH] [TAU] [SECONDS]\n");
+    std::fprintf(
+        stderr, "stream_walk SCENE CAMERAS.json MEGABYTES [FPS] [WxH] [TAU] [SECONDS] [READERS]\n");
     return 1;
   }
   const double megabytes = std::atof(argv[3]), fps = argc > 4 ? std::atof(argv[4]) : 60;
@@ -127,6 +128,7 @@ int main(int argc, char** argv) try {
   if (argc > 5) std::sscanf(argv[5], "%ux%u", &width, &height);
   const double tau = argc > 6 ? std::atof(argv[6]) : 3,
                seconds = argc > 7 ? std::atof(argv[7]) : 30;
+  const int readers = argc > 8 ? std::atoi(argv[8]) : 0;
   std::vector<Camera> cameras = voyager::tools::read_cameras(argv[2]);
   for (Camera& camera : cameras) camera = camera.resized(width, height);
   const Path path(cameras);
@@ -136,7 +138,7 @@ int main(int argc, char** argv) try {
   const double device_made = seconds_since(start);
   const Camera first = path.at(0);
   voyager::bench::StreamedView streamed(device, argv[1], megabytes, first.pose.position, width,
-                                        height, tau);
+                                        height, tau, static_cast<uint32_t>(readers));
   const double opened = seconds_since(start);
 
   const size_t frames = std::max(static_cast<size_t>(seconds * fps), size_t{1});

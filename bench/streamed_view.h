@@ -16,10 +16,11 @@ inline voy::Device streaming_device(double megabytes) {
 
 class StreamedView {
  public:
-  // start: where to read first; none: at the top of the tree.
+  // start: where to read first; none: at the top of the tree. readers: as
+  // VoySceneStreaming::readerThreadCount.
   StreamedView(const voy::Device& device, const char* path, double megabytes, const double* start,
-               unsigned width, unsigned height, double tau)
-      : scene(open(device, path, megabytes, start)),
+               unsigned width, unsigned height, double tau, uint32_t readers = 0)
+      : scene(open(device, path, megabytes, start, readers)),
         view(create(device, width, height, tau)),
         pixels_(size_t{4} * width * height) {
     VoyTargetDesc desc = VOY_TARGET_DESC_INIT;
@@ -48,10 +49,11 @@ class StreamedView {
 
  private:
   static voy::Scene open(const voy::Device& device, const char* path, double megabytes,
-                         const double* start) {
+                         const double* start, uint32_t readers) {
     VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
     streaming.memoryBudget = static_cast<uint64_t>(megabytes * 1e6);
     streaming.startPosition = start;
+    streaming.readerThreadCount = readers;
     VoySceneDesc desc = VOY_SCENE_DESC_INIT;
     desc.next = &streaming;
     desc.path = path;
