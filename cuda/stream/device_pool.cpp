@@ -17,7 +17,7 @@ namespace {
 constexpr size_t kMostPieces = 32, kLeastPieces = 4, kRingBytes = size_t{8} << 20;
 constexpr size_t kPieceBytes = size_t{256} << 10;  // unless one chunk takes more
 
-// Of the ring: a launch and an event for each.
+// So many share a launch and an event.
 size_t chunks_a_piece(const PoolLayout& chunk) {
   return std::clamp<size_t>(kPieceBytes / chunk.filled_bytes(), 1, PoolFill::kMostChunks);
 }
@@ -252,8 +252,12 @@ void DevicePool::fill(std::span<const StagedChunk* const> chunks) {
 
 void DevicePool::fill_piece(std::span<const StagedChunk* const> chunks) {
   const UploadRing::Piece piece = ring_.take();
-  PoolFill fill{piece.device(), memory_.data(), chunk_layout_.filled_bytes(),
-                static_cast<uint32_t>(chunks.size()), {}, {}};
+  PoolFill fill{piece.device(),
+                memory_.data(),
+                chunk_layout_.filled_bytes(),
+                static_cast<uint32_t>(chunks.size()),
+                {},
+                {}};
   for (uint32_t a = 0; a < kFilledArrays; ++a) {
     const auto which = static_cast<PoolArray>(a);
     fill.arrays[a] = {chunk_layout_.begin(which), layout_.begin(which),

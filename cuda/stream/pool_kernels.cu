@@ -52,9 +52,9 @@ __global__ void __launch_bounds__(kThreads) pool_fill(PoolFill fill) {
     copy_records(blocks, from, to, bytes);
   else if (blockIdx.y == kNextBlocks)
     chain_blocks(blocks, reinterpret_cast<uint32_t*>(to), count);
-  else if (array.unit % sizeof(uint4) == 0)
+  else if (word_bytes(array.unit) == sizeof(uint4))
     copy_words<uint4>(from, to, bytes);
-  else if (array.unit % sizeof(uint32_t) == 0)
+  else if (word_bytes(array.unit) == sizeof(uint32_t))
     copy_words<uint32_t>(from, to, bytes);
   else
     copy_words<uint8_t>(from, to, bytes);
@@ -115,8 +115,7 @@ void launch_fill(const PoolFill& fill, cudaStream_t stream) {
   for (uint32_t a = 0; a < kFilledArrays; ++a)
     for (uint32_t c = 0; c < fill.chunk_count; ++c) {
       const uint32_t unit = fill.arrays[a].unit, count = fill.chunks[c].counts[counted_by(a)];
-      const uint32_t word = unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
-      most = std::max(most, count * unit / word);
+      most = std::max(most, count * unit / word_bytes(unit));
     }
   launch_kernel("pool_fill", pool_fill,
                 {dim3(blocks_for(most), kFilledArrays, fill.chunk_count), kThreads, stream}, fill);

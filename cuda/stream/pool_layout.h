@@ -45,6 +45,11 @@ constexpr PoolCount counted_by(uint32_t array) {
   return array == kStepSizes || array == kSlotIds || array == kFirstSubtrees ? kOnce : kNodes;
 }
 
+// Bytes that are copied at once of elements of such a size.
+constexpr uint32_t word_bytes(uint32_t unit) {
+  return unit % 16 == 0 ? 16 : unit % 4 == 0 ? 4 : 1;
+}
+
 // Of the coefficients of a streamed scene, as a resident one decides it.
 ShForm sh_form(const Scene& scene);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Pieces of mapped memory, each for one chunk on its way to a device.
+// Pieces of mapped memory, each for some chunks on their way to a device.
 #include <condition_variable>
 #include <deque>
 #include <mutex>

@@ -46,7 +46,7 @@ class ChunkPool {
   virtual ~ChunkPool() = default;
   // Slots that no frame reads, and blocks that none reads, which each of the chunks names; several
   // threads at once, each slots of its own. Throws Error where the pool itself is at fault; then
-  // none of them is filled.
+  // all of them count as not filled.
   virtual void fill(std::span<const StagedChunk* const> chunks) = 0;
   // Of a search record of a chunk that was filled, as searches read it.
   virtual const BoundsCode& bounds(uint32_t record) const = 0;

@@ -29,7 +29,7 @@ class Addresses {
   uint32_t root_ = 0, first_child_ = 0;
 };
 
-// Of what the chunk could not know by itself. number: the subtree's. parent: what the roots hang
+// Of what the chunk could not know by itself. parent: what the roots hang
 // from.
 LinkPatch::Outside outside_of(const LinkWalk& at, const SearchSubtree& subtree, uint32_t parent) {
   if (at.repeats_child()) return {at.subtree(), subtree.first_child};
@@ -330,7 +330,7 @@ void Linker::link(LinkPatch& patch) {
     --most_cut_;
     Addresses addresses(shape_);
     uint32_t first_below = kLowest, asked = kNoNode;
-    bool leads_on = false;
+    bool leads_on = false;  // may_lead_on(asked)
     each_subtree(family, roots, [&](Walk& walk) {
       const LinkWalk& at = walk.at;
       LinkTable& of = tables_.know(walk.chunk);
@@ -341,7 +341,10 @@ void Linker::link(LinkPatch& patch) {
       of.set_leads_to(at.index(), true);
       patch.outside.push_back(outside_of(at, linked, parent));
       patch.linked.emplace_back(at.subtree(), linked);
-      if (std::exchange(asked, walk.chunk) != walk.chunk) leads_on = may_lead_on(walk.chunk);
+      if (asked != walk.chunk) {
+        asked = walk.chunk;
+        leads_on = may_lead_on(walk.chunk);
+      }
       if (!leads_on) return;
       at.each_below([&](const NodeBelow& node) {
         add_work({walk.chunk, at.index(), walk.records(node.record), node});

@@ -278,8 +278,8 @@ size_t Residency::changes() const {
   const Wanted ahead = wanted(std::min(requests_.size(), kRoomAhead));
   if (!is_short(ahead)) return others;
   const auto missing = [](uint64_t of, uint64_t found) { return of - std::min(of, found); };
-  const uint64_t for_blocks =
-      missing(ahead.blocks, free_blocks_.size()) * ahead.slots / std::max<uint64_t>(ahead.blocks, 1);
+  const uint64_t for_blocks = missing(ahead.blocks, free_blocks_.size()) * ahead.slots /
+                              std::max<uint64_t>(ahead.blocks, 1);
   const uint64_t goes = std::max(missing(ahead.slots, free_slots_.size()), for_blocks);
   return others + std::clamp<size_t>(goes, 1, victims_.size());
 }

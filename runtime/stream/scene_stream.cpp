@@ -145,7 +145,8 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
   }
   std::vector<std::optional<Error>> damage(count);
   std::mutex placing;
-  workers.for_blocks(count, 16, [&](size_t begin, size_t end) {
+  workers.for_blocks(count, kMostAtOnce, [&](size_t begin, size_t end) {
+    std::vector<StagedChunk*> sound;
     for (auto chunk = static_cast<uint32_t>(begin); chunk < end; ++chunk) {
       const auto bytes =
           stored.subspan(chunks[chunk].offset - chunks[0].offset, chunks[chunk].bytes);
@@ -161,10 +162,10 @@ void SceneStream::put_first(uint32_t count, std::span<const std::byte> stored, W
         damage[chunk] = error;
         continue;
       }
-      const StagedChunk* const one = &staged;
-      pool_.fill({&one, 1});
-      staged.drop_content();
+      sound.push_back(&staged);
     }
+    if (!sound.empty()) pool_.fill(sound);
+    for (StagedChunk* staged : sound) staged->drop_content();
   });
   for (uint32_t chunk = 0; chunk < count; ++chunk)
     if (damage[chunk])

@@ -12,7 +12,10 @@
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <span>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "runtime/base/workers.h"
 #include "runtime/format/reader.h"
@@ -36,7 +39,8 @@ struct StreamDesc {
   // Told what all of them take: before that is more, for which it may throw, and after it is less.
   // What they take at first it knows.
   std::function<void(uint64_t)> count;
-  std::function<double()> clock;  // seconds, for what is tried again; none: the machine's
+  // Seconds, for what is tried again and how long frames take; any thread. None: the machine's.
+  std::function<double()> clock;
 };
 
 // Of the scene, since it was opened.
@@ -100,13 +104,14 @@ class SceneStream {
   // What a frame of `who` has shown, where it was wanted. Any thread.
   void tell_shown(const void* who, const ShownChunks& shown);
   // What has come becomes resident, as far as the stream's own threads have not seen to that
-  // between frames. Frames that read the pool just now put that off, for a tenth of a second; then
+  // between frames, and as far as two milliseconds suffice, or a tenth of the time from one call to
+  // the next. Frames that read the pool just now put that off, for a tenth of a second; then
   // the call waits for them to end. Any thread.
   void commit();
-  // The same until nothing more is to come. Throws Error(over_budget) where what is seen does
-  // not fit, and unless `stand_in` what kept a chunk that is seen from coming: what failed for
-  // good, or often, or because the source as a whole has failed often. Gives departures() as of the
-  // moment when all was there.
+  // All that comes becomes resident, until nothing more is to come. Throws Error(over_budget) where
+  // what is seen does not fit, and unless `stand_in` what kept a chunk that is seen from coming:
+  // what failed for good, or often, or because the source as a whole has failed often. Gives
+  // departures() as of the moment when all was there.
   uint64_t wait(bool stand_in);
   // How often chunks that are seen have gone: for others, or because slots were filled anew. Under
   // hold().
@@ -138,7 +143,9 @@ class SceneStream {
  private:
   using Lock = std::unique_lock<std::mutex>;
   static constexpr size_t kChangesKept = 64;
-  // How many chunks a commit links at most, and unlinks: in two milliseconds; whatever it takes.
+  static constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds
+  // How many chunks a commit links at most, and unlinks as many: what two milliseconds are enough
+  // for; and all of them.
   static constexpr size_t kFewChunks = 64, kAllChunks = SIZE_MAX;
 
   // Read, and not resident yet.
@@ -170,11 +177,11 @@ class SceneStream {
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
   void look_again();
-  bool commit_between_frames();
+  bool commit_between_frames(Lock& lock);
   struct Commit;
-  void commit_if_free(size_t most);
+  void commit_or_lose(size_t most, Lock& lock);
   void commit_all(size_t most, Lock* lock);
-  void commit_changes(size_t most, Lock* lock);
+  size_t commit_changes(size_t most, Lock* lock);
   Commit begin_commit(size_t most);
   void link(Commit& commit);
   void end_commit(const Commit& commit);
@@ -193,7 +200,7 @@ class SceneStream {
   void reset(PoolRoom room, uint32_t pinned, Workers& workers);
   StagedChunk decode(uint32_t chunk, std::span<const std::byte> stored) const;
   template <class Done>
-  void work_until(const Done& done);
+  void work_until(const Done& done, double deadline);
   template <class Done>
   bool work_once(const Done& done, bool& first, bool& stepped);
   void check_fits() const;
@@ -234,8 +241,8 @@ class SceneStream {
   std::atomic<bool> commit_due_{false}, shown_wanted_{false};
   std::atomic<size_t> changes_due_{0};       // chunks for the next commit
   std::atomic<unsigned> between_frames_{0};  // commits since the last frame
-  std::atomic<double> last_frame_{0};  // when it committed
-  std::atomic<double> put_off_{-1};    // since when a commit is due; negative: none was put off
+  std::atomic<double> last_frame_{0};        // when it committed
+  std::atomic<double> put_off_{-1};  // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0, departures_ = 0;
   // What kept the pool from being what is linked. Changed under both locks, read under either.

@@ -103,7 +103,8 @@ bool SceneStream::plan_is_asked() {
   return look_again_;
 }
 
-// One turn; whether it is done. Both locks are held meanwhile. Only the first turn that can plans
+// One turn; whether it is done. Both locks are held meanwhile, but for mutex_ while chunks are
+// linked. Only the first turn that can plans
 // at once: a plan after every arrival would keep those that read from reading.
 template <class Done>
 bool SceneStream::work_once(const Done& done, bool& first, bool& stepped) {
@@ -132,8 +133,8 @@ bool SceneStream::work_once(const Done& done, bool& first, bool& stepped) {
 }
 
 template <class Done>
-void SceneStream::work_until(const Done& done) {
-  for (bool first = true;;) {
+void SceneStream::work_until(const Done& done, double deadline) {
+  for (bool first = true; now() < deadline;) {
     uint64_t seen = 0;
     {
       const std::lock_guard small(small_mutex_);
@@ -155,13 +156,14 @@ void SceneStream::work_until(const Done& done) {
 uint64_t SceneStream::wait(bool stand_in) {
   const double since = now();
   uint64_t departures = 0;
-  work_until([&] {
+  const auto settled = [&] {
     check_fits();
     if (!is_settled(since)) return false;
     if (!stand_in) check_seen(), check_cut();
     departures = departures_;
     return true;
-  });
+  };
+  work_until(settled, INFINITY);
   return departures;
 }
 
@@ -172,10 +174,10 @@ void SceneStream::read_around(const Vec3f& centre, uint64_t bytes) {
   const uint64_t stored = chunks.back().offset + chunks.back().bytes - chunks.front().offset;
   const uint64_t enough = counters().chunks.arrived + bytes * chunks.size() / stored;
   const double begin = now();
-  work_until([&] {
-    return is_settled(begin) || residency_.counters().arrived >= enough ||
-           now() >= begin + kPatience;
-  });
+  const auto is_enough = [&] {
+    return is_settled(begin) || residency_.counters().arrived >= enough;
+  };
+  work_until(is_enough, begin + kPatience);
   look(this, {});
 }
 

@@ -41,27 +41,29 @@ void SceneStream::commit() {
     if (since < 0 || now() < since + kPutOff) return;
     pool = hold_alone();
   }
-  commit_if_free(std::max(kFewChunks, static_cast<size_t>(kLinksASecond * since_last)));
+  Lock lock(mutex_, std::try_to_lock);
+  if (!lock.owns_lock()) return;  // a plan may have it
+  commit_or_lose(std::max(kFewChunks, static_cast<size_t>(kLinksASecond * since_last)), lock);
 }
 
 // So that a frame finds few chunks to link, while many come, and waits for few. After some times
 // without a frame it takes twice as many: a view that draws seldom can follow few changes.
-// False: frames kept it from that.
-bool SceneStream::commit_between_frames() {
+// False: frames keep it from that.
+bool SceneStream::commit_between_frames(Lock& lock) {
   constexpr unsigned kTimes = 8, kMostDoublings = 16;
   const size_t enough = kFewChunks / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
   if (changes_due_ < enough) return true;
+  // Those that have the pool wait for `lock`: they are not waited for.
   const std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) return false;
   ++between_frames_;
-  commit_if_free(std::max(enough, kFewChunks));
+  commit_or_lose(std::max(enough, kFewChunks), lock);
   return true;
 }
 
 // The pool is held alone.
-void SceneStream::commit_if_free(size_t most) {
-  Lock lock(mutex_, std::try_to_lock);
-  if (!lock.owns_lock() || lost_) return;
+void SceneStream::commit_or_lose(size_t most, Lock& lock) {
+  if (lost_) return;
   try {
     commit_all(most, &lock);
   } catch (...) {
@@ -69,16 +71,17 @@ void SceneStream::commit_if_free(size_t most) {
   }
 }
 
-// most: chunks that come, and chunks that go. What it throws leaves the pool as it is, and what is
+// most: chunks that come, and as many that go. What it throws leaves the pool as it is, and what is
 // known of it, or lost. lock: let go while chunks are linked; null where others must not go on.
 void SceneStream::commit_all(size_t most, Lock* lock) {
-  commit_changes(most, lock);
+  const size_t done = commit_changes(most, lock);
   // What has come may be the last that leftovers waited for. Another patch, since what that links
   // they may unlink.
-  if (!lost_ && residency_.has_leftovers()) commit_changes(most, lock);
+  if (done < most && !lost_ && residency_.has_leftovers()) commit_changes(most - done, lock);
 }
 
-void SceneStream::commit_changes(size_t most, Lock* lock) {
+// How many chunks have come or gone, the greater of both.
+size_t SceneStream::commit_changes(size_t most, Lock* lock) {
   Commit commit = begin_commit(most);
   std::exception_ptr failure;
   linking_ = true;
@@ -96,6 +99,7 @@ void SceneStream::commit_changes(size_t most, Lock* lock) {
     std::rethrow_exception(failure);
   }
   if (!lost_) end_commit(commit);
+  return std::max(commit.evicted.size(), commit.arriving.size());
 }
 
 SceneStream::Commit SceneStream::begin_commit(size_t most) {

@@ -1,6 +1,7 @@
 // What the threads do, or step() in their place: they plan, read, decode and fill.
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "runtime/base/floating_point_mode.h"
 #include "runtime/stream/scene_stream.h"
@@ -9,8 +10,7 @@ namespace voyager {
 namespace {
 
 constexpr uint32_t kMostChunksARead = 64;
-constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds
-constexpr int kPlanRest = 3;          // times what a plan held the lock
+constexpr int kPlanRest = 3;  // times what a plan held the lock
 
 // Chunk by chunk it would fail as well: a source that stalls, and a file that is gone.
 bool is_of_source(const Error& error) {
@@ -29,10 +29,11 @@ void SceneStream::run() {
       if (stopping_) return;
       seen = signals_;
     }
-    const bool committed = commit_between_frames();
+    bool committed = false;
     double wait = 0;
     {
       Lock lock(mutex_);
+      committed = commit_between_frames(lock);
       if (step(lock)) continue;
       wait = next_due();
     }
@@ -87,13 +88,16 @@ bool SceneStream::plan_if_asked(Lock* lock) {
   looks_.begin(std::move(viewers));
   const auto look = std::chrono::steady_clock::now();
   if (lock != nullptr) look_at_likely(*lock);
+  const auto looked = std::chrono::steady_clock::now();
+  if (lock != nullptr) linked_.wait(*lock, [&] { return !linking_; });
+  planning_ = false;
   const auto begin = std::chrono::steady_clock::now();
   residency_.plan(looks_, linker_.lacks_room_for_cut());
   // Those that nobody wants any more.
   std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
   const auto end = std::chrono::steady_clock::now();
   // And as long as it looked, so that no thread does nothing else.
-  next_plan_ = end + kPlanRest * (end - begin) + (begin - look);
+  next_plan_ = end + kPlanRest * (end - begin) + (looked - look);
   return true;
 }
 
@@ -127,7 +131,7 @@ bool SceneStream::order_if_told() {
   return true;
 }
 
-// So that less is left to do for a plan, for which others wait.
+// So that less is left to do for a plan, for which others wait. It has begun from then on.
 void SceneStream::look_at_likely(Lock& lock) {
   const std::vector<uint32_t> likely = residency_.needed();
   planning_ = true;
@@ -143,9 +147,9 @@ void SceneStream::look_at_likely(Lock& lock) {
     failure = std::current_exception();
   }
   lock.lock();
-  linked_.wait(lock, [&] { return !linking_; });
+  if (!failure) return;
   planning_ = false;
-  if (failure) std::rethrow_exception(failure);
+  std::rethrow_exception(failure);
 }
 
 bool SceneStream::retry_due() {
@@ -194,7 +198,7 @@ void SceneStream::fill(const std::vector<StagedChunk*>& some, Lock& lock) {
   lock.unlock();
   std::exception_ptr failure;
   try {
-    pool_.fill(std::span<const StagedChunk* const>(some.data(), some.size()));
+    pool_.fill(some);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -204,7 +208,7 @@ void SceneStream::fill(const std::vector<StagedChunk*>& some, Lock& lock) {
   filled_.notify_all();
   for (const StagedChunk* staged : some)
     if (failure)
-      fail(uint32_t{staged->chunk}, failure);
+      fail(staged->chunk, failure);  // of which nothing is left then
     else
       residency_.filled(staged->chunk);
   note_changes();

@@ -72,8 +72,7 @@ class Planned {
       residency_.take_slot(range.first);
       residency_.filled(range.first);
       const Residency::Arrivals arrivals = residency_.begin_arrivals(SIZE_MAX);
-      EXPECT_EQ(arrivals.arriving.size(), 1u)
-          << range.first << " came before what it hangs from";
+      EXPECT_EQ(arrivals.arriving.size(), 1u) << range.first << " came before what it hangs from";
       for (const uint32_t chunk : arrivals.arriving)
         residency_.end_arrival(chunk, Residency::Arrival::resident);
     }

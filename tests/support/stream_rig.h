@@ -61,7 +61,11 @@ class StreamRig {
   // Frames, with all the work between them, until nothing moves.
   Frame settle(const FrameInput& input) {
     Frame frame = render(part, input);
-    for (int i = 0; i < 100 && work() != 0; ++i) frame = render(part, input);
+    uint64_t linked = 0;
+    for (int i = 0; i < 100 && (work() != 0 || linked != stream().version()); ++i) {
+      linked = stream().version();
+      frame = render(part, input);
+    }
     return frame;
   }
 

@@ -1,0 +1,170 @@
+#include "runtime/stream/residency.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "runtime/stream/staged_chunk.h"
+#include "tests/support/random_trees.h"
+#include "tests/support/scene_files.h"
+
+namespace voyager::residency_test {
+namespace {
+
+// Chunks that come and go in any order, a few in each commit, while some are refused; what a stream
+// does with them, without one.
+class RandomStream {
+ public:
+  RandomStream(test::TreeShape shape, double share, uint32_t seed)
+      : random_(seed),
+        file_(
+            test::source_of(test::scene_bytes(test::baked_of(test::random_tree(shape, 3000, seed)),
+                                              Quality::lossless, 0, kMinChunkBytes))),
+        slots_(std::max(top(), static_cast<uint32_t>(share * graph_.size()))),
+        residency_(graph_, file_.chunks(), records_,
+                   PoolRoom{slots_, slots_ * records_.most_blocks()}, top()) {
+    plan(true);
+  }
+
+  // Of a hundred chunks that are read, or arrive, so many fail; with none, nobody moves either.
+  void step(uint32_t failing) {
+    switch (random_() % (failing == 0 ? 5 : 6)) {
+      case 0:
+        return read();
+      case 1:
+        if (!coming_.empty()) decode(take(coming_), chance(failing));
+        return;
+      case 2:
+        return put();
+      case 3:
+        if (!filling_.empty()) residency_.filled(take(filling_));
+        return;
+      case 4:
+        if (residency_.changes() != 0) commit(1 + random_() % 4, failing);
+        return;
+      default:
+        if (chance(2)) plan(chance(70));
+    }
+  }
+  void plan(bool looks) {
+    for (const uint32_t chunk : failed_) residency_.retry(chunk);
+    failed_.clear();
+    looks_.begin(looks ? std::vector<Viewer>{{{{0, 0, 0}, 1e-30f}, {}, false}}
+                       : std::vector<Viewer>{});
+    residency_.plan(looks_, chance(50));
+  }
+  bool settled() const {
+    return residency_.settled([](uint32_t) { return false; }) && residency_.changes() == 0 &&
+           coming_.empty() && ready_.empty() && filling_.empty();
+  }
+  size_t held() const { return held_.size(); }
+  size_t waited() const { return waited_; }
+  uint32_t slots() const { return slots_; }
+  uint32_t chunks() const { return graph_.size(); }
+
+ private:
+  bool chance(uint32_t of_a_hundred) { return random_() % 100 < of_a_hundred; }
+  uint32_t take(std::vector<uint32_t>& from) {
+    std::swap(from[random_() % from.size()], from.back());
+    const uint32_t chunk = from.back();
+    from.pop_back();
+    return chunk;
+  }
+  uint32_t top() const {
+    uint32_t top = 1;
+    while (top < graph_.size() && !graph_.has_parents(top)) ++top;
+    return top;
+  }
+
+  void read() {
+    const ChunkRange range = residency_.take_requests(1 + random_() % 8, UINT64_MAX);
+    for (uint32_t chunk = range.first; chunk < range.last; ++chunk) coming_.push_back(chunk);
+  }
+  void decode(uint32_t chunk, bool fails) {
+    if (fails) {
+      residency_.failed(chunk);
+      failed_.insert(chunk);
+    } else if (residency_.read(chunk, records_.most_blocks(chunk))) {
+      ready_.push_back(chunk);
+    }
+  }
+  void put() {
+    if (ready_.empty()) return;
+    if (residency_.keep(ready_.back())) {
+      if (residency_.take_slot(ready_.back()) == Residency::kNoSlot) return;
+      filling_.push_back(ready_.back());
+    }
+    ready_.pop_back();
+  }
+
+  void commit(size_t most, uint32_t failing) {
+    const std::vector<Residency::Evicted> evicted = residency_.evict(most);
+    const Residency::Arrivals arrivals = residency_.begin_arrivals(most);
+    EXPECT_LE(evicted.size(), most);
+    EXPECT_LE(arrivals.arriving.size(), most);
+    if (!filling_.empty()) residency_.filled(take(filling_));  // while chunks are linked
+    for (const Residency::Evicted& e : evicted) {
+      EXPECT_EQ(held_.erase(e.chunk), 1u);
+      for (const uint32_t chunk : held_)
+        for (const uint32_t p : graph_.parents(chunk)) ASSERT_NE(p, e.chunk);
+    }
+    std::vector<Residency::Arrival> how;
+    for (const uint32_t chunk : arrivals.arriving) how.push_back(link(chunk, failing, how));
+    for (size_t i = 0; i < how.size(); ++i) residency_.end_arrival(arrivals.arriving[i], how[i]);
+    for (const Residency::Evicted& e : evicted) residency_.free(e);
+    EXPECT_EQ(residency_.resident(), held_.size());
+  }
+  Residency::Arrival link(uint32_t chunk, uint32_t failing,
+                          const std::vector<Residency::Arrival>& before) {
+    const auto parents = graph_.parents(chunk);
+    if (!std::all_of(parents.begin(), parents.end(), [&](uint32_t p) { return held_.count(p); })) {
+      EXPECT_NE(std::count(before.begin(), before.end(), Residency::Arrival::failed), 0)
+          << chunk << " came before what it hangs from";
+      ++waited_;
+      return Residency::Arrival::waiting;
+    }
+    if (chance(failing) && graph_.has_parents(chunk)) {
+      failed_.insert(chunk);
+      return Residency::Arrival::failed;
+    }
+    held_.insert(chunk);
+    return Residency::Arrival::resident;
+  }
+
+  std::mt19937 random_;
+  const SceneFile file_;
+  const Tiers tiers_ = file_.tiers();
+  const ChunkGraph graph_{file_.chunks(), tiers_};
+  const RecordRoom records_{file_};
+  const uint32_t slots_;
+  Residency residency_;
+  ChunkLooks looks_{file_.chunks()};
+  std::vector<uint32_t> coming_, ready_, filling_;
+  std::set<uint32_t> held_, failed_;
+  size_t waited_ = 0;
+};
+
+TEST(Residency, WhateverComesAndFailsAFewAtATimeAllThatHasRoomIsThereInTheEnd) {
+  size_t waited = 0;
+  for (const test::TreeShape shape : test::kTreeShapes)
+    for (const double share : {0.3, 1.0}) {
+      SCOPED_TRACE(test::name_of(shape) + " " + std::to_string(share));
+      RandomStream stream(shape, share, 7);
+      for (int i = 0; i < 4000; ++i) stream.step(10);
+      stream.plan(true);
+      for (int i = 0; i < 100000 && !stream.settled(); ++i) stream.step(0);
+      EXPECT_TRUE(stream.settled());
+      if (share == 1.0) {
+        EXPECT_EQ(stream.held(), stream.chunks());
+      } else {
+        EXPECT_LE(stream.held(), stream.slots());
+      }
+      waited += stream.waited();
+    }
+  EXPECT_GT(waited, 0u);
+}
+
+}  // namespace
+}  // namespace voyager::residency_test
