@@ -29,8 +29,7 @@ class Addresses {
   uint32_t root_ = 0, first_child_ = 0;
 };
 
-// Of what the chunk could not know by itself. parent: what the roots hang
-// from.
+// Of what the chunk could not know by itself. parent: what the roots hang from.
 LinkPatch::Outside outside_of(const LinkWalk& at, const SearchSubtree& subtree, uint32_t parent) {
   if (at.repeats_child()) return {at.subtree(), subtree.first_child};
   return {at.subtree(), at.repeats_root() ? subtree.root : parent};

@@ -105,8 +105,8 @@ class SceneStream {
   void tell_shown(const void* who, const ShownChunks& shown);
   // What has come becomes resident, as far as the stream's own threads have not seen to that
   // between frames, and as far as two milliseconds suffice, or a tenth of the time from one call to
-  // the next. Frames that read the pool just now put that off, for a tenth of a second; then
-  // the call waits for them to end. Any thread.
+  // the next. Frames that read the pool just now, and plans that are being made, put that off, for
+  // a tenth of a second; then the call waits for them to end. Any thread.
   void commit();
   // All that comes becomes resident, until nothing more is to come. Throws Error(over_budget) where
   // what is seen does not fit, and unless `stand_in` what kept a chunk that is seen from coming:
@@ -163,7 +163,7 @@ class SceneStream {
   bool order_if_told();
   void forget_shown();
   void forget_shown(const std::vector<Residency::Evicted>& evicted);
-  void look_at_likely(Lock& lock);
+  std::chrono::steady_clock::time_point look_at_likely(Lock& lock);
   bool retry_due();
   bool fill_some(Lock& lock);
   bool read_some(Lock& lock);
@@ -265,12 +265,14 @@ class SceneStream {
 
   // Of all that follows; a plan may hold it for milliseconds.
   std::mutex mutex_;
-  ChunkLooks looks_;       // also without the lock, by the thread that has set planning_
-  bool planning_ = false;  // a thread looks at chunks without the lock; no other may plan
+  ChunkLooks looks_;  // also without the lock, by the thread that has set planning_
+  // A thread looks at chunks without the lock, or waits until none is linked; no other may plan.
+  bool planning_ = false;
   // A commit links without the lock, but with the pool held alone; no one may plan, and no one else
   // touches linker_, pages_ or what the commit has taken of coming_.
   bool linking_ = false;
   std::condition_variable linked_;
+  bool plan_waits_ = false;  // for linked_; no further commit begins between frames
   Residency residency_;
   Linker linker_;
   std::optional<SubtreePages> pages_;  // where the pool's tables are by page

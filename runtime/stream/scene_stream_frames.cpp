@@ -104,8 +104,8 @@ bool SceneStream::plan_is_asked() {
 }
 
 // One turn; whether it is done. Both locks are held meanwhile, but for mutex_ while chunks are
-// linked. Only the first turn that can plans
-// at once: a plan after every arrival would keep those that read from reading.
+// linked. Only the first turn that can plans at once: a plan after every arrival would keep those
+// that read from reading.
 template <class Done>
 bool SceneStream::work_once(const Done& done, bool& first, bool& stepped) {
   const auto pool = hold_alone();
@@ -148,7 +148,7 @@ void SceneStream::work_until(const Done& done, double deadline) {
     if (work_once(done, first, stepped)) return;
     if (stepped || desc_.readers == 0) continue;
     std::unique_lock small(small_mutex_);
-    progress_.wait_for(small, std::chrono::milliseconds(100),
+    progress_.wait_for(small, std::chrono::duration<double>(std::min(0.1, deadline - now())),
                        [&] { return signals_ != seen || abandoned_; });
   }
 }

@@ -37,12 +37,15 @@ void SceneStream::commit() {
   std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) {
     const double since = put_off_;
-    if (since < 0) put_off_ = now();
-    if (since < 0 || now() < since + kPutOff) return;
+    if (since < 0) put_off_ = at;
+    if (since < 0 || at < since + kPutOff) return;
     pool = hold_alone();
   }
   Lock lock(mutex_, std::try_to_lock);
-  if (!lock.owns_lock()) return;  // a plan may have it
+  if (!lock.owns_lock()) {  // a plan may have it, for which no frame is to wait
+    put_off_ = -1;
+    return;
+  }
   commit_or_lose(std::max(kFewChunks, static_cast<size_t>(kLinksASecond * since_last)), lock);
 }
 
@@ -52,8 +55,9 @@ void SceneStream::commit() {
 bool SceneStream::commit_between_frames(Lock& lock) {
   constexpr unsigned kTimes = 8, kMostDoublings = 16;
   const size_t enough = kFewChunks / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
-  if (changes_due_ < enough) return true;
-  // Those that have the pool wait for `lock`: they are not waited for.
+  // A plan goes first, or it would wait for one commit after another.
+  if (lost_ || plan_waits_ || changes_due_ < enough) return true;
+  // The pool's lock comes before this one, so it is only tried.
   const std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) return false;
   ++between_frames_;

@@ -87,10 +87,14 @@ bool SceneStream::plan_if_asked(Lock* lock) {
   }
   looks_.begin(std::move(viewers));
   const auto look = std::chrono::steady_clock::now();
-  if (lock != nullptr) look_at_likely(*lock);
-  const auto looked = std::chrono::steady_clock::now();
-  if (lock != nullptr) linked_.wait(*lock, [&] { return !linking_; });
-  planning_ = false;
+  auto looked = look;
+  if (lock != nullptr) {
+    looked = look_at_likely(*lock);
+    plan_waits_ = true;
+    linked_.wait(*lock, [&] { return !linking_; });
+    plan_waits_ = planning_ = false;
+    if (lost_) return false;
+  }
   const auto begin = std::chrono::steady_clock::now();
   residency_.plan(looks_, linker_.lacks_room_for_cut());
   // Those that nobody wants any more.
@@ -131,8 +135,9 @@ bool SceneStream::order_if_told() {
   return true;
 }
 
-// So that less is left to do for a plan, for which others wait. It has begun from then on.
-void SceneStream::look_at_likely(Lock& lock) {
+// So that less is left to do for a plan, for which others wait. From then on planning_ is true.
+// Returns when it had looked.
+std::chrono::steady_clock::time_point SceneStream::look_at_likely(Lock& lock) {
   const std::vector<uint32_t> likely = residency_.needed();
   planning_ = true;
   lock.unlock();
@@ -146,8 +151,9 @@ void SceneStream::look_at_likely(Lock& lock) {
   } catch (...) {
     failure = std::current_exception();
   }
+  const auto looked = std::chrono::steady_clock::now();
   lock.lock();
-  if (!failure) return;
+  if (!failure) return looked;
   planning_ = false;
   std::rethrow_exception(failure);
 }

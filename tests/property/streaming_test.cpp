@@ -95,6 +95,24 @@ TEST(Streaming, TreesOfAnyShapeStream) {
 }
 
 // A little is read between any two frames, and there is room for a part only.
+// However much has come: no frame waits for all of it.
+TEST(Streaming, AFrameLinksFewOfManyChunksAndLaterOnesTheRest) {
+  StreamRig rig(random_scene(4000, 3), 1.0);
+  const FrameInput input = frame_input(look({0, -2, -30}, {0, 0, 0}, 61, 45, 75), 0.1);
+  render(rig.part, input);
+  rig.work();  // all that is needed has a slot
+  const auto resident = [&] { return rig.stream().counters().resident; };
+  uint32_t before = resident(), frames = 0;
+  for (;; ++frames) {
+    EXPECT_TRUE(is_cut(*whole_tree(*rig.resident), render(rig.part, input).cut));
+    if (resident() == before) break;
+    EXPECT_LE(resident() - before, 64u);
+    before = resident();
+  }
+  EXPECT_GT(frames, 2u);
+  EXPECT_EQ(rig.stream().counters().need.missing, 0u);
+}
+
 TEST(Streaming, EveryFrameDrawsACut) {
   for (const double share : {0.02, 0.1, 0.3, 1.0})
     for (const size_t steps : {0u, 1u, 3u, 20u}) {
