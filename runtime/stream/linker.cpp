@@ -171,8 +171,8 @@ Linker::Family Linker::take_work() {
 
 // False: no family that hangs from the chunk is there.
 bool Linker::may_lead_on(uint32_t chunk) const {
-  const ChunkRange children = graph_->children(chunk);
   if (graph_->leads_to_itself(chunk)) return true;
+  const ChunkRange children = graph_->children(chunk);
   for (uint32_t child = children.first; child < children.last; ++child)
     if (holds(child)) return true;
   return false;

@@ -69,7 +69,7 @@ class Linker {
   }
 
  private:
-  // A node of a tier's lowest level, with its children's subtrees: a family.
+  // A node of a tier's lowest level that has children; with where these lie it is a family.
   struct Parent {
     uint32_t chunk, subtree;  // an index in the chunk
     uint32_t record;          // its address
@@ -78,7 +78,7 @@ class Linker {
     uint32_t end() const { return node.first_child + node.child_count; }
   };
   struct Family : Parent {
-    ChunkRange chunks;  // that it lies in
+    ChunkRange chunks;  // that the children's subtrees lie in
   };
   // One that is all there, and that a linked subtree would lead to if a cut had room for it.
   struct Refused {

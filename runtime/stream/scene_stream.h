@@ -144,8 +144,7 @@ class SceneStream {
   using Lock = std::unique_lock<std::mutex>;
   static constexpr size_t kChangesKept = 64;
   static constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds
-  // How many chunks a commit links at most, and unlinks as many: what two milliseconds are enough
-  // for; and all of them.
+  // How many chunks one commit links at most, and unlinks at most. The few take two milliseconds.
   static constexpr size_t kFewChunks = 64, kAllChunks = SIZE_MAX;
 
   // Read, and not resident yet.
