@@ -55,7 +55,7 @@ void DeviceInstances::update(const FrameInput& frame, cudaStream_t stream) {
 
 bool DeviceInstances::siblings() const {
   return std::any_of(all_.begin(), all_.end(), [](const DeviceInstance& instance) {
-    return instance.draws->view().list.weights != nullptr;
+    return instance.draws->view().blends();
   });
 }
 
@@ -72,7 +72,7 @@ uint32_t DeviceInstances::bytes_a_place() const {
     const DrawView draws = instance.draws->view();
     const size_t weight = draws.weights.origin != nullptr ? sizeof(CutOrigin) : sizeof(float);
     const size_t bytes = sizeof(float4) + (draws.list.nodes != nullptr ? sizeof(uint32_t) : 0) +
-                         (draws.list.weights != nullptr ? weight : 0);
+                         (draws.blends() ? weight : 0);
     most = std::max(most, static_cast<uint32_t>(bytes));
   }
   return most;

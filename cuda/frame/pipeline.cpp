@@ -143,7 +143,7 @@ void SplatPipeline::set_scenes(const Scenes& scenes, std::span<const size_t> fro
   free_.clear();
 }
 
-// One instance after the other, so that each finds on the device where its slots begin.
+// One instance after the other, so that each finds on the device where its ranks and slots begin.
 void SplatPipeline::launch_projections(const SceneReading&, const FrameInput& frame,
                                        SplatFrame& work) {
   for (size_t i = 0; i < instances_.all().size(); ++i) {
@@ -174,8 +174,8 @@ SplatFrame SplatPipeline::work(const FrameTiles& tiles, int pass) const {
 void SplatPipeline::launch_lists(const SceneReading& reading, const FrameInput& frame,
                                  FrameReport& report) {
   report.room = splats_.room();
-  SplatFrame lists = work(report.tiles, 0);
   splats_.begin_frame(report.tiles, stream_.get());
+  SplatFrame lists = work(report.tiles, 0);
   run_stage(kProject, report, [&] { launch_projections(reading, frame, lists); });
   run_stage(kBin, report, [&] { launch_bin(lists); });
   run_stage(kSort, report, [&] { launch_sort(lists); });
@@ -333,10 +333,9 @@ void SplatPipeline::launch_search(const SceneReading&, const FrameInput& frame,
 
 // Frames that are left in flight cannot be drawn again: they get room before they need it.
 void SplatPipeline::make_room() {
-  const SplatRoom wanted = wanted_, room = splats_.room();
-  if (wanted.places > room.places || wanted.strips > room.strips || wanted.pairs > room.pairs) {
+  if (!splats_.room().holds(wanted_)) {
     wait_for_host(stream_);
-    splats_.grow(wanted);
+    splats_.grow(wanted_);
   }
   wanted_ = {};
 }
@@ -448,8 +447,8 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   const auto ahead = [](size_t& wanted, size_t needed) {
     wanted = std::max(wanted, needed + needed / 8);
   };
-  ahead(wanted_.places, used.places), ahead(wanted_.strips, used.strips);
-  ahead(wanted_.pairs, used.pairs);
+  ahead(wanted_.places, used.places), ahead(wanted_.slots, used.slots);
+  ahead(wanted_.strips, used.strips), ahead(wanted_.pairs, used.pairs);
   free_.push_back(std::move(under_way_.front()));
   under_way_.pop_front();
   return true;
@@ -485,7 +484,7 @@ uint64_t SplatPipeline::culling_bytes(const SplatCounters& counted) const {
   for (const DeviceInstance& instance : instances_.all()) {
     const CutList list = instance.draws->view().list;
     if (list.room == 0) continue;
-    const uint64_t all = of[1].first_place - of[0].first_place;
+    const uint64_t all = of[1].first_rank - of[0].first_rank;
     const bool bounded = list.bounds != nullptr;
     bytes += (bounded ? uint64_t{of->rows} * kRowPlaces : all) * instances_.bytes_a_place();
     if (bounded) bytes += all / kRowPlaces * sizeof(MeanBounds);
@@ -505,11 +504,12 @@ void SplatPipeline::count_bytes(const FrameReport& report, FrameStats& stats) co
   stats.gaussian_bytes = instances_.bytes_a_gaussian();
   for (const SplatCounters& counted : report.counters()) {
     if (counted.places == 0) continue;
-    const uint64_t pairs = counted.pairs;
+    const uint64_t pairs = counted.pairs, rows = counted.places / kRowPlaces;
     uint64_t candidates = 0;
     for (const InstanceCounters& instance : counted.instances)
       candidates += instance.whole + instance.blended;
-    stats.bytes[kProject] += culling_bytes(counted) + 2 * sizeof(uint32_t) * candidates +
+    stats.bytes[kProject] += culling_bytes(counted) +
+                             2 * (sizeof(Candidate) * candidates + sizeof(RankRow) * rows) +
                              counted.splats * (stats.gaussian_bytes / desc_.eyes + kRecord) +
                              counted.strips * sizeof(TileStrip);
     stats.bytes[kBin] += 2 * counted.strips * sizeof(TileStrip) +
@@ -527,7 +527,7 @@ std::vector<Omission> SplatPipeline::omissions() const {
     shape.pixels = std::max(shape.pixels, image.pixels());
     shape.depth = shape.depth || image.depth();
   }
-  shape.eye_bytes = splats_.room().places * sizeof(SplatRecord);
+  shape.eye_bytes = splats_.room().slots * sizeof(SplatRecord);
   ViewChoices choices{desc_, false, sizeof(float)};
   for (const FrameLimits& limits : limits_) choices.limits = choices.limits || limits.any();
   std::vector<Omission> all = instances_.omissions();

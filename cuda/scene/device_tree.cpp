@@ -18,9 +18,7 @@ DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree)
            search.subtree_count(),
            search.subtree_count(),
            search.chunk_count,
-           tree.blend_share,
-           nullptr,
-           0};
+           tree.blend_share};
 }
 
 TreeView DeviceTree::view() const {

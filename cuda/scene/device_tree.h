@@ -3,7 +3,6 @@
 #include "cuda/device/buffer.h"
 #include "runtime/lod/tree.h"
 #include "runtime/select/search_tree.h"
-#include "runtime/stream/slot_ids.h"
 
 namespace voyager::cuda {
 
@@ -17,12 +16,9 @@ struct TreeView {
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
   uint32_t subtree_count, place_count, chunk_count;
   float blend_share;  // LodTree's
-  // Of a streamed scene, whose nodes and records are addresses: the file's ids of nodes, by slot.
-  // Else null.
-  const SlotIds* slot_ids;
-  uint32_t slot_nodes;
 
-  VOYAGER_HD bool streamed() const { return slot_ids != nullptr; }
+  // Then nodes and records are addresses.
+  VOYAGER_HD bool streamed() const { return next_block != nullptr; }
 };
 
 class DevicePool;

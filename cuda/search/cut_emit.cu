@@ -4,6 +4,7 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
+#include "cuda/device/nth_bit.cuh"
 #include "cuda/device/warp.cuh"
 #include "cuda/search/cut_lanes.cuh"
 #include "cuda/search/search_launch.h"
@@ -34,17 +35,6 @@ struct LevelNodes {
   // record among the subtree's.
   uint32_t interior, families, first_record, above;
 };
-
-__device__ uint32_t nth_bit(uint32_t word, uint32_t n) {
-  uint32_t place = 0;
-#pragma unroll
-  for (unsigned width = 16; width != 0; width /= 2) {
-    const uint32_t below = __popc(word & ((1u << width) - 1));
-    if (n < below) continue;
-    n -= below, word >>= width, place += width;
-  }
-  return place;
-}
 
 __device__ LevelNodes level_nodes(const SearchSubtree& s, uint32_t cut, uint32_t level,
                                   uint32_t place) {
@@ -84,8 +74,6 @@ __device__ void emit_level(const TreeView& tree, const StateView& state, const L
     const uint32_t slot = nth_bit(nodes.cut, k - nodes.place), node = nodes.base + slot;
     const uint32_t place = first_place + k;
     state.nodes[place] = node;
-    if (state.ids != nullptr)
-      state.ids[place] = tree.slot_ids[node / tree.slot_nodes].id(node % tree.slot_nodes);
     if (!kOrigin) continue;
     const bool apart = (scattered >> lane & 1) != 0;
     const uint32_t own = __popc(nodes.interior & slots_before(slot));
@@ -100,10 +88,8 @@ __device__ void emit_level(const TreeView& tree, const StateView& state, const L
 __device__ void clear_rest(const StateView& state, const Block& block) {
   for (uint32_t level = 0; level < kLevels; ++level) {
     const Segment segment = state.segments[block.first_segment + level * block.stride];
-    for (uint32_t i = segment.size + threadIdx.x; i < segment.room; i += kEmitThreads) {
+    for (uint32_t i = segment.size + threadIdx.x; i < segment.room; i += kEmitThreads)
       state.nodes[segment.first + i] = kNoNode;
-      if (state.ids != nullptr) state.ids[segment.first + i] = kNoNode;
-    }
   }
 }
 

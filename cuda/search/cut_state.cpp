@@ -37,7 +37,7 @@ uint64_t most_places(const SearchTree& tree, uint64_t most) {
 }  // namespace
 
 uint64_t CutState::list_bytes(uint64_t places) {
-  return places * (3 * sizeof(uint32_t) + sizeof(CutOrigin) + sizeof(MeanBounds) / kRowPlaces);
+  return places * (sizeof(uint32_t) + sizeof(CutOrigin) + sizeof(MeanBounds) / kRowPlaces);
 }
 
 uint64_t CutState::fixed_bytes(const SearchTree& tree) {
@@ -71,17 +71,13 @@ CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t
   const size_t room = most_places(tree, most);
   nodes_ = Buffer<uint32_t>(room);
   origin_ = Buffer<CutOrigin>(weights ? room : 0);
-  weights_ = Buffer<float>(weights ? room : 0);
-  ids_ = Buffer<uint32_t>(tree.chunks_come_and_go ? room : 0);
   bounds_ = Buffer<MeanBounds>(room / kRowPlaces + 1);
   for (const Buffer<uint32_t>* zero : {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_,
                                        &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);
   fill(rows_, 0);  // not known
   fill(segments_, 0);
-  fill(weights_, 0);  // places that hold no node are read with the others
   fill(nodes_, 0xff);
-  fill(ids_, 0xff);
   fill(signals_, 0xff);
   fill(counters_, 0);
 }
@@ -111,8 +107,6 @@ StateView CutState::view(SubtreePlaces places) const {
           counters_.data() + 1,
           nodes_.data(),
           origin_.data(),
-          weights_.data(),
-          ids_.data(),
           bounds_.data()};
 }
 

@@ -79,8 +79,6 @@ struct StateView {
   FrameCounters *counting, *counted;
   uint32_t* nodes;     // the cut list: ascending, with kNoNode in between
   CutOrigin* origin;   // of each place
-  float* weights;      // of each place
-  uint32_t* ids;       // of each place, where nodes are addresses: the file's
   MeanBounds* bounds;  // of each row
 };
 
@@ -114,8 +112,6 @@ class CutState {
   Buffer<FrameCounters> counters_;
   Buffer<uint32_t> nodes_;
   Buffer<CutOrigin> origin_;
-  Buffer<float> weights_;
-  Buffer<uint32_t> ids_;
   Buffer<MeanBounds> bounds_;
 };
 

@@ -86,6 +86,7 @@ class PartitionedSearch final : public CutSearch, public PoolReaderState {
   // Of the last state, for those who ask between frames what there is, and read none of it.
   StateView view_{};
   uint32_t list_room_ = 0;
+  Buffer<float> weights_of_places_;  // once weigh() was called
   References references_;
   bool started_ = false;
   std::optional<PoolShare> share_;  // last: what goes first frees the state
@@ -120,6 +121,7 @@ void PartitionedSearch::drop() noexcept {
   device_->use_quietly();
   const std::lock_guard lock(state_mutex_);
   state_.reset();
+  weights_of_places_ = {};
 }
 
 // Whether its state is still there.
@@ -131,7 +133,8 @@ bool PartitionedSearch::fit_pool() {
 
 // Whether the search goes on from its last cut.
 bool PartitionedSearch::follow_stream(const SearchFrame& now, bool goes_on) {
-  const std::optional<Relinked> relinked = streamed_->changes.follow(*scene_->stream);
+  const std::optional<Relinked> relinked =
+      streamed_->changes.follow(*scene_->stream, streamed_->pool);
   if (!goes_on || !relinked) {
     launch_forget(now);
     return false;
@@ -176,17 +179,25 @@ void PartitionedSearch::bound(const GaussianView& gaussians, cudaStream_t stream
 }
 
 void PartitionedSearch::weigh(const CutQuery& query, cudaStream_t stream) {
+  if (!weights_) return;
+  // Frames weigh as they draw: what only comparisons ask for takes memory here.
+  if (weights_of_places_.size() != list_room_) {
+    weights_of_places_ = {};
+    weights_of_places_ = Buffer<float>(list_room_);
+    fill(weights_of_places_, 0);  // places that hold no node are read with the others
+  }
   if (tree_->view().subtree_count != 0)
-    launch_weigh(weight_source(query), state_->view(), device_->multiprocessors(), stream);
+    launch_weigh(weight_source(query), state_->view(), weights_of_places_.data(),
+                 device_->multiprocessors(), stream);
 }
 
 WeightSource PartitionedSearch::weight_source(const CutQuery& query) const {
   if (!weights_) return {};
-  return {view_.origin, tree_->view(), make_sight(query), view_.weights};
+  return {view_.origin, tree_->view(), make_sight(query)};
 }
 
 CutList PartitionedSearch::list() const {
-  return {view_.nodes, weights_ ? view_.weights : nullptr, &view_.counted->list_size, list_room_,
+  return {view_.nodes, weights_of_places_.data(), &view_.counted->list_size, list_room_,
           view_.bounds};
 }
 
@@ -217,7 +228,6 @@ CutFound PartitionedSearch::found(const void* report) const {
   return {stats, c.cut_size};
 }
 
-// Ids that were found with the list: what an address held then may be gone now.
 void PartitionedSearch::read(std::vector<uint32_t>& cut, std::vector<float>& weights) {
   const std::lock_guard lock(state_mutex_);
   if (!state_)
@@ -227,23 +237,23 @@ void PartitionedSearch::read(std::vector<uint32_t>& cut, std::vector<float>& wei
   const size_t places = counters().list_size;
   const StateView state = state_->view();
   cut.resize(places);
-  weights.resize(weights_ ? places : 0);
+  weights.resize(weights_of_places_.size() != 0 ? places : 0);
   if (places != 0)
-    check(cudaMemcpy(cut.data(), streamed_ ? state.ids : state.nodes, places * sizeof(uint32_t),
-                     cudaMemcpyDeviceToHost),
+    check(cudaMemcpy(cut.data(), state.nodes, places * sizeof(uint32_t), cudaMemcpyDeviceToHost),
           "cut");
   if (!weights.empty())
-    check(cudaMemcpy(weights.data(), state.weights, places * sizeof(float), cudaMemcpyDeviceToHost),
+    check(cudaMemcpy(weights.data(), weights_of_places_.data(), places * sizeof(float),
+                     cudaMemcpyDeviceToHost),
           "weights");
   size_t used = 0;
   for (size_t i = 0; i < places; ++i) {
     if (cut[i] == kNoNode) continue;
-    cut[used] = cut[i];
-    if (weights_) weights[used] = weights[i];
+    cut[used] = streamed_ ? streamed_->changes.id(cut[i]) : cut[i];
+    if (!weights.empty()) weights[used] = weights[i];
     ++used;
   }
   cut.resize(used);
-  weights.resize(weights_ ? used : 0);
+  if (!weights.empty()) weights.resize(used);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "cuda/scene/device_tree.h"
 #include "cuda/scene/gaussian_view.h"
 #include "cuda/scene/sweep_tree.h"
+#include "cuda/search/row_places.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
 #include "runtime/select/visit.h"
@@ -15,15 +16,13 @@
 
 namespace voyager::cuda {
 
-// Places of a list that are left out and bounded together.
-inline constexpr uint32_t kRowPlaces = 32;
-
 // A cut on the device. Places that hold kNoNode are none.
 struct CutList {
   const uint32_t* nodes;  // in the order of ids: ids, or addresses of a streamed scene
-  const float* weights;   // t by place; null where the search finds none
-  const uint32_t* size;   // places in use; on the device, as the arrays are
-  uint32_t room;          // no list has more places
+  const float*
+      weights;  // t by place; null where the search finds none, or finds them as it is drawn
+  const uint32_t* size;  // places in use; on the device, as the arrays are
+  uint32_t room;         // no list has more places
   // By row: of its nodes and of their parents. Null where the search keeps none.
   const MeanBounds* bounds = nullptr;
 };
@@ -45,7 +44,6 @@ struct WeightSource {
   const CutOrigin* origin = nullptr;  // by place; null: the list has its weights
   TreeView tree{};
   Sight sight{};
-  float* weights = nullptr;  // the list's: for the places that are drawn
 };
 
 struct CutFound {
@@ -60,9 +58,10 @@ class CutSearch {
   virtual void find(const CutQuery& query, cudaStream_t stream) = 0;
   // The bounds of the rows that the last find() wrote, where the search keeps them.
   virtual void bound(const GaussianView&, cudaStream_t) {}
-  // t of the cut just found; only of a search that was made for weights.
+  // t of the cut just found, for list() and read(); only of a search that was made for weights.
   virtual void weigh(const CutQuery& query, cudaStream_t stream) = 0;
-  // What weighs the cut while it is drawn, in place of weigh(). None: call weigh().
+  // What weighs the cut while it is drawn, in place of weigh(), and needs no memory for it. None:
+  // call weigh().
   virtual WeightSource weight_source(const CutQuery&) const { return {}; }
   virtual CutList list() const = 0;
   // What reads the scene's arrays in this frame has been launched, or has failed to be.
@@ -81,7 +80,7 @@ class CutSearch {
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // kind: any but exhaustive; temporal in place of a sweep. Device memory besides the scene's arrays:
-// 29 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 19. Of a streamed scene it
+// 29 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 15. Of a streamed scene it
 // is view_bytes(), which are part of the scene's budget. Such a scene's search runs under
 // SceneStream::hold(), and ends each run with end_frame().
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,

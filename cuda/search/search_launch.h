@@ -49,9 +49,9 @@ void launch_emit(const SearchFrame& frame, bool weights);
 // cut_bounds.cu: of the rows that launch_emit() wrote.
 void launch_bound(const StateView& state, const GaussianView& gaussians, bool weights,
                   unsigned multiprocessors, cudaStream_t stream);
-// weights.cu
-void launch_weigh(const WeightSource& from, const StateView& state, unsigned multiprocessors,
-                  cudaStream_t stream);
+// weights.cu. weights: by place.
+void launch_weigh(const WeightSource& from, const StateView& state, float* weights,
+                  unsigned multiprocessors, cudaStream_t stream);
 
 // cut_exhaustive.cu. Into nodes[] (room for every node) and *count; scratch as
 // exhaustive_scratch_bytes() says.

@@ -1,6 +1,6 @@
 // METHOD §5–7, §12: the Gaussians of a frame to splats. project_cull reads the hulls of the rows
 // that may reach the image, where the search keeps bounds of them, weighs their nodes, and lists
-// those that may reach the image; project_splats reads the rest of these.
+// those that may reach the image; these get slots; project_splats reads the rest of them.
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
 #include "cuda/device/warp.cuh"
@@ -9,7 +9,7 @@
 #include "cuda/search/cut_weight.cuh"
 #include "cuda/splat/draw_item.cuh"
 #include "cuda/splat/occlusion.cuh"
-#include "cuda/splat/splat_launch.h"
+#include "cuda/splat/project_slots.h"
 #include "cuda/splat/tile_strips.cuh"
 
 namespace voyager::cuda {
@@ -41,15 +41,36 @@ __device__ bool project_may_show(const SplatFrame& f, const DrawItem& item, Gaus
                                  {hull.mean, hull.max_scale, hull.mean, radius});
 }
 
-// What the place of a node draws, and `t` of the node where it is found here.
+// The weight of the node of a place.
 template <bool kLod>
-__device__ DrawItem weighed_item(const SplatFrame& f, uint32_t place, uint32_t node, float& t) {
+__device__ float weight_at(const SplatFrame& f, uint32_t place, uint32_t node) {
   const WeightSource& from = f.draws.weights;
+  if (!kLod || node == kNoNode) return 1.0f;
+  return from.origin == nullptr ? __ldg(f.draws.list.weights + place)
+                                : weight_of(from, place, node);
+}
+
+// What such a node draws.
+template <bool kLod>
+__device__ DrawItem weighed_item(const GaussianView& gaussians, uint32_t node, float weight) {
   if (!kLod || node == kNoNode) return {node, kNoNode, 1.0f, 1.0f};
-  const float weight =
-      from.origin == nullptr ? __ldg(f.draws.list.weights + place) : weight_of(from, place, node);
-  if (from.origin != nullptr) t = weight;
-  return item_of(f.gaussians, node, weight);
+  return item_of(gaussians, node, weight);
+}
+
+__device__ uint32_t rank_of(const SplatFrame& f, uint32_t first_rank, uint32_t place) {
+  return first_rank + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
+}
+
+// Tells project_slots that a warp's places `lanes`, of a row, may reach the image.
+__device__ void mark_row(const SplatFrame& f, uint32_t first_rank, uint32_t place, uint32_t lanes) {
+  const uint32_t lane = lane_in_warp();
+  if (f.draws.ids == nullptr) {
+    if (lane == 0) f.splats.ranks[(first_rank + place) / kRowPlaces].candidates = lanes;
+  } else if (lanes >> lane & 1) {
+    const uint32_t rank = rank_of(f, first_rank, place);
+    if (rank < f.splats.places)
+      atomicOr(&f.splats.ranks[rank / kRowPlaces].candidates, 1u << rank % kRowPlaces);
+  }
 }
 
 // Lists the places of a block's threads that have a bit in their warp's `lanes`, in order within
@@ -84,15 +105,18 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
   __shared__ uint32_t found, first;
   const uint32_t places = *f.draws.list.size;
   InstanceCounters* const counters = f.splats.counters->instances + f.instance;
-  const uint32_t first_place = counters->first_place;
-  if (blockIdx.x == 0 && threadIdx.x == 0)
-    f.splats.counters->places = counters[1].first_place = first_place + places;
-  const uint32_t end = min(places, f.splats.places - min(first_place, f.splats.places));
+  const uint32_t first_rank = counters->first_rank;
+  if (blockIdx.x == 0 && threadIdx.x == 0) {
+    f.splats.counters->places = first_rank + places;
+    counters[1].first_rank = (first_rank + places + kRowPlaces - 1) / kRowPlaces * kRowPlaces;
+  }
+  const uint32_t end = min(places, f.splats.places - min(first_rank, f.splats.places));
   const bool all = f.rows.rows == nullptr;
   const uint32_t rows = all ? (end + kRowPlaces - 1) / kRowPlaces : *f.rows.count;
   constexpr uint32_t kWarps = kCullThreads / 32, kRows = kWarps * kCullItems;
   for (uint32_t base = blockIdx.x * kRows; base < rows; base += gridDim.x * kRows) {
     uint32_t places_of[kCullItems], whole[kCullItems], blended[kCullItems], nodes[kCullItems];
+    float weights[kCullItems];
     GaussianHull hulls[kCullItems];  // read together: one waits as long as all
 #pragma unroll
     for (unsigned k = 0; k < kCullItems; ++k) {
@@ -106,40 +130,42 @@ __global__ void __launch_bounds__(kCullThreads) project_cull(SplatFrame f) {
       hulls[k] = nodes[k] == kNoNode ? GaussianHull{} : hull_at(f.gaussians, nodes[k]);
 #pragma unroll
     for (unsigned k = 0; k < kCullItems; ++k) {
-      const uint32_t place = places_of[k];
-      float t = 1.0f;
-      const DrawItem item = weighed_item<kLod>(f, place, nodes[k], t);
+      weights[k] = weight_at<kLod>(f, places_of[k], nodes[k]);
+      const DrawItem item = weighed_item<kLod>(f.gaussians, nodes[k], weights[k]);
       const bool reaches = project_may_show<kLod, kEyes, kSecond>(f, item, hulls[k]);
       const bool blends = kLod && item.t != 1.0f;
-      if (kLod && reaches && f.draws.weights.origin != nullptr) f.draws.weights.weights[place] = t;
       whole[k] = __ballot_sync(kAllLanes, reaches && !blends);
       blended[k] = kLod ? __ballot_sync(kAllLanes, reaches && blends) : 0;
+      if (base + k * kWarps + threadIdx.x / 32 < rows)
+        mark_row(f, first_rank, places_of[k], whole[k] | blended[k]);
     }
-    append_places(whole, &counters->whole, found, first,
-                  [&](uint32_t at, unsigned k) { f.splats.candidates[at] = places_of[k]; });
-    if (kLod)
-      append_places(blended, &counters->blended, found, first, [&](uint32_t at, unsigned k) {
-        f.splats.candidates[f.splats.places - 1 - at] = places_of[k];
-      });
+    const auto put = [&](Candidate* candidates) {
+      return [&, candidates](uint32_t at, unsigned k) {
+        if (at < f.splats.slots) candidates[at] = {places_of[k], weights[k]};
+      };
+    };
+    append_places(whole, &counters->whole, found, first, put(f.splats.whole));
+    if (kLod) append_places(blended, &counters->blended, found, first, put(f.splats.blended));
   }
 }
 
-// Of the candidates, in whole warps of either kind; kNoNode for none.
+// Of an instance, in whole warps of either kind; their place is kNoNode for none.
 struct Candidates {
-  const uint32_t* places;
-  uint32_t whole, blended, room;
+  const Candidate *whole_from, *blended_from;
+  uint32_t whole, blended;
 
   __device__ Candidates(const SplatFrame& f, const InstanceCounters& counters)
-      : places(f.splats.candidates),
-        whole(counters.whole),
-        blended(counters.blended),
-        room(f.splats.places) {}
+      : whole_from(f.splats.whole),
+        blended_from(f.splats.blended),
+        whole(min(counters.whole, f.splats.slots)),
+        blended(min(counters.blended, f.splats.slots)) {}
   __device__ uint32_t whole_warps() const { return (whole + 31) & ~31u; }
   __device__ uint32_t end() const { return whole_warps() + blended; }
-  __device__ uint32_t operator()(uint32_t at) const {
-    if (at < whole) return places[at];
+  __device__ Candidate operator()(uint32_t at) const {
+    if (at < whole) return whole_from[at];
     const uint32_t of_blended = at - whole_warps();
-    return at >= whole_warps() && of_blended < blended ? places[room - 1 - of_blended] : kNoNode;
+    if (at >= whole_warps() && of_blended < blended) return blended_from[of_blended];
+    return {kNoNode, 1.0f};
   }
 };
 
@@ -154,7 +180,6 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
   if (!has_work(f.splats)) return;
   const DeviceArrays<Sh> arrays{f.gaussians};
   const InstanceCounters& counters = f.splats.counters->instances[f.instance];
-  const uint32_t first_place = counters.first_place;
   const Candidates candidates(f, counters);
   uint32_t visible = 0;
   unsigned long long boxed = 0;
@@ -162,23 +187,26 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
   __shared__ WarpExtents extents[kProjectThreads / 32];
   // Whole warps together: they share the strips of their splats.
   for (uint32_t base = first; base < candidates.end(); base += gridDim.x * kProjectThreads) {
-    const uint32_t place = candidates(base + lane_in_warp());
+    const auto [place, weight] = candidates(base + lane_in_warp());
     TileExtent extent[kEyes] = {};
     float depth[kEyes] = {};
-    uint32_t rank = 0;  // among the places of all instances
+    uint32_t slot = 0;
     if (place != kNoNode) {
-      const DrawItem item = item_at<kLod>(f.gaussians, f.draws.list, place);
-      rank = first_place + (f.draws.ids == nullptr ? place : __ldg(f.draws.ids + place));
+      const DrawItem item = weighed_item<kLod>(f.gaussians, node_at(f.draws.list, place), weight);
+      const uint32_t rank = rank_of(f, counters.first_rank, place);
+      // What is beyond the room is skipped. It was counted, so the next frame has the room.
+      bool has_room = rank < f.splats.places;
+      if (has_room) slot = f.splats.ranks[rank / kRowPlaces].slot(rank);
+      has_room = has_room && slot < f.splats.slots;
       DrawnGaussian drawn;
-      // A rank beyond the room is skipped. Its place was counted, so the next frame has the room.
-      if (rank < f.splats.places && read_gaussian(f.params[0], arrays, item, drawn)) {
+      if (has_room && read_gaussian(f.params[0], arrays, item, drawn)) {
 #pragma unroll
         for (int eye = 0; eye < kEyes; ++eye) {
           Splat splat;
           const ProjectParams& params = f.params[eye];
           if (!project(params, arrays, item, drawn, splat)) continue;
           const SplatRecord record = record_of(splat, params.log_scale);
-          f.splats.records[slot_of(f.splats, rank, eye)] = record;
+          f.splats.records[slot_of(f.splats, slot, eye)] = record;
           extent[eye] = tile_extent(support_of(record, params.log_scale, params.log_threshold),
                                     f.splats.frame.grids[eye]);
           depth[eye] = splat.depth;
@@ -190,7 +218,7 @@ __global__ void __launch_bounds__(kProjectThreads, kEyes == 1 ? 0 : kPairBlocks)
 #pragma unroll
     for (int eye = 0; eye < kEyes; ++eye)
       write_strips<kEyes>(extents[threadIdx.x / 32], extent[eye], f.splats, eye, depth[eye],
-                          slot_of(f.splats, rank, eye), boxes);
+                          slot_of(f.splats, slot, eye), boxes);
   }
   visible = __reduce_add_sync(kAllLanes, visible);
   boxed = warp_sum(boxed);
@@ -216,16 +244,18 @@ void launch_cull(const SplatFrame& f) {
 
 template <bool kLod, int kEyes>
 void launch_for(const SplatFrame& f, bool boxes) {
+  if (f.draws.ids != nullptr) launch_clear_ranks(f);
   if (f.splats.open_parts == nullptr)
     launch_cull<kLod, kEyes, false>(f);
   else
     launch_cull<kLod, kEyes, true>(f);
+  launch_slots(f);
   with_sh(f.gaussians, [&]<class Sh>() { launch<Sh, kLod, kEyes>(f, boxes); });
 }
 
 template <int kEyes>
 void launch_for(const SplatFrame& f, bool boxes) {
-  if (f.draws.list.weights != nullptr) return launch_for<true, kEyes>(f, boxes);
+  if (f.draws.blends()) return launch_for<true, kEyes>(f, boxes);
   launch_for<false, kEyes>(f, boxes);
 }
 

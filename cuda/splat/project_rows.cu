@@ -22,13 +22,14 @@ __device__ bool row_may_reach(const SplatFrame& f, uint32_t row) {
   return reaches && !hidden_in_all<kSecond>(f.splats, f.params, bounds);
 }
 
-// A row a lane. Their order depends on scheduling; nothing that is made of them does.
+// A row a lane. Their order depends on scheduling; nothing that is made of them does. Those that
+// are left out have no candidates.
 template <bool kSecond>
 __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
   if (kSecond && !has_work(f.splats)) return;
   InstanceCounters* const counters = f.splats.counters->instances + f.instance;
-  const uint32_t first_place = min(counters->first_place, f.splats.places);
-  const uint32_t places = min(*f.draws.list.size, f.splats.places - first_place);
+  const uint32_t first_rank = min(counters->first_rank, f.splats.places);
+  const uint32_t places = min(*f.draws.list.size, f.splats.places - first_rank);
   const uint32_t end = (places + kRowPlaces - 1) / kRowPlaces;
   const uint32_t lane = lane_in_warp();
   for (uint32_t base = blockIdx.x * kThreads + threadIdx.x - lane; base < end;
@@ -39,7 +40,10 @@ __global__ void __launch_bounds__(kThreads) project_rows(SplatFrame f) {
     if (lane == 0 && found != 0)
       first = atomicAdd(&counters->rows, static_cast<uint32_t>(__popc(found)));
     first = __shfl_sync(kAllLanes, first, 0);
-    if (found >> lane & 1) f.splats.rows[first + __popc(found & ((1u << lane) - 1))] = row;
+    if (found >> lane & 1)
+      f.splats.rows[first + __popc(found & ((1u << lane) - 1))] = row;
+    else if (row < end)
+      f.splats.ranks[first_rank / kRowPlaces + row].candidates = 0;
   }
 }
 

@@ -3,6 +3,7 @@
 // know nothing of it. Exponentials are those of ex2 whatever the frame's are, and nothing limits
 // depth: what is told decides the order of reads alone.
 #include "cuda/device/launch.cuh"
+#include "cuda/device/nth_bit.cuh"
 #include "cuda/device/warp.cuh"
 #include "cuda/splat/raster_part.cuh"
 #include "cuda/splat/shown.h"
@@ -12,14 +13,28 @@ namespace {
 
 constexpr unsigned kWarps = kTile * kTile / 32;
 
+// The rank of a splat: of the last row whose first slot is not behind its own.
+__device__ uint32_t rank_of(const SplatView& splats, uint32_t slot) {
+  uint32_t first = 0, count = (splats.counters->places + kRowPlaces - 1) / kRowPlaces;
+  while (count > 1) {
+    const uint32_t half = count / 2;
+    const bool behind = splats.ranks[first + half].first_slot <= slot;
+    first += behind ? half : 0;
+    count = behind ? count - half : half;
+  }
+  const RankRow row = splats.ranks[first];
+  return first * kRowPlaces + nth_bit(row.candidates, slot - row.first_slot);
+}
+
 __device__ void note(const ShownFrame& f, uint32_t slot, uint8_t* by_slot) {
-  const uint32_t rank = slot % f.splats.places;
   const InstanceCounters* const of = f.splats.counters->instances;
+  const uint32_t of_eye = slot % f.splats.slots;
   uint32_t k = 0;
-  while (k + 1 < f.count && rank >= of[k + 1].first_place) ++k;
+  while (k + 1 < f.count && of_eye >= of[k + 1].first_slot) ++k;
   const ShownInstance& instance = f.instances[k];
   if (instance.nodes == nullptr) return;
-  const uint32_t node = __ldg(instance.nodes + (rank - of[k].first_place));
+  const uint32_t place = rank_of(f.splats, of_eye) - of[k].first_rank;
+  const uint32_t node = __ldg(instance.nodes + place);
   by_slot[instance.first_slot + node / instance.slot_nodes] = 1;
 }
 

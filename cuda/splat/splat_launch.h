@@ -16,6 +16,9 @@ struct DrawView {
   const uint32_t* ids;     // by place, what breaks ties of depth: 0 to the last place, each
                            // once. Null: the places themselves.
   WeightSource weights{};  // where project_cull finds them
+
+  // Whether it may draw nodes between their parent and themselves.
+  VOYAGER_HD bool blends() const { return list.weights != nullptr || weights.origin != nullptr; }
 };
 
 // What a frame's kernels share. The first five are an instance's, and projection's alone;
@@ -34,9 +37,10 @@ struct SplatFrame {
 // project_rows.cu. Of an instance's list, the rows of which a Gaussian may reach the image of an
 // eye; all, where the list has no bounds. Those behind the splats' room are left out.
 RowList launch_rows(const SplatFrame& frame);
-// project.cu. An instance's splats into slots behind those of the instances before it, and
-// into strips of tiles (METHOD §7b): with the α-filter those that its ellipse touches, without
-// it its box's. False where the instance has nothing to draw, and so takes no number.
+// project.cu, project_slots.cu. An instance's splats into slots behind those of the instances
+// before it, and into strips of tiles (METHOD §7b): with the α-filter those that its ellipse
+// touches, without it its box's. False where the instance has nothing to draw, and so takes no
+// number.
 bool launch_project(const SplatFrame& frame, bool alpha_filter);
 // bin.cu: the (tile, splat) pairs, tile by tile. Those beyond the room are left out.
 void launch_bin(const SplatFrame& frame);

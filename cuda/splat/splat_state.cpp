@@ -7,7 +7,7 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr size_t kFirstPlaces = size_t{1} << 18;
+constexpr size_t kFirstPlaces = size_t{1} << 18, kFirstSlots = kFirstPlaces;
 constexpr size_t kFirstStrips = size_t{1} << 19, kFirstPairs = size_t{1} << 20;
 // Indices of 32 bits, and sums of two of them.
 constexpr size_t kMostIndices = size_t{1} << 31;
@@ -18,6 +18,20 @@ size_t counter_bytes(size_t tiles) {
 
 size_t rows_for(size_t places) {
   return (places + kRowPlaces - 1) / kRowPlaces;
+}
+
+size_t sums_for(size_t places) {
+  return (rows_for(places) + kSumRows - 1) / kSumRows;
+}
+
+// Of a frame: each pass has as many as instances.
+constexpr uint32_t kRankTags = kPasses * (kMaxInstances + 1);
+
+// Whose tags are no frame's.
+Buffer<unsigned long long> make_sums(size_t places) {
+  Buffer<unsigned long long> sums(sums_for(places));
+  fill(sums, 0);
+  return sums;
 }
 
 // Allocates with some to spare, else as much as is wanted, else what there was. False
@@ -57,6 +71,7 @@ SplatRoom room_for(const PassCounters& passes) {
   SplatRoom room;
   for (const SplatCounters& counters : passes) {
     room.places = std::max<size_t>(room.places, counters.places);
+    room.slots = std::max<size_t>(room.slots, counters.slots);
     room.strips = std::max<size_t>(room.strips, counters.strip_room);
     room.pairs = std::max<size_t>(room.pairs, counters.pairs);
   }
@@ -69,17 +84,20 @@ uint64_t dropped(const PassCounters& passes, const SplatRoom& room) {
   };
   uint64_t sum = 0;
   for (const SplatCounters& counters : passes)
-    sum += beyond(counters.places, room.places) + counters.strips_dropped +
-           beyond(counters.pairs, room.pairs);
+    sum += beyond(counters.places, room.places) + beyond(counters.slots, room.slots) +
+           counters.strips_dropped + beyond(counters.pairs, room.pairs);
   return sum;
 }
 
 SplatState::SplatState(unsigned bin_blocks, uint32_t eyes)
     : bin_blocks_(bin_blocks),
       eyes_(eyes),
-      records_(kFirstPlaces * eyes),
-      candidates_(kFirstPlaces),
       rows_(rows_for(kFirstPlaces)),
+      ranks_(rows_for(kFirstPlaces)),
+      rank_sums_(make_sums(kFirstPlaces)),
+      records_(kFirstSlots * eyes),
+      whole_(kFirstSlots),
+      blended_(kFirstSlots),
       keys_(kFirstPairs),
       merge_keys_(kFirstPairs),
       strips_(kFirstStrips) {}
@@ -96,10 +114,19 @@ void SplatState::fit(const FrameTiles& of) {
 // The old buffers go first: nothing in them outlives a frame.
 bool SplatState::grow_places(size_t wanted) {
   return grow_to(wanted, room().places, [&](size_t places) {
-    records_ = {}, candidates_ = {}, rows_ = {};
-    records_ = Buffer<SplatRecord>(places * eyes_);
-    candidates_ = Buffer<uint32_t>(places);
+    rows_ = {}, ranks_ = {}, rank_sums_ = {};
     rows_ = Buffer<uint32_t>(rows_for(places));
+    ranks_ = Buffer<RankRow>(rows_for(places));
+    rank_sums_ = make_sums(places);
+  });
+}
+
+bool SplatState::grow_slots(size_t wanted) {
+  return grow_to(wanted, room().slots, [&](size_t slots) {
+    records_ = {}, whole_ = {}, blended_ = {};
+    records_ = Buffer<SplatRecord>(slots * eyes_);
+    whole_ = Buffer<Candidate>(slots);
+    blended_ = Buffer<Candidate>(slots);
   });
 }
 
@@ -119,10 +146,10 @@ bool SplatState::grow_pairs(size_t wanted) {
 }
 
 bool SplatState::grow(const SplatRoom& wanted) {
-  // All three, whatever becomes of one.
-  const bool places = grow_places(wanted.places), strips = grow_strips(wanted.strips),
-             pairs = grow_pairs(wanted.pairs);
-  return places || strips || pairs;
+  // All of them, whatever becomes of one.
+  const bool places = grow_places(wanted.places), slots = grow_slots(wanted.slots),
+             strips = grow_strips(wanted.strips), pairs = grow_pairs(wanted.pairs);
+  return places || slots || strips || pairs;
 }
 
 SplatView SplatState::view(const FrameTiles& tiles, int pass) const {
@@ -130,9 +157,14 @@ SplatView SplatState::view(const FrameTiles& tiles, int pass) const {
   auto* const counts = reinterpret_cast<uint32_t*>(passes + kPasses);
   SplatView view{};
   view.records = records_.data();
-  view.candidates = candidates_.data();
+  view.whole = whole_.data();
+  view.blended = blended_.data();
+  view.slots = static_cast<uint32_t>(room().slots);
   view.rows = rows_.data();
+  view.ranks = ranks_.data();
   view.places = static_cast<uint32_t>(room().places);
+  view.rank_sums = rank_sums_.data();
+  view.rank_tag = rank_tag_ + static_cast<uint32_t>(pass) * kRankTags / kPasses;
   view.strips = strips_.data();
   view.strip_room = static_cast<uint32_t>(strips_.size());
   view.keys = keys_.data();
@@ -149,7 +181,8 @@ SplatView SplatState::view(const FrameTiles& tiles, int pass) const {
   return view;
 }
 
-void SplatState::begin_frame(const FrameTiles& tiles, cudaStream_t stream) const {
+void SplatState::begin_frame(const FrameTiles& tiles, cudaStream_t stream) {
+  rank_tag_ = std::max(rank_tag_ + kRankTags, kRankTags);  // 0 is none's
   check(cudaMemsetAsync(counters_.data(), 0, counter_bytes(tiles.count()), stream),
         "a frame's counters");
 }

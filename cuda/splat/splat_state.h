@@ -11,7 +11,12 @@ namespace voyager::cuda {
 
 // Of the buffers that the scene and the view decide.
 struct SplatRoom {
-  size_t places = 0, strips = 0, pairs = 0;
+  size_t places = 0, slots = 0, strips = 0, pairs = 0;
+
+  bool holds(const SplatRoom& other) const {
+    return places >= other.places && slots >= other.slots && strips >= other.strips &&
+           pairs >= other.pairs;
+  }
 };
 
 // A frame draws its tiles once, or once more those that their limits left open.
@@ -24,7 +29,7 @@ SplatRoom room_for(const PassCounters& passes);
 // The eyes' tiles, one grid behind the other.
 FrameTiles frame_tiles(const FrameInput& frame);
 
-// Pairs, strips and places of a frame for which there was no room.
+// Pairs, strips, slots and places of a frame for which there was no room.
 uint64_t dropped(const PassCounters& passes, const SplatRoom& room);
 
 class SplatState {
@@ -39,30 +44,36 @@ class SplatState {
   void fit(const FrameTiles& tiles);
   // Buffers that belong together may differ after an allocation that failed.
   SplatRoom room() const {
-    return {std::min({records_.size() / eyes_, candidates_.size(), rows_.size() * kRowPlaces}),
-            strips_.size(), std::min(keys_.size(), merge_keys_.size())};
+    return {std::min({rows_.size(), ranks_.size(), rank_sums_.size() * kSumRows}) * kRowPlaces,
+            std::min({records_.size() / eyes_, whole_.size(), blended_.size()}), strips_.size(),
+            std::min(keys_.size(), merge_keys_.size())};
   }
   // Makes so much room, with some to spare. False where there is nothing to do, or no
   // memory for it: the frame is then what it can be. Nothing on the device uses them.
   bool grow(const SplatRoom& wanted);
 
+  // Clears what the kernels add to, in both passes. Before view().
+  void begin_frame(const FrameTiles& tiles, cudaStream_t stream);
   // Of that pass; its limits are not set.
   SplatView view(const FrameTiles& tiles, int pass) const;
-  // Clears what the kernels add to, in both passes.
-  void begin_frame(const FrameTiles& tiles, cudaStream_t stream) const;
   const PassCounters* counters() const {
     return reinterpret_cast<const PassCounters*>(counters_.data());
   }
 
  private:
   bool grow_places(size_t wanted);
+  bool grow_slots(size_t wanted);
   bool grow_strips(size_t wanted);
   bool grow_pairs(size_t wanted);
 
   unsigned bin_blocks_;
   uint32_t eyes_;
+  uint32_t rank_tag_ = 0;  // no sum of before has one of the frame's
+  Buffer<uint32_t> rows_;
+  Buffer<RankRow> ranks_;
+  Buffer<unsigned long long> rank_sums_;
   Buffer<SplatRecord> records_;
-  Buffer<uint32_t> candidates_, rows_;
+  Buffer<Candidate> whole_, blended_;
   Buffer<DepthKey> keys_, merge_keys_;
   Buffer<unsigned char> counters_;  // PassCounters, then a count a tile and pass, then the ends
   Buffer<TileStrip> strips_;

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 
+#include "cuda/search/row_places.h"
 #include "cuda/splat/tile_limits.h"
+#include "runtime/math/bit_count.h"
 #include "runtime/stages/bin.h"
 
 namespace voyager::cuda {
@@ -25,7 +27,7 @@ VOYAGER_HD SupportEllipse support_of(const SplatRecord& r, float log_scale, floa
 }
 
 // A (tile, splat) pair in its tile's list: the bits of z > 0 above the splat's slot. An eye's
-// slots ascend with (instance, id), so that keys are in the contract's order.
+// slots ascend with ranks, so that keys are in the contract's order.
 using DepthKey = unsigned long long;
 
 VOYAGER_HD uint32_t slot_of(DepthKey key) {
@@ -46,8 +48,31 @@ struct alignas(128) SortQueue {
   uint32_t taken;
 };
 
+// A place that may reach the image, and the weight of its node.
+struct Candidate {
+  uint32_t place;
+  float weight;
+};
+
+// Of consecutive ranks, which are the places of all instances in the contract's order (instance,
+// id): those that may reach the image, and the slot of the first of them.
+struct RankRow {
+  uint32_t candidates;  // bits
+  uint32_t first_slot;
+
+  VOYAGER_HD bool has(uint32_t rank) const { return (candidates >> rank % kRowPlaces & 1) != 0; }
+  // Of a rank that it has.
+  VOYAGER_HD uint32_t slot(uint32_t rank) const {
+    return first_slot + bit_count(candidates & ((1u << rank % kRowPlaces) - 1));
+  }
+};
+
+// Of so many, project_slots.cu adds up the candidates: a word of rank_sums for each.
+inline constexpr uint32_t kSumRows = 4096;
+
 struct InstanceCounters {
-  uint32_t first_place;
+  uint32_t first_rank;  // a row's
+  uint32_t first_slot;
   // Of its places, that may reach the image: those that are drawn untouched, and those that blend
   // with their parents.
   uint32_t whole, blended;
@@ -62,10 +87,11 @@ struct SplatCounters {
   unsigned long long evaluated, blended;          // pixels, where they are counted
   unsigned long long places_read;                 // of the lists, where pixels are counted
   InstanceCounters instances[kMaxInstances + 1];  // by SplatFrame::instance
-  uint32_t places;                                // of the lists that are drawn
-  uint32_t splats;                                // that reach the image
-  unsigned long long strips;                      // of them
-  unsigned long long strip_room;                  // that they need in all regions
+  uint32_t places;                // of the lists that are drawn: behind the last rank
+  uint32_t slots;                 // of those that may reach the image
+  uint32_t splats;                // that reach the image
+  unsigned long long strips;      // of them
+  unsigned long long strip_room;  // that they need in all regions
   unsigned long long strips_dropped;
   uint32_t long_lists, large_lists, halved_lists;  // the first tiles of tile_order
   uint32_t open_parts;  // of tiles whose list was cut off before all of their pixels had ended
@@ -112,14 +138,16 @@ struct FrameTiles {
 
 // As kernels take it.
 struct SplatView {
-  SplatRecord* records;  // by slot: of all places for an eye, then for the next
-  // Places of the instance that is being projected: whole ones from the beginning, blended ones
-  // from the end.
-  uint32_t* candidates;
-  uint32_t* rows;       // of that instance's list
-  uint32_t places;      // room
-  TileStrip* strips;    // kStripRegions regions of equal room
-  uint32_t strip_room;  // of all
+  SplatRecord* records;        // by slot: of all candidates for an eye, then for the next
+  Candidate *whole, *blended;  // of the instance that is being projected
+  uint32_t slots;              // room for each of these
+  uint32_t* rows;              // of that instance's list
+  RankRow* ranks;
+  uint32_t places;                // room for ranks
+  unsigned long long* rank_sums;  // project_slots.cu's
+  uint32_t rank_tag;              // of the first instance's
+  TileStrip* strips;              // kStripRegions regions of equal room
+  uint32_t strip_room;            // of all
   DepthKey* keys;
   DepthKey* merge_keys;  // as many
   uint32_t pairs;        // room
@@ -135,9 +163,9 @@ struct SplatView {
   FrameTiles frame;
 };
 
-// rank: of a place among those of all instances.
-VOYAGER_HD uint32_t slot_of(const SplatView& splats, uint32_t rank, uint32_t eye) {
-  return eye * splats.places + rank;
+// slot: of the first eye.
+VOYAGER_HD uint32_t slot_of(const SplatView& splats, uint32_t slot, uint32_t eye) {
+  return eye * splats.slots + slot;
 }
 
 VOYAGER_HD uint32_t* strip_count(const SplatView& splats, uint32_t region) {

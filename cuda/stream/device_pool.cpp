@@ -92,6 +92,7 @@ void DevicePool::make_room(PoolRoom room) {
   layout_.set_room(room);
   memory_ = Buffer<unsigned char>(layout_.bytes());
   bounds_.make_room(room.blocks);
+  slot_ids_.assign(room.slots, {});
   slots_ = room.slots;
   pages_ = room.pages;
   upload_chunks();
@@ -177,9 +178,7 @@ TreeView DevicePool::tree() const {
           file_->info().subtree_count,
           place_count(),
           file_->info().chunk_count,
-          blend_share_,
-          array<SlotIds>(kSlotIds),
-          shape_.nodes};
+          blend_share_};
 }
 
 // As pool_fill copies it into the slot.
@@ -201,7 +200,6 @@ void DevicePool::pack(const StagedChunk& staged, unsigned char* into) const {
     pack_codes(staged, into);
   else
     pack_floats(staged, into);
-  put(at(kSlotIds), 0, staged.ids);
   put(at(kFirstSubtrees), 0, staged.links.first_subtree);
   std::memcpy(at(kRecords), staged.records.data(), staged.records.size() * sizeof(SearchRecord));
   std::memcpy(at(kNextBlocks), staged.blocks.data(), staged.blocks.size() * sizeof(uint32_t));
@@ -294,6 +292,7 @@ void DevicePool::apply(const LinkPatch& patch) {
       copy, stream_.get());
   patches_.read_by(stream_.get());
   applied_.record(stream_.get());
+  for (const auto& [slot, ids] : patch.arrived) slot_ids_[slot] = ids;
 }
 
 void DevicePool::require_room() const {

@@ -50,6 +50,8 @@ class DevicePool final : public ChunkPool {
   TreeView tree() const;
   uint32_t slots() const { return slots_; }
   uint32_t slot_nodes() const { return shape_.nodes; }
+  // What is linked in each, under SceneStream::hold().
+  const std::vector<SlotIds>& slot_ids() const { return slot_ids_; }
 
  private:
   friend class PoolReader;
@@ -83,6 +85,7 @@ class DevicePool final : public ChunkPool {
   uint32_t slots_ = 0, pages_ = 0;
   Buffer<unsigned char> memory_;
   RecordBounds bounds_;
+  std::vector<SlotIds> slot_ids_;
   UploadRing ring_;
   PatchBuffers patches_;
   Event applied_{cudaEventDisableTiming};

@@ -32,7 +32,6 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
            sizeof(SearchRecord),
            sizeof(uint32_t),
            coded ? sizeof(ShStepSizes) : 0,
-           sizeof(SlotIds),
            sizeof(uint32_t),
            sizeof(SearchSubtree),
            sizeof(uint32_t),

@@ -22,7 +22,6 @@ enum PoolArray : uint32_t {
   kRecords,        // blocks
   kNextBlocks,     // one a block; of a chunk on its way, its blocks
   kStepSizes,      // one a slot
-  kSlotIds,        // the same
   kFirstSubtrees,  // the same
   kFilledArrays,
   // By page of subtrees (runtime/math/subtree_places.h).
@@ -42,7 +41,7 @@ enum PoolCount : uint32_t { kNodes, kRecordsOwned, kBlocks, kOnce, kPoolCounts }
 constexpr PoolCount counted_by(uint32_t array) {
   if (array == kRecords) return kRecordsOwned;
   if (array == kNextBlocks) return kBlocks;
-  return array == kStepSizes || array == kSlotIds || array == kFirstSubtrees ? kOnce : kNodes;
+  return array == kStepSizes || array == kFirstSubtrees ? kOnce : kNodes;
 }
 
 // Bytes that are copied at once of elements of such a size.

@@ -15,8 +15,15 @@ size_t count_of(const std::vector<std::shared_ptr<const StreamChange>>& changes)
 
 StreamChanges::StreamChanges() : memory_(kPieces * kSubtrees * sizeof(uint32_t)) {}
 
-std::optional<Relinked> StreamChanges::follow(const SceneStream& stream) {
-  const bool known = stream.changes_since(version_, changes_);
+std::optional<Relinked> StreamChanges::follow(const SceneStream& stream, const DevicePool& pool) {
+  const bool known =
+      stream.changes_since(version_, changes_) && slots_.size() == pool.slot_ids().size();
+  if (known)
+    for (const auto& change : changes_)
+      for (const auto& [slot, ids] : change->arrived) slots_[slot] = ids;
+  else
+    slots_ = pool.slot_ids();
+  slot_nodes_ = pool.slot_nodes();
   version_ = stream.version();
   std::optional<Relinked> relinked;
   if (known) relinked = changes_.empty() ? Relinked{} : copy();

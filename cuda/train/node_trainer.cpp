@@ -38,12 +38,17 @@ std::vector<uint32_t> rows_of(const LodTree& tree) {
 }
 
 template <class T>
-std::vector<T> download(const Buffer<T>& from, size_t count) {
+std::vector<T> download(const T* from, size_t count) {
   std::vector<T> values(count);
   if (count != 0)
-    check(cudaMemcpy(values.data(), from.data(), count * sizeof(T), cudaMemcpyDeviceToHost),
+    check(cudaMemcpy(values.data(), from, count * sizeof(T), cudaMemcpyDeviceToHost),
           "what was learned");
   return values;
+}
+
+template <class T>
+std::vector<T> download(const Buffer<T>& from, size_t count) {
+  return download(from.data(), count);
 }
 
 template <class T>
@@ -64,6 +69,11 @@ struct Lists {
 
   const PassCounters& counted() const {
     return *reinterpret_cast<const PassCounters*>(counters.data());
+  }
+  // Of the picture, whose work is done.
+  std::vector<RankRow> ranks() const {
+    return download(splats.view(tiles, 0).ranks,
+                    (counted()[0].places + kRowPlaces - 1) / kRowPlaces);
   }
 };
 
@@ -117,7 +127,7 @@ class CudaTrainer final : public NodeTrainer {
     device_->use();
     const TrainingError error = compare(view, false);
     const uint32_t places = cut_.counted()[0].places;
-    launch_sums(view, loss_weight(view, error.squares), places);
+    launch_sums(view, loss_weight(view, error.squares));
     grow(gradients_, size_t{places} * static_cast<size_t>(gradient_stride(scene_->sh_degree)));
     const SplatFrame frame = cut_frame(view);
     launch_train_project(frame, sums_.data(), gradients_.data());
@@ -141,18 +151,19 @@ class CudaTrainer final : public NodeTrainer {
   std::vector<NodeError> node_errors(const TrainingView& view) override {
     device_->use();
     compare(view, false);
-    const uint32_t places = cut_.counted()[0].places;
-    launch_sums(view, 1, places);
+    launch_sums(view, 1);
     stream_.wait();
     std::vector<uint32_t> cut;
     std::vector<float> weights;
     search_->read(cut, weights);
-    const std::vector<FixedSum> sums = download(sums_, size_t{places} * kSums);
+    const std::vector<FixedSum> sums = download(sums_, sums_in_use());
+    const std::vector<RankRow> ranks = cut_.ranks();
     std::vector<NodeError> errors;
-    for (size_t i = 0; i < cut.size(); ++i) {
-      const FixedSum squares = sums[i * kSums + 9];
-      if (!scene_->tree.is_leaf(cut[i]) && squares != 0)
-        errors.push_back({cut[i], static_cast<float>(squares) / kFixedOne});
+    for (uint32_t i = 0; i < cut.size(); ++i) {
+      const RankRow row = ranks[i / kRowPlaces];
+      if (!row.has(i) || scene_->tree.is_leaf(cut[i])) continue;
+      const FixedSum squares = sums[size_t{row.slot(i)} * kSums + 9];
+      if (squares != 0) errors.push_back({cut[i], static_cast<float>(squares) / kFixedOne});
     }
     return errors;
   }
@@ -192,7 +203,8 @@ class CudaTrainer final : public NodeTrainer {
   bool has_room(Lists& lists) { return !lists.splats.grow(room_for(lists.counted())); }
   void launch_truth(const TrainingView& view);
   TrainingError compare(const TrainingView& view, bool leaves);
-  void launch_sums(const TrainingView& view, double weight, uint32_t places);
+  size_t sums_in_use() const { return size_t{cut_.counted()[0].slots} * kSums; }
+  void launch_sums(const TrainingView& view, double weight);
 
   TrainPictures pictures(const Camera& camera, double weight = 1) const {
     return {cut_.picture.data(), truth_mean_.data(), camera.width, camera.height,
@@ -231,8 +243,8 @@ void CudaTrainer::launch_picture(Lists& lists, const DrawView& draws, const Came
   lists.splats.fit(lists.tiles);
   grow(lists.picture, size_t{camera.width} * camera.height);
   const cudaStream_t stream = stream_.get();
-  const SplatFrame frame = frame_of(lists, draws, camera, antialias);
   lists.splats.begin_frame(lists.tiles, stream);
+  const SplatFrame frame = frame_of(lists, draws, camera, antialias);
   launch_project(frame, true);
   launch_bin(frame);
   launch_sort(frame);
@@ -241,10 +253,9 @@ void CudaTrainer::launch_picture(Lists& lists, const DrawView& draws, const Came
   eye.target.color = lists.picture.data();
   eye.target.width = camera.width;
   eye.target.height = camera.height;
-  launch_rasterize(frame,
-                   {Exponential::ex2, true, false, draws.list.weights != nullptr, nullptr, 0,
-                    log_threshold(antialias)},
-                   &eye);
+  launch_rasterize(
+      frame, {Exponential::ex2, true, false, draws.blends(), nullptr, 0, log_threshold(antialias)},
+      &eye);
   check(cudaMemcpyAsync(lists.counters.data(), lists.splats.counters(), sizeof(PassCounters),
                         cudaMemcpyDeviceToHost, stream),
         "counters");
@@ -286,10 +297,9 @@ TrainingError CudaTrainer::compare(const TrainingView& view, bool leaves) {
   return {static_cast<double>(squares) / double{kFixedOne}, cut_.counted()[0].places};
 }
 
-void CudaTrainer::launch_sums(const TrainingView& view, double weight, uint32_t places) {
-  grow(sums_, size_t{places} * kSums);
-  check(cudaMemsetAsync(sums_.data(), 0, size_t{places} * kSums * sizeof(FixedSum), stream_.get()),
-        "sums");
+void CudaTrainer::launch_sums(const TrainingView& view, double weight) {
+  grow(sums_, sums_in_use());
+  check(cudaMemsetAsync(sums_.data(), 0, sums_in_use() * sizeof(FixedSum), stream_.get()), "sums");
   launch_train_blend(cut_frame(view), pictures(view.camera, weight), log_threshold(Antialias::on),
                      sums_.data());
 }

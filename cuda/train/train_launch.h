@@ -40,7 +40,7 @@ constexpr int gradient_stride(int sh_degree) {
   return kGradientHead + numbers_of(sh_degree);
 }
 
-// train_project.cu. From the sums of each place of the frame's list.
+// train_project.cu. Of each place of the frame's list, which are its ranks, from its slot's sums.
 void launch_train_project(const SplatFrame& frame, const FixedSum* sums, float* gradients);
 
 // What moves. Rows are merged nodes'; row_of is kNoNode for a leaf.

@@ -41,14 +41,17 @@ __global__ void __launch_bounds__(kThreads)
     float* into = gradients + size_t{place} * gradient_stride(degree);
     SplatSums<float> sum;
     into[0] = 0.0f;
-    if (!read_sums(sums + size_t{place} * kSums, sum)) continue;
+    const RankRow row = f.splats.ranks[place / kRowPlaces];
+    if (!row.has(place)) continue;
+    const uint32_t slot = row.slot(place);
+    if (!read_sums(sums + size_t{slot} * kSums, sum)) continue;
     const DrawItem item = item_at<true>(f.gaussians, f.draws.list, place);
     const Vec3f relative =
         camera_relative(interpolated_mean(arrays, item), params.origin, params.eye);
     const Shape<float> shape = interpolated_shape<float>(arrays, item);
     GaussianGradient<float> g = shape_gradient(params.view, filter_of(params, arrays, item),
                                                params.log_scale, relative, shape, sum);
-    const SplatRecord& record = f.splats.records[place];
+    const SplatRecord& record = f.splats.records[slot];
     float* coefficients = into + kGradientHead + kShapeNumbers;
     const auto own = arrays.sh(item.gaussian);
     const auto put = [&](int k, int channel, float by) { coefficients[3 * k + channel] = by; };

@@ -1,9 +1,9 @@
 #pragma once
 // Which run an item is of, where runs are of consecutive items: half a byte an item.
-#include <bit>
 #include <cstdint>
 #include <span>
 
+#include "runtime/math/bit_count.h"
 #include "runtime/math/host_device.h"
 
 namespace voyager {
@@ -17,11 +17,7 @@ struct RunBlock {
 VOYAGER_HD uint32_t run_of(const RunBlock* blocks, uint32_t item) {
   const RunBlock block = blocks[item / 32];
   const uint32_t up_to = (2u << item % 32) - 1u;
-#if defined(__CUDA_ARCH__)
-  return block.first + static_cast<uint32_t>(__popc(block.starts & up_to));
-#else
-  return block.first + static_cast<uint32_t>(std::popcount(block.starts & up_to));
-#endif
+  return block.first + bit_count(block.starts & up_to);
 }
 
 // starts: a bit for every item that begins a run; that of the first does not matter. Returns how
@@ -34,7 +30,7 @@ inline uint32_t number_runs(std::span<RunBlock> blocks) {
     if (i != 0) run += block.starts & 1u;
     block.starts &= ~1u;
     block.first = run;
-    run += static_cast<uint32_t>(std::popcount(block.starts));
+    run += bit_count(block.starts);
   }
   return run + 1;
 }

@@ -6,6 +6,7 @@
 
 #include "runtime/math/large_families.h"
 #include "runtime/select/search_tree.h"
+#include "runtime/stream/slot_ids.h"
 #include "runtime/stream/subtree_pages.h"
 
 namespace voyager {
@@ -31,11 +32,14 @@ struct LinkPatch {
   std::vector<PageChange> pages;
   std::vector<std::pair<uint32_t, SearchSubtree>> linked;
   std::vector<Outside> outside;
+  // Of each chunk that has come: its slot, and what that holds now.
+  std::vector<std::pair<uint32_t, SlotIds>> arrived;
   // All large families of nodes that are held, where those have changed.
   std::optional<std::vector<LargeFamily>> large;
 
   bool empty() const {
-    return cut.records.empty() && unlinked.empty() && pages.empty() && linked.empty() && !large;
+    return cut.records.empty() && unlinked.empty() && pages.empty() && linked.empty() &&
+           arrived.empty() && !large;
   }
 };
 

@@ -263,6 +263,7 @@ void Linker::remove_large(uint32_t slot, LinkPatch& patch) {
 
 void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
   add_large(chunk, patch);
+  patch.arrived.emplace_back(chunk.links.slot, chunk.ids);
   tables_.know(chunk.chunk) = std::move(chunk.links);
   if (walk(chunk.chunk).at.root() == 0) link_root(chunk.chunk, patch);
   add_families_of(chunk.chunk);

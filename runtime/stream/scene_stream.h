@@ -56,6 +56,7 @@ struct StreamCounters {
 struct StreamChange {
   uint64_t version;                         // from 1
   std::vector<uint32_t> unlinked, changed;  // as PartitionedSearch::relink() takes them
+  std::vector<std::pair<uint32_t, SlotIds>> arrived;
 };
 
 class SceneStream {

@@ -205,6 +205,7 @@ std::shared_ptr<const StreamChange> SceneStream::change_of(const LinkPatch& patc
   auto change = std::make_shared<StreamChange>();
   change->version = version_ + 1;
   change->unlinked = patch.unlinked;
+  change->arrived = patch.arrived;
   change->changed = patch.cut.changed;
   change->changed.insert(change->changed.end(), patch.tied.changed.begin(),
                          patch.tied.changed.end());

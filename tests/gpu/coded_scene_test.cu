@@ -128,11 +128,8 @@ TEST_F(CodedScene, StreamedGaussiansHaveTheHostsBits) {
     auto* pool = dynamic_cast<cuda::DevicePool*>(streamed->pool.get());
     ASSERT_NE(pool, nullptr);
     const cuda::GaussianView gaussians = pool->gaussians();
-    const uint32_t slot_nodes = pool->tree().slot_nodes;
-    std::vector<SlotIds> slots(gaussians.count / slot_nodes);
-    cuda::check(cudaMemcpy(slots.data(), pool->tree().slot_ids, slots.size() * sizeof(SlotIds),
-                           cudaMemcpyDeviceToHost),
-                "download");
+    const uint32_t slot_nodes = pool->slot_nodes();
+    const std::vector<SlotIds>& slots = pool->slot_ids();
     std::vector<uint32_t> ids(gaussians.count);
     for (uint32_t at = 0; at < gaussians.count; ++at)
       ids[at] = slots[at / slot_nodes].id(at % slot_nodes);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "cuda/device/buffer.h"
 #include "tests/gpu/agreement.h"
 #include "tests/gpu/splat_test.h"
 
@@ -225,6 +226,21 @@ TEST_F(SplatLists, ALongListIsTheSameBesideShortOnesAndBesideLonger) {
                            std::vector<float>(many.rgba.begin() + kHalf, many.rgba.end())),
             0u);
   EXPECT_GT(few.at(kSide / 2, kSide / 2)[3], 0.9f);
+}
+
+// What a view makes room for is what may reach its image, not what is drawn in all directions.
+TEST_F(SplatLists, WhatIsOutOfSightTakesNoRoomForSplats) {
+  auto scene = empty_scene();
+  for (size_t i = 0; i < 4 * kFirstSlots; ++i)
+    add_gaussian(*scene, {0, 0, i == 7 ? 2.0f : -2.0f}, {0.1f, 0.1f, 0.1f}, 0.5f, {0.3f, 0.5f, 1});
+  const auto away = view(scene);
+  const FrameInput input = frame_input(look({0, 0, 0}, {0, 0, 1}, 16, 16));
+  const size_t before = cuda::buffer_bytes;
+  const Frame found = render(*away, input);
+  EXPECT_EQ(found.stats.splats, 1u);
+  EXPECT_EQ(found.stats.pairs_dropped, 0u);
+  EXPECT_LT(cuda::buffer_bytes - before, scene->gaussians.size());
+  EXPECT_LE(compare(found, draw(*cpu, scene, {}, input)).largest, 1e-4);
 }
 
 // Few splats, many pairs; and the other way round.

@@ -166,6 +166,30 @@ TEST_F(Streaming, EveryFrameDrawsACut) {
     }
 }
 
+// A cut is read when somebody asks. What has come meanwhile, into slots of what went, changes no cut
+// that was drawn before.
+TEST_F(Streaming, ACutMayBeReadAfterItsChunksHaveGone) {
+  const Bytes bytes = cloud_bytes(20000, 9, 1);
+  const auto whole = resident(bytes);
+  const auto streamed = open(bytes, 0.3);
+  const auto stays = view(streamed), moves = view(streamed);
+  const std::vector<FrameInput> path = walk(60, 4, 4);
+  const auto draw_and_read = [&](View& by, const FrameInput& input) {
+    Image none;
+    none.format = ColorFormat::none;
+    none.width = 160, none.height = 100;
+    by.render(input, none);
+    while (streamed->stream->step()) continue;
+  };
+  for (size_t i = 0; i < 20; ++i) draw_and_read(*stays, path[i]);
+  const uint64_t gone = streamed->stream->counters().chunks.evicted;
+  for (size_t i = 20; i < path.size(); ++i) draw_and_read(*moves, path[i]);
+  EXPECT_GT(streamed->stream->counters().chunks.evicted, gone + 10);
+  const std::vector<uint32_t> cut(stays->cut().begin(), stays->cut().end());
+  EXPECT_GT(cut.size(), 100u);
+  EXPECT_TRUE(is_cut(*whole_tree(*whole), cut));
+}
+
 // Reads of what is around end after the cut is whole.
 StreamCounters counters_at_rest(const SceneStream& stream) {
   for (StreamCounters before = stream.counters();;) {

@@ -1,0 +1,18 @@
+#pragma once
+#include <cstdint>
+
+namespace voyager::cuda {
+
+// The place of a word's n-th bit, from 0 on. It has more than n.
+__device__ inline uint32_t nth_bit(uint32_t word, uint32_t n) {
+  uint32_t place = 0;
+#pragma unroll
+  for (unsigned width = 16; width != 0; width /= 2) {
+    const uint32_t below = __popc(word & ((1u << width) - 1));
+    if (n < below) continue;
+    n -= below, word >>= width, place += width;
+  }
+  return place;
+}
+
+}  // namespace voyager::cuda
