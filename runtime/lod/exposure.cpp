@@ -26,17 +26,24 @@ constexpr float kLargest = 0.99f;  // α, METHOD §6
 constexpr float kLeastBehind = 1e-4f;
 constexpr double kContrastBeyond = 0.2;  // of what is beyond all pictures
 
+// Sine of the elevation from which all but one look at least; up is -y (METHOD §1). Few look at an
+// underside. The last one looks from below, for floors under ceilings.
+constexpr double kLowestRise = -0.05;
+
 struct Direction {
   Vec3d forward, right, down;
 };
 
-// Even over the sphere: a Fibonacci lattice.
+// Even over what rises so far: a Fibonacci lattice.
 Direction direction(int index) {
+  constexpr int kAbove = kDirections - 1;
   const double golden = 2.399963229728653;  // π(3 − √5)
-  const double z = 1 - 2 * (index + 0.5) / kDirections, r = std::sqrt(1 - z * z);
-  const Vec3d f{r * std::cos(golden * index), r * std::sin(golden * index), z};
-  const Vec3d up = std::fabs(f.z) < 0.9 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
-  const Vec3d c = cross(f, up);
+  const double rise =
+      index < kAbove ? 1 - (1 - kLowestRise) * (index + 0.5) / kAbove : (kLowestRise - 1) / 2;
+  const double level = std::sqrt(1 - rise * rise);
+  const Vec3d f{-level * std::cos(golden * index), rise, -level * std::sin(golden * index)};
+  const Vec3d across = std::fabs(f.z) < 0.9 ? Vec3d{0, 0, 1} : Vec3d{1, 0, 0};
+  const Vec3d c = cross(f, across);
   const Vec3d right = (1 / std::sqrt(dot(c, c))) * c;
   return {f, right, cross(f, right)};
 }

@@ -166,8 +166,8 @@ TEST_F(Streaming, EveryFrameDrawsACut) {
     }
 }
 
-// A cut is read when somebody asks. What has come meanwhile, into slots of what went, changes no cut
-// that was drawn before.
+// A cut is read when somebody asks. What has come meanwhile, into slots of what went, changes no
+// cut that was drawn before.
 TEST_F(Streaming, ACutMayBeReadAfterItsChunksHaveGone) {
   const Bytes bytes = cloud_bytes(20000, 9, 1);
   const auto whole = resident(bytes);
