@@ -109,4 +109,10 @@ ChunkRange ChunkGraph::with_family(uint32_t chunk, uint32_t first, uint32_t coun
   return with_roots(first, count, among);
 }
 
+void ChunkGraph::Families::go_to(uint32_t chunk) {
+  near_ = chunk;
+  begin_ = graph_->chunks_->next(chunk, 0);
+  end_ = chunk + 1 < graph_->size() ? graph_->first_root(chunk + 1) : UINT32_MAX;
+}
+
 }  // namespace voyager

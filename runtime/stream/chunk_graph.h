@@ -75,10 +75,31 @@ class ChunkGraph {
   }
   // The same of the children of a node that `chunk` owns. Costs by how many chunks it leads to.
   ChunkRange with_family(uint32_t chunk, uint32_t first, uint32_t count) const;
+  // The same where each family probably lies in one chunk with the one before, which costs little.
+  class Families {
+   public:
+    // near: the chunk that the first is sought in.
+    Families(const ChunkGraph& graph, uint32_t near) : graph_(&graph) { go_to(near); }
+    ChunkRange of(uint32_t chunk, uint32_t first, uint32_t count) {
+      if (first >= begin_ && first + count <= end_) return {near_, near_ + 1};
+      const ChunkRange range = graph_->with_family(chunk, first, count);
+      if (!range.empty()) go_to(range.last - 1);
+      return range;
+    }
+
+   private:
+    void go_to(uint32_t chunk);
+
+    const ChunkGraph* graph_;
+    uint32_t near_ = 0;
+    uint32_t begin_ = 0, end_ = 0;  // of the roots that are in that chunk alone
+  };
   // Whether some of what hangs from a chunk may be in that chunk.
   bool leads_to_itself(uint32_t chunk) const;
   // Where the first subtree of a chunk repeats a child, that one.
   uint32_t repeated_child(uint32_t chunk) const { return chunks_->next(chunk, 1) - 1; }
+  // Roots that hang from the chunks before it are before this one.
+  uint32_t next_below(uint32_t chunk) const { return chunks_->next(chunk, 3); }
   // The chunk that owns the parent of a root of `chunk`, which is not the tree's. Costs by how many
   // parents that has.
   uint32_t owner_of_parent(uint32_t chunk, uint32_t root) const;

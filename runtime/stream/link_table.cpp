@@ -68,21 +68,17 @@ void LinkWalk::start_tier() {
 void LinkWalk::read() {
   levels_ = table_->levels(index_);
   interior_ = table_->interior(slots_, slot_count());
-}
-
-uint32_t LinkWalk::below_end() const {
-  uint32_t end = next_below_;
-  each_below([&](const NodeBelow& node) { end = node.first_child + node.child_count; });
-  return end;
+  below_end_ = next_below_;
+  for (NodesBelow below(*this); !below.at_end(); below.next()) below_end_ = below.children_end();
 }
 
 void LinkWalk::next() {
   const std::array<uint32_t, 3> owned = owned_nodes(levels_);
-  next_below_ = below_end();
+  next_below_ = below_end_;
   next_root_ += owned[0];
   for (uint32_t level = 0; level < 3; ++level) place_[level] += owned[level];
-  below_ += static_cast<uint32_t>(std::popcount(lowest()));
-  record_ += static_cast<uint32_t>(std::popcount(interior_));
+  below_ += count_bits(lowest());
+  record_ += count_bits(interior_);
   slots_ += slot_count();
   if (++index_ == table_->subtrees()) return;
   if (index_ != tier_end_) return read();

@@ -11,6 +11,7 @@
 #include "runtime/lod/subtree_cursor.h"
 #include "runtime/math/large_families.h"
 #include "runtime/select/search_tree.h"
+#include "runtime/select/set_bits.h"
 
 namespace voyager {
 
@@ -130,26 +131,55 @@ class LinkWalk {
   // Of its nodes, those that nothing hangs from in its tier.
   uint32_t ends() const {
     const uint32_t owned = slots_before(slot_count()) & ~slots_before(levels_ >> 24 & 3);
-    return static_cast<uint32_t>(std::popcount(owned & ~(interior_ & ~lowest())));
+    return count_bits(owned & ~(interior_ & ~lowest()));
   }
   // The place of the first node of a level that it owns.
   uint32_t place(uint32_t level) const { return place_[level]; }
   uint32_t first_record() const { return record_; }
   // The roots that hang from it, and from all before it in its tier, are before this one.
-  uint32_t below_end() const;
-  // visit(NodeBelow) for each, in their order.
+  uint32_t below_end() const { return below_end_; }
+  // Those of its nodes that subtrees hang from, in their order.
+  class NodesBelow {
+   public:
+    // at: outlives it, and stays where it is.
+    explicit NodesBelow(const LinkWalk& at)
+        : at_(&at), left_(at.lowest()), below_(at.below_), first_child_(at.next_below_) {
+      read();
+    }
+    bool at_end() const { return left_ == 0; }
+    void next() {
+      left_ &= left_ - 1;
+      ++below_;
+      first_child_ += children_;
+      read();
+    }
+    uint32_t children_begin() const { return first_child_; }
+    uint32_t children_end() const { return first_child_ + children_; }
+    NodeBelow operator*() const {
+      const uint32_t before = count_bits(at_->interior_ & slots_before(slot()));
+      return {below_, place(), at_->record_ + before, first_child_, children_};
+    }
+
+   private:
+    uint32_t slot() const { return static_cast<uint32_t>(std::countr_zero(left_)); }
+    uint32_t place() const {
+      const uint32_t level = at_->height_ - 1;
+      return at_->place_[level] + slot() - at_->first_slot(level);
+    }
+    void read() {
+      if (at_end()) return;
+      children_ = at_->table_->few_children(below_);
+      if (children_ == kManyChildren) children_ = at_->large_.children(place());
+    }
+
+    const LinkWalk* at_;
+    uint32_t left_;  // slots
+    uint32_t below_, first_child_, children_ = 0;
+  };
+  // visit(NodeBelow) for each.
   template <class Visit>
   void each_below(const Visit& visit) const {
-    uint32_t first_child = next_below_, below = below_;
-    for (uint32_t left = lowest(); left != 0; left &= left - 1, ++below) {
-      const auto slot = static_cast<uint32_t>(std::countr_zero(left));
-      const uint32_t place = place_[height_ - 1] + slot - first_slot(height_ - 1);
-      const uint32_t few = table_->few_children(below);
-      const uint32_t children = few == kManyChildren ? large_.children(place) : few;
-      const auto before = static_cast<uint32_t>(std::popcount(interior_ & slots_before(slot)));
-      visit(NodeBelow{below, place, record_ + before, first_child, children});
-      first_child += children;
-    }
+    for (NodesBelow below(*this); !below.at_end(); below.next()) visit(*below);
   }
 
  private:
@@ -167,7 +197,7 @@ class LinkWalk {
   uint32_t tier_ = 0, height_ = 0, tier_end_ = 0;  // the end in the chunk, as an index
   uint32_t index_ = 0, levels_ = 0, interior_ = 0;
   uint32_t slots_ = 0, record_ = 0, below_ = 0;  // of the subtrees before
-  uint32_t next_root_, next_below_;
+  uint32_t next_root_, next_below_, below_end_ = 0;
   std::array<uint32_t, 3> place_{};
   uint32_t nodes_ = 0;  // of the tiers of the chunk that are begun
 };

@@ -1,7 +1,6 @@
 #include "runtime/stream/linker.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include "runtime/lod/nesting.h"
@@ -53,25 +52,34 @@ class Linker::Parents {
   const Parent* of(uint32_t root) {
     if (found_ && root < found_->end()) return &*found_;
     found_.reset();
-    const uint32_t chunk = linker_.graph_->owner_of_parent(below_, root);
-    if (!walk_ || chunk != walk_->chunk)
-      walk_.emplace(own_ != nullptr && chunk == own_->chunk ? linker_.walk(*own_)
-                                                            : linker_.walk(chunk));
+    if (!walk_ || root >= end_) go_to(linker_.graph_->owner_of_parent(below_, root));
     LinkWalk& at = walk_->at;
-    while (!at.at_end() && at.below_end() <= root) at.next();
+    if (!at.at_end() && at.below_end() <= root) {
+      while (!at.at_end() && at.below_end() <= root) at.next();
+      if (!at.at_end()) nodes_.emplace(at);
+    }
     if (at.at_end()) return nullptr;
-    at.each_below([&](const NodeBelow& node) {
-      if (node.first_child <= root && root - node.first_child < node.child_count)
-        found_ = Parent{chunk, at.index(), walk_->records(node.record), node};
-    });
-    return found_ ? &*found_ : nullptr;
+    while (nodes_->children_end() <= root) nodes_->next();
+    if (root < nodes_->children_begin()) return nullptr;
+    const NodeBelow node = **nodes_;
+    found_ = Parent{walk_->chunk, at.index(), walk_->records(node.record), node};
+    return &*found_;
   }
 
  private:
+  void go_to(uint32_t chunk) {
+    const bool is_own = chunk == below_;
+    walk_.emplace(is_own && own_ != nullptr ? linker_.walk(*own_) : linker_.walk(chunk));
+    nodes_.emplace(walk_->at);
+    end_ = is_own ? UINT32_MAX : linker_.graph_->next_below(chunk + 1);
+  }
+
   const Linker& linker_;
   const uint32_t below_;
   const StagedChunk* own_;
   std::optional<Walk> walk_;
+  std::optional<LinkWalk::NodesBelow> nodes_;
+  uint32_t end_ = 0;  // roots before this one hang from that chunk
   std::optional<Parent> found_;
 };
 
@@ -81,19 +89,19 @@ class Linker::Roots {
  public:
   explicit Roots(const Linker& linker) : linker_(linker) {}
 
-  // At the first subtree of a chunk whose root is this one or a later one.
-  const Walk& of(uint32_t chunk, uint32_t root) {
-    if (!walk_ || chunk != walk_->chunk || root < root_) walk_.emplace(linker_.walk(chunk));
-    root_ = root;
+  // At the first subtree of a chunk whose root is in [root, end) or later. Whoever asks goes on
+  // with it, but not beyond the first whose root is not before `end`.
+  Walk& of(uint32_t chunk, uint32_t root, uint32_t end) {
+    if (!walk_ || chunk != walk_->chunk || root < end_) walk_.emplace(linker_.walk(chunk));
+    end_ = end;
     LinkWalk& at = walk_->at;
     while (!at.at_end() && at.root() < root) at.next();
-    if (!at.at_end() && at.interior() != 0) walk_->records(at.first_record());
     return *walk_;
   }
 
  private:
   const Linker& linker_;
-  uint32_t root_ = 0;
+  uint32_t end_ = 0;
   std::optional<Walk> walk_;
 };
 
@@ -124,7 +132,7 @@ Linker::Walk Linker::walk(const StagedChunk& chunk) const {
 void Linker::set_records(Walk& walk, SearchSubtree& subtree) const {
   if (walk.at.interior() == 0) return;
   subtree.first_record = walk.records(walk.at.first_record());
-  const auto count = static_cast<uint32_t>(std::popcount(walk.at.interior()));
+  const auto count = count_bits(walk.at.interior());
   uint32_t block = subtree.first_record / kRecordBlock;
   const uint32_t blocks = record_blocks(subtree.first_record % kRecordBlock + count);
   for (uint32_t i = 1; i < blocks; ++i) {
@@ -132,11 +140,6 @@ void Linker::set_records(Walk& walk, SearchSubtree& subtree) const {
     if (next != block + 1) subtree.levels |= kScattered;
     block = next;
   }
-}
-
-Linker::Family Linker::family(const Parent& parent) const {
-  const NodeBelow& node = parent.node;
-  return {parent, graph_->with_family(parent.chunk, node.first_child, node.child_count)};
 }
 
 bool Linker::complete(const Family& family) const {
@@ -152,13 +155,18 @@ void Linker::each_subtree(const Family& family, Roots& roots, const Visit& visit
   const ChunkRange range = family.chunks;
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
     if (!holds(chunk)) continue;
-    Walk walk = roots.of(chunk, family.node.first_child);
+    Walk& walk = roots.of(chunk, family.node.first_child, family.end());
     for (; !walk.at.at_end() && walk.at.root() < family.end(); walk.at.next()) visit(walk);
   }
 }
 
-void Linker::add_work(const Parent& parent) {
-  work_.push_back(family(parent));
+void Linker::add_work(const Parent& parent, ChunkGraph::Families& families) {
+  const NodeBelow& node = parent.node;
+  add_work({parent, families.of(parent.chunk, node.first_child, node.child_count)});
+}
+
+void Linker::add_work(const Family& family) {
+  work_.push_back(family);
   std::push_heap(work_.begin(), work_.end(), kIsLater);
 }
 
@@ -181,12 +189,13 @@ bool Linker::may_lead_on(uint32_t chunk) const {
 // Those that the chunk's subtrees belong to, each once.
 void Linker::add_families_of(uint32_t chunk) {
   Parents parents(*this, chunk, nullptr);
+  ChunkGraph::Families families(*graph_, chunk);
   uint32_t done = 1;  // roots before this; the tree's has no parent
   for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next()) {
     if (at.root() < done) continue;
     const Parent& parent = *parents.of(at.root());
     done = parent.end();
-    add_work(parent);
+    add_work(parent, families);
   }
 }
 
@@ -209,7 +218,7 @@ void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool,
 void Linker::check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
                           const std::string& file) const {
   const auto code = [&](Walk& of, uint32_t slot) {
-    const auto k = static_cast<uint32_t>(std::popcount(of.at.interior() & slots_before(slot)));
+    const auto k = count_bits(of.at.interior() & slots_before(slot));
     return pool.bounds(of.records(of.at.first_record() + k));
   };
   const auto same = [&](uint32_t slot_before, uint32_t slot_after) {
@@ -290,14 +299,19 @@ void Linker::link_root(uint32_t last, LinkPatch& patch) {
 }
 
 // Where it is linked, so many nodes take the place of the one that they hang from.
-uint64_t Linker::ends_of(const Family& family, Roots& roots) const {
+// roots: a copy, since whoever asks goes through the family afterwards.
+uint64_t Linker::ends_of(const Family& family, Roots roots) const {
   uint64_t ends = 0;
   each_subtree(family, roots, [&](const Walk& walk) { ends += walk.at.ends(); });
   return ends;
 }
 
-bool Linker::refuse_if_large(const Family& family, Roots& roots) {
-  if (room_for_cut_ == UINT64_MAX) return false;
+bool Linker::refuse_if_large(const Family& family, const Roots& roots) {
+  // Nearly always it needs no count.
+  uint64_t subtrees = 0;
+  for (uint32_t chunk = family.chunks.first; chunk < family.chunks.last; ++chunk)
+    subtrees += tables_[chunk].subtrees();
+  if (has_room_for_cut(subtrees * kSubtreeNodes)) return false;
   const uint64_t ends = ends_of(family, roots);
   if (has_room_for_cut(ends)) return false;
   refused_.insert({ends, family});
@@ -318,7 +332,9 @@ void Linker::link_refused(LinkPatch& patch) {
 }
 
 void Linker::link(LinkPatch& patch) {
+  if (work_.empty()) return;
   Roots roots(*this);
+  ChunkGraph::Families families(*graph_, work_.front().chunks.first);
   while (!work_.empty()) {
     const Family family = take_work();
     LinkTable& table = tables_.know(family.chunk);
@@ -347,7 +363,7 @@ void Linker::link(LinkPatch& patch) {
       }
       if (!leads_on) return;
       at.each_below([&](const NodeBelow& node) {
-        add_work({walk.chunk, at.index(), walk.records(node.record), node});
+        add_work({walk.chunk, at.index(), walk.records(node.record), node}, families);
       });
     });
     patch.tied.records.push_back({family.record, kLowest | first_below});
@@ -356,7 +372,9 @@ void Linker::link(LinkPatch& patch) {
 }
 
 void Linker::unlink(LinkPatch& patch) {
+  if (work_.empty()) return;
   Roots roots(*this);
+  ChunkGraph::Families families(*graph_, work_.front().chunks.first);
   while (!work_.empty()) {
     const Family family = take_work();
     LinkTable& table = tables_.know(family.chunk);
@@ -374,7 +392,7 @@ void Linker::unlink(LinkPatch& patch) {
       patch.unlinked.push_back(walk.at.subtree());
       walk.at.each_below([&](const NodeBelow& node) {
         if (!refused_.empty() || tables_[walk.chunk].leads_on(node.index))
-          add_work({walk.chunk, walk.at.index(), walk.records(node.record), node});
+          add_work({walk.chunk, walk.at.index(), walk.records(node.record), node}, families);
       });
     });
   }

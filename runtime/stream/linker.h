@@ -61,9 +61,11 @@ class Linker {
   // chunks: visit(ChunkRange).
   template <class Visit>
   void each_divided_family(uint32_t chunk, const Visit& visit) const {
+    if (graph_->children(chunk).empty()) return;
+    ChunkGraph::Families families(*graph_, chunk);
     for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next())
       at.each_below([&](const NodeBelow& node) {
-        const ChunkRange range = graph_->with_family(chunk, node.first_child, node.child_count);
+        const ChunkRange range = families.of(chunk, node.first_child, node.child_count);
         if (range.last - range.first > 1) visit(range);
       });
   }
@@ -129,12 +131,12 @@ class Linker {
   void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const;
   void check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
                     const std::string& file) const;
-  Family family(const Parent& parent) const;
   bool complete(const Family& family) const;
   // Each subtree of the family in turn: visit(walk at it).
   template <class Visit>
   void each_subtree(const Family& family, Roots& roots, const Visit& visit) const;
-  void add_work(const Parent& parent);
+  void add_work(const Parent& parent, ChunkGraph::Families& families);
+  void add_work(const Family& family);
   Family take_work();
   bool may_lead_on(uint32_t chunk) const;
   void add_families_of(uint32_t chunk);
@@ -143,9 +145,9 @@ class Linker {
   void add_large(const StagedChunk& chunk, LinkPatch& patch);
   void remove_large(uint32_t slot, LinkPatch& patch);
   void link_root(uint32_t chunk, LinkPatch& patch);
-  uint64_t ends_of(const Family& family, Roots& roots) const;
+  uint64_t ends_of(const Family& family, Roots roots) const;
   bool has_room_for_cut(uint64_t ends) const { return most_cut_ - 1 + ends <= room_for_cut_; }
-  bool refuse_if_large(const Family& family, Roots& roots);
+  bool refuse_if_large(const Family& family, const Roots& roots);
 
   const ChunkGraph* graph_;
   SlotShape shape_;
