@@ -1,5 +1,6 @@
 #include "runtime/stream/subtree_pages.h"
 
+#include <algorithm>
 #include <string>
 
 #include "runtime/base/error.h"
@@ -7,61 +8,89 @@
 namespace voyager {
 
 SubtreePages::SubtreePages(uint32_t subtrees, uint32_t room, uint64_t kept)
-    : room_(room), kept_(kept), places_(pages_of(subtrees)), chunks_(pages_of(subtrees)) {}
+    : room_(room), kept_(kept), pages_(pages_of(subtrees)) {}
 
 bool SubtreePages::take(uint32_t first, uint32_t count, uint64_t version,
                         std::vector<uint32_t>& moved) {
   const uint32_t begin = first / kPageSubtrees, end = pages_of(first + count);
+  // First all of them, so that none is taken for another.
   for (uint32_t page = begin; page < end; ++page) {
-    const uint8_t chunks = chunks_[page];
-    chunks_.set(page, static_cast<uint8_t>(chunks + 1));
-    if (chunks == 0)
-      if (const auto released = released_at_.find(page); released != released_at_.end()) {
-        released_.erase({released->second, page});
-        released_at_.erase(released);
-      }
+    Page state = pages_[page];
+    ++state.chunks;
+    pages_.set(page, state);
   }
   bool followed = true;
   for (uint32_t page = begin; page < end; ++page)
-    if (places_[page] == 0) followed &= place_page(page, version, moved);
+    if (pages_[page].place == 0) followed &= place_page(page, version, moved);
   return followed;
 }
 
 void SubtreePages::release(uint32_t first, uint32_t count, uint64_t version) {
   const uint32_t begin = first / kPageSubtrees, end = pages_of(first + count);
   for (uint32_t page = begin; page < end; ++page) {
-    const auto chunks = static_cast<uint8_t>(chunks_[page] - 1);
-    chunks_.set(page, chunks);
-    if (chunks != 0) continue;
-    released_.insert({version, page});
-    released_at_[page] = version;
+    Page state = pages_[page];
+    if (--state.chunks == 0 && state.released_at != version) {
+      state.released_at = version;
+      released_.push_back({version, page});
+      if (version == sorted_) sorted_ = 0;
+    }
+    pages_.set(page, state);
   }
+  // A page is there once, so that this leaves half of them at most.
+  if (released_.size() > 2 * size_t{used_})
+    std::erase_if(released_, [&](const Released& released) { return forget_if_taken(released); });
 }
 
 std::vector<PageChange> SubtreePages::changes(const std::vector<uint32_t>& moved) const {
   std::vector<PageChange> changes;
   changes.reserve(moved.size());
-  for (const uint32_t page : moved) changes.push_back({page, places_[page]});
+  for (const uint32_t page : moved) changes.push_back({page, pages_[page].place});
   return changes;
+}
+
+bool SubtreePages::forget_if_taken(const Released& released) {
+  Page page = pages_[released.page];
+  if (page.released_at != released.at) return true;
+  if (page.chunks == 0) return false;
+  page.released_at = 0;
+  pages_.set(released.page, page);
+  return true;
+}
+
+// The one that went first; of several the first in the file.
+std::optional<SubtreePages::Released> SubtreePages::take_released() {
+  while (!released_.empty()) {
+    if (const uint64_t at = released_.front().at; at != sorted_) {
+      const auto end = std::find_if(released_.begin(), released_.end(),
+                                    [&](const Released& other) { return other.at != at; });
+      std::sort(released_.begin(), end,
+                [](const Released& a, const Released& b) { return a.page < b.page; });
+      sorted_ = at;
+    }
+    const Released first = released_.front();
+    released_.pop_front();
+    if (!forget_if_taken(first)) return first;
+  }
+  return std::nullopt;
 }
 
 bool SubtreePages::place_page(uint32_t page, uint64_t version, std::vector<uint32_t>& moved) {
   moved.push_back(page);
+  Page state = pages_[page];
   if (used_ < room_) {
-    places_.set(page, ++used_);
+    state.place = ++used_;
+    pages_.set(page, state);
     return true;
   }
-  if (released_.empty())
+  const std::optional<Released> gone = take_released();
+  if (!gone)
     throw Error(ErrorCode::internal, "streaming: found no place for subtrees in " +
                                          std::to_string(room_) + " pages, expected one");
-  const auto [gone_with, gone] = *released_.begin();
-  released_.erase(released_.begin());
-  released_at_.erase(gone);
-  const uint32_t place = places_[gone];
-  places_.set(gone, 0);
-  places_.set(page, place);
-  moved.push_back(gone);
-  return gone_with + kept_ <= version;
+  state.place = pages_[gone->page].place;
+  pages_.set(gone->page, {});
+  pages_.set(page, state);
+  moved.push_back(gone->page);
+  return gone->at + kept_ <= version;
 }
 
 }  // namespace voyager

@@ -4,9 +4,8 @@
 // gone: a view that has not drawn since still has something there, which it closes when it follows
 // what has changed.
 #include <cstdint>
-#include <set>
-#include <unordered_map>
-#include <utility>
+#include <deque>
+#include <optional>
 #include <vector>
 
 #include "runtime/math/subtree_places.h"
@@ -36,16 +35,30 @@ class SubtreePages {
   std::vector<PageChange> changes(const std::vector<uint32_t>& moved) const;
 
  private:
+  struct Page {
+    // In released_, with which change the last of its chunks went; 0: it is not there.
+    uint64_t released_at = 0;
+    uint32_t place = 0;
+    uint32_t chunks = 0;  // that are there
+
+    bool operator==(const Page&) const = default;
+  };
+  struct Released {
+    uint64_t at;
+    uint32_t page;
+  };
+
   bool place_page(uint32_t page, uint64_t version, std::vector<uint32_t>& moved);
+  bool forget_if_taken(const Released& released);
+  std::optional<Released> take_released();
 
   const uint32_t room_;
   const uint64_t kept_;
-  SparseArray<uint32_t> places_;  // by page
-  SparseArray<uint8_t> chunks_;   // by page: that are there
-  uint32_t used_ = 0;             // places that were ever taken
-  // Those that have a place and no chunk, by the change with which that went; and the other way.
-  std::set<std::pair<uint64_t, uint32_t>> released_;
-  std::unordered_map<uint32_t, uint64_t> released_at_;
+  SparseArray<Page> pages_;
+  uint32_t used_ = 0;  // places that were ever taken
+  // By the change, and some that have chunks again.
+  std::deque<Released> released_;
+  uint64_t sorted_ = 0;  // the first of those that went with this change are sorted by page
 };
 
 }  // namespace voyager
