@@ -78,6 +78,7 @@ class ChunkGraph {
   // The same where each family probably lies in one chunk with the one before, which costs little.
   class Families {
    public:
+    explicit Families(const ChunkGraph& graph) : graph_(&graph) {}
     // near: the chunk that the first is sought in.
     Families(const ChunkGraph& graph, uint32_t near) : graph_(&graph) { go_to(near); }
     ChunkRange of(uint32_t chunk, uint32_t first, uint32_t count) {

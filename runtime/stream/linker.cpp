@@ -160,9 +160,8 @@ void Linker::each_subtree(const Family& family, Roots& roots, const Visit& visit
   }
 }
 
-void Linker::add_work(const Parent& parent, ChunkGraph::Families& families) {
-  const NodeBelow& node = parent.node;
-  add_work({parent, families.of(parent.chunk, node.first_child, node.child_count)});
+Linker::Family Linker::family_of(const Parent& parent, ChunkGraph::Families& families) const {
+  return {parent, families.of(parent.chunk, parent.node.first_child, parent.node.child_count)};
 }
 
 void Linker::add_work(const Family& family) {
@@ -171,6 +170,9 @@ void Linker::add_work(const Family& family) {
 }
 
 Linker::Family Linker::take_work() {
+  const bool above = next_above_ != above_.size() &&
+                     (work_.empty() || !kIsLater(above_[next_above_], work_.front()));
+  if (above) return above_[next_above_++];
   std::pop_heap(work_.begin(), work_.end(), kIsLater);
   const Family family = work_.back();
   work_.pop_back();
@@ -186,32 +188,43 @@ bool Linker::may_lead_on(uint32_t chunk) const {
   return false;
 }
 
-// Those that the chunk's subtrees belong to, each once.
-void Linker::add_families_of(uint32_t chunk) {
+void Linker::find_above(uint32_t chunk) {
   Parents parents(*this, chunk, nullptr);
   ChunkGraph::Families families(*graph_, chunk);
+  above_.clear();
+  next_above_ = 0;
   uint32_t done = 1;  // roots before this; the tree's has no parent
   for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next()) {
     if (at.root() < done) continue;
     const Parent& parent = *parents.of(at.root());
     done = parent.end();
-    add_work(parent, families);
+    above_.push_back(family_of(parent, families));
   }
 }
 
 void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool,
-                         const std::string& file) const {
+                         const std::string& file) {
   Parents parents(*this, chunk.chunk, &chunk);
+  ChunkGraph::Families families(*graph_, chunk.chunk);
+  checked_above_.clear();
+  checked_ = kNone;
+  uint32_t done = 0;
+  NodeBounds bounds;
   const NodeRecord* record = chunk.roots.data();  // of the subtree's first root
   for (LinkWalk at = walk(chunk).at; !at.at_end(); record += at.root_count(), at.next()) {
     if (at.root() == 0) continue;
-    const Parent* parent = parents.of(at.root());
-    if (parent == nullptr || at.root_count() > parent->end() - at.root())
-      refuse_roots(chunk.chunk, at.root(), file);
-    const NodeBounds bounds = decode_bounds(pool.bounds(parent->record));
+    if (at.root() >= done) {
+      const Parent* parent = parents.of(at.root());
+      if (parent == nullptr) refuse_roots(chunk.chunk, at.root(), file);
+      done = parent->end();
+      bounds = decode_bounds(pool.bounds(parent->record));
+      checked_above_.push_back(family_of(*parent, families));
+    }
+    if (at.root_count() > done - at.root()) refuse_roots(chunk.chunk, at.root(), file);
     for (uint32_t i = 0; i < at.root_count(); ++i)
       if (!is_inside(record[i], bounds)) refuse_nesting(chunk.chunk, at.root() + i, file);
   }
+  checked_ = chunk.chunk;
 }
 
 // What a chunk begins with repeats what the one before ends with. chunk: the one to refuse.
@@ -231,7 +244,7 @@ void Linker::check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPo
     refuse_repeat(chunk, graph_->repeated_child(after.chunk), file);
 }
 
-void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const {
+void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) {
   const Walk own = walk(chunk);
   const auto repeats = [](const Walk& of) { return of.at.repeats_root(); };
   if (own.at.root() == 0 && chunk.chunk > 0 && !holds(chunk.chunk - 1))
@@ -275,7 +288,13 @@ void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
   patch.arrived.emplace_back(chunk.links.slot, chunk.ids);
   tables_.know(chunk.chunk) = std::move(chunk.links);
   if (walk(chunk.chunk).at.root() == 0) link_root(chunk.chunk, patch);
-  add_families_of(chunk.chunk);
+  if (checked_ == chunk.chunk) {
+    std::swap(above_, checked_above_);
+    next_above_ = 0;
+  } else {
+    find_above(chunk.chunk);
+  }
+  checked_ = kNone;
   link(patch);
 }
 
@@ -332,10 +351,9 @@ void Linker::link_refused(LinkPatch& patch) {
 }
 
 void Linker::link(LinkPatch& patch) {
-  if (work_.empty()) return;
   Roots roots(*this);
-  ChunkGraph::Families families(*graph_, work_.front().chunks.first);
-  while (!work_.empty()) {
+  ChunkGraph::Families families(*graph_);
+  while (has_work()) {
     const Family family = take_work();
     LinkTable& table = tables_.know(family.chunk);
     if (table.leads_on(family.node.index) || !table.leads_to(family.subtree) || !complete(family) ||
@@ -363,7 +381,7 @@ void Linker::link(LinkPatch& patch) {
       }
       if (!leads_on) return;
       at.each_below([&](const NodeBelow& node) {
-        add_work({walk.chunk, at.index(), walk.records(node.record), node}, families);
+        add_work(family_of({walk.chunk, at.index(), walk.records(node.record), node}, families));
       });
     });
     patch.tied.records.push_back({family.record, kLowest | first_below});
@@ -372,10 +390,9 @@ void Linker::link(LinkPatch& patch) {
 }
 
 void Linker::unlink(LinkPatch& patch) {
-  if (work_.empty()) return;
   Roots roots(*this);
-  ChunkGraph::Families families(*graph_, work_.front().chunks.first);
-  while (!work_.empty()) {
+  ChunkGraph::Families families(*graph_);
+  while (has_work()) {
     const Family family = take_work();
     LinkTable& table = tables_.know(family.chunk);
     if (!table.leads_on(family.node.index)) {
@@ -392,15 +409,17 @@ void Linker::unlink(LinkPatch& patch) {
       patch.unlinked.push_back(walk.at.subtree());
       walk.at.each_below([&](const NodeBelow& node) {
         if (!refused_.empty() || tables_[walk.chunk].leads_on(node.index))
-          add_work({walk.chunk, walk.at.index(), walk.records(node.record), node}, families);
+          add_work(
+              family_of({walk.chunk, walk.at.index(), walk.records(node.record), node}, families));
       });
     });
   }
 }
 
 void Linker::evict(uint32_t chunk, LinkPatch& patch) {
+  checked_ = kNone;
   const uint32_t slot = tables_[chunk].slot;
-  add_families_of(chunk);
+  find_above(chunk);
   unlink(patch);
   remove_large(slot, patch);
   tables_.forget(chunk);

@@ -49,8 +49,8 @@ class Linker {
   // Of a chunk whose parents are all held, and that has filled its slot: what it alone could not
   // show, also that it goes on with the tree's root where the chunk before was refused. Throws
   // Error(damaged_chunk) as stage_chunk() does.
-  void check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const;
-  // A chunk whose parents are all held, in links.slot.
+  void check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file);
+  // A chunk whose parents are all held, in links.slot. Costs less where it was checked just before.
   void arrive(StagedChunk&& chunk, LinkPatch& patch);
   // None of its children is held. In a patch, chunks go before others come.
   void evict(uint32_t chunk, LinkPatch& patch);
@@ -128,18 +128,19 @@ class Linker {
   Walk walk(uint32_t chunk) const;
   Walk walk(const StagedChunk& chunk) const;
   void set_records(Walk& walk, SearchSubtree& subtree) const;
-  void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) const;
+  void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file);
   void check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
                     const std::string& file) const;
   bool complete(const Family& family) const;
   // Each subtree of the family in turn: visit(walk at it).
   template <class Visit>
   void each_subtree(const Family& family, Roots& roots, const Visit& visit) const;
-  void add_work(const Parent& parent, ChunkGraph::Families& families);
+  Family family_of(const Parent& parent, ChunkGraph::Families& families) const;
   void add_work(const Family& family);
+  bool has_work() const { return next_above_ != above_.size() || !work_.empty(); }
   Family take_work();
   bool may_lead_on(uint32_t chunk) const;
-  void add_families_of(uint32_t chunk);
+  void find_above(uint32_t chunk);
   void link(LinkPatch& patch);
   void unlink(LinkPatch& patch);
   void add_large(const StagedChunk& chunk, LinkPatch& patch);
@@ -154,7 +155,14 @@ class Linker {
   const std::vector<uint32_t>* next_block_;
   ByChunk<LinkTable> tables_;
   std::vector<LargeFamily> large_;  // of what is held, by address
-  std::vector<Family> work_;        // a heap: the one whose roots are first
+  // That the subtrees of one chunk belong to, by their roots; what is done of them is before.
+  std::vector<Family> above_;
+  size_t next_above_ = 0;
+  // The same of the chunk that was checked last, until it arrives.
+  std::vector<Family> checked_above_;
+  static constexpr uint32_t kNone = 0xffffffffu;
+  uint32_t checked_ = kNone;
+  std::vector<Family> work_;  // others: a heap, the one whose roots are first
   // Of what is linked: that no cut has more nodes, those which nothing leads on from.
   uint64_t most_cut_ = 0, room_for_cut_ = UINT64_MAX;
   std::set<Refused> refused_;
