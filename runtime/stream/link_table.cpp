@@ -3,18 +3,6 @@
 #include <algorithm>
 
 namespace voyager {
-namespace {
-
-// Of each level, the nodes that a subtree does not repeat.
-std::array<uint32_t, 3> owned_nodes(uint32_t levels) {
-  const uint32_t first_child = levels & 0xff, first_grandchild = levels >> 8 & 0xff;
-  const uint32_t repeated = levels >> 24 & 3;
-  return {first_child - (repeated != 0 ? 1 : 0),
-          first_grandchild - first_child - (repeated == 2 ? 1 : 0),
-          (levels >> 16 & 0xff) - first_grandchild};
-}
-
-}  // namespace
 
 LinkTable::LinkTable(std::span<const Part> parts, std::span<const uint32_t> child_counts)
     : subtrees_(static_cast<uint32_t>(parts.size())),
@@ -39,54 +27,68 @@ void LinkTable::put_bits(uint32_t from, uint32_t before, uint32_t slots) {
   words_[from + before / 32 + 1] |= static_cast<uint32_t>(two >> 32);
 }
 
-LinkWalk::LinkWalk(const LinkTable& table, const Tiers& tiers, LargeFamilies large)
-    : table_(&table),
-      tiers_(&tiers),
-      large_(large),
-      next_root_(table.next_root),
-      next_below_(table.next_below) {
+RootWalk::RootWalk(const LinkTable& table, const Tiers& tiers)
+    : table_(&table), tiers_(&tiers), levels_(table.levels(0)), next_root_(table.next_root) {
   const auto& begin = tiers.tier_begin;
   tier_ = static_cast<uint32_t>(std::upper_bound(begin.begin(), begin.end(), table.first_subtree) -
                                 begin.begin() - 1);
+  find_tier_end();
+}
+
+void RootWalk::find_tier_end() {
+  tier_end_ = std::min(table_->subtrees(), tiers_->tier_begin[tier_ + 1] - table_->first_subtree);
+}
+
+void RootWalk::next() {
+  next_root_ += owned(levels_).roots;
+  if (++index_ == table_->subtrees()) return;
+  if (index_ == tier_end_) {
+    ++tier_;
+    find_tier_end();
+    next_root_ = tiers_->level_begin[level()];
+  }
+  levels_ = table_->levels(index_);
+}
+
+LinkWalk::LinkWalk(const LinkTable& table, const Tiers& tiers, LargeFamilies large)
+    : RootWalk(table, tiers), large_(large), next_below_(table.next_below) {
   start_tier();
 }
 
 // Nodes lie in a slot by their ids: those of a tier level by level.
 void LinkWalk::start_tier() {
   height_ = tier_ == 0 ? tiers_->first_tier_levels : kTierLevels;
-  tier_end_ = std::min(table_->subtrees(), tiers_->tier_begin[tier_ + 1] - table_->first_subtree);
-  std::array<uint32_t, 3> owned{};
+  uint32_t roots = 0, children = 0, grandchildren = 0;
   for (uint32_t i = index_; i < tier_end_; ++i) {
-    const std::array<uint32_t, 3> of = owned_nodes(table_->levels(i));
-    for (uint32_t level = 0; level < 3; ++level) owned[level] += of[level];
+    const Owned of = owned(table_->levels(i));
+    roots += of.roots;
+    children += of.children;
+    grandchildren += of.grandchildren;
   }
-  place_ = {nodes_, nodes_ + owned[0], nodes_ + owned[0] + owned[1]};
-  nodes_ += owned[0] + owned[1] + owned[2];
+  place_ = {nodes_, nodes_ + roots, nodes_ + roots + children};
+  nodes_ += roots + children + grandchildren;
   read();
 }
 
 void LinkWalk::read() {
-  levels_ = table_->levels(index_);
   interior_ = table_->interior(slots_, slot_count());
   below_end_ = next_below_;
   for (NodesBelow below(*this); !below.at_end(); below.next()) below_end_ = below.children_end();
 }
 
 void LinkWalk::next() {
-  const std::array<uint32_t, 3> owned = owned_nodes(levels_);
+  const Owned of = owned(levels_);
+  place_ = {place_[0] + of.roots, place_[1] + of.children, place_[2] + of.grandchildren};
   next_below_ = below_end_;
-  next_root_ += owned[0];
-  for (uint32_t level = 0; level < 3; ++level) place_[level] += owned[level];
   below_ += count_bits(lowest());
   record_ += count_bits(interior_);
   slots_ += slot_count();
-  if (++index_ == table_->subtrees()) return;
-  if (index_ != tier_end_) return read();
-  ++tier_;
-  const uint32_t level = tiers_->first_tier_levels + (tier_ - 1) * kTierLevels;
+  const uint32_t tier = tier_;
+  RootWalk::next();
+  if (at_end()) return;
+  if (tier_ == tier) return read();
   const auto& begin = tiers_->level_begin;
-  next_root_ = begin[level];
-  next_below_ = begin[std::min<size_t>(level + kTierLevels, begin.size() - 1)];
+  next_below_ = begin[std::min<size_t>(level() + kTierLevels, begin.size() - 1)];
   start_tier();
 }
 

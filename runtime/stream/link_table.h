@@ -109,11 +109,11 @@ class LinkTable {
   std::unique_ptr<uint32_t[]> words_;
 };
 
-// From the first subtree of a chunk to its last.
-class LinkWalk {
+// From the first subtree of a chunk to its last, by their roots alone.
+class RootWalk {
  public:
   // All outlive it.
-  LinkWalk(const LinkTable& table, const Tiers& tiers, LargeFamilies large);
+  RootWalk(const LinkTable& table, const Tiers& tiers);
 
   bool at_end() const { return index_ == table_->subtrees(); }
   void next();
@@ -121,13 +121,49 @@ class LinkWalk {
   uint32_t index() const { return index_; }
   uint32_t subtree() const { return table_->first_subtree + index_; }
   uint32_t levels() const { return levels_; }
-  uint32_t interior() const { return interior_; }
-  uint32_t families() const { return table_->families(slots_, slot_count()); }
   uint32_t root() const { return next_root_ - (repeats_root() ? 1 : 0); }
   uint32_t root_count() const { return levels_ & 0xff; }
-  uint32_t child_count() const { return (levels_ >> 8 & 0xff) - (levels_ & 0xff); }
   bool repeats_root() const { return (levels_ >> 24 & 3) != 0; }
   bool repeats_child() const { return (levels_ >> 24 & 3) == 2; }
+
+ protected:
+  // Of each level, the nodes that a subtree does not repeat.
+  struct Owned {
+    uint32_t roots, children, grandchildren;
+  };
+  static Owned owned(uint32_t levels) {
+    const uint32_t first_child = levels & 0xff, first_grandchild = levels >> 8 & 0xff;
+    const uint32_t repeated = levels >> 24 & 3;
+    return {first_child - (repeated != 0 ? 1 : 0),
+            first_grandchild - first_child - (repeated == 2 ? 1 : 0),
+            (levels >> 16 & 0xff) - first_grandchild};
+  }
+  // The first level of the tier.
+  uint32_t level() const {
+    return tier_ == 0 ? 0 : tiers_->first_tier_levels + (tier_ - 1) * kTierLevels;
+  }
+
+  const LinkTable* table_;
+  const Tiers* tiers_;
+  uint32_t tier_, tier_end_;  // the end in the chunk, as an index
+  uint32_t index_ = 0, levels_;
+  uint32_t next_root_;
+
+ private:
+  void find_tier_end();
+};
+
+// The same with all that is known of them.
+class LinkWalk : public RootWalk {
+ public:
+  // All outlive it.
+  LinkWalk(const LinkTable& table, const Tiers& tiers, LargeFamilies large);
+
+  void next();
+
+  uint32_t interior() const { return interior_; }
+  uint32_t families() const { return table_->families(slots_, slot_count()); }
+  uint32_t child_count() const { return (levels_ >> 8 & 0xff) - (levels_ & 0xff); }
   // Of its nodes, those that nothing hangs from in its tier.
   uint32_t ends() const {
     const uint32_t owned = slots_before(slot_count()) & ~slots_before(levels_ >> 24 & 3);
@@ -191,13 +227,11 @@ class LinkWalk {
   }
   uint32_t lowest() const { return interior_ & level_slots(height_ - 1, levels_); }
 
-  const LinkTable* table_;
-  const Tiers* tiers_;
   LargeFamilies large_;
-  uint32_t tier_ = 0, height_ = 0, tier_end_ = 0;  // the end in the chunk, as an index
-  uint32_t index_ = 0, levels_ = 0, interior_ = 0;
+  uint32_t height_ = 0;
+  uint32_t interior_ = 0;
   uint32_t slots_ = 0, record_ = 0, below_ = 0;  // of the subtrees before
-  uint32_t next_root_, next_below_, below_end_ = 0;
+  uint32_t next_below_, below_end_ = 0;
   std::array<uint32_t, 3> place_{};
   uint32_t nodes_ = 0;  // of the tiers of the chunk that are begun
 };

@@ -188,13 +188,14 @@ bool Linker::may_lead_on(uint32_t chunk) const {
   return false;
 }
 
+// The families that its subtrees belong to, each once.
 void Linker::find_above(uint32_t chunk) {
   Parents parents(*this, chunk, nullptr);
   ChunkGraph::Families families(*graph_, chunk);
   above_.clear();
   next_above_ = 0;
   uint32_t done = 1;  // roots before this; the tree's has no parent
-  for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next()) {
+  for (RootWalk at = roots_of(tables_[chunk]); !at.at_end(); at.next()) {
     if (at.root() < done) continue;
     const Parent& parent = *parents.of(at.root());
     done = parent.end();
@@ -202,16 +203,15 @@ void Linker::find_above(uint32_t chunk) {
   }
 }
 
-void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool,
-                         const std::string& file) {
+void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) {
   Parents parents(*this, chunk.chunk, &chunk);
   ChunkGraph::Families families(*graph_, chunk.chunk);
   checked_above_.clear();
   checked_ = kNone;
-  uint32_t done = 0;
-  NodeBounds bounds;
+  uint32_t done = 0;                              // roots before this
+  NodeBounds bounds{};                            // of their parent
   const NodeRecord* record = chunk.roots.data();  // of the subtree's first root
-  for (LinkWalk at = walk(chunk).at; !at.at_end(); record += at.root_count(), at.next()) {
+  for (RootWalk at = roots_of(chunk.links); !at.at_end(); record += at.root_count(), at.next()) {
     if (at.root() == 0) continue;
     if (at.root() >= done) {
       const Parent* parent = parents.of(at.root());
@@ -245,10 +245,8 @@ void Linker::check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPo
 }
 
 void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) {
-  const Walk own = walk(chunk);
-  const auto repeats = [](const Walk& of) { return of.at.repeats_root(); };
-  if (own.at.root() == 0 && chunk.chunk > 0 && !holds(chunk.chunk - 1))
-    refuse_gap(chunk.chunk, file);
+  const RootWalk own = roots_of(chunk.links);
+  if (own.root() == 0 && chunk.chunk > 0 && !holds(chunk.chunk - 1)) refuse_gap(chunk.chunk, file);
   check_roots(chunk, pool, file);
   const auto last_of = [](Walk walk) {
     Walk last = walk;
@@ -256,10 +254,10 @@ void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::s
     return last;
   };
   const uint32_t before = chunk.chunk - 1, after = chunk.chunk + 1;
-  if (chunk.chunk > 0 && repeats(own) && holds(before))
-    check_repeat(chunk.chunk, last_of(walk(before)), own, pool, file);
-  if (after < graph_->size() && holds(after) && repeats(walk(after)))
-    check_repeat(chunk.chunk, last_of(own), walk(after), pool, file);
+  if (chunk.chunk > 0 && own.repeats_root() && holds(before))
+    check_repeat(chunk.chunk, last_of(walk(before)), walk(chunk), pool, file);
+  if (after < graph_->size() && holds(after) && roots_of(tables_[after]).repeats_root())
+    check_repeat(chunk.chunk, last_of(walk(chunk)), walk(after), pool, file);
 }
 
 void Linker::add_large(const StagedChunk& chunk, LinkPatch& patch) {
@@ -287,7 +285,7 @@ void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
   add_large(chunk, patch);
   patch.arrived.emplace_back(chunk.links.slot, chunk.ids);
   tables_.know(chunk.chunk) = std::move(chunk.links);
-  if (walk(chunk.chunk).at.root() == 0) link_root(chunk.chunk, patch);
+  if (roots_of(tables_[chunk.chunk]).root() == 0) link_root(chunk.chunk, patch);
   if (checked_ == chunk.chunk) {
     std::swap(above_, checked_above_);
     next_above_ = 0;
@@ -326,7 +324,7 @@ uint64_t Linker::ends_of(const Family& family, Roots roots) const {
 }
 
 bool Linker::refuse_if_large(const Family& family, const Roots& roots) {
-  // Nearly always it needs no count.
+  // A bound nearly always has room: then nothing is counted.
   uint64_t subtrees = 0;
   for (uint32_t chunk = family.chunks.first; chunk < family.chunks.last; ++chunk)
     subtrees += tables_[chunk].subtrees();

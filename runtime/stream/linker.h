@@ -127,6 +127,7 @@ class Linker {
 
   Walk walk(uint32_t chunk) const;
   Walk walk(const StagedChunk& chunk) const;
+  RootWalk roots_of(const LinkTable& table) const { return {table, graph_->tiers()}; }
   void set_records(Walk& walk, SearchSubtree& subtree) const;
   void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file);
   void check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
