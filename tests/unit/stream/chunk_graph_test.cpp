@@ -126,14 +126,21 @@ TEST(ChunkGraph, AFamilyIsWhereItsRootsAre) {
   for_each_tree([](const SceneFile& file) {
     const ChunkGraph graph(file.chunks(), file.tiers());
     const Tiers tiers = file.tiers();
+    ChunkGraph::Families ascending(graph);
     for (uint32_t chunk = 0; chunk < graph.size(); ++chunk) {
       const StagedChunk staged = stage_chunk(file.read_chunk(chunk), chunk, tiers, file.name());
+      ChunkGraph::Families own(graph, chunk);
       for (LinkWalk at(staged.links, tiers, {staged.large, 0}); !at.at_end(); at.next())
         at.each_below([&](const NodeBelow& node) {
           const ChunkRange found = graph.with_family(chunk, node.first_child, node.child_count);
           const ChunkRange expected = graph.with_roots(node.first_child, node.child_count);
           ASSERT_EQ(found.first, expected.first) << chunk;
           ASSERT_EQ(found.last, expected.last) << chunk;
+          for (ChunkGraph::Families* families : {&ascending, &own}) {
+            const ChunkRange again = families->of(chunk, node.first_child, node.child_count);
+            ASSERT_EQ(again.first, expected.first) << chunk;
+            ASSERT_EQ(again.last, expected.last) << chunk;
+          }
         });
     }
   });

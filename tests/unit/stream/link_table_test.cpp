@@ -44,6 +44,7 @@ TEST(LinkTable, TellsWhatTheChunkHolds) {
     const Tiers tiers = file.tiers();
     const std::vector<uint32_t> places = places_by_record(content, staged);
     LinkWalk at(staged.links, tiers, {staged.large, 0});
+    RootWalk roots(staged.links, tiers);
     uint32_t first = 0, records = 0, below = 0;
     for (const Subtree& s : content.subtrees) {
       ASSERT_FALSE(at.at_end());
@@ -55,6 +56,7 @@ TEST(LinkTable, TellsWhatTheChunkHolds) {
       ASSERT_EQ(at.interior(), interior_slots(s, record));
       ASSERT_EQ(at.families(), family_slots(s, record));
       ASSERT_EQ(at.root(), s.root);
+      ASSERT_EQ(roots.root(), s.root);
       ASSERT_EQ(at.root_count(), s.root_count);
       ASSERT_EQ(at.child_count(), s.child_count);
       ASSERT_EQ(at.repeats_root(), s.repeats_root());
@@ -77,8 +79,10 @@ TEST(LinkTable, TellsWhatTheChunkHolds) {
       first += s.node_count();
       records += static_cast<uint32_t>(std::popcount(at.interior()));
       at.next();
+      roots.next();
     }
     ASSERT_TRUE(at.at_end());
+    ASSERT_TRUE(roots.at_end());
     ASSERT_EQ(below, staged.links.nodes_below());
     below_found += below;
     const auto shape = static_cast<uint32_t>(content.records.size());
