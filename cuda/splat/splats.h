@@ -6,7 +6,7 @@
 
 #include "cuda/search/row_places.h"
 #include "cuda/splat/tile_limits.h"
-#include "runtime/math/bit_count.h"
+#include "runtime/math/count_bits.h"
 #include "runtime/stages/bin.h"
 
 namespace voyager::cuda {
@@ -63,7 +63,7 @@ struct RankRow {
   VOYAGER_HD bool has(uint32_t rank) const { return (candidates >> rank % kRowPlaces & 1) != 0; }
   // Of a rank that it has.
   VOYAGER_HD uint32_t slot(uint32_t rank) const {
-    return first_slot + bit_count(candidates & ((1u << rank % kRowPlaces) - 1));
+    return first_slot + count_bits(candidates & ((1u << rank % kRowPlaces) - 1));
   }
 };
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "runtime/math/bit_count.h"
+#include "runtime/math/count_bits.h"
 #include "runtime/math/host_device.h"
 
 namespace voyager {
@@ -17,7 +17,7 @@ struct RunBlock {
 VOYAGER_HD uint32_t run_of(const RunBlock* blocks, uint32_t item) {
   const RunBlock block = blocks[item / 32];
   const uint32_t up_to = (2u << item % 32) - 1u;
-  return block.first + bit_count(block.starts & up_to);
+  return block.first + count_bits(block.starts & up_to);
 }
 
 // starts: a bit for every item that begins a run; that of the first does not matter. Returns how
@@ -30,7 +30,7 @@ inline uint32_t number_runs(std::span<RunBlock> blocks) {
     if (i != 0) run += block.starts & 1u;
     block.starts &= ~1u;
     block.first = run;
-    run += bit_count(block.starts);
+    run += count_bits(block.starts);
   }
   return run + 1;
 }

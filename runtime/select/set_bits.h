@@ -4,14 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace voyager {
+#include "runtime/math/count_bits.h"
 
-// Of a machine that may have no instruction for it.
-inline uint32_t count_bits(uint32_t word) {
-  word -= word >> 1 & 0x55555555u;
-  word = (word & 0x33333333u) + (word >> 2 & 0x33333333u);
-  return ((word + (word >> 4)) & 0x0f0f0f0fu) * 0x01010101u >> 24;
-}
+namespace voyager {
 
 template <size_t Bits>
 constexpr auto make_set_bits() {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "runtime/lod/subtree_cursor.h"
+#include "runtime/math/count_bits.h"
 #include "runtime/math/large_families.h"
 #include "runtime/select/search_tree.h"
-#include "runtime/select/set_bits.h"
 
 namespace voyager {
 
