@@ -3,7 +3,7 @@
 
 namespace voyager::cuda {
 
-// The place of a word's n-th bit, from 0 on. It has more than n.
+// The place of a word's n-th set bit, counted from 0. More than n bits are set.
 __device__ inline uint32_t nth_bit(uint32_t word, uint32_t n) {
   uint32_t place = 0;
 #pragma unroll

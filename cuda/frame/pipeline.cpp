@@ -443,7 +443,10 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   collect(oldest, stats);
   shown_.collect(oldest.tells);
   learn(oldest);
-  const SplatRoom used = room_for(oldest.counters());
+  SplatRoom used = room_for(oldest.counters());
+  // Slots are counted of the places that had room.
+  if (oldest.room.places != 0 && used.places > oldest.room.places)
+    used.slots = used.slots * used.places / oldest.room.places;
   const auto ahead = [](size_t& wanted, size_t needed) {
     wanted = std::max(wanted, needed + needed / 8);
   };

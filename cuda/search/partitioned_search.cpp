@@ -86,7 +86,9 @@ class PartitionedSearch final : public CutSearch, public PoolReaderState {
   // Of the last state, for those who ask between frames what there is, and read none of it.
   StateView view_{};
   uint32_t list_room_ = 0;
-  Buffer<float> weights_of_places_;  // once weigh() was called
+  float* list_weights_ = nullptr;    // where weigh() was called
+  Buffer<float> weights_of_places_;  // they lie here
+  bool weighed_ = false;             // the last cut
   References references_;
   bool started_ = false;
   std::optional<PoolShare> share_;  // last: what goes first frees the state
@@ -112,6 +114,7 @@ void PartitionedSearch::make_state() {
   state_ = std::move(state);
   view_ = state_->view();
   list_room_ = state_->list_room();
+  list_weights_ = nullptr;
 }
 
 // No frame reads it: who calls has waited for them. Their counters may still be on their way to the
@@ -148,6 +151,7 @@ bool PartitionedSearch::follow_stream(const SearchFrame& now, bool goes_on) {
 void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
   references_.begin_frame(query);
   bool goes_on = std::exchange(started_, false);  // should a launch fail, it does not
+  weighed_ = false;
   if (streamed_) {
     streamed_->reader.begin(stream);
     goes_on = fit_pool() && goes_on;
@@ -181,14 +185,15 @@ void PartitionedSearch::bound(const GaussianView& gaussians, cudaStream_t stream
 void PartitionedSearch::weigh(const CutQuery& query, cudaStream_t stream) {
   if (!weights_) return;
   // Frames weigh as they draw: what only comparisons ask for takes memory here.
-  if (weights_of_places_.size() != list_room_) {
-    weights_of_places_ = {};
+  if (list_weights_ == nullptr) {
     weights_of_places_ = Buffer<float>(list_room_);
     fill(weights_of_places_, 0);  // places that hold no node are read with the others
+    list_weights_ = weights_of_places_.data();
   }
   if (tree_->view().subtree_count != 0)
-    launch_weigh(weight_source(query), state_->view(), weights_of_places_.data(),
-                 device_->multiprocessors(), stream);
+    launch_weigh(weight_source(query), state_->view(), list_weights_, device_->multiprocessors(),
+                 stream);
+  weighed_ = true;
 }
 
 WeightSource PartitionedSearch::weight_source(const CutQuery& query) const {
@@ -197,8 +202,7 @@ WeightSource PartitionedSearch::weight_source(const CutQuery& query) const {
 }
 
 CutList PartitionedSearch::list() const {
-  return {view_.nodes, weights_of_places_.data(), &view_.counted->list_size, list_room_,
-          view_.bounds};
+  return {view_.nodes, list_weights_, &view_.counted->list_size, list_room_, view_.bounds};
 }
 
 FrameCounters PartitionedSearch::counters() const {
@@ -237,13 +241,12 @@ void PartitionedSearch::read(std::vector<uint32_t>& cut, std::vector<float>& wei
   const size_t places = counters().list_size;
   const StateView state = state_->view();
   cut.resize(places);
-  weights.resize(weights_of_places_.size() != 0 ? places : 0);
+  weights.resize(weighed_ ? places : 0);
   if (places != 0)
     check(cudaMemcpy(cut.data(), state.nodes, places * sizeof(uint32_t), cudaMemcpyDeviceToHost),
           "cut");
   if (!weights.empty())
-    check(cudaMemcpy(weights.data(), weights_of_places_.data(), places * sizeof(float),
-                     cudaMemcpyDeviceToHost),
+    check(cudaMemcpy(weights.data(), list_weights_, places * sizeof(float), cudaMemcpyDeviceToHost),
           "weights");
   size_t used = 0;
   for (size_t i = 0; i < places; ++i) {

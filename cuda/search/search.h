@@ -19,8 +19,8 @@ namespace voyager::cuda {
 // A cut on the device. Places that hold kNoNode are none.
 struct CutList {
   const uint32_t* nodes;  // in the order of ids: ids, or addresses of a streamed scene
-  const float*
-      weights;  // t by place; null where the search finds none, or finds them as it is drawn
+  // t by place. Null where there are none, or where they are found as the list is drawn.
+  const float* weights;
   const uint32_t* size;  // places in use; on the device, as the arrays are
   uint32_t room;         // no list has more places
   // By row: of its nodes and of their parents. Null where the search keeps none.

@@ -27,7 +27,8 @@ __device__ uint32_t wait_for_sum(const unsigned long long* from, uint32_t tag) {
   }
 }
 
-// Blocks begin in their order, and each waits for those before it alone.
+// Each block waits for those before it alone. That blocks begin in their order is taken for
+// granted, as CUB's scans do.
 __global__ void __launch_bounds__(kThreads) project_slots(SplatFrame f) {
   if (!has_work(f.splats)) return;
   __shared__ union {
@@ -84,6 +85,7 @@ void launch_clear_ranks(const SplatFrame& f) {
 }
 
 void launch_slots(const SplatFrame& f) {
+  if (f.splats.places == 0) return;  // memory ran out
   const uint32_t rows = std::min(f.draws.list.room, f.splats.places) / kRowPlaces + 1;
   launch_kernel("project_slots", project_slots,
                 {(rows + kSumRows - 1) / kSumRows, kThreads, f.stream}, f);

@@ -13,9 +13,11 @@ namespace {
 
 constexpr unsigned kWarps = kTile * kTile / 32;
 
-// The rank of a splat: of the last row whose first slot is not behind its own.
+// The rank of a splat: in the last row whose first slot is not behind its own. Rows beyond the room
+// have no splats.
 __device__ uint32_t rank_of(const SplatView& splats, uint32_t slot) {
-  uint32_t first = 0, count = (splats.counters->places + kRowPlaces - 1) / kRowPlaces;
+  const uint32_t places = min(splats.counters->places, splats.places);
+  uint32_t first = 0, count = (places + kRowPlaces - 1) / kRowPlaces;
   while (count > 1) {
     const uint32_t half = count / 2;
     const bool behind = splats.ranks[first + half].first_slot <= slot;

@@ -27,7 +27,7 @@ size_t sums_for(size_t places) {
 // Of a frame: each pass has as many as instances.
 constexpr uint32_t kRankTags = kPasses * (kMaxInstances + 1);
 
-// Whose tags are no frame's.
+// Filled with tag 0, which no frame uses.
 Buffer<unsigned long long> make_sums(size_t places) {
   Buffer<unsigned long long> sums(sums_for(places));
   fill(sums, 0);
@@ -182,7 +182,11 @@ SplatView SplatState::view(const FrameTiles& tiles, int pass) const {
 }
 
 void SplatState::begin_frame(const FrameTiles& tiles, cudaStream_t stream) {
-  rank_tag_ = std::max(rank_tag_ + kRankTags, kRankTags);  // 0 is none's
+  if (rank_tag_ > UINT32_MAX - 2 * kRankTags) {
+    check(cudaMemsetAsync(rank_sums_.data(), 0, rank_sums_.bytes(), stream), "sums of ranks");
+    rank_tag_ = 0;
+  }
+  rank_tag_ += kRankTags;
   check(cudaMemsetAsync(counters_.data(), 0, counter_bytes(tiles.count()), stream),
         "a frame's counters");
 }

@@ -68,7 +68,7 @@ class SplatState {
 
   unsigned bin_blocks_;
   uint32_t eyes_;
-  uint32_t rank_tag_ = 0;  // no sum of before has one of the frame's
+  uint32_t rank_tag_ = 0;  // no older sum has a tag from here on
   Buffer<uint32_t> rows_;
   Buffer<RankRow> ranks_;
   Buffer<unsigned long long> rank_sums_;

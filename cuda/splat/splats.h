@@ -71,7 +71,7 @@ struct RankRow {
 inline constexpr uint32_t kSumRows = 4096;
 
 struct InstanceCounters {
-  uint32_t first_rank;  // a row's
+  uint32_t first_rank;  // a multiple of kRowPlaces
   uint32_t first_slot;
   // Of its places, that may reach the image: those that are drawn untouched, and those that blend
   // with their parents.
@@ -144,8 +144,8 @@ struct SplatView {
   uint32_t* rows;              // of that instance's list
   RankRow* ranks;
   uint32_t places;                // room for ranks
-  unsigned long long* rank_sums;  // project_slots.cu's
-  uint32_t rank_tag;              // of the first instance's
+  unsigned long long* rank_sums;  // for project_slots.cu
+  uint32_t rank_tag;              // that marks the first instance's sums
   TileStrip* strips;              // kStripRegions regions of equal room
   uint32_t strip_room;            // of all
   DepthKey* keys;

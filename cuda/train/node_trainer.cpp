@@ -72,8 +72,8 @@ struct Lists {
   }
   // Of the picture, whose work is done.
   std::vector<RankRow> ranks() const {
-    return download(splats.view(tiles, 0).ranks,
-                    (counted()[0].places + kRowPlaces - 1) / kRowPlaces);
+    const size_t places = std::min<size_t>(counted()[0].places, splats.room().places);
+    return download(splats.view(tiles, 0).ranks, (places + kRowPlaces - 1) / kRowPlaces);
   }
 };
 
@@ -159,7 +159,7 @@ class CudaTrainer final : public NodeTrainer {
     const std::vector<FixedSum> sums = download(sums_, sums_in_use());
     const std::vector<RankRow> ranks = cut_.ranks();
     std::vector<NodeError> errors;
-    for (uint32_t i = 0; i < cut.size(); ++i) {
+    for (uint32_t i = 0; i < std::min(cut.size(), ranks.size() * kRowPlaces); ++i) {
       const RankRow row = ranks[i / kRowPlaces];
       if (!row.has(i) || scene_->tree.is_leaf(cut[i])) continue;
       const FixedSum squares = sums[size_t{row.slot(i)} * kSums + 9];

@@ -41,9 +41,11 @@ __global__ void __launch_bounds__(kThreads)
     float* into = gradients + size_t{place} * gradient_stride(degree);
     SplatSums<float> sum;
     into[0] = 0.0f;
+    if (place >= f.splats.places) continue;  // there was no memory for more
     const RankRow row = f.splats.ranks[place / kRowPlaces];
     if (!row.has(place)) continue;
     const uint32_t slot = row.slot(place);
+    if (slot >= f.splats.slots) continue;
     if (!read_sums(sums + size_t{slot} * kSums, sum)) continue;
     const DrawItem item = item_at<true>(f.gaussians, f.draws.list, place);
     const Vec3f relative =

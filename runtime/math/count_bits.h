@@ -5,7 +5,7 @@
 
 namespace voyager {
 
-// On the host for machines that may have no instruction for it.
+// By arithmetic on the host: a machine may lack the instruction.
 VOYAGER_HD uint32_t count_bits(uint32_t word) {
 #ifdef __CUDA_ARCH__
   return static_cast<uint32_t>(__popc(word));

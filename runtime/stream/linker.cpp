@@ -172,10 +172,16 @@ void Linker::add_work(const Family& family) {
 Linker::Family Linker::take_work() {
   const bool above = next_above_ != above_.size() &&
                      (work_.empty() || !kIsLater(above_[next_above_], work_.front()));
-  if (above) return above_[next_above_++];
-  std::pop_heap(work_.begin(), work_.end(), kIsLater);
-  const Family family = work_.back();
-  work_.pop_back();
+  const auto pop = [&] {
+    std::pop_heap(work_.begin(), work_.end(), kIsLater);
+    const Family family = work_.back();
+    work_.pop_back();
+    return family;
+  };
+  if (!above) return pop();
+  const Family family = above_[next_above_++];
+  // A chunk that leads to itself has found it from above and from below.
+  while (!work_.empty() && work_.front().node.first_child == family.node.first_child) pop();
   return family;
 }
 
@@ -207,7 +213,6 @@ void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool, const 
   Parents parents(*this, chunk.chunk, &chunk);
   ChunkGraph::Families families(*graph_, chunk.chunk);
   checked_above_.clear();
-  checked_ = kNone;
   uint32_t done = 0;                              // roots before this
   NodeBounds bounds{};                            // of their parent
   const NodeRecord* record = chunk.roots.data();  // of the subtree's first root
@@ -224,7 +229,6 @@ void Linker::check_roots(const StagedChunk& chunk, const ChunkPool& pool, const 
     for (uint32_t i = 0; i < at.root_count(); ++i)
       if (!is_inside(record[i], bounds)) refuse_nesting(chunk.chunk, at.root() + i, file);
   }
-  checked_ = chunk.chunk;
 }
 
 // What a chunk begins with repeats what the one before ends with. chunk: the one to refuse.
@@ -245,6 +249,7 @@ void Linker::check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPo
 }
 
 void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file) {
+  checked_ = kNone;
   const RootWalk own = roots_of(chunk.links);
   if (own.root() == 0 && chunk.chunk > 0 && !holds(chunk.chunk - 1)) refuse_gap(chunk.chunk, file);
   check_roots(chunk, pool, file);
@@ -258,6 +263,7 @@ void Linker::check(const StagedChunk& chunk, const ChunkPool& pool, const std::s
     check_repeat(chunk.chunk, last_of(walk(before)), walk(chunk), pool, file);
   if (after < graph_->size() && holds(after) && roots_of(tables_[after]).repeats_root())
     check_repeat(chunk.chunk, last_of(walk(chunk)), walk(after), pool, file);
+  checked_ = chunk.chunk;
 }
 
 void Linker::add_large(const StagedChunk& chunk, LinkPatch& patch) {
@@ -316,14 +322,17 @@ void Linker::link_root(uint32_t last, LinkPatch& patch) {
 }
 
 // Where it is linked, so many nodes take the place of the one that they hang from.
-// roots: a copy, since whoever asks goes through the family afterwards.
-uint64_t Linker::ends_of(const Family& family, Roots roots) const {
+// roots: goes to the family and stays there, since whoever asks may go through it afterwards.
+uint64_t Linker::ends_of(const Family& family, Roots& roots) const {
+  const uint32_t first = family.node.first_child;
+  if (holds(family.chunks.first)) roots.of(family.chunks.first, first, first);
+  Roots ahead = roots;
   uint64_t ends = 0;
-  each_subtree(family, roots, [&](const Walk& walk) { ends += walk.at.ends(); });
+  each_subtree(family, ahead, [&](const Walk& walk) { ends += walk.at.ends(); });
   return ends;
 }
 
-bool Linker::refuse_if_large(const Family& family, const Roots& roots) {
+bool Linker::refuse_if_large(const Family& family, Roots& roots) {
   // A bound nearly always has room: then nothing is counted.
   uint64_t subtrees = 0;
   for (uint32_t chunk = family.chunks.first; chunk < family.chunks.last; ++chunk)

@@ -147,23 +147,25 @@ class Linker {
   void add_large(const StagedChunk& chunk, LinkPatch& patch);
   void remove_large(uint32_t slot, LinkPatch& patch);
   void link_root(uint32_t chunk, LinkPatch& patch);
-  uint64_t ends_of(const Family& family, Roots roots) const;
+  uint64_t ends_of(const Family& family, Roots& roots) const;
   bool has_room_for_cut(uint64_t ends) const { return most_cut_ - 1 + ends <= room_for_cut_; }
-  bool refuse_if_large(const Family& family, const Roots& roots);
+  bool refuse_if_large(const Family& family, Roots& roots);
 
   const ChunkGraph* graph_;
   SlotShape shape_;
   const std::vector<uint32_t>* next_block_;
   ByChunk<LinkTable> tables_;
   std::vector<LargeFamily> large_;  // of what is held, by address
-  // That the subtrees of one chunk belong to, by their roots; what is done of them is before.
+  // Families that the subtrees of one chunk belong to, by their first roots. Those before
+  // next_above_ are done.
   std::vector<Family> above_;
   size_t next_above_ = 0;
-  // The same of the chunk that was checked last, until it arrives.
+  // Those of the chunk that was checked last, until it arrives.
   std::vector<Family> checked_above_;
   static constexpr uint32_t kNone = 0xffffffffu;
   uint32_t checked_ = kNone;
-  std::vector<Family> work_;  // others: a heap, the one whose roots are first
+  // Families that hang from what is linked or unlinked: a heap, the first roots in front.
+  std::vector<Family> work_;
   // Of what is linked: that no cut has more nodes, those which nothing leads on from.
   uint64_t most_cut_ = 0, room_for_cut_ = UINT64_MAX;
   std::set<Refused> refused_;

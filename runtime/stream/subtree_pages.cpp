@@ -13,7 +13,7 @@ SubtreePages::SubtreePages(uint32_t subtrees, uint32_t room, uint64_t kept)
 bool SubtreePages::take(uint32_t first, uint32_t count, uint64_t version,
                         std::vector<uint32_t>& moved) {
   const uint32_t begin = first / kPageSubtrees, end = pages_of(first + count);
-  // First all of them, so that none is taken for another.
+  // The chunk is counted on all of its pages first: none of them is to make room for another.
   for (uint32_t page = begin; page < end; ++page) {
     Page state = pages_[page];
     ++state.chunks;
@@ -36,7 +36,7 @@ void SubtreePages::release(uint32_t first, uint32_t count, uint64_t version) {
     }
     pages_.set(page, state);
   }
-  // A page is there once, so that this leaves half of them at most.
+  // A page may have older entries. They go here, so that no more is left than one for each place.
   if (released_.size() > 2 * size_t{used_})
     std::erase_if(released_, [&](const Released& released) { return forget_if_taken(released); });
 }

@@ -46,6 +46,23 @@ TEST_F(StreamingHidden, AFrameThatTellsIsTheSame) {
   }
 }
 
+// A view's first frame has too little room for so many instances, and tells all the same.
+TEST_F(StreamingHidden, AFrameWithoutRoomTellsOfWhatItDraws) {
+  StreamedWall whole(*cuda, true), part(*cuda, true);
+  whole.settle(before_the_wall());
+  part.begin(before_the_wall(), 6);
+  Scenes scenes(50, whole.scene());
+  scenes.push_back(part.scene());
+  View many(scenes, *cuda, {}, std::pmr::get_default_resource(), workers);
+  FrameInput input = before_the_wall();
+  input.instances.resize(scenes.size());
+  ASSERT_TRUE(part.stream().wants_shown());
+  const Frame first = render(many, input);
+  EXPECT_GT(first.stats.redraws, 0u);
+  EXPECT_GT(first.stats.cut_size, 1u << 18);
+  expect_same_bits(render(many, input), first);
+}
+
 // With room for a part, and from the other side: stale marks and pools that change their size.
 TEST_F(StreamingHidden, WhoeverHasMovedSeesAndWaitsForTheSame) {
   StreamedWall with(*cuda, true, {}, 0.4), without(*cuda, false, {}, 0.4);

@@ -25,6 +25,29 @@ class Tree {
     return test::render(*backend_, scene_, {}, test::frame_input(camera, tau, false));
   }
 
+  test::Frame draw_leaves(const Camera& camera, Antialias antialias = Antialias::on) {
+    return test::render(*backend_, scene_, {.lod = Lod::all_leaves, .antialias = antialias},
+                        test::frame_input(camera, 0, false));
+  }
+
+  // METHOD §12's, with 8 × 8 samples a pixel.
+  test::Frame draw_truth(const Camera& camera) {
+    constexpr uint32_t kSamples = 8;
+    Camera fine = camera;
+    fine.width *= kSamples, fine.height *= kSamples;
+    fine.fx *= kSamples, fine.fy *= kSamples, fine.cx *= kSamples, fine.cy *= kSamples;
+    const test::Frame samples = draw_leaves(fine, Antialias::truth);
+    test::Frame truth;
+    truth.width = camera.width, truth.height = camera.height;
+    truth.rgba.assign(size_t{4} * camera.width * camera.height, 0.0f);
+    for (uint32_t y = 0; y < fine.height; ++y)
+      for (uint32_t x = 0; x < fine.width; ++x)
+        for (size_t k = 0; k < 4; ++k)
+          truth.rgba[4 * (size_t{y / kSamples} * camera.width + x / kSamples) + k] +=
+              samples.at(x, y)[k] / float{kSamples * kSamples};
+    return truth;
+  }
+
   // With about as many nodes in the cut as there may be.
   test::Frame draw_cut_of(const Camera& camera, size_t nodes) {
     double least = 0.01, most = 1000;
@@ -56,6 +79,31 @@ TEST(TreeQuality, AtAnEqualCutTheClusteredTreeIsThreeDecibelsAboveHierarchicalGs
       const double gain = test::compare(all, ours).psnr - test::compare(all, theirs).psnr;
       EXPECT_GE(gain, 3) << "1/" << share << ": " << test::compare(all, theirs).psnr << " dB, "
                          << ours.cut.size() << " and " << theirs.cut.size() << " Gaussians";
+    }
+  }
+}
+
+double squared_error(const test::Frame& a, const test::Frame& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.rgba.size(); ++i) {
+    const double d = double{a.rgba[i]} - b.rgba[i];
+    sum += i % 4 == 3 ? 0 : d * d;
+  }
+  return 255 * 255 * sum / (3 * static_cast<double>(a.rgba.size() / 4));
+}
+
+// docs/lod-tree.md, "What τ gives": from afar, from near by and in a street.
+TEST(TreeQuality, WhatACutLosesIsWithinWhatTauPromises) {
+  Tree tree(city(30000), {});
+  const Camera cameras[] = {test::look({-300, -300, -300}, {31, 0, 32}, 160, 90, 120),
+                            test::look({-60, -50, -60}, {20, 0, 20}, 160, 90),
+                            test::look({14, -1.7, -20}, {16, -2, 30}, 160, 90)};
+  for (const Camera& camera : cameras) {
+    const test::Frame truth = tree.draw_truth(camera);
+    const double leaves = squared_error(tree.draw_leaves(camera), truth);
+    for (const double tau : {0.5, 1.0, 3.0, 6.0, 12.0}) {
+      const double lost = squared_error(tree.draw(camera, tau), truth) - leaves;
+      EXPECT_LT(std::sqrt(std::max(lost, 0.0)), 0.9 * (2 * tau + 1)) << tau;
     }
   }
 }

@@ -110,6 +110,7 @@ class StreamedWall {
   }
   double behind_later() const { return source_->behind_later(stream().file().chunks()); }
   SceneStream& stream() const { return *scene_->stream; }
+  const std::shared_ptr<Scene>& scene() const { return scene_; }
 
  private:
   static std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }

@@ -4,17 +4,34 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <numeric>
 #include <random>
 #include <set>
 
+#include "runtime/stream/record_bounds.h"
 #include "runtime/stream/scene_stream.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
 namespace voyager::linker_test {
 namespace {
+
+// Knows the bounds of what it is filled with.
+class BoundsPool final : public ChunkPool {
+ public:
+  explicit BoundsPool(uint32_t blocks) { bounds_.make_room(blocks); }
+  void fill(std::span<const StagedChunk* const> chunks) override {
+    for (const StagedChunk* chunk : chunks) bounds_.fill(*chunk);
+  }
+  const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
+  void apply(const LinkPatch&) override {}
+  void resize(PoolRoom) override {}
+
+ private:
+  RecordBounds bounds_;
+};
 
 // Every chunk has the slot of its own number. Its records are in blocks of its own, in any order.
 class Linked {
@@ -24,7 +41,8 @@ class Linked {
         shape_{kDefaultChunkBytes, kDefaultChunkBytes},
         graph_(file.chunks(), file.tiers()),
         next_block_(file.chunks().size() * shape_.records),
-        linker_(graph_, shape_, next_block_) {
+        linker_(graph_, shape_, next_block_),
+        pool_(static_cast<uint32_t>(next_block_.size())) {
     linker_.make_room(graph_.size(), cut_nodes);
   }
 
@@ -36,17 +54,13 @@ class Linked {
     arrive(chunk, patch);
     finish(patch);
   }
-  void arrive(uint32_t chunk, LinkPatch& patch) {
-    StagedChunk staged = stage_chunk(file_.read_chunk(chunk), chunk, file_.tiers(), file_.name());
-    std::vector<uint32_t> blocks(staged.record_blocks());
-    std::iota(blocks.begin(), blocks.end(), chunk * shape_.records);
-    std::shuffle(blocks.begin(), blocks.end(), std::mt19937(chunk));
-    for (size_t i = 1; i < blocks.size(); ++i) next_block_[blocks[i - 1]] = blocks[i];
-    staged.put(chunk, std::move(blocks));
-    const Tiers tiers = file_.tiers();
-    for (LinkWalk at(staged.links, tiers, {staged.large, 0}); !at.at_end(); at.next())
-      first_record_[at.subtree()] = at.interior() == 0 ? 0 : staged.record(at.first_record());
-    linker_.arrive(std::move(staged), patch);
+  void arrive(uint32_t chunk, LinkPatch& patch) { linker_.arrive(stage(chunk), patch); }
+  // In front of arrive(), or for nothing.
+  void check(uint32_t chunk) {
+    const StagedChunk staged = stage(chunk);
+    const StagedChunk* const filled[] = {&staged};
+    pool_.fill(filled);
+    linker_.check(staged, pool_, file_.name());
   }
   void evict(uint32_t chunk) {
     LinkPatch patch;
@@ -90,11 +104,25 @@ class Linked {
   }
 
  private:
+  StagedChunk stage(uint32_t chunk) {
+    StagedChunk staged = stage_chunk(file_.read_chunk(chunk), chunk, file_.tiers(), file_.name());
+    std::vector<uint32_t> blocks(staged.record_blocks());
+    std::iota(blocks.begin(), blocks.end(), chunk * shape_.records);
+    std::shuffle(blocks.begin(), blocks.end(), std::mt19937(chunk));
+    for (size_t i = 1; i < blocks.size(); ++i) next_block_[blocks[i - 1]] = blocks[i];
+    staged.put(chunk, std::move(blocks));
+    const Tiers tiers = file_.tiers();
+    for (LinkWalk at(staged.links, tiers, {staged.large, 0}); !at.at_end(); at.next())
+      first_record_[at.subtree()] = at.interior() == 0 ? 0 : staged.record(at.first_record());
+    return staged;
+  }
+
   const SceneFile& file_;
   SlotShape shape_;
   ChunkGraph graph_;
   std::vector<uint32_t> next_block_;
   Linker linker_;
+  BoundsPool pool_;
   std::map<uint32_t, uint32_t> first_record_;  // by subtree
   std::set<uint32_t> linked_, leading_;        // subtrees; records
   size_t linked_again_ = 0;
@@ -191,6 +219,55 @@ TEST(Linker, LeavesOutWhatCouldMakeACutTooLarge) {
     for (uint32_t chunk = 0; chunk < fewer.chunks(); ++chunk) fewer.arrive(chunk);
     EXPECT_TRUE(fewer.linker().lacks_room_for_cut());
     EXPECT_LT(fewer.linked().size(), file.info().subtree_count);
+  }
+}
+
+template <class T>
+bool same(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() &&
+         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+bool same(const LinkPatch& a, const LinkPatch& b) {
+  return same(a.cut.records, b.cut.records) && a.cut.changed == b.cut.changed &&
+         same(a.tied.records, b.tied.records) && a.tied.changed == b.tied.changed &&
+         a.unlinked == b.unlinked && same(a.linked, b.linked) && same(a.outside, b.outside) &&
+         same(a.arrived, b.arrived);
+}
+
+// What checking finds is what linking would find, and only for the chunk that was checked last.
+TEST(Linker, LinksACheckedChunkAsItLinksOthers) {
+  for (const test::TreeShape shape : test::kTreeShapes) {
+    SCOPED_TRACE(test::name_of(shape));
+    const LodTree tree = test::random_tree(shape, 1500, 4);
+    const test::Bytes bytes =
+        test::scene_bytes(test::baked_of(tree), Quality::compact, 0, kMinChunkBytes);
+    const SceneFile file(test::source_of(bytes));
+    const uint64_t room = file.info().leaf_count * 3 / 4;
+    Linked plain(file, room), checked(file, room);
+    const uint32_t top = SceneStream::top_chunks(file);
+    std::mt19937 random(3);
+    for (int step = 0; step < 60; ++step) {
+      LinkPatch expected, found;
+      if (step != 0)
+        for (uint32_t chunk = plain.chunks(); chunk-- > top;) {
+          if (random() % 3 != 0 || !plain.may_go(chunk)) continue;
+          plain.evict(chunk, expected);
+          checked.evict(chunk, found);
+        }
+      for (uint32_t chunk = 0; chunk < plain.chunks(); ++chunk) {
+        if (chunk >= top && (random() % 3 == 0 || !plain.may_arrive(chunk))) continue;
+        if (plain.linker().holds(chunk)) continue;
+        plain.arrive(chunk, expected);
+        if (random() % 4 != 0) checked.check(chunk);
+        const uint32_t other = random() % plain.chunks();
+        if (random() % 4 == 0 && other != chunk && checked.may_arrive(other)) checked.check(other);
+        checked.arrive(chunk, found);
+      }
+      ASSERT_TRUE(same(expected, found)) << step;
+      plain.finish(expected);
+      checked.finish(found);
+      ASSERT_TRUE(same(expected, found)) << step;
+    }
   }
 }
 
