@@ -1,6 +1,7 @@
 #include "plugin/streaming.h"
 
 #include <algorithm>
+#include <thread>
 
 #include "plugin/call.h"
 #include "plugin/structs.h"
@@ -9,7 +10,12 @@
 namespace voyager {
 namespace {
 
-constexpr uint32_t kMostReaders = 64, kDefaultReaders = 4;
+constexpr uint32_t kMostReaders = 64;
+
+// Half of the machine's threads: the rest is the host's. bench/NOTES.md has what four and eight do.
+uint32_t default_readers() {
+  return std::clamp(std::thread::hardware_concurrency() / 2, 4u, 8u);
+}
 
 // Of a budget of its own, and of what the device has left for it; 0: no limit.
 uint64_t allowed(uint64_t wanted, uint64_t left) {
@@ -48,7 +54,7 @@ void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>&
   if (streaming.startPosition != nullptr)
     desc.start = {streaming.startPosition[0], streaming.startPosition[1],
                   streaming.startPosition[2]};
-  desc.readers = streaming.readerThreadCount == 0 ? kDefaultReaders : streaming.readerThreadCount;
+  desc.readers = streaming.readerThreadCount == 0 ? default_readers() : streaming.readerThreadCount;
   desc.count = [&object](uint64_t bytes) { object.count(bytes); };
   object.scene = open_streamed(source, desc, *object.device().backend, &object.memory,
                                object.device().workers);

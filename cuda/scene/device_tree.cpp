@@ -9,16 +9,9 @@ DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree)
       records_(upload(std::span<const SearchRecord>(search.records))),
       chunks_(upload(std::span<const SearchChunk>(search.chunks))) {
   if (search.leaves_have_extent) leaves_ = upload(std::span<const NodeRecord>(tree.records));
-  view_ = {subtrees_.data(),
-           {nullptr},
-           records_.data(),
-           nullptr,
-           chunks_.data(),
-           leaves_.data(),
-           search.subtree_count(),
-           search.subtree_count(),
-           search.chunk_count,
-           tree.blend_share};
+  view_ = {subtrees_.data(),   {nullptr},       records_.data(),        nullptr,
+           chunks_.data(),     leaves_.data(),  search.subtree_count(), search.subtree_count(),
+           search.chunk_count, tree.blend_share};
 }
 
 TreeView DeviceTree::view() const {

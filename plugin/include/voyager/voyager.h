@@ -369,8 +369,9 @@ typedef struct VoySceneStreaming {
    * then reads what looks large from there as well as the top of the tree, up to 64 MB of the file.
    * Copied. */
   const double* startPosition;
-  uint32_t readerThreadCount; /* threads that read and decode; 1 to 64, or 0 for 4 */
-  uint32_t reserved;          /* 0 */
+  /* Threads that read and decode: 1 to 64. 0: half of the machine's, from 4 to 8. */
+  uint32_t readerThreadCount;
+  uint32_t reserved; /* 0 */
 } VoySceneStreaming;
 #define VOY_SCENE_STREAMING_INIT \
   { VOY_STRUCTURE_TYPE_SCENE_STREAMING, NULL, 0, NULL, 0, 0 }
