@@ -216,30 +216,37 @@ void Residency::drop_waiting() {
   });
 }
 
+// Few of many at a time: to sort all of them each time would take longer than to link the few. Of
+// those, what hangs from others comes behind them, and what hangs from later ones waits for them.
 Residency::Arrivals Residency::begin_arrivals(size_t most) {
   Arrivals out;
-  std::vector<uint32_t> next = std::exchange(filled_, {});
-  std::sort(next.begin(), next.end());
-  size_t i = 0;
-  for (; i < next.size() && out.arriving.size() < most; ++i) {
-    const uint32_t chunk = next[i];
-    if (known(chunk).state != State::filled) continue;  // came after its parent as well
-    if (!is_wanted(chunk)) {
-      drop(chunk);
-      out.given_up.push_back(chunk);
-      continue;
+  while (out.arriving.size() < most && !filled_.empty()) {
+    const size_t some = filled_.size() / 2 < most ? filled_.size() : 2 * most;
+    const auto end = filled_.begin() + static_cast<std::ptrdiff_t>(some);
+    std::vector<uint32_t> next(filled_.begin(), end);
+    filled_.erase(filled_.begin(), end);
+    std::sort(next.begin(), next.end());
+    size_t i = 0;
+    for (; i < next.size() && out.arriving.size() < most; ++i) {
+      const uint32_t chunk = next[i];
+      if (known(chunk).state != State::filled) continue;  // came after its parent as well
+      if (!is_wanted(chunk)) {
+        drop(chunk);
+        out.given_up.push_back(chunk);
+        continue;
+      }
+      if (!parents_arrive(chunk)) {
+        waiting_.push_back(chunk);
+        continue;
+      }
+      know(chunk).state = State::arriving;
+      const ChunkRange children = graph_->children(chunk);
+      for (uint32_t c = children.first; c < children.last; ++c)
+        if (known(c).state == State::filled) next.push_back(c);
+      out.arriving.push_back(chunk);
     }
-    if (!parents_arrive(chunk)) {
-      waiting_.push_back(chunk);
-      continue;
-    }
-    know(chunk).state = State::arriving;
-    const ChunkRange children = graph_->children(chunk);
-    for (uint32_t c = children.first; c < children.last; ++c)
-      if (known(c).state == State::filled) next.push_back(c);
-    out.arriving.push_back(chunk);
+    filled_.insert(filled_.begin(), next.begin() + static_cast<std::ptrdiff_t>(i), next.end());
   }
-  filled_.assign(next.begin() + static_cast<std::ptrdiff_t>(i), next.end());
   return out;
 }
 

@@ -17,6 +17,7 @@
 //
 //     absent -> on its way -> read -> filled -> arriving -> resident -> absent
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <vector>
 
@@ -248,7 +249,7 @@ class Residency {
   std::vector<uint32_t> requests_, victims_;  // the first to go last
   ShownChunks shown_;                         // of all viewers
   std::vector<uint32_t> leftovers_;           // the same, and not because room is short
-  std::vector<uint32_t> filled_;              // and not looked at by begin_arrivals()
+  std::deque<uint32_t> filled_;               // and not looked at by begin_arrivals()
   std::vector<uint32_t> waiting_;  // all that are filled before their parents are there, and others
   std::vector<uint32_t> free_slots_;
   std::vector<uint32_t> free_blocks_;  // a heap, the least first
