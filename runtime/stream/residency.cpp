@@ -216,8 +216,9 @@ void Residency::drop_waiting() {
   });
 }
 
-// Few of many at a time: to sort all of them each time would take longer than to link the few. Of
-// those, what hangs from others comes behind them, and what hangs from later ones waits for them.
+// To sort all of many each time would take longer than to link a few. In a part that is sorted
+// parents come before children. A chunk whose parents are not in it goes to waiting_, and comes
+// back when the last of them arrives.
 Residency::Arrivals Residency::begin_arrivals(size_t most) {
   Arrivals out;
   while (out.arriving.size() < most && !filled_.empty()) {

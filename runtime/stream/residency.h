@@ -92,7 +92,7 @@ class Residency {
   void retry(uint32_t chunk);
 
   // Filled chunks that may become resident, parents before children, at most `most`; and those that
-  // nobody wants any more. Costs by what has been filled, and has arrived, since the last time.
+  // nobody wants any more. Costs by `most`, and by those that have to wait for what they hang from.
   struct Arrivals {
     std::vector<uint32_t> arriving, given_up;
   };

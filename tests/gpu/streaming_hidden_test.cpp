@@ -46,7 +46,8 @@ TEST_F(StreamingHidden, AFrameThatTellsIsTheSame) {
   }
 }
 
-// A view's first frame has too little room for so many instances, and tells all the same.
+// A view's first frame has too little room for so many instances, and tells all the same. Whether
+// it reads and marks only what is there is for compute-sanitizer to see.
 TEST_F(StreamingHidden, AFrameWithoutRoomTellsOfWhatItDraws) {
   StreamedWall whole(*cuda, true), part(*cuda, true);
   whole.settle(before_the_wall());

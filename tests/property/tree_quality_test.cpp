@@ -102,7 +102,11 @@ TEST(TreeQuality, WhatACutLosesIsWithinWhatTauPromises) {
     const test::Frame truth = tree.draw_truth(camera);
     const double leaves = squared_error(tree.draw_leaves(camera), truth);
     for (const double tau : {0.5, 1.0, 3.0, 6.0, 12.0}) {
-      const double lost = squared_error(tree.draw(camera, tau), truth) - leaves;
+      const test::Frame cut = tree.draw(camera, tau);
+      const double lost = squared_error(cut, truth) - leaves;
+      if (tau >= 6) {
+        EXPECT_LT(cut.cut.size(), 25000u);
+      }
       EXPECT_LT(std::sqrt(std::max(lost, 0.0)), 1.1 * (2 * tau + 1)) << tau;
     }
   }

@@ -242,7 +242,7 @@ TEST(TilesetExport, AClientShowsNothingCoarserThanOurCut) {
       }
     }
   }
-  EXPECT_GT(refined, 10u);
+  EXPECT_GT(refined, 5u);
 }
 
 // Every node but the last has a leaf and the rest as children.

@@ -166,5 +166,47 @@ TEST(Residency, WhateverComesAndFailsAFewAtATimeAllThatHasRoomIsThereInTheEnd) {
   EXPECT_GT(waited, 0u);
 }
 
+// Of many that have come the wrong way round, a few in each commit.
+TEST(Residency, LinksParentsFirstHoweverManyWait) {
+  const SceneFile file(test::source_of(
+      test::scene_bytes(test::baked_of(test::random_tree(test::kTreeShapes[0], 3000, 5)),
+                        Quality::lossless, 0, kMinChunkBytes)));
+  const Tiers tiers = file.tiers();
+  const ChunkGraph graph(file.chunks(), tiers);
+  const RecordRoom records(file);
+  uint32_t top = 1;
+  while (top < graph.size() && !graph.has_parents(top)) ++top;
+  Residency residency(graph, file.chunks(), records,
+                      PoolRoom{graph.size(), graph.size() * records.most_blocks()}, top);
+  ChunkLooks looks(file.chunks());
+  looks.begin({{{{0, 0, 0}, 1e-30f}, {}, false}});
+  residency.plan(looks, false);
+  std::vector<uint32_t> all;
+  for (;;) {
+    const ChunkRange range = residency.take_requests(16, UINT64_MAX);
+    if (range.empty()) break;
+    for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
+      ASSERT_TRUE(residency.read(chunk, records.most_blocks(chunk)));
+      ASSERT_TRUE(residency.keep(chunk));
+      ASSERT_NE(residency.take_slot(chunk), Residency::kNoSlot);
+      all.push_back(chunk);
+    }
+  }
+  ASSERT_EQ(all.size(), graph.size());
+  std::sort(all.rbegin(), all.rend());
+  for (const uint32_t chunk : all) residency.filled(chunk);
+  std::set<uint32_t> there;
+  while (residency.changes() != 0) {
+    const Residency::Arrivals arrivals = residency.begin_arrivals(3);
+    ASSERT_LE(arrivals.arriving.size(), 3u);
+    for (const uint32_t chunk : arrivals.arriving) {
+      for (const uint32_t p : graph.parents(chunk)) ASSERT_EQ(there.count(p), 1u);
+      there.insert(chunk);
+      residency.end_arrival(chunk, Residency::Arrival::resident);
+    }
+  }
+  EXPECT_EQ(there.size(), graph.size());
+}
+
 }  // namespace
 }  // namespace voyager::residency_test
