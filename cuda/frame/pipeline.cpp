@@ -444,7 +444,7 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   shown_.collect(oldest.tells);
   learn(oldest);
   SplatRoom used = room_for(oldest.counters());
-  // Slots are counted of the places that had room.
+  // The device counts slots only for places that had room.
   if (oldest.room.places != 0 && used.places > oldest.room.places)
     used.slots = used.slots * used.places / oldest.room.places;
   const auto ahead = [](size_t& wanted, size_t needed) {

@@ -86,9 +86,9 @@ class PartitionedSearch final : public CutSearch, public PoolReaderState {
   // Of the last state, for those who ask between frames what there is, and read none of it.
   StateView view_{};
   uint32_t list_room_ = 0;
-  float* list_weights_ = nullptr;    // where weigh() was called
-  Buffer<float> weights_of_places_;  // they lie here
-  bool weighed_ = false;             // the last cut
+  float* list_weights_ = nullptr;    // by place; null until weigh() is called
+  Buffer<float> weights_of_places_;  // their memory
+  bool weighed_ = false;             // they are those of the last cut
   References references_;
   bool started_ = false;
   std::optional<PoolShare> share_;  // last: what goes first frees the state

@@ -1,4 +1,5 @@
-// The slots of an instance's candidates, in the order of their ranks: from how many each row has.
+// Gives an instance's candidates their slots, in the order of their ranks, by adding up how many
+// candidates each row has.
 #include <algorithm>
 #include <cub/block/block_reduce.cuh>
 #include <cub/block/block_scan.cuh>
@@ -15,7 +16,7 @@ constexpr unsigned kThreads = 512, kItems = kSumRows / kThreads;
 using SlotScan = cub::BlockScan<uint32_t, kThreads, cub::BLOCK_SCAN_WARP_SCANS>;
 using SlotSum = cub::BlockReduce<uint32_t, kThreads>;
 
-// A block's sum with the tag of its launch, which nobody has to clear.
+// A block's sum with the tag of its launch, so that sums of earlier launches need not be cleared.
 __device__ unsigned long long tagged(uint32_t tag, uint32_t sum) {
   return static_cast<unsigned long long>(tag) << 32 | sum;
 }
@@ -65,7 +66,7 @@ __global__ void __launch_bounds__(kThreads) project_slots(SplatFrame f) {
     f.splats.counters->slots = counters[1].first_slot = before + sum;
 }
 
-// Of lists whose ranks are not their places: each sets the bits of its own.
+// For lists whose ranks are not their places: project_cull then sets bits one by one.
 __global__ void __launch_bounds__(kThreads) project_clear(SplatFrame f) {
   if (!has_work(f.splats)) return;
   const uint32_t room = f.splats.places / kRowPlaces;

@@ -4,9 +4,9 @@
 
 namespace voyager::cuda {
 
-// In front of project_cull, where a list's ranks are not its places.
+// Launch before project_cull, for a list whose ranks are not its places.
 void launch_clear_ranks(const SplatFrame& frame);
-// Behind it.
+// Launch after project_cull.
 void launch_slots(const SplatFrame& frame);
 
 }  // namespace voyager::cuda

@@ -1,6 +1,6 @@
 #pragma once
-// What linking has changed in a streamed scene, on its way to one view's search, and the ids of
-// what the view's last cut has addresses of: these are what they were until it follows.
+// What linking has changed in a streamed scene, on its way to one view's search. Also the ids of
+// nodes by their addresses, as they were when the view last followed.
 #include <optional>
 
 #include "cuda/device/mapped_memory.h"

@@ -26,15 +26,16 @@ constexpr float kLargest = 0.99f;  // α, METHOD §6
 constexpr float kLeastBehind = 1e-4f;
 constexpr double kContrastBeyond = 0.2;  // of what is beyond all pictures
 
-// Sine of the elevation from which all but one look at least; up is -y (METHOD §1). Few look at an
-// underside. The last one looks from below, for floors under ceilings.
+// Viewers look from above and from the side: all directions but the last come from at least this
+// high. It is the sine of the elevation; up is -y (METHOD §1). The last direction comes from below,
+// so that a floor under a ceiling counts for something.
 constexpr double kLowestRise = -0.05;
 
 struct Direction {
   Vec3d forward, right, down;
 };
 
-// Even over what rises so far: a Fibonacci lattice.
+// Even over the part of the sphere from kLowestRise up: a Fibonacci lattice.
 Direction direction(int index) {
   constexpr int kAbove = kDirections - 1;
   const double golden = 2.399963229728653;  // π(3 − √5)

@@ -54,9 +54,9 @@ struct StreamCounters {
 
 // What linking has changed, for searches that go on from their last cut.
 struct StreamChange {
-  uint64_t version;                         // from 1
-  std::vector<uint32_t> unlinked, changed;  // as PartitionedSearch::relink() takes them
-  std::vector<std::pair<uint32_t, SlotIds>> arrived;
+  uint64_t version;                                   // from 1
+  std::vector<uint32_t> unlinked, changed;            // as PartitionedSearch::relink() takes them
+  std::vector<std::pair<uint32_t, SlotIds>> arrived;  // as LinkPatch has it
 };
 
 class SceneStream {
