@@ -316,10 +316,14 @@ std::vector<Residency::Evicted> Residency::evict(size_t most) {
 }
 
 bool Residency::has_leftovers() const {
+  return !leftovers_.empty() && is_quiet();
+}
+
+bool Residency::is_quiet() const {
   const auto is = [&](State state) {
     return [this, state](uint32_t chunk) { return known(chunk).state == state; };
   };
-  return !leftovers_.empty() && coming_ == 0 && filling_ == 0 && filled_.empty() &&
+  return coming_ == 0 && filling_ == 0 && filled_.empty() &&
          std::none_of(waiting_.begin(), waiting_.end(), is(State::filled)) &&
          std::none_of(requests_.begin(), requests_.end(), is(State::absent));
 }
@@ -365,7 +369,7 @@ bool Residency::settled(const std::function<bool(uint32_t)>& hopeless) const {
     return is_wanted(chunk) && known(chunk).state != State::resident &&
            known(chunk).state != State::failed && !hopeless(chunk);
   };
-  if (has_leftovers()) return false;
+  if (left_out_ || has_leftovers()) return false;
   for (uint32_t chunk = 0; chunk < pinned_; ++chunk)
     if (to_come(chunk)) return false;
   return std::none_of(needed_.begin(), needed_.end(),

@@ -7,19 +7,56 @@
 #include "runtime/stream/residency.h"
 
 namespace voyager {
+namespace {
 
-void Residency::plan(ChunkLooks& looks, bool cuts_are_full) {
+// After so many plans in haste what they leave out is counted anew.
+constexpr uint32_t kHastyPlans = 15;
+// No seen chunk is less urgent.
+constexpr uint32_t kLeastSeen = static_cast<uint32_t>(ChunkLooks::Class::seen) << 30;
+
+}  // namespace
+
+void Residency::plan(ChunkLooks& looks, bool cuts_are_full, bool in_haste) {
   forget_absent();
-  ++plan_;
-  find_needed(looks);
-  share_in_families();
-  share_with_parents();
+  if (!in_haste || hasty_plans_ == kHastyPlans) least_ = 0;
+  consider(looks);
+  if (left_out_ && needed_.size() < room_.slots) {
+    least_ = 0;
+    consider(looks);
+  }
+  hasty_plans_ = left_out_ ? hasty_plans_ + 1 : 0;
   count_need();
   choose_target();
   drop_waiting();
   queue_requests();
   list_victims();
   list_leftovers(cuts_are_full);
+}
+
+void Residency::consider(ChunkLooks& looks) {
+  ++plan_;
+  left_out_ = false;
+  find_needed(looks);
+  share_in_families();
+  share_with_parents();
+}
+
+// From those that have no room, so that plans in haste find a quarter more than there is room for.
+void Residency::choose_least(std::span<Needed> rest) {
+  const size_t spare = room_.slots / 4;
+  if (rest.size() <= spare) return;
+  const auto last = rest.begin() + static_cast<std::ptrdiff_t>(spare);
+  std::nth_element(rest.begin(), last, rest.end(),
+                   [](const Needed& a, const Needed& b) { return a.urgency > b.urgency; });
+  least_ = std::min(last->urgency, kLeastSeen);
+  const auto count = [&](const Needed& needed, bool missing) {
+    if (!needed.now || needed.urgency >= least_) return;
+    ++beyond_.chunks;
+    beyond_.missing += missing;
+    beyond_.missing_bytes += missing ? chunks_->bytes(needed.chunk) : 0;
+  };
+  for (const Needed& needed : rest) count(needed, known(needed.chunk).state != State::resident);
+  for (const Needed& needed : failed_) count(needed, true);
 }
 
 // What the last plan did not need either.
@@ -91,17 +128,26 @@ void Residency::find_needed(ChunkLooks& looks) {
   };
   const auto look = [&](uint32_t chunk) {
     next = chunk + 1;
-    if (known(chunk).needed_plan == plan_) return;
     const ChunkLooks::Look own = looks.at(chunk);
-    Needed found{chunk, own.urgency, own.now};
     // A node is refined with all of its children or not at all, and the hull of a chunk that goes
     // on with a node of the one before is that of this node, not of what it hangs from.
-    if (chunks_->goes_on_with_root(chunk) && needed_before(chunk)) {
+    const bool goes_on = needed_before(chunk) && chunks_->goes_on_with_root(chunk);
+    if (own.urgency < least_ && !goes_on) {
+      left_out_ = left_out_ || own.urgency != 0;
+      return;
+    }
+    if (known(chunk).needed_plan == plan_) return;
+    Needed found{chunk, own.urgency, own.now};
+    if (goes_on) {
       found.urgency = std::max(found.urgency, extra_.back().urgency);
       found.now = found.now || extra_.back().now;
     }
     found.urgency = std::min(found.urgency, most_above(chunk));
     if (found.urgency == 0) return;
+    if (found.urgency < least_) {
+      left_out_ = true;
+      return;
+    }
     know(chunk).own_urgency = found.urgency;
     add_needed(found);
   };
@@ -116,8 +162,14 @@ void Residency::find_needed(ChunkLooks& looks) {
   std::sort(failed_.begin(), failed_.end(), by_chunk);  // what several hang from is there often
   const auto same = [](const Needed& a, const Needed& b) { return a.chunk == b.chunk; };
   failed_.erase(std::unique(failed_.begin(), failed_.end(), same), failed_.end());
-  needed_ = extra_;
-  std::sort(needed_.begin(), needed_.end(), by_chunk);
+  // Most have come in their order already.
+  std::vector<Needed> others;
+  for (const Needed& needed : extra_)
+    (needed_.empty() || needed.chunk > needed_.back().chunk ? needed_ : others).push_back(needed);
+  std::sort(others.begin(), others.end(), by_chunk);
+  const auto middle = static_cast<std::ptrdiff_t>(needed_.size());
+  needed_.insert(needed_.end(), others.begin(), others.end());
+  std::inplace_merge(needed_.begin(), needed_.begin() + middle, needed_.end(), by_chunk);
 }
 
 // A node is refined only when all that hangs from it is there. Which chunks hold a family is known
@@ -159,7 +211,8 @@ void Residency::share_with_parents() {
 }
 
 void Residency::choose_target() {
-  crowded_ = false;
+  crowded_ = left_out_;
+  if (!left_out_) least_ = 0, beyond_ = {};
   extra_.clear();
   for (const Needed& needed : needed_)
     if (needed.chunk >= pinned_) extra_.push_back(needed);
@@ -171,6 +224,7 @@ void Residency::choose_target() {
   if (extra_.size() > room) {
     std::nth_element(extra_.begin(), extra_.begin() + static_cast<std::ptrdiff_t>(room),
                      extra_.end(), before);
+    if (!left_out_) choose_least(std::span(extra_).subspan(room));
     extra_.resize(room);
     crowded_ = true;
   }
@@ -249,7 +303,7 @@ void Residency::list_victims() {
 // With it goes what hangs from it.
 void Residency::list_leftovers(bool cuts_are_full) {
   leftovers_.clear();
-  if (!crowded_ && !cuts_are_full) return;
+  if (left_out_ || (!crowded_ && !cuts_are_full)) return;  // another plan follows
   for (const uint32_t chunk : unwanted()) {
     const ChunkGraph::Parents parents = graph_->parents(chunk);
     const bool leaves =
@@ -261,7 +315,7 @@ void Residency::list_leftovers(bool cuts_are_full) {
 }
 
 void Residency::count_need() {
-  need_ = {};
+  need_ = left_out_ ? beyond_ : ResidencyNeed{};
   for (const Needed& needed : needed_) {
     know(needed.chunk).counted = 0;
     if (!needed.now) continue;

@@ -93,8 +93,10 @@ double SceneStream::next_due() const {
   if (lost_) return std::max(0.0, rebuild_due_ - now());
   double wait = failures_.next_due(now());
   const std::lock_guard small(small_mutex_);
-  if (!(look_again_ && !planning_) && !told_) return wait;  // whoever plans wakes the others
-  const auto rest = next_plan_ - std::chrono::steady_clock::now();
+  const bool plans = asked_ != PlanAsked::no && !planning_;  // whoever plans wakes the others
+  if (!plans && !told_) return wait;
+  const TimePoint due = told_ ? next_plan_ : TimePoint::max();
+  const auto rest = (plans ? std::min(due, next_plan()) : due) - std::chrono::steady_clock::now();
   constexpr double kLinking = 1e-3;  // it takes one or two, and then wakes nobody
   const double plan =
       std::max(linking_ ? kLinking : 0.0, std::chrono::duration<double>(rest).count());
@@ -285,7 +287,7 @@ void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
   changes_.clear();
   version_ += kChangesKept;
   forget_shown();
-  look_again();
+  ask_for_plan(PlanAsked::in_time);
   put_first(residency_.pinned(), top_, workers);
   unsound_ = nullptr;
   signal();

@@ -143,6 +143,9 @@ class SceneStream {
 
  private:
   using Lock = std::unique_lock<std::mutex>;
+  using TimePoint = std::chrono::steady_clock::time_point;
+  // In time: what is already asked for goes on without it. At once: for who has not looked before.
+  enum class PlanAsked : uint8_t { no, in_time, soon, at_once };
   static constexpr size_t kChangesKept = 64;
   static constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds
   // How many chunks one commit links at most, and unlinks at most. The few take two milliseconds.
@@ -159,11 +162,10 @@ class SceneStream {
   bool work(Lock& lock);
   bool plan_is_asked();
   bool plan_if_asked(Lock* lock);
-  bool plans_rest() const;
   bool order_if_told();
   void forget_shown();
   void forget_shown(const std::vector<Residency::Evicted>& evicted);
-  std::chrono::steady_clock::time_point look_at_likely(Lock& lock);
+  TimePoint look_at_likely(Lock& lock);
   bool retry_due();
   bool fill_some(Lock& lock);
   bool read_some(Lock& lock);
@@ -176,7 +178,9 @@ class SceneStream {
   void fail(uint32_t chunk, const std::exception_ptr& failure);
   void add_failure(uint32_t chunk, const Error& error);
   void forget(uint32_t chunk);
-  void look_again();
+  void ask_for_plan(PlanAsked when);
+  TimePoint next_plan() const;
+  bool rests(TimePoint until) const;
   bool commit_between_frames(Lock& lock);
   struct Commit;
   void commit_or_lose(size_t most, Lock& lock);
@@ -242,6 +246,7 @@ class SceneStream {
   std::atomic<size_t> changes_due_{0};       // chunks for the next commit
   std::atomic<unsigned> between_frames_{0};  // commits since the last frame
   std::atomic<double> last_frame_{0};        // when it committed
+  std::atomic<unsigned> waits_{0};   // calls that wait, for which no plan leaves out a thing
   std::atomic<double> put_off_{-1};  // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0, departures_ = 0;
@@ -253,7 +258,7 @@ class SceneStream {
   std::condition_variable wake_, progress_;
   uint64_t signals_ = 0;
   bool stopping_ = false, abandoned_ = false;
-  bool look_again_ = false;
+  PlanAsked asked_ = PlanAsked::no;
   struct Looker {
     std::vector<Viewer> viewers;
     ShownChunks shown;  // none: no frame has told
@@ -279,7 +284,7 @@ class SceneStream {
   std::map<uint32_t, Coming> coming_;  // by chunk
   std::deque<uint32_t> ready_;         // those of them without a slot
   uint64_t staged_bytes_ = 0;
-  std::chrono::steady_clock::time_point next_plan_;
+  TimePoint next_plan_, next_plan_in_time_;
   // Of the pool's present slots: what a thread has begun for earlier ones is for nothing.
   std::atomic<uint64_t> generation_{0};
   unsigned filling_ = 0;

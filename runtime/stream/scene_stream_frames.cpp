@@ -18,12 +18,13 @@ void SceneStream::look(const void* who, std::vector<Viewer> viewers) {
     const std::lock_guard small(small_mutex_);
     const auto found = lookers_.find(who);
     if (found == lookers_.end() ? viewers.empty() : found->second.viewers == viewers) return;
-    told_ = told_ || found == lookers_.end() || viewers.empty();  // for all that look
+    const bool comes = found == lookers_.end();
+    told_ = told_ || comes || viewers.empty();  // for all that look
     if (viewers.empty())
       lookers_.erase(found);
     else
       lookers_[who].viewers = std::move(viewers);
-    look_again_ = true;
+    asked_ = std::max(asked_, comes ? PlanAsked::at_once : PlanAsked::soon);
   }
   signal();
 }
@@ -100,7 +101,7 @@ void SceneStream::check_seen() const {
 
 bool SceneStream::plan_is_asked() {
   const std::lock_guard small(small_mutex_);
-  return look_again_;
+  return asked_ != PlanAsked::no;
 }
 
 // One turn; whether it is done. Both locks are held meanwhile, but for mutex_ while chunks are
@@ -116,7 +117,7 @@ bool SceneStream::work_once(const Done& done, bool& first, bool& stepped) {
     if (lost_) std::rethrow_exception(lost_);
   }
   try {
-    if (first) next_plan_ = {};
+    if (first) next_plan_ = next_plan_in_time_ = {};
     first = planning_;  // what is being planned may not know of this call
     stepped = plan_if_asked(nullptr);
     commit_all(kAllChunks, &lock);
@@ -134,6 +135,11 @@ bool SceneStream::work_once(const Done& done, bool& first, bool& stepped) {
 
 template <class Done>
 void SceneStream::work_until(const Done& done, double deadline) {
+  struct Waits {
+    explicit Waits(std::atomic<unsigned>& count) : count_(count) { ++count_; }
+    ~Waits() { --count_; }
+    std::atomic<unsigned>& count_;
+  } const waits(waits_);
   for (bool first = true; now() < deadline;) {
     uint64_t seen = 0;
     {

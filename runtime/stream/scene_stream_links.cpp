@@ -167,8 +167,8 @@ void SceneStream::end_commit(const Commit& commit) {
   }
   for (const uint32_t chunk : commit.given_up) coming_.erase(chunk);
   for (const ChunkRange& family : commit.divided)
-    if (residency_.set_family(family)) look_again();
-  if (!commit.lacked_room && linker_.lacks_room_for_cut()) look_again();
+    if (residency_.set_family(family)) ask_for_plan(PlanAsked::in_time);
+  if (!commit.lacked_room && linker_.lacks_room_for_cut()) ask_for_plan(PlanAsked::in_time);
   if (!commit.patch.empty()) {
     changes_.push_back(change_of(commit.patch));
     apply(commit.patch);

@@ -10,7 +10,8 @@ namespace voyager {
 namespace {
 
 constexpr uint32_t kMostChunksARead = 64;
-constexpr int kPlanRest = 3;  // times what a plan held the lock
+// Times what a plan held the lock.
+constexpr int kPlanRest = 3, kRestInTime = 12;
 
 // Chunk by chunk it would fail as well: a source that stalls, and a file that is gone.
 bool is_of_source(const Error& error) {
@@ -77,11 +78,14 @@ bool SceneStream::work(Lock& lock) {
 // lock: let go while chunks are looked at; null for those who hold the pool, too.
 bool SceneStream::plan_if_asked(Lock* lock) {
   std::vector<Viewer> viewers;
-  if (planning_ || linking_ || plans_rest()) return false;
+  if (planning_ || linking_) return false;
+  if (residency_.left_out() && (waits_ != 0 || residency_.is_quiet()))
+    ask_for_plan(PlanAsked::in_time);
+  PlanAsked when;
   {
     const std::lock_guard small(small_mutex_);
-    if (!look_again_) return false;
-    look_again_ = false;
+    if (asked_ == PlanAsked::no || rests(next_plan())) return false;
+    when = std::exchange(asked_, PlanAsked::no);
     for (const auto& [who, of] : lookers_)
       viewers.insert(viewers.end(), of.viewers.begin(), of.viewers.end());
   }
@@ -96,23 +100,31 @@ bool SceneStream::plan_if_asked(Lock* lock) {
     if (lost_) return false;
   }
   const auto begin = std::chrono::steady_clock::now();
-  residency_.plan(looks_, linker_.lacks_room_for_cut());
+  const bool in_haste = waits_ == 0 && (when != PlanAsked::in_time || !residency_.is_quiet());
+  residency_.plan(looks_, linker_.lacks_room_for_cut(), in_haste);
   // Those that nobody wants any more.
   std::erase_if(coming_, [&](const auto& coming) { return !residency_.is_coming(coming.first); });
   const auto end = std::chrono::steady_clock::now();
   // And as long as it looked, so that no thread does nothing else.
   next_plan_ = end + kPlanRest * (end - begin) + (looked - look);
+  next_plan_in_time_ = std::max(next_plan_, end + kRestInTime * (end - begin));
   return true;
 }
 
+// The lock and small_mutex_ are held, and a plan is asked for.
+SceneStream::TimePoint SceneStream::next_plan() const {
+  if (asked_ == PlanAsked::at_once) return {};
+  return asked_ == PlanAsked::soon || residency_.is_quiet() ? next_plan_ : next_plan_in_time_;
+}
+
 // Others wait for a plan: it must not take all of their time, however many chunks a scene has.
-bool SceneStream::plans_rest() const {
-  return desc_.readers != 0 && std::chrono::steady_clock::now() < next_plan_;
+bool SceneStream::rests(TimePoint until) const {
+  return desc_.readers != 0 && std::chrono::steady_clock::now() < until;
 }
 
 // As long as a frame of somebody's has told nothing, nothing is hidden.
 bool SceneStream::order_if_told() {
-  if (linking_ || plans_rest()) return false;
+  if (linking_ || rests(next_plan_)) return false;
   ShownChunks all;
   {
     const std::lock_guard small(small_mutex_);
@@ -137,7 +149,7 @@ bool SceneStream::order_if_told() {
 
 // So that less is left to do for a plan, for which others wait. From then on planning_ is true.
 // Returns when it had looked.
-std::chrono::steady_clock::time_point SceneStream::look_at_likely(Lock& lock) {
+SceneStream::TimePoint SceneStream::look_at_likely(Lock& lock) {
   const std::vector<uint32_t> likely = residency_.needed();
   planning_ = true;
   lock.unlock();
@@ -162,7 +174,7 @@ bool SceneStream::retry_due() {
   const std::vector<uint32_t> due = failures_.take_due(now());
   for (const uint32_t chunk : due) residency_.retry(chunk);
   if (due.empty()) return false;
-  look_again();
+  ask_for_plan(PlanAsked::soon);
   return true;
 }
 
@@ -325,7 +337,7 @@ void SceneStream::stage(ChunkRange range, std::span<const std::byte> stored, Loc
 // decoded it. Null: it waits, or nobody wants it.
 StagedChunk* SceneStream::add_coming(uint32_t chunk, StagedChunk&& staged) {
   const bool wanted = residency_.read(chunk, staged.record_blocks());
-  if (residency_.overfull()) look_again();
+  if (residency_.overfull()) ask_for_plan(PlanAsked::soon);
   if (!wanted) return nullptr;
   const uint64_t bytes = file_->chunks().bytes(chunk);
   coming_[chunk] = {std::move(staged), bytes};
@@ -355,12 +367,12 @@ void SceneStream::fail(uint32_t chunk, const std::exception& error) {
 // What hangs from the chunk is no longer to be had either: that takes another plan.
 void SceneStream::add_failure(uint32_t chunk, const Error& error) {
   failures_.add(chunk, error, now());
-  look_again();
+  ask_for_plan(PlanAsked::soon);
 }
 
-void SceneStream::look_again() {
+void SceneStream::ask_for_plan(PlanAsked when) {
   const std::lock_guard small(small_mutex_);
-  look_again_ = true;
+  asked_ = std::max(asked_, when);
 }
 
 void SceneStream::forget(uint32_t chunk) {

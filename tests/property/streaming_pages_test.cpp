@@ -160,7 +160,7 @@ TEST(StreamingPages, WhatLiesAtAPlaceIsItsSubtreesHoweverLateAViewFollows) {
     const Flown roomy = fly(share);
     if (testing::Test::HasFatalFailure()) return;
     EXPECT_EQ(roomy.forgot, 0u);
-    const Flown tight = fly(share, roomy.most + 2);
+    const Flown tight = fly(share, roomy.most + 4);
     if (testing::Test::HasFatalFailure()) return;
     EXPECT_GT(tight.moved, 2 * roomy.most) << "no place was taken twice";
     EXPECT_GT(tight.forgot, 0u) << "every place could wait for all views";

@@ -25,7 +25,7 @@ class RandomStream {
         slots_(std::max(top(), static_cast<uint32_t>(share * graph_.size()))),
         residency_(graph_, file_.chunks(), records_,
                    PoolRoom{slots_, slots_ * records_.most_blocks()}, top()) {
-    plan(true);
+    plan(true, false);
   }
 
   // Of a hundred chunks that are read, or arrive, so many fail; with none, nobody moves either.
@@ -45,15 +45,15 @@ class RandomStream {
         if (residency_.changes() != 0) commit(1 + random_() % 4, failing);
         return;
       default:
-        if (chance(2)) plan(chance(70));
+        if (chance(2)) plan(chance(70), chance(50));
     }
   }
-  void plan(bool looks) {
+  void plan(bool looks, bool in_haste) {
     for (const uint32_t chunk : failed_) residency_.retry(chunk);
     failed_.clear();
     looks_.begin(looks ? std::vector<Viewer>{{{{0, 0, 0}, 1e-30f}, {}, false}}
                        : std::vector<Viewer>{});
-    residency_.plan(looks_, chance(50));
+    residency_.plan(looks_, chance(50), in_haste);
   }
   bool settled() const {
     return residency_.settled([](uint32_t) { return false; }) && residency_.changes() == 0 &&
@@ -157,13 +157,56 @@ TEST(Residency, WhateverComesAndFailsAFewAtATimeAllThatHasRoomIsThereInTheEnd) {
       SCOPED_TRACE(test::name_of(shape) + " " + std::to_string(share));
       RandomStream stream(shape, share, 7);
       for (int i = 0; i < 4000; ++i) stream.step(10);
-      stream.plan(true);
+      stream.plan(true, false);
       for (int i = 0; i < 100000 && !stream.settled(); ++i) stream.step(0);
       EXPECT_TRUE(stream.settled());
       EXPECT_EQ(stream.held(), stream.slots());
       waited += stream.waited();
     }
   EXPECT_GT(waited, 0u);
+}
+
+// Of viewers that jump about, and see half of space.
+TEST(Residency, APlanInHasteLeavesOutNothingThatIsSeenAndNothingThatHasRoom) {
+  const SceneFile file(test::source_of(
+      test::scene_bytes(test::baked_of(test::random_tree(test::TreeShape::four_way, 3000, 5)),
+                        Quality::lossless, 0, kMinChunkBytes)));
+  const Tiers tiers = file.tiers();
+  const ChunkGraph graph(file.chunks(), tiers);
+  const RecordRoom records(file);
+  const uint32_t slots = graph.size() / 4;
+  const PoolRoom room{slots, slots * records.most_blocks()};
+  Residency whole(graph, file.chunks(), records, room, 1);
+  Residency hasty(graph, file.chunks(), records, room, 1);
+  ChunkLooks looks(file.chunks());
+  const EntryHull hull = file.chunks().hull(0);
+  std::mt19937 random(3);
+  size_t left_out = 0;
+  for (int i = 0; i < 40; ++i) {
+    Vec3f eye{};
+    for (int axis = 0; axis < 3; ++axis)
+      eye[axis] =
+          hull.box_min[axis] + (hull.box_max[axis] - hull.box_min[axis]) * test::unit(random);
+    const Vec3f ahead{i % 2 == 0 ? 1.0f : -1.0f, 0, 0};
+    looks.begin({{{eye, 0.01f}, {{eye, {ahead, ahead, ahead, ahead, ahead}}}, false}});
+    whole.plan(looks, false);
+    hasty.plan(looks, false, true);
+    if (hasty.left_out()) {
+      ++left_out;
+      EXPECT_LT(hasty.needed().size(), whole.needed().size());
+    }
+    EXPECT_EQ(hasty.need().seen, whole.need().seen);
+    EXPECT_EQ(hasty.need().seen_missing, whole.need().seen_missing);
+    for (uint32_t chunk = 0; chunk < graph.size(); ++chunk)
+      ASSERT_EQ(hasty.is_wanted(chunk), whole.is_wanted(chunk)) << i << " " << chunk;
+    // From one place all is counted.
+    hasty.plan(looks, false);
+    EXPECT_FALSE(hasty.left_out());
+    hasty.plan(looks, false, true);
+    EXPECT_EQ(hasty.need().chunks, whole.need().chunks);
+    EXPECT_EQ(hasty.need().missing_bytes, whole.need().missing_bytes);
+  }
+  EXPECT_GT(left_out, 10u);
 }
 
 // Of many that have come the wrong way round, a few in each commit.
