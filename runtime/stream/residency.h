@@ -39,8 +39,8 @@ struct ResidencyCounters {
 };
 
 // Of the last plan, for the viewers that are not ahead: chunks, and their stored bytes. Of those
-// that have failed, what hangs from them is not known to be needed. Where it left something out,
-// that is counted as the last plan found it that did not.
+// that have failed, what hangs from them is not known to be needed. What a plan left out is counted
+// as in the last whole plan.
 struct ResidencyNeed {
   uint64_t chunks = 0, missing = 0, missing_bytes = 0;
   uint64_t seen = 0, seen_missing = 0;  // beside those that are pinned
@@ -60,12 +60,13 @@ class Residency {
 
   // Who looks now. What is no longer wanted is no longer requested. cuts_are_full: what is there
   // has no room in a view's cut, so that what nobody wants goes once the target is there.
-  // in_haste: where far more is needed than there is room for, what has been far from having room
-  // is left out, so that others wait for the plan less long. Of what is seen it leaves out nothing.
-  // Another plan has to follow, once all that this one asks for is there.
+  // in_haste: where far more is needed than there is room for, what was far from having room in the
+  // last whole plan is left out, so that others wait less long. Nothing that is seen is. A whole
+  // plan has to follow, once all that this one asks for is there.
   void plan(ChunkLooks& looks, bool cuts_are_full, bool in_haste = false);
   bool left_out() const { return left_out_; }
-  // Nothing is to be read, or on its way to be resident.
+  // Nothing is to be read, or on its way to be resident. Not between begin_arrivals() and
+  // end_arrival().
   bool is_quiet() const;
   // Those that the last plan needed: the next looks at them, and at what they lead to.
   std::vector<uint32_t> needed() const;
@@ -184,6 +185,7 @@ class Residency {
 
   void consider(ChunkLooks& looks);
   void choose_least(std::span<Needed> rest);
+  bool leaves_out(uint32_t chunk, uint32_t urgency, ChunkLooks& looks) const;
   uint32_t most_above(uint32_t chunk) const;
   void find_needed(ChunkLooks& looks);
   bool add_needed(const Needed& needed);
@@ -270,8 +272,8 @@ class Residency {
   uint64_t coming_blocks_ = 0;         // that those will want at most
   uint64_t target_blocks_ = 0;         // of what is wanted, as far as is known
   bool crowded_ = false;               // not all that the last plan needed has room
-  // A plan in haste leaves out what is less urgent. By the last other plan, since when there were
-  // hasty_plans_; beyond_: so much of it there was then.
+  // A plan in haste leaves out what is less urgent than least_. The last whole plan set it, and
+  // found so much that is less urgent. Since then there were hasty_plans_.
   uint32_t least_ = 0, hasty_plans_ = 0;
   ResidencyNeed beyond_;
   bool left_out_ = false;  // the last plan, something

@@ -20,7 +20,9 @@ void Residency::plan(ChunkLooks& looks, bool cuts_are_full, bool in_haste) {
   forget_absent();
   if (!in_haste || hasty_plans_ == kHastyPlans) least_ = 0;
   consider(looks);
-  if (left_out_ && needed_.size() < room_.slots) {
+  const auto urgent = std::count_if(needed_.begin(), needed_.end(),
+                                    [&](const Needed& needed) { return needed.urgency >= least_; });
+  if (left_out_ && static_cast<size_t>(urgent) < room_.slots) {
     least_ = 0;
     consider(looks);
   }
@@ -41,7 +43,7 @@ void Residency::consider(ChunkLooks& looks) {
   share_with_parents();
 }
 
-// From those that have no room, so that plans in haste find a quarter more than there is room for.
+// Of those without room, so that plans in haste find a quarter more than there is room for.
 void Residency::choose_least(std::span<Needed> rest) {
   const size_t spare = room_.slots / 4;
   if (rest.size() <= spare) return;
@@ -118,6 +120,24 @@ uint32_t Residency::most_above(uint32_t chunk) const {
   return most;
 }
 
+// In haste, unless a family that it shares may lend it more.
+bool Residency::leaves_out(uint32_t chunk, uint32_t urgency, ChunkLooks& looks) const {
+  if (urgency >= least_) return false;
+  const auto lends = [&](uint32_t other) {
+    const uint32_t most = looks.at(other).urgency;
+    return most >= least_ && ChunkLooks::class_of(most) == ChunkLooks::class_of(urgency);
+  };
+  for (uint32_t c = chunk; shares_family_[c] != 0; --c) {
+    if (lends(c - 1)) return false;
+    if (shares_family_[c - 1] != 2) break;
+  }
+  for (uint32_t c = chunk + 1; c < graph_->size() && shares_family_[c] != 0; ++c) {
+    if (lends(c)) return false;
+    if (shares_family_[c] != 2) break;
+  }
+  return true;
+}
+
 // From the top: a chunk can only be needed where one that leads to it is. Both ascend.
 void Residency::find_needed(ChunkLooks& looks) {
   needed_.clear(), failed_.clear(), extra_.clear();
@@ -132,7 +152,7 @@ void Residency::find_needed(ChunkLooks& looks) {
     // A node is refined with all of its children or not at all, and the hull of a chunk that goes
     // on with a node of the one before is that of this node, not of what it hangs from.
     const bool goes_on = needed_before(chunk) && chunks_->goes_on_with_root(chunk);
-    if (own.urgency < least_ && !goes_on) {
+    if (!goes_on && leaves_out(chunk, own.urgency, looks)) {
       left_out_ = left_out_ || own.urgency != 0;
       return;
     }
@@ -144,7 +164,7 @@ void Residency::find_needed(ChunkLooks& looks) {
     }
     found.urgency = std::min(found.urgency, most_above(chunk));
     if (found.urgency == 0) return;
-    if (found.urgency < least_) {
+    if (leaves_out(chunk, found.urgency, looks)) {
       left_out_ = true;
       return;
     }
@@ -318,7 +338,7 @@ void Residency::count_need() {
   need_ = left_out_ ? beyond_ : ResidencyNeed{};
   for (const Needed& needed : needed_) {
     know(needed.chunk).counted = 0;
-    if (!needed.now) continue;
+    if (!needed.now || (left_out_ && needed.urgency < least_)) continue;
     const bool seen =
         ChunkLooks::class_of(needed.urgency) == ChunkLooks::Class::seen && needed.chunk >= pinned_;
     know(needed.chunk).counted = seen ? kSeen : 1;

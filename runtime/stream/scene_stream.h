@@ -144,7 +144,8 @@ class SceneStream {
  private:
   using Lock = std::unique_lock<std::mutex>;
   using TimePoint = std::chrono::steady_clock::time_point;
-  // In time: what is already asked for goes on without it. At once: for who has not looked before.
+  // in_time: what is asked for goes on without it. soon: what is asked for may be wrong. at_once:
+  // somebody looks who has not looked before.
   enum class PlanAsked : uint8_t { no, in_time, soon, at_once };
   static constexpr size_t kChangesKept = 64;
   static constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds

@@ -120,6 +120,7 @@ bool SceneStream::work_once(const Done& done, bool& first, bool& stepped) {
     if (first) next_plan_ = next_plan_in_time_ = {};
     first = planning_;  // what is being planned may not know of this call
     stepped = plan_if_asked(nullptr);
+    if (stepped) signal();  // to read what it asks for
     commit_all(kAllChunks, &lock);
     publish();
     if (!lost_ && !plan_is_asked() && !planning_ && done()) return true;

@@ -180,7 +180,9 @@ void SceneStream::end_commit(const Commit& commit) {
   const auto is_seen = [&](const Residency::Evicted& e) { return residency_.is_seen(e.chunk); };
   departures_ += std::any_of(commit.evicted.begin(), commit.evicted.end(), is_seen);
   note_changes();
-  if (commit.evicted.empty() && commit.arriving.empty() && commit.given_up.empty()) return;
+  const bool plan_is_due = residency_.left_out() && residency_.is_quiet();
+  if (commit.evicted.empty() && commit.arriving.empty() && commit.given_up.empty() && !plan_is_due)
+    return;
   publish();
   signal();
 }

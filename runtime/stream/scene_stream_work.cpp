@@ -65,8 +65,9 @@ bool SceneStream::step(Lock& lock) {
 }
 
 bool SceneStream::work(Lock& lock) {
-  const bool done =
-      plan_if_asked(&lock) || order_if_told() || retry_due() || fill_some(lock) || read_some(lock);
+  // What is dropped in filling may be the last that a plan had to wait for.
+  const bool done = plan_if_asked(&lock) || order_if_told() || retry_due() || fill_some(lock) ||
+                    read_some(lock) || plan_if_asked(&lock);
   note_changes();
   if (done) {
     publish();
@@ -107,14 +108,15 @@ bool SceneStream::plan_if_asked(Lock* lock) {
   const auto end = std::chrono::steady_clock::now();
   // And as long as it looked, so that no thread does nothing else.
   next_plan_ = end + kPlanRest * (end - begin) + (looked - look);
-  next_plan_in_time_ = std::max(next_plan_, end + kRestInTime * (end - begin));
+  next_plan_in_time_ = end + kRestInTime * (end - begin);
   return true;
 }
 
 // The lock and small_mutex_ are held, and a plan is asked for.
 SceneStream::TimePoint SceneStream::next_plan() const {
   if (asked_ == PlanAsked::at_once) return {};
-  return asked_ == PlanAsked::soon || residency_.is_quiet() ? next_plan_ : next_plan_in_time_;
+  if (asked_ == PlanAsked::soon || residency_.is_quiet()) return next_plan_;
+  return std::max(next_plan_, next_plan_in_time_);
 }
 
 // Others wait for a plan: it must not take all of their time, however many chunks a scene has.

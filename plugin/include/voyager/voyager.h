@@ -531,9 +531,9 @@ typedef struct VoyStreamingStats {
   uint64_t budgetBytes;       /* what VoySceneStreaming.memoryBudget counts; one view at least */
   uint64_t chunkSlots,        /* chunks that fit into the budget at once */
       residentChunks;         /* chunks in memory, which frames can draw */
-  uint64_t neededChunks;      /* that the latest frames need, whatever the budget. Of those that are
-                                 far from having room it has the number of some frames ago, as
-                                 the next two have */
+  uint64_t neededChunks;      /* that the latest frames need, whatever the budget. Where more is
+                                 needed than has room, what is far from having room is counted
+                                 now and then: docs/streaming.md. The next two as well */
   uint64_t missingChunks;     /* needed but not resident */
   uint64_t missingBytes;      /* size of missingChunks in the file */
   uint64_t seenChunks;        /* needed and inside an eye's frustum plus the margin */
