@@ -155,7 +155,7 @@ void SplatPipeline::launch_projections(const SceneReading&, const FrameInput& fr
                                         desc_, instance_look(frame, i));
     work.rows = launch_rows(work);
     // All of them, so that a second pass has them, too.
-    if (work.draws.weights.origin == nullptr && work.splats.open_parts == nullptr)
+    if (!work.draws.weights.weighs() && work.splats.open_parts == nullptr)
       instance.draws->weigh(stream_.get());
     if (launch_project(work, desc_.alpha_filter)) ++work.instance;
   }

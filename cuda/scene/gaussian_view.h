@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "runtime/math/parent_code.h"
 #include "runtime/math/sh.h"
 #include "runtime/math/sh_code.h"
 #include "runtime/math/shape_code.h"
+#include "runtime/select/pool_nodes.h"
 
 namespace voyager::cuda {
 
@@ -17,6 +17,8 @@ struct ParentView {
   const RunBlock* families;  // null in a pool
   PoolParents pool{};
 
+  // Of a coded scene.
+  VOYAGER_HD bool owners_in_shapes() const { return pool.nodes.stride == sizeof(ShapeRest); }
 #if defined(__CUDACC__)
   __device__ uint32_t operator()(uint32_t node) const {
     return families == nullptr ? pool(node) : __ldg(parents + run_of(families, node));

@@ -4,10 +4,10 @@
 
 #include "cuda/device/grid.h"
 #include "cuda/device/launch.cuh"
-#include "cuda/device/nth_bit.cuh"
 #include "cuda/device/warp.cuh"
 #include "cuda/search/cut_lanes.cuh"
 #include "cuda/search/search_launch.h"
+#include "runtime/math/nth_bit.h"
 
 namespace voyager::cuda {
 namespace {
@@ -130,8 +130,8 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
 
 }  // namespace
 
-void launch_emit(const SearchFrame& f, bool weights) {
-  const auto kernel = weights ? search_emit<true> : search_emit<false>;
+void launch_emit(const SearchFrame& f, bool origins) {
+  const auto kernel = origins ? search_emit<true> : search_emit<false>;
   const unsigned resident = resident_blocks<search_emit<true>, kEmitThreads>();
   launch_kernel(
       "search_emit", kernel,

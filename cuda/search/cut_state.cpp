@@ -37,7 +37,7 @@ uint64_t most_places(const SearchTree& tree, uint64_t most) {
 }  // namespace
 
 uint64_t CutState::list_bytes(uint64_t places) {
-  return places * (sizeof(uint32_t) + sizeof(CutOrigin) + sizeof(MeanBounds) / kRowPlaces);
+  return places * sizeof(uint32_t) + places * sizeof(MeanBounds) / kRowPlaces;
 }
 
 uint64_t CutState::fixed_bytes(const SearchTree& tree) {
@@ -49,7 +49,7 @@ uint64_t CutState::fixed_bytes(const SearchTree& tree) {
 }
 
 CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most,
-                   bool weights) {
+                   bool origins) {
   const Layout layout = make_layout(tree);
   const size_t blocks = layout.blocks.size();
   blocks_ = upload(std::span<const Block>(layout.blocks));
@@ -70,7 +70,7 @@ CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t
   counters_ = Buffer<FrameCounters>(2);  // counting, counted
   const size_t room = most_places(tree, most);
   nodes_ = Buffer<uint32_t>(room);
-  origin_ = Buffer<CutOrigin>(weights ? room : 0);
+  origin_ = Buffer<CutOrigin>(origins ? room : 0);
   bounds_ = Buffer<MeanBounds>(room / kRowPlaces + 1);
   for (const Buffer<uint32_t>* zero : {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_,
                                        &open_block_count_, &dirty_flags_, &dirty_})

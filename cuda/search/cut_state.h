@@ -78,7 +78,7 @@ struct StateView {
   uint32_t* signals;      // to open or close a subtree; kNoSignal where not written yet
   FrameCounters *counting, *counted;
   uint32_t* nodes;     // the cut list: ascending, with kNoNode in between
-  CutOrigin* origin;   // of each place
+  CutOrigin* origin;   // of each place, or null
   MeanBounds* bounds;  // of each row
 };
 
@@ -88,10 +88,11 @@ inline constexpr uint32_t kClose = 0x80000000u;  // beside the subtree; else it 
 class CutState {
  public:
   // places: that subtrees have in the device's tree. due: so many are visited at most. most: no cut
-  // has more nodes. All memory is taken here.
-  CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most, bool weights);
-  // What it takes of a streamed scene, with weights: for each place, where one subtree in eight may
-  // be due; for so many places in the list; and beside them, with places for all segments' ends.
+  // has more nodes. origins: the list has what weights depend on. All memory is taken here.
+  CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most, bool origins);
+  // What it takes of a streamed scene, without origins: for each place, where one subtree in eight
+  // may be due; for so many places in the list; and beside them, with places for all segments'
+  // ends.
   static constexpr uint64_t kPlaceBytes = sizeof(Watch) + 4 * sizeof(uint32_t) + 1;
   static uint64_t list_bytes(uint64_t places);
   static uint64_t fixed_bytes(const SearchTree& tree);

@@ -69,6 +69,8 @@ class PartitionedSearch final : public CutSearch, public PoolReaderState {
  private:
   FrameCounters counters() const;
   SearchFrame frame(const CutQuery& query, cudaStream_t stream) const;
+  // Whether the list has what weights depend on. A pool's nodes say it themselves.
+  bool lists_origins() const { return weights_ && !streamed_; }
   uint64_t most_nodes() const;
   void make_state();
   bool fit_pool();
@@ -109,7 +111,8 @@ uint64_t PartitionedSearch::most_nodes() const {
 void PartitionedSearch::make_state() {
   const uint32_t places = tree_->view().place_count;
   const uint32_t due = kind_ == Search::temporal_visit ? places : places / kSubtreesADue;
-  auto state = std::make_unique<CutState>(scene_->search, places, due, most_nodes(), weights_);
+  auto state =
+      std::make_unique<CutState>(scene_->search, places, due, most_nodes(), lists_origins());
   const std::lock_guard lock(state_mutex_);
   state_ = std::move(state);
   view_ = state_->view();
@@ -172,7 +175,7 @@ void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
       launch_temporal(now, now.tree.place_count / kSubtreesADue);
     }
     launch_place(now);
-    launch_emit(now, weights_);
+    launch_emit(now, lists_origins());
   }
   started_ = true;
 }
@@ -198,7 +201,8 @@ void PartitionedSearch::weigh(const CutQuery& query, cudaStream_t stream) {
 
 WeightSource PartitionedSearch::weight_source(const CutQuery& query) const {
   if (!weights_) return {};
-  return {view_.origin, tree_->view(), make_sight(query)};
+  return {view_.origin, streamed_ ? streamed_->pool.nodes() : PoolNodes{}, tree_->view(),
+          make_sight(query)};
 }
 
 CutList PartitionedSearch::list() const {

@@ -33,17 +33,16 @@ struct RowList {
   const uint32_t* count = nullptr;
 };
 
-// The records that a cut node's weight depends on; kNoRecord for a leaf's own, and for
-// the parent of the tree's root.
-struct CutOrigin {
-  uint32_t own, parent;
-};
-
 // What the weights of a cut list are found from, by who draws it (cut_weight.cuh).
 struct WeightSource {
-  const CutOrigin* origin = nullptr;  // by place; null: the list has its weights
+  // By place; null for a pool. Then nodes.owners is not null, and weights are found from the nodes'
+  // subtrees. Where both are null the list has its weights.
+  const CutOrigin* origin = nullptr;
+  PoolNodes nodes{};
   TreeView tree{};
   Sight sight{};
+
+  VOYAGER_HD bool weighs() const { return origin != nullptr || nodes.owners != nullptr; }
 };
 
 struct CutFound {
@@ -80,9 +79,9 @@ class CutSearch {
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // kind: any but exhaustive; temporal in place of a sweep. Device memory besides the scene's arrays:
-// 29 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 15. Of a streamed scene it
-// is view_bytes(), which are part of the scene's budget. Such a scene's search runs under
-// SceneStream::hold(), and ends each run with end_frame().
+// 29 bytes a subtree and, for the list, 5.6 bytes a leaf, with weights 15, or of a streamed
+// scene 6. Of a streamed scene it is view_bytes(), which are part of the scene's budget. Such a
+// scene's search runs under SceneStream::hold(), and ends each run with end_frame().
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,
                                                      std::shared_ptr<const DeviceTree> tree,
                                                      std::shared_ptr<const Scene> scene,

@@ -5,11 +5,19 @@
 
 namespace voyager::cuda {
 
+// ShapeRest::children of a coded scene, wherever it is.
+__device__ inline uint32_t few_children(const GaussianView& gaussians, uint32_t node) {
+  if (!gaussians.parents.owners_in_shapes())
+    return __ldg(&(static_cast<const ShapeRest*>(gaussians.shapes) + node)->children);
+  const auto* rows = static_cast<const uint8_t*>(gaussians.coefficients);
+  return __ldg(rows + size_t{node} * sh_row_bytes(gaussians.sh_degree) +
+               sh_spare_byte(gaussians.sh_degree));
+}
+
 // How many children a node has that is not a leaf.
 __device__ inline uint32_t child_count(const GaussianView& gaussians, uint32_t node) {
   if (gaussians.sh_form != ShForm::coded) return __ldg(gaussians.child_counts + node);
-  const auto* shape = static_cast<const ShapeRest*>(gaussians.shapes) + node;
-  const uint32_t few = __ldg(&shape->children);
+  const uint32_t few = few_children(gaussians, node);
   if (few != kManyChildren) return few;
   return children_of(node, gaussians.large_families, *gaussians.large_family_count);
 }

@@ -3,10 +3,10 @@
 // know nothing of it. Exponentials are those of ex2 whatever the frame's are, and nothing limits
 // depth: what is told decides the order of reads alone.
 #include "cuda/device/launch.cuh"
-#include "cuda/device/nth_bit.cuh"
 #include "cuda/device/warp.cuh"
 #include "cuda/splat/raster_part.cuh"
 #include "cuda/splat/shown.h"
+#include "runtime/math/nth_bit.h"
 
 namespace voyager::cuda {
 namespace {

@@ -18,7 +18,7 @@ struct DrawView {
   WeightSource weights{};  // where project_cull finds them
 
   // Whether it may draw nodes between their parent and themselves.
-  VOYAGER_HD bool blends() const { return list.weights != nullptr || weights.origin != nullptr; }
+  VOYAGER_HD bool blends() const { return list.weights != nullptr || weights.weighs(); }
 };
 
 // What a frame's kernels share. The first five are an instance's, and projection's alone;

@@ -1,6 +1,7 @@
 #include "cuda/stream/device_pool.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <vector>
 
@@ -42,8 +43,7 @@ void put(unsigned char* into, size_t index, const T& value) {
   std::memcpy(into + index * sizeof(T), &value, sizeof(T));
 }
 
-static_assert(outside_code(kMaxChunkBytes / sizeof(NodeRecord),
-                           kMaxChunkBytes / sizeof(NodeRecord) - 1) <= 0xffff);
+static_assert(kMaxChunkBytes / sizeof(NodeRecord) <= 0x10000);  // what owner codes can say
 
 void check_addresses(SlotShape shape, PoolRoom room) {
   const uint64_t nodes = uint64_t{room.slots} * shape.nodes,
@@ -149,11 +149,10 @@ GaussianView DevicePool::gaussians() const {
           array<uint8_t>(kNodeCodes),
           {nullptr,
            nullptr,
-           {array<unsigned char>(kParents),
-            array<uint32_t>(kFirstSubtrees),
+           {nodes(),
+            array<SearchSubtree>(kSubtrees),
             array<uint32_t>(kOutside),
-            {array<uint32_t>(kPages)},
-            shape_.nodes}},
+            {array<uint32_t>(kPages)}}},
           array<uint32_t>(kChildCounts),
           array<LargeFamily>(kLargeFamilies),
           array<uint32_t>(kLargeFamilyCount),
@@ -166,6 +165,14 @@ GaussianView DevicePool::gaussians() const {
           tables_ == nullptr ? ShapeTables{} : tables_->view(),
           array<ShStepSizes>(kStepSizes),
           {nullptr, shape_.nodes}};
+}
+
+PoolNodes DevicePool::nodes() const {
+  const auto stride = static_cast<uint32_t>(layout_.unit(kOwners));
+  const uint32_t* const first = array<uint32_t>(kFirstSubtrees);
+  if (stride != 0) return {array<unsigned char>(kOwners), stride, first, shape_.nodes};
+  return {array<unsigned char>(kShapes) + offsetof(ShapeRest, children), sizeof(ShapeRest), first,
+          shape_.nodes};
 }
 
 TreeView DevicePool::tree() const {
@@ -186,14 +193,11 @@ void DevicePool::pack(const StagedChunk& staged, unsigned char* into) const {
   const Chunk& chunk = staged.content;
   const auto at = [&](PoolArray which) { return into + chunk_layout_.begin(which); };
   for (size_t i = 0; i < chunk.node.size(); ++i) {
-    const uint32_t parent = staged.parent[i], place = staged.place[i];
-    const bool outside = (parent & StagedChunk::kOutside) != 0;
-    const uint32_t code =
-        outside ? outside_code(shape_.nodes, parent & ~StagedChunk::kOutside) : parent;
-    if (layout_.unit(kParents) == 1)
-      put(at(kParents), place, static_cast<uint8_t>(code));
-    else
-      put(at(kParents), place, static_cast<uint16_t>(code));
+    const uint32_t owner = staged.owner[i], place = staged.place[i];
+    if (layout_.unit(kOwners) == 1)
+      put(at(kOwners), place, static_cast<uint8_t>(owner));
+    else if (layout_.unit(kOwners) != 0)
+      put(at(kOwners), place, static_cast<uint16_t>(owner));
     if (layout_.unit(kLeaves) != 0) put(at(kLeaves), place, chunk.record_of(i));
   }
   if (sh_form_ == ShForm::coded)
@@ -209,11 +213,16 @@ void DevicePool::pack_codes(const StagedChunk& staged, unsigned char* into) cons
   const Chunk& chunk = staged.content;
   const auto at = [&](PoolArray which) { return into + chunk_layout_.begin(which); };
   for (size_t i = 0; i < chunk.node.size(); ++i) {
-    const ShapeCode code = shape_code(chunk, i);
+    ShapeCode code = shape_code(chunk, i);
     const uint32_t place = staged.place[i];
+    unsigned char* const row = at(kCoefficients) + place * layout_.unit(kCoefficients);
+    put_row(chunk, i, sh_degree_, row);
+    if (layout_.unit(kOwners) == 0) {
+      row[sh_spare_byte(sh_degree_)] = code.rest.children;
+      code.rest.children = static_cast<uint8_t>(staged.owner[i]);
+    }
     put(at(kHulls), place, coded_hull(chunk.words[i].mean, code));
     put(at(kShapes), place, code.rest);
-    put_row(chunk, i, sh_degree_, at(kCoefficients) + place * layout_.unit(kCoefficients));
   }
   put(at(kStepSizes), 0, step_sizes(chunk.sh_scale));
 }

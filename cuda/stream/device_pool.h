@@ -48,6 +48,7 @@ class DevicePool final : public ChunkPool {
   // Until it is resized.
   GaussianView gaussians() const;
   TreeView tree() const;
+  PoolNodes nodes() const;
   uint32_t slots() const { return slots_; }
   uint32_t slot_nodes() const { return shape_.nodes; }
   // What is linked in each, under SceneStream::hold().

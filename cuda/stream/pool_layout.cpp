@@ -18,6 +18,10 @@ ShForm sh_form(const Scene& scene) {
   return scene.largest_sh <= kMaxHalfCoefficient ? ShForm::half : ShForm::single;
 }
 
+bool owners_in_shapes(const Scene& scene, SlotShape shape) {
+  return is_coded(scene) && owner_code_bytes(shape.nodes) == 1;
+}
+
 PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
   const ShForm form = sh_form(scene);
   const bool coded = form == ShForm::coded;
@@ -26,7 +30,7 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
            coefficient_bytes(scene.sh_degree, form),
            scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0,
            coded ? 0 : sizeof(float),
-           parent_code_bytes(shape.nodes),
+           owners_in_shapes(scene, shape) ? 0 : owner_code_bytes(shape.nodes),
            coded ? 0 : sizeof(uint32_t),
            coded ? 0 : sizeof(uint8_t),
            sizeof(SearchRecord),

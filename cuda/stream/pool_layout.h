@@ -16,7 +16,7 @@ enum PoolArray : uint32_t {
   kCoefficients,
   kLeaves,
   kOpacities,
-  kParents,
+  kOwners,  // none where shapes have them
   kChildCounts,
   kNodeCodes,
   kRecords,        // blocks
@@ -51,6 +51,9 @@ constexpr uint32_t word_bytes(uint32_t unit) {
 
 // Of the coefficients of a streamed scene, as a resident one decides it.
 ShForm sh_form(const Scene& scene);
+
+// Whether owner codes (runtime/select/pool_nodes.h) are in ShapeRest::children.
+bool owners_in_shapes(const Scene& scene, SlotShape shape);
 
 class PoolLayout {
  public:

@@ -56,6 +56,11 @@ inline constexpr int kShBandOneAt = 6, kShSixBitsAt = 16, kShOffset = 32;
 static_assert(kShSteps[1] == 31 && kShSteps[2] == 31);
 static_assert(std::endian::native == std::endian::little);  // bytes are written, words are read
 
+// A byte that no coefficient needs. pack_sh() makes it 0; a device's pool keeps something there.
+VOYAGER_HD constexpr uint32_t sh_spare_byte(int degree) {
+  return degree == 0 ? kShBandOneAt : kShSixBitsAt - 1;
+}
+
 // A multiple of 4, and of 16 where that wastes nothing.
 VOYAGER_HD constexpr uint32_t sh_row_bytes(int degree) {
   constexpr uint32_t kBytes[] = {12, 20, 32, 48};

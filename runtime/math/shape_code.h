@@ -18,7 +18,9 @@ namespace voyager {
 struct ShapeRest {
   uint16_t rotation[3];  // smaller_component() and which is the largest
   uint8_t node_code;     // runtime/math/node_code.h
-  uint8_t children;      // of the node, at most kManyChildren
+  // Of the node, at most kManyChildren. In a device's pool with slots of at most 256 places: the
+  // owner code (runtime/select/pool_nodes.h), and the row's spare byte has the count.
+  uint8_t children;
 };
 
 // A device has the first word beside the mean, since culling reads no more.

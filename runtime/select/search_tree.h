@@ -12,6 +12,7 @@
 #include "runtime/base/workers.h"
 #include "runtime/lod/subtrees.h"
 #include "runtime/math/bounds_code.h"
+#include "runtime/math/nth_bit.h"
 #include "runtime/math/subtree_places.h"
 
 namespace voyager {
@@ -65,6 +66,12 @@ VOYAGER_HD constexpr uint32_t level_slots(uint32_t level, uint32_t levels) {
   return level == 0 ? roots : level == 1 ? upper & ~roots : ~upper & 0x7fffffffu;
 }
 
+// The records that a cut node's weight depends on; kNoRecord for a leaf's own, and for the parent
+// of the tree's root.
+struct CutOrigin {
+  uint32_t own, parent;
+};
+
 // Slots are those of Subtree. record(k) is that of the k-th slot in `interior`.
 struct SearchSubtree {
   uint32_t root, first_child, first_grandchild;  // node ids
@@ -87,9 +94,10 @@ struct SearchSubtree {
   }
   VOYAGER_HD uint32_t first_child_slot() const { return levels & 0xff; }
   VOYAGER_HD uint32_t first_grandchild_slot() const { return levels >> 8 & 0xff; }
+  VOYAGER_HD uint32_t first_owned_slot() const { return levels >> 24 & 3; }
   // Slots that are not repeated.
   VOYAGER_HD uint32_t owned() const {
-    return slots_before(slot_count()) & ~slots_before(levels >> 24 & 3);
+    return slots_before(slot_count()) & ~slots_before(first_owned_slot());
   }
   VOYAGER_HD uint32_t first_slot(uint32_t level) const {
     return level == 0 ? 0 : level == 1 ? first_child_slot() : first_grandchild_slot();
@@ -104,6 +112,27 @@ struct SearchSubtree {
   }
   VOYAGER_HD uint32_t level_slots(uint32_t level) const {
     return voyager::level_slots(level, levels);
+  }
+  VOYAGER_HD uint32_t level_of(uint32_t slot) const {
+    return slot < first_child_slot() ? 0 : slot < first_grandchild_slot() ? 1 : 2;
+  }
+  // Of a node of a linked subtree that is not repeated. Of a repeated one node() may be any number.
+  VOYAGER_HD uint32_t slot_of(uint32_t node) const {
+    const uint32_t below = node - first_grandchild, middle = node - first_child;
+    if (below < slot_count() - first_grandchild_slot()) return first_grandchild_slot() + below;
+    return middle < first_grandchild_slot() - first_child_slot() ? first_child_slot() + middle
+                                                                 : node - root;
+  }
+  // For a slot of level 1 or 2: which in `interior` is the slot that it hangs from.
+  VOYAGER_HD uint32_t parent_rank(uint32_t slot) const {
+    const uint32_t level = level_of(slot);
+    const uint32_t above = level == 1 ? 0 : count_bits(interior & level_slots(0));
+    return above + count_bits(families & level_slots(level) & slots_before(slot + 1)) - 1;
+  }
+  VOYAGER_HD CutOrigin origin(uint32_t slot, const uint32_t* next_block) const {
+    const uint32_t own = count_bits(interior & slots_before(slot));
+    return {(interior >> slot & 1) != 0 ? record(own, next_block) : kNoRecord,
+            level_of(slot) == 0 ? entry : record(parent_rank(slot), next_block)};
   }
 };
 static_assert(sizeof(SearchSubtree) == 32);

@@ -28,7 +28,7 @@ class Stager {
   StagedChunk stage() {
     const Chunk& content = out_.content;
     set_places();
-    out_.parent.reserve(content.node.size());
+    out_.owner.reserve(content.node.size());
     uint32_t record = 0;
     for (size_t i = 0; i < content.subtrees.size(); ++i) {
       add(content.subtrees[i], content.first_subtree + static_cast<uint32_t>(i),
@@ -75,7 +75,9 @@ class Stager {
     uint32_t search_record = static_cast<uint32_t>(out_.records.size());
     out_.records.resize(out_.records.size() + static_cast<size_t>(std::popcount(part.interior)));
     fill_search_records(subtree, record, out_.records.data() + search_record);
-    set_parents(subtree, records);
+    check_families(subtree, records);
+    out_.owner.insert(out_.owner.end(), subtree.node_count() - subtree.first_owned_slot(),
+                      static_cast<uint32_t>(parts_.size()));
     for (uint32_t slot = 0; slot < subtree.node_count(); ++slot) {
       if ((part.interior >> slot & 1) != 0) {
         if (subtree.level(slot) + 1 == levels) {
@@ -92,19 +94,12 @@ class Stager {
     out_.roots.insert(out_.roots.end(), records, records + subtree.root_count);
   }
 
-  // Slot by slot: what a node hangs from, and that it lies inside that.
-  void set_parents(const Subtree& subtree, const NodeRecord* records) {
-    const uint32_t owned = subtree.first_owned_slot();
-    out_.parent.resize(out_.parent.size() + subtree.node_count() - owned,
-                       StagedChunk::kOutside | static_cast<uint32_t>(parts_.size()));
+  void check_families(const Subtree& subtree, const NodeRecord* records) const {
     each_family(
         subtree, [&](uint32_t slot) { return records[slot].child_count; },
         [&](uint32_t parent, uint32_t first, uint32_t count) {
-          for (uint32_t slot = first; slot < first + count; ++slot) {
+          for (uint32_t slot = first; slot < first + count; ++slot)
             check_inside(subtree.node(slot), records[slot], records[parent]);
-            if (slot >= owned && parent >= owned)
-              out_.parent[next_node_ + slot - owned] = out_.place[next_node_ + parent - owned];
-          }
         });
   }
 
@@ -177,7 +172,7 @@ void StagedChunk::drop_content() {
   content = {};
   records = {};
   place = {};
-  parent = {};
+  owner = {};
   blocks = {};
 }
 

@@ -19,10 +19,9 @@ struct StagedChunk {
   std::vector<SearchRecord> records;  // those of the lowest level are blocked
   std::vector<NodeRecord> roots;      // of each subtree in turn
   std::vector<LargeFamily> large;     // parents by place
-  // Of each owned node, in the order of the content: its place, and its parent's, or kOutside with
-  // the index of its subtree in the chunk, where that does not own the parent (parent_code.h).
-  std::vector<uint32_t> place, parent;
-  static constexpr uint32_t kOutside = 0x80000000u;
+  // Of each owned node, in the order of the content: its place in a slot, and the index of its
+  // subtree in the chunk.
+  std::vector<uint32_t> place, owner;
   SlotIds ids;
   std::vector<uint32_t> blocks;  // that its records lie in, once it has a slot
 
