@@ -57,7 +57,7 @@ void Residency::choose_least(std::span<Needed> rest) {
     beyond_.missing += missing;
     beyond_.missing_bytes += missing ? chunks_->bytes(needed.chunk) : 0;
   };
-  for (const Needed& needed : rest) count(needed, known(needed.chunk).state != State::resident);
+  for (const Needed& needed : needed_) count(needed, known(needed.chunk).state != State::resident);
   for (const Needed& needed : failed_) count(needed, true);
 }
 
@@ -120,19 +120,22 @@ uint32_t Residency::most_above(uint32_t chunk) const {
   return most;
 }
 
-// In haste, unless a family that it shares may lend it more.
+// In haste, unless a family that it shares may lend it more: by looks alone, which is nearly always
+// right. Of a larger family nothing is left out.
 bool Residency::leaves_out(uint32_t chunk, uint32_t urgency, ChunkLooks& looks) const {
+  constexpr uint32_t kFewChunks = 8;  // on either side
   if (urgency >= least_) return false;
+  if (urgency == 0) return true;
   const auto lends = [&](uint32_t other) {
     const uint32_t most = looks.at(other).urgency;
     return most >= least_ && ChunkLooks::class_of(most) == ChunkLooks::class_of(urgency);
   };
   for (uint32_t c = chunk; shares_family_[c] != 0; --c) {
-    if (lends(c - 1)) return false;
+    if (lends(c - 1) || chunk - c == kFewChunks) return false;
     if (shares_family_[c - 1] != 2) break;
   }
   for (uint32_t c = chunk + 1; c < graph_->size() && shares_family_[c] != 0; ++c) {
-    if (lends(c)) return false;
+    if (lends(c) || c - chunk == kFewChunks) return false;
     if (shares_family_[c] != 2) break;
   }
   return true;
@@ -351,7 +354,7 @@ void Residency::count_need() {
     if (known(needed.chunk).state != State::resident) count_missing(needed.chunk, true);
   }
   for (const Needed& needed : failed_) {
-    if (!needed.now) continue;
+    if (!needed.now || (left_out_ && needed.urgency < least_)) continue;
     ++need_.chunks;
     ++need_.missing;
     need_.missing_bytes += chunks_->bytes(needed.chunk);

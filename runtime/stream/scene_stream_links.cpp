@@ -180,7 +180,9 @@ void SceneStream::end_commit(const Commit& commit) {
   const auto is_seen = [&](const Residency::Evicted& e) { return residency_.is_seen(e.chunk); };
   departures_ += std::any_of(commit.evicted.begin(), commit.evicted.end(), is_seen);
   note_changes();
-  const bool plan_is_due = residency_.left_out() && residency_.is_quiet();
+  const bool plan_is_due =
+      residency_.left_out() && residency_.is_quiet() && !planning_ && !plan_is_asked();
+  if (plan_is_due) ask_for_plan(PlanAsked::in_time);
   if (commit.evicted.empty() && commit.arriving.empty() && commit.given_up.empty() && !plan_is_due)
     return;
   publish();

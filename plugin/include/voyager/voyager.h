@@ -533,7 +533,7 @@ typedef struct VoyStreamingStats {
       residentChunks;         /* chunks in memory, which frames can draw */
   uint64_t neededChunks;      /* that the latest frames need, whatever the budget. Where more is
                                  needed than has room, what is far from having room is counted
-                                 now and then: docs/streaming.md. The next two as well */
+                                 now and then (docs/streaming.md). So is what the next two have */
   uint64_t missingChunks;     /* needed but not resident */
   uint64_t missingBytes;      /* size of missingChunks in the file */
   uint64_t seenChunks;        /* needed and inside an eye's frustum plus the margin */

@@ -183,17 +183,20 @@ TEST(Residency, APlanInHasteLeavesOutNothingThatIsSeenAndNothingThatHasRoom) {
   const RecordRoom records(file);
   const uint32_t slots = graph.size() / 4;
   const PoolRoom room{slots, slots * records.most_blocks()};
-  Residency whole(graph, file.chunks(), records, room, 1);
-  Residency hasty(graph, file.chunks(), records, room, 1);
+  Residency whole(graph, file.chunks(), records, room, slots / 8);
+  Residency hasty(graph, file.chunks(), records, room, slots / 8);
   ChunkLooks looks(file.chunks());
   const EntryHull hull = file.chunks().hull(0);
   std::mt19937 random(3);
   size_t left_out = 0;
   for (int i = 0; i < 40; ++i) {
     if (i == 20) {  // from here on with families that are known
-      for (uint32_t chunk = 1; chunk < graph.size(); ++chunk)
-        if (share_a_parent(graph, chunk - 1, chunk) && random() % 3 == 0)
-          whole.set_family({chunk - 1, chunk + 1}), hasty.set_family({chunk - 1, chunk + 1});
+      for (uint32_t first = 0, last; first < graph.size(); first = last) {
+        const uint32_t most = 1 + random() % 4;
+        for (last = first + 1; last < graph.size() && last - first < most; ++last)
+          if (!share_a_parent(graph, first, last)) break;
+        whole.set_family({first, last}), hasty.set_family({first, last});
+      }
       hasty.plan(looks, false);
     }
     Vec3f eye{};
