@@ -1,6 +1,7 @@
 #pragma once
-// What a node of a pool hangs from. Its address is a slot's, and a place in it; a code of a byte or
-// two says which of the chunk's subtrees owns it, and that subtree says the rest.
+// Which subtree owns a node of a pool, and what the node hangs from. A node's address is a slot and
+// a place in it. A code of one or two bytes says which of the chunk's subtrees owns it, and all
+// else follows from that subtree.
 #include <cstddef>
 #include <cstdint>
 
@@ -14,10 +15,8 @@ VOYAGER_HD constexpr size_t owner_code_bytes(uint32_t slot_nodes) {
 }
 
 struct PoolNodes {
-  // By address: the subtree's index in the chunk, in as many bytes as owner_code_bytes() says,
-  // each so many after the last.
-  const void* owners;
-  uint32_t stride;
+  const void* owners;             // by address: codes of owner_code_bytes(), the subtree's index
+  uint32_t stride;                // bytes from one code to the next
   const uint32_t* first_subtree;  // of the chunk in each slot
   uint32_t slot_nodes;            // places of a slot
 
@@ -33,8 +32,7 @@ struct PoolNodes {
 struct PoolParents {
   PoolNodes nodes;
   const SearchSubtree* subtrees;  // by place
-  // By place: what the subtree's roots hang from; where it repeats a node, what hangs from that
-  // hangs from this.
+  // By place: the parent of the subtree's roots. Where it repeats a node: the node itself.
   const uint32_t* outside;
   SubtreePlaces places;
 

@@ -9,7 +9,7 @@ namespace voyager {
 namespace {
 
 uint32_t make_urgency(ChunkLooks::Class of, float error) {
-  return static_cast<uint32_t>(of) << 30 | std::bit_cast<uint32_t>(error) >> 1 | ChunkLooks::kOwn;
+  return ChunkLooks::least_of(of) | std::bit_cast<uint32_t>(error) >> 1 | ChunkLooks::kOwn;
 }
 
 ChunkLooks::Class class_at(const Viewer& viewer, const EntryHull& hull) {

@@ -18,7 +18,10 @@ class ChunkLooks {
   // Orders by class, then by the error where a chunk is missing. The last bit says that it is a
   // chunk's own urgency, and not what another has lent.
   static constexpr uint32_t kOwn = 1;
-  static Class class_of(uint32_t urgency) { return static_cast<Class>(urgency >> 30); }
+  static constexpr uint32_t kClassAt = 30;
+  static Class class_of(uint32_t urgency) { return static_cast<Class>(urgency >> kClassAt); }
+  // None of the class is less urgent.
+  static constexpr uint32_t least_of(Class of) { return static_cast<uint32_t>(of) << kClassAt; }
   static float error_of(uint32_t urgency);
 
   struct Look {

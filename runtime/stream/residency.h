@@ -61,9 +61,10 @@ class Residency {
   // Who looks now. What is no longer wanted is no longer requested. cuts_are_full: what is there
   // has no room in a view's cut, so that what nobody wants goes once the target is there.
   // in_haste: where far more is needed than there is room for, what was far from having room in the
-  // last whole plan is left out, so that others wait less long. Nothing that is seen is. A whole
-  // plan has to follow, once all that this one asks for is there.
+  // last whole plan is left out, so that others wait less long. What is seen is never left out.
+  // Once all that the plan asks for is there, a whole plan has to follow.
   void plan(ChunkLooks& looks, bool cuts_are_full, bool in_haste = false);
+  // Whether the last plan did so.
   bool left_out() const { return left_out_; }
   // Nothing is to be read, or on its way to be resident. Not between begin_arrivals() and
   // end_arrival().
@@ -184,6 +185,7 @@ class Residency {
   };
 
   void consider(ChunkLooks& looks);
+  size_t count_urgent() const;
   void choose_least(std::span<Needed> rest);
   bool leaves_out(uint32_t chunk, uint32_t urgency, ChunkLooks& looks) const;
   uint32_t most_above(uint32_t chunk) const;
@@ -272,11 +274,11 @@ class Residency {
   uint64_t coming_blocks_ = 0;         // that those will want at most
   uint64_t target_blocks_ = 0;         // of what is wanted, as far as is known
   bool crowded_ = false;               // not all that the last plan needed has room
-  // A plan in haste leaves out what is less urgent than least_. The last whole plan set it, and
-  // found so much that is less urgent. Since then there were hasty_plans_.
+  // Plans in haste leave out what is less urgent than least_, which the last whole plan chose. What
+  // that plan found to be less urgent is counted in beyond_. hasty_plans_: how many came since.
   uint32_t least_ = 0, hasty_plans_ = 0;
   ResidencyNeed beyond_;
-  bool left_out_ = false;  // the last plan, something
+  bool left_out_ = false;  // by the last plan, something was
   ResidencyNeed need_;
   ResidencyCounters counters_;
 };

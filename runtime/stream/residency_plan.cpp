@@ -11,8 +11,6 @@ namespace {
 
 // After so many plans in haste what they leave out is counted anew.
 constexpr uint32_t kHastyPlans = 15;
-// No seen chunk is less urgent.
-constexpr uint32_t kLeastSeen = static_cast<uint32_t>(ChunkLooks::Class::seen) << 30;
 
 }  // namespace
 
@@ -20,9 +18,7 @@ void Residency::plan(ChunkLooks& looks, bool cuts_are_full, bool in_haste) {
   forget_absent();
   if (!in_haste || hasty_plans_ == kHastyPlans) least_ = 0;
   consider(looks);
-  const auto urgent = std::count_if(needed_.begin(), needed_.end(),
-                                    [&](const Needed& needed) { return needed.urgency >= least_; });
-  if (left_out_ && static_cast<size_t>(urgent) < room_.slots) {
+  if (left_out_ && count_urgent() < room_.slots) {
     least_ = 0;
     consider(looks);
   }
@@ -43,6 +39,11 @@ void Residency::consider(ChunkLooks& looks) {
   share_with_parents();
 }
 
+size_t Residency::count_urgent() const {
+  const auto is_urgent = [&](const Needed& needed) { return needed.urgency >= least_; };
+  return static_cast<size_t>(std::count_if(needed_.begin(), needed_.end(), is_urgent));
+}
+
 // Of those without room, so that plans in haste find a quarter more than there is room for.
 void Residency::choose_least(std::span<Needed> rest) {
   const size_t spare = room_.slots / 4;
@@ -50,7 +51,7 @@ void Residency::choose_least(std::span<Needed> rest) {
   const auto last = rest.begin() + static_cast<std::ptrdiff_t>(spare);
   std::nth_element(rest.begin(), last, rest.end(),
                    [](const Needed& a, const Needed& b) { return a.urgency > b.urgency; });
-  least_ = std::min(last->urgency, kLeastSeen);
+  least_ = std::min(last->urgency, ChunkLooks::least_of(ChunkLooks::Class::seen));
   const auto count = [&](const Needed& needed, bool missing) {
     if (!needed.now || needed.urgency >= least_) return;
     ++beyond_.chunks;

@@ -247,7 +247,7 @@ class SceneStream {
   std::atomic<size_t> changes_due_{0};       // chunks for the next commit
   std::atomic<unsigned> between_frames_{0};  // commits since the last frame
   std::atomic<double> last_frame_{0};        // when it committed
-  std::atomic<unsigned> waits_{0};   // calls that wait, for which no plan leaves out a thing
+  std::atomic<unsigned> waits_{0};           // calls that wait: meanwhile plans are whole
   std::atomic<double> put_off_{-1};  // since when a commit is due; negative: none was put off
   std::deque<std::shared_ptr<const StreamChange>> changes_;
   uint64_t version_ = 0, departures_ = 0;
