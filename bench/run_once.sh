@@ -32,6 +32,7 @@ run "$bin/stream_walk" "$scene" "$cameras" 4 60 64x36 3 1
 run "$bin/stream_flight" "$scene" "$cameras" 4 50 64x36
 run "$bin/stream_quality" "$scene" "$cameras" 4 0 64x36
 run "$bin/useful_share" "$scene" "$cameras" 64x36 3 15
+if [ -x "$bin/leaf_bytes" ]; then run "$bin/leaf_bytes" "$compact"; else skip "leaf_bytes" "built without CUDA"; fi
 if [ -e /dev/nvidia0 ]; then
   run "$bin/handoff_bench" "$scene" "$cameras" 64x36
   run "$bin/turns_bench"

@@ -34,10 +34,15 @@ uint64_t most_places(const SearchTree& tree, uint64_t most) {
   return most + most / 8 + 2 * kRowPlaces * kLevels * block_count(tree, kBlockSubtrees);
 }
 
+// Without origins.
+uint64_t list_bytes(uint64_t places) {
+  return places * sizeof(uint32_t) + places * sizeof(MeanBounds) / kRowPlaces;
+}
+
 }  // namespace
 
-uint64_t CutState::list_bytes(uint64_t places) {
-  return places * sizeof(uint32_t) + places * sizeof(MeanBounds) / kRowPlaces;
+uint64_t CutState::eight_nodes() {
+  return list_bytes(8 + 1);
 }
 
 uint64_t CutState::fixed_bytes(const SearchTree& tree) {
@@ -58,7 +63,7 @@ CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t
   rows_ = Buffer<WatchRow>(blocks * kBlockRows);
   refined_ = Buffer<uint32_t>(places);
   cut_ = Buffer<uint32_t>(places);
-  stand_ins_ = Buffer<uint32_t>(tree.chunks_come_and_go ? places : 0);
+  stand_ins_ = Buffer<uint8_t>(tree.chunks_come_and_go ? places : 0);
   segments_ = Buffer<Segment>(kLevels * blocks);
   open_counts_ = Buffer<uint32_t>(blocks);
   open_blocks_ = Buffer<uint32_t>(blocks);
@@ -72,9 +77,10 @@ CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t
   nodes_ = Buffer<uint32_t>(room);
   origin_ = Buffer<CutOrigin>(origins ? room : 0);
   bounds_ = Buffer<MeanBounds>(room / kRowPlaces + 1);
-  for (const Buffer<uint32_t>* zero : {&refined_, &cut_, &stand_ins_, &open_counts_, &open_blocks_,
-                                       &open_block_count_, &dirty_flags_, &dirty_})
+  for (const Buffer<uint32_t>* zero :
+       {&refined_, &cut_, &open_counts_, &open_blocks_, &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);
+  fill(stand_ins_, 0);
   fill(rows_, 0);  // not known
   fill(segments_, 0);
   fill(nodes_, 0xff);

@@ -60,10 +60,10 @@ struct StateView {
   SubtreePlaces places;
   uint32_t place_count;
   Watch* watch;
-  uint32_t* refined;    // bits of slots, and kOpen
-  uint32_t* cut;        // bits of slots
-  uint32_t* stand_ins;  // bits of slots; null where no record is ever blocked
-  WatchRow* rows;       // of each block, as many as a whole one has
+  uint32_t* refined;   // bits of slots, and kOpen
+  uint32_t* cut;       // bits of slots
+  uint8_t* stand_ins;  // nodes; null where no record is ever blocked
+  WatchRow* rows;      // of each block, as many as a whole one has
   const Block* blocks;
   const Tier* tiers;
   uint32_t block_count, tier_count;
@@ -90,11 +90,11 @@ class CutState {
   // places: that subtrees have in the device's tree. due: so many are visited at most. most: no cut
   // has more nodes. origins: the list has what weights depend on. All memory is taken here.
   CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most, bool origins);
-  // What it takes of a streamed scene, without origins: for each place, where one subtree in eight
-  // may be due; for so many places in the list; and beside them, with places for all segments'
-  // ends.
-  static constexpr uint64_t kPlaceBytes = sizeof(Watch) + 4 * sizeof(uint32_t) + 1;
-  static uint64_t list_bytes(uint64_t places);
+  // What it takes of a streamed scene, without origins: for eight places, of which one may be due;
+  // for eight nodes of `most`; and beside them, with places for all segments' ends.
+  static constexpr uint64_t kEightPlaces =
+      8 * (sizeof(Watch) + 3 * sizeof(uint32_t) + sizeof(uint8_t)) + sizeof(uint32_t);
+  static uint64_t eight_nodes();
   static uint64_t fixed_bytes(const SearchTree& tree);
 
   // places: the device's tree's, where its subtrees are read or written.
@@ -104,7 +104,8 @@ class CutState {
  private:
   Buffer<Watch> watch_;
   Buffer<WatchRow> rows_;
-  Buffer<uint32_t> refined_, cut_, stand_ins_;
+  Buffer<uint32_t> refined_, cut_;
+  Buffer<uint8_t> stand_ins_;
   Buffer<Block> blocks_;
   Buffer<Tier> tiers_;
   Buffer<Segment> segments_;

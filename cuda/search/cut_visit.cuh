@@ -156,13 +156,13 @@ __device__ inline void mark_dirty(const StateView& state, uint32_t block) {
 }
 
 // By one lane of a subtree's group.
-__device__ inline void set_stand_ins(const StateView& state, uint32_t place, uint32_t stand_ins,
+__device__ inline void set_stand_ins(const StateView& state, uint32_t place, uint32_t slots,
                                      Tally& tally) {
   if (state.stand_ins == nullptr) return;
-  const uint32_t before = state.stand_ins[place];
-  if (before == stand_ins) return;
-  state.stand_ins[place] = stand_ins;
-  tally.stand_ins += __popc(stand_ins) - __popc(before);
+  const uint32_t before = state.stand_ins[place], now = __popc(slots);
+  if (before == now) return;
+  state.stand_ins[place] = static_cast<uint8_t>(now);
+  tally.stand_ins += now - before;
 }
 
 // Nodes that entered and left: the sizes of the block's segments, and that they are to

@@ -101,11 +101,9 @@ SearchFrame PartitionedSearch::frame(const CutQuery& query, cudaStream_t stream)
           references_.current(), device_->multiprocessors(),         stream};
 }
 
-// Of a streamed scene: of those that are there. That a tree has no more leaves than its file says
-// is known only where all of it was read.
+// Of a streamed scene the linker sees to it; of another it was checked when all of it was read.
 uint64_t PartitionedSearch::most_nodes() const {
-  if (!streamed_) return scene_->leaf_count;
-  return std::min<uint64_t>(scene_->node_count, scene_->stream->cut_nodes());
+  return streamed_ ? scene_->stream->cut_nodes() : scene_->leaf_count;
 }
 
 void PartitionedSearch::make_state() {
@@ -280,23 +278,21 @@ std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Devic
 
 // A cut has no more nodes than there are whose children are not linked (Linker). Where families are
 // as large as in the file as a whole, that is its share of leaves; a sixteenth is to spare. What
-// the top of the tree, and a pool of a few chunks, may have comes on top of that.
+// the top of the tree, and a pool of a few chunks, may have comes on top of that. Each node of a
+// cut has a leaf of its own below it, so that no cut has more nodes than the file has leaves; in
+// one that says so falsely the linker leaves out what is more.
 RoomBytes with_view(const PoolBytes& pool, const Scene& scene, SlotShape shape) {
   constexpr double kSpare = 17.0 / 16;
   constexpr uint32_t kFewChunks = 64;
   const double share = std::min(
       1.0, kSpare * static_cast<double>(scene.leaf_count) / static_cast<double>(scene.node_count));
-  RoomBytes bytes{pool, {}};
-  bytes.cut_slot = static_cast<uint64_t>(std::ceil(share * shape.nodes));
-  bytes.cut_fixed = std::min<uint64_t>(
+  const ListRoom list{
+      static_cast<uint64_t>(std::ceil(share * shape.nodes)),
       uint64_t{kFewChunks} * shape.nodes + uint64_t{kSubtreeNodes} * scene.search.tier_begin[1],
-      scene.node_count);
-  const uint64_t page = kPageSubtrees * CutState::kPlaceBytes;
-  bytes.view = {CutState::list_bytes(bytes.cut_slot + bytes.cut_slot / 8 + 1), 0,
-                CutState::fixed_bytes(scene.search) + page +
-                    CutState::list_bytes(bytes.cut_fixed + bytes.cut_fixed / 8 + 1),
-                page};
-  return bytes;
+      scene.leaf_count, CutState::eight_nodes()};
+  static_assert(kPageSubtrees % 8 == 0);
+  const uint64_t page = kPageSubtrees / 8 * CutState::kEightPlaces;
+  return {pool, {0, 0, CutState::fixed_bytes(scene.search) + page, page}, list};
 }
 
 }  // namespace voyager::cuda

@@ -140,7 +140,7 @@ PoolBytes view_bytes(const SearchTree& tree) {
 
 RoomBytes host_room_bytes(const Scene& scene, SlotShape shape) {
   const PoolBytes links = Linker::bytes(shape, scene.node_count);
-  return {pool_bytes(scene, shape) + links, view_bytes(scene.search)};
+  return {pool_bytes(scene, shape) + links, view_bytes(scene.search), {}};
 }
 
 std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, const SceneFile& file, SlotShape shape,

@@ -8,18 +8,28 @@
 
 namespace voyager {
 
+// What an instance's list of cut nodes has room for.
+struct ListRoom {
+  uint64_t slot = 0, fixed = 0;  // nodes: for each slot, and beside them. slot = 0: any cut
+  uint64_t most = UINT64_MAX;    // nodes that any cut of the scene has at most
+  uint64_t eight_nodes = 0;      // bytes for eight of them
+
+  uint64_t nodes(PoolRoom room) const {
+    return slot == 0 ? UINT64_MAX : std::min(most, room.slots * slot + fixed);
+  }
+  uint64_t bytes(PoolRoom room) const {
+    return eight_nodes == 0 ? 0 : (nodes(room) / 8 + 1) * eight_nodes;
+  }
+};
+
 struct RoomBytes {
   PoolBytes pool;  // with what links its chunks, where that lies in the same memory
-  PoolBytes view;  // what each instance in a view keeps
-  // Where that has room for a cut: nodes of it for each slot, and beside them. 0: any cut.
-  uint64_t cut_slot = 0, cut_fixed = 0;
+  PoolBytes view;  // what each instance in a view keeps beside its list
+  ListRoom list;
 
   // A scene without views has room for one.
   uint64_t of(PoolRoom room, size_t views = 1) const {
-    return pool.of(room) + std::max<size_t>(views, 1) * view.of(room);
-  }
-  uint64_t cut_nodes(PoolRoom room) const {
-    return cut_slot == 0 ? UINT64_MAX : room.slots * cut_slot + cut_fixed;
+    return pool.of(room) + std::max<size_t>(views, 1) * (view.of(room) + list.bytes(room));
   }
 };
 

@@ -131,7 +131,7 @@ class SceneStream {
   // What the pool takes, and its views, of which there is room for one at least.
   uint64_t bytes() const { return bytes_; }
   // No cut has more nodes. Under hold().
-  uint64_t cut_nodes() const { return desc_.bytes.cut_nodes(room_); }
+  uint64_t cut_nodes() const { return desc_.bytes.list.nodes(room_); }
   // As of the last step or commit. Any thread.
   StreamCounters counters() const;
   // What went wrong, each cause once. Any thread.

@@ -369,8 +369,8 @@ typedef struct VoySceneStreaming {
    * then reads what looks large from there as well as the top of the tree, up to 64 MB of the file.
    * Copied. */
   const double* startPosition;
-  /* Threads that read and decode: 1 to 64. 0: half as many as the machine has hardware threads,
-   * but at least 4 and at most 8. */
+  /* Threads that read and decode: 1 to 64. 0: three quarters of the machine's hardware threads,
+   * but at least 4 and at most 12. They sleep while there is nothing to read. */
   uint32_t readerThreadCount;
   uint32_t reserved; /* 0 */
 } VoySceneStreaming;
