@@ -7,7 +7,7 @@ namespace {
 
 // What the search of either backend keeps of a subtree, at least; and what a streamed scene has
 // more of each subtree and node, in either's memory.
-constexpr uint64_t kSearchBytes = 24, kResidencyBytes = sizeof(uint32_t);
+constexpr uint64_t kSearchBytes = 20, kResidencyBytes = sizeof(uint32_t);
 
 }  // namespace
 

@@ -18,8 +18,8 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
       cut_slots_(watch_.get_allocator()),
       last_cut_slots_(watch_.get_allocator()),
       stand_ins_(watch_.get_allocator()),
-      work_(watch_.get_allocator()),
-      signals_(watch_.get_allocator()),
+      changes_(watch_.get_allocator()),
+      opened_(memory),
       blocks_(watch_.get_allocator()),
       tier_block_(watch_.get_allocator()),
       touched_(watch_.get_allocator()),
@@ -39,10 +39,10 @@ PartitionedSearch::PartitionedSearch(const SearchTree& tree, std::pmr::memory_re
   if (!tree.chunks_come_and_go) make_room();
 }
 
-// But for less than a byte a place of signals_, which kPlaceBytes has.
+// But for less than a byte a place of changes_, which kPlaceBytes has.
 uint64_t PartitionedSearch::fixed_bytes(const SearchTree& tree) {
-  static_assert(sizeof(Signals) <= kRoundSubtrees);
-  return sizeof(PartitionedSearch) + (block_count(tree, kBlockSubtrees) + 1) * sizeof(Signals) +
+  static_assert(sizeof(Changes) <= kRoundSubtrees);
+  return sizeof(PartitionedSearch) + (block_count(tree, kBlockSubtrees) + 1) * sizeof(Changes) +
          block_count(tree, kBlockSubtrees) * (sizeof(Block) + sizeof(uint8_t)) +
          2 * tree.tier_begin.size() * sizeof(uint32_t) + tree.chunk_count * sizeof(uint32_t);
 }
@@ -52,8 +52,8 @@ void PartitionedSearch::drop() noexcept {
   const auto empty = [](auto& array) {
     std::decay_t<decltype(array)>(array.get_allocator()).swap(array);
   };
-  empty(watch_), empty(refined_), empty(cut_slots_), empty(last_cut_slots_), empty(work_);
-  empty(stand_ins_), empty(signals_);
+  empty(watch_), empty(refined_), empty(cut_slots_), empty(last_cut_slots_);
+  empty(stand_ins_), empty(changes_), empty(opened_);
 }
 
 void PartitionedSearch::make_room() {
@@ -62,11 +62,10 @@ void PartitionedSearch::make_room() {
   refined_.resize(places);
   cut_slots_.resize(places);
   last_cut_slots_.resize(places);
-  work_.resize(places);
   if (tree_.chunks_come_and_go) stand_ins_.resize(places);
   const size_t runs = std::max(blocks_.size(), places / kRoundSubtrees + 1);
-  signals_.reserve(runs);
-  while (signals_.size() < runs) signals_.emplace_back(cut_.get_allocator().resource());
+  changes_.reserve(runs);
+  while (changes_.size() < runs) changes_.emplace_back(cut_.get_allocator().resource());
   watch_.resize(places);
 }
 

@@ -73,7 +73,7 @@ class PartitionedSearch {
 
   // What it keeps for each place, where chunks come and go, and beside that.
   static constexpr uint64_t kPlaceBytes =
-      sizeof(Watch) + 4 * sizeof(uint32_t) + sizeof(uint8_t) + 1;
+      sizeof(Watch) + 3 * sizeof(uint32_t) + sizeof(uint8_t) + 1;
   static uint64_t fixed_bytes(const SearchTree& tree);
 
  private:
@@ -113,7 +113,7 @@ class PartitionedSearch {
   void close_signalled(Workers& workers);
   void visit_opened(Workers& workers);
   void visit_round(size_t begin, size_t end);
-  uint32_t gather_opened(size_t lists);
+  void gather_opened(size_t lists);
 
   // settle.cpp
   void settle(size_t index, Tally& tally);
@@ -136,15 +136,14 @@ class PartitionedSearch {
   std::pmr::vector<uint32_t> cut_slots_;  // bits of slots
   std::pmr::vector<uint32_t> last_cut_slots_;
   std::pmr::vector<uint8_t> stand_ins_;  // nodes; empty where no record is ever blocked
-  // Scratch, as many as there are places: subtrees that are due, by block, then those just opened.
-  std::pmr::vector<uint32_t> work_;
-  // Of a run of subtrees: which of work_ it visits, and what they opened and closed.
-  struct Signals {
-    explicit Signals(std::pmr::memory_resource* memory) : opened(memory), closed(memory) {}
-    uint32_t first = 0, visits = 0;
-    std::pmr::vector<uint32_t> opened, closed;
+  // Of a run of subtrees: those that are due, and what visits open and close. Lists are scratch.
+  struct Changes {
+    explicit Changes(std::pmr::memory_resource* memory)
+        : due(memory), opened(memory), closed(memory) {}
+    std::pmr::vector<uint32_t> due, opened, closed;
   };
-  std::pmr::vector<Signals> signals_;  // by block, then by run of work_
+  std::pmr::vector<Changes> changes_;  // by block, then by run of opened_
+  std::pmr::vector<uint32_t> opened_;  // in the last round; scratch
   std::pmr::vector<Block> blocks_;
   std::pmr::vector<uint32_t> tier_block_;   // first block of each tier
   std::pmr::vector<uint8_t> touched_;       // by block: visited or closed something

@@ -23,33 +23,26 @@ void PartitionedSearch::repair(Search kind, Workers& workers) {
   visit_opened(workers);
 }
 
-// Each block's, in work_ from a place on that leaves room for all of its open subtrees.
 uint64_t PartitionedSearch::list_due(Search kind, Workers& workers) {
   const Travel* travel = references_.travel().data();
-  uint32_t room = 0;
-  for (size_t b = 0; b < blocks_.size(); ++b) {
-    signals_[b].first = room;
-    room += blocks_[b].open;
-  }
   const bool all = kind == Search::temporal_visit;
   workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
     Tally tally;
     for (size_t b = begin; b < end; ++b) {
       const Block& block = blocks_[b];
-      uint32_t out = signals_[b].first;
-      if (block.open != 0) {
-        tally.bytes += (block.last - block.first) * sizeof(Watch);
-        each_place(places_, block.first, block.last, [&](uint32_t s, uint32_t place) {
-          if (all ? refined_[place] != 0 : due(watch_[place], travel) && !renew(place))
-            work_[out++] = s;
-        });
-      }
-      signals_[b].visits = out - signals_[b].first;
+      std::pmr::vector<uint32_t>& found = changes_[b].due;
+      found.clear();
+      if (block.open == 0) continue;
+      tally.bytes += (block.last - block.first) * sizeof(Watch);
+      each_place(places_, block.first, block.last, [&](uint32_t s, uint32_t place) {
+        if (all ? refined_[place] != 0 : due(watch_[place], travel) && !renew(place))
+          found.push_back(s);
+      });
     }
     count(tally);
   });
   uint64_t listed = 0;
-  for (size_t b = 0; b < blocks_.size(); ++b) listed += signals_[b].visits;
+  for (size_t b = 0; b < blocks_.size(); ++b) listed += changes_[b].due.size();
   return listed;
 }
 
@@ -74,18 +67,17 @@ void PartitionedSearch::visit_due(Workers& workers) {
     Tally tally;
     uint32_t chunk = kNoChunk;
     for (size_t b = begin; b < end; ++b) {
-      Signals& signals = signals_[b];
-      signals.opened.clear(), signals.closed.clear();
-      if (signals.visits == 0) continue;
+      Changes& changes = changes_[b];
+      changes.opened.clear(), changes.closed.clear();
+      if (changes.due.empty()) continue;
       touch(b);
-      for (uint32_t i = 0; i < signals.visits; ++i) {
-        const uint32_t s = work_[signals.first + i];
+      for (const uint32_t s : changes.due) {
         read_chunk_of(s, chunk, tally);
         const uint32_t flipped = look(s, tally);
         signal_below(
             tree_, s, flipped, refined_[places_(s)],
-            [&](uint32_t from, uint32_t to) { append(signals.opened, from, to); },
-            [&](uint32_t from, uint32_t to) { append(signals.closed, from, to); });
+            [&](uint32_t from, uint32_t to) { append(changes.opened, from, to); },
+            [&](uint32_t from, uint32_t to) { append(changes.closed, from, to); });
       }
     }
     count(tally);
@@ -97,7 +89,7 @@ void PartitionedSearch::visit_due(Workers& workers) {
 void PartitionedSearch::close_signalled(Workers& workers) {
   workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
     for (size_t b = begin; b < end; ++b)
-      for (const uint32_t s : signals_[b].closed) {
+      for (const uint32_t s : changes_[b].closed) {
         close(s);
         touch(block_of(s));
       }
@@ -105,21 +97,22 @@ void PartitionedSearch::close_signalled(Workers& workers) {
 }
 
 void PartitionedSearch::visit_opened(Workers& workers) {
-  for (uint32_t count = gather_opened(blocks_.size()); count != 0;) {
+  for (gather_opened(blocks_.size()); !opened_.empty();) {
+    const size_t count = opened_.size();
     workers.for_blocks(count, kRoundSubtrees,
                        [&](size_t begin, size_t end) { visit_round(begin, end); });
-    count = gather_opened((count + kRoundSubtrees - 1) / kRoundSubtrees);
+    gather_opened((count + kRoundSubtrees - 1) / kRoundSubtrees);
   }
 }
 
-// Subtrees work_[begin, end), which were closed.
+// Subtrees opened_[begin, end), which were closed.
 void PartitionedSearch::visit_round(size_t begin, size_t end) {
   Tally tally;
   uint32_t chunk = kNoChunk;
-  std::pmr::vector<uint32_t>& opened = signals_[begin / kRoundSubtrees].opened;
+  std::pmr::vector<uint32_t>& opened = changes_[begin / kRoundSubtrees].opened;
   opened.clear();
   for (size_t i = begin; i < end; ++i) {
-    const uint32_t s = work_[i];
+    const uint32_t s = opened_[i];
     if (tree_.subtree(s).missing()) {
       tally.needed_missing = std::min(tally.needed_missing, s);
       continue;
@@ -134,15 +127,13 @@ void PartitionedSearch::visit_round(size_t begin, size_t end) {
   count(tally);
 }
 
-// To the front of work_, ascending.
-uint32_t PartitionedSearch::gather_opened(size_t lists) {
-  uint32_t gathered = 0;
+// From the first so many lists; ascending.
+void PartitionedSearch::gather_opened(size_t lists) {
+  opened_.clear();
   for (size_t i = 0; i < lists; ++i) {
-    const auto& opened = signals_[i].opened;
-    std::copy(opened.begin(), opened.end(), work_.begin() + gathered);
-    gathered += static_cast<uint32_t>(opened.size());
+    const auto& opened = changes_[i].opened;
+    opened_.insert(opened_.end(), opened.begin(), opened.end());
   }
-  return gathered;
 }
 
 }  // namespace voyager

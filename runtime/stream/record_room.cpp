@@ -74,11 +74,12 @@ uint32_t RecordRoom::most_pages(uint32_t slots) const {
 }
 
 PoolRoom RecordRoom::enough(uint64_t chunks_needed, uint64_t blocks) const {
+  uint32_t counted = 0;
   const auto has_room = [&](uint32_t slots) {
     const PoolRoom room = of(slots);
-    const uint64_t pinned = SceneStream::pinned_chunks(file_, slots);
-    return slots >= chunks_needed + pinned &&
-           (room.blocks == all_ || room.blocks >= blocks + pinned * greatest_);
+    const uint32_t pinned = SceneStream::pinned_chunks(file_, slots);
+    for (; counted < pinned; ++counted) blocks += most_blocks(counted);
+    return slots >= chunks_needed + pinned && (room.blocks == all_ || room.blocks >= blocks);
   };
   auto slots = static_cast<uint32_t>(std::min<uint64_t>(chunks_needed, chunks()));
   while (slots < chunks() && !has_room(slots)) ++slots;

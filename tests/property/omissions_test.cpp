@@ -59,7 +59,7 @@ TEST_F(Omissions, AFlatSceneHasNoTreeAndNoSearchAndDrawsWhatTheTreesLeavesDraw) 
   EXPECT_EQ(frame.stats.nodes_tested + frame.stats.bytes_read, 0u);
   expect_same_bits(frame, draw(baked, {.lod = Lod::all_leaves}, input));
   EXPECT_EQ(used, flat_view);
-  EXPECT_EQ(find(listed, "search")->bytes, baked->search.subtree_count() * 24u);
+  EXPECT_EQ(find(listed, "search")->bytes, baked->search.subtree_count() * 20u);
 }
 
 TEST_F(Omissions, AViewOfAllLeavesKeepsNoSearch) {
@@ -67,7 +67,7 @@ TEST_F(Omissions, AViewOfAllLeavesKeepsNoSearch) {
   const size_t list = memory.used();
   EXPECT_LE(list, cloud.size() * sizeof(DrawItem) + 4096);
   View cut(baked, *cpu, {}, &memory, workers);
-  EXPECT_GE(memory.used() - list, baked->search.subtree_count() * 24u);
+  EXPECT_GE(memory.used() - list, baked->search.subtree_count() * 20u);
   EXPECT_EQ(find(cut.omissions(), "search"), nullptr);
 }
 
