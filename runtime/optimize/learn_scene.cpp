@@ -6,6 +6,7 @@
 
 #include "runtime/base/clock.h"
 #include "runtime/base/error.h"
+#include "runtime/base/first_that.h"
 #include "runtime/frame/built_scene.h"
 #include "runtime/lod/align.h"
 #include "runtime/lod/stand_in.h"
@@ -23,9 +24,17 @@ constexpr double kLastPace = 0.05;  // at the end
 // Extents are measured anew when these shares of the steps are done: what learned has another
 // error, and other cuts learn from then on.
 constexpr double kMeasureAt[] = {0.4, 0.7, 1.0};
-// Of the cuts that are measured, as refine.cpp's; views of them, for each of so many steps.
+// Of the cuts that are measured, as refine.cpp's.
 constexpr double kMeasureTaus[] = {2, 8, 30};
-constexpr uint32_t kStepsPerMeasure = 60, kLeastMeasures = 8, kMostMeasures = 256;
+// Views of them: one for each of so many steps, but one for each of few up to a number, since each
+// node has to be seen in some, however little there is to learn.
+constexpr uint32_t kStepsPerMeasure = 60, kFewSteps = 10, kOfFewSteps = 64;
+constexpr uint32_t kLeastMeasures = 8, kMostMeasures = 256;
+constexpr uint32_t measures_of(uint32_t pictures) {
+  return std::clamp(
+      std::max(pictures / kStepsPerMeasure, std::min(pictures / kFewSteps, kOfFewSteps)),
+      kLeastMeasures, kMostMeasures);
+}
 // Of views that extents are measured in, that choose their scale, and that say what was gained.
 // Their last digits differ in the bases of Halton's sequence. A large power of a base would differ
 // from 0 in a far digit only, and its views would look at the leaves of those that are learned
@@ -33,6 +42,7 @@ constexpr uint32_t kStepsPerMeasure = 60, kLeastMeasures = 8, kMostMeasures = 25
 constexpr uint32_t kFirstMeasure = 134'217'757, kFirstChosenBy = 201'326'611,
                    kFirstHeldOut = 268'435'459;
 
+constexpr uint32_t kMostPictures = 1'000'000'000;
 constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
 // Views in which progress is told, and which of HeldOutViews' τ it is of.
 constexpr uint32_t kFew = 6;
@@ -138,8 +148,7 @@ class Learning {
 
   void measure() {
     Measured measured(baked_.tree.size());
-    const uint32_t views =
-        std::clamp(checkpoint_.pictures / kStepsPerMeasure, kLeastMeasures, kMostMeasures);
+    const uint32_t views = measures_of(checkpoint_.pictures);
     for (uint32_t i = 0; i < views; ++i)
       for (const double tau : kMeasureTaus) {
         TrainingView view = views_(kFirstMeasure + i);
@@ -216,12 +225,17 @@ class Learning {
 
 }  // namespace
 
+uint32_t measured_with(uint32_t pictures) {
+  return static_cast<uint32_t>(std::size(kMeasureAt) * std::size(kMeasureTaus)) *
+         measures_of(pictures);
+}
+
 uint32_t pictures_in(double minutes, double milliseconds, uint32_t others) {
-  // Extents are measured after some of the pictures.
-  constexpr double kMeasured =
-      double{std::size(kMeasureAt)} * std::size(kMeasureTaus) / kStepsPerMeasure;
-  const double all = minutes * 60000 / milliseconds;
-  return static_cast<uint32_t>(std::clamp((all - others) / (1 + kMeasured), 1.0, 1e9));
+  const double most = minutes * 60000 / milliseconds - others;
+  const uint32_t too_many = first_that(1u, kMostPictures + 1, [&](uint32_t pictures) {
+    return static_cast<double>(pictures) + measured_with(pictures) > most;
+  });
+  return std::max(too_many - 1, 1u);
 }
 
 OptimizeSummary learn_scene(BakedScene& baked, const LookedAt& looked_at, const OptimizeGoal& goal,

@@ -11,6 +11,8 @@ OptimizeSummary learn_scene(BakedScene& baked, const LookedAt& looked_at, const 
                             Backend& backend, const std::string& kept, Workers& workers,
                             const Progress& progress);
 
+// Pictures that extents are measured in, where so many are learned from.
+uint32_t measured_with(uint32_t pictures);
 // How many pictures to learn from in so much time, where each takes so long, and `others` are drawn
 // to see what was gained. At least 1.
 uint32_t pictures_in(double minutes, double milliseconds, uint32_t others);
