@@ -29,9 +29,12 @@ Layout make_layout(const SearchTree& tree) {
   return layout;
 }
 
-// What search_place gives all segments at most.
+// What search_place gives so many nodes, and with what segments' ends take, at most.
+uint64_t most_places_of(uint64_t nodes) {
+  return nodes + nodes / 8;
+}
 uint64_t most_places(const SearchTree& tree, uint64_t most) {
-  return most + most / 8 + 2 * kRowPlaces * kLevels * block_count(tree, kBlockSubtrees);
+  return most_places_of(most) + 2 * kRowPlaces * kLevels * block_count(tree, kBlockSubtrees);
 }
 
 // Without origins.
@@ -42,7 +45,8 @@ uint64_t list_bytes(uint64_t places) {
 }  // namespace
 
 uint64_t CutState::eight_nodes() {
-  return list_bytes(8 + 1);
+  static_assert(sizeof(MeanBounds) % kRowPlaces == 0);  // a place's share of them is whole bytes
+  return list_bytes(most_places_of(8));
 }
 
 uint64_t CutState::fixed_bytes(const SearchTree& tree) {

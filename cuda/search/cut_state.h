@@ -90,8 +90,9 @@ class CutState {
   // places: that subtrees have in the device's tree. due: so many are visited at most. most: no cut
   // has more nodes. origins: the list has what weights depend on. All memory is taken here.
   CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most, bool origins);
-  // What it takes of a streamed scene, without origins: for eight places, of which one may be due;
-  // for eight nodes of `most`; and beside them, with places for all segments' ends.
+  // What it takes of a streamed scene, without origins: for eight places, of which one may be due
+  // (an experiment that visits all takes more); for eight nodes of `most`; and beside them, with
+  // places for all segments' ends.
   static constexpr uint64_t kEightPlaces =
       8 * (sizeof(Watch) + 3 * sizeof(uint32_t) + sizeof(uint8_t)) + sizeof(uint32_t);
   static uint64_t eight_nodes();

@@ -279,17 +279,20 @@ std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Devic
 // A cut has no more nodes than there are whose children are not linked (Linker). Where families are
 // as large as in the file as a whole, that is its share of leaves; a sixteenth is to spare. What
 // the top of the tree, and a pool of a few chunks, may have comes on top of that. Each node of a
-// cut has a leaf of its own below it, so that no cut has more nodes than the file has leaves; in
-// one that says so falsely the linker leaves out what is more.
+// cut has a leaf of its own below it, so that no cut has more nodes than the file has leaves. Where
+// a file says so falsely the linker leaves out what is more, but for the top, which is always
+// there.
 RoomBytes with_view(const PoolBytes& pool, const Scene& scene, SlotShape shape) {
   constexpr double kSpare = 17.0 / 16;
   constexpr uint32_t kFewChunks = 64;
   const double share = std::min(
       1.0, kSpare * static_cast<double>(scene.leaf_count) / static_cast<double>(scene.node_count));
+  const uint64_t top = uint64_t{kSubtreeNodes} * scene.search.tier_begin[1];
   const ListRoom list{
-      static_cast<uint64_t>(std::ceil(share * shape.nodes)),
-      uint64_t{kFewChunks} * shape.nodes + uint64_t{kSubtreeNodes} * scene.search.tier_begin[1],
-      scene.leaf_count, CutState::eight_nodes()};
+      .slot = static_cast<uint64_t>(std::ceil(share * shape.nodes)),
+      .fixed = uint64_t{kFewChunks} * shape.nodes + top,
+      .most = std::max<uint64_t>(scene.leaf_count, std::min<uint64_t>(top, scene.node_count)),
+      .eight_nodes = CutState::eight_nodes()};
   static_assert(kPageSubtrees % 8 == 0);
   const uint64_t page = kPageSubtrees / 8 * CutState::kEightPlaces;
   return {pool, {0, 0, CutState::fixed_bytes(scene.search) + page, page}, list};

@@ -20,8 +20,10 @@ constexpr size_t kSamples = 32, kSound = kSamples / 8;
 // stored, as a search reads it, and what views keep of it.
 constexpr uint64_t kNodeBytes = 112, kRecordBytes = 40, kSubtreeBytes = 64;
 
-uint64_t claim_of(const ChunkEntry& chunk, int sh_degree) {
-  const uint64_t sh = 3 * sizeof(float) * static_cast<uint64_t>(sh_coefficients(sh_degree));
+uint64_t claim_of(const SceneFile& file, size_t index) {
+  const ChunkEntry chunk = file.chunks().numbers(index);
+  const auto coefficients = static_cast<uint64_t>(sh_coefficients(file.info().sh_degree));
+  const uint64_t sh = 3 * sizeof(float) * coefficients;
   return chunk.bytes + chunk.node_count * (kNodeBytes + sh) + chunk.record_count * kRecordBytes +
          chunk.subtree_count * kSubtreeBytes;
 }
@@ -42,7 +44,7 @@ std::vector<uint32_t> chunks_at(std::vector<uint64_t> places, const SceneFile& f
   std::vector<uint32_t> chunks;
   uint64_t end = 0;
   for (uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk) {
-    end += claim_of(file.chunks()[chunk], file.info().sh_degree);
+    end += claim_of(file, chunk);
     while (chunks.size() < places.size() && places[chunks.size()] < end) chunks.push_back(chunk);
   }
   return chunks;
@@ -52,7 +54,7 @@ std::vector<uint32_t> chunks_at(std::vector<uint64_t> places, const SceneFile& f
 
 uint64_t claimed_bytes(const SceneFile& file) {
   uint64_t bytes = 0;
-  for (const ChunkEntry& chunk : file.chunks()) bytes += claim_of(chunk, file.info().sh_degree);
+  for (size_t chunk = 0; chunk < file.chunks().size(); ++chunk) bytes += claim_of(file, chunk);
   return bytes;
 }
 

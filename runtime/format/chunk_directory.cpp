@@ -66,6 +66,12 @@ void ChunkDirectory::close_block() {
 }
 
 ChunkEntry ChunkDirectory::operator[](size_t chunk) const {
+  ChunkEntry entry = numbers(chunk);
+  entry.hull = hull(chunk);
+  return entry;
+}
+
+ChunkEntry ChunkDirectory::numbers(size_t chunk) const {
   if (const ChunkEntry* entry = wide(chunk)) return *entry;
   const Block& block = blocks_[chunk / kBlockRows];
   const Row& row = rows_[chunk];
@@ -79,7 +85,6 @@ ChunkEntry ChunkDirectory::operator[](size_t chunk) const {
   entry.node_count = row.node_count;
   entry.record_count = row.record_count;
   entry.place = place(chunk);
-  entry.hull = hull(chunk);
   return entry;
 }
 

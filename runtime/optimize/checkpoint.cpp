@@ -9,7 +9,7 @@
 namespace voyager {
 namespace {
 
-constexpr uint64_t kKind = 0x32696d6974706f;  // "optimi2"; a change of the pictures needs another
+constexpr uint64_t kKind = 0x33696d6974706f;  // "optimi3"; a change of the pictures needs another
 constexpr char kStartAnew[] = "remove it, and learning starts anew";
 
 template <class Values>

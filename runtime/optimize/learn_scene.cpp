@@ -26,14 +26,13 @@ constexpr double kLastPace = 0.05;  // at the end
 constexpr double kMeasureAt[] = {0.4, 0.7, 1.0};
 // Of the cuts that are measured, as refine.cpp's.
 constexpr double kMeasureTaus[] = {2, 8, 30};
-// Views of them: one for each of so many steps, but one for each of few up to a number, since each
-// node has to be seen in some, however little there is to learn.
-constexpr uint32_t kStepsPerMeasure = 60, kFewSteps = 10, kOfFewSteps = 64;
+// Views that are measured: one for ten pictures that are learned from until there are 64, so that
+// each node is seen in some; then no more until they are one for sixty.
+constexpr uint32_t kPicturesAtFirst = 10, kMeasuresAtFirst = 64, kPicturesLater = 60;
 constexpr uint32_t kLeastMeasures = 8, kMostMeasures = 256;
 constexpr uint32_t measures_of(uint32_t pictures) {
-  return std::clamp(
-      std::max(pictures / kStepsPerMeasure, std::min(pictures / kFewSteps, kOfFewSteps)),
-      kLeastMeasures, kMostMeasures);
+  const uint32_t first = std::min(pictures / kPicturesAtFirst, kMeasuresAtFirst);
+  return std::clamp(std::max(first, pictures / kPicturesLater), kLeastMeasures, kMostMeasures);
 }
 // Of views that extents are measured in, that choose their scale, and that say what was gained.
 // Their last digits differ in the bases of Halton's sequence. A large power of a base would differ

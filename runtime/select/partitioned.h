@@ -19,10 +19,10 @@ namespace voyager {
 // One view's cut of one tree, kept from run to run. Not thread-safe; the work is
 // spread over `workers`, and no result depends on their number. It keeps fixed_bytes() and
 // kPlaceBytes a place of the tree's subtrees, from the resource for state. From that for scratch it
-// takes 4 bytes a node of the largest cut, where that is listed, and 4 a subtree of the largest
-// change that it has seen; once they were seen a run allocates nothing, until a pool has another
-// number of places. Throws only std::bad_alloc; the next run then starts from nothing, and is
-// right.
+// takes 4 bytes a node of the largest cut, where that is listed, and lists of subtrees, each as
+// long as the longest change that it has seen; once they were seen a run allocates nothing, until a
+// pool has another number of places. Throws only std::bad_alloc; the next run then starts from
+// nothing, and is right.
 class PartitionedSearch {
  public:
   // Consecutive subtrees of one tier. Their cut nodes are in cut() in three pieces:

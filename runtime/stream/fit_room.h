@@ -10,15 +10,16 @@ namespace voyager {
 
 // What an instance's list of cut nodes has room for.
 struct ListRoom {
-  uint64_t slot = 0, fixed = 0;  // nodes: for each slot, and beside them. slot = 0: any cut
-  uint64_t most = UINT64_MAX;    // nodes that any cut of the scene has at most
-  uint64_t eight_nodes = 0;      // bytes for eight of them
+  // Nodes: for each slot, and beside them. Without slot: any cut, and nothing is counted.
+  uint64_t slot = 0, fixed = 0;
+  uint64_t most = UINT64_MAX;  // nodes that any cut of the scene has at most
+  uint64_t eight_nodes = 0;    // bytes for eight of them
 
   uint64_t nodes(PoolRoom room) const {
     return slot == 0 ? UINT64_MAX : std::min(most, room.slots * slot + fixed);
   }
   uint64_t bytes(PoolRoom room) const {
-    return eight_nodes == 0 ? 0 : (nodes(room) / 8 + 1) * eight_nodes;
+    return slot == 0 ? 0 : (nodes(room) / 8 + 1) * eight_nodes;
   }
 };
 

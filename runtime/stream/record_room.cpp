@@ -25,14 +25,14 @@ uint32_t RecordRoom::most_blocks(uint32_t chunk) const {
   const ChunkDirectory& chunks = file_.chunks();
   const SubtreePlace after =
       chunk + 1 < chunks.size() ? chunks.place(chunk + 1) : SubtreePlace::end_of(tiers_);
-  return record_blocks(most_search_records(chunks[chunk], after, tiers_));
+  return record_blocks(most_search_records(chunks.numbers(chunk), after, tiers_));
 }
 
 RecordRoom::RecordRoom(const SceneFile& file) : file_(file), tiers_(file.tiers()) {
   const auto& chunks = file.chunks();
   uint64_t records = file.info().node_count - file.info().leaf_count;
   for (uint32_t i = 0; i < chunks.size(); ++i) {
-    const ChunkEntry chunk = chunks[i];
+    const ChunkEntry chunk = chunks.numbers(i);
     const uint32_t most = most_blocks(i);
     greatest_ = std::max(greatest_, most);
     sum_of_most_ += most;
@@ -74,12 +74,15 @@ uint32_t RecordRoom::most_pages(uint32_t slots) const {
 }
 
 PoolRoom RecordRoom::enough(uint64_t chunks_needed, uint64_t blocks) const {
-  uint32_t counted = 0;
+  // What is pinned grows with the slots.
+  uint32_t pinned = 0;
+  uint64_t pinned_blocks = 0;
   const auto has_room = [&](uint32_t slots) {
     const PoolRoom room = of(slots);
-    const uint32_t pinned = SceneStream::pinned_chunks(file_, slots);
-    for (; counted < pinned; ++counted) blocks += most_blocks(counted);
-    return slots >= chunks_needed + pinned && (room.blocks == all_ || room.blocks >= blocks);
+    while (pinned < SceneStream::pinned_chunks(file_, slots))
+      pinned_blocks += most_blocks(pinned++);
+    return slots >= chunks_needed + pinned &&
+           (room.blocks == all_ || room.blocks >= blocks + pinned_blocks);
   };
   auto slots = static_cast<uint32_t>(std::min<uint64_t>(chunks_needed, chunks()));
   while (slots < chunks() && !has_room(slots)) ++slots;

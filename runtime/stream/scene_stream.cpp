@@ -22,8 +22,10 @@ ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) 
 
 SlotShape SceneStream::slot_shape(const SceneFile& file) {
   SlotShape shape{0, 0};
-  for (const ChunkEntry& entry : file.chunks())
+  for (size_t chunk = 0; chunk < file.chunks().size(); ++chunk) {
+    const ChunkEntry entry = file.chunks().numbers(chunk);
     shape = {std::max(shape.nodes, entry.node_count), std::max(shape.records, entry.record_count)};
+  }
   return shape;
 }
 

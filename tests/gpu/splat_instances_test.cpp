@@ -1,4 +1,5 @@
 // Several scenes in one view on the device: one picture, and that of the CPU and the reference.
+#include "cuda/device/buffer.h"
 #include "tests/gpu/agreement.h"
 #include "tests/gpu/guarded_image.h"
 #include "tests/gpu/splat_test.h"

@@ -100,12 +100,17 @@ TEST(StreamingRecords, ScatteredOnesAreTheSame) {
   EXPECT_GT(scattered, 100u);
 }
 
-// There are fewer blocks then than even what is pinned may need.
-TEST(StreamingRecords, AHeaderThatClaimsTooManyLeavesIsNoCrash) {
+// There are fewer blocks then than even what is pinned may need, or fewer leaves than nodes that a
+// cut has.
+class ClaimedLeaves : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Claims, ClaimedLeaves, ::testing::Values(false, true),
+                         [](const auto& few) { return few.param ? "TooFew" : "TooMany"; });
+
+TEST_P(ClaimedLeaves, AreNoCrash) {
   test::Bytes bytes = scene();
   FileHeader header;
   std::memcpy(&header, bytes.data(), sizeof header);
-  header.leaf_count = header.node_count - 1;
+  header.leaf_count = GetParam() ? 1 : header.node_count - 1;
   std::memcpy(bytes.data(), &header, sizeof header);
   bytes = test::sealed(bytes);
   const auto backend = create_cpu_backend();
