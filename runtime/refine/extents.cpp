@@ -6,16 +6,18 @@
 namespace voyager {
 namespace {
 
-// How far what was measured is followed: as a power, as if so many pictures had shown what the
-// extent says, and at most by a factor.
-constexpr double kFollow = 0.5, kBelief = 24, kMostGrowth = 16;
+// How far what was measured is followed: as a power, less where extents shrink, as if so many
+// pictures had shown what the extent says, and at most by a factor. A node that shows little error
+// may be hidden in these pictures, and near in others.
+constexpr double kFollow = 0.5, kFollowDown = 0.2, kBelief = 24, kMostChange = 16;
 
 bool is_measured(const LodTree& tree, uint32_t node) {
   const NodeRecord& r = tree.records[node];
   return r.child_count != 0 && r.extent > 0 && std::isfinite(r.extent);
 }
 
-// What turns a squared gain into a squared extent: half of the nodes that gain anything grow.
+// What turns a squared gain into a squared extent: half of the nodes that gain anything are to
+// grow.
 double scale_of(const Measured& measured, const LodTree& tree) {
   std::vector<double> ratios;
   for (uint32_t n = 0; n < tree.size(); ++n) {
@@ -29,8 +31,7 @@ double scale_of(const Measured& measured, const LodTree& tree) {
   return *middle;
 }
 
-// None shrinks: a node that shows little error may be hidden in these pictures, and near in others.
-void grow_extents(const Measured& measured, LodTree& tree) {
+void change_extents(const Measured& measured, LodTree& tree) {
   const double scale = scale_of(measured, tree);
   for (uint32_t n = 0; n < tree.size(); ++n) {
     if (!is_measured(tree, n) || measured.pictures[n] == 0) continue;
@@ -38,9 +39,10 @@ void grow_extents(const Measured& measured, LodTree& tree) {
     const double extent = r.extent, pictures = measured.pictures[n];
     const double found = std::max(measured.gain[n], 0.0) * scale + kBelief * extent * extent;
     const double square = found / (pictures + kBelief) / (extent * extent);
-    const double growth = std::clamp(std::pow(square, kFollow / 2), 1.0, kMostGrowth);
-    const auto grown = static_cast<float>(extent * growth);
-    if (std::isfinite(grown)) r.extent = grown;
+    const double change = std::pow(square, (square < 1 ? kFollowDown : kFollow) / 2);
+    const auto changed =
+        static_cast<float>(extent * std::clamp(change, 1 / kMostChange, kMostChange));
+    if (std::isfinite(changed)) r.extent = changed;
   }
 }
 
@@ -55,7 +57,7 @@ void never_grow_downwards(LodTree& tree) {
 }
 
 void set_extents(const Measured& measured, LodTree& tree) {
-  grow_extents(measured, tree);
+  change_extents(measured, tree);
   never_grow_downwards(tree);
 }
 

@@ -4,8 +4,7 @@
 
 namespace voyager {
 
-// Lets extents grow towards what was measured (docs/lod-tree.md), so that none is below its
-// children's.
+// Moves extents towards what was measured (docs/lod-tree.md), so that none is below its children's.
 void set_extents(const Measured& measured, LodTree& tree);
 
 // Raises every extent to its children's greatest.

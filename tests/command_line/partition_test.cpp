@@ -97,11 +97,10 @@ TEST(CommandLineTree, RefiningChangesExtentsAloneAndLeavesNothingBehind) {
     for (size_t i = 0; i < a.records.size(); ++i) {
       ASSERT_TRUE(a.records[i].box_min == b.records[i].box_min &&
                   a.records[i].box_max == b.records[i].box_max);
-      ASSERT_GE(b.records[i].extent, a.records[i].extent);
       changed += a.records[i].extent != b.records[i].extent;
     }
   }
-  EXPECT_GT(changed, 50u);
+  EXPECT_GT(changed, 1000u);
 
   const std::string bake = "voyager bake " + city + " -o " + folder.file("no.voy") + " --refine ";
   for (const std::string value : {"0", "-1", "many", "1048577"}) {
