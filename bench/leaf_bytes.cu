@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <string>
 
 #include "cuda/search/search.h"
 #include "cuda/stream/pool_layout.h"
@@ -45,7 +46,9 @@ int main(int argc, char** argv) try {
   desc.readers = 0;
   const auto scene =
       open_streamed(open_source(argv[1]), desc, *cpu, std::pmr::get_default_resource(), workers);
-  if (!scene->streamed()) throw Error(ErrorCode::unsupported, "only a .voy is streamed");
+  if (!scene->streamed())
+    throw Error(ErrorCode::unsupported,
+                std::string(argv[1]) + ": found a flat scene, expected a .voy");
 
   const SceneFile& file = scene->stream->file();
   const SlotShape shape = SceneStream::slot_shape(file);

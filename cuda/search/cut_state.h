@@ -62,7 +62,7 @@ struct StateView {
   Watch* watch;
   uint32_t* refined;   // bits of slots, and kOpen
   uint32_t* cut;       // bits of slots
-  uint8_t* stand_ins;  // nodes; null where no record is ever blocked
+  uint8_t* stand_ins;  // how many nodes; null where no record is ever blocked
   WatchRow* rows;      // of each block, as many as a whole one has
   const Block* blocks;
   const Tier* tiers;

@@ -101,7 +101,8 @@ SearchFrame PartitionedSearch::frame(const CutQuery& query, cudaStream_t stream)
           references_.current(), device_->multiprocessors(),         stream};
 }
 
-// Of a streamed scene the linker sees to it; of another it was checked when all of it was read.
+// No cut has more nodes. In a streamed scene the linker sees to that; of another the number of
+// leaves was checked when the file was read.
 uint64_t PartitionedSearch::most_nodes() const {
   return streamed_ ? scene_->stream->cut_nodes() : scene_->leaf_count;
 }

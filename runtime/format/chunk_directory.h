@@ -25,7 +25,7 @@ class ChunkDirectory {
   ChunkEntry at(size_t chunk) const;  // throws std::out_of_range
   ChunkEntry front() const { return (*this)[0]; }
   ChunkEntry back() const { return (*this)[size() - 1]; }
-  // All of it but the hull, at a third of the cost.
+  // All of it but the hull, in half the time.
   ChunkEntry numbers(size_t chunk) const;
   // Of its entry, at less cost.
   EntryHull hull(size_t chunk) const { return decode_bounds(rows_[chunk].hull); }

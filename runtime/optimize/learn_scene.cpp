@@ -41,7 +41,6 @@ constexpr uint32_t measures_of(uint32_t pictures) {
 constexpr uint32_t kFirstMeasure = 134'217'757, kFirstChosenBy = 201'326'611,
                    kFirstHeldOut = 268'435'459;
 
-constexpr uint32_t kMostPictures = 1'000'000'000;
 constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
 // Views in which progress is told, and which of HeldOutViews' τ it is of.
 constexpr uint32_t kFew = 6;

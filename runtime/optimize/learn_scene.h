@@ -11,6 +11,7 @@ OptimizeSummary learn_scene(BakedScene& baked, const LookedAt& looked_at, const 
                             Backend& backend, const std::string& kept, Workers& workers,
                             const Progress& progress);
 
+inline constexpr uint32_t kMostPictures = 1'000'000'000;  // to learn from
 // Pictures that extents are measured in, where so many are learned from.
 uint32_t measured_with(uint32_t pictures);
 // How many pictures to learn from in so much time, where each takes so long, and `others` are drawn

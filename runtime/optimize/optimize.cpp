@@ -168,7 +168,7 @@ uint32_t pictures_of(OptimizeQuality quality, uint64_t merged_nodes) {
   // For a thousand merged nodes, and at least.
   const auto number = [&](uint64_t of_thousand, uint64_t least) {
     return static_cast<uint32_t>(
-        std::clamp<uint64_t>(merged_nodes * of_thousand / 1000, least, 1'000'000'000));
+        std::clamp<uint64_t>(merged_nodes * of_thousand / 1000, least, kMostPictures));
   };
   switch (quality) {
     case OptimizeQuality::draft:

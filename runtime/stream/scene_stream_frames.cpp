@@ -66,8 +66,8 @@ void SceneStream::check_fits() const {
   refuse_room(records_.enough(seen, blocks));
 }
 
-// Of what is settled: a view's cut has no room for something that is seen. Only a
-// file that says it has fewer leaves than it has is refused however large the budget is.
+// Of what is settled: a view's cut has no room for something that is seen. However large the budget
+// is, a file that says it has fewer leaves than it has is refused.
 void SceneStream::check_cut() const {
   if (linker_.refuses([&](uint32_t chunk) { return residency_.is_seen(chunk); }))
     refuse_room(records_.of(graph_.size()));

@@ -216,6 +216,9 @@ TEST(Optimize, MinutesGiveAsManyPicturesAsThereIsTimeFor) {
         const double measured = measured_with(learned);
         EXPECT_NEAR((learned + measured + others) * each, minutes * 60000, 10 * each);
       }
+  EXPECT_EQ(measured_with(600), 9 * 60u);
+  EXPECT_EQ(measured_with(2400), 9 * 64u);
+  EXPECT_EQ(measured_with(40'000), 9 * 256u);
   EXPECT_EQ(pictures_in(1e-6, 1, 100), 1u);
   EXPECT_EQ(pictures_in(1e9, 1e-3, 0), 1'000'000'000u);
   const test::TempFolder folder;
