@@ -119,14 +119,22 @@ __device__ bool make_room(const StateView& state, uint32_t segment, Dirty& dirty
 
 // New places for all segments, with new room; every block with an open subtree is to
 // be written. After jumps: a step finds room among neighbours.
-__device__ uint32_t move_segments(const StateView& state, BlockScan::TempStorage& storage) {
+__device__ uint32_t move_segments(const StateView& state, SegmentFit fit,
+                                  BlockScan::TempStorage& storage) {
   return scan(
       kLevels * state.block_count, storage,
-      [&](uint32_t i) { return segment_room(state.segments[i].size); },
+      [&](uint32_t i) { return segment_room(state.segments[i].size, fit); },
       [&](uint32_t i, uint32_t room, uint32_t before) {
         state.segments[i].first = before;
         state.segments[i].room = room;
       });
+}
+
+// A list ends with a row: what no segment writes of it holds no node.
+__device__ uint32_t end_row(const StateView& state, uint32_t places) {
+  const uint32_t end = (places + kRowPlaces - 1) / kRowPlaces * kRowPlaces;
+  if (places + threadIdx.x < end) state.nodes[places + threadIdx.x] = kNoNode;
+  return end;
 }
 
 // `list`: of blocks, those that are open.
@@ -148,6 +156,7 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   __shared__ bool moves;
   FrameCounters &counting = *state.counting, &counted = *state.counted;
   uint32_t list_size = counted.list_size;
+  SegmentFit fit = counted.fit;
   const bool open_changed = counting.open_blocks_changed != 0;
   if (threadIdx.x == 0) {
     outgrown.count = 0;
@@ -158,7 +167,8 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
     find_outgrown(state, state.blocks[state.dirty[i]], outgrown);
   __syncthreads();
   if (threadIdx.x < 32) {
-    bool fits = outgrown.count <= Outgrown::kMost;
+    bool fits =
+        outgrown.count == 0 || (fit != SegmentFit::packed && outgrown.count <= Outgrown::kMost);
     for (uint32_t i = 0; fits && i < outgrown.count; ++i) {
       fits = make_room(state, outgrown.segments[i], dirty);
       __syncwarp();
@@ -170,7 +180,14 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
     state.dirty_flags[state.dirty[i]] = 0;
   __syncthreads();
   if (moves) {
-    list_size = move_segments(state, storage);
+    fit = SegmentFit::roomy;
+    list_size = move_segments(state, fit, storage);
+    for (const SegmentFit less : {SegmentFit::rows, SegmentFit::packed}) {
+      if (list_size <= state.list_room) break;
+      fit = less;
+      list_size = move_segments(state, fit, storage);
+    }
+    list_size = end_row(state, list_size);
     const uint32_t open = list_open(state, storage, state.dirty);
     if (threadIdx.x == 0) dirty.count = open;
   }
@@ -185,6 +202,7 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
     counted.cut_size = static_cast<uint32_t>(before + counting.entered - counting.left);
     counted.stand_ins += stand_ins;
     counted.list_size = list_size;
+    counted.fit = fit;
     counted.dirty_count = dirty.count;
     counting = FrameCounters{};
   }

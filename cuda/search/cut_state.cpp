@@ -29,12 +29,18 @@ Layout make_layout(const SearchTree& tree) {
   return layout;
 }
 
-// What search_place gives so many nodes, and with what segments' ends take, at most.
+// What search_place gives so many nodes; and what roomy segments have beside that, as long as it is
+// no more than another place in eight. Where few chunks of many are resident a list would be mostly
+// that, else. What is more than a list has room for is packed.
 uint64_t most_places_of(uint64_t nodes) {
   return nodes + nodes / 8;
 }
+uint64_t ends_of_segments(const SearchTree& tree) {
+  return 2 * kRowPlaces * kLevels * block_count(tree, kBlockSubtrees);
+}
+constexpr uint64_t kLeastPlaces = 2 * kRowPlaces;
 uint64_t most_places(const SearchTree& tree, uint64_t most) {
-  return most_places_of(most) + 2 * kRowPlaces * kLevels * block_count(tree, kBlockSubtrees);
+  return most_places_of(most) + std::min(ends_of_segments(tree), most / 8) + kLeastPlaces;
 }
 
 // Without origins.
@@ -49,12 +55,19 @@ uint64_t CutState::eight_nodes() {
   return list_bytes(most_places_of(8));
 }
 
+uint64_t CutState::spare_of_eight() {
+  return list_bytes(1);
+}
+uint64_t CutState::most_spare(const SearchTree& tree) {
+  return list_bytes(ends_of_segments(tree));
+}
+
 uint64_t CutState::fixed_bytes(const SearchTree& tree) {
   constexpr uint64_t kBlock = sizeof(Block) + kBlockRows * sizeof(WatchRow) +
                               kLevels * sizeof(Segment) + 4 * sizeof(uint32_t);
   return block_count(tree, kBlockSubtrees) * kBlock + tree.tier_begin.size() * sizeof(Tier) +
          2 * sizeof(FrameCounters) + 2 * sizeof(uint32_t) + sizeof(MeanBounds) +
-         list_bytes(most_places(tree, 0));
+         list_bytes(kLeastPlaces);
 }
 
 CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most,
@@ -116,6 +129,7 @@ StateView CutState::view(SubtreePlaces places) const {
           counters_.data(),
           counters_.data() + 1,
           nodes_.data(),
+          list_room(),
           origin_.data(),
           bounds_.data()};
 }

@@ -14,10 +14,16 @@ namespace voyager::cuda {
 inline constexpr uint32_t kBlockSubtrees = 512, kBlockRows = kBlockSubtrees / kRowSubtrees;
 inline constexpr uint32_t kLevels = 3;  // of a tier
 
-// Places for a segment of so many nodes, in whole rows: one in eight to spare.
-VOYAGER_HD uint32_t segment_room(uint32_t size) {
-  constexpr uint32_t kAlign = kRowPlaces;
-  return size == 0 ? 0 : (size + size / 8 + 2 * kAlign - 1) / kAlign * kAlign;
+// How much room segments have where all of them get new places.
+enum class SegmentFit : uint32_t {
+  roomy,  // whole rows, and one place in eight to spare: they grow without moving others
+  rows,   // the rows that they take
+  packed  // the places that they take: neighbours share a row, and where one grows all move
+};
+VOYAGER_HD uint32_t segment_room(uint32_t size, SegmentFit fit) {
+  if (size == 0 || fit == SegmentFit::packed) return size;
+  const uint32_t most = fit == SegmentFit::rows ? size : size + size / 8 + kRowPlaces;
+  return (most + kRowPlaces - 1) / kRowPlaces * kRowPlaces;
 }
 
 // Consecutive subtrees of one tier. Their cut nodes are in the cut list in three
@@ -46,6 +52,7 @@ struct FrameCounters {
   // Nodes, places in the list, and nodes that stand in for children that are not resident. They
   // are kept from frame to frame.
   uint32_t cut_size, list_size, stand_ins;
+  SegmentFit fit;                // the same, of the segments
   uint32_t streamed;             // 1: by streaming
   uint32_t due_count;            // entries of due[]
   uint32_t dirty_count;          // entries of dirty[]
@@ -78,6 +85,7 @@ struct StateView {
   uint32_t* signals;      // to open or close a subtree; kNoSignal where not written yet
   FrameCounters *counting, *counted;
   uint32_t* nodes;     // the cut list: ascending, with kNoNode in between
+  uint32_t list_room;  // its places
   CutOrigin* origin;   // of each place, or null
   MeanBounds* bounds;  // of each row
 };
@@ -91,11 +99,14 @@ class CutState {
   // has more nodes. origins: the list has what weights depend on. All memory is taken here.
   CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most, bool origins);
   // What it takes of a streamed scene, without origins: for eight places, of which one may be due
-  // (an experiment that visits all takes more); for eight nodes of `most`; and beside them, with
-  // places for all segments' ends.
+  // (an experiment that visits all takes more); for eight nodes of `most`, and for what they may
+  // have to spare in rows, of which all segments together have no more than so much; and beside
+  // them.
   static constexpr uint64_t kEightPlaces =
       8 * (sizeof(Watch) + 3 * sizeof(uint32_t) + sizeof(uint8_t)) + sizeof(uint32_t);
   static uint64_t eight_nodes();
+  static uint64_t spare_of_eight();
+  static uint64_t most_spare(const SearchTree& tree);
   static uint64_t fixed_bytes(const SearchTree& tree);
 
   // places: the device's tree's, where its subtrees are read or written.

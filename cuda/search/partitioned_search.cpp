@@ -293,7 +293,9 @@ RoomBytes with_view(const PoolBytes& pool, const Scene& scene, SlotShape shape) 
       .slot = static_cast<uint64_t>(std::ceil(share * shape.nodes)),
       .fixed = uint64_t{kFewChunks} * shape.nodes + top,
       .most = std::max<uint64_t>(scene.leaf_count, std::min<uint64_t>(top, scene.node_count)),
-      .eight_nodes = CutState::eight_nodes()};
+      .eight_nodes = CutState::eight_nodes(),
+      .spare_of_eight = CutState::spare_of_eight(),
+      .most_spare = CutState::most_spare(scene.search)};
   static_assert(kPageSubtrees % 8 == 0);
   const uint64_t page = kPageSubtrees / 8 * CutState::kEightPlaces;
   return {pool, {0, 0, CutState::fixed_bytes(scene.search) + page, page}, list};

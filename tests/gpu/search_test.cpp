@@ -2,6 +2,7 @@
 // ids and the same weights, to the bit, whatever the camera does.
 #include <cstdlib>
 #include <cstring>
+#include <set>
 
 #include "cuda/search/search.h"
 #include "runtime/base/error.h"
@@ -227,6 +228,22 @@ TEST_F(SearchTest, EqualTheHostsWhereEachLaneHasASubtree) {
     frames += stats.ran == Search::temporal && stats.subtrees_visited > kMostLanes;
   }
   EXPECT_GT(frames, 0) << "no frame had so many due";
+}
+
+// A list has room for whole rows of places where there are many nodes to a level. Here each level
+// has a few: rows for all would take more, and levels share them.
+TEST_F(SearchTest, EqualTheHostsWhereAListHasNoRoomForRows) {
+  std::mt19937 random(4);
+  const auto scene = scene_of(random_tree(TreeShape::uneven, 3000, 9));
+  std::vector<uint32_t> level(scene->tree.size());
+  for (uint32_t n = 1; n < level.size(); ++n) level[n] = level[scene->tree.parent[n]] + 1;
+  std::set<uint32_t> levels;
+  for (const uint32_t n : Oracle(*scene).at({{}, 1e-9f}).cut) levels.insert(level[n]);
+  ASSERT_GT(32 * levels.size(), 2 * scene->leaf_count) << "rows for all levels have room";
+  std::vector<CutQuery> path = walk(random, 40, 1e-9f);
+  for (const CutQuery& q : walk(random, 40, 0.1f)) path.push_back(q);
+  for (const CutQuery& q : jumps(scene->tree, random, 20)) path.push_back(q);
+  expect_equal(scene, path, "uneven");
 }
 
 TEST_F(SearchTest, ASweepOfGranularityThereAndBackGivesTheSameCuts) {

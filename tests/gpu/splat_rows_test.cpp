@@ -35,6 +35,20 @@ TEST_F(SplatRows, NoPixelMissesThem) {
     }
 }
 
+// Of so few that the nodes of several levels share a row.
+TEST_F(SplatRows, NoPixelMissesThoseThatLevelsShare) {
+  for (const size_t count : {7, 40, 300}) {
+    const auto scene = baked_scene(random_cloud(count, 98, 1));
+    for (const double tau : {0.0, 3.0}) {
+      const auto kept = view(scene, {.search = Search::temporal});
+      for (const Camera& camera : way()) {
+        const FrameInput input = frame_input(camera, tau);
+        expect_same_bits(render(*kept, input), draw(scene, {.search = Search::exhaustive}, input));
+      }
+    }
+  }
+}
+
 TEST_F(SplatRows, NoPixelOfEitherEyeMissesThem) {
   const auto scene = baked_scene(random_cloud(share_of(60000), 96, 1), Quality::compact);
   const auto kept = view(scene, {.search = Search::temporal, .eyes = 2});
