@@ -12,7 +12,7 @@ struct TreeView {
   SubtreePlaces places;
   const SearchRecord* records;
   const uint32_t* next_block;  // of a streamed scene, as SearchTree's
-  const SearchChunk* chunks;
+  const SearchChunk* chunks;   // of a streamed scene by slot
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
   uint32_t subtree_count, place_count, chunk_count;
   float blend_share;  // LodTree's

@@ -61,12 +61,6 @@ __device__ inline void read_subtrees(const TreeView& tree, const StateView& stat
   }
 }
 
-__device__ inline SearchChunk load_chunk(const SearchChunk* chunk) {
-  const float4* words = reinterpret_cast<const float4*>(chunk);
-  const float4 a = __ldg(words), b = __ldg(words + 1);
-  return {{a.x, a.y, a.z}, a.w, {b.x, b.y, b.z}, __float_as_uint(b.w)};
-}
-
 __device__ inline bool has_open(const StateView& state, uint32_t first, uint32_t last) {
   bool open = false;
   for (uint32_t b = block_of(state, first); b <= block_of(state, last - 1); ++b)
@@ -87,11 +81,11 @@ __device__ inline void stream_chunks(const TreeView& tree, const StateView& stat
     uint32_t first = 0, count = 0;
     bool reached = false, stale = false;
     if (lane_in_warp() < kTicketChunks && chunk < tree.chunk_count) {
-      const SearchChunk c = load_chunk(tree.chunks + chunk);
+      const SearchChunk c = tree.chunks[chunk];
       first = c.first_subtree;
-      count = tree.chunks[chunk + 1].first_subtree - first;
-      reached = judge({c.hull_min, c.extent, c.hull_max}, sight).refined;
-      stale = !reached && has_open(state, first, first + count);
+      count = c.last_subtree - first;
+      reached = count != 0 && judge(decode_bounds(c.hull), sight).refined;
+      stale = count != 0 && !reached && has_open(state, first, c.last_subtree);
       ++tally.hulls;
       tally.chunks += reached;
     }

@@ -95,26 +95,13 @@ void DevicePool::make_room(PoolRoom room) {
   slot_ids_.assign(room.slots, {});
   slots_ = room.slots;
   pages_ = room.pages;
-  upload_chunks();
+  check(cudaMemset(array<SearchChunk>(kChunks), 0, slots_ * layout_.slot_bytes(kChunks)), "links");
   check(cudaMemset(array<uint32_t>(kPages), 0, layout_.fixed_bytes(kPages)), "links");
   check(cudaMemset(array<uint32_t>(kLargeFamilyCount), 0, layout_.fixed_bytes(kLargeFamilyCount)),
         "links");
   check(cudaStreamSynchronize(nullptr), "links");
   launch_unlink_all(array<SearchSubtree>(kSubtrees), place_count(), stream_.get());
   applied_.record(stream_.get());
-}
-
-void DevicePool::upload_chunks() {
-  constexpr uint32_t kAtOnce = 1 << 16;
-  const uint32_t all = file_->info().chunk_count + 1;
-  std::vector<SearchChunk> some;
-  for (uint32_t first = 0; first < all; first += kAtOnce) {
-    some.resize(std::min(kAtOnce, all - first));
-    set_search_chunks(*file_, first, some);
-    check(cudaMemcpy(array<SearchChunk>(kChunks) + first, some.data(),
-                     some.size() * sizeof(SearchChunk), cudaMemcpyHostToDevice),
-          "chunk hulls");
-  }
 }
 
 void DevicePool::await_frames() {
@@ -184,7 +171,7 @@ TreeView DevicePool::tree() const {
           layout_.unit(kLeaves) == 0 ? nullptr : array<NodeRecord>(kLeaves),
           file_->info().subtree_count,
           place_count(),
-          file_->info().chunk_count,
+          slots_,
           blend_share_};
 }
 
@@ -292,16 +279,17 @@ void DevicePool::apply(const LinkPatch& patch) {
     throw Error(ErrorCode::internal, "streaming: found " + std::to_string(patch.large->size()) +
                                          " large families, expected at most " +
                                          std::to_string(most));
-  const PoolPatch copy = patches_.put(patch);
+  const PoolPatch copy = patches_.put(patch, *file_);
   put_behind_frames();
   launch_patch(
       {array<SearchSubtree>(kSubtrees), array<uint32_t>(kPages), array<SearchRecord>(kRecords),
-       array<uint32_t>(kOutside), tables_ == nullptr ? nullptr : array<LargeFamily>(kLargeFamilies),
+       array<uint32_t>(kOutside), array<SearchChunk>(kChunks),
+       tables_ == nullptr ? nullptr : array<LargeFamily>(kLargeFamilies),
        array<uint32_t>(kLargeFamilyCount)},
       copy, stream_.get());
   patches_.read_by(stream_.get());
   applied_.record(stream_.get());
-  for (const auto& [slot, ids] : patch.arrived) slot_ids_[slot] = ids;
+  for (const LinkPatch::Arrived& arrived : patch.arrived) slot_ids_[arrived.slot] = arrived.ids;
 }
 
 void DevicePool::require_room() const {

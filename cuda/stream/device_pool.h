@@ -71,7 +71,6 @@ class DevicePool final : public ChunkPool {
   void require_room() const;
   void put_behind_frames();
   void make_room(PoolRoom room);
-  void upload_chunks();
 
   const std::shared_ptr<const Device> device_;
   const std::shared_ptr<const CodeTables> tables_;  // of a coded scene

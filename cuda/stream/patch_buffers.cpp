@@ -4,6 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "runtime/stream/search_chunks.h"
+
 namespace voyager::cuda {
 namespace {
 
@@ -40,6 +42,8 @@ size_t bytes_of(const LinkPatch& p) {
   return (p.cut.records.size() + p.tied.records.size()) * sizeof(LinkPatch::Record) +
          p.linked.size() * (sizeof(SearchSubtree) + sizeof(uint32_t)) +
          p.outside.size() * sizeof(LinkPatch::Outside) + p.unlinked.size() * sizeof(uint32_t) +
+         p.left.size() * sizeof(uint32_t) +
+         p.arrived.size() * (sizeof(SearchChunk) + sizeof(uint32_t)) +
          p.pages.size() * sizeof(PageChange) +
          (p.large ? p.large->size() * sizeof(LargeFamily) : 0);
 }
@@ -64,7 +68,7 @@ MappedMemory& PatchBuffers::free_memory(size_t bytes) {
   return *buffer.memory;
 }
 
-PoolPatch PatchBuffers::put(const LinkPatch& patch) {
+PoolPatch PatchBuffers::put(const LinkPatch& patch, const SceneFile& file) {
   Writer writer(free_memory(bytes_of(patch)));
   PoolPatch p{};
   p.cut = writer.put(patch.cut.records);
@@ -80,12 +84,19 @@ PoolPatch PatchBuffers::put(const LinkPatch& patch) {
   p.linked_subtrees =
       writer.put<uint32_t>(patch.linked.size(), [&](size_t i) { return patch.linked[i].first; });
   p.unlinked = writer.put(patch.unlinked);
+  p.left = writer.put(patch.left);
+  p.arrived = writer.put<SearchChunk>(
+      patch.arrived.size(), [&](size_t i) { return search_chunk(file, patch.arrived[i].chunk); });
+  p.arrived_slots =
+      writer.put<uint32_t>(patch.arrived.size(), [&](size_t i) { return patch.arrived[i].slot; });
   p.pages = writer.put(patch.pages);
   p.cut_count = count_of(patch.cut.records);
   p.tied_count = count_of(patch.tied.records);
   p.linked_count = count_of(patch.linked);
   p.outside_count = count_of(patch.outside);
   p.unlinked_count = count_of(patch.unlinked);
+  p.left_count = count_of(patch.left);
+  p.arrived_count = count_of(patch.arrived);
   p.page_count = count_of(patch.pages);
   return p;
 }

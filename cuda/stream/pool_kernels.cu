@@ -76,6 +76,8 @@ __global__ void __launch_bounds__(kThreads) pool_cut(PoolTables tables, PoolPatc
   set_records(tables, patch.cut, patch.cut_count);
   for (uint32_t i = first_index(); i < patch.unlinked_count; i += stride())
     tables.subtrees[places_of(tables)(patch.unlinked[i])].entry = kNotLinked;
+  for (uint32_t i = first_index(); i < patch.left_count; i += stride())
+    tables.chunks[patch.left[i]] = SearchChunk{};
 }
 
 __global__ void __launch_bounds__(kThreads) pool_place(PoolTables tables, PoolPatch patch) {
@@ -97,6 +99,8 @@ __global__ void __launch_bounds__(kThreads) pool_tie(PoolTables tables, PoolPatc
     const LinkPatch::Outside o = patch.outside[i];
     tables.outside[places(o.subtree)] = o.parent;
   }
+  for (uint32_t i = first_index(); i < patch.arrived_count; i += stride())
+    tables.chunks[patch.arrived_slots[i]] = patch.arrived[i];
   if (!patch.large_changed || tables.large == nullptr) return;
   for (uint32_t i = first_index(); i < patch.large_count; i += stride())
     tables.large[i] = patch.large[i];
@@ -122,14 +126,15 @@ void launch_fill(const PoolFill& fill, cudaStream_t stream) {
 }
 
 void launch_patch(const PoolTables& tables, const PoolPatch& patch, cudaStream_t stream) {
-  if (const uint32_t most = std::max(patch.cut_count, patch.unlinked_count); most != 0) {
+  if (const uint32_t most = std::max({patch.cut_count, patch.unlinked_count, patch.left_count});
+      most != 0) {
     launch_kernel("pool_cut", pool_cut, {blocks_for(most), kThreads, stream}, tables, patch);
   }
   if (patch.page_count != 0)
     launch_kernel("pool_place", pool_place,
                   {blocks_for(patch.page_count * kPageSubtrees), kThreads, stream}, tables, patch);
-  if (const uint32_t most =
-          std::max({patch.tied_count, patch.linked_count, patch.outside_count, patch.large_count});
+  if (const uint32_t most = std::max({patch.tied_count, patch.linked_count, patch.outside_count,
+                                      patch.arrived_count, patch.large_count});
       most != 0 || patch.large_changed) {
     launch_kernel("pool_tie", pool_tie, {blocks_for(most), kThreads, stream}, tables, patch);
   }

@@ -34,7 +34,8 @@ struct PoolTables {
   uint32_t* pages;
   SearchRecord* records;
   uint32_t* outside;
-  LargeFamily* large;  // null where they are not asked for
+  SearchChunk* chunks;  // by slot
+  LargeFamily* large;   // null where they are not asked for
   uint32_t* large_count;
 };
 
@@ -46,10 +47,13 @@ struct PoolPatch {
   const LinkPatch::Outside* outside;
   const uint32_t* linked_subtrees;  // of each of linked
   const uint32_t* unlinked;
+  const uint32_t* left;
+  const SearchChunk* arrived;
+  const uint32_t* arrived_slots;  // of each of arrived
   const PageChange* pages;
   const LargeFamily* large;
-  uint32_t cut_count, tied_count, linked_count, outside_count, unlinked_count, page_count,
-      large_count;
+  uint32_t cut_count, tied_count, linked_count, outside_count, unlinked_count, left_count,
+      arrived_count, page_count, large_count;
   bool large_changed;
 };
 

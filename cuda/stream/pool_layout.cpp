@@ -39,13 +39,12 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
            sizeof(uint32_t),
            sizeof(SearchSubtree),
            sizeof(uint32_t),
-           sizeof(uint32_t),
            sizeof(SearchChunk),
+           sizeof(uint32_t),
            sizeof(LargeFamily),
            sizeof(uint32_t)};
   fixed_bytes_ = {};
   fixed_bytes_[kPages] = pages_of(scene.search.subtree_count()) * unit_[kPages];
-  fixed_bytes_[kChunks] = (uint64_t{scene.search.chunk_count} + 1) * unit_[kChunks];
   if (coded) {
     fixed_bytes_[kLargeFamilies] = most_large_families(scene.node_count) * unit_[kLargeFamilies];
     fixed_bytes_[kLargeFamilyCount] = unit_[kLargeFamilyCount];
@@ -62,6 +61,7 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
     const bool filled = a < kFilledArrays && block_bytes_[a] == 0;
     slot_bytes_[a] = (!filled ? 0 : counted_by(a) == kOnce ? 1 : shape.nodes) * unit_[a];
   }
+  slot_bytes_[kChunks] = unit_[kChunks];
   set_room(room);
 }
 

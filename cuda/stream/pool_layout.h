@@ -27,9 +27,10 @@ enum PoolArray : uint32_t {
   // By page of subtrees (runtime/math/subtree_places.h).
   kSubtrees = kFilledArrays,
   kOutside,  // one a subtree; of one that is in no cut it may be anything
+  // By slot; not of chunks that are on their way.
+  kChunks,
   // Of the whole tree.
   kPages,  // one a page
-  kChunks,
   // Of a compact scene.
   kLargeFamilies,
   kLargeFamilyCount,

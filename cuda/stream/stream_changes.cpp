@@ -20,7 +20,7 @@ std::optional<Relinked> StreamChanges::follow(const SceneStream& stream, const D
       stream.changes_since(version_, changes_) && slots_.size() == pool.slot_ids().size();
   if (known)
     for (const auto& change : changes_)
-      for (const auto& [slot, ids] : change->arrived) slots_[slot] = ids;
+      for (const LinkPatch::Arrived& arrived : change->arrived) slots_[arrived.slot] = arrived.ids;
   else
     slots_ = pool.slot_ids();
   slot_nodes_ = pool.slot_nodes();

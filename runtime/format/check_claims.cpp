@@ -20,12 +20,10 @@ constexpr size_t kSamples = 32, kSound = kSamples / 8;
 // stored, as a search reads it, and what views keep of it.
 constexpr uint64_t kNodeBytes = 112, kRecordBytes = 40, kSubtreeBytes = 64;
 
-uint64_t claim_of(const SceneFile& file, size_t index) {
-  const ChunkEntry chunk = file.chunks().numbers(index);
-  const auto coefficients = static_cast<uint64_t>(sh_coefficients(file.info().sh_degree));
-  const uint64_t sh = 3 * sizeof(float) * coefficients;
-  return chunk.bytes + chunk.node_count * (kNodeBytes + sh) + chunk.record_count * kRecordBytes +
-         chunk.subtree_count * kSubtreeBytes;
+uint64_t claim_of(const SceneFileInfo& info, uint64_t bytes, uint64_t nodes, uint64_t records,
+                  uint64_t subtrees) {
+  const uint64_t sh = 3 * sizeof(float) * static_cast<uint64_t>(sh_coefficients(info.sh_degree));
+  return bytes + nodes * (kNodeBytes + sh) + records * kRecordBytes + subtrees * kSubtreeBytes;
 }
 
 std::string damage_of(const SceneFile& file, uint32_t chunk) {
@@ -44,7 +42,8 @@ std::vector<uint32_t> chunks_at(std::vector<uint64_t> places, const SceneFile& f
   std::vector<uint32_t> chunks;
   uint64_t end = 0;
   for (uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk) {
-    end += claim_of(file, chunk);
+    const ChunkEntry e = file.chunks().numbers(chunk);
+    end += claim_of(file.info(), e.bytes, e.node_count, e.record_count, e.subtree_count);
     while (chunks.size() < places.size() && places[chunks.size()] < end) chunks.push_back(chunk);
   }
   return chunks;
@@ -53,9 +52,8 @@ std::vector<uint32_t> chunks_at(std::vector<uint64_t> places, const SceneFile& f
 }  // namespace
 
 uint64_t claimed_bytes(const SceneFile& file) {
-  uint64_t bytes = 0;
-  for (size_t chunk = 0; chunk < file.chunks().size(); ++chunk) bytes += claim_of(file, chunk);
-  return bytes;
+  const ChunkDirectory::Totals& all = file.chunks().totals();
+  return claim_of(file.info(), all.bytes, all.nodes, all.records, file.info().subtree_count);
 }
 
 uint64_t process_seed() {

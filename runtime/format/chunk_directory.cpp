@@ -24,6 +24,9 @@ void ChunkDirectory::add(const ChunkEntry& entry) {
   open_.push_back(entry);
   open_.back().hull = round_bounds(entry.hull);
   subtrees_ = entry.first_subtree + entry.subtree_count;
+  totals_ = {totals_.bytes + entry.bytes, totals_.nodes + entry.node_count,
+             totals_.records + entry.record_count, std::max(totals_.most_nodes, entry.node_count),
+             std::max(totals_.most_records, entry.record_count)};
   if (open_.size() == kBlockRows) close_block();
 }
 
@@ -96,9 +99,10 @@ ChunkEntry ChunkDirectory::at(size_t chunk) const {
 
 SubtreePlace ChunkDirectory::place(size_t chunk) const {
   if (const ChunkEntry* entry = wide(chunk)) return entry->place;
+  const Block& block = blocks_[chunk / kBlockRows];
   const Row& row = rows_[chunk];
   SubtreePlace place{{}, row.listed_children, row.listed_grandchildren};
-  for (int level = 0; level < 4; ++level) place.next[level] = next(chunk, level);
+  for (int level = 0; level < 4; ++level) place.next[level] = block.next[level] + row.next[level];
   return place;
 }
 

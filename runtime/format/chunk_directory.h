@@ -18,6 +18,13 @@ class ChunkDirectory {
   // There are no more.
   void close();
 
+  // Of all entries.
+  struct Totals {
+    uint64_t bytes = 0, nodes = 0, records = 0;
+    uint32_t most_nodes = 0, most_records = 0;  // of a chunk
+  };
+  const Totals& totals() const { return totals_; }
+
   size_t size() const { return rows_.size(); }
   bool empty() const { return rows_.empty(); }
   // As the file has it, but for the hull, which is rounded as searches read it (bounds_code.h).
@@ -28,7 +35,8 @@ class ChunkDirectory {
   // All of it but the hull, in half the time.
   ChunkEntry numbers(size_t chunk) const;
   // Of its entry, at less cost.
-  EntryHull hull(size_t chunk) const { return decode_bounds(rows_[chunk].hull); }
+  EntryHull hull(size_t chunk) const { return decode_bounds(hull_code(chunk)); }
+  const BoundsCode& hull_code(size_t chunk) const { return rows_[chunk].hull; }
   SubtreePlace place(size_t chunk) const;
   // place().next[level].
   uint32_t next(size_t chunk, int level) const {
@@ -94,6 +102,7 @@ class ChunkDirectory {
   std::vector<ChunkEntry> wide_;
   std::vector<ChunkEntry> open_;  // of the block that is being added
   uint32_t subtrees_ = 0;         // of all
+  Totals totals_;
 };
 
 }  // namespace voyager

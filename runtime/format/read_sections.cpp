@@ -81,12 +81,6 @@ void check_entry(const ChunkEntry& e, uint64_t at, const FileHeader& h, const Ch
     check_compact_length(e, at, h, check);
 }
 
-uint64_t count_nodes(const Tiers& tiers, const SubtreePlace& from, const SubtreePlace& to) {
-  uint64_t nodes = 0;
-  for (const NodeRange& range : nodes_between(tiers, from, to)) nodes += range.count;
-  return nodes;
-}
-
 // Entry by entry: no byte of the file is outside a checksum, and no subtree or node outside a
 // chunk.
 class DirectoryCheck {
@@ -110,7 +104,7 @@ class DirectoryCheck {
     check_.that(e.subtree_count != 0 && !next_.at_end(), at, "a chunk without subtrees",
                 "at least 1");
     if (i > 0)
-      check_.equal(at, "nodes of the chunk before", count_nodes(tiers_, cursor_.place(), e.place),
+      check_.equal(at, "nodes of the chunk before", count_between(tiers_, cursor_.place(), e.place),
                    nodes_);
     cursor_ = next_;
     nodes_ = e.node_count;
@@ -130,7 +124,7 @@ class DirectoryCheck {
     if (subtree_ == 0) return;
     next_.move_to(h.subtree_count, SubtreePlace::end_of(tiers_));
     check_.equal(offsetof(FileHeader, node_count), "nodes of the last chunk",
-                 count_nodes(tiers_, cursor_.place(), next_.place()), nodes_);
+                 count_between(tiers_, cursor_.place(), next_.place()), nodes_);
   }
 
  private:

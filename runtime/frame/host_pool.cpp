@@ -20,8 +20,9 @@ class HostPool final : public ChunkPool {
  public:
   HostPool(Scene& scene, const SceneFile& file, SlotShape shape, PoolRoom room)
       : scene_(scene), shape_(shape) {
-    scene.search.chunks.resize(size_t{scene.search.chunk_count} + 1);
-    set_search_chunks(file, 0, scene.search.chunks);
+    scene.search.chunks.resize(scene.search.chunk_count);
+    for (uint32_t chunk = 0; chunk < scene.search.chunk_count; ++chunk)
+      scene.search.chunks[chunk] = search_chunk(file, chunk);
     resize(room);
   }
 
@@ -125,7 +126,7 @@ PoolBytes pool_bytes(const Scene& scene, SlotShape shape) {
   const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
   return {shape.nodes * node + scales + sizeof(SlotIds), block,
           page + pages_of(search.subtree_count()) * sizeof(uint32_t) +
-              (uint64_t{search.chunk_count} + 1) * sizeof(SearchChunk) +
+              uint64_t{search.chunk_count} * sizeof(SearchChunk) +
               search.tier_begin.size() * sizeof(uint32_t) +
               (is_coded(scene) ? most_large_families(scene.node_count) * sizeof(LargeFamily) : 0),
           page};

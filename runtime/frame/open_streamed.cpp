@@ -20,12 +20,11 @@ void set_search(const SceneFile& file, SearchTree& search) {
 
 // Before they are read it is not known how many blocks they take.
 uint32_t first_of(const SceneFile& file, const StreamDesc& desc, uint64_t limit) {
-  const RecordRoom records(file);
   uint64_t bytes = 0, blocks = 0;
   uint32_t first = 0;
   for (; first < desc.room.slots; ++first) {
     bytes += file.chunks()[first].bytes;
-    blocks += records.most_blocks(first);
+    blocks += desc.records->most_blocks(first);
     if (bytes > limit || blocks > desc.room.blocks) break;
   }
   return std::max(first, desc.pinned);
@@ -51,7 +50,8 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   StreamDesc stream;
   stream.bytes = backend.room_bytes(*scene, shape);
   stream.budget = desc.budget;
-  stream.room = fit_room(*file, RecordRoom(*file), stream.bytes, stream.budget, 0);
+  stream.records.emplace(*file);
+  stream.room = fit_room(*file, *stream.records, stream.bytes, stream.budget, 0);
   stream.pinned = SceneStream::pinned_chunks(*file, stream.room.slots);
   stream.first = desc.start ? stream.pinned : first_of(*file, stream, desc.first_bytes);
   stream.readers = desc.readers;

@@ -201,27 +201,45 @@ const char* SubtreeCursor::finish(const NodeRecord* records, const Subtree& subt
   return nullptr;
 }
 
-std::vector<NodeRange> nodes_between(const Tiers& tiers, const SubtreePlace& from,
-                                     const SubtreePlace& to) {
+namespace {
+
+// Of each level in turn what lies between: visit(first, end).
+template <class Visit>
+void each_level_between(const Tiers& tiers, const SubtreePlace& from, const SubtreePlace& to,
+                        const Visit& visit) {
   const uint32_t first = tier_of(tiers, from), last = tier_of(tiers, to);
-  std::vector<NodeRange> ranges;
-  if (first > last) return ranges;
+  if (first > last) return;
   if (first == last)
     for (int k = 0; k < 4; ++k)
-      if (to.next[k] < from.next[k]) return ranges;
+      if (to.next[k] < from.next[k]) return;
   for (uint32_t tier = first; tier <= last && tier < tiers.tier_count(); ++tier) {
     const TierLevels levels = levels_of(tiers, tier);
     for (int k = 0; k < 3; ++k) {
       const uint32_t begin = tier == first ? from.next[k] : levels.begin[k];
       const uint32_t end = tier == last ? to.next[k] : levels.end[k];
-      if (begin == end) continue;
-      if (!ranges.empty() && ranges.back().first + ranges.back().count == begin)
-        ranges.back().count += end - begin;
-      else
-        ranges.push_back({begin, end - begin});
+      if (begin != end) visit(begin, end);
     }
   }
+}
+
+}  // namespace
+
+std::vector<NodeRange> nodes_between(const Tiers& tiers, const SubtreePlace& from,
+                                     const SubtreePlace& to) {
+  std::vector<NodeRange> ranges;
+  each_level_between(tiers, from, to, [&](uint32_t begin, uint32_t end) {
+    if (!ranges.empty() && ranges.back().first + ranges.back().count == begin)
+      ranges.back().count += end - begin;
+    else
+      ranges.push_back({begin, end - begin});
+  });
   return ranges;
+}
+
+uint64_t count_between(const Tiers& tiers, const SubtreePlace& from, const SubtreePlace& to) {
+  uint64_t nodes = 0;
+  each_level_between(tiers, from, to, [&](uint32_t begin, uint32_t end) { nodes += end - begin; });
+  return nodes;
 }
 
 }  // namespace voyager

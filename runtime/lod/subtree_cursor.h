@@ -113,5 +113,7 @@ class SubtreeCursor {
 // Both are places that a cursor can move to. Empty where `to` is not after `from`.
 std::vector<NodeRange> nodes_between(const Tiers& tiers, const SubtreePlace& from,
                                      const SubtreePlace& to);
+// How many those are.
+uint64_t count_between(const Tiers& tiers, const SubtreePlace& from, const SubtreePlace& to);
 
 }  // namespace voyager

@@ -156,10 +156,10 @@ void PartitionedSearch::read_chunk_of(uint32_t subtree, uint32_t& chunk, Tally& 
         std::upper_bound(tree_.chunks.begin(), tree_.chunks.end(), subtree,
                          [](uint32_t s, const SearchChunk& c) { return s < c.first_subtree; });
     chunk = static_cast<uint32_t>(after - tree_.chunks.begin()) - 1;
-  } else if (tree_.chunks[chunk + 1].first_subtree > subtree) {
+  } else if (tree_.chunks[chunk].last_subtree > subtree) {
     return;
   }
-  while (tree_.chunks[chunk + 1].first_subtree <= subtree) ++chunk;
+  while (tree_.chunks[chunk].last_subtree <= subtree) ++chunk;
   tally.chunks += mark_read(chunk);
 }
 

@@ -161,31 +161,31 @@ class Builder {
   void set_chunks(Workers& workers) {
     const size_t count = partition_.chunk_count();
     out_.chunk_count = static_cast<uint32_t>(count);
-    out_.chunks.resize(count + 1);
+    out_.chunks.resize(count);
     workers.for_blocks(count, kSubtreesAtOnce, [&](size_t begin, size_t end) {
       for (size_t chunk = begin; chunk < end; ++chunk) out_.chunks[chunk] = hull_of(chunk);
     });
-    out_.chunks[count] = {{0, 0, 0}, 0, {0, 0, 0}, partition_.chunk_begin[count]};
   }
 
   SearchChunk hull_of(size_t chunk) const {
-    constexpr float kMost = std::numeric_limits<float>::max();
     const uint32_t first = partition_.chunk_begin[chunk], last = partition_.chunk_begin[chunk + 1];
     // Subtrees of the tree's root hang from nothing, and are always reached.
-    if (first < out_.tier_begin[1])
-      return {{-kMost, -kMost, -kMost}, kMost, {kMost, kMost, kMost}, first};
-    // Far from everything, and of size 0, where nothing can be reached.
-    SearchChunk hull{{kMost, kMost, kMost}, 0, {-kMost, -kMost, -kMost}, first};
+    if (first < out_.tier_begin[1]) return {encode_bounds(kAlwaysReached), first, last};
+    constexpr float kMost = std::numeric_limits<float>::max();
+    NodeBounds hull{{kMost, kMost, kMost}, 0, {-kMost, -kMost, -kMost}};
+    bool is_reached = false;
     for (uint32_t s = first; s < last; ++s) {
       if (out_.subtrees[s].entry == kNoRecord) continue;
       const NodeBounds r = out_.records[out_.subtrees[s].entry].bounds();
+      is_reached = true;
       hull.extent = std::max(hull.extent, r.extent);
       for (int axis = 0; axis < 3; ++axis) {
-        hull.hull_min[axis] = std::min(hull.hull_min[axis], r.box_min[axis]);
-        hull.hull_max[axis] = std::max(hull.hull_max[axis], r.box_max[axis]);
+        hull.box_min[axis] = std::min(hull.box_min[axis], r.box_min[axis]);
+        hull.box_max[axis] = std::max(hull.box_max[axis], r.box_max[axis]);
       }
     }
-    return hull;
+    // Where nothing leads into it, it may be reached from a point: nothing there is open.
+    return {encode_bounds(is_reached ? hull : NodeBounds{}), first, last};
   }
 
   const LodTree& tree_;

@@ -5,6 +5,7 @@
 //
 // Plain arrays: the same bytes serve the CPU and the device.
 #include <cstdint>
+#include <limits>
 #include <memory_resource>
 #include <span>
 #include <vector>
@@ -155,12 +156,16 @@ VOYAGER_HD SubtreeSpan subtrees_below(const SearchSubtree* subtrees, SubtreePlac
 // where even the hull's size is under τ*, because every operation of size() is
 // monotone. Those of chunks with subtrees of the tree's root are never under it.
 struct SearchChunk {
-  Vec3f hull_min;
-  float extent;
-  Vec3f hull_max;
-  uint32_t first_subtree;
+  BoundsCode hull;
+  uint32_t first_subtree, last_subtree;  // [first, last); of a pool's slot without a chunk: none
 };
-static_assert(sizeof(SearchChunk) == 32);
+static_assert(sizeof(SearchChunk) == 20);
+
+// A hull whose size is +inf wherever a camera may be.
+inline constexpr NodeBounds kAlwaysReached{
+    {-2 * kMaxCoordinate, -2 * kMaxCoordinate, -2 * kMaxCoordinate},
+    std::numeric_limits<float>::max(),
+    {2 * kMaxCoordinate, 2 * kMaxCoordinate, 2 * kMaxCoordinate}};
 
 struct SearchTree {
   explicit SearchTree(std::pmr::memory_resource* memory = std::pmr::get_default_resource())
@@ -183,7 +188,7 @@ struct SearchTree {
   std::pmr::vector<uint32_t> pages;          // of a pool: SubtreePlaces::pages; else empty
   std::pmr::vector<SearchRecord> records;
   std::pmr::vector<uint32_t> next_block;  // by block of records, of a pool
-  // And one with the end as its first subtree. None where a device has them (set_search_chunks()).
+  // None where a device has them (search_chunk()).
   std::pmr::vector<SearchChunk> chunks;
   uint32_t chunk_count = 0;
   std::pmr::vector<uint32_t> tier_begin;  // first subtree of each tier, and the end

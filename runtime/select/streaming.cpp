@@ -86,9 +86,9 @@ void PartitionedSearch::stream_chunk(uint32_t chunk, uint32_t first, uint32_t la
   const SearchChunk& c = tree_.chunks[chunk];
   tally.bytes += sizeof c;
   ++tally.tested;
-  if (!(screen_size(sight_.centre, c.hull_min, c.hull_max, c.extent) >= sight_.target_size)) return;
+  if (!(decode_bounds(c.hull).screen_size(sight_.centre) >= sight_.target_size)) return;
   first = std::max(first, c.first_subtree);
-  last = std::min(last, tree_.chunks[chunk + 1].first_subtree);
+  last = std::min(last, c.last_subtree);
   tally.bytes += (last - first) * sizeof refined_[0];
   bool read = false;
   for (uint32_t s = first; s < last; ++s) {

@@ -12,8 +12,8 @@
 namespace voyager {
 
 // Changes of a SearchTree whose nodes and records are addresses, and of its nodes' parents.
-// All of `cut` and `unlinked` is to be done before `pages`, and that before all of `tied` and
-// `linked`; in each, nothing is there twice with different values.
+// All of `cut`, `unlinked` and `left` is to be done before `pages`, and that before all of `tied`,
+// `linked` and `arrived`; in each, nothing is there twice with different values.
 struct LinkPatch {
   struct Record {
     uint32_t record, children;  // SearchRecord::children
@@ -21,6 +21,11 @@ struct LinkPatch {
   // What the nodes of a subtree hang from of which it does not own the parent.
   struct Outside {
     uint32_t subtree, parent;
+  };
+  // A chunk that has come: its slot, and what that holds now.
+  struct Arrived {
+    uint32_t slot, chunk;
+    SlotIds ids;
   };
   struct Links {
     std::vector<Record> records;
@@ -32,14 +37,14 @@ struct LinkPatch {
   std::vector<PageChange> pages;
   std::vector<std::pair<uint32_t, SearchSubtree>> linked;
   std::vector<Outside> outside;
-  // Of each chunk that has come: its slot, and what that holds now.
-  std::vector<std::pair<uint32_t, SlotIds>> arrived;
+  std::vector<uint32_t> left;  // slots of chunks that have gone
+  std::vector<Arrived> arrived;
   // All large families of nodes that are held, where those have changed.
   std::optional<std::vector<LargeFamily>> large;
 
   bool empty() const {
     return cut.records.empty() && unlinked.empty() && pages.empty() && linked.empty() &&
-           arrived.empty() && !large;
+           left.empty() && arrived.empty() && !large;
   }
 };
 

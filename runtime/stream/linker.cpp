@@ -289,7 +289,7 @@ void Linker::remove_large(uint32_t slot, LinkPatch& patch) {
 
 void Linker::arrive(StagedChunk&& chunk, LinkPatch& patch) {
   add_large(chunk, patch);
-  patch.arrived.emplace_back(chunk.links.slot, chunk.ids);
+  patch.arrived.push_back({chunk.links.slot, chunk.chunk, chunk.ids});
   tables_.know(chunk.chunk) = std::move(chunk.links);
   if (roots_of(tables_[chunk.chunk]).root() == 0) link_root(chunk.chunk, patch);
   if (checked_ == chunk.chunk) {
@@ -429,6 +429,7 @@ void Linker::evict(uint32_t chunk, LinkPatch& patch) {
   find_above(chunk);
   unlink(patch);
   remove_large(slot, patch);
+  patch.left.push_back(slot);
   tables_.forget(chunk);
 }
 

@@ -21,12 +21,8 @@ ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) 
 }  // namespace
 
 SlotShape SceneStream::slot_shape(const SceneFile& file) {
-  SlotShape shape{0, 0};
-  for (size_t chunk = 0; chunk < file.chunks().size(); ++chunk) {
-    const ChunkEntry entry = file.chunks().numbers(chunk);
-    shape = {std::max(shape.nodes, entry.node_count), std::max(shape.records, entry.record_count)};
-  }
-  return shape;
+  const ChunkDirectory::Totals& all = file.chunks().totals();
+  return {all.most_nodes, all.most_records};
 }
 
 uint32_t SceneStream::top_chunks(const SceneFile& file) {
@@ -48,7 +44,7 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       tiers_(file_->tiers()),
       graph_(file_->chunks(), tiers_),
       shape_(slot_shape(*file_)),
-      records_(*file_),
+      records_(desc.records ? *desc.records : RecordRoom(*file_)),
       pool_(pool),
       budget_(desc.budget),
       room_(desc.room),

@@ -29,6 +29,7 @@ namespace voyager {
 
 struct StreamDesc {
   PoolRoom room{};
+  std::optional<RecordRoom> records;  // the file's; none: it is found
   uint32_t pinned = 0;               // as Residency has it
   uint32_t first = 0;                // chunks that read_top() reads, from pinned to what fits
   unsigned readers = 2;              // threads; 0: step() does it all
@@ -54,9 +55,9 @@ struct StreamCounters {
 
 // What linking has changed, for searches that go on from their last cut.
 struct StreamChange {
-  uint64_t version;                                   // from 1
-  std::vector<uint32_t> unlinked, changed;            // as PartitionedSearch::relink() takes them
-  std::vector<std::pair<uint32_t, SlotIds>> arrived;  // as LinkPatch has it
+  uint64_t version;                         // from 1
+  std::vector<uint32_t> unlinked, changed;  // as PartitionedSearch::relink() takes them
+  std::vector<LinkPatch::Arrived> arrived;
 };
 
 class SceneStream {

@@ -113,11 +113,11 @@ TEST(SearchTree, HullsAreNeverSmallerThanWhatLeadsIntoTheChunk) {
   for (const Cut& cut : all_cuts())
     for (size_t chunk = 0; chunk < cut.search.chunk_count; ++chunk) {
       const SearchChunk& c = cut.search.chunks[chunk];
-      for (uint32_t s = c.first_subtree; s < cut.search.chunks[chunk + 1].first_subtree; ++s) {
+      for (uint32_t s = c.first_subtree; s < c.last_subtree; ++s) {
         const uint32_t entry = cut.search.subtrees[s].entry;
         for (int place = 0; place < 3; ++place) {
           const Vec3f at{200 * test::unit(random) - 100, 200 * test::unit(random) - 100, 0};
-          const float hull = screen_size(at, c.hull_min, c.hull_max, c.extent);
+          const float hull = decode_bounds(c.hull).screen_size(at);
           if (entry == kNoRecord) {
             ASSERT_EQ(hull, INFINITY);
             continue;

@@ -228,7 +228,7 @@ bool same(const LinkPatch& a, const LinkPatch& b) {
   return same(a.cut.records, b.cut.records) && a.cut.changed == b.cut.changed &&
          same(a.tied.records, b.tied.records) && a.tied.changed == b.tied.changed &&
          a.unlinked == b.unlinked && same(a.linked, b.linked) && same(a.outside, b.outside) &&
-         same(a.arrived, b.arrived);
+         a.left == b.left && same(a.arrived, b.arrived);
 }
 
 // What checking finds is what linking would find, and only for the chunk that was checked last.
