@@ -47,7 +47,6 @@ class StreamedView {
   const voy::Scene scene;
   voy::View view;
 
- private:
   static voy::Scene open(const voy::Device& device, const char* path, double megabytes,
                          const double* start, uint32_t readers) {
     VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
@@ -59,6 +58,8 @@ class StreamedView {
     desc.path = path;
     return device.open_scene(desc);
   }
+
+ private:
   voy::View create(const voy::Device& device, unsigned width, unsigned height, double tau) const {
     const VoyScene handle = scene.get();
     VoyViewDesc desc = VOY_VIEW_DESC_INIT;

@@ -12,10 +12,11 @@ struct TreeView {
   SubtreePlaces places;
   const SearchRecord* records;
   const uint32_t* next_block;  // of a streamed scene, as SearchTree's
-  const SearchChunk* chunks;   // of a streamed scene by slot
+  const SearchChunk* chunks;
   const NodeRecord* leaves;  // all nodes by id, where leaves have extents; else null
-  uint32_t subtree_count, place_count, chunk_count;
-  float blend_share;  // LodTree's
+  uint32_t subtree_count, place_count;
+  uint32_t chunk_count;  // rows of `chunks`: of a streamed scene one a slot
+  float blend_share;     // LodTree's
 
   // Then nodes and records are addresses.
   VOYAGER_HD bool streamed() const { return next_block != nullptr; }

@@ -67,29 +67,33 @@ __device__ uint32_t block_of_segment(const StateView& state, uint32_t segment) {
   return own.first_block + (segment - kLevels * own.first_block) % own.blocks;
 }
 
-// Less to spare than segment_room() gives: what a segment needs when its neighbours make room.
-__device__ uint32_t least_room(uint32_t size) {
-  return size == 0 ? 0 : (size + size / 16 + 2 * kRowPlaces - 1) / kRowPlaces * kRowPlaces;
+// What a segment needs when its neighbours make room: less to spare than a roomy one has.
+__device__ uint32_t least_room(uint32_t size, SegmentFit fit) {
+  if (size == 0 || fit != SegmentFit::roomy) return whole_rows(size);
+  return whole_rows(size + size / 16 + kRowPlaces);
+}
+
+// Of `rows` that are shared out by need, what those have that need the first `ahead` of `need`
+// places.
+__device__ uint32_t spare_before(uint32_t rows, uint32_t ahead, uint32_t need) {
+  return need == 0 ? 0 : static_cast<uint32_t>(uint64_t{rows} * ahead / need) * kRowPlaces;
 }
 
 // Shares the room of [first, last) out anew, by what each needs.
-__device__ void share_room(const StateView& state, uint32_t first, uint32_t last, uint32_t need,
-                           uint32_t room, Dirty& dirty) {
-  const uint32_t lane = lane_in_warp();
-  const uint64_t rows = (room - need) / kRowPlaces;  // to spare
-  const auto spare_before = [&](uint32_t needed) {
-    return static_cast<uint32_t>(rows * needed / need) * kRowPlaces;
-  };
+__device__ void share_room(const StateView& state, SegmentFit fit, uint32_t first, uint32_t last,
+                           uint32_t need, uint32_t room, Dirty& dirty) {
+  const uint32_t lane = lane_in_warp(), rows = (room - need) / kRowPlaces;
   const uint32_t begin = state.segments[first].first;
   uint32_t before = 0;  // needed by those in front
   for (uint32_t base = first; base < last; base += 32) {
     const uint32_t i = base + lane;
-    const uint32_t size = i < last ? state.segments[i].size : 0, own = least_room(size);
+    const uint32_t size = i < last ? state.segments[i].size : 0, own = least_room(size, fit);
     const uint32_t behind = before + warp_scan(own), ahead = behind - own;
     __syncwarp();
     if (i < last) {
-      state.segments[i].first = begin + ahead + spare_before(ahead);
-      state.segments[i].room = own + spare_before(behind) - spare_before(ahead);
+      const uint32_t spare = spare_before(rows, ahead, need);
+      state.segments[i].first = begin + ahead + spare;
+      state.segments[i].room = own + spare_before(rows, behind, need) - spare;
       if (size != 0) dirty.add(block_of_segment(state, i));
     }
     before = __shfl_sync(kAllLanes, behind, 31);
@@ -98,36 +102,53 @@ __device__ void share_room(const StateView& state, uint32_t first, uint32_t last
 
 // Moves as few of a segment's neighbours as there have to be for it to have room. One warp. False
 // where all of them together have none.
-__device__ bool make_room(const StateView& state, uint32_t segment, Dirty& dirty) {
+__device__ bool make_room(const StateView& state, SegmentFit fit, uint32_t segment, Dirty& dirty) {
   const uint32_t count = kLevels * state.block_count, lane = lane_in_warp();
   if (state.segments[segment].size <= state.segments[segment].room) return true;
   for (uint32_t width = 16;; width *= 2) {
     const uint32_t first = segment / width * width, last = min(first + width, count);
     uint32_t need = 0, room = 0;
     for (uint32_t i = first + lane; i < last; i += 32) {
-      need += least_room(state.segments[i].size);
+      need += least_room(state.segments[i].size, fit);
       room += state.segments[i].room;
     }
     need = __reduce_add_sync(kAllLanes, need), room = __reduce_add_sync(kAllLanes, room);
     if (need <= room) {
-      share_room(state, first, last, need, room, dirty);
+      share_room(state, fit, first, last, need, room, dirty);
       return true;
     }
     if (first == 0 && last == count) return false;
   }
 }
 
-// New places for all segments, with new room; every block with an open subtree is to
-// be written. After jumps: a step finds room among neighbours.
-__device__ uint32_t move_segments(const StateView& state, SegmentFit fit,
-                                  BlockScan::TempStorage& storage) {
+// Gives all segments new places, with new room; returns how many they need. rows: that they share
+// out beside that.
+__device__ uint32_t set_places(const StateView& state, SegmentFit fit, uint32_t rows, uint32_t need,
+                               BlockScan::TempStorage& storage) {
   return scan(
       kLevels * state.block_count, storage,
       [&](uint32_t i) { return segment_room(state.segments[i].size, fit); },
-      [&](uint32_t i, uint32_t room, uint32_t before) {
-        state.segments[i].first = before;
-        state.segments[i].room = room;
+      [&](uint32_t i, uint32_t own, uint32_t before) {
+        const uint32_t spare = spare_before(rows, before, need);
+        state.segments[i].first = before + spare;
+        state.segments[i].room = own + spare_before(rows, before + own, need) - spare;
       });
+}
+
+// All segments move; every block with an open subtree is to be written. After jumps, and where a
+// list is nearly full: a step finds room among neighbours. Sets how they fit; returns how many
+// places they take.
+__device__ uint32_t move_segments(const StateView& state, SegmentFit& fit,
+                                  BlockScan::TempStorage& storage) {
+  for (fit = SegmentFit::roomy; fit != SegmentFit::none;
+       fit = static_cast<SegmentFit>(static_cast<uint32_t>(fit) + 1)) {
+    const uint32_t need = set_places(state, fit, 0, 0, storage);
+    if (need > state.list_room) continue;
+    if (fit != SegmentFit::rows) return need;
+    const uint32_t rows = (state.list_room - need) / kRowPlaces;
+    return set_places(state, fit, rows, need, storage) + rows * kRowPlaces;
+  }
+  return set_places(state, fit, 0, 0, storage);
 }
 
 // A list ends with a row: what no segment writes of it holds no node.
@@ -168,9 +189,9 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   __syncthreads();
   if (threadIdx.x < 32) {
     bool fits =
-        outgrown.count == 0 || (fit != SegmentFit::packed && outgrown.count <= Outgrown::kMost);
+        outgrown.count == 0 || (fit <= SegmentFit::rows && outgrown.count <= Outgrown::kMost);
     for (uint32_t i = 0; fits && i < outgrown.count; ++i) {
-      fits = make_room(state, outgrown.segments[i], dirty);
+      fits = make_room(state, fit, outgrown.segments[i], dirty);
       __syncwarp();
     }
     if (threadIdx.x == 0) moves = !fits;
@@ -180,16 +201,9 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
     state.dirty_flags[state.dirty[i]] = 0;
   __syncthreads();
   if (moves) {
-    fit = SegmentFit::roomy;
-    list_size = move_segments(state, fit, storage);
-    for (const SegmentFit less : {SegmentFit::rows, SegmentFit::packed}) {
-      if (list_size <= state.list_room) break;
-      fit = less;
-      list_size = move_segments(state, fit, storage);
-    }
-    list_size = end_row(state, list_size);
+    list_size = end_row(state, move_segments(state, fit, storage));
     const uint32_t open = list_open(state, storage, state.dirty);
-    if (threadIdx.x == 0) dirty.count = open;
+    if (threadIdx.x == 0) dirty.count = fit == SegmentFit::none ? 0 : open;
   }
   if (open_changed) {
     const uint32_t open = list_open(state, storage, state.open_blocks);

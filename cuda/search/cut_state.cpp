@@ -29,9 +29,9 @@ Layout make_layout(const SearchTree& tree) {
   return layout;
 }
 
-// What search_place gives so many nodes; and what roomy segments have beside that, as long as it is
-// no more than another place in eight. Where few chunks of many are resident a list would be mostly
-// that, else. What is more than a list has room for is packed.
+// What search_place gives so many nodes; and the ends of roomy segments, as long as these take no
+// more than another place in eight. Else the list of a scene of which few chunks are resident would
+// be mostly ends. Where a cut needs more, its segments are less roomy (SegmentFit).
 uint64_t most_places_of(uint64_t nodes) {
   return nodes + nodes / 8;
 }
@@ -55,10 +55,10 @@ uint64_t CutState::eight_nodes() {
   return list_bytes(most_places_of(8));
 }
 
-uint64_t CutState::spare_of_eight() {
+uint64_t CutState::ends_of_eight() {
   return list_bytes(1);
 }
-uint64_t CutState::most_spare(const SearchTree& tree) {
+uint64_t CutState::most_ends(const SearchTree& tree) {
   return list_bytes(ends_of_segments(tree));
 }
 

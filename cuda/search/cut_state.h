@@ -14,16 +14,21 @@ namespace voyager::cuda {
 inline constexpr uint32_t kBlockSubtrees = 512, kBlockRows = kBlockSubtrees / kRowSubtrees;
 inline constexpr uint32_t kLevels = 3;  // of a tier
 
-// How much room segments have where all of them get new places.
+// How much room segments have where all of them get new places: the first of these that a list has
+// room for.
 enum class SegmentFit : uint32_t {
-  roomy,  // whole rows, and one place in eight to spare: they grow without moving others
-  rows,   // the rows that they take
-  packed  // the places that they take: neighbours share a row, and where one grows all move
+  roomy,   // whole rows, and one place in eight to spare: they grow without moving others
+  rows,    // the rows that they take, and what rows are left, shared out
+  packed,  // the places that they take: neighbours share a row, and where one grows all move
+  none     // no cut is as large: an error, which found() throws
 };
+VOYAGER_HD uint32_t whole_rows(uint32_t places) {
+  return (places + kRowPlaces - 1) / kRowPlaces * kRowPlaces;
+}
 VOYAGER_HD uint32_t segment_room(uint32_t size, SegmentFit fit) {
-  if (size == 0 || fit == SegmentFit::packed) return size;
-  const uint32_t most = fit == SegmentFit::rows ? size : size + size / 8 + kRowPlaces;
-  return (most + kRowPlaces - 1) / kRowPlaces * kRowPlaces;
+  if (size == 0 || fit == SegmentFit::none) return 0;
+  if (fit == SegmentFit::packed) return size;
+  return whole_rows(fit == SegmentFit::rows ? size : size + size / 8 + kRowPlaces);
 }
 
 // Consecutive subtrees of one tier. Their cut nodes are in the cut list in three
@@ -38,7 +43,7 @@ struct Tier {
   uint32_t begin, first_block, blocks;
 };
 
-// The cut nodes of a block's level. `room` is more than `size`, so that a frame
+// The cut nodes of a block's level. `room` may be more than `size`, so that a frame
 // rewrites only the segments that changed: the rest of it holds kNoNode.
 struct Segment {
   uint32_t size, first, room;
@@ -52,7 +57,7 @@ struct FrameCounters {
   // Nodes, places in the list, and nodes that stand in for children that are not resident. They
   // are kept from frame to frame.
   uint32_t cut_size, list_size, stand_ins;
-  SegmentFit fit;                // the same, of the segments
+  SegmentFit fit;                // of the segments when they moved last; kept, too
   uint32_t streamed;             // 1: by streaming
   uint32_t due_count;            // entries of due[]
   uint32_t dirty_count;          // entries of dirty[]
@@ -99,14 +104,13 @@ class CutState {
   // has more nodes. origins: the list has what weights depend on. All memory is taken here.
   CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most, bool origins);
   // What it takes of a streamed scene, without origins: for eight places, of which one may be due
-  // (an experiment that visits all takes more); for eight nodes of `most`, and for what they may
-  // have to spare in rows, of which all segments together have no more than so much; and beside
-  // them.
+  // (an experiment that visits all takes more); for eight nodes of `most`; for the ends of their
+  // segments, an eighth of that but never more than most_ends(); and beside them.
   static constexpr uint64_t kEightPlaces =
       8 * (sizeof(Watch) + 3 * sizeof(uint32_t) + sizeof(uint8_t)) + sizeof(uint32_t);
   static uint64_t eight_nodes();
-  static uint64_t spare_of_eight();
-  static uint64_t most_spare(const SearchTree& tree);
+  static uint64_t ends_of_eight();
+  static uint64_t most_ends(const SearchTree& tree);
   static uint64_t fixed_bytes(const SearchTree& tree);
 
   // places: the device's tree's, where its subtrees are read or written.

@@ -86,7 +86,7 @@ __device__ inline void stream_chunks(const TreeView& tree, const StateView& stat
       count = c.last_subtree - first;
       reached = count != 0 && judge(decode_bounds(c.hull), sight).refined;
       stale = count != 0 && !reached && has_open(state, first, c.last_subtree);
-      ++tally.hulls;
+      tally.hulls += count != 0;
       tally.chunks += reached;
     }
     if (__any_sync(kAllLanes, reached))

@@ -223,6 +223,9 @@ void PartitionedSearch::report(void* into, cudaStream_t stream) const {
 
 CutFound PartitionedSearch::found(const void* report) const {
   const FrameCounters& c = *static_cast<const FrameCounters*>(report);
+  if (c.fit == SegmentFit::none)
+    throw Error(ErrorCode::internal, "cut: found " + std::to_string(c.cut_size) +
+                                         " nodes, expected at most " + std::to_string(list_room_));
   SearchStats stats;
   stats.ran = c.streamed != 0 ? Search::streaming : kind_;
   stats.nodes_tested = c.nodes_tested;
@@ -294,8 +297,8 @@ RoomBytes with_view(const PoolBytes& pool, const Scene& scene, SlotShape shape) 
       .fixed = uint64_t{kFewChunks} * shape.nodes + top,
       .most = std::max<uint64_t>(scene.leaf_count, std::min<uint64_t>(top, scene.node_count)),
       .eight_nodes = CutState::eight_nodes(),
-      .spare_of_eight = CutState::spare_of_eight(),
-      .most_spare = CutState::most_spare(scene.search)};
+      .ends_of_eight = CutState::ends_of_eight(),
+      .most_ends = CutState::most_ends(scene.search)};
   static_assert(kPageSubtrees % 8 == 0);
   const uint64_t page = kPageSubtrees / 8 * CutState::kEightPlaces;
   return {pool, {0, 0, CutState::fixed_bytes(scene.search) + page, page}, list};

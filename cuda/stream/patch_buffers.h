@@ -11,7 +11,8 @@ namespace voyager::cuda {
 // Made as many, and as large, as were on their way at once. Not thread-safe.
 class PatchBuffers {
  public:
-  // A copy of the patch, until the device has passed what read_by() says. file: its chunks'.
+  // A copy of the patch, until the device has passed what read_by() says. file: that its
+  // chunks are of.
   PoolPatch put(const LinkPatch& patch, const SceneFile& file);
   // What reads the patch that was put last has been launched on the stream.
   void read_by(cudaStream_t stream) const { last_->read.record(stream); }

@@ -27,7 +27,7 @@ enum PoolArray : uint32_t {
   // By page of subtrees (runtime/math/subtree_places.h).
   kSubtrees = kFilledArrays,
   kOutside,  // one a subtree; of one that is in no cut it may be anything
-  // By slot; not of chunks that are on their way.
+  // One a slot, of the chunk that has arrived there.
   kChunks,
   // Of the whole tree.
   kPages,  // one a page

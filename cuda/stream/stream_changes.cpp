@@ -32,6 +32,7 @@ std::optional<Relinked> StreamChanges::follow(const SceneStream& stream, const D
 }
 
 std::optional<Relinked> StreamChanges::copy() {
+  if (count_of(changes_) == 0) return Relinked{};
   const size_t piece = (next_ + 1) % kPieces;
   if (count_of(changes_) > kSubtrees || !read_[piece].passed()) return std::nullopt;
   next_ = piece;

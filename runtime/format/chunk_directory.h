@@ -22,6 +22,8 @@ class ChunkDirectory {
   struct Totals {
     uint64_t bytes = 0, nodes = 0, records = 0;
     uint32_t most_nodes = 0, most_records = 0;  // of a chunk
+
+    bool operator==(const Totals&) const = default;
   };
   const Totals& totals() const { return totals_; }
 

@@ -13,8 +13,9 @@ struct ListRoom {
   // Nodes: for each slot, and beside them. Without slot: any cut, and nothing is counted.
   uint64_t slot = 0, fixed = 0;
   uint64_t most = UINT64_MAX;  // nodes that any cut of the scene has at most
-  // Bytes for eight of them, and for what they may have to spare; and of that for all nodes.
-  uint64_t eight_nodes = 0, spare_of_eight = 0, most_spare = 0;
+  // Bytes: for eight of them; for what else a list of eight may have; and the most that this comes
+  // to.
+  uint64_t eight_nodes = 0, ends_of_eight = 0, most_ends = 0;
 
   uint64_t nodes(PoolRoom room) const {
     return slot == 0 ? UINT64_MAX : std::min(most, room.slots * slot + fixed);
@@ -22,7 +23,7 @@ struct ListRoom {
   uint64_t bytes(PoolRoom room) const {
     if (slot == 0) return 0;
     const uint64_t eights = nodes(room) / 8 + 1;
-    return eights * eight_nodes + std::min(eights * spare_of_eight, most_spare);
+    return eights * eight_nodes + std::min(eights * ends_of_eight, most_ends);
   }
 };
 

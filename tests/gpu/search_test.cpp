@@ -1,9 +1,11 @@
 // The searches on the device against the exhaustive search on the host: the same node
 // ids and the same weights, to the bit, whatever the camera does.
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <set>
 
+#include "cuda/search/cut_state.h"
 #include "cuda/search/search.h"
 #include "runtime/base/error.h"
 #include "runtime/math/lerp.h"
@@ -230,20 +232,44 @@ TEST_F(SearchTest, EqualTheHostsWhereEachLaneHasASubtree) {
   EXPECT_GT(frames, 0) << "no frame had so many due";
 }
 
-// A list has room for whole rows of places where there are many nodes to a level. Here each level
-// has a few: rows for all would take more, and levels share them.
+// Segments of the list that hold a node of the cut.
+size_t segments_of(const Scene& scene, const std::vector<uint32_t>& cut) {
+  std::vector<uint32_t> owner(scene.tree.size()), level(scene.tree.size());
+  const auto& subtrees = scene.partition.subtrees;
+  const auto& begin = scene.search.tier_begin;
+  std::vector<uint32_t> block(subtrees.size());
+  uint32_t blocks = 0;
+  for (size_t tier = 0; tier + 1 < begin.size(); ++tier)
+    for (uint32_t s = begin[tier]; s < begin[tier + 1]; ++s)
+      block[s] = blocks += (s - begin[tier]) % cuda::kBlockSubtrees == 0;
+  for (uint32_t s = 0; s < subtrees.size(); ++s)
+    for (uint32_t slot = 0; slot < subtrees[s].node_count(); ++slot)
+      owner[subtrees[s].node(slot)] = block[s];
+  for (uint32_t n = 1; n < level.size(); ++n) level[n] = level[scene.tree.parent[n]] + 1;
+  std::set<std::pair<uint32_t, uint32_t>> segments;
+  for (const uint32_t n : cut) segments.insert({owner[n], level[n]});
+  return segments.size();
+}
+
+// A list has room for whole rows of places where there are many nodes to a segment. Here each has a
+// few: rows for all would take more than there is, and segments share them, also those of several
+// blocks of which few change.
 TEST_F(SearchTest, EqualTheHostsWhereAListHasNoRoomForRows) {
   std::mt19937 random(4);
-  const auto scene = scene_of(random_tree(TreeShape::uneven, 3000, 9));
-  std::vector<uint32_t> level(scene->tree.size());
-  for (uint32_t n = 1; n < level.size(); ++n) level[n] = level[scene->tree.parent[n]] + 1;
-  std::set<uint32_t> levels;
-  for (const uint32_t n : Oracle(*scene).at({{}, 1e-9f}).cut) levels.insert(level[n]);
-  ASSERT_GT(32 * levels.size(), 2 * scene->leaf_count) << "rows for all levels have room";
-  std::vector<CutQuery> path = walk(random, 40, 1e-9f);
-  for (const CutQuery& q : walk(random, 40, 0.1f)) path.push_back(q);
-  for (const CutQuery& q : jumps(scene->tree, random, 20)) path.push_back(q);
-  expect_equal(scene, path, "uneven");
+  for (LodTree& tree :
+       std::array{random_tree(TreeShape::uneven, 3000, 9), tree_of_chains(2000, 30, 9)}) {
+    const auto scene = scene_of(std::move(tree));
+    std::vector<CutQuery> path = walk(random, 60, 0.02f);
+    for (const CutQuery& q : jumps(scene->tree, random, 20)) path.push_back(q);
+    for (const CutQuery& q : walk(random, 20, 1e-9f)) path.push_back(q);
+    const cuda::CutState state(scene->search, 1, 1, scene->leaf_count, false);
+    size_t shared = 0;
+    Oracle oracle(*scene);
+    for (const CutQuery& query : path)
+      shared += cuda::kRowPlaces * segments_of(*scene, oracle.at(query).cut) > state.list_room();
+    EXPECT_GT(shared, path.size() / 4) << "of " << path.size();
+    expect_equal(scene, path, "few nodes to a segment");
+  }
 }
 
 TEST_F(SearchTest, ASweepOfGranularityThereAndBackGivesTheSameCuts) {

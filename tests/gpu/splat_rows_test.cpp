@@ -1,5 +1,9 @@
 // Rows of a cut's list that no Gaussian of reaches the image are left out before they are read.
+#include <array>
+
 #include "tests/gpu/splat_test.h"
+#include "tests/support/random_trees.h"
+#include "tests/support/scene_files.h"
 #include "tests/support/stereo.h"
 
 namespace voyager::test {
@@ -35,10 +39,12 @@ TEST_F(SplatRows, NoPixelMissesThem) {
     }
 }
 
-// Of so few that the nodes of several levels share a row.
+// Of few nodes to a level, so that a row has those of several (SearchTest's
+// EqualTheHostsWhereAListHasNoRoomForRows).
 TEST_F(SplatRows, NoPixelMissesThoseThatLevelsShare) {
-  for (const size_t count : {7, 40, 300}) {
-    const auto scene = baked_scene(random_cloud(count, 98, 1));
+  for (LodTree& tree :
+       std::array{random_tree(TreeShape::uneven, 3000, 9), tree_of_chains(2000, 30, 9)}) {
+    const auto scene = loaded(baked_of(std::move(tree)));
     for (const double tau : {0.0, 3.0}) {
       const auto kept = view(scene, {.search = Search::temporal});
       for (const Camera& camera : way()) {

@@ -179,6 +179,20 @@ inline LodTree random_tree(TreeShape shape, uint32_t nodes, uint32_t seed,
   return tree;
 }
 
+// Chains of so many nodes each, all from one root: every level has many subtrees, and of a cut few
+// nodes.
+inline LodTree tree_of_chains(uint32_t chains, uint32_t length, uint32_t seed) {
+  std::vector<uint32_t> child_counts{chains};
+  child_counts.insert(child_counts.end(), size_t{chains} * (length - 1), 1);
+  child_counts.insert(child_counts.end(), chains, 0);
+  std::mt19937 random(seed);
+  LodTree tree = linked_tree(child_counts);
+  tree.blend_share = kHalfShare;
+  set_boxes(tree, random);
+  set_extents(tree, Extents::longest_side, random);
+  return tree;
+}
+
 inline LodTree moved(LodTree tree, float scale, const Vec3f& shift) {
   for (NodeRecord& r : tree.records) {
     r.box_min = scale * r.box_min + shift;

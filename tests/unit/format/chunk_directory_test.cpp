@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -65,6 +66,7 @@ TEST(ChunkDirectory, HasEveryEntryAsItWasButForARoundedHull) {
       const ChunkDirectory directory = directory_of(entries);
       ASSERT_EQ(directory.size(), count);
       size_t visited = 0;
+      ChunkDirectory::Totals all;
       for (const ChunkEntry& entry : directory) {
         ChunkEntry expected = entries[visited];
         expected.hull = round_bounds(expected.hull);
@@ -73,10 +75,15 @@ TEST(ChunkDirectory, HasEveryEntryAsItWasButForARoundedHull) {
         ASSERT_EQ(directory.bytes(visited), expected.bytes);
         ASSERT_EQ(directory.first_subtree(visited), expected.first_subtree);
         ASSERT_EQ(directory.place(visited), expected.place);
+        all.bytes += expected.bytes, all.nodes += expected.node_count;
+        all.records += expected.record_count;
+        all.most_nodes = std::max(all.most_nodes, expected.node_count);
+        all.most_records = std::max(all.most_records, expected.record_count);
         const EntryHull hull = directory.hull(visited++);
         ASSERT_EQ(std::memcmp(&hull, &expected.hull, sizeof hull), 0);
       }
       EXPECT_EQ(visited, count);
+      EXPECT_EQ(directory.totals(), all);
       EXPECT_THROW(directory.at(count), std::out_of_range);
     }
 }
