@@ -19,11 +19,11 @@ uint64_t sum_of(const Values& values) {
 
 }  // namespace
 
-uint64_t mark_of(const BakedScene& baked) {
+uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> cameras) {
   const uint64_t parts[] = {sum_of(baked.tree.records),     sum_of(baked.merged.position),
                             sum_of(baked.merged.sh),        sum_of(baked.leaves.position),
                             sum_of(baked.leaves.log_scale), sum_of(baked.leaves.opacity),
-                            sum_of(baked.leaves.sh)};
+                            sum_of(baked.leaves.sh),        checksum(std::as_bytes(cameras))};
   return checksum(std::as_bytes(std::span(parts)));
 }
 

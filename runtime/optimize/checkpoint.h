@@ -1,10 +1,12 @@
 #pragma once
 // Where an optimization stands, in a file: it goes on from there after a stop.
+#include <span>
 #include <string>
 #include <vector>
 
 #include "runtime/frame/node_trainer.h"
 #include "runtime/lod/baked_scene.h"
+#include "runtime/scene/training_camera.h"
 
 namespace voyager {
 
@@ -15,8 +17,8 @@ struct Checkpoint {
   TrainingState state;
 };
 
-// Tells scenes apart, before anything was learned.
-uint64_t mark_of(const BakedScene& baked);
+// Tells scenes apart, before anything was learned, and where views are from.
+uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> cameras);
 
 // The file of part k, where a scene learns in parts.
 std::string kept_of_part(const std::string& kept, uint32_t k);

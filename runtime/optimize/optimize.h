@@ -2,6 +2,7 @@
 // Merged Gaussians that learn what they stand for (docs/optimizing.md): pictures of cuts are
 // compared with the truth of METHOD §12, and nodes follow the gradient of the squared error.
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "runtime/base/workers.h"
 #include "runtime/frame/backend.h"
 #include "runtime/lod/baked_scene.h"
+#include "runtime/scene/training_camera.h"
 
 namespace voyager {
 
@@ -20,6 +22,8 @@ struct OptimizeGoal {
   uint64_t memory = 0;     // bytes of the host's that this may take beside the scene; 0: any number
   uint32_t held_out = 24;  // views
   double keep_milliseconds = 60000;  // between one time that what was learned is kept and the next
+  // In the scene's world: half of the views are from near them (training_views.h). May be none.
+  std::span<const TrainingCamera> cameras{};
 };
 // So many for each merged node.
 enum class OptimizeQuality { draft, good, best };

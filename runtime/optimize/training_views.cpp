@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -31,6 +32,11 @@ constexpr double kPixelOfExtent = 1 / (2 * kClosest);
 constexpr double kLowestOfFlat = -0.05, kLowestOfOther = -0.5;
 constexpr double kNearestOfRadius = 0.02, kFarthestOfRadius = 3;
 constexpr double kNearPlane = 0.1;  // of the distance, at most
+// Views from cameras: how many, how many cameras are tried for a leaf, and the least sine of the
+// angle to what is up, below which nothing says what is right.
+constexpr double kShareOfCameras = 0.5, kLevelest = 1e-3;
+constexpr uint32_t kCamerasTried = 8;
+constexpr size_t kMostCameras = 4096;
 
 double between(double low, double high, double share) {
   return low * std::pow(high / low, share);
@@ -76,7 +82,29 @@ Upward upward(const Spread& spread) {
 
 }  // namespace
 
-TrainingViews::TrainingViews(const BakedScene& baked, const LookedAt& looked_at)
+// Of a part of many cameras, evenly.
+std::vector<TrainingViews::Stand> TrainingViews::stands_of(std::span<const TrainingCamera> cameras,
+                                                           const Vec3d& origin) {
+  const size_t stride = (cameras.size() + kMostCameras - 1) / kMostCameras;
+  std::vector<Stand> stands;
+  for (size_t i = 0; i < cameras.size(); i += stride) {
+    stands.push_back({cameras[i], 0});
+    stands.back().camera.position = cameras[i].position - origin;
+  }
+  for (Stand& stand : stands) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Stand& other : stands) {
+      const Vec3d between = other.camera.position - stand.camera.position;
+      if (const double squared = dot(between, between); squared > 0)
+        nearest = std::min(nearest, squared);
+    }
+    if (std::isfinite(nearest)) stand.jitter = 0.5 * std::sqrt(nearest);
+  }
+  return stands;
+}
+
+TrainingViews::TrainingViews(const BakedScene& baked, const LookedAt& looked_at,
+                             std::span<const TrainingCamera> cameras)
     : baked_(baked),
       leaves_(looked_at.leaves),
       smaller_(looked_at.leaves < kFewLeaves ? kSmallerOfFew : kSmaller) {
@@ -95,39 +123,74 @@ TrainingViews::TrainingViews(const BakedScene& baked, const LookedAt& looked_at)
   if (looked_at.largest > 0)
     farthest = std::min(farthest, looked_at.largest * kFocal / smaller_ / (2 * kReferenceTau + 1));
   farthest_ = std::max(farthest, 4 * nearest_);
+  stands_ = stands_of(cameras, {baked.origin[0], baked.origin[1], baked.origin[2]});
 }
 
-double TrainingViews::distance(uint32_t k) const {
-  return between(nearest_, farthest_, radical_inverse(uint64_t{k} + 1, 7));
+// From near the camera, if the leaf is in its picture, and not closer than views come.
+std::optional<TrainingViews::Look> TrainingViews::look_from_camera(uint64_t index,
+                                                                   const Vec3d& target) const {
+  const double first = radical_inverse(index, 17);
+  for (uint32_t k = 0; k < kCamerasTried; ++k) {
+    const double share = first + static_cast<double>(k) / kCamerasTried;
+    const auto at =
+        static_cast<size_t>((share - std::floor(share)) * static_cast<double>(stands_.size()));
+    const Stand& stand = stands_[std::min(at, stands_.size() - 1)];
+    const Vec3d aside{2 * radical_inverse(index, 19) - 1, 2 * radical_inverse(index, 23) - 1,
+                      2 * radical_inverse(index, 29) - 1};
+    const Vec3d eye = stand.camera.position + stand.jitter * aside;
+    const Vec3d seen = stand.camera.world_to_view * (target - eye);
+    if (!(seen.z > nearest_ && seen.z < farthest_) ||
+        !(std::fabs(seen.x) * 2 * stand.camera.fx <= seen.z * stand.camera.width) ||
+        !(std::fabs(seen.y) * 2 * stand.camera.fy <= seen.z * stand.camera.height))
+      continue;
+    const Vec3d away = eye - target;
+    const double distance = std::sqrt(dot(away, away));
+    const Vec3d outward = (1 / distance) * away;
+    const Vec3d across = cross(axes_.row[2], outward);
+    if (!(std::sqrt(dot(across, across)) > kLevelest)) continue;
+    return Look{target, outward, (1 / std::sqrt(dot(across, across))) * across, distance};
+  }
+  return std::nullopt;
 }
 
-TrainingView TrainingViews::operator()(uint32_t k) const {
+TrainingViews::Look TrainingViews::look(uint32_t k) const {
   const uint64_t index = uint64_t{k} + 1;
   const auto leaves = static_cast<double>(leaves_);
   const auto leaf = static_cast<size_t>(radical_inverse(index, 2) * leaves);
-  const Vec3f target = local_mean(baked_.leaves, leaf, baked_.origin);
+  const Vec3f mean = local_mean(baked_.leaves, leaf, baked_.origin);
+  const Vec3d target{double{mean.x}, double{mean.y}, double{mean.z}};
+  if (!stands_.empty() && radical_inverse(index, 13) < kShareOfCameras)
+    if (const auto found = look_from_camera(index, target)) return *found;
   const double around = 2 * std::numbers::pi * radical_inverse(index, 3);
   const double rise = lowest_rise_ + (1 - lowest_rise_) * radical_inverse(index, 5);
   const double level = std::sqrt(std::max(1 - rise * rise, 0.0));
   const Vec3d outward = level * std::cos(around) * axes_.row[0] +
                         level * std::sin(around) * axes_.row[1] + rise * axes_.row[2];
-  const Vec3d forward = -1.0 * outward;
   const Vec3d right = -std::sin(around) * axes_.row[0] + std::cos(around) * axes_.row[1];
+  return {target, outward, right, between(nearest_, farthest_, radical_inverse(index, 7))};
+}
 
+double TrainingViews::distance(uint32_t k) const {
+  return look(k).distance;
+}
+
+TrainingView TrainingViews::operator()(uint32_t k) const {
+  const Look look = this->look(k);
+  const Vec3d forward = -1.0 * look.outward;
   TrainingView view;
   Camera& camera = view.camera;
-  camera.eye = Vec3d{double{target.x}, double{target.y}, double{target.z}} + distance(k) * outward +
+  camera.eye = look.target + look.distance * look.outward +
                Vec3d{baked_.origin[0], baked_.origin[1], baked_.origin[2]};
-  camera.world_to_view.row[0] = right;
-  camera.world_to_view.row[1] = cross(forward, right);
+  camera.world_to_view.row[0] = look.right;
+  camera.world_to_view.row[1] = cross(forward, look.right);
   camera.world_to_view.row[2] = forward;
   camera.fx = camera.fy = kFocal / smaller_;
   camera.width = kWidth / smaller_, camera.height = kHeight / smaller_;
   camera.cx = 0.5 * camera.width, camera.cy = 0.5 * camera.height;
   // Scenes of a few centimetres are to be seen, too.
-  camera.near_z = std::min(camera.near_z, kNearPlane * distance(k));
+  camera.near_z = std::min(camera.near_z, kNearPlane * look.distance);
   // As METHOD §12 asks: at least 4, 8 where leaves are far below a pixel.
-  const double pixels = distance(k) / camera.fx / std::max(baked_.leaves.native.pixel, 1e-9);
+  const double pixels = look.distance / camera.fx / std::max(baked_.leaves.native.pixel, 1e-9);
   view.samples = pixels < 1 ? 4 : pixels < 3 ? 6 : 8;
   return view;
 }

@@ -1,9 +1,14 @@
 #pragma once
-// Where a scene is looked at from while its nodes learn. No camera of the scene's is needed.
+// Where a scene is looked at from while its nodes learn. No camera of the scene's is needed; where
+// some are known, they guide half of the views.
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "runtime/frame/node_trainer.h"
 #include "runtime/lod/baked_scene.h"
+#include "runtime/scene/training_camera.h"
 
 namespace voyager {
 
@@ -18,10 +23,13 @@ struct LookedAt {
 
 // Each looks at a leaf, from outside or from amid the scene. The k-th is the same whatever comes
 // before it; those from 0 to any k are spread evenly (Halton's sequence) over leaves, directions
-// and the logarithm of the distance.
+// and the logarithm of the distance. Where there are cameras, half of the views stand near one that
+// has their leaf in its picture, as far as one of eight is found that has.
 class TrainingViews {
  public:
-  TrainingViews(const BakedScene& baked, const LookedAt& looked_at);
+  // cameras: in the scene's world.
+  TrainingViews(const BakedScene& baked, const LookedAt& looked_at,
+                std::span<const TrainingCamera> cameras = {});
 
   // At the default τ.
   TrainingView operator()(uint32_t k) const;
@@ -32,11 +40,24 @@ class TrainingViews {
   double distance(uint32_t k) const;
 
  private:
+  struct Look {
+    Vec3d target, outward, right;  // scene-local; the eye is at target + distance * outward
+    double distance;
+  };
+  Look look(uint32_t k) const;
+  std::optional<Look> look_from_camera(uint64_t index, const Vec3d& target) const;
   const BakedScene& baked_;
   size_t leaves_;       // that are looked at
   Mat3d axes_;          // rows: two level ones, and up
   double lowest_rise_;  // sine of the elevation
   double nearest_, farthest_;
+  // Scene-local. jitter: metres, half of the way to the next camera.
+  struct Stand {
+    TrainingCamera camera;
+    double jitter;
+  };
+  static std::vector<Stand> stands_of(std::span<const TrainingCamera> cameras, const Vec3d& origin);
+  std::vector<Stand> stands_;
   uint32_t smaller_;  // than 1920×1080 at a focal length of 1400: by so much along each side
 };
 

@@ -100,6 +100,42 @@ TEST(Optimize, FourCutsOfAViewShareItsTruth) {
   }
 }
 
+// Half of the views are from near a camera that has in its picture what they look at. The others
+// are those that there are without cameras.
+TEST(Optimize, CamerasGuideHalfOfTheViews) {
+  const BakedScene baked = city(2000);
+  const LookedAt looked_at{baked.leaves.size(), 0, 0};
+  const TrainingViews alone(baked, looked_at);
+  std::vector<TrainingCamera> cameras;
+  for (uint32_t k = 5000; k < 5010; ++k) {
+    const Camera c = alone(k).camera;
+    cameras.push_back({c.eye, c.world_to_view, c.fx, c.fy, c.cx, c.cy,
+                       static_cast<uint32_t>(c.width), static_cast<uint32_t>(c.height)});
+  }
+  const TrainingViews guided(baked, looked_at, cameras);
+  constexpr uint32_t kViews = 1000;
+  uint32_t from_cameras = 0;
+  for (uint32_t k = 0; k < kViews; ++k) {
+    const Camera found = guided(k).camera, other = alone(k).camera;
+    if (found.eye == other.eye) {
+      EXPECT_EQ(found.world_to_view, other.world_to_view);
+      EXPECT_EQ(guided.distance(k), alone.distance(k));
+      continue;
+    }
+    ++from_cameras;
+    const Vec3d target = found.eye + guided.distance(k) * found.world_to_view.row[2];
+    const Vec3d moved = target - (other.eye + alone.distance(k) * other.world_to_view.row[2]);
+    EXPECT_LT(dot(moved, moved), 1e-12);
+    EXPECT_TRUE(std::any_of(cameras.begin(), cameras.end(), [&](const TrainingCamera& c) {
+      const Vec3d seen = c.world_to_view * (target - found.eye);
+      return seen.z > 0 && std::fabs(seen.x) * c.fx <= seen.z * c.cx * 1.000001 &&
+             std::fabs(seen.y) * c.fy <= seen.z * c.cy * 1.000001;
+    }));
+  }
+  EXPECT_GT(from_cameras, kViews / 4);
+  EXPECT_LE(from_cameras, kViews / 2 + kViews / 100);
+}
+
 TEST(Optimize, ATruthIsNotTakenForThatOfAnotherView) {
   Workers workers;
   const BakedScene baked = city(300);
@@ -319,7 +355,7 @@ TEST(Optimize, WhatWasLearnedOfAnotherSceneOrWasAlteredIsRefused) {
   Checkpoint checkpoint;
   checkpoint.pictures = 5;
   checkpoint.extents.resize(baked.tree.size());
-  write_checkpoint(checkpoint, mark_of(baked), kept);
+  write_checkpoint(checkpoint, mark_of(baked, {}), kept);
   const auto refusal = [&](const BakedScene& scene, uint32_t pictures) {
     try {
       learn(scene, pictures, 1, kept);

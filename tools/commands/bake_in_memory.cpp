@@ -140,6 +140,7 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
     const uint64_t taken = bytes_to_bake(baked.leaves.size(), baked.leaves.sh_degree) +
                            (arguments.refine != 0 ? bytes_to_refine(baked.leaves.size()) : 0);
     goal.memory = std::max(arguments.memory * 1'000'000, taken + 1) - taken;
+    goal.cameras = native.cameras;
     print_learned(optimize_nodes(baked, goal, *backend, learned, workers, progress));
   }
   BakeSummary summary = write_baked(arguments, baked, workers, progress);
