@@ -1,8 +1,9 @@
 // What a viewer who stands still sees while a scene comes: seconds until its picture is, for good,
 // as near as that to the one with nothing missing.
-//   stream_quality SCENE CAMERAS.json MEGABYTES [CAMERA] [WxH] [TAU] [SECONDS]
+//   stream_quality SCENE CAMERAS.json MEGABYTES [CAMERA] [WxH] [TAU] [SECONDS] [READERS]
 // SCENE may be a URL. The clock starts before the scene is opened, with the camera as its start.
 // The last picture stands for the whole one: if it is not (SECONDS, 120), "missing" is not 0.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -14,6 +15,9 @@
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// Nothing may be missing for so long, in seconds: before a plan nobody knows that something is.
+constexpr double kWhole = 0.5;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -48,8 +52,9 @@ double seconds_until(const std::vector<Shown>& shown, double least) {
 
 int main(int argc, char** argv) try {
   if (argc < 4) {
-    std::fprintf(stderr,
-                 "stream_quality SCENE CAMERAS.json MEGABYTES [CAMERA] [WxH] [TAU] [SECONDS]\n");
+    std::fprintf(
+        stderr,
+        "stream_quality SCENE CAMERAS.json MEGABYTES [CAMERA] [WxH] [TAU] [SECONDS] [READERS]\n");
     return 1;
   }
   const double megabytes = std::atof(argv[3]);
@@ -58,23 +63,24 @@ int main(int argc, char** argv) try {
   if (argc > 5) std::sscanf(argv[5], "%ux%u", &width, &height);
   const double tau = argc > 6 ? std::atof(argv[6]) : 3,
                longest = argc > 7 ? std::atof(argv[7]) : 120;
+  const auto readers = static_cast<uint32_t>(argc > 8 ? std::atoi(argv[8]) : 0);
   const voyager::tools::Camera camera =
       voyager::tools::read_cameras(argv[2]).at(index).resized(width, height);
 
   const voy::Device device = voyager::bench::streaming_device(megabytes);
   const auto start = Clock::now();
   voyager::bench::StreamedView streamed(device, argv[1], megabytes, camera.pose.position, width,
-                                        height, tau);
+                                        height, tau, readers);
   const double opened = seconds_since(start);
   std::vector<Shown> shown;
-  int whole = 0;
+  double whole = 0;  // since when nothing is missing
   do {
     streamed.render(camera);
     const auto now = streamed.scene.streaming_stats();
     const bool missing = streamed.view.stats().nodesUnrefined != 0 && now.seenMissingChunks != 0;
-    whole = missing ? 0 : whole + 1;
     shown.push_back({seconds_since(start), streamed.pixels()});
-  } while (whole < 3 && seconds_since(start) < longest);
+    if (missing || shown.size() == 1) whole = seconds_since(start);
+  } while (seconds_since(start) < std::min(whole + kWhole, longest));
   const VoyStreamingStats stats = streamed.scene.streaming_stats();
   std::printf(
       "{\"device\": \"%s\", \"opened_s\": %.2f, \"first_image_s\": %.2f, \"first_db\": %.1f",
@@ -83,8 +89,7 @@ int main(int argc, char** argv) try {
   for (const int least : {20, 25, 30, 35, 40, 50})
     std::printf(", \"db_%d_s\": %.2f", least, seconds_until(shown, least));
   std::printf(", \"whole_s\": %.2f, \"frames\": %zu, \"missing\": %llu, \"read_mb\": %.1f}\n",
-              shown[shown.size() - std::min<size_t>(shown.size(), 3)].at, shown.size(),
-              static_cast<unsigned long long>(stats.seenMissingChunks),
+              whole, shown.size(), static_cast<unsigned long long>(stats.seenMissingChunks),
               static_cast<double>(stats.bytesRead) / 1e6);
   return 0;
 } catch (const std::exception& error) {

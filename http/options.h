@@ -9,7 +9,7 @@ namespace voyager::http {
 // Bounds on what a server may cost. The module opens URLs with the defaults, or as
 // VOYAGER_HTTP_TIMEOUT says; tests have others.
 struct Options {
-  size_t connections = 8;  // to one URL at once; further reads wait for one of them
+  size_t connections = 12;  // to one URL at once; further reads wait for one of them
   // Without a byte for so long, a connection is dropped: while it is made, and after.
   std::chrono::milliseconds stall_time{10'000};
   // Of one read with all its tries: so long, and what the bytes that come take at the slowest rate.

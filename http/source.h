@@ -22,6 +22,9 @@ class Source final : public ByteSource {
   // Error(io_transient): the network, a busy server, the deadline, after all tries.
   // Error(file_not_found), Error(io), Error(refused_input): as check_reply says; for good.
   void read(uint64_t offset, std::span<std::byte> into) const override;
+  unsigned reads_at_once() const noexcept override {
+    return static_cast<unsigned>(options_.connections);
+  }
   void cancel() const noexcept override { pool_.cancel(); }
 
  private:

@@ -12,10 +12,12 @@ namespace {
 
 constexpr uint32_t kMostReaders = 64;
 
-// Three quarters of the machine's threads: they work while much comes, and sleep otherwise.
-// bench/NOTES.md has what four, eight and twelve do.
-uint32_t default_readers() {
-  return std::clamp(3 * std::thread::hardware_concurrency() / 4, 4u, 12u);
+// Three quarters of the machine's threads: they work while much comes, and sleep otherwise. As many
+// as the source answers at once: they wait for it most of the time. bench/NOTES.md has what four,
+// eight and twelve do.
+uint32_t default_readers(const ByteSource& source) {
+  const uint32_t of_machine = std::clamp(3 * std::thread::hardware_concurrency() / 4, 4u, 12u);
+  return std::clamp(source.reads_at_once(), of_machine, kMostReaders);
 }
 
 // Of a budget of its own, and of what the device has left for it; 0: no limit.
@@ -55,7 +57,8 @@ void open_streamed(SceneObject& object, const std::shared_ptr<const ByteSource>&
   if (streaming.startPosition != nullptr)
     desc.start = {streaming.startPosition[0], streaming.startPosition[1],
                   streaming.startPosition[2]};
-  desc.readers = streaming.readerThreadCount == 0 ? default_readers() : streaming.readerThreadCount;
+  desc.readers =
+      streaming.readerThreadCount == 0 ? default_readers(*source) : streaming.readerThreadCount;
   desc.count = [&object](uint64_t bytes) { object.count(bytes); };
   object.scene = open_streamed(source, desc, *object.device().backend, &object.memory,
                                object.device().workers);

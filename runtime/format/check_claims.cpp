@@ -1,6 +1,7 @@
 #include "runtime/format/check_claims.h"
 
 #include <algorithm>
+#include <future>
 #include <random>
 
 #include "runtime/base/error.h"
@@ -15,6 +16,8 @@ constexpr uint64_t kBelieved = 16 << 20;  // bytes
 // openings, one with a quarter once in 40. One with a 32nd passes once in 60, one with a 64th once
 // in 700. The file's author cannot know which chunks will be tried.
 constexpr size_t kSamples = 32, kSound = kSamples / 8;
+// A thread, where there is one to be had.
+constexpr std::launch kAnyLaunch = std::launch::async | std::launch::deferred;
 
 // Bytes of a node whose Gaussian is there, beside its SH, of its record, and of a subtree: as
 // stored, as a search reads it, and what views keep of it.
@@ -70,12 +73,21 @@ void check_claims(const SceneFile& file, uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<uint64_t> places(kSamples);
   std::generate(places.begin(), places.end(), [&] { return random() % claimed; });
+  // Where each try waits for an answer, as many at once as may do.
+  const size_t at_once = file.source().reads_at_once() > 1 ? kSound : 1;
+  const std::vector<uint32_t> chunks = chunks_at(std::move(places), file);
   size_t sound = 0;
   std::string first_damage;
-  for (const uint32_t chunk : chunks_at(std::move(places), file)) {
-    const std::string damage = damage_of(file, chunk);
-    if (damage.empty() && ++sound == kSound) return;
-    if (first_damage.empty()) first_damage = damage;
+  for (size_t first = 0; first < chunks.size(); first += at_once) {
+    std::vector<std::future<std::string>> tries;
+    for (size_t i = first; i < std::min(first + at_once, chunks.size()); ++i)
+      tries.push_back(std::async(at_once == 1 ? std::launch::deferred : kAnyLaunch,
+                                 [&, i] { return damage_of(file, chunks[i]); }));
+    for (std::future<std::string>& one : tries) {
+      const std::string damage = one.get();
+      if (damage.empty() && ++sound == kSound) return;
+      if (first_damage.empty()) first_damage = damage;
+    }
   }
   throw Error(ErrorCode::refused_input, first_damage + "; of " + std::to_string(kSamples) +
                                             " chunks that were tried " + std::to_string(sound) +

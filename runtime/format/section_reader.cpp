@@ -19,14 +19,11 @@ void SectionReader::read_piece(std::span<std::byte> bytes) {
   next_ += bytes.size();
 }
 
-void SectionReader::finish() {
-  const uint64_t used = next_;
-  std::vector<std::byte> padding(end_ - used);  // less than an alignment
-  read_piece(padding);
+void SectionReader::finish(std::span<const std::byte> padding) {
   check_.equal(section_.offset, "section checksum", sum_.value(), section_.checksum);
   check_.that(
       std::all_of(padding.begin(), padding.end(), [](std::byte b) { return b == std::byte{0}; }),
-      used, "padding that is not 0", "zeros");
+      end_ - padding.size(), "padding that is not 0", "zeros");
 }
 
 }  // namespace voyager

@@ -3,6 +3,7 @@
 // pieces, each as long as all before it: it takes no more time than twice what has been read and
 // found right, and no more room than a piece.
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "runtime/base/checksum.h"
@@ -25,10 +26,14 @@ class SectionReader {
     uint64_t had = 0;
     do {
       const uint64_t most = std::clamp(had, kLeastPiece / sizeof(Item), kMostPiece / sizeof(Item));
-      piece.resize(std::min(count - had, most));
-      read_piece(std::as_writable_bytes(std::span(piece)));
-      if (had + piece.size() == count) finish();
-      for (const Item& item : piece) accept(item, had++);
+      const uint64_t some = std::min(count - had, most), bytes = some * sizeof(Item);
+      // With the zeros behind it, so that a server is not asked for these alone.
+      const uint64_t read = had + some == count ? end_ - next_ : bytes;
+      piece.resize((read + sizeof(Item) - 1) / sizeof(Item));
+      const auto into = std::as_writable_bytes(std::span(piece)).first(read);
+      read_piece(into);
+      if (had + some == count) finish(into.subspan(bytes));
+      for (uint64_t i = 0; i < some; ++i) accept(piece[i], had++);
     } while (had < count);
   }
 
@@ -36,7 +41,7 @@ class SectionReader {
   static constexpr uint64_t kLeastPiece = 1 << 20, kMostPiece = 1 << 24;  // bytes
 
   void read_piece(std::span<std::byte> bytes);
-  void finish();
+  void finish(std::span<const std::byte> padding);
 
   const ByteSource& source_;
   const Section& section_;

@@ -370,7 +370,7 @@ typedef struct VoySceneStreaming {
    * Copied. */
   const double* startPosition;
   /* Threads that read and decode: 1 to 64. 0: three quarters of the machine's hardware threads,
-   * but at least 4 and at most 12. They sleep while there is nothing to read. */
+   * but at least 4 and at most 12, and 12 for a URL. They sleep while there is nothing to read. */
   uint32_t readerThreadCount;
   uint32_t reserved; /* 0 */
 } VoySceneStreaming;
