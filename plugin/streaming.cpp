@@ -12,9 +12,9 @@ namespace {
 
 constexpr uint32_t kMostReaders = 64;
 
-// Three quarters of the machine's threads: they work while much comes, and sleep otherwise. As many
-// as the source answers at once: they wait for it most of the time. bench/NOTES.md has what four,
-// eight and twelve do.
+// Three quarters of the machine's threads: they work while much comes, and sleep otherwise. At
+// least as many as are worth having: those wait for answers most of the time. bench/NOTES.md has
+// what four, eight and twelve do.
 uint32_t default_readers(const ByteSource& source) {
   const uint32_t of_machine = std::clamp(3 * std::thread::hardware_concurrency() / 4, 4u, 12u);
   return std::clamp(source.reads_at_once(), of_machine, kMostReaders);

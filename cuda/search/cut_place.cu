@@ -143,7 +143,7 @@ __device__ uint32_t move_segments(const StateView& state, SegmentFit& fit,
   for (fit = SegmentFit::roomy; fit != SegmentFit::none;
        fit = static_cast<SegmentFit>(static_cast<uint32_t>(fit) + 1)) {
     const uint32_t need = set_places(state, fit, 0, 0, storage);
-    if (need > state.list_room) continue;
+    if (whole_rows(need) > state.list_room) continue;
     if (fit != SegmentFit::rows) return need;
     const uint32_t rows = (state.list_room - need) / kRowPlaces;
     return set_places(state, fit, rows, need, storage) + rows * kRowPlaces;

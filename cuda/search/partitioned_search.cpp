@@ -72,6 +72,8 @@ class PartitionedSearch final : public CutSearch, public PoolReaderState {
   // Whether the list has what weights depend on. A pool's nodes say it themselves.
   bool lists_origins() const { return weights_ && !streamed_; }
   uint64_t most_nodes() const;
+  // Throws Error(internal) where the list has not had room for the cut.
+  void require_room(const FrameCounters& counted) const;
   void make_state();
   bool fit_pool();
   bool follow_stream(const SearchFrame& now, bool goes_on);
@@ -221,11 +223,15 @@ void PartitionedSearch::report(void* into, cudaStream_t stream) const {
         "counters");
 }
 
+void PartitionedSearch::require_room(const FrameCounters& counted) const {
+  if (counted.fit == SegmentFit::none)
+    throw Error(ErrorCode::internal, "cut: found " + std::to_string(counted.cut_size) +
+                                         " nodes, expected at most " + std::to_string(list_room_));
+}
+
 CutFound PartitionedSearch::found(const void* report) const {
   const FrameCounters& c = *static_cast<const FrameCounters*>(report);
-  if (c.fit == SegmentFit::none)
-    throw Error(ErrorCode::internal, "cut: found " + std::to_string(c.cut_size) +
-                                         " nodes, expected at most " + std::to_string(list_room_));
+  require_room(c);
   SearchStats stats;
   stats.ran = c.streamed != 0 ? Search::streaming : kind_;
   stats.nodes_tested = c.nodes_tested;
@@ -244,7 +250,9 @@ void PartitionedSearch::read(std::vector<uint32_t>& cut, std::vector<float>& wei
     throw Error(ErrorCode::unsupported,
                 "cut: found that the scene's memory was shared out anew since the last frame, "
                 "expected a frame since");
-  const size_t places = counters().list_size;
+  const FrameCounters counted = counters();
+  require_room(counted);
+  const size_t places = counted.list_size;
   const StateView state = state_->view();
   cut.resize(places);
   weights.resize(weighed_ ? places : 0);

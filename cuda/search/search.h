@@ -79,7 +79,7 @@ class CutSearch {
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // kind: any but exhaustive; temporal in place of a sweep. Device memory besides the scene's arrays:
-// 27 bytes a subtree and, for the list, at most 6.3 a leaf, with weights 16.7. What the search of a
+// 27 bytes a subtree and, for the list, at most 6.3 a leaf, with weights 16.3. What the search of a
 // streamed scene takes is part of the scene's budget, by with_view(). It runs under
 // SceneStream::hold(), and ends each run with end_frame().
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,

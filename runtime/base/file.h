@@ -32,7 +32,7 @@ class ByteSource {
   // range beyond size(). `into` then holds anything. Blocks; safe to call from several threads
   // at once.
   virtual void read(uint64_t offset, std::span<std::byte> into) const = 0;
-  // So many reads in flight bring more than fewer do: where each waits for an answer (HTTP).
+  // How many reads are worth having at once: several where each waits for an answer (HTTP).
   virtual unsigned reads_at_once() const noexcept { return 1; }
   // A wish, granted where the source has something to choose. Before reads of other threads.
   virtual void expect(Access) const noexcept {}

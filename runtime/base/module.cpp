@@ -42,8 +42,11 @@ void* open_library(const std::string& file, std::string& why) {
 }  // namespace
 
 std::string module_stamp(size_t shared_type_bytes) {
+  // Raised with each change of a class that modules share and whose size does not change with it,
+  // such as a virtual function of ByteSource.
+  constexpr int kSharedClasses = 2;
   return std::string(VOYAGER_VERSION) + ", " + __VERSION__ + ", " +
-         std::to_string(shared_type_bytes);
+         std::to_string(shared_type_bytes) + ", " + std::to_string(kSharedClasses);
 }
 
 const void* open_module(const std::string& name, const char* symbol, const std::string& stamp,

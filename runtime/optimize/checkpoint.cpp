@@ -24,7 +24,7 @@ uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> camera
                             sum_of(baked.merged.sh),        sum_of(baked.leaves.position),
                             sum_of(baked.leaves.log_scale), sum_of(baked.leaves.opacity),
                             sum_of(baked.leaves.sh),        checksum(std::as_bytes(cameras))};
-  return checksum(std::as_bytes(std::span(parts)));
+  return checksum(std::as_bytes(std::span(parts).first(cameras.empty() ? 7 : 8)));
 }
 
 void write_checkpoint(const Checkpoint& checkpoint, uint64_t mark, const std::string& path) {
@@ -65,8 +65,8 @@ bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpo
     throw Error(
         ErrorCode::refused_input,
         path +
-            ": found what was learned of another scene, or with another --memory, expected this "
-            "one: " +
+            ": found what was learned of another scene, with other --training-cameras or another "
+            "--memory, expected this one: " +
             kStartAnew);
   checkpoint.pictures = static_cast<uint32_t>(head[2]);
   checkpoint.done = static_cast<uint32_t>(head[3]);

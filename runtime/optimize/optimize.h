@@ -22,7 +22,8 @@ struct OptimizeGoal {
   uint64_t memory = 0;     // bytes of the host's that this may take beside the scene; 0: any number
   uint32_t held_out = 24;  // views
   double keep_milliseconds = 60000;  // between one time that what was learned is kept and the next
-  // In the scene's world: half of the views are from near them (training_views.h). May be none.
+  // In the scene's world: up to half of the views are from near them (training_views.h). May be
+  // none.
   std::span<const TrainingCamera> cameras{};
 };
 // So many for each merged node.

@@ -32,10 +32,14 @@ constexpr double kPixelOfExtent = 1 / (2 * kClosest);
 constexpr double kLowestOfFlat = -0.05, kLowestOfOther = -0.5;
 constexpr double kNearestOfRadius = 0.02, kFarthestOfRadius = 3;
 constexpr double kNearPlane = 0.1;  // of the distance, at most
-// Views from cameras: how many, how many cameras are tried for a leaf, and the least sine of the
-// angle to what is up, below which nothing says what is right.
+// Views from cameras: how many at most, how many cameras are tried for a leaf, and the least sine
+// of the angle to what is up, below which nothing says what is right.
 constexpr double kShareOfCameras = 0.5, kLevelest = 1e-3;
-constexpr uint32_t kCamerasTried = 8;
+constexpr uint32_t kCamerasTried = 64;
+constexpr uint64_t kTurns = 6;  // in base 13 every other view then has its turn, and no runs have
+// How far eyes stand aside: of the way to the next camera, and of the way to the leaf at most;
+// upwards and downwards a tenth of that, so that few are below the ground.
+constexpr double kAside = 0.35, kMostAside = 0.25, kRise = 0.1;
 constexpr size_t kMostCameras = 4096;
 
 double between(double low, double high, double share) {
@@ -82,7 +86,7 @@ Upward upward(const Spread& spread) {
 
 }  // namespace
 
-// Of a part of many cameras, evenly.
+// Of more than kMostCameras an even sample.
 std::vector<TrainingViews::Stand> TrainingViews::stands_of(std::span<const TrainingCamera> cameras,
                                                            const Vec3d& origin) {
   const size_t stride = (cameras.size() + kMostCameras - 1) / kMostCameras;
@@ -98,7 +102,7 @@ std::vector<TrainingViews::Stand> TrainingViews::stands_of(std::span<const Train
       if (const double squared = dot(between, between); squared > 0)
         nearest = std::min(nearest, squared);
     }
-    if (std::isfinite(nearest)) stand.jitter = 0.5 * std::sqrt(nearest);
+    if (std::isfinite(nearest)) stand.aside = kAside * std::sqrt(nearest);
   }
   return stands;
 }
@@ -135,14 +139,17 @@ std::optional<TrainingViews::Look> TrainingViews::look_from_camera(uint64_t inde
     const auto at =
         static_cast<size_t>((share - std::floor(share)) * static_cast<double>(stands_.size()));
     const Stand& stand = stands_[std::min(at, stands_.size() - 1)];
-    const Vec3d aside{2 * radical_inverse(index, 19) - 1, 2 * radical_inverse(index, 23) - 1,
-                      2 * radical_inverse(index, 29) - 1};
-    const Vec3d eye = stand.camera.position + stand.jitter * aside;
-    const Vec3d seen = stand.camera.world_to_view * (target - eye);
-    if (!(seen.z > nearest_ && seen.z < farthest_) ||
-        !(std::fabs(seen.x) * 2 * stand.camera.fx <= seen.z * stand.camera.width) ||
-        !(std::fabs(seen.y) * 2 * stand.camera.fy <= seen.z * stand.camera.height))
-      continue;
+    const TrainingCamera& camera = stand.camera;
+    const double depth = (camera.world_to_view * (target - camera.position)).z;
+    const double aside = std::min(stand.aside, kMostAside * depth);
+    const auto by = [&](uint32_t base) { return aside * (2 * radical_inverse(index, base) - 1); };
+    const Vec3d eye = camera.position + by(19) * axes_.row[0] + by(23) * axes_.row[1] +
+                      kRise * by(29) * axes_.row[2];
+    const Vec3d seen = camera.world_to_view * (target - eye);
+    if (!(seen.z > nearest_ && seen.z < farthest_)) continue;
+    const double x = camera.fx * seen.x / seen.z + camera.cx;
+    const double y = camera.fy * seen.y / seen.z + camera.cy;
+    if (!(x >= 0 && x <= camera.width && y >= 0 && y <= camera.height)) continue;
     const Vec3d away = eye - target;
     const double distance = std::sqrt(dot(away, away));
     const Vec3d outward = (1 / distance) * away;
@@ -159,7 +166,7 @@ TrainingViews::Look TrainingViews::look(uint32_t k) const {
   const auto leaf = static_cast<size_t>(radical_inverse(index, 2) * leaves);
   const Vec3f mean = local_mean(baked_.leaves, leaf, baked_.origin);
   const Vec3d target{double{mean.x}, double{mean.y}, double{mean.z}};
-  if (!stands_.empty() && radical_inverse(index, 13) < kShareOfCameras)
+  if (!stands_.empty() && radical_inverse(kTurns * index, 13) < kShareOfCameras)
     if (const auto found = look_from_camera(index, target)) return *found;
   const double around = 2 * std::numbers::pi * radical_inverse(index, 3);
   const double rise = lowest_rise_ + (1 - lowest_rise_) * radical_inverse(index, 5);

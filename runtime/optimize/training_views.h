@@ -1,6 +1,6 @@
 #pragma once
 // Where a scene is looked at from while its nodes learn. No camera of the scene's is needed; where
-// some are known, they guide half of the views.
+// some are known, they guide up to half of the views.
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -23,8 +23,8 @@ struct LookedAt {
 
 // Each looks at a leaf, from outside or from amid the scene. The k-th is the same whatever comes
 // before it; those from 0 to any k are spread evenly (Halton's sequence) over leaves, directions
-// and the logarithm of the distance. Where there are cameras, half of the views stand near one that
-// has their leaf in its picture, as far as one of eight is found that has.
+// and the logarithm of the distance. Where there are cameras, up to half of the views stand near
+// one that has their leaf in its picture: as many as find one among 64.
 class TrainingViews {
  public:
   // cameras: in the scene's world.
@@ -51,10 +51,10 @@ class TrainingViews {
   Mat3d axes_;          // rows: two level ones, and up
   double lowest_rise_;  // sine of the elevation
   double nearest_, farthest_;
-  // Scene-local. jitter: metres, half of the way to the next camera.
+  // Scene-local. aside: metres, how far from it eyes stand at most, along each level axis.
   struct Stand {
     TrainingCamera camera;
-    double jitter;
+    double aside;
   };
   static std::vector<Stand> stands_of(std::span<const TrainingCamera> cameras, const Vec3d& origin);
   std::vector<Stand> stands_;

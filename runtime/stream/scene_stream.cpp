@@ -11,6 +11,8 @@ namespace {
 
 // What every view has at once, wherever it looks.
 constexpr uint32_t kPinnedShare = 8;  // of the slots, one in so many
+// Where reads wait for answers (pace_reads()).
+constexpr unsigned kReadsAtFirst = 4;
 constexpr uint32_t kMostPinned = 1024;
 
 ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) {
@@ -55,6 +57,11 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       linker_(graph_, shape_, residency_.next_blocks()),
       pages_(no_pages(desc.room)) {
   linker_.make_room(desc.room.slots, desc.bytes.list.nodes(desc.room));
+  // Where reads wait for answers, one reader is left for plans.
+  const unsigned at_once = file_->source().reads_at_once();
+  if (at_once <= 1) return;
+  most_reads_ = std::clamp(std::max(desc_.readers, 2u) - 1, 1u, at_once);
+  reads_allowed_ = std::min(most_reads_, kReadsAtFirst);
 }
 
 SceneStream::~SceneStream() {

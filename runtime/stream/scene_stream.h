@@ -3,6 +3,7 @@
 // for, and what a frame does about it. A frame waits for none of it unless it says so.
 #include <atomic>
 #include <chrono>
+#include <climits>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -215,6 +216,7 @@ class SceneStream {
   bool is_settled(double since) const;
   void check_seen() const;
   std::vector<std::byte> read(ChunkRange range, std::optional<Error>& failure, Lock& lock);
+  void pace_reads(double seconds);
   void fail_range(ChunkRange range, const Error& error, uint64_t generation);
   void stage_range(ChunkRange range, const std::vector<std::byte>& bytes, uint64_t generation,
                    Lock& lock);
@@ -290,6 +292,8 @@ class SceneStream {
   // Of the pool's present slots: what a thread has begun for earlier ones is for nothing.
   std::atomic<uint64_t> generation_{0};
   unsigned filling_ = 0;
+  // In flight, and how many may be (pace_reads()).
+  unsigned reads_in_flight_ = 0, reads_allowed_ = UINT_MAX, most_reads_ = UINT_MAX;
   // What ended a step or a commit halfway, for want of memory: what is resident, wanted and linked
   // is then no longer known, though frames may go on with the pool. All is filled anew.
   std::exception_ptr lost_;

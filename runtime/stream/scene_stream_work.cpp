@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "runtime/base/clock.h"
 #include "runtime/base/floating_point_mode.h"
 #include "runtime/stream/scene_stream.h"
 
@@ -238,7 +239,9 @@ void SceneStream::fill(const std::vector<StagedChunk*>& some, Lock& lock) {
 std::vector<std::byte> SceneStream::read(ChunkRange range, std::optional<Error>& failure,
                                          Lock& lock) {
   std::vector<std::byte> bytes;
+  ++reads_in_flight_;
   lock.unlock();
+  const Stopwatch watch;
   try {
     bytes = file_->read_stored(range.first, range.last);
   } catch (const Error& error) {
@@ -246,7 +249,10 @@ std::vector<std::byte> SceneStream::read(ChunkRange range, std::optional<Error>&
   } catch (const std::exception& error) {
     failure.emplace(ErrorCode::io_transient, file_->name() + ": " + error.what());
   }
+  const double seconds = 1e-3 * watch.milliseconds();
   lock.lock();
+  --reads_in_flight_;
+  pace_reads(seconds);
   ++reads_;
   bytes_read_ += bytes.size();
   if (!failure)
@@ -256,7 +262,18 @@ std::vector<std::byte> SceneStream::read(ChunkRange range, std::optional<Error>&
   return bytes;
 }
 
+// Where reads wait for answers, more in flight bring more until they take all of the bandwidth.
+// Then each takes longer, and what a viewer sees next comes behind all of them.
+void SceneStream::pace_reads(double seconds) {
+  constexpr double kQuick = 0.35, kSlow = 0.7;
+  constexpr unsigned kLeast = 2;
+  if (file_->source().reads_at_once() <= 1) return;
+  if (seconds < kQuick) reads_allowed_ = std::min(reads_allowed_ + 1, most_reads_);
+  if (seconds > kSlow) reads_allowed_ = std::max(reads_allowed_ - 1, std::min(kLeast, most_reads_));
+}
+
 bool SceneStream::read_some(Lock& lock) {
+  if (reads_in_flight_ >= reads_allowed_) return false;
   if (staged_bytes_ >= desc_.staged_bytes || !failures_.source_may_be_read(now())) return false;
   const ChunkRange range = residency_.take_requests(kMostChunksARead, desc_.read_bytes);
   if (range.empty()) return false;

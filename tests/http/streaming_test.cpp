@@ -2,7 +2,6 @@
 // test says.
 #include <filesystem>
 #include <optional>
-#include <set>
 
 #include "runtime/frame/open_streamed.h"
 #include "runtime/frame/whole_tree.h"
@@ -47,17 +46,15 @@ class HttpStreaming : public testing::Test {
 };
 
 TEST_F(HttpStreaming, AFrameThatWaitsIsThatOfTheFile) {
-  ASSERT_EQ(nginx_.start("limit_rate 2m;"), "");
+  ASSERT_EQ(nginx_.start("limit_rate 1m;"), "");
   const Outcome drawn =
       run(render(nginx_.url("city.voy"), "--budget 40 --wait-resident on -o " + local("far.pfm")));
   ASSERT_EQ(drawn.exit_code, 0) << drawn.output;
   EXPECT_TRUE(file_bytes(local("far.pfm")) == file_bytes(local("city.pfm")));
   // More than a machine of two cores has threads for: each waits for answers most of the time.
-  std::set<std::string> connections;
-  for (const std::string& request : nginx_.requests(1))
-    connections.insert(request.substr(0, request.find(' ')));
-  EXPECT_GT(connections.size(), 6u);
-  EXPECT_LE(connections.size(), http::Options{}.connections);
+  const size_t connections = different_first_words(nginx_.requests(1));
+  EXPECT_GT(connections, 4u);
+  EXPECT_LE(connections, http::Options{}.connections);
 }
 
 // In this process, and quick to give up.

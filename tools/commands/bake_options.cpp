@@ -39,7 +39,7 @@ void add_native_options(CLI::App& command, BakeArguments& arguments) {
       .add_option("--training-cameras", arguments.training_cameras,
                   "Find it from the cameras that the scene was trained with: a cameras.json of "
                   "INRIA, a model of COLMAP (its folder), or a transforms.json of nerfstudio. "
-                  "--optimize then learns half of its pictures from near them")
+                  "--optimize then learns up to half of its pictures from near them")
       ->type_name("PATH")
       ->excludes(pixel);
   name_group(command, "What the scene was trained with");
