@@ -466,6 +466,53 @@ TEST(StreamingDisk, WhoeverStandsGetsWhatAFailureTook) {
   EXPECT_EQ(stand(), chunks);
 }
 
+// Answers after some time, several reads at once.
+class FarSource final : public ByteSource {
+ public:
+  explicit FarSource(const test::Bytes& bytes) : source_(test::source_of(bytes)) {}
+  const std::string& name() const override { return source_->name(); }
+  uint64_t size() const override { return source_->size(); }
+  unsigned reads_at_once() const noexcept override { return 8; }
+  void read(uint64_t offset, std::span<std::byte> into) const override {
+    const unsigned now = ++in_flight_;
+    for (unsigned most = most_; now > most && !most_.compare_exchange_weak(most, now);) continue;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    source_->read(offset, into);
+    --in_flight_;
+  }
+  unsigned most() const { return most_; }
+
+ private:
+  std::shared_ptr<const ByteSource> source_;
+  mutable std::atomic<unsigned> in_flight_{0}, most_{0};
+};
+
+// Where all readers waited for answers nobody would plan for who turns round.
+TEST(StreamingDisk, ReadsOfAFarSourceLeaveAReaderForPlans) {
+  const test::Bytes bytes =
+      test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact, 0, kMinChunkBytes);
+  const auto source = std::make_shared<FarSource>(bytes);
+  const auto file = std::make_shared<const SceneFile>(source);
+  StreamDesc desc;
+  const auto chunks = static_cast<uint32_t>(file->chunks().size());
+  desc.room = RecordRoom(*file).of(chunks);
+  desc.pinned = desc.first = SceneStream::top_chunks(*file);
+  desc.readers = 6;
+  desc.read_bytes = 1024;
+  Workers workers(1);
+  FailingPool pool(desc.room);
+  SceneStream stream(file, desc, pool);
+  stream.read_top(workers);
+  for (int i = 0; i < 500 && stream.counters().resident < chunks; ++i) {
+    stream.look(&pool, {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}});
+    stream.commit();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(stream.counters().resident, chunks);
+  EXPECT_GT(source->most(), 2u);
+  EXPECT_LE(source->most(), desc.readers - 1);
+}
+
 // A source that stays away, slowly: frames that wait get to know, and chunks are not asked for one
 // by one. When it comes back, all is well, and the next outage is told again.
 TEST(StreamingDisk, AFrameThatWaitsForASourceThatStaysAwayFails) {
