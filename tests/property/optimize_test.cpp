@@ -100,8 +100,8 @@ TEST(Optimize, FourCutsOfAViewShareItsTruth) {
   }
 }
 
-// Half of the views are from near a camera that has in its picture what they look at. The others
-// are those that there are without cameras.
+// Up to half of the views are from near a camera that has in its picture what they look at, by
+// turns with the others, which are those that there are without cameras.
 TEST(Optimize, CamerasGuideHalfOfTheViews) {
   const BakedScene baked = city(2000);
   const LookedAt looked_at{baked.leaves.size(), 0, 0};
@@ -114,15 +114,17 @@ TEST(Optimize, CamerasGuideHalfOfTheViews) {
   }
   const TrainingViews guided(baked, looked_at, cameras);
   constexpr uint32_t kViews = 1000;
-  uint32_t from_cameras = 0;
+  uint32_t from_cameras = 0, in_a_row = 0;
   for (uint32_t k = 0; k < kViews; ++k) {
     const Camera found = guided(k).camera, other = alone(k).camera;
     if (found.eye == other.eye) {
       EXPECT_EQ(found.world_to_view, other.world_to_view);
       EXPECT_EQ(guided.distance(k), alone.distance(k));
+      in_a_row = 0;
       continue;
     }
     ++from_cameras;
+    EXPECT_LE(++in_a_row, 2u);
     const Vec3d target = found.eye + guided.distance(k) * found.world_to_view.row[2];
     const Vec3d moved = target - (other.eye + alone.distance(k) * other.world_to_view.row[2]);
     EXPECT_LT(dot(moved, moved), 1e-12);
@@ -367,8 +369,10 @@ TEST(Optimize, WhatWasLearnedOfAnotherSceneOrWasAlteredIsRefused) {
   };
   EXPECT_EQ(refusal(test::bake(test::specks(300, 8, 0)), 5),
             kept +
-                ": found what was learned of another scene, or with another --memory, expected "
-                "this one: remove it, and learning starts anew");
+                ": found what was learned of another scene, with other --training-cameras or "
+                "another --memory, expected this one: remove it, and learning starts anew");
+  const TrainingCamera camera{};
+  EXPECT_NE(mark_of(baked, {&camera, 1}), mark_of(baked, {}));
   EXPECT_EQ(refusal(baked, 6), kept +
                                    ": found what is learned from 5 pictures, expected 6: ask for "
                                    "as many, or remove it");
