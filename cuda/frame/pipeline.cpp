@@ -437,12 +437,9 @@ void SplatPipeline::submit(const FrameInput& frame, bool checked) {
 bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   if (under_way_.empty()) return false;
   device_->use();
-  if (wait) under_way_.front()->wait_for_host();
-  if (!under_way_.front()->passed()) return false;
-  // First, so that a frame that cannot be told of is not told of again.
-  free_.push_back(std::move(under_way_.front()));
-  under_way_.pop_front();
-  FrameReport& oldest = *free_.back();
+  FrameReport& oldest = *under_way_.front();
+  if (wait) oldest.wait_for_host();
+  if (!oldest.passed()) return false;
   collect(oldest, stats);
   shown_.collect(oldest.tells);
   learn(oldest);
@@ -455,6 +452,8 @@ bool SplatPipeline::finish(bool wait, FrameStats& stats) {
   };
   ahead(wanted_.places, used.places), ahead(wanted_.slots, used.slots);
   ahead(wanted_.strips, used.strips), ahead(wanted_.pairs, used.pairs);
+  free_.push_back(std::move(under_way_.front()));
+  under_way_.pop_front();
   return true;
 }
 

@@ -191,12 +191,7 @@ bool View::finish_one(bool wait) {
   if (under_way_.empty()) return false;
   UnderWay& oldest = under_way_.front();
   const uint64_t entered = oldest.stats.entered, left = oldest.stats.left;
-  try {
-    if (!pipeline_->finish(wait, oldest.stats)) return false;
-  } catch (...) {
-    under_way_.pop_front();  // as the pipeline did
-    throw;
-  }
+  if (!pipeline_->finish(wait, oldest.stats)) return false;
   streaming_->tell_shown(*pipeline_);
   if (oldest.changes_known) oldest.stats.entered = entered, oldest.stats.left = left;
   keep_stats(oldest.stats);
