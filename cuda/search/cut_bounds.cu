@@ -69,7 +69,7 @@ __global__ void __launch_bounds__(kThreads)
     const uint32_t first = i % shares * kWarps + threadIdx.x / 32;
     for (uint32_t level = 0; level < kLevels; ++level) {
       const Segment segment = state.segments[block.first_segment + level * block.stride];
-      const uint32_t end = (segment.first + segment.room + kRowPlaces - 1) / kRowPlaces;
+      const uint32_t end = whole_rows(segment.first + segment.room) / kRowPlaces;
       for (uint32_t row = segment.first / kRowPlaces + first; row < end; row += shares * kWarps) {
         const MeanBounds bounds =
             joined(bounds_of(gaussians, state.nodes[row * kRowPlaces + lane], parents));

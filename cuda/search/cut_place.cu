@@ -153,7 +153,7 @@ __device__ uint32_t move_segments(const StateView& state, SegmentFit& fit,
 
 // A list ends with a row: what no segment writes of it holds no node.
 __device__ uint32_t end_row(const StateView& state, uint32_t places) {
-  const uint32_t end = (places + kRowPlaces - 1) / kRowPlaces * kRowPlaces;
+  const uint32_t end = whole_rows(places);
   if (places + threadIdx.x < end) state.nodes[places + threadIdx.x] = kNoNode;
   return end;
 }

@@ -20,7 +20,7 @@ enum class SegmentFit : uint32_t {
   roomy,   // whole rows, and one place in eight to spare: they grow without moving others
   rows,    // the rows that they take, and what rows are left, shared out
   packed,  // the places that they take: neighbours share a row, and where one grows all move
-  none     // no cut is as large: an error, which found() throws
+  none     // no cut is as large: an error, which found() and read() throw
 };
 VOYAGER_HD uint32_t whole_rows(uint32_t places) {
   return (places + kRowPlaces - 1) / kRowPlaces * kRowPlaces;

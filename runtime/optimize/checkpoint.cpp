@@ -9,7 +9,7 @@
 namespace voyager {
 namespace {
 
-constexpr uint64_t kKind = 0x33696d6974706f;  // "optimi3"; a change of the pictures needs another
+constexpr uint64_t kKind = 0x34696d6974706f;  // "optimi4"; a change of the pictures needs another
 constexpr char kStartAnew[] = "remove it, and learning starts anew";
 
 template <class Values>
@@ -24,7 +24,7 @@ uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> camera
                             sum_of(baked.merged.sh),        sum_of(baked.leaves.position),
                             sum_of(baked.leaves.log_scale), sum_of(baked.leaves.opacity),
                             sum_of(baked.leaves.sh),        checksum(std::as_bytes(cameras))};
-  return checksum(std::as_bytes(std::span(parts).first(cameras.empty() ? 7 : 8)));
+  return checksum(std::as_bytes(std::span(parts)));
 }
 
 void write_checkpoint(const Checkpoint& checkpoint, uint64_t mark, const std::string& path) {

@@ -36,7 +36,9 @@ constexpr double kNearPlane = 0.1;  // of the distance, at most
 // of the angle to what is up, below which nothing says what is right.
 constexpr double kShareOfCameras = 0.5, kLevelest = 1e-3;
 constexpr uint32_t kCamerasTried = 64;
-constexpr uint64_t kTurns = 6;  // in base 13 every other view then has its turn, and no runs have
+// Views from cameras and others then come by turns: of six times an index, the last digit in base
+// 13 is below and above the middle one by turns. Of the index itself it is so in runs of six.
+constexpr uint64_t kTurns = 6;
 // How far eyes stand aside: of the way to the next camera, and of the way to the leaf at most;
 // upwards and downwards a tenth of that, so that few are below the ground.
 constexpr double kAside = 0.35, kMostAside = 0.25, kRise = 0.1;

@@ -45,7 +45,9 @@ class TrainingViews {
     double distance;
   };
   Look look(uint32_t k) const;
+  // None where no camera that is tried has the target in its picture.
   std::optional<Look> look_from_camera(uint64_t index, const Vec3d& target) const;
+
   const BakedScene& baked_;
   size_t leaves_;       // that are looked at
   Mat3d axes_;          // rows: two level ones, and up
