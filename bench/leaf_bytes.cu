@@ -1,16 +1,21 @@
-// Bytes a leaf of a scene that is streamed and resident as a whole, with what a view of it keeps:
+// Bytes a leaf of a scene, all in, with what a view of it keeps:
 //   leaf_bytes SCENE.voy
-// A line of JSON for each backend. CUDA's layout needs no GPU.
+// A line of JSON for each backend: streamed and resident as a whole, by layout, which needs no GPU.
+// Where there is one, a line for the scene resident on it, found from the device's free memory.
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <string>
+#include <utility>
 
+#include "cuda/scene/device_parents.h"
+#include "cuda/scene/device_scene.h"
 #include "cuda/search/search.h"
 #include "cuda/stream/pool_layout.h"
 #include "runtime/base/error.h"
 #include "runtime/base/open_source.h"
 #include "runtime/cpu/cpu_backend.h"
+#include "runtime/frame/load.h"
 #include "runtime/frame/open_streamed.h"
 #include "runtime/stream/scene_stream.h"
 
@@ -30,6 +35,41 @@ void print(const char* backend, const RoomBytes& bytes, PoolRoom room, double le
       "\"fixed\": %.2f, \"view_list\": %.2f, \"view_state\": %.2f, \"all\": %.2f}\n",
       backend, slots, blocks, pages, fixed, list, state,
       static_cast<double>(bytes.of(room)) / leaves);
+}
+
+// What the partitioned search keeps, which finds the cuts of large scenes.
+void print_resident(const char* path, Workers& workers) {
+  int devices = 0;
+  if (cudaGetDeviceCount(&devices) != cudaSuccess || devices == 0) return;
+  const auto device = std::make_shared<cuda::Device>(0, 0);
+  device->use();
+  const std::shared_ptr<const Scene> scene =
+      load_scene(open_source(path), std::pmr::get_default_resource(), workers);
+  const auto leaves = static_cast<double>(scene->leaf_count);
+  const auto free_bytes = [] {
+    size_t free = 0, all = 0;
+    cuda::check(cudaMemGetInfo(&free, &all), "memory");
+    return static_cast<double>(free);
+  };
+  const double first = free_bytes();
+  double before = first;
+  const auto taken = [&] {
+    const double was = std::exchange(before, free_bytes());
+    return (was - before) / leaves;
+  };
+  const cuda::DeviceScene gaussians(*device, *scene, workers);
+  const double own = taken();
+  const cuda::DeviceParents parents(*scene);
+  const double of_parents = taken();
+  const std::shared_ptr<const cuda::DeviceTree> tree = cuda::upload_tree(*scene);
+  const double of_tree = taken();
+  const auto search =
+      create_partitioned_search(device, tree, scene, Search::temporal, true, workers);
+  const double of_view = taken();
+  std::printf(
+      "{\"backend\": \"cuda, resident\", \"gaussians\": %.2f, \"parents\": %.2f, \"tree\": %.2f, "
+      "\"view\": %.2f, \"all\": %.2f}\n",
+      own, of_parents, of_tree, of_view, (first - free_bytes()) / leaves);
 }
 
 }  // namespace
@@ -57,6 +97,7 @@ int main(int argc, char** argv) try {
   print("cpu", cpu->room_bytes(*scene, shape), room, leaves);
   const cuda::PoolLayout layout(*scene, shape, {1, record_blocks(shape.records)});
   print("cuda", cuda::with_view(layout.pool_bytes(), *scene, shape), room, leaves);
+  print_resident(argv[1], workers);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "leaf_bytes: %s\n", error.what());

@@ -70,8 +70,9 @@ uint32_t DeviceInstances::bytes_a_place() const {
   uint32_t most = 0;
   for (const DeviceInstance& instance : all_) {
     const DrawView draws = instance.draws->view();
-    // Of a pool a byte, and a subtree for some seven nodes: about as much.
-    const size_t weight = draws.weights.weighs() ? sizeof(CutOrigin) : sizeof(float);
+    // Which subtree owns the node, in a byte or two, and a subtree for some seven nodes.
+    constexpr size_t kOwner = 2 + sizeof(SearchSubtree) / 7;
+    const size_t weight = draws.weights.weighs() ? kOwner : sizeof(float);
     const size_t bytes = sizeof(float4) + (draws.list.nodes != nullptr ? sizeof(uint32_t) : 0) +
                          (draws.blends() ? weight : 0);
     most = std::max(most, static_cast<uint32_t>(bytes));

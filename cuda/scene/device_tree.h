@@ -2,6 +2,7 @@
 // The arrays that searches read, on the device: shared by all views of a scene.
 #include "cuda/device/buffer.h"
 #include "runtime/lod/tree.h"
+#include "runtime/select/node_owners.h"
 #include "runtime/select/search_tree.h"
 
 namespace voyager::cuda {
@@ -33,12 +34,16 @@ class DeviceTree {
 
   // For a frame: a pool may have another size in the next.
   TreeView view() const;
+  // None of a streamed scene: its pool has them.
+  NodeOwners owners() const { return {owner_runs_.data(), run_subtrees_.data()}; }
 
  private:
   Buffer<SearchSubtree> subtrees_;
   Buffer<SearchRecord> records_;
   Buffer<SearchChunk> chunks_;
   Buffer<NodeRecord> leaves_;
+  Buffer<RunBlock> owner_runs_;
+  Buffer<uint32_t> run_subtrees_;
   TreeView view_{};
   const DevicePool* pool_ = nullptr;
 };

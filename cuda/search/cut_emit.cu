@@ -34,20 +34,15 @@ struct LevelNodes {
 
 // The nodes of a level that the warp's subtrees have in the cut, one a lane, so that what is
 // written lies together. By lane: subtrees, level_of. total: of all lanes.
-template <bool kOrigin>
-__device__ void emit_level(const TreeView& tree, const StateView& state,
-                           const SearchSubtree* subtrees, const LevelNodes* level_of,
-                           uint32_t first_place, uint32_t total) {
+__device__ void emit_level(const StateView& state, const SearchSubtree* subtrees,
+                           const LevelNodes* level_of, uint32_t first_place, uint32_t total) {
   for (uint32_t k = lane_in_warp(); k < total; k += 32) {
     uint32_t lane = 0;  // the last whose place is not beyond k: it has nodes
 #pragma unroll
     for (unsigned step = 16; step != 0; step /= 2)
       if (level_of[lane + step].place <= k) lane += step;
-    const SearchSubtree& s = subtrees[lane];
     const uint32_t slot = nth_bit(level_of[lane].cut, k - level_of[lane].place);
-    const uint32_t place = first_place + k;
-    state.nodes[place] = s.node(slot);
-    if (kOrigin) state.origin[place] = s.origin(slot, tree.next_block);
+    state.nodes[first_place + k] = subtrees[lane].node(slot);
   }
 }
 
@@ -61,7 +56,6 @@ __device__ void clear_rest(const StateView& state, const Block& block) {
 }
 
 // The blocks in which nodes entered or left. Nothing else of the list moves.
-template <bool kOrigin>
 __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, StateView state) {
   __shared__ LevelScan::TempStorage storage;
   __shared__ SearchSubtree subtrees[kEmitThreads];
@@ -87,9 +81,8 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
       __syncwarp();
       levels[threadIdx.x] = {own - warps, cut & s.level_slots(level)};
       __syncwarp();
-      emit_level<kOrigin>(tree, state, subtrees + warp, levels + warp,
-                          state.segments[block.first_segment + level * block.stride].first + warps,
-                          total);
+      emit_level(state, subtrees + warp, levels + warp,
+                 state.segments[block.first_segment + level * block.stride].first + warps, total);
     }
     clear_rest(state, block);
     __syncthreads();
@@ -98,11 +91,10 @@ __global__ void __launch_bounds__(kEmitThreads) search_emit(TreeView tree, State
 
 }  // namespace
 
-void launch_emit(const SearchFrame& f, bool origins) {
-  const auto kernel = origins ? search_emit<true> : search_emit<false>;
-  const unsigned resident = resident_blocks<search_emit<true>, kEmitThreads>();
+void launch_emit(const SearchFrame& f) {
+  const unsigned resident = resident_blocks<search_emit, kEmitThreads>();
   launch_kernel(
-      "search_emit", kernel,
+      "search_emit", search_emit,
       {std::min(f.state.block_count, f.multiprocessors * resident), kEmitThreads, f.stream}, f.tree,
       f.state);
 }

@@ -43,7 +43,6 @@ uint64_t most_places(const SearchTree& tree, uint64_t most) {
   return most_places_of(most) + std::min(ends_of_segments(tree), most / 8) + kLeastPlaces;
 }
 
-// Without origins.
 uint64_t list_bytes(uint64_t places) {
   return places * sizeof(uint32_t) + places * sizeof(MeanBounds) / kRowPlaces;
 }
@@ -70,8 +69,7 @@ uint64_t CutState::fixed_bytes(const SearchTree& tree) {
          list_bytes(kLeastPlaces);
 }
 
-CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most,
-                   bool origins) {
+CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most) {
   const Layout layout = make_layout(tree);
   const size_t blocks = layout.blocks.size();
   blocks_ = upload(std::span<const Block>(layout.blocks));
@@ -92,7 +90,6 @@ CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t
   counters_ = Buffer<FrameCounters>(2);  // counting, counted
   const size_t room = most_places(tree, most);
   nodes_ = Buffer<uint32_t>(room);
-  origin_ = Buffer<CutOrigin>(origins ? room : 0);
   bounds_ = Buffer<MeanBounds>(room / kRowPlaces + 1);
   for (const Buffer<uint32_t>* zero :
        {&refined_, &cut_, &open_counts_, &open_blocks_, &open_block_count_, &dirty_flags_, &dirty_})
@@ -130,7 +127,6 @@ StateView CutState::view(SubtreePlaces places) const {
           counters_.data() + 1,
           nodes_.data(),
           list_room(),
-          origin_.data(),
           bounds_.data()};
 }
 

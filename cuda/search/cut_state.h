@@ -91,7 +91,6 @@ struct StateView {
   FrameCounters *counting, *counted;
   uint32_t* nodes;     // the cut list: ascending, with kNoNode in between
   uint32_t list_room;  // its places
-  CutOrigin* origin;   // of each place, or null
   MeanBounds* bounds;  // of each row
 };
 
@@ -101,9 +100,9 @@ inline constexpr uint32_t kClose = 0x80000000u;  // beside the subtree; else it 
 class CutState {
  public:
   // places: that subtrees have in the device's tree. due: so many are visited at most. most: no cut
-  // has more nodes. origins: the list has what weights depend on. All memory is taken here.
-  CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most, bool origins);
-  // What it takes of a streamed scene, without origins: for eight places, of which one may be due
+  // has more nodes. All memory is taken here.
+  CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most);
+  // What it takes of a streamed scene: for eight places, of which one may be due
   // (an experiment that visits all takes more); for eight nodes of `most`; for the ends of their
   // segments, an eighth of that but never more than most_ends(); and beside them.
   static constexpr uint64_t kEightPlaces =
@@ -129,7 +128,6 @@ class CutState {
   Buffer<uint32_t> due_, signals_;
   Buffer<FrameCounters> counters_;
   Buffer<uint32_t> nodes_;
-  Buffer<CutOrigin> origin_;
   Buffer<MeanBounds> bounds_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The weight of a place of a cut list, from the records that it depends on (METHOD §4).
+// The weight of a node of a cut, from the records that it depends on (METHOD §4).
 #include "cuda/search/cut_lanes.cuh"
 #include "runtime/math/lerp.h"
 
@@ -16,15 +16,10 @@ __device__ inline float own_size(const WeightSource& from, uint32_t record, uint
   return screen_size(from.sight.centre, leaf.box_min, leaf.box_max, leaf.extent);
 }
 
-__device__ inline CutOrigin origin_of(const WeightSource& from, uint32_t place, uint32_t node) {
-  if (from.origin != nullptr) return from.origin[place];
-  const SearchSubtree s = load_own_subtree(from.tree, from.tree.places(from.nodes.owner(node)));
-  return s.origin(s.slot_of(node), from.tree.next_block);
-}
-
-// t of the node there.
-__device__ inline float weight_of(const WeightSource& from, uint32_t place, uint32_t node) {
-  const CutOrigin origin = origin_of(from, place, node);
+// t of a node of the cut.
+__device__ inline float weight_of(const WeightSource& from, uint32_t node) {
+  const SearchSubtree s = load_own_subtree(from.tree, from.tree.places(from.owner(node)));
+  const CutOrigin origin = s.origin(s.slot_of(node), from.tree.next_block);
   const bool has_parent = origin.parent != kNoRecord;
   const float parent = has_parent ? record_size(from, origin.parent) : 0.0f;
   return interpolation_weight(has_parent, parent, own_size(from, origin.own, node),

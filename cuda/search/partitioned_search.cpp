@@ -69,8 +69,6 @@ class PartitionedSearch final : public CutSearch, public PoolReaderState {
  private:
   FrameCounters counters() const;
   SearchFrame frame(const CutQuery& query, cudaStream_t stream) const;
-  // Whether the list has what weights depend on. A pool's nodes say it themselves.
-  bool lists_origins() const { return weights_ && !streamed_; }
   uint64_t most_nodes() const;
   // Throws Error(internal) where the list has not had room for the cut.
   void require_room(const FrameCounters& counted) const;
@@ -112,8 +110,7 @@ uint64_t PartitionedSearch::most_nodes() const {
 void PartitionedSearch::make_state() {
   const uint32_t places = tree_->view().place_count;
   const uint32_t due = kind_ == Search::temporal_visit ? places : places / kSubtreesADue;
-  auto state =
-      std::make_unique<CutState>(scene_->search, places, due, most_nodes(), lists_origins());
+  auto state = std::make_unique<CutState>(scene_->search, places, due, most_nodes());
   const std::lock_guard lock(state_mutex_);
   state_ = std::move(state);
   view_ = state_->view();
@@ -176,7 +173,7 @@ void PartitionedSearch::find(const CutQuery& query, cudaStream_t stream) {
       launch_temporal(now, now.tree.place_count / kSubtreesADue);
     }
     launch_place(now);
-    launch_emit(now, lists_origins());
+    launch_emit(now);
   }
   started_ = true;
 }
@@ -202,7 +199,7 @@ void PartitionedSearch::weigh(const CutQuery& query, cudaStream_t stream) {
 
 WeightSource PartitionedSearch::weight_source(const CutQuery& query) const {
   if (!weights_) return {};
-  return {view_.origin, streamed_ ? streamed_->pool.nodes() : PoolNodes{}, tree_->view(),
+  return {tree_->owners(), streamed_ ? streamed_->pool.nodes() : PoolNodes{}, tree_->view(),
           make_sight(query)};
 }
 

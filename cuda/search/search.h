@@ -11,6 +11,7 @@
 #include "cuda/search/row_places.h"
 #include "runtime/frame/scene.h"
 #include "runtime/frame/scene_search.h"
+#include "runtime/select/node_owners.h"
 #include "runtime/select/visit.h"
 #include "runtime/stages/reach.h"
 
@@ -33,16 +34,18 @@ struct RowList {
   const uint32_t* count = nullptr;
 };
 
-// What the weights of a cut list are found from, by who draws it (cut_weight.cuh).
+// What the weights of a cut list are found from, by who draws it (cut_weight.cuh): from the
+// subtrees that own its nodes. Where neither says which these are the list has its weights.
 struct WeightSource {
-  // By place; null for a pool. Then nodes.owners is not null, and weights are found from the nodes'
-  // subtrees. Where both are null the list has its weights.
-  const CutOrigin* origin = nullptr;
-  PoolNodes nodes{};
+  NodeOwners owners{};
+  PoolNodes nodes{};  // of a pool
   TreeView tree{};
   Sight sight{};
 
-  VOYAGER_HD bool weighs() const { return origin != nullptr || nodes.owners != nullptr; }
+  VOYAGER_HD bool weighs() const { return owners.runs != nullptr || nodes.owners != nullptr; }
+  VOYAGER_HD uint32_t owner(uint32_t node) const {
+    return owners.runs != nullptr ? owners(node) : nodes.owner(node);
+  }
 };
 
 struct CutFound {
@@ -79,7 +82,7 @@ class CutSearch {
 std::shared_ptr<const DeviceTree> upload_tree(const Scene& scene);
 
 // kind: any but exhaustive; temporal in place of a sweep. Device memory besides the scene's arrays:
-// 27 bytes a subtree and, for the list, at most 6.3 a leaf, with weights 16.3. What the search of a
+// 27 bytes a subtree and, for the list, at most 6.3 a leaf. What the search of a
 // streamed scene takes is part of the scene's budget, by with_view(). It runs under
 // SceneStream::hold(), and ends each run with end_frame().
 std::unique_ptr<CutSearch> create_partitioned_search(std::shared_ptr<const Device> device,

@@ -43,9 +43,9 @@ void launch_relink(const SearchFrame& frame, const Relinked& relinked);
 void launch_forget(const SearchFrame& frame);
 // cut_streaming.cu
 void launch_streaming(const SearchFrame& frame);
-// cut_place.cu, cut_emit.cu: the cut list, ascending, and what weights depend on.
+// cut_place.cu, cut_emit.cu: the cut list, ascending.
 void launch_place(const SearchFrame& frame);
-void launch_emit(const SearchFrame& frame, bool origins);
+void launch_emit(const SearchFrame& frame);
 // cut_bounds.cu: of the rows that launch_emit() wrote.
 void launch_bound(const StateView& state, const GaussianView& gaussians, bool weights,
                   unsigned multiprocessors, cudaStream_t stream);

@@ -16,7 +16,7 @@ __global__ void __launch_bounds__(kWeightThreads)
   const uint32_t count = counted->list_size;
   for (uint32_t i = blockIdx.x * kWeightThreads + threadIdx.x; i < count;
        i += gridDim.x * kWeightThreads)
-    if (nodes[i] != kNoNode) weights[i] = weight_of(from, i, nodes[i]);
+    if (nodes[i] != kNoNode) weights[i] = weight_of(from, nodes[i]);
 }
 
 }  // namespace

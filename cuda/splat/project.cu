@@ -46,7 +46,7 @@ template <bool kLod>
 __device__ float weight_at(const SplatFrame& f, uint32_t place, uint32_t node) {
   const WeightSource& from = f.draws.weights;
   if (!kLod || node == kNoNode) return 1.0f;
-  return from.weighs() ? weight_of(from, place, node) : __ldg(f.draws.list.weights + place);
+  return from.weighs() ? weight_of(from, node) : __ldg(f.draws.list.weights + place);
 }
 
 // What such a node draws.

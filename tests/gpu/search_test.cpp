@@ -262,7 +262,7 @@ TEST_F(SearchTest, EqualTheHostsWhereAListHasNoRoomForRows) {
     std::vector<CutQuery> path = walk(random, 60, 0.02f);
     for (const CutQuery& q : jumps(scene->tree, random, 20)) path.push_back(q);
     for (const CutQuery& q : walk(random, 20, 1e-9f)) path.push_back(q);
-    const cuda::CutState state(scene->search, 1, 1, scene->leaf_count, false);
+    const cuda::CutState state(scene->search, 1, 1, scene->leaf_count);
     size_t shared = 0;
     Oracle oracle(*scene);
     for (const CutQuery& query : path)

@@ -7,6 +7,7 @@
 #include <bit>
 #include <set>
 
+#include "runtime/select/node_owners.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/rounded_tree.h"
 
@@ -68,6 +69,19 @@ TEST(SearchTree, OwnsEachNodeOnceAndHasARecordForEachInteriorSlot) {
 }
 
 // By its slots or by what it opens, a node leads to each of its children once.
+// From whom the records follow that its weight depends on.
+TEST(SearchTree, TellsWhichSubtreeOwnsANode) {
+  for (const Cut& cut : all_cuts()) {
+    const OwnerRuns runs = make_owner_runs(cut.search);
+    for (uint32_t n = 0; n < cut.tree.size(); ++n) {
+      const SearchSubtree& s = cut.search.subtree(runs.view()(n));
+      const uint32_t slot = s.slot_of(n);
+      ASSERT_EQ(s.node(slot), n);
+      ASSERT_TRUE(s.owned() >> slot & 1) << n;
+    }
+  }
+}
+
 TEST(SearchTree, LeadsToEveryChild) {
   for (const Cut& cut : all_cuts()) {
     std::vector<uint32_t> reached(cut.tree.size());
