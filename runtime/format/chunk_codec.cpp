@@ -6,6 +6,7 @@
 #include "runtime/base/checksum.h"
 #include "runtime/base/error.h"
 #include "runtime/format/check_chunk.h"
+#include "runtime/format/chunk_directory.h"
 #include "runtime/format/compact_codec.h"
 #include "runtime/format/lossless_codec.h"
 #include "runtime/scene/sh_bands.h"
@@ -112,7 +113,8 @@ EncodedChunk encode_chunk(const Chunk& chunk, const ChunkContext& context) {
 
 Chunk decode_chunk(std::span<const std::byte> bytes, const ChunkLocation& location,
                    const ChunkContext& context) {
-  check_field(location, "checksum", checksum(bytes), location.entry.checksum);
+  check_field(location, "checksum", kept_checksum(checksum(bytes)),
+              kept_checksum(location.entry.checksum));
   const ChunkHeader header = checked_header(bytes, location, context);
   const std::span<const std::byte> payload = bytes.subspan(sizeof header, header.payload_bytes);
   const std::span<const std::byte> padding = bytes.subspan(sizeof header + header.payload_bytes);

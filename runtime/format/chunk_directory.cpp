@@ -21,8 +21,7 @@ bool narrow(uint64_t value, Small& out) {
 void ChunkDirectory::add(const ChunkEntry& entry) {
   static_assert(chunk_align(Quality::lossless) % kUnit == 0 &&
                 chunk_align(Quality::compact) % kUnit == 0);
-  open_.push_back(entry);
-  open_.back().hull = round_bounds(entry.hull);
+  open_.push_back({entry, encode_bounds(entry.hull)});
   subtrees_ = entry.first_subtree + entry.subtree_count;
   totals_ = {totals_.bytes + entry.bytes, totals_.nodes + entry.node_count,
              totals_.records + entry.record_count, std::max(totals_.most_nodes, entry.node_count),
@@ -38,16 +37,16 @@ void ChunkDirectory::close() {
   wide_.shrink_to_fit();
 }
 
-bool ChunkDirectory::pack(const Block& block, const ChunkEntry& entry, Row& row) {
-  row.checksum = entry.checksum;
-  row.hull = encode_bounds(entry.hull);
+bool ChunkDirectory::pack(const Block& block, const Open& open, Row& row) {
+  const ChunkEntry& entry = open.entry;
+  row.checksum = kept_checksum(entry.checksum);
+  row.hull = open.hull;
   bool fits = narrow(entry.place.listed_children, row.listed_children);
   fits &= narrow(entry.place.listed_grandchildren, row.listed_grandchildren);
-  fits &= narrow((entry.offset - block.offset) / kUnit, row.offset);
   fits &= narrow(entry.bytes / kUnit, row.bytes);
   fits &= narrow(entry.first_subtree - block.first_subtree, row.first_subtree);
   fits &= narrow(entry.node_count, row.node_count);
-  fits &= narrow(entry.record_count, row.record_count);
+  fits &= narrow(entry.record_count - entry.node_count, row.repeated);
   for (int level = 0; level < 4; ++level)
     fits &= narrow(entry.place.next[level] - block.next[level], row.next[level]);
   return fits;
@@ -55,15 +54,19 @@ bool ChunkDirectory::pack(const Block& block, const ChunkEntry& entry, Row& row)
 
 void ChunkDirectory::close_block() {
   if (open_.empty()) return;
-  const ChunkEntry& first = open_.front();
+  const ChunkEntry& first = open_.front().entry;
   Block block{first.offset, {}, first.first_subtree, kPacked};
   std::copy_n(first.place.next, 4, block.next);
-  for (const ChunkEntry& entry : open_) {
+  for (const Open& open : open_) {
     rows_.push_back({});
-    if (pack(block, entry, rows_.back())) continue;
-    block.wide = static_cast<uint32_t>(wide_.size());
+    if (!pack(block, open, rows_.back())) block.wide = static_cast<uint32_t>(wide_.size());
   }
-  if (block.wide != kPacked) wide_.insert(wide_.end(), open_.begin(), open_.end());
+  if (block.wide != kPacked)
+    for (const Open& open : open_) {
+      wide_.push_back(open.entry);
+      wide_.back().hull = decode_bounds(open.hull);
+      wide_.back().checksum = kept_checksum(open.entry.checksum);
+    }
   blocks_.push_back(block);
   open_.clear();
 }
@@ -79,14 +82,17 @@ ChunkEntry ChunkDirectory::numbers(size_t chunk) const {
   const Block& block = blocks_[chunk / kBlockRows];
   const Row& row = rows_[chunk];
   ChunkEntry entry{};
-  entry.offset = block.offset + uint64_t{row.offset} * kUnit;
+  uint64_t before = 0;
+  for (size_t other = chunk / kBlockRows * kBlockRows; other < chunk; ++other)
+    before += rows_[other].bytes;
+  entry.offset = block.offset + before * kUnit;
   entry.checksum = row.checksum;
   entry.bytes = row.bytes * kUnit;
   entry.first_subtree = block.first_subtree + row.first_subtree;
   entry.subtree_count =
       (chunk + 1 < size() ? first_subtree(chunk + 1) : subtrees_) - entry.first_subtree;
   entry.node_count = row.node_count;
-  entry.record_count = row.record_count;
+  entry.record_count = row.node_count + uint32_t{row.repeated};
   entry.place = place(chunk);
   return entry;
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A file's chunk directory, as it is kept while the file is open: 41 bytes a chunk, where the file
+// A file's chunk directory, as it is kept while the file is open: 33 bytes a chunk, where the file
 // has 88.
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +9,11 @@
 #include "runtime/math/bounds_code.h"
 
 namespace voyager {
+
+// What is kept of a chunk's checksum, and compared.
+constexpr uint32_t kept_checksum(uint64_t whole) {
+  return static_cast<uint32_t>(whole);
+}
 
 class ChunkDirectory {
  public:
@@ -29,7 +34,8 @@ class ChunkDirectory {
 
   size_t size() const { return rows_.size(); }
   bool empty() const { return rows_.empty(); }
-  // As the file has it, but for the hull, which is rounded as searches read it (bounds_code.h).
+  // As the file has it, but for the hull, which is rounded as searches read it (bounds_code.h), and
+  // for the upper half of the checksum, which is 0.
   ChunkEntry operator[](size_t chunk) const;
   ChunkEntry at(size_t chunk) const;  // throws std::out_of_range
   ChunkEntry front() const { return (*this)[0]; }
@@ -75,15 +81,16 @@ class ChunkDirectory {
 
   // Numbers are counted from the block's.
   struct Row {
-    uint64_t checksum;
+    uint32_t checksum;
     BoundsCode hull;
-    uint16_t offset, bytes;  // in units
+    uint16_t bytes;  // in units; the offset follows from those of the block's rows before
     uint16_t first_subtree;
     uint16_t next[4];  // SubtreePlace::next
-    uint16_t node_count, record_count;
+    uint8_t node_count;
+    uint8_t repeated;                               // records that are no nodes of its own
     uint8_t listed_children, listed_grandchildren;  // not 0 if the entry's is not
   };
-  static_assert(sizeof(Row) == 40);
+  static_assert(sizeof(Row) == 32);
   struct Block {
     uint64_t offset;
     uint32_t next[4];
@@ -91,7 +98,12 @@ class ChunkDirectory {
     uint32_t wide;  // where wide_ has its entries, since some number is too large; or kPacked
   };
 
-  static bool pack(const Block& block, const ChunkEntry& entry, Row& row);
+  struct Open {
+    ChunkEntry entry;  // as the file has it
+    BoundsCode hull;
+  };
+
+  static bool pack(const Block& block, const Open& open, Row& row);
   void close_block();
   // The entry in wide_; null where it is packed.
   const ChunkEntry* wide(size_t chunk) const {
@@ -102,8 +114,8 @@ class ChunkDirectory {
   std::vector<Row> rows_;
   std::vector<Block> blocks_;
   std::vector<ChunkEntry> wide_;
-  std::vector<ChunkEntry> open_;  // of the block that is being added
-  uint32_t subtrees_ = 0;         // of all
+  std::vector<Open> open_;  // of the block that is being added
+  uint32_t subtrees_ = 0;   // of all
   Totals totals_;
 };
 

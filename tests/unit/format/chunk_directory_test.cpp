@@ -59,7 +59,7 @@ bool is_same(const ChunkEntry& a, const ChunkEntry& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-TEST(ChunkDirectory, HasEveryEntryAsItWasButForARoundedHull) {
+TEST(ChunkDirectory, HasEveryEntryAsItWasButForARoundedHullAndHalfOfTheChecksum) {
   for (uint32_t seed = 0; seed < 20; ++seed)
     for (const size_t count : {0u, 1u, 31u, 32u, 33u, 1000u}) {
       const std::vector<ChunkEntry> entries = random_entries(seed, count);
@@ -70,6 +70,7 @@ TEST(ChunkDirectory, HasEveryEntryAsItWasButForARoundedHull) {
       for (const ChunkEntry& entry : directory) {
         ChunkEntry expected = entries[visited];
         expected.hull = round_bounds(expected.hull);
+        expected.checksum = kept_checksum(expected.checksum);
         ASSERT_TRUE(is_same(entry, expected)) << seed << " " << count << " " << visited;
         ASSERT_TRUE(is_same(directory.at(visited), expected));
         ASSERT_EQ(directory.bytes(visited), expected.bytes);
