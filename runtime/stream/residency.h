@@ -119,6 +119,8 @@ class Residency {
   // Whether evict() has something to do once the target is there: what is needed and has no room.
   bool has_leftovers() const;
   void free(const Evicted& evicted);
+  // How many chunks wait for begin_arrivals().
+  size_t to_arrive() const { return filled_.size(); }
   // How many chunks begin_arrivals() and evict() have to do with, or a few more.
   size_t changes() const;
   // The target takes more blocks than there are, which the next plan does something about.

@@ -171,6 +171,7 @@ class SceneStream {
   TimePoint look_at_likely(Lock& lock);
   bool retry_due();
   bool fill_some(Lock& lock);
+  bool is_far_ahead() const;
   bool read_some(Lock& lock);
   void stage(ChunkRange range, std::span<const std::byte> stored, Lock& lock);
   StagedChunk* add_coming(uint32_t chunk, StagedChunk&& staged);
@@ -184,6 +185,7 @@ class SceneStream {
   void ask_for_plan(PlanAsked when);
   TimePoint next_plan() const;
   bool rests(TimePoint until) const;
+  size_t enough_between_frames() const;
   bool commit_between_frames(Lock& lock);
   struct Commit;
   void commit_or_lose(size_t most, Lock& lock);

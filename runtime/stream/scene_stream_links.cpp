@@ -49,12 +49,16 @@ void SceneStream::commit() {
   commit_or_lose(std::max(kFewChunks, static_cast<size_t>(kLinksASecond * since_last)), lock);
 }
 
-// So that a frame finds few chunks to link, while many come, and waits for few. After some times
-// without a frame it takes twice as many: a view that draws seldom can follow few changes.
-// False: frames keep it from that.
-bool SceneStream::commit_between_frames(Lock& lock) {
+// After some times without a frame twice as many: a view that draws seldom can follow few changes.
+size_t SceneStream::enough_between_frames() const {
   constexpr unsigned kTimes = 8, kMostDoublings = 16;
-  const size_t enough = kFewChunks / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
+  return kFewChunks / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
+}
+
+// So that a frame finds few chunks to link, while many come, and waits for few. False: frames keep
+// it from that.
+bool SceneStream::commit_between_frames(Lock& lock) {
+  const size_t enough = enough_between_frames();
   // A plan goes first, or it would wait for one commit after another.
   if (lost_ || plan_waits_ || changes_due_ < enough) return true;
   // The pool's lock comes before this one, so it is only tried.

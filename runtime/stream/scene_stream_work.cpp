@@ -272,8 +272,16 @@ void SceneStream::pace_reads(double seconds) {
   if (seconds > kSlow) reads_allowed_ = std::max(reads_allowed_ - 1, std::min(kLeast, most_reads_));
 }
 
+// Chunks are linked one after another, however many threads read. What waits for that was asked for
+// by an earlier plan, and what a viewer sees now comes behind it.
+bool SceneStream::is_far_ahead() const {
+  constexpr size_t kFar = 512;
+  return desc_.readers != 0 &&
+         residency_.to_arrive() >= std::max(kFar, 2 * enough_between_frames());
+}
+
 bool SceneStream::read_some(Lock& lock) {
-  if (reads_in_flight_ >= reads_allowed_) return false;
+  if (reads_in_flight_ >= reads_allowed_ || is_far_ahead()) return false;
   if (staged_bytes_ >= desc_.staged_bytes || !failures_.source_may_be_read(now())) return false;
   const ChunkRange range = residency_.take_requests(kMostChunksARead, desc_.read_bytes);
   if (range.empty()) return false;

@@ -513,6 +513,37 @@ TEST(StreamingDisk, ReadsOfAFarSourceLeaveAReaderForPlans) {
   EXPECT_LE(source->most(), desc.readers - 1);
 }
 
+// What one thread links, many read: what they had read ahead came before what a viewer sees now.
+TEST(StreamingDisk, ReadersStayNearWhatIsLinked) {
+  constexpr uint64_t kFar = 512, kMostARead = 64;
+  const auto file = std::make_shared<const SceneFile>(test::source_of(wide_bytes({})));
+  StreamDesc desc;
+  const auto chunks = static_cast<uint32_t>(file->chunks().size());
+  ASSERT_GT(chunks, 2 * kFar);
+  desc.room = RecordRoom(*file).of(chunks);
+  desc.pinned = desc.first = SceneStream::top_chunks(*file);
+  desc.readers = 4;
+  Workers workers(1);
+  FailingPool pool(desc.room);
+  SceneStream stream(file, desc, pool);
+  stream.read_top(workers);
+  const auto read = [&] { return stream.counters().chunks.requested; };
+  {
+    const auto frame = stream.hold();  // nothing is linked meanwhile
+    stream.look(&pool, {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}});
+    for (uint64_t before = 0; before < kFar || read() != before;) {
+      before = read();
+      std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    }
+    EXPECT_LE(read(), kFar + desc.readers * kMostARead);
+  }
+  for (int i = 0; i < 500 && stream.counters().resident < chunks; ++i) {
+    stream.commit();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  EXPECT_EQ(stream.counters().resident, chunks);
+}
+
 // A source that stays away, slowly: frames that wait get to know, and chunks are not asked for one
 // by one. When it comes back, all is well, and the next outage is told again.
 TEST(StreamingDisk, AFrameThatWaitsForASourceThatStaysAwayFails) {
