@@ -74,6 +74,7 @@ void ChunkDirectory::close_block() {
 ChunkEntry ChunkDirectory::operator[](size_t chunk) const {
   ChunkEntry entry = numbers(chunk);
   entry.hull = hull(chunk);
+  entry.offset = offset(chunk);
   return entry;
 }
 
@@ -82,10 +83,6 @@ ChunkEntry ChunkDirectory::numbers(size_t chunk) const {
   const Block& block = blocks_[chunk / kBlockRows];
   const Row& row = rows_[chunk];
   ChunkEntry entry{};
-  uint64_t before = 0;
-  for (size_t other = chunk / kBlockRows * kBlockRows; other < chunk; ++other)
-    before += rows_[other].bytes;
-  entry.offset = block.offset + before * kUnit;
   entry.checksum = row.checksum;
   entry.bytes = row.bytes * kUnit;
   entry.first_subtree = block.first_subtree + row.first_subtree;
@@ -101,6 +98,14 @@ ChunkEntry ChunkDirectory::at(size_t chunk) const {
   if (chunk >= size())
     throw std::out_of_range("chunk " + std::to_string(chunk) + " of " + std::to_string(size()));
   return (*this)[chunk];
+}
+
+uint64_t ChunkDirectory::offset(size_t chunk) const {
+  if (const ChunkEntry* entry = wide(chunk)) return entry->offset;
+  uint64_t units = 0;
+  for (size_t other = chunk / kBlockRows * kBlockRows; other < chunk; ++other)
+    units += rows_[other].bytes;
+  return blocks_[chunk / kBlockRows].offset + units * kUnit;
 }
 
 SubtreePlace ChunkDirectory::place(size_t chunk) const {

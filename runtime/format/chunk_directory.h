@@ -1,6 +1,6 @@
 #pragma once
 // A file's chunk directory, as it is kept while the file is open: 33 bytes a chunk, where the file
-// has 88.
+// has 88. Chunks of more than 255 nodes, and the others of their blocks, have 121.
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -40,7 +40,7 @@ class ChunkDirectory {
   ChunkEntry at(size_t chunk) const;  // throws std::out_of_range
   ChunkEntry front() const { return (*this)[0]; }
   ChunkEntry back() const { return (*this)[size() - 1]; }
-  // All of it but the hull, in half the time.
+  // All of it but the hull and the offset, in half the time.
   ChunkEntry numbers(size_t chunk) const;
   // Of its entry, at less cost.
   EntryHull hull(size_t chunk) const { return decode_bounds(hull_code(chunk)); }
@@ -103,6 +103,7 @@ class ChunkDirectory {
     BoundsCode hull;
   };
 
+  uint64_t offset(size_t chunk) const;
   static bool pack(const Block& block, const Open& open, Row& row);
   void close_block();
   // The entry in wide_; null where it is packed.

@@ -185,6 +185,7 @@ class SceneStream {
   void ask_for_plan(PlanAsked when);
   TimePoint next_plan() const;
   bool rests(TimePoint until) const;
+  static size_t most_for_frame(double seconds);
   size_t enough_between_frames() const;
   bool commit_between_frames(Lock& lock);
   struct Commit;

@@ -26,13 +26,18 @@ struct SceneStream::Commit {
   bool refused = false;             // one of those that arrive
 };
 
+// A frame waits two milliseconds, or a tenth of the seconds from one to the next.
+size_t SceneStream::most_for_frame(double seconds) {
+  constexpr double kLinksASecond = 4000;
+  return std::max(kFewChunks, static_cast<size_t>(kLinksASecond * std::clamp(seconds, 0.0, 1.0)));
+}
+
 // Where views draw by turns there is always one that holds the pool.
 void SceneStream::commit() {
   constexpr double kPutOff = 0.1;  // seconds
-  // A frame waits two milliseconds, or a tenth of what it takes from one to the next.
-  constexpr double kLinksASecond = 4000;
   between_frames_ = 0;
-  const double at = now(), since_last = std::clamp(at - last_frame_.exchange(at), 0.0, 1.0);
+  const double at = now();
+  const size_t most = most_for_frame(at - last_frame_.exchange(at));
   if (!commit_due_) return;
   std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) {
@@ -46,7 +51,7 @@ void SceneStream::commit() {
     put_off_ = -1;
     return;
   }
-  commit_or_lose(std::max(kFewChunks, static_cast<size_t>(kLinksASecond * since_last)), lock);
+  commit_or_lose(most, lock);
 }
 
 // After some times without a frame twice as many: a view that draws seldom can follow few changes.

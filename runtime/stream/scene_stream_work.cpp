@@ -31,15 +31,16 @@ void SceneStream::run() {
       if (stopping_) return;
       seen = signals_;
     }
-    bool committed = false;
+    bool links_wait = false;
     double wait = 0;
     {
       Lock lock(mutex_);
-      committed = commit_between_frames(lock);
+      links_wait = !commit_between_frames(lock);
       if (step(lock)) continue;
+      links_wait = links_wait || is_far_ahead();
       wait = next_due();
     }
-    if (!committed) wait = wait < 0 ? kFrame : std::min(wait, kFrame);
+    if (links_wait) wait = wait < 0 ? kFrame : std::min(wait, kFrame);
     std::unique_lock small(small_mutex_);
     const auto woken = [&] { return stopping_ || signals_ != seen; };
     if (wait < 0)
@@ -273,11 +274,13 @@ void SceneStream::pace_reads(double seconds) {
 }
 
 // Chunks are linked one after another, however many threads read. What waits for that was asked for
-// by an earlier plan, and what a viewer sees now comes behind it.
+// by an earlier plan, and what a viewer sees now comes behind it. But a commit finds as much as it
+// may link, and as much again.
 bool SceneStream::is_far_ahead() const {
   constexpr size_t kFar = 512;
-  return desc_.readers != 0 &&
-         residency_.to_arrive() >= std::max(kFar, 2 * enough_between_frames());
+  if (desc_.readers == 0 || residency_.to_arrive() < kFar) return false;
+  const size_t linked = std::max(enough_between_frames(), most_for_frame(now() - last_frame_));
+  return residency_.to_arrive() >= 2 * linked;
 }
 
 bool SceneStream::read_some(Lock& lock) {

@@ -523,18 +523,22 @@ TEST(StreamingDisk, ReadersStayNearWhatIsLinked) {
   desc.room = RecordRoom(*file).of(chunks);
   desc.pinned = desc.first = SceneStream::top_chunks(*file);
   desc.readers = 4;
+  desc.clock = [] { return 1.0; };  // a moment after the last frame
   Workers workers(1);
   FailingPool pool(desc.room);
   SceneStream stream(file, desc, pool);
   stream.read_top(workers);
+  stream.commit();
   const auto read = [&] { return stream.counters().chunks.requested; };
   {
     const auto frame = stream.hold();  // nothing is linked meanwhile
     stream.look(&pool, {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}});
-    for (uint64_t before = 0; before < kFar || read() != before;) {
+    uint64_t before = 0;
+    for (int i = 0; i < 200 && (before < kFar || read() != before); ++i) {
       before = read();
       std::this_thread::sleep_for(std::chrono::milliseconds(30));
     }
+    EXPECT_GE(read(), kFar);
     EXPECT_LE(read(), kFar + desc.readers * kMostARead);
   }
   for (int i = 0; i < 500 && stream.counters().resident < chunks; ++i) {

@@ -68,7 +68,6 @@ TEST(SearchTree, OwnsEachNodeOnceAndHasARecordForEachInteriorSlot) {
   }
 }
 
-// By its slots or by what it opens, a node leads to each of its children once.
 // From whom the records follow that its weight depends on.
 TEST(SearchTree, TellsWhichSubtreeOwnsANode) {
   for (const Cut& cut : all_cuts()) {
@@ -82,6 +81,7 @@ TEST(SearchTree, TellsWhichSubtreeOwnsANode) {
   }
 }
 
+// By its slots or by what it opens, a node leads to each of its children once.
 TEST(SearchTree, LeadsToEveryChild) {
   for (const Cut& cut : all_cuts()) {
     std::vector<uint32_t> reached(cut.tree.size());
