@@ -513,7 +513,8 @@ TEST(StreamingDisk, ReadsOfAFarSourceLeaveAReaderForPlans) {
   EXPECT_LE(source->most(), desc.readers - 1);
 }
 
-// What one thread links, many read: what they had read ahead came before what a viewer sees now.
+// One thread links what many read. All that was read far ahead would be linked before what a viewer
+// sees now.
 TEST(StreamingDisk, ReadersStayNearWhatIsLinked) {
   constexpr uint64_t kFar = 512, kMostARead = 64;
   const auto file = std::make_shared<const SceneFile>(test::source_of(wide_bytes({})));

@@ -68,7 +68,7 @@ TEST(SearchTree, OwnsEachNodeOnceAndHasARecordForEachInteriorSlot) {
   }
 }
 
-// From whom the records follow that its weight depends on.
+// The records that a node's weight depends on are found from that subtree.
 TEST(SearchTree, TellsWhichSubtreeOwnsANode) {
   for (const Cut& cut : all_cuts()) {
     const OwnerRuns runs = make_owner_runs(cut.search);
