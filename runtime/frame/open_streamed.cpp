@@ -18,6 +18,16 @@ void set_search(const SceneFile& file, SearchTree& search) {
   search.tier_begin.assign(tiers.tier_begin.begin(), tiers.tier_begin.end());
 }
 
+// Each goes through the whole directory, which is much of the time that opening takes.
+void find_chunks(const SceneFile& file, StreamDesc& desc, Workers& workers) {
+  workers.for_blocks(2, 1, [&](size_t which, size_t) {
+    if (which == 0)
+      desc.records.emplace(file);
+    else
+      desc.graph = std::make_shared<const ChunkGraph>(file.chunks(), file.tiers());
+  });
+}
+
 // Before they are read it is not known how many blocks they take.
 uint32_t first_of(const SceneFile& file, const StreamDesc& desc, uint64_t limit) {
   uint64_t bytes = 0, blocks = 0;
@@ -50,7 +60,7 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   StreamDesc stream;
   stream.bytes = backend.room_bytes(*scene, shape);
   stream.budget = desc.budget;
-  stream.records.emplace(*file);
+  find_chunks(*file, stream, workers);
   stream.room = fit_room(*file, *stream.records, stream.bytes, stream.budget, 0);
   stream.pinned = SceneStream::pinned_chunks(*file, stream.room.slots);
   stream.first = desc.start ? stream.pinned : first_of(*file, stream, desc.first_bytes);

@@ -25,15 +25,22 @@ uint32_t RecordRoom::most_blocks(uint32_t chunk) const {
   const ChunkDirectory& chunks = file_.chunks();
   const SubtreePlace after =
       chunk + 1 < chunks.size() ? chunks.place(chunk + 1) : SubtreePlace::end_of(tiers_);
-  return record_blocks(most_search_records(chunks.numbers(chunk), after, tiers_));
+  return most_blocks(chunks.numbers(chunk), after);
+}
+
+uint32_t RecordRoom::most_blocks(const ChunkEntry& chunk, const SubtreePlace& after) const {
+  return record_blocks(most_search_records(chunk, after, tiers_));
 }
 
 RecordRoom::RecordRoom(const SceneFile& file) : file_(file), tiers_(file.tiers()) {
   const auto& chunks = file.chunks();
   uint64_t records = file.info().node_count - file.info().leaf_count;
-  for (uint32_t i = 0; i < chunks.size(); ++i) {
-    const ChunkEntry chunk = chunks.numbers(i);
-    const uint32_t most = most_blocks(i);
+  ChunkEntry next = chunks.empty() ? ChunkEntry{} : chunks.numbers(0);
+  for (size_t i = 0; i < chunks.size(); ++i) {
+    const ChunkEntry chunk = next;
+    const bool last = i + 1 == chunks.size();
+    if (!last) next = chunks.numbers(i + 1);
+    const uint32_t most = most_blocks(chunk, last ? SubtreePlace::end_of(tiers_) : next.place);
     greatest_ = std::max(greatest_, most);
     sum_of_most_ += most;
     records += chunk.record_count - chunk.node_count;

@@ -28,6 +28,7 @@ class RecordRoom {
   PoolRoom enough(uint64_t chunks, uint64_t blocks) const;
 
  private:
+  uint32_t most_blocks(const ChunkEntry& chunk, const SubtreePlace& after) const;
   uint32_t chunks() const { return static_cast<uint32_t>(file_.chunks().size()); }
   uint32_t most_pages(uint32_t slots) const;
 

@@ -20,6 +20,12 @@ ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) 
           a.flushed + b.flushed};
 }
 
+StreamDesc with_what_is_found(StreamDesc desc, const SceneFile& file) {
+  if (!desc.records) desc.records.emplace(file);
+  if (!desc.graph) desc.graph = std::make_shared<const ChunkGraph>(file.chunks(), file.tiers());
+  return desc;
+}
+
 }  // namespace
 
 SlotShape SceneStream::slot_shape(const SceneFile& file) {
@@ -42,11 +48,11 @@ uint32_t SceneStream::pinned_chunks(const SceneFile& file, uint32_t slots) {
 SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc& desc,
                          ChunkPool& pool)
     : file_(std::move(file)),
-      desc_(desc),
+      desc_(with_what_is_found(desc, *file_)),
       tiers_(file_->tiers()),
-      graph_(file_->chunks(), tiers_),
+      graph_(*desc_.graph),
       shape_(slot_shape(*file_)),
-      records_(desc.records ? *desc.records : RecordRoom(*file_)),
+      records_(*desc_.records),
       pool_(pool),
       budget_(desc.budget),
       room_(desc.room),

@@ -30,12 +30,14 @@ namespace voyager {
 
 struct StreamDesc {
   PoolRoom room{};
-  std::optional<RecordRoom> records;  // of the same file, which it refers to; none: it is found
-  uint32_t pinned = 0;                // as Residency has it
-  uint32_t first = 0;                 // chunks that read_top() reads, from pinned to what fits
-  unsigned readers = 2;               // threads; 0: step() does it all
-  uint64_t read_bytes = 1 << 18;      // of one read, at most, unless one chunk has more
-  uint64_t staged_bytes = 32 << 20;   // stored bytes of what was read and has no slot yet
+  // Of the same file, which they refer to; none: they are found.
+  std::optional<RecordRoom> records;
+  std::shared_ptr<const ChunkGraph> graph;
+  uint32_t pinned = 0;               // as Residency has it
+  uint32_t first = 0;                // chunks that read_top() reads, from pinned to what fits
+  unsigned readers = 2;              // threads; 0: step() does it all
+  uint64_t read_bytes = 1 << 18;     // of one read, at most, unless one chunk has more
+  uint64_t staged_bytes = 32 << 20;  // stored bytes of what was read and has no slot yet
   RoomBytes bytes{};
   uint64_t budget = 0;  // for all of them; 0: no limit
   // Told what all of them take: before that is more, for which it may throw, and after it is less.
@@ -231,9 +233,9 @@ class SceneStream {
   const std::shared_ptr<const SceneFile> file_;
   const StreamDesc desc_;
   const Tiers tiers_;
-  const ChunkGraph graph_;
+  const ChunkGraph& graph_;
   const SlotShape shape_;
-  const RecordRoom records_;
+  const RecordRoom& records_;
   ChunkPool& pool_;
 
   // Guards what the budget is shared out to. Taken before all other locks.
