@@ -166,7 +166,8 @@ int main(int argc, char** argv) try {
     if (i == 0) first_image = seconds_since(start);
     const VoyStreamingStats now = streamed.scene.streaming_stats();
     const bool whole = is_whole(stats, now);
-    if (settled == 0 && i > 10 && whole) settled = seconds_since(start);
+    // At first nothing is known to be missing, as nothing has been looked at.
+    if (i < settling && !whole) settled = seconds_since(start);
     if (i == settling) before = now;
     if (i >= settling) {
       wall.push_back(1e3 * seconds_since(begun));
