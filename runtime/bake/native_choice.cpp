@@ -26,16 +26,18 @@ std::string request_line(const NativeChoice& choice) {
 
 FoundScale native_scale(const NativeChoice& choice, const NativeScale& of_inputs,
                         const NativePixelHistogram& pixels, std::span<const InputScales> inputs) {
-  if (of_inputs.antialiased()) return {of_inputs, {}, {}};
-  if (choice.pixel) return {{NativeSource::given, *choice.pixel, kPixelVariance}, {}, {}};
+  if (choice.pixel && !of_inputs.antialiased())
+    return {{NativeSource::given, *choice.pixel, kPixelVariance}, {}, {}};
+  std::optional<NativePixel> found;
   if (!choice.cameras.empty()) {
-    const NativePixel found = pixels.find();
-    if (found.looked_at != 0 && found.seen == 0)
+    found = pixels.find();
+    if (found->looked_at != 0 && found->seen == 0)
       throw Error(ErrorCode::refused_input,
                   "training cameras: found none that sees a Gaussian of the scene, expected the "
                   "cameras of this scene, in its coordinates");
-    return {found.scale(), found, {}};
   }
+  if (of_inputs.antialiased()) return {of_inputs, {}, {}};
+  if (found) return {found->scale(), found, {}};
   if (of_inputs.source != NativeSource::unknown) return {of_inputs, {}, {}};
   JoinedScale joined = joined_scale(inputs);
   return {joined.scale, {}, std::move(joined.levels)};

@@ -22,12 +22,13 @@ std::string request_line(const NativeChoice& choice);
 
 struct FoundScale {
   NativeScale scale;
-  std::optional<NativePixel> by_cameras{};  // where cameras were asked
+  std::optional<NativePixel> by_cameras{};  // where cameras say it
   std::vector<InputLevel> inputs{};         // JoinedScale's, where they were asked
   // Of a block that no camera sees: the scene's median.
   int unseen_level() const { return by_cameras ? scale.level_of(by_cameras->median) : 0; }
 };
 
+// Inputs that say so have their own scale, whatever the cameras see.
 // Of a whole cloud, sanitised; `ends` are those of its inputs, or none of one. Throws
 // Error(refused_input) where no camera sees a Gaussian.
 FoundScale native_scale(const NativeChoice& choice, const GaussianCloud& cloud,

@@ -82,6 +82,19 @@ TEST_F(NativePixelCommand, ACompensatedFilterIsTheFilesOwnHoweverItIsRead) {
   }
 }
 
+// Where nodes learn from is another question; cameras that see nothing are wrong for that, too.
+TEST_F(NativePixelCommand, CamerasMayGuideWhatLearnsOfACompensatedFilter) {
+  std::ofstream(file("away.json"))
+      << R"([{"id": 0, "img_name": "away", "width": 64, "height": 48, "position": [0, 0, 9000],)"
+         R"( "rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "fx": 60, "fy": 60}])";
+  const Outcome refused = run("voyager bake " + file("mip.ply") + " --training-cameras " +
+                              file("away.json") + " --optimize draft -o " + file("n.voy"));
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("training cameras: found none that sees a Gaussian"),
+            std::string::npos)
+      << refused.output;
+}
+
 // From afar 3DGS's own picture swells: it is farther from the truth.
 TEST_F(NativePixelCommand, AntialiasedPicturesAreNearerToTheTruth) {
   bake(file("c.ply") + " --native-pixel 0.05");

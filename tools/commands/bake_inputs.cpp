@@ -51,16 +51,17 @@ void describe(const NativePixel& found) {
 }
 
 // A file that was trained with a compensated filter is drawn with that, and with no footprint
-// beside it: there is nothing to choose.
+// beside it: there is nothing to choose, but where nodes learn from.
 Readers open_inputs(const BakeArguments& arguments, const NativeChoice& native) {
   Readers readers = open_all(arguments.inputs);
-  const bool chosen = native.pixel || !native.cameras.empty();
+  const bool cameras_alone = !native.cameras.empty() && !arguments.optimize.wanted();
   for (const auto& reader : readers)
-    if (chosen && reader->native().antialiased())
+    if ((native.pixel || cameras_alone) && reader->native().antialiased())
       throw Error(ErrorCode::refused_input,
                   reader->name() +
                       ": found a scene that was trained with a compensated filter, expected none "
-                      "with --native-pixel and --training-cameras: it has no footprint");
+                      "with --native-pixel, or with --training-cameras but not --optimize: it has "
+                      "no footprint");
   if (!arguments.placement.given()) return readers;
   return placed(std::move(readers), arguments.placement.of(readers.size()));
 }
