@@ -95,6 +95,7 @@ void DevicePool::make_room(PoolRoom room) {
   slot_ids_.assign(room.slots, {});
   slots_ = room.slots;
   pages_ = room.pages;
+  families_ = room.families;
   check(cudaMemset(array<SearchChunk>(kChunks), 0, slots_ * layout_.slot_bytes(kChunks)), "links");
   check(cudaMemset(array<uint32_t>(kPages), 0, layout_.fixed_bytes(kPages)), "links");
   check(cudaMemset(array<uint32_t>(kLargeFamilyCount), 0, layout_.fixed_bytes(kLargeFamilyCount)),
@@ -274,11 +275,10 @@ void DevicePool::fill_piece(std::span<const StagedChunk* const> chunks) {
 void DevicePool::apply(const LinkPatch& patch) {
   device_->use();
   require_room();
-  const size_t most = layout_.fixed_bytes(kLargeFamilies) / sizeof(LargeFamily);
-  if (patch.large && tables_ != nullptr && patch.large->size() > most)
+  if (patch.large && tables_ != nullptr && patch.large->size() > families_)
     throw Error(ErrorCode::internal, "streaming: found " + std::to_string(patch.large->size()) +
                                          " large families, expected at most " +
-                                         std::to_string(most));
+                                         std::to_string(families_));
   const PoolPatch copy = patches_.put(patch, *file_);
   put_behind_frames();
   launch_patch(

@@ -82,7 +82,7 @@ class DevicePool final : public ChunkPool {
   const std::shared_ptr<const SceneFile> file_;
   const PoolLayout chunk_layout_;  // of one on its way
   PoolLayout layout_;
-  uint32_t slots_ = 0, pages_ = 0;
+  uint32_t slots_ = 0, pages_ = 0, families_ = 0;
   Buffer<unsigned char> memory_;
   RecordBounds bounds_;
   std::vector<SlotIds> slot_ids_;

@@ -45,10 +45,8 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
            sizeof(uint32_t)};
   fixed_bytes_ = {};
   fixed_bytes_[kPages] = pages_of(scene.search.subtree_count()) * unit_[kPages];
-  if (coded) {
-    fixed_bytes_[kLargeFamilies] = most_large_families(scene.node_count) * unit_[kLargeFamilies];
-    fixed_bytes_[kLargeFamilyCount] = unit_[kLargeFamilyCount];
-  }
+  if (coded) fixed_bytes_[kLargeFamilyCount] = unit_[kLargeFamilyCount];
+  family_bytes_ = coded ? unit_[kLargeFamilies] : 0;
   block_bytes_ = {};
   block_bytes_[kRecords] = kRecordBlock * unit_[kRecords];
   block_bytes_[kNextBlocks] = unit_[kNextBlocks];
@@ -67,14 +65,16 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
 
 void PoolLayout::set_room(PoolRoom room) {
   begin_[0] = 0;
-  for (uint32_t a = 0; a < kPoolArrays; ++a)
+  for (uint32_t a = 0; a < kPoolArrays; ++a) {
+    const uint64_t families = a == kLargeFamilies ? room.families * family_bytes_ : 0;
     begin_[a + 1] =
         begin_[a] + aligned(room.slots * slot_bytes_[a] + room.blocks * block_bytes_[a] +
-                            room.pages * page_bytes_[a] + fixed_bytes_[a]);
+                            room.pages * page_bytes_[a] + families + fixed_bytes_[a]);
+  }
 }
 
 PoolBytes PoolLayout::pool_bytes() const {
-  PoolBytes bytes{0, 0, kPoolArrays * kAlign, 0};
+  PoolBytes bytes{0, 0, kPoolArrays * kAlign, 0, family_bytes_};
   for (uint32_t a = 0; a < kPoolArrays; ++a) {
     bytes.slot += slot_bytes_[a];
     bytes.block += block_bytes_[a];

@@ -77,6 +77,7 @@ class PoolLayout {
 
  private:
   std::array<size_t, kPoolArrays> unit_, slot_bytes_, block_bytes_, page_bytes_, fixed_bytes_;
+  size_t family_bytes_;  // of each large family
   std::array<size_t, kPoolArrays + 1> begin_;
 };
 

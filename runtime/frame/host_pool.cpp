@@ -18,11 +18,10 @@ bool counts_children(const Scene& scene) {
 
 class HostPool final : public ChunkPool {
  public:
-  HostPool(Scene& scene, const SceneFile& file, SlotShape shape, PoolRoom room)
+  HostPool(Scene& scene, const std::shared_ptr<const SceneFile>& file, SlotShape shape,
+           PoolRoom room)
       : scene_(scene), shape_(shape) {
-    scene.search.chunks.resize(scene.search.chunk_count);
-    for (uint32_t chunk = 0; chunk < scene.search.chunk_count; ++chunk)
-      scene.search.chunks[chunk] = search_chunk(file, chunk);
+    scene.search.chunk_of = [file](uint32_t chunk) { return search_chunk(*file, chunk); };
     resize(room);
   }
 
@@ -126,10 +125,8 @@ PoolBytes pool_bytes(const Scene& scene, SlotShape shape) {
   const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
   return {shape.nodes * node + scales + sizeof(SlotIds), block,
           page + pages_of(search.subtree_count()) * sizeof(uint32_t) +
-              uint64_t{search.chunk_count} * sizeof(SearchChunk) +
-              search.tier_begin.size() * sizeof(uint32_t) +
-              (is_coded(scene) ? most_large_families(scene.node_count) * sizeof(LargeFamily) : 0),
-          page};
+              search.tier_begin.size() * sizeof(uint32_t),
+          page, sizeof(LargeFamily)};
 }
 
 PoolBytes view_bytes(const SearchTree& tree) {
@@ -140,19 +137,20 @@ PoolBytes view_bytes(const SearchTree& tree) {
 }  // namespace
 
 RoomBytes host_room_bytes(const Scene& scene, SlotShape shape) {
-  const PoolBytes links = Linker::bytes(shape, scene.node_count);
+  const PoolBytes links = Linker::bytes(shape);
   return {pool_bytes(scene, shape) + links, view_bytes(scene.search), {}};
 }
 
-std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, const SceneFile& file, SlotShape shape,
-                                            PoolRoom room) {
+std::unique_ptr<ChunkPool> create_host_pool(Scene& scene,
+                                            const std::shared_ptr<const SceneFile>& file,
+                                            SlotShape shape, PoolRoom room) {
   return std::make_unique<HostPool>(scene, file, shape, room);
 }
 
 std::unique_ptr<ChunkPool> Backend::create_pool(Scene& scene,
                                                 const std::shared_ptr<const SceneFile>& file,
                                                 SlotShape shape, PoolRoom room) {
-  return create_host_pool(scene, *file, shape, room);
+  return create_host_pool(scene, file, shape, room);
 }
 
 RoomBytes Backend::room_bytes(const Scene& scene, SlotShape shape) const {

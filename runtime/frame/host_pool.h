@@ -8,7 +8,8 @@ RoomBytes host_room_bytes(const Scene& scene, SlotShape shape);
 
 // Makes room in the scene's arrays, for its memory resource to hold to a budget. The scene
 // outlives the pool.
-std::unique_ptr<ChunkPool> create_host_pool(Scene& scene, const SceneFile& file, SlotShape shape,
-                                            PoolRoom room);
+std::unique_ptr<ChunkPool> create_host_pool(Scene& scene,
+                                            const std::shared_ptr<const SceneFile>& file,
+                                            SlotShape shape, PoolRoom room);
 
 }  // namespace voyager

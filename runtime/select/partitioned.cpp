@@ -151,15 +151,8 @@ void PartitionedSearch::touch(size_t block) {
 
 // chunk: of a subtree before this one, by the same task.
 void PartitionedSearch::read_chunk_of(uint32_t subtree, uint32_t& chunk, Tally& tally) {
-  if (chunk == kNoChunk) {
-    const auto after =
-        std::upper_bound(tree_.chunks.begin(), tree_.chunks.end(), subtree,
-                         [](uint32_t s, const SearchChunk& c) { return s < c.first_subtree; });
-    chunk = static_cast<uint32_t>(after - tree_.chunks.begin()) - 1;
-  } else if (tree_.chunks[chunk].last_subtree > subtree) {
-    return;
-  }
-  while (tree_.chunks[chunk].last_subtree <= subtree) ++chunk;
+  if (chunk != kNoChunk && subtree < tree_.chunk(chunk).last_subtree) return;
+  chunk = tree_.chunk_with(subtree, chunk == kNoChunk ? tree_.chunk_count / 2 : chunk + 1);
   tally.chunks += mark_read(chunk);
 }
 

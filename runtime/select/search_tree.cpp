@@ -5,10 +5,16 @@
 #include <bit>
 #include <limits>
 
+#include "runtime/base/first_that.h"
 #include "runtime/select/search_records.h"
 #include "runtime/select/set_bits.h"
 
 namespace voyager {
+
+uint32_t SearchTree::chunk_with(uint32_t subtree, uint32_t near) const {
+  return first_near(near, chunk_count, [&](uint32_t i) { return chunk(i).last_subtree > subtree; });
+}
+
 namespace {
 
 constexpr size_t kSubtreesAtOnce = 1024;

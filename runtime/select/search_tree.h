@@ -5,6 +5,7 @@
 //
 // Plain arrays: the same bytes serve the CPU and the device.
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory_resource>
 #include <span>
@@ -179,6 +180,9 @@ struct SearchTree {
   uint32_t subtree_count() const { return tier_begin.empty() ? 0 : tier_begin.back(); }
   SubtreePlaces places() const { return {pages.empty() ? nullptr : pages.data()}; }
   const SearchSubtree& subtree(uint32_t s) const { return subtrees[places()(s)]; }
+  SearchChunk chunk(uint32_t i) const { return chunks.empty() ? chunk_of(i) : chunks[i]; }
+  // The one that a subtree is in, sought from one that may be near it. O(log n).
+  uint32_t chunk_with(uint32_t subtree, uint32_t near) const;
   uint64_t bytes() const {
     return subtrees.size() * sizeof(SearchSubtree) + pages.size() * sizeof(uint32_t) +
            records.size() * sizeof(SearchRecord) + chunks.size() * sizeof(SearchChunk);
@@ -188,8 +192,9 @@ struct SearchTree {
   std::pmr::vector<uint32_t> pages;          // of a pool: SubtreePlaces::pages; else empty
   std::pmr::vector<SearchRecord> records;
   std::pmr::vector<uint32_t> next_block;  // by block of records, of a pool
-  // None where a device has them (search_chunk()).
+  // None where a device has them, or where a file's directory tells (chunk_of).
   std::pmr::vector<SearchChunk> chunks;
+  std::function<SearchChunk(uint32_t chunk)> chunk_of;  // any thread; asked where `chunks` is empty
   uint32_t chunk_count = 0;
   std::pmr::vector<uint32_t> tier_begin;  // first subtree of each tier, and the end
   bool leaves_have_extent = false;        // else a leaf's size is 0 wherever its weight matters

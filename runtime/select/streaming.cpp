@@ -67,13 +67,8 @@ void PartitionedSearch::open(uint32_t subtree, Tally& tally) {
 
 // Subtrees [first, last) of one tier.
 void PartitionedSearch::stream_tier(uint32_t first, uint32_t last, Workers& workers) {
-  const auto chunk_of = [&](uint32_t subtree) {
-    const auto after =
-        std::upper_bound(tree_.chunks.begin(), tree_.chunks.end(), subtree,
-                         [](uint32_t s, const SearchChunk& c) { return s < c.first_subtree; });
-    return static_cast<uint32_t>(after - tree_.chunks.begin()) - 1;
-  };
-  const uint32_t first_chunk = chunk_of(first), chunks = chunk_of(last - 1) + 1 - first_chunk;
+  const uint32_t first_chunk = tree_.chunk_with(first, 0);
+  const uint32_t chunks = tree_.chunk_with(last - 1, first_chunk) + 1 - first_chunk;
   workers.for_blocks(chunks, kChunksTask, [&](size_t begin, size_t end) {
     Tally tally;
     for (size_t i = begin; i < end; ++i)
@@ -83,7 +78,7 @@ void PartitionedSearch::stream_tier(uint32_t first, uint32_t last, Workers& work
 }
 
 void PartitionedSearch::stream_chunk(uint32_t chunk, uint32_t first, uint32_t last, Tally& tally) {
-  const SearchChunk& c = tree_.chunks[chunk];
+  const SearchChunk c = tree_.chunk(chunk);
   tally.bytes += sizeof c;
   ++tally.tested;
   if (!(decode_bounds(c.hull).screen_size(sight_.centre) >= sight_.target_size)) return;

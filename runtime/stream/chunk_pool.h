@@ -13,22 +13,24 @@ struct SlotShape {
   uint32_t nodes, records;
 };
 
-// What a pool has room for: chunks, blocks of search records, and pages of subtrees where its
-// tables do not have all of the file's.
+// What a pool has room for: chunks, blocks of search records, pages of subtrees where its tables do
+// not have all of the file's, and large families (large_families.h).
 struct PoolRoom {
-  uint32_t slots, blocks, pages = 0;
+  uint32_t slots, blocks, pages = 0, families = 0;
 };
 
-// What goes with a pool's room: for each slot, each block, beside them, and for each page; 0 where
-// its tables have all subtrees.
+// What goes with a pool's room: for each slot, each block, beside them, for each page, which is 0
+// where its tables have all subtrees, and for each large family.
 struct PoolBytes {
-  uint64_t slot, block, fixed, page = 0;
+  uint64_t slot, block, fixed, page = 0, family = 0;
 
   uint64_t of(PoolRoom room) const {
-    return fixed + room.slots * slot + room.blocks * block + room.pages * page;
+    return fixed + room.slots * slot + room.blocks * block + room.pages * page +
+           room.families * family;
   }
   PoolBytes operator+(const PoolBytes& other) const {
-    return {slot + other.slot, block + other.block, fixed + other.fixed, page + other.page};
+    return {slot + other.slot, block + other.block, fixed + other.fixed, page + other.page,
+            family + other.family};
   }
 };
 

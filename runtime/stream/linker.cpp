@@ -108,11 +108,11 @@ class Linker::Roots {
 Linker::Linker(const ChunkGraph& graph, SlotShape shape, const std::vector<uint32_t>& next_block)
     : graph_(&graph), shape_(shape), next_block_(&next_block), tables_(graph.size()) {}
 
-PoolBytes Linker::bytes(SlotShape shape, uint64_t nodes) {
+PoolBytes Linker::bytes(SlotShape shape) {
   const uint64_t entry = ByChunk<LinkTable>::known_bytes() - sizeof(LinkTable);
   return {LinkTable::chunk_bytes(shape.records) + entry, kRecordBlock * LinkTable::kBelowBytes,
-          ByChunk<LinkTable>::known_bytes() + most_large_families(nodes) * sizeof(LargeFamily),
-          kPageSubtrees * LinkTable::kSubtreeBytes};
+          ByChunk<LinkTable>::known_bytes(), kPageSubtrees * LinkTable::kSubtreeBytes,
+          sizeof(LargeFamily)};
 }
 
 Linker::Walk Linker::walk(uint32_t chunk) const {

@@ -23,8 +23,8 @@ class Linker {
   // graph and next_block outlive it. next_block: of each block of records, the chunk's next.
   Linker(const ChunkGraph& graph, SlotShape shape, const std::vector<uint32_t>& next_block);
   // What it takes at most where a pool has so much room: a subtree has a place, and a node of a
-  // tier's lowest level a record. nodes: of the file, that may have large families.
-  static PoolBytes bytes(SlotShape shape, uint64_t nodes);
+  // tier's lowest level a record.
+  static PoolBytes bytes(SlotShape shape);
   // No more chunks will be held, and views have room for cuts of so many nodes: what could make
   // them larger is not linked before there is room for it.
   void make_room(uint32_t slots, uint64_t cut_nodes) {

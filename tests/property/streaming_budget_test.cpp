@@ -67,7 +67,7 @@ struct Rig {
   // What was allocated since the last call, with what may link as many chunks as there is room for.
   void expect_kept(uint64_t most) {
     const PoolRoom now = RecordRoom(file).of(scene->stream->counters().slots);
-    const uint64_t links = Linker::bytes(shape, scene->node_count).of(now);
+    const uint64_t links = Linker::bytes(shape).of(now);
     EXPECT_LE(memory.most() + links, most);
     EXPECT_LE(memory.used() + links, counted);
     EXPECT_LE(counted, budget);

@@ -104,5 +104,30 @@ TEST(RecordRoom, HasPagesForTheSubtreesOfAnySoManyChunks) {
   }
 }
 
+// Whichever chunks those are. Where none is large there is room for few.
+TEST(RecordRoom, HasRoomForTheLargeFamiliesOfAnySoManyChunks) {
+  for (const TreeShape shape : test::kTreeShapes) {
+    SCOPED_TRACE(test::name_of(shape));
+    const test::Bytes bytes = test::scene_bytes(test::baked_of(test::random_tree(shape, 30000, 3)),
+                                                Quality::compact, 0, kMinChunkBytes);
+    const SceneFile file(test::source_of(bytes));
+    const RecordRoom room(file);
+    const auto chunks = static_cast<uint32_t>(file.chunks().size());
+    std::vector<uint32_t> large;  // families of each chunk
+    for (uint32_t chunk = 0; chunk < chunks; ++chunk)
+      large.push_back(static_cast<uint32_t>(
+          stage_chunk(file.read_chunk(chunk), chunk, file.tiers(), "it").large.size()));
+    std::sort(large.begin(), large.end(), std::greater<>());
+    uint32_t all = 0;
+    for (uint32_t some = 1; some <= chunks; ++some) {
+      all += large[some - 1];
+      if (some < SceneStream::top_chunks(file)) continue;
+      ASSERT_GE(room.of(some).families, all) << some;
+    }
+    if (shape != TreeShape::four_way) continue;
+    EXPECT_LT(room.of(chunks).families, most_large_families(file.info().node_count) / 4);
+  }
+}
+
 }  // namespace
 }  // namespace voyager::record_room_test
