@@ -90,6 +90,7 @@ bool is_whole(const VoyFrameStats& frame, const VoyStreamingStats& streaming) {
 }
 
 struct Turn {
+  std::vector<double> ms, wall;  // of frames from the turn's start to a second after its end
   double whole_after = 0;  // seconds from the turn's end to the end of the last coarse frame
   size_t coarse_turning = 0, coarse_after = 0;
   bool ended_whole = false;
@@ -103,8 +104,14 @@ Turn turn_round(voyager::bench::StreamedView& streamed, const Camera& from, doub
   for (size_t i = 0; i <= 2 * standing + turning; ++i) {
     const double share =
         static_cast<double>(i - std::min(i, standing)) / static_cast<double>(turning);
+    const auto begun = Clock::now();
     streamed.render(turned(from, 3.14159265358979 * std::min(1.0, share)));
-    found.ended_whole = is_whole(streamed.view.stats(), streamed.scene.streaming_stats());
+    const VoyFrameStats stats = streamed.view.stats();
+    if (i > standing && static_cast<double>(i - standing) <= static_cast<double>(turning) + fps) {
+      found.wall.push_back(1e3 * seconds_since(begun));
+      found.ms.push_back(stats.millisecondsTotal);
+    }
+    found.ended_whole = is_whole(stats, streamed.scene.streaming_stats());
     if (i == standing + turning) ended = Clock::now();
     if (i > standing && !found.ended_whole) {
       (i > standing + turning ? found.coarse_after : found.coarse_turning)++;
@@ -168,6 +175,7 @@ int main(int argc, char** argv) try {
     const bool whole = is_whole(stats, now);
     // At first nothing is known to be missing, as nothing has been looked at.
     if (i < settling && !whole) settled = seconds_since(start);
+    if (i + 1 == settling && !whole) settled = -1;
     if (i == settling) before = now;
     if (i >= settling) {
       wall.push_back(1e3 * seconds_since(begun));
@@ -197,7 +205,8 @@ int main(int argc, char** argv) try {
       "\"wall_max\": %.2f, \"read_mb_a_metre\": %.3f, \"late\": %llu, \"arrived\": %llu, "
       "\"evicted\": %llu, \"failures\": %llu, \"peak_host_mb\": %.0f,\n"
       " \"turn_coarse_frames\": %zu, \"after_turn_coarse_frames\": %zu, "
-      "\"after_turn_coarse_s\": %.2f, \"after_turn_whole\": %s}\n",
+      "\"after_turn_coarse_s\": %.2f, \"after_turn_whole\": %s, \"turn_ms_p50\": %.2f, "
+      "\"turn_ms_p99\": %.2f, \"turn_wall_p50\": %.2f, \"turn_wall_p99\": %.2f}\n",
       device.capabilities().deviceName, static_cast<unsigned long long>(info.gaussianCount),
       info.shDegree, megabytes, static_cast<double>(after.budgetBytes) / 1e6,
       static_cast<unsigned long long>(after.chunkSlots),
@@ -212,7 +221,8 @@ int main(int argc, char** argv) try {
       static_cast<unsigned long long>(after.evictedChunks - before.evictedChunks),
       static_cast<unsigned long long>(after.failures), static_cast<double>(peak_kilobytes()) / 1e3,
       turn.coarse_turning, turn.coarse_after, turn.whole_after,
-      turn.ended_whole ? "true" : "false");
+      turn.ended_whole ? "true" : "false", quantile(turn.ms, 0.5), quantile(turn.ms, 0.99),
+      quantile(turn.wall, 0.5), quantile(turn.wall, 0.99));
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "stream_walk: %s\n", error.what());

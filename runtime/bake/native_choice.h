@@ -28,8 +28,8 @@ struct FoundScale {
   int unseen_level() const { return by_cameras ? scale.level_of(by_cameras->median) : 0; }
 };
 
-// Inputs that say so have their own scale, whatever the cameras see.
-// Of a whole cloud, sanitised; `ends` are those of its inputs, or none of one. Throws
+// Inputs that were trained with a compensated filter keep their own scale. Of a whole cloud,
+// sanitised; `ends` are those of its inputs, or none of one. Throws
 // Error(refused_input) where no camera sees a Gaussian.
 FoundScale native_scale(const NativeChoice& choice, const GaussianCloud& cloud,
                         std::span<const uint32_t> ends = {});

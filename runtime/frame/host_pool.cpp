@@ -28,7 +28,8 @@ class HostPool final : public ChunkPool {
   void resize(PoolRoom room) override {
     SearchTree& search = scene_.search;
     if (search.subtrees.size() != places_of(room) || scene_.slot_ids.size() != room.slots ||
-        search.next_block.size() != room.blocks)
+        search.next_block.size() != room.blocks ||
+        scene_.large_families.capacity() != room.families)
       make_room(room);
     scene_.large_families.clear();
     std::fill(search.subtrees.begin(), search.subtrees.end(), kUnlinkedSubtree);
@@ -104,7 +105,9 @@ class HostPool final : public ChunkPool {
       fit(scene_.search.pages, pages_of(scene_.search.subtree_count()));
       fit(scene_.search.records, size_t{room_for.blocks} * kRecordBlock);
       fit(scene_.search.next_block, room_for.blocks);
+      fit(scene_.large_families, 0);
     }
+    scene_.large_families.reserve(room_for.families);
   }
 
   Scene& scene_;

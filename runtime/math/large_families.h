@@ -13,11 +13,6 @@ struct LargeFamily {
   uint32_t parent, children;
 };
 
-// No tree of so many nodes has more of them.
-constexpr uint32_t most_large_families(uint64_t nodes) {
-  return static_cast<uint32_t>(nodes / kManyChildren);
-}
-
 // Of one that is among them. families: by parent, ascending.
 VOYAGER_HD uint32_t children_of(uint32_t parent, const LargeFamily* families, uint32_t count) {
   uint32_t low = 0, high = count;

@@ -149,11 +149,11 @@ void PartitionedSearch::touch(size_t block) {
   std::atomic_ref<uint8_t>(touched_[block]).store(1, std::memory_order_relaxed);
 }
 
-// chunk: of a subtree before this one, by the same task.
-void PartitionedSearch::read_chunk_of(uint32_t subtree, uint32_t& chunk, Tally& tally) {
-  if (chunk != kNoChunk && subtree < tree_.chunk(chunk).last_subtree) return;
-  chunk = tree_.chunk_with(subtree, chunk == kNoChunk ? tree_.chunk_count / 2 : chunk + 1);
-  tally.chunks += mark_read(chunk);
+void PartitionedSearch::read_chunk_of(uint32_t subtree, AtChunk& at, Tally& tally) {
+  if (subtree < at.end) return;
+  at.chunk = tree_.chunk_with(subtree, at.chunk);
+  at.end = tree_.chunk(at.chunk).last_subtree;
+  tally.chunks += mark_read(at.chunk);
 }
 
 // True for the first of a run.

@@ -91,7 +91,11 @@ class PartitionedSearch {
   size_t block_of(uint32_t subtree) const;
   void touch(size_t block);
   bool mark_read(uint32_t chunk);
-  void read_chunk_of(uint32_t subtree, uint32_t& chunk, Tally& tally);
+  // Where a task is in the file: subtrees ascend.
+  struct AtChunk {
+    uint32_t chunk = 0, end = 0;  // the first subtree behind it
+  };
+  void read_chunk_of(uint32_t subtree, AtChunk& at, Tally& tally);
   uint32_t look(uint32_t subtree, Tally& tally);
   void close(uint32_t subtree);
   uint64_t count_stand_ins() const;

@@ -19,7 +19,6 @@ inline constexpr size_t kChunksTask = 64;
 // quarters to nine tenths, and streaming up to 2.6 times as fast beyond.
 inline constexpr double kStreamingShare = 0.85;
 
-inline constexpr uint32_t kNoChunk = 0xffffffffu;
 inline constexpr Watch kNever{INFINITY, 0};  // of a subtree that is closed
 inline constexpr Watch kDue{-1, 0};  // of one that is to be visited, however little has moved
 

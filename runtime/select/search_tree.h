@@ -3,7 +3,7 @@
 // the cut depends on. A leaf is in the cut exactly where its parent is refined
 // (sizes never grow from parent to child), so a leaf is a bit and has no record.
 //
-// Plain arrays: the same bytes serve the CPU and the device.
+// Arrays are plain: the same bytes serve the CPU and the device.
 #include <cstdint>
 #include <functional>
 #include <limits>

@@ -65,14 +65,14 @@ bool PartitionedSearch::streaming_is_cheaper(uint64_t due) const {
 void PartitionedSearch::visit_due(Workers& workers) {
   workers.for_blocks(blocks_.size(), kBlocksTask, [&](size_t begin, size_t end) {
     Tally tally;
-    uint32_t chunk = kNoChunk;
+    AtChunk at;
     for (size_t b = begin; b < end; ++b) {
       Changes& changes = changes_[b];
       changes.opened.clear(), changes.closed.clear();
       if (changes.due.empty()) continue;
       touch(b);
       for (const uint32_t s : changes.due) {
-        read_chunk_of(s, chunk, tally);
+        read_chunk_of(s, at, tally);
         const uint32_t flipped = look(s, tally);
         signal_below(
             tree_, s, flipped, refined_[places_(s)],
@@ -108,7 +108,7 @@ void PartitionedSearch::visit_opened(Workers& workers) {
 // Subtrees opened_[begin, end), which were closed.
 void PartitionedSearch::visit_round(size_t begin, size_t end) {
   Tally tally;
-  uint32_t chunk = kNoChunk;
+  AtChunk at;
   std::pmr::vector<uint32_t>& opened = changes_[begin / kRoundSubtrees].opened;
   opened.clear();
   for (size_t i = begin; i < end; ++i) {
@@ -118,7 +118,7 @@ void PartitionedSearch::visit_round(size_t begin, size_t end) {
       continue;
     }
     touch(block_of(s));
-    read_chunk_of(s, chunk, tally);
+    read_chunk_of(s, at, tally);
     const uint32_t flipped = look(s, tally);
     signal_below(
         tree_, s, flipped, refined_[places_(s)],

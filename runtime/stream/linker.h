@@ -27,8 +27,9 @@ class Linker {
   static PoolBytes bytes(SlotShape shape);
   // No more chunks will be held, and views have room for cuts of so many nodes: what could make
   // them larger is not linked before there is room for it.
-  void make_room(uint32_t slots, uint64_t cut_nodes) {
-    tables_.reserve(slots);
+  void make_room(PoolRoom room, uint64_t cut_nodes) {
+    tables_.reserve(room.slots);
+    large_.reserve(room.families);
     room_for_cut_ = cut_nodes;
   }
   // Whether something is not linked for that reason alone.

@@ -95,8 +95,7 @@ uint64_t RecordRoom::likely_blocks(uint64_t most) const {
 }
 
 PoolRoom RecordRoom::of(uint32_t slots) const {
-  const auto families = static_cast<uint32_t>(std::min<uint64_t>(
-      voyager::most_large_families(file_.info().node_count), families_.most(slots)));
+  const auto families = static_cast<uint32_t>(families_.most(slots));
   if (slots >= chunks()) return {slots, all_, all_pages_, families};
   const double part = static_cast<double>(slots) / chunks();
   const double share = std::ceil(all_ * part * (1.5 - 0.5 * part));

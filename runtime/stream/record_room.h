@@ -30,8 +30,6 @@ class RecordRoom {
   PoolRoom enough(uint64_t chunks, uint64_t blocks) const;
 
  private:
-  uint32_t most_blocks(const ChunkEntry& chunk, const SubtreePlace& after) const;
-  uint32_t chunks() const { return static_cast<uint32_t>(file_.chunks().size()); }
   // How many chunks have so many of something.
   class Tally {
    public:
@@ -42,6 +40,9 @@ class RecordRoom {
    private:
     std::vector<uint32_t> chunks_;  // by count
   };
+
+  uint32_t most_blocks(const ChunkEntry& chunk, const SubtreePlace& after) const;
+  uint32_t chunks() const { return static_cast<uint32_t>(file_.chunks().size()); }
 
   const SceneFile& file_;
   const Tiers tiers_;
@@ -56,7 +57,7 @@ class RecordRoom {
 // its own subtree's next level or below its tier. after: the place of the next chunk.
 uint32_t most_search_records(const ChunkEntry& chunk, const SubtreePlace& after,
                              const Tiers& tiers);
-// And so many of its nodes have large families at most.
+// How many of a chunk's nodes have large families, at most.
 uint32_t most_large_families(const ChunkEntry& chunk, const SubtreePlace& after,
                              const Tiers& tiers);
 

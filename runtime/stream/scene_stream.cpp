@@ -62,7 +62,7 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       residency_(graph_, file_->chunks(), records_, desc.room, desc.pinned),
       linker_(graph_, shape_, residency_.next_blocks()),
       pages_(no_pages(desc.room)) {
-  linker_.make_room(desc.room.slots, desc.bytes.list.nodes(desc.room));
+  linker_.make_room(desc.room, desc.bytes.list.nodes(desc.room));
   // Where reads wait for answers, one reader is left for plans.
   const unsigned at_once = file_->source().reads_at_once();
   if (at_once <= 1) return;
@@ -282,7 +282,7 @@ void SceneStream::reset(PoolRoom room, uint32_t pinned, Workers& workers) {
       file_->name() + ": found memory that was only partly filled again, expected all of it"));
   linker_ = std::move(linker);
   pool_.resize(room);
-  linker_.make_room(room.slots, desc_.bytes.list.nodes(room));
+  linker_.make_room(room, desc_.bytes.list.nodes(room));
   ++generation_;
   ++departures_;
   counted_ = total(counted_, residency_.counters());

@@ -1,6 +1,5 @@
 // Streaming from a disk that takes its time: flights, jumps, too little room, budgets that change.
 // Deterministic.
-#include "runtime/math/screen_size.h"
 #include "tests/support/disk_flight.h"
 
 namespace voyager::streaming_disk_test {

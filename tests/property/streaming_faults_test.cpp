@@ -1,8 +1,7 @@
 // Streaming where reads fail, chunks are damaged, pools are lost and memory is refused.
-// Deterministic.
-#include <atomic>
 #include <thread>
 
+#include "runtime/math/screen_size.h"
 #include "tests/support/disk_flight.h"
 
 namespace voyager::streaming_faults_test {

@@ -129,10 +129,8 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
   const std::vector<uint8_t> levels = levels_of(found.inputs);
   cloud.native = found.scale;
   if (found.by_cameras) describe(*found.by_cameras);
-  BlockFootprints footprints{{}, found.unseen_level(), levels};
-  if (found.by_cameras) footprints.cameras = native.cameras;
-  BakedScene baked =
-      build_tree(std::move(cloud), workers, progress, {.kind = arguments.tree}, footprints);
+  BakedScene baked = build_tree(std::move(cloud), workers, progress, {.kind = arguments.tree},
+                                {native.cameras, found.unseen_level(), levels});
   const std::string kept = refine_file(arguments);
   if (arguments.refine != 0) refine_extents(baked, arguments.refine, kept, workers, progress);
   const std::string learned = optimize_file(arguments);

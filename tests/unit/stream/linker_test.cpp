@@ -43,7 +43,7 @@ class Linked {
         next_block_(file.chunks().size() * shape_.records),
         linker_(graph_, shape_, next_block_),
         pool_(static_cast<uint32_t>(next_block_.size())) {
-    linker_.make_room(graph_.size(), cut_nodes);
+    linker_.make_room({graph_.size(), 0}, cut_nodes);
   }
 
   uint32_t chunks() const { return graph_.size(); }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <random>
 #include <set>
@@ -104,29 +105,57 @@ TEST(RecordRoom, HasPagesForTheSubtreesOfAnySoManyChunks) {
   }
 }
 
+// A binary tree of so many levels, and large families of leaves below it.
+LodTree bushy_tree(uint32_t levels) {
+  std::vector<uint32_t> child_counts((1u << levels) - 1, 2);
+  child_counts.insert(child_counts.end(), 1u << levels, kManyChildren + 20);
+  child_counts.insert(child_counts.end(), (kManyChildren + 20) << levels, 0);
+  LodTree tree = test::linked_tree(child_counts);
+  tree.blend_share = kHalfShare;
+  std::mt19937 random(3);
+  test::set_boxes(tree, random);
+  test::set_extents(tree, test::Extents::longest_side, random);
+  return tree;
+}
+
 // Whichever chunks those are. Where none is large there is room for few.
 TEST(RecordRoom, HasRoomForTheLargeFamiliesOfAnySoManyChunks) {
-  for (const TreeShape shape : test::kTreeShapes) {
-    SCOPED_TRACE(test::name_of(shape));
-    const test::Bytes bytes = test::scene_bytes(test::baked_of(test::random_tree(shape, 30000, 3)),
-                                                Quality::compact, 0, kMinChunkBytes);
-    const SceneFile file(test::source_of(bytes));
-    const RecordRoom room(file);
-    const auto chunks = static_cast<uint32_t>(file.chunks().size());
-    std::vector<uint32_t> large;  // families of each chunk
-    for (uint32_t chunk = 0; chunk < chunks; ++chunk)
-      large.push_back(static_cast<uint32_t>(
-          stage_chunk(file.read_chunk(chunk), chunk, file.tiers(), "it").large.size()));
-    std::sort(large.begin(), large.end(), std::greater<>());
-    uint32_t all = 0;
-    for (uint32_t some = 1; some <= chunks; ++some) {
-      all += large[some - 1];
-      if (some < SceneStream::top_chunks(file)) continue;
-      ASSERT_GE(room.of(some).families, all) << some;
+  std::vector<LodTree> trees;
+  for (const TreeShape shape : {TreeShape::star, TreeShape::star_of_stars, TreeShape::four_way})
+    trees.push_back(test::random_tree(shape, 20000, 3));
+  for (const uint32_t levels : {5, 6, 7}) trees.push_back(bushy_tree(levels));
+  uint32_t most = 0;  // of a chunk that lies in one tier
+  for (const LodTree& tree : trees)
+    for (const uint32_t chunk_bytes : {kMinChunkBytes, 2000 * uint32_t{sizeof(NodeRecord)}}) {
+      SCOPED_TRACE(std::to_string(tree.size()) + ", " + std::to_string(chunk_bytes));
+      const test::Bytes bytes =
+          test::scene_bytes(test::baked_of(tree), Quality::compact, 0, chunk_bytes);
+      const SceneFile file(test::source_of(bytes));
+      const RecordRoom room(file);
+      const auto chunks = static_cast<uint32_t>(file.chunks().size());
+      std::vector<uint32_t> large;  // families of each chunk
+      for (uint32_t chunk = 0; chunk < chunks; ++chunk) {
+        const StagedChunk staged = stage_chunk(file.read_chunk(chunk), chunk, file.tiers(), "it");
+        large.push_back(static_cast<uint32_t>(staged.large.size()));
+        const bool last = chunk + 1 == chunks;
+        const uint32_t bound = most_large_families(
+            file.chunks()[chunk],
+            last ? SubtreePlace::end_of(file.tiers()) : file.chunks().place(chunk + 1),
+            file.tiers());
+        EXPECT_GE(bound, large.back());
+        if (bound < file.chunks()[chunk].node_count) most = std::max(most, large.back());
+      }
+      std::sort(large.begin(), large.end(), std::greater<>());
+      uint32_t all = 0;
+      for (uint32_t some = 1; some <= chunks; ++some) {
+        all += large[some - 1];
+        if (some < SceneStream::top_chunks(file)) continue;
+        EXPECT_GE(room.of(some).families, all) << some;
+      }
+      if (all != 0 || chunk_bytes != kMinChunkBytes) continue;
+      EXPECT_LT(room.of(chunks).families, file.info().node_count / kManyChildren / 2);
     }
-    if (shape != TreeShape::four_way) continue;
-    EXPECT_LT(room.of(chunks).families, most_large_families(file.info().node_count) / 4);
-  }
+  EXPECT_GT(most, 1u);
 }
 
 }  // namespace
