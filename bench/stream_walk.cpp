@@ -91,7 +91,7 @@ bool is_whole(const VoyFrameStats& frame, const VoyStreamingStats& streaming) {
 
 struct Turn {
   std::vector<double> ms, wall;  // of frames from the turn's start to a second after its end
-  double whole_after = 0;  // seconds from the turn's end to the end of the last coarse frame
+  double whole_after = 0;        // seconds from the turn's end to the end of the last coarse frame
   size_t coarse_turning = 0, coarse_after = 0;
   bool ended_whole = false;
 };
@@ -220,9 +220,9 @@ int main(int argc, char** argv) try {
       static_cast<unsigned long long>(after.arrivedChunks - before.arrivedChunks),
       static_cast<unsigned long long>(after.evictedChunks - before.evictedChunks),
       static_cast<unsigned long long>(after.failures), static_cast<double>(peak_kilobytes()) / 1e3,
-      turn.coarse_turning, turn.coarse_after, turn.whole_after,
-      turn.ended_whole ? "true" : "false", quantile(turn.ms, 0.5), quantile(turn.ms, 0.99),
-      quantile(turn.wall, 0.5), quantile(turn.wall, 0.99));
+      turn.coarse_turning, turn.coarse_after, turn.whole_after, turn.ended_whole ? "true" : "false",
+      quantile(turn.ms, 0.5), quantile(turn.ms, 0.99), quantile(turn.wall, 0.5),
+      quantile(turn.wall, 0.99));
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "stream_walk: %s\n", error.what());
