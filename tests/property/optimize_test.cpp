@@ -53,6 +53,14 @@ bool same(const BakedScene& a, const BakedScene& b) {
                     [](const NodeRecord& r, const NodeRecord& s) { return r.extent == s.extent; });
 }
 
+void expect_same_leaves(const BakedScene& a, const BakedScene& b) {
+  EXPECT_EQ(a.leaves.position, b.leaves.position);
+  EXPECT_EQ(a.leaves.log_scale, b.leaves.log_scale);
+  EXPECT_EQ(a.leaves.rotation, b.leaves.rotation);
+  EXPECT_EQ(a.leaves.opacity, b.leaves.opacity);
+  EXPECT_EQ(a.leaves.sh, b.leaves.sh);
+}
+
 // 60 × 33 pixels.
 TrainingView small_view(const TrainingViews& views, uint32_t k, double tau) {
   TrainingView view = views(k);
@@ -160,9 +168,7 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
   const BakedScene expected = learn(baked, 8, 1, folder.file("one")).scene;
   EXPECT_FALSE(same(expected, baked));
   EXPECT_TRUE(validate(expected).empty()) << validate(expected).front();
-  EXPECT_EQ(expected.leaves.position, baked.leaves.position);
-  EXPECT_EQ(expected.leaves.opacity, baked.leaves.opacity);
-  EXPECT_EQ(expected.leaves.sh, baked.leaves.sh);
+  expect_same_leaves(expected, baked);
   EXPECT_TRUE(same(learn(baked, 8, 4, folder.file("four")).scene, expected));
 
   struct Stop {};
@@ -222,9 +228,7 @@ TEST(Optimize, InPartsNeitherThreadsNorStopsShow) {
   EXPECT_EQ(kept_files(folder.file("one"))[1], folder.file("one") + ".1");
   EXPECT_FALSE(same(expected, baked));
   EXPECT_TRUE(validate(expected).empty()) << validate(expected).front();
-  EXPECT_EQ(expected.leaves.position, baked.leaves.position);
-  EXPECT_EQ(expected.leaves.opacity, baked.leaves.opacity);
-  EXPECT_EQ(expected.leaves.sh, baked.leaves.sh);
+  expect_same_leaves(expected, baked);
 
   struct Stop {};
   const std::string kept = folder.file("stopped");
