@@ -28,9 +28,9 @@ struct FoundScale {
   int unseen_level() const { return by_cameras ? scale.level_of(by_cameras->median) : 0; }
 };
 
-// Inputs that were trained with a compensated filter keep their own scale. Of a whole cloud,
-// sanitised; `ends` are those of its inputs, or none of one. Throws
-// Error(refused_input) where no camera sees a Gaussian.
+// Of a whole cloud, sanitised; `ends` are those of its inputs, or none of one. Inputs that were
+// trained with a compensated filter keep their own scale. Throws Error(refused_input) where there
+// are cameras and none sees a Gaussian.
 FoundScale native_scale(const NativeChoice& choice, const GaussianCloud& cloud,
                         std::span<const uint32_t> ends = {});
 

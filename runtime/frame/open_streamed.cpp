@@ -19,7 +19,7 @@ void set_search(const SceneFile& file, SearchTree& search) {
 }
 
 // Each goes through the whole directory, which is much of the time that opening takes.
-void find_chunks(const SceneFile& file, StreamDesc& desc, Workers& workers) {
+void find_records_and_graph(const SceneFile& file, StreamDesc& desc, Workers& workers) {
   workers.for_blocks(2, 1, [&](size_t which, size_t) {
     if (which == 0)
       desc.records.emplace(file);
@@ -60,7 +60,7 @@ std::shared_ptr<Scene> open_streamed(const std::shared_ptr<const ByteSource>& so
   StreamDesc stream;
   stream.bytes = backend.room_bytes(*scene, shape);
   stream.budget = desc.budget;
-  find_chunks(*file, stream, workers);
+  find_records_and_graph(*file, stream, workers);
   stream.room = fit_room(*file, *stream.records, stream.bytes, stream.budget, 0);
   stream.pinned = SceneStream::pinned_chunks(*file, stream.room.slots);
   stream.first = desc.start ? stream.pinned : first_of(*file, stream, desc.first_bytes);

@@ -20,7 +20,7 @@ ResidencyCounters total(const ResidencyCounters& a, const ResidencyCounters& b) 
           a.flushed + b.flushed};
 }
 
-StreamDesc with_what_is_found(StreamDesc desc, const SceneFile& file) {
+StreamDesc with_records_and_graph(StreamDesc desc, const SceneFile& file) {
   if (!desc.records) desc.records.emplace(file);
   if (!desc.graph) desc.graph = std::make_shared<const ChunkGraph>(file.chunks(), file.tiers());
   return desc;
@@ -48,7 +48,7 @@ uint32_t SceneStream::pinned_chunks(const SceneFile& file, uint32_t slots) {
 SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc& desc,
                          ChunkPool& pool)
     : file_(std::move(file)),
-      desc_(with_what_is_found(desc, *file_)),
+      desc_(with_records_and_graph(desc, *file_)),
       tiers_(file_->tiers()),
       graph_(*desc_.graph),
       shape_(slot_shape(*file_)),

@@ -8,6 +8,7 @@ namespace voyager::streaming_faults_test {
 namespace {
 
 using test::ahead;
+using test::desc_of;
 using test::DiskFlight;
 using test::expect_same_bits;
 using test::FailingPool;
@@ -153,11 +154,7 @@ TEST(StreamingFaults, AFrameThatWaitsSaysWhatIsDamaged) {
 TEST(StreamingFaults, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
   const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
   const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
-  StreamDesc desc;
-  const auto chunks = static_cast<uint32_t>(file->chunks().size());
-  desc.room = RecordRoom(*file).of(chunks);
-  desc.pinned = desc.first = SceneStream::top_chunks(*file);
-  desc.readers = 0;
+  StreamDesc desc = desc_of(*file, 0);
   double time = 0;
   desc.clock = [&] { return time; };
   Workers workers(1);
@@ -189,24 +186,21 @@ TEST(StreamingFaults, APoolThatFailedIsNotDrawnFromUntilItIsFilledAnew) {
   while (stream.step()) time += 1e-3;
   EXPECT_TRUE(stream.hold().owns_lock());
   stream.commit();
-  EXPECT_EQ(stream.counters().resident, chunks);
+  EXPECT_EQ(stream.counters().resident, desc.room.slots);
 }
 
 // A pool on threads of its own that fails once: nobody else need move for all to come again.
 TEST(StreamingFaults, WhoeverStandsGetsWhatAFailureTook) {
   const test::Bytes bytes = test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact);
   const auto file = std::make_shared<const SceneFile>(test::source_of(bytes));
-  StreamDesc desc;
-  const auto chunks = static_cast<uint32_t>(file->chunks().size());
-  desc.room = RecordRoom(*file).of(chunks);
-  desc.pinned = desc.first = SceneStream::top_chunks(*file);
+  const StreamDesc desc = desc_of(*file, 2);
   Workers workers(1);
   FailingPool pool(desc.room);
   SceneStream stream(file, desc, pool);
   stream.read_top(workers);
   const std::vector<Viewer> viewers = {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}};
   const auto stand = [&] {
-    for (int i = 0; i < 500 && stream.counters().resident < chunks; ++i) {
+    for (int i = 0; i < 500 && stream.counters().resident < desc.room.slots; ++i) {
       stream.look(&pool, viewers);
       stream.commit();
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -214,13 +208,14 @@ TEST(StreamingFaults, WhoeverStandsGetsWhatAFailureTook) {
     return stream.counters().resident;
   };
   pool.late_once = true;
-  EXPECT_EQ(stand(), chunks) << "what a frame in flight kept from its slot never came";
+  EXPECT_EQ(stand(), desc.room.slots) << "what a frame in flight kept from its slot never came";
   pool.fails_once = true;
-  EXPECT_EQ(stand(), chunks);
+  EXPECT_EQ(stand(), desc.room.slots);
   EXPECT_TRUE(stream.hold().owns_lock());
   pool.refuses_once = true;
-  EXPECT_THROW(stream.resize(RecordRoom(*file).of(chunks - 1), desc.pinned, workers), Error);
-  EXPECT_EQ(stand(), chunks);
+  EXPECT_THROW(stream.resize(RecordRoom(*file).of(desc.room.slots - 1), desc.pinned, workers),
+               Error);
+  EXPECT_EQ(stand(), desc.room.slots);
 }
 
 // A source that stays away, slowly: frames that wait get to know, and chunks are not asked for one

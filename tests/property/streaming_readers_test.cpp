@@ -8,6 +8,7 @@
 namespace voyager::streaming_readers_test {
 namespace {
 
+using test::desc_of;
 using test::FailingPool;
 using test::wide_bytes;
 using test::wide_cloud;
@@ -39,22 +40,18 @@ TEST(StreamingReaders, ReadsOfAFarSourceLeaveAReaderForPlans) {
       test::scene_bytes(test::bake(wide_cloud(2000)), Quality::compact, 0, kMinChunkBytes);
   const auto source = std::make_shared<FarSource>(bytes);
   const auto file = std::make_shared<const SceneFile>(source);
-  StreamDesc desc;
-  const auto chunks = static_cast<uint32_t>(file->chunks().size());
-  desc.room = RecordRoom(*file).of(chunks);
-  desc.pinned = desc.first = SceneStream::top_chunks(*file);
-  desc.readers = 6;
+  StreamDesc desc = desc_of(*file, 6);
   desc.read_bytes = 1024;
   Workers workers(1);
   FailingPool pool(desc.room);
   SceneStream stream(file, desc, pool);
   stream.read_top(workers);
-  for (int i = 0; i < 500 && stream.counters().resident < chunks; ++i) {
+  for (int i = 0; i < 500 && stream.counters().resident < desc.room.slots; ++i) {
     stream.look(&pool, {Viewer{{{0, 0, 0}, 1e-6f}, {}, false}});
     stream.commit();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  EXPECT_EQ(stream.counters().resident, chunks);
+  EXPECT_EQ(stream.counters().resident, desc.room.slots);
   EXPECT_GT(source->most(), 2u);
   EXPECT_LE(source->most(), desc.readers - 1);
 }
@@ -64,12 +61,8 @@ TEST(StreamingReaders, ReadsOfAFarSourceLeaveAReaderForPlans) {
 TEST(StreamingReaders, ReadersStayNearWhatIsLinked) {
   constexpr uint64_t kFar = 512, kMostARead = 64;
   const auto file = std::make_shared<const SceneFile>(test::source_of(wide_bytes({})));
-  StreamDesc desc;
-  const auto chunks = static_cast<uint32_t>(file->chunks().size());
-  ASSERT_GT(chunks, 2 * kFar);
-  desc.room = RecordRoom(*file).of(chunks);
-  desc.pinned = desc.first = SceneStream::top_chunks(*file);
-  desc.readers = 4;
+  StreamDesc desc = desc_of(*file, 4);
+  ASSERT_GT(desc.room.slots, 2 * kFar);
   desc.clock = [] { return 1.0; };  // a moment after the last frame
   Workers workers(1);
   FailingPool pool(desc.room);
@@ -88,21 +81,19 @@ TEST(StreamingReaders, ReadersStayNearWhatIsLinked) {
     EXPECT_GE(read(), kFar);
     EXPECT_LE(read(), kFar + desc.readers * kMostARead);
   }
-  for (int i = 0; i < 500 && stream.counters().resident < chunks; ++i) {
+  for (int i = 0; i < 500 && stream.counters().resident < desc.room.slots; ++i) {
     stream.commit();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  EXPECT_EQ(stream.counters().resident, chunks);
+  EXPECT_EQ(stream.counters().resident, desc.room.slots);
 }
 
 // Plans leave out what is far from having room while a viewer moves. What comes to rest has had a
 // plan of all, and has nothing more to do.
 TEST(StreamingReaders, WhatIsAtRestHasPlannedForAll) {
   const auto file = std::make_shared<const SceneFile>(test::source_of(wide_bytes({})));
-  StreamDesc desc;
-  desc.room = RecordRoom(*file).of(static_cast<uint32_t>(file->chunks().size() / 4));
-  desc.pinned = desc.first = SceneStream::top_chunks(*file);
-  desc.readers = 0;
+  StreamDesc desc = desc_of(*file, 0);
+  desc.room = RecordRoom(*file).of(desc.room.slots / 4);
   Workers workers(1);
   FailingPool pool(desc.room), other_pool(desc.room);
   SceneStream stream(file, desc, pool);

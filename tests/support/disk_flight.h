@@ -59,6 +59,15 @@ class FailingPool final : public ChunkPool {
   RecordBounds bounds_;
 };
 
+// Of a stream with room for all chunks, whose top alone is read at first.
+inline StreamDesc desc_of(const SceneFile& file, unsigned readers) {
+  StreamDesc desc;
+  desc.room = RecordRoom(file).of(static_cast<uint32_t>(file.chunks().size()));
+  desc.pinned = desc.first = SceneStream::top_chunks(file);
+  desc.readers = readers;
+  return desc;
+}
+
 // A scene on a disk, and a view of it that draws a frame each 1/60 s.
 class DiskFlight {
  public:
