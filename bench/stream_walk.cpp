@@ -90,8 +90,9 @@ bool is_whole(const VoyFrameStats& frame, const VoyStreamingStats& streaming) {
 }
 
 struct Turn {
-  std::vector<double> ms, wall;  // of frames from the turn's start to a second after its end
-  double whole_after = 0;        // seconds from the turn's end to the end of the last coarse frame
+  // Of frames from the turn's start to a second after its end. search: that stage, of ms.
+  std::vector<double> ms, search, wall;
+  double whole_after = 0;  // seconds from the turn's end to the end of the last coarse frame
   size_t coarse_turning = 0, coarse_after = 0;
   bool ended_whole = false;
 };
@@ -110,6 +111,7 @@ Turn turn_round(voyager::bench::StreamedView& streamed, const Camera& from, doub
     if (i > standing && static_cast<double>(i - standing) <= static_cast<double>(turning) + fps) {
       found.wall.push_back(1e3 * seconds_since(begun));
       found.ms.push_back(stats.millisecondsTotal);
+      found.search.push_back(stats.milliseconds[VOY_STAGE_SEARCH]);
     }
     found.ended_whole = is_whole(stats, streamed.scene.streaming_stats());
     if (i == standing + turning) ended = Clock::now();
@@ -157,7 +159,7 @@ int main(int argc, char** argv) try {
   const double opened = seconds_since(start);
 
   const size_t frames = std::max(static_cast<size_t>(seconds * fps), size_t{1});
-  std::vector<double> ms, wall, missing, cut, seen, unseen;
+  std::vector<double> ms, search, wall, missing, cut, seen, unseen;
   double first_image = 0, settled = 0;
   size_t coarse = 0;
   VoyStreamingStats before = VOY_STREAMING_STATS_INIT;
@@ -180,6 +182,7 @@ int main(int argc, char** argv) try {
     if (i >= settling) {
       wall.push_back(1e3 * seconds_since(begun));
       ms.push_back(stats.millisecondsTotal);
+      search.push_back(stats.milliseconds[VOY_STAGE_SEARCH]);
       missing.push_back(static_cast<double>(stats.nodesUnrefined));
       cut.push_back(static_cast<double>(stats.cutSize));
       coarse += !whole;
@@ -201,12 +204,14 @@ int main(int argc, char** argv) try {
       "\"frames\": %zu, \"coarse_frames\": %zu, \"missing_p50\": %.0f, \"missing_p99\": %.0f, "
       "\"cut_p50\": %.0f, \"seen_p50\": %.0f, \"seen_missing_p50\": %.0f, \"seen_missing_p99\": "
       "%.0f,\n"
-      " \"ms_p50\": %.2f, \"ms_p99\": %.2f, \"wall_p50\": %.2f, \"wall_p99\": %.2f, "
+      " \"ms_p50\": %.2f, \"ms_p99\": %.2f, \"search_p50\": %.3f, \"search_p99\": %.3f, "
+      "\"wall_p50\": %.2f, \"wall_p99\": %.2f, "
       "\"wall_max\": %.2f, \"read_mb_a_metre\": %.3f, \"late\": %llu, \"arrived\": %llu, "
       "\"evicted\": %llu, \"failures\": %llu, \"peak_host_mb\": %.0f,\n"
       " \"turn_coarse_frames\": %zu, \"after_turn_coarse_frames\": %zu, "
       "\"after_turn_coarse_s\": %.2f, \"after_turn_whole\": %s, \"turn_ms_p50\": %.2f, "
-      "\"turn_ms_p99\": %.2f, \"turn_wall_p50\": %.2f, \"turn_wall_p99\": %.2f}\n",
+      "\"turn_ms_p99\": %.2f, \"turn_search_p50\": %.3f, \"turn_search_p99\": %.3f, "
+      "\"turn_wall_p50\": %.2f, \"turn_wall_p99\": %.2f}\n",
       device.capabilities().deviceName, static_cast<unsigned long long>(info.gaussianCount),
       info.shDegree, megabytes, static_cast<double>(after.budgetBytes) / 1e6,
       static_cast<unsigned long long>(after.chunkSlots),
@@ -214,15 +219,16 @@ int main(int argc, char** argv) try {
       static_cast<unsigned long long>(after.neededChunks), device_made, opened_alone, opened,
       first_image, settled, frames, coarse, quantile(missing, 0.5), quantile(missing, 0.99),
       quantile(cut, 0.5), quantile(seen, 0.5), quantile(unseen, 0.5), quantile(unseen, 0.99),
-      quantile(ms, 0.5), quantile(ms, 0.99), quantile(wall, 0.5), quantile(wall, 0.99),
-      quantile(wall, 1), static_cast<double>(after.bytesRead - before.bytesRead) / 1e6 / metres,
+      quantile(ms, 0.5), quantile(ms, 0.99), quantile(search, 0.5), quantile(search, 0.99),
+      quantile(wall, 0.5), quantile(wall, 0.99), quantile(wall, 1),
+      static_cast<double>(after.bytesRead - before.bytesRead) / 1e6 / metres,
       static_cast<unsigned long long>(after.lateChunks - before.lateChunks),
       static_cast<unsigned long long>(after.arrivedChunks - before.arrivedChunks),
       static_cast<unsigned long long>(after.evictedChunks - before.evictedChunks),
       static_cast<unsigned long long>(after.failures), static_cast<double>(peak_kilobytes()) / 1e3,
       turn.coarse_turning, turn.coarse_after, turn.whole_after, turn.ended_whole ? "true" : "false",
-      quantile(turn.ms, 0.5), quantile(turn.ms, 0.99), quantile(turn.wall, 0.5),
-      quantile(turn.wall, 0.99));
+      quantile(turn.ms, 0.5), quantile(turn.ms, 0.99), quantile(turn.search, 0.5),
+      quantile(turn.search, 0.99), quantile(turn.wall, 0.5), quantile(turn.wall, 0.99));
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "stream_walk: %s\n", error.what());

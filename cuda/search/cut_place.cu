@@ -3,8 +3,8 @@
 #include <cub/block/block_scan.cuh>
 
 #include "cuda/device/launch.cuh"
-#include "cuda/device/warp.cuh"
 #include "cuda/search/search_launch.h"
+#include "cuda/search/segment_room.cuh"
 
 namespace voyager::cuda {
 namespace {
@@ -31,94 +31,16 @@ __device__ uint32_t scan(uint32_t count, BlockScan::TempStorage& storage, const 
   return before;
 }
 
-// Segments that have no room for their nodes. Where more are found than are kept, all move: one
-// warp makes room for each in turn, which by then takes longer.
-struct Outgrown {
-  static constexpr uint32_t kMost = 64;
-  uint32_t count;
-  uint32_t segments[kMost];
-};
-
-__device__ void find_outgrown(const StateView& state, const Block& block, Outgrown& outgrown) {
+// Marks the windows of a block's segments that have no room for their nodes; whether there are any.
+__device__ bool mark_outgrown(const StateView& state, const Block& block, SegmentWindows& windows) {
+  bool any = false;
   for (uint32_t level = 0; level < kLevels; ++level) {
     const uint32_t i = block.first_segment + level * block.stride;
     if (state.segments[i].size <= state.segments[i].room) continue;
-    const uint32_t at = atomicAdd(&outgrown.count, 1u);
-    if (at < Outgrown::kMost) outgrown.segments[at] = i;
+    windows.mark(i);
+    any = true;
   }
-}
-
-// The blocks to be written, each once.
-struct Dirty {
-  uint32_t* blocks;
-  uint32_t* flags;
-  uint32_t count;
-
-  __device__ void add(uint32_t block) {
-    if (atomicExch(flags + block, 1u) == 0) blocks[atomicAdd(&count, 1u)] = block;
-  }
-};
-
-__device__ uint32_t block_of_segment(const StateView& state, uint32_t segment) {
-  uint32_t tier = 0;
-  while (tier + 1 < state.tier_count && segment >= kLevels * state.tiers[tier + 1].first_block)
-    ++tier;
-  const Tier& own = state.tiers[tier];
-  return own.first_block + (segment - kLevels * own.first_block) % own.blocks;
-}
-
-// What a segment needs when its neighbours make room: less to spare than a roomy one has.
-__device__ uint32_t least_room(uint32_t size, SegmentFit fit) {
-  if (size == 0 || fit != SegmentFit::roomy) return whole_rows(size);
-  return whole_rows(size + size / 16 + kRowPlaces);
-}
-
-// Of `rows` that are shared out by need, what those have that need the first `ahead` of `need`
-// places.
-__device__ uint32_t spare_before(uint32_t rows, uint32_t ahead, uint32_t need) {
-  return need == 0 ? 0 : static_cast<uint32_t>(uint64_t{rows} * ahead / need) * kRowPlaces;
-}
-
-// Shares the room of [first, last) out anew, by what each needs.
-__device__ void share_room(const StateView& state, SegmentFit fit, uint32_t first, uint32_t last,
-                           uint32_t need, uint32_t room, Dirty& dirty) {
-  const uint32_t lane = lane_in_warp(), rows = (room - need) / kRowPlaces;
-  const uint32_t begin = state.segments[first].first;
-  uint32_t before = 0;  // needed by those in front
-  for (uint32_t base = first; base < last; base += 32) {
-    const uint32_t i = base + lane;
-    const uint32_t size = i < last ? state.segments[i].size : 0, own = least_room(size, fit);
-    const uint32_t behind = before + warp_scan(own), ahead = behind - own;
-    __syncwarp();
-    if (i < last) {
-      const uint32_t spare = spare_before(rows, ahead, need);
-      state.segments[i].first = begin + ahead + spare;
-      state.segments[i].room = own + spare_before(rows, behind, need) - spare;
-      if (size != 0) dirty.add(block_of_segment(state, i));
-    }
-    before = __shfl_sync(kAllLanes, behind, 31);
-  }
-}
-
-// Moves as few of a segment's neighbours as there have to be for it to have room. One warp. False
-// where all of them together have none.
-__device__ bool make_room(const StateView& state, SegmentFit fit, uint32_t segment, Dirty& dirty) {
-  const uint32_t count = kLevels * state.block_count, lane = lane_in_warp();
-  if (state.segments[segment].size <= state.segments[segment].room) return true;
-  for (uint32_t width = 16;; width *= 2) {
-    const uint32_t first = segment / width * width, last = min(first + width, count);
-    uint32_t need = 0, room = 0;
-    for (uint32_t i = first + lane; i < last; i += 32) {
-      need += least_room(state.segments[i].size, fit);
-      room += state.segments[i].room;
-    }
-    need = __reduce_add_sync(kAllLanes, need), room = __reduce_add_sync(kAllLanes, room);
-    if (need <= room) {
-      share_room(state, fit, first, last, need, room, dirty);
-      return true;
-    }
-    if (first == 0 && last == count) return false;
-  }
+  return any;
 }
 
 // Gives all segments new places, with new room; returns how many they need. rows: that they share
@@ -172,30 +94,20 @@ __device__ uint32_t list_open(const StateView& state, BlockScan::TempStorage& st
 // frame's counters.
 __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   __shared__ BlockScan::TempStorage storage;
-  __shared__ Outgrown outgrown;
+  __shared__ SegmentWindows windows;
   __shared__ Dirty dirty;
-  __shared__ bool moves;
   FrameCounters &counting = *state.counting, &counted = *state.counted;
   uint32_t list_size = counted.list_size;
   SegmentFit fit = counted.fit;
   const bool open_changed = counting.open_blocks_changed != 0;
-  if (threadIdx.x == 0) {
-    outgrown.count = 0;
-    dirty = {state.dirty, state.dirty_flags, counting.dirty_count};
-  }
+  windows.begin(kLevels * state.block_count, fit);
+  if (threadIdx.x == 0) dirty = {state.dirty, state.dirty_flags, counting.dirty_count};
   __syncthreads();
+  bool outgrown = false;
   for (uint32_t i = threadIdx.x; i < dirty.count; i += kScanThreads)
-    find_outgrown(state, state.blocks[state.dirty[i]], outgrown);
-  __syncthreads();
-  if (threadIdx.x < 32) {
-    bool fits =
-        outgrown.count == 0 || (fit <= SegmentFit::rows && outgrown.count <= Outgrown::kMost);
-    for (uint32_t i = 0; fits && i < outgrown.count; ++i) {
-      fits = make_room(state, fit, outgrown.segments[i], dirty);
-      __syncwarp();
-    }
-    if (threadIdx.x == 0) moves = !fits;
-  }
+    outgrown |= mark_outgrown(state, state.blocks[state.dirty[i]], windows);
+  outgrown = __syncthreads_or(outgrown) != 0;
+  const bool moves = outgrown && (fit > SegmentFit::rows || !windows.make_room(state, dirty));
   __syncthreads();
   for (uint32_t i = threadIdx.x; i < dirty.count; i += kScanThreads)
     state.dirty_flags[state.dirty[i]] = 0;

@@ -27,7 +27,9 @@ class StreamChanges {
   std::optional<Relinked> copy();
 
   static constexpr size_t kPieces = 4;
-  static constexpr size_t kSubtrees = size_t{1} << 14;  // of a piece
+  // Of a piece. After a turn of the head some 700 chunks come and as many go in a frame, which
+  // changes 30,000.
+  static constexpr size_t kSubtrees = size_t{1} << 17;
 
   uint64_t version_ = 0;
   std::vector<SlotIds> slots_;

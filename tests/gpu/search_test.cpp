@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <set>
+#include <map>
 
 #include "cuda/search/cut_state.h"
 #include "cuda/search/search.h"
@@ -232,8 +232,9 @@ TEST_F(SearchTest, EqualTheHostsWhereEachLaneHasASubtree) {
   EXPECT_GT(frames, 0) << "no frame had so many due";
 }
 
-// Segments of the list that hold a node of the cut.
-size_t segments_of(const Scene& scene, const std::vector<uint32_t>& cut) {
+// How many nodes of the cut each segment of the list holds; no entry for none.
+std::map<std::pair<uint32_t, uint32_t>, uint32_t> segments_of(const Scene& scene,
+                                                              const std::vector<uint32_t>& cut) {
   std::vector<uint32_t> owner(scene.tree.size()), level(scene.tree.size());
   const auto& subtrees = scene.partition.subtrees;
   const auto& begin = scene.search.tier_begin;
@@ -246,9 +247,9 @@ size_t segments_of(const Scene& scene, const std::vector<uint32_t>& cut) {
     for (uint32_t slot = 0; slot < subtrees[s].node_count(); ++slot)
       owner[subtrees[s].node(slot)] = block[s];
   for (uint32_t n = 1; n < level.size(); ++n) level[n] = level[scene.tree.parent[n]] + 1;
-  std::set<std::pair<uint32_t, uint32_t>> segments;
-  for (const uint32_t n : cut) segments.insert({owner[n], level[n]});
-  return segments.size();
+  std::map<std::pair<uint32_t, uint32_t>, uint32_t> segments;
+  for (const uint32_t n : cut) ++segments[{owner[n], level[n]}];
+  return segments;
 }
 
 // A list has room for whole rows of places where there are many nodes to a segment. Here each has a
@@ -266,10 +267,39 @@ TEST_F(SearchTest, EqualTheHostsWhereAListHasNoRoomForRows) {
     size_t shared = 0;
     Oracle oracle(*scene);
     for (const CutQuery& query : path)
-      shared += cuda::kRowPlaces * segments_of(*scene, oracle.at(query).cut) > state.list_room();
+      shared +=
+          cuda::kRowPlaces * segments_of(*scene, oracle.at(query).cut).size() > state.list_room();
     EXPECT_GT(shared, path.size() / 4) << "of " << path.size();
     expect_equal(scene, path, "few nodes to a segment");
   }
+}
+
+// Segments grow by more than they had to spare, near one another and apart: some find room among a
+// few neighbours, others among hundreds.
+TEST_F(SearchTest, EqualTheHostsWhereManySegmentsOutgrowTheirRoom) {
+  std::mt19937 random(12);
+  const auto scene = scene_of(random_tree(TreeShape::binary, share_of(1000000), 13));
+  std::vector<CutQuery> path;
+  Vec3f centre = anywhere(random, 40.0f);
+  const Vec3f step = 20.0f * anywhere(random, 1.0f);
+  for (int i = 0; i < 12; ++i) path.push_back({centre + static_cast<float>(i) * step, 0.01f});
+  for (int i = 11; i >= 0; --i) path.push_back(path[i]);
+  size_t most = 0;
+  Oracle oracle(*scene);
+  auto before = segments_of(*scene, oracle.at(path[0]).cut);
+  for (const CutQuery& query : path) {
+    const auto now = segments_of(*scene, oracle.at(query).cut);
+    most = std::max<size_t>(
+        most, std::count_if(now.begin(), now.end(), [&](const auto& segment) {
+          const auto was = before.find(segment.first);
+          const uint32_t room =
+              was == before.end() ? 0 : cuda::segment_room(was->second, cuda::SegmentFit::roomy);
+          return segment.second > room;
+        }));
+    before = now;
+  }
+  EXPECT_GT(most, 100u);
+  expect_equal(scene, path, "many outgrow");
 }
 
 TEST_F(SearchTest, ASweepOfGranularityThereAndBackGivesTheSameCuts) {
