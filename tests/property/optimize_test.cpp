@@ -16,6 +16,7 @@
 #include "runtime/scene/append.h"
 #include "runtime/select/cut.h"
 #include "tests/support/render_scene.h"
+#include "tests/support/rounded_tree.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
 #include "tools/synth/city.h"
@@ -94,6 +95,51 @@ TEST(Optimize, ComesNearerToTheTruthInViewsThatItDidNotLearnFrom) {
   EXPECT_GT(decibels(), before + 0.3);
 }
 
+// As View draws it: the truth of METHOD §12, and the cut or all leaves, filtered.
+std::vector<float> drawn(Backend& backend, const std::shared_ptr<const Scene>& scene,
+                         const TrainingView& view, Lod lod, Antialias antialias) {
+  PipelineDesc desc;
+  desc.lod = lod;
+  desc.antialias = antialias;
+  const Camera camera = antialias == Antialias::truth ? truth_camera(view) : view.camera;
+  const test::Frame frame =
+      test::render(backend, scene, desc, test::frame_input(camera, view.tau, false));
+  const uint32_t samples = camera.width / view.camera.width;
+  std::vector<float> rgb(size_t{3} * view.camera.width * view.camera.height);
+  for (size_t y = 0; y < camera.height; ++y)
+    for (size_t x = 0; x < camera.width; ++x)
+      for (size_t i = 0; i < 3; ++i)
+        rgb[3 * (y / samples * view.camera.width + x / samples) + i] +=
+            frame.at(x, y)[i] / static_cast<float>(samples * samples);
+  return rgb;
+}
+
+// The trainer draws by itself what it learns from. Nodes are blended with their parents in some.
+TEST(Optimize, LearnsFromThePicturesThatAreDrawn) {
+  Workers workers;
+  BakedScene baked = test::bake(test::specks(3000, 6, 1));
+  baked.tree = test::rounded(baked.tree);
+  const auto backend = create_cpu_backend();
+  const auto trainer = backend->create_trainer(scene_of(baked, workers), workers);
+  const auto scene = test::loaded(baked);
+  const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
+  for (uint32_t k = 0; k < 8; ++k) {
+    const TrainingView view = small_view(views, k, k % 2 == 0 ? 3 : 12);
+    const std::vector<float> truth =
+        drawn(*backend, scene, view, Lod::all_leaves, Antialias::truth);
+    for (const Lod lod : {Lod::cut, Lod::all_leaves}) {
+      const std::vector<float> picture = drawn(*backend, scene, view, lod, Antialias::on);
+      double squares = 0;
+      for (size_t i = 0; i < picture.size(); ++i)
+        squares += (double{picture[i]} - truth[i]) * (double{picture[i]} - truth[i]);
+      const double found =
+          (lod == Lod::cut ? trainer->error(view) : trainer->error_of_leaves(view)).squares;
+      EXPECT_GT(found, 0);
+      EXPECT_NEAR(found, squares, 1e-4 * squares) << "view " << k;
+    }
+  }
+}
+
 TEST(Optimize, FourCutsOfAViewShareItsTruth) {
   const BakedScene baked = city(200);
   const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
@@ -169,6 +215,12 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
   EXPECT_FALSE(same(expected, baked));
   EXPECT_TRUE(validate(expected).empty()) << validate(expected).front();
   expect_same_leaves(expected, baked);
+  const FrameInput input =
+      test::frame_input(test::look({3, -6, -24}, {0, 0, 0}, 133, 77), 3, false);
+  const auto backend = create_cpu_backend();
+  test::expect_same_bits(
+      test::render(*backend, test::loaded(expected), {.lod = Lod::all_leaves}, input),
+      test::render(*backend, test::loaded(baked), {.lod = Lod::all_leaves}, input));
   EXPECT_TRUE(same(learn(baked, 8, 4, folder.file("four")).scene, expected));
 
   struct Stop {};
@@ -176,7 +228,6 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
   for (const uint64_t at : {2, 5}) {
     BakedScene scene = baked;
     Workers workers;
-    const auto backend = create_cpu_backend();
     EXPECT_THROW(optimize_nodes(scene, {.pictures = 8, .held_out = 4, .keep_milliseconds = 0},
                                 *backend, kept, workers,
                                 [&](const char*, uint64_t done, uint64_t) {
