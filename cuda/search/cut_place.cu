@@ -9,7 +9,7 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kScanThreads = 1024, kScanItems = 4;
+constexpr unsigned kScanThreads = SegmentWindows::kThreads, kScanItems = 4;
 constexpr unsigned kScanTile = kScanThreads * kScanItems;
 using BlockScan = cub::BlockScan<uint32_t, kScanThreads, cub::BLOCK_SCAN_WARP_SCANS>;
 
@@ -100,7 +100,7 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   uint32_t list_size = counted.list_size;
   SegmentFit fit = counted.fit;
   const bool open_changed = counting.open_blocks_changed != 0;
-  windows.begin(kLevels * state.block_count, fit);
+  windows.begin(state, fit);
   if (threadIdx.x == 0) dirty = {state.dirty, state.dirty_flags, counting.dirty_count};
   __syncthreads();
   bool outgrown = false;

@@ -64,7 +64,9 @@ uint64_t CutState::most_ends(const SearchTree& tree) {
 uint64_t CutState::fixed_bytes(const SearchTree& tree) {
   constexpr uint64_t kBlock = sizeof(Block) + kBlockRows * sizeof(WatchRow) +
                               kLevels * sizeof(Segment) + 4 * sizeof(uint32_t);
-  return block_count(tree, kBlockSubtrees) * kBlock + tree.tier_begin.size() * sizeof(Tier) +
+  const uint64_t blocks = block_count(tree, kBlockSubtrees);
+  const auto windows = window_shape(static_cast<uint32_t>(kLevels * blocks)).windows();
+  return blocks * kBlock + windows * sizeof(WindowPlaces) + tree.tier_begin.size() * sizeof(Tier) +
          2 * sizeof(FrameCounters) + 2 * sizeof(uint32_t) + sizeof(MeanBounds) +
          list_bytes(kLeastPlaces);
 }
@@ -80,6 +82,7 @@ CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t
   cut_ = Buffer<uint32_t>(places);
   stand_ins_ = Buffer<uint8_t>(tree.chunks_come_and_go ? places : 0);
   segments_ = Buffer<Segment>(kLevels * blocks);
+  windows_ = Buffer<WindowPlaces>(window_shape(static_cast<uint32_t>(segments_.size())).windows());
   open_counts_ = Buffer<uint32_t>(blocks);
   open_blocks_ = Buffer<uint32_t>(blocks);
   open_block_count_ = Buffer<uint32_t>(1);
@@ -115,6 +118,7 @@ StateView CutState::view(SubtreePlaces places) const {
           static_cast<uint32_t>(blocks_.size()),
           static_cast<uint32_t>(tiers_.size()),
           segments_.data(),
+          windows_.data(),
           open_counts_.data(),
           open_blocks_.data(),
           open_block_count_.data(),

@@ -49,6 +49,26 @@ struct Segment {
   uint32_t size, first, room;
 };
 
+// Windows of neighbouring segments, a binary tree in an array: 1 is all of them, 2w and 2w + 1 are
+// the halves of w. The smallest have 2^shift segments and are 2^depth.
+struct WindowShape {
+  static constexpr uint32_t kLeastShift = 4, kMostDepth = 16;
+  static constexpr uint32_t kMostWindows = 2u << kMostDepth;
+  uint32_t shift, depth;
+  VOYAGER_HD constexpr uint32_t windows() const { return 2u << depth; }
+};
+VOYAGER_HD constexpr WindowShape window_shape(uint32_t segments) {
+  const uint32_t last = segments == 0 ? 0 : segments - 1;
+  WindowShape shape{WindowShape::kLeastShift, 0};
+  while (last >> shape.shift >> WindowShape::kMostDepth != 0) ++shape.shift;
+  while (last >> shape.shift >> shape.depth != 0) ++shape.depth;
+  return shape;
+}
+// What a window's segments need and have.
+struct WindowPlaces {
+  uint32_t need, room;
+};
+
 // Of one frame. The kernels add up StateView::counting; search_place moves it to `counted`, where
 // search_emit and the host find it, and clears it for the next frame.
 struct FrameCounters {
@@ -80,6 +100,7 @@ struct StateView {
   const Tier* tiers;
   uint32_t block_count, tier_count;
   Segment* segments;
+  WindowPlaces* windows;  // of this frame: those that segment_room.cuh has looked at
   uint32_t* open_counts;  // by block: open subtrees
   uint32_t* open_blocks;  // those that had any when the list was last made
   uint32_t* open_block_count;
@@ -124,6 +145,7 @@ class CutState {
   Buffer<Block> blocks_;
   Buffer<Tier> tiers_;
   Buffer<Segment> segments_;
+  Buffer<WindowPlaces> windows_;
   Buffer<uint32_t> open_counts_, open_blocks_, open_block_count_, dirty_flags_, dirty_;
   Buffer<uint32_t> due_, signals_;
   Buffer<FrameCounters> counters_;

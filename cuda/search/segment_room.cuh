@@ -39,31 +39,36 @@ __device__ inline uint32_t spare_before(uint32_t rows, uint32_t ahead, uint32_t 
   return need == 0 ? 0 : static_cast<uint32_t>(uint64_t{rows} * ahead / need) * kRowPlaces;
 }
 
-// In shared memory. Window 1 is all segments; the halves of window w are 2w and 2w + 1.
+// In shared memory, of a block of kThreads. Window 1 is all segments; the halves of window w are 2w
+// and 2w + 1.
 class SegmentWindows {
  public:
+  static constexpr unsigned kThreads = 1024;
+
   // All threads; a barrier has to follow. None is marked then.
-  __device__ void begin(uint32_t segments, SegmentFit fit);
+  __device__ void begin(const StateView& state, SegmentFit fit);
   // The smallest window around a segment that has outgrown its room. Any thread, any number of
   // times.
-  __device__ void mark(uint32_t segment) { mark_window((1u << depth_) + (segment >> shift_)); }
+  __device__ void mark(uint32_t segment) {
+    mark_window((1u << shape_.depth) + (segment >> shape_.shift));
+  }
   // All threads, after a barrier. Gives the segments around those that are marked new places and
   // adds their blocks to `dirty`; false, and nothing is changed, where all segments together have
   // no room, or so many would have to move that it is quicker to move all.
   __device__ bool make_room(const StateView& state, Dirty& dirty);
 
  private:
-  // A warp looks through so many segments, no more: by then the whole block is faster.
-  static constexpr uint32_t kLeastShift = 4, kMostShift = 12;
-  static constexpr uint32_t kMostDepth = 16;
+  // A warp shares out the room of so many segments, no more: by then the whole block is faster.
+  static constexpr uint32_t kMostShift = 12;
+  static constexpr unsigned kAtOnce = 4;  // loads of a lane
 
   struct Range {
     uint32_t first, last;
   };
   __device__ Range segments_of(uint32_t window) const {
-    const uint32_t level = depth_ - (31 - __clz(window)), width = shift_ + level;
-    const uint32_t first = (window - (1u << (depth_ - level))) << width;
-    return {first, min(first + (1u << width), count_)};
+    const uint32_t level = shape_.depth - (31 - __clz(window)), width = shape_.shift + level;
+    const uint32_t first = (window - (1u << (shape_.depth - level))) << width;
+    return {first, min(first + (1u << width), segments_)};
   }
   __device__ void mark_window(uint32_t window) {
     atomicOr(marked_ + window / 32, 1u << (window % 32));
@@ -76,41 +81,40 @@ class SegmentWindows {
       if (is_marked(window)) return true;
     return false;
   }
-  // By warps in turn: each window of [first, last) that is marked.
+  // Each window of [first, last) that is marked, by a warp. Neighbours are different warps'.
   template <class Visit>
   __device__ void for_marked(uint32_t first, uint32_t last, const Visit& visit) const {
-    const uint32_t end = (last + 31) / 32;
-    for (uint32_t word = first / 32 + threadIdx.x / 32; word < end; word += blockDim.x / 32)
-      for (uint32_t bits = marked_[word]; bits != 0; bits &= bits - 1) {
-        const uint32_t window = 32 * word + __ffs(bits) - 1;
-        if (window >= first && window < last) visit(window);
-      }
+    const uint32_t end = (last + 31) / 32, bit = threadIdx.x / 32;
+    for (uint32_t base = first / 32; base < end; base += 32) {
+      const uint32_t word = base + lane_in_warp(), window = 32 * word + bit;
+      const bool is_own = word < end && window >= first && window < last && is_marked(window);
+      for (uint32_t own = __ballot_sync(kAllLanes, is_own); own != 0; own &= own - 1)
+        visit(32 * (base + __ffs(own) - 1) + bit);
+    }
   }
-  struct Places {
-    uint32_t need, room;
-  };
-  __device__ Places places_of(const StateView& state, uint32_t window) const;
+  __device__ WindowPlaces places_of(const StateView& state, Range range) const;
+  __device__ WindowPlaces places_of(const StateView& state, uint32_t window) const;
   __device__ void share_room(const StateView& state, uint32_t window, Dirty& dirty) const;
 
   SegmentFit fit_;
-  uint32_t count_, depth_, shift_;  // segments; of the smallest windows: depth, log2 of their width
-  uint32_t marked_[(2u << kMostDepth) / 32];
+  WindowShape shape_;
+  uint32_t segments_;
+  uint32_t marked_[WindowShape::kMostWindows / 32];
 };
 
-__device__ inline void SegmentWindows::begin(uint32_t segments, SegmentFit fit) {
-  uint32_t shift = kLeastShift, depth = 0;
-  while ((segments - 1) >> (shift + kMostDepth) != 0) ++shift;
-  while ((segments - 1) >> (shift + depth) != 0) ++depth;
-  if (threadIdx.x == 0) fit_ = fit, count_ = segments, depth_ = depth, shift_ = shift;
-  for (uint32_t word = threadIdx.x; word < ((2u << depth) + 31) / 32; word += blockDim.x)
+__device__ inline void SegmentWindows::begin(const StateView& state, SegmentFit fit) {
+  const uint32_t segments = kLevels * state.block_count;
+  const WindowShape shape = window_shape(segments);
+  if (threadIdx.x == 0) fit_ = fit, shape_ = shape, segments_ = segments;
+  for (uint32_t word = threadIdx.x; word < (shape.windows() + 31) / 32; word += kThreads)
     marked_[word] = 0;
 }
 
-// By a warp, as share_room().
-__device__ inline SegmentWindows::Places SegmentWindows::places_of(const StateView& state,
-                                                                   uint32_t window) const {
-  const Range range = segments_of(window);
+// By a warp, as all below.
+__device__ inline WindowPlaces SegmentWindows::places_of(const StateView& state,
+                                                         Range range) const {
   uint32_t need = 0, room = 0;
+#pragma unroll kAtOnce
   for (uint32_t i = range.first + lane_in_warp(); i < range.last; i += 32) {
     need += least_room(state.segments[i].size, fit_);
     room += state.segments[i].room;
@@ -118,42 +122,60 @@ __device__ inline SegmentWindows::Places SegmentWindows::places_of(const StateVi
   return {__reduce_add_sync(kAllLanes, need), __reduce_add_sync(kAllLanes, room)};
 }
 
+// What was found of a half is known.
+__device__ inline WindowPlaces SegmentWindows::places_of(const StateView& state,
+                                                         uint32_t window) const {
+  if (window >> shape_.depth != 0) return places_of(state, segments_of(window));
+  const auto half = [&](uint32_t of) {
+    return is_marked(of) ? state.windows[of] : places_of(state, segments_of(of));
+  };
+  const WindowPlaces a = half(2 * window), b = half(2 * window + 1);
+  return {a.need + b.need, a.room + b.room};
+}
+
 // By what each segment needs.
 __device__ inline void SegmentWindows::share_room(const StateView& state, uint32_t window,
                                                   Dirty& dirty) const {
   const Range range = segments_of(window);
-  const auto [need, room] = places_of(state, window);
+  const auto [need, room] = state.windows[window];
   const uint32_t rows = (room - need) / kRowPlaces, begin = state.segments[range.first].first;
   uint32_t before = 0;  // needed by those in front
-  for (uint32_t base = range.first; base < range.last; base += 32) {
-    const uint32_t i = base + lane_in_warp();
-    const uint32_t size = i < range.last ? state.segments[i].size : 0;
-    const uint32_t own = least_room(size, fit_);
-    const uint32_t behind = before + warp_scan(own), ahead = behind - own;
-    __syncwarp();
-    if (i < range.last) {
-      const uint32_t spare = spare_before(rows, ahead, need);
-      state.segments[i].first = begin + ahead + spare;
-      state.segments[i].room = own + spare_before(rows, behind, need) - spare;
-      if (size != 0) dirty.add(block_of_segment(state, i));
+  for (uint32_t base = range.first; base < range.last; base += 32 * kAtOnce) {
+    uint32_t sizes[kAtOnce];
+    for (unsigned k = 0; k < kAtOnce; ++k) {
+      const uint32_t i = base + 32 * k + lane_in_warp();
+      sizes[k] = i < range.last ? state.segments[i].size : 0;
     }
-    before = __shfl_sync(kAllLanes, behind, 31);
+    __syncwarp();  // `begin` has been read
+    for (unsigned k = 0; k < kAtOnce; ++k) {
+      const uint32_t i = base + 32 * k + lane_in_warp(), own = least_room(sizes[k], fit_);
+      const uint32_t behind = before + warp_scan(own), ahead = behind - own;
+      if (i < range.last) {
+        const uint32_t spare = spare_before(rows, ahead, need);
+        state.segments[i].first = begin + ahead + spare;
+        state.segments[i].room = own + spare_before(rows, behind, need) - spare;
+        if (sizes[k] != 0) dirty.add(block_of_segment(state, i));
+      }
+      before = __shfl_sync(kAllLanes, behind, 31);
+    }
   }
 }
 
 __device__ inline bool SegmentWindows::make_room(const StateView& state, Dirty& dirty) {
-  for (uint32_t depth = depth_;; --depth) {
+  const uint32_t deepest = shape_.depth;
+  for (uint32_t depth = deepest;; --depth) {
     bool failed = false;
     for_marked(1u << depth, 2u << depth, [&](uint32_t window) {
-      const auto [need, room] = places_of(state, window);
-      if (need <= room) return;
+      const WindowPlaces found = places_of(state, window);
+      if (lane_in_warp() == 0) state.windows[window] = found;
+      if (found.need <= found.room) return;
       failed = true;
       if (lane_in_warp() == 0 && depth != 0) mark_window(window / 2);
     });
     if (__syncthreads_or(failed) == 0) break;
-    if (depth == 0 || shift_ + depth_ - depth >= kMostShift) return false;
+    if (depth == 0 || shape_.shift + deepest - depth >= kMostShift) return false;
   }
-  for_marked(1, 2u << depth_, [&](uint32_t window) {
+  for_marked(1, 2u << deepest, [&](uint32_t window) {
     if (!is_within_marked(window)) share_room(state, window, dirty);
   });
   return true;
