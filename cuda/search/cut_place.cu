@@ -1,7 +1,5 @@
 // Between finding a cut and writing it down: where each block's nodes go in the list, which
 // blocks are to be written, and the frame's counters.
-#include <cub/block/block_scan.cuh>
-
 #include "cuda/device/launch.cuh"
 #include "cuda/search/search_launch.h"
 #include "cuda/search/segment_room.cuh"
@@ -9,35 +7,14 @@
 namespace voyager::cuda {
 namespace {
 
-constexpr unsigned kScanThreads = SegmentWindows::kThreads, kScanItems = 4;
-constexpr unsigned kScanTile = kScanThreads * kScanItems;
-using BlockScan = cub::BlockScan<uint32_t, kScanThreads, cub::BLOCK_SCAN_WARP_SCANS>;
-
-// One thread block; returns the sum. out(i, item, sum of those before).
-template <class In, class Out>
-__device__ uint32_t scan(uint32_t count, BlockScan::TempStorage& storage, const In& in,
-                         const Out& out) {
-  uint32_t before = 0;
-  for (uint32_t tile = 0; tile < count; tile += kScanTile) {
-    uint32_t items[kScanItems], sums[kScanItems], total;
-    const uint32_t first = tile + threadIdx.x * kScanItems;
-    for (unsigned k = 0; k < kScanItems; ++k) items[k] = first + k < count ? in(first + k) : 0;
-    BlockScan(storage).ExclusiveSum(items, sums, total);
-    __syncthreads();
-    for (unsigned k = 0; k < kScanItems; ++k)
-      if (first + k < count) out(first + k, items[k], before + sums[k]);
-    before += total;
-  }
-  return before;
-}
-
-// Marks the windows of a block's segments that have no room for their nodes; whether there are any.
-__device__ bool mark_outgrown(const StateView& state, const Block& block, SegmentWindows& windows) {
+// Marks a block's segments that have no room for their nodes; whether there are any.
+__device__ bool mark_outgrown(const StateView& state, const Block& block,
+                              RoomAmongNeighbours& room) {
   bool any = false;
   for (uint32_t level = 0; level < kLevels; ++level) {
     const uint32_t i = block.first_segment + level * block.stride;
     if (state.segments[i].size <= state.segments[i].room) continue;
-    windows.mark(i);
+    room.mark(i);
     any = true;
   }
   return any;
@@ -94,20 +71,20 @@ __device__ uint32_t list_open(const StateView& state, BlockScan::TempStorage& st
 // frame's counters.
 __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   __shared__ BlockScan::TempStorage storage;
-  __shared__ SegmentWindows windows;
+  __shared__ RoomAmongNeighbours room;
   __shared__ Dirty dirty;
   FrameCounters &counting = *state.counting, &counted = *state.counted;
   uint32_t list_size = counted.list_size;
   SegmentFit fit = counted.fit;
   const bool open_changed = counting.open_blocks_changed != 0;
-  windows.begin(state, fit);
+  room.begin(state, fit);
   if (threadIdx.x == 0) dirty = {state.dirty, state.dirty_flags, counting.dirty_count};
   __syncthreads();
   bool outgrown = false;
   for (uint32_t i = threadIdx.x; i < dirty.count; i += kScanThreads)
-    outgrown |= mark_outgrown(state, state.blocks[state.dirty[i]], windows);
+    outgrown |= mark_outgrown(state, state.blocks[state.dirty[i]], room);
   outgrown = __syncthreads_or(outgrown) != 0;
-  const bool moves = outgrown && (fit > SegmentFit::rows || !windows.make_room(state, dirty));
+  const bool moves = outgrown && (fit > SegmentFit::rows || !room.make(state, storage, dirty));
   __syncthreads();
   for (uint32_t i = threadIdx.x; i < dirty.count; i += kScanThreads)
     state.dirty_flags[state.dirty[i]] = 0;

@@ -65,7 +65,7 @@ uint64_t CutState::fixed_bytes(const SearchTree& tree) {
   constexpr uint64_t kBlock = sizeof(Block) + kBlockRows * sizeof(WatchRow) +
                               kLevels * sizeof(Segment) + 4 * sizeof(uint32_t);
   const uint64_t blocks = block_count(tree, kBlockSubtrees);
-  const auto windows = window_shape(static_cast<uint32_t>(kLevels * blocks)).windows();
+  const uint64_t windows = SegmentWindows(static_cast<uint32_t>(kLevels * blocks)).end();
   return blocks * kBlock + windows * sizeof(WindowPlaces) + tree.tier_begin.size() * sizeof(Tier) +
          2 * sizeof(FrameCounters) + 2 * sizeof(uint32_t) + sizeof(MeanBounds) +
          list_bytes(kLeastPlaces);
@@ -82,7 +82,7 @@ CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t
   cut_ = Buffer<uint32_t>(places);
   stand_ins_ = Buffer<uint8_t>(tree.chunks_come_and_go ? places : 0);
   segments_ = Buffer<Segment>(kLevels * blocks);
-  windows_ = Buffer<WindowPlaces>(window_shape(static_cast<uint32_t>(segments_.size())).windows());
+  windows_ = Buffer<WindowPlaces>(SegmentWindows(static_cast<uint32_t>(segments_.size())).end());
   open_counts_ = Buffer<uint32_t>(blocks);
   open_blocks_ = Buffer<uint32_t>(blocks);
   open_block_count_ = Buffer<uint32_t>(1);

@@ -4,6 +4,7 @@
 #include "cuda/device/buffer.h"
 #include "cuda/scene/device_tree.h"
 #include "cuda/search/search.h"
+#include "cuda/search/segment_windows.h"
 #include "runtime/lod/subtrees.h"
 #include "runtime/select/visit.h"
 #include "runtime/select/watch_row.h"
@@ -49,25 +50,14 @@ struct Segment {
   uint32_t size, first, room;
 };
 
-// Windows of neighbouring segments, a binary tree in an array: 1 is all of them, 2w and 2w + 1 are
-// the halves of w. The smallest have 2^shift segments and are 2^depth.
-struct WindowShape {
-  static constexpr uint32_t kLeastShift = 4, kMostDepth = 16;
-  static constexpr uint32_t kMostWindows = 2u << kMostDepth;
-  uint32_t shift, depth;
-  VOYAGER_HD constexpr uint32_t windows() const { return 2u << depth; }
-};
-VOYAGER_HD constexpr WindowShape window_shape(uint32_t segments) {
-  const uint32_t last = segments == 0 ? 0 : segments - 1;
-  WindowShape shape{WindowShape::kLeastShift, 0};
-  while (last >> shape.shift >> WindowShape::kMostDepth != 0) ++shape.shift;
-  while (last >> shape.shift >> shape.depth != 0) ++shape.depth;
-  return shape;
-}
-// What a window's segments need and have.
+// What a window's segments need when they make room for one another, and what they have.
 struct WindowPlaces {
   uint32_t need, room;
+  VOYAGER_HD bool fit() const { return need <= room; }
 };
+VOYAGER_HD WindowPlaces operator+(const WindowPlaces& a, const WindowPlaces& b) {
+  return {a.need + b.need, a.room + b.room};
+}
 
 // Of one frame. The kernels add up StateView::counting; search_place moves it to `counted`, where
 // search_emit and the host find it, and clears it for the next frame.
@@ -100,7 +90,7 @@ struct StateView {
   const Tier* tiers;
   uint32_t block_count, tier_count;
   Segment* segments;
-  WindowPlaces* windows;  // of this frame: those that segment_room.cuh has looked at
+  WindowPlaces* windows;  // by window of SegmentWindows: those that were counted in this frame
   uint32_t* open_counts;  // by block: open subtrees
   uint32_t* open_blocks;  // those that had any when the list was last made
   uint32_t* open_block_count;

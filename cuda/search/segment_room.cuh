@@ -1,9 +1,10 @@
 #pragma once
 // Where segments of the list have no room for their nodes, as few of their neighbours as there have
-// to be make some: those in the smallest window that has room for all of its segments. Windows are
-// aligned, each of a power of two of segments, so two are apart or one holds the other, and what is
-// found does not depend on the order in which they are tried. A thread block does it together.
+// to be make some: those in the narrowest window that has room for all of its segments. Two windows
+// are apart, or one holds the other, so what is found does not depend on the order in which they
+// are looked at.
 #include "cuda/device/warp.cuh"
+#include "cuda/search/block_scan.cuh"
 #include "cuda/search/cut_state.h"
 
 namespace voyager::cuda {
@@ -28,7 +29,7 @@ __device__ inline uint32_t block_of_segment(const StateView& state, uint32_t seg
 }
 
 // What a segment needs when its neighbours make room: less to spare than a roomy one has.
-__device__ inline uint32_t least_room(uint32_t size, SegmentFit fit) {
+VOYAGER_HD uint32_t least_room(uint32_t size, SegmentFit fit) {
   if (size == 0 || fit != SegmentFit::roomy) return whole_rows(size);
   return whole_rows(size + size / 16 + kRowPlaces);
 }
@@ -39,145 +40,210 @@ __device__ inline uint32_t spare_before(uint32_t rows, uint32_t ahead, uint32_t 
   return need == 0 ? 0 : static_cast<uint32_t>(uint64_t{rows} * ahead / need) * kRowPlaces;
 }
 
-// In shared memory, of a block of kThreads. Window 1 is all segments; the halves of window w are 2w
-// and 2w + 1.
-class SegmentWindows {
+// By one thread block of kScanThreads, in shared memory.
+class RoomAmongNeighbours {
  public:
-  static constexpr unsigned kThreads = 1024;
-
-  // All threads; a barrier has to follow. None is marked then.
+  // All threads; a barrier has to follow.
   __device__ void begin(const StateView& state, SegmentFit fit);
-  // The smallest window around a segment that has outgrown its room. Any thread, any number of
-  // times.
-  __device__ void mark(uint32_t segment) {
-    mark_window((1u << shape_.depth) + (segment >> shape_.shift));
-  }
-  // All threads, after a barrier. Gives the segments around those that are marked new places and
-  // adds their blocks to `dirty`; false, and nothing is changed, where all segments together have
-  // no room, or so many would have to move that it is quicker to move all.
-  __device__ bool make_room(const StateView& state, Dirty& dirty);
+  // A segment that has outgrown its room. Any thread, any number of times.
+  __device__ void mark(uint32_t segment) { mark(windows_.around(segment), windows_.depth); }
+  // All threads, after a barrier. Gives those that are marked room, with new places for them and
+  // for those around them, and adds their blocks to `dirty`. False where all segments together have
+  // not enough; they are left as they were.
+  __device__ bool make(const StateView& state, BlockScan::TempStorage& storage, Dirty& dirty);
 
  private:
-  // A warp shares out the room of so many segments, no more: by then the whole block is faster.
-  static constexpr uint32_t kMostShift = 12;
+  // A warp is quick with as many segments (log2). Wider windows are the whole block's.
+  static constexpr uint32_t kShiftOfWarp = 12;
   static constexpr unsigned kAtOnce = 4;  // loads of a lane
 
-  struct Range {
-    uint32_t first, last;
-  };
-  __device__ Range segments_of(uint32_t window) const {
-    const uint32_t level = shape_.depth - (31 - __clz(window)), width = shape_.shift + level;
-    const uint32_t first = (window - (1u << (shape_.depth - level))) << width;
-    return {first, min(first + (1u << width), segments_)};
+  // The widest that are a warp's.
+  __device__ uint32_t level_of_warps() const {
+    const uint32_t levels = kShiftOfWarp > windows_.shift ? kShiftOfWarp - windows_.shift : 0;
+    return windows_.depth > levels ? windows_.depth - levels : 0;
   }
-  __device__ void mark_window(uint32_t window) {
-    atomicOr(marked_ + window / 32, 1u << (window % 32));
+  __device__ void mark(uint32_t window, uint32_t level) {
+    const uint32_t i = window - (1u << level);
+    atomicOr(marked_ + SegmentWindows::first_word(level) + i / 32, 1u << (i % 32));
   }
-  __device__ bool is_marked(uint32_t window) const {
-    return (marked_[window / 32] >> (window % 32) & 1) != 0;
+  __device__ bool is_marked(uint32_t window, uint32_t level) const {
+    const uint32_t i = window - (1u << level);
+    return (marked_[SegmentWindows::first_word(level) + i / 32] >> (i % 32) & 1) != 0;
   }
-  __device__ bool is_within_marked(uint32_t window) const {
-    for (window /= 2; window != 0; window /= 2)
-      if (is_marked(window)) return true;
+  __device__ bool is_within_marked(uint32_t window, uint32_t level) const {
+    while (level != 0)
+      if (is_marked(window /= 2, --level)) return true;
     return false;
   }
-  // Each window of [first, last) that is marked, by a warp. Neighbours are different warps'.
+  // Each window of the level that is marked, or not, by a warp; neighbours by different ones.
   template <class Visit>
-  __device__ void for_marked(uint32_t first, uint32_t last, const Visit& visit) const {
-    const uint32_t end = (last + 31) / 32, bit = threadIdx.x / 32;
-    for (uint32_t base = first / 32; base < end; base += 32) {
-      const uint32_t word = base + lane_in_warp(), window = 32 * word + bit;
-      const bool is_own = word < end && window >= first && window < last && is_marked(window);
-      for (uint32_t own = __ballot_sync(kAllLanes, is_own); own != 0; own &= own - 1)
-        visit(32 * (base + __ffs(own) - 1) + bit);
+  __device__ void for_each(uint32_t level, bool marked, const Visit& visit) const {
+    const uint32_t count = 1u << level, bit = threadIdx.x / 32;
+    for (uint32_t base = 0; base < count; base += 32 * 32) {
+      const uint32_t i = base + 32 * lane_in_warp() + bit;
+      const bool own = i < count && is_marked(count + i, level) == marked;
+      for (uint32_t lanes = __ballot_sync(kAllLanes, own); lanes != 0; lanes &= lanes - 1)
+        visit(count + base + 32 * (__ffs(lanes) - 1) + bit);
     }
   }
-  __device__ WindowPlaces places_of(const StateView& state, Range range) const;
-  __device__ WindowPlaces places_of(const StateView& state, uint32_t window) const;
-  __device__ void share_room(const StateView& state, uint32_t window, Dirty& dirty) const;
+  __device__ WindowPlaces count(const StateView& state, uint32_t window, uint32_t level) const;
+  __device__ WindowPlaces places_of(const StateView& state, uint32_t window, uint32_t level) const;
+  __device__ bool find(const StateView& state);
+  __device__ bool find_wide(const StateView& state);
+
+  struct Share;
+  __device__ Share share_of(const StateView& state, uint32_t window, uint32_t level) const;
+  __device__ void share_by_warp(const StateView& state, uint32_t window, uint32_t level,
+                                Dirty& dirty) const;
+  __device__ void share_by_block(const StateView& state, uint32_t window, uint32_t level,
+                                 BlockScan::TempStorage& storage, Dirty& dirty) const;
 
   SegmentFit fit_;
-  WindowShape shape_;
-  uint32_t segments_;
-  uint32_t marked_[WindowShape::kMostWindows / 32];
+  SegmentWindows windows_;
+  uint32_t marked_[SegmentWindows::kMostWords];
 };
 
-__device__ inline void SegmentWindows::begin(const StateView& state, SegmentFit fit) {
-  const uint32_t segments = kLevels * state.block_count;
-  const WindowShape shape = window_shape(segments);
-  if (threadIdx.x == 0) fit_ = fit, shape_ = shape, segments_ = segments;
-  for (uint32_t word = threadIdx.x; word < (shape.windows() + 31) / 32; word += kThreads)
-    marked_[word] = 0;
+__device__ inline void RoomAmongNeighbours::begin(const StateView& state, SegmentFit fit) {
+  const SegmentWindows windows(kLevels * state.block_count);
+  if (threadIdx.x == 0) fit_ = fit, windows_ = windows;
+  const uint32_t words = SegmentWindows::first_word(windows.depth + 1);
+  for (uint32_t word = threadIdx.x; word < words; word += kScanThreads) marked_[word] = 0;
 }
 
-// By a warp, as all below.
-__device__ inline WindowPlaces SegmentWindows::places_of(const StateView& state,
-                                                         Range range) const {
+// By a warp.
+__device__ inline WindowPlaces RoomAmongNeighbours::count(const StateView& state, uint32_t window,
+                                                          uint32_t level) const {
+  const auto [first, last] = windows_.segments_of(window, level);
   uint32_t need = 0, room = 0;
 #pragma unroll kAtOnce
-  for (uint32_t i = range.first + lane_in_warp(); i < range.last; i += 32) {
+  for (uint32_t i = first + lane_in_warp(); i < last; i += 32) {
     need += least_room(state.segments[i].size, fit_);
     room += state.segments[i].room;
   }
   return {__reduce_add_sync(kAllLanes, need), __reduce_add_sync(kAllLanes, room)};
 }
 
-// What was found of a half is known.
-__device__ inline WindowPlaces SegmentWindows::places_of(const StateView& state,
-                                                         uint32_t window) const {
-  if (window >> shape_.depth != 0) return places_of(state, segments_of(window));
+// By a warp. A half that is marked has been counted before.
+__device__ inline WindowPlaces RoomAmongNeighbours::places_of(const StateView& state,
+                                                              uint32_t window,
+                                                              uint32_t level) const {
+  if (level == windows_.depth) return count(state, window, level);
   const auto half = [&](uint32_t of) {
-    return is_marked(of) ? state.windows[of] : places_of(state, segments_of(of));
+    return is_marked(of, level + 1) ? state.windows[of] : count(state, of, level + 1);
   };
-  const WindowPlaces a = half(2 * window), b = half(2 * window + 1);
-  return {a.need + b.need, a.room + b.room};
+  return half(2 * window) + half(2 * window + 1);
 }
 
-// By what each segment needs.
-__device__ inline void SegmentWindows::share_room(const StateView& state, uint32_t window,
-                                                  Dirty& dirty) const {
-  const Range range = segments_of(window);
+// Marks the windows around those that are marked and have no room, and so on. False where all
+// segments together have none.
+__device__ inline bool RoomAmongNeighbours::find(const StateView& state) {
+  const uint32_t last = level_of_warps();
+  for (uint32_t level = windows_.depth;; --level) {
+    bool failed = false;
+    for_each(level, true, [&](uint32_t window) {
+      const WindowPlaces found = places_of(state, window, level);
+      if (lane_in_warp() == 0) state.windows[window] = found;
+      if (found.fit()) return;
+      failed = true;
+      if (lane_in_warp() == 0 && level != 0) mark(window / 2, level - 1);
+    });
+    if (__syncthreads_or(failed) == 0) return true;
+    if (level == last) return level != 0 && find_wide(state);
+  }
+}
+
+__device__ inline bool RoomAmongNeighbours::find_wide(const StateView& state) {
+  uint32_t level = level_of_warps();
+  for_each(level, false, [&](uint32_t window) {
+    const WindowPlaces found = count(state, window, level);
+    if (lane_in_warp() == 0) state.windows[window] = found;
+  });
+  __syncthreads();
+  while (level-- != 0) {
+    bool failed = false;
+    for (uint32_t window = (1u << level) + threadIdx.x; window < 2u << level;
+         window += kScanThreads) {
+      const WindowPlaces found = state.windows[2 * window] + state.windows[2 * window + 1];
+      state.windows[window] = found;
+      if (found.fit() || !is_marked(window, level)) continue;
+      failed = true;
+      if (level != 0) mark(window / 2, level - 1);
+    }
+    if (__syncthreads_or(failed) == 0) return true;
+  }
+  return false;
+}
+
+// A window's room, by what each segment needs.
+struct RoomAmongNeighbours::Share {
+  uint32_t begin, need, rows;  // its first place; what all need; rows beside that
+
+  // own: what segment i needs; ahead: those in front of it.
+  __device__ void put(const StateView& state, uint32_t i, uint32_t own, uint32_t ahead,
+                      Dirty& dirty) const {
+    const uint32_t spare = spare_before(rows, ahead, need);
+    state.segments[i].first = begin + ahead + spare;
+    state.segments[i].room = own + spare_before(rows, ahead + own, need) - spare;
+    if (own != 0) dirty.add(block_of_segment(state, i));
+  }
+};
+
+__device__ inline RoomAmongNeighbours::Share RoomAmongNeighbours::share_of(const StateView& state,
+                                                                           uint32_t window,
+                                                                           uint32_t level) const {
   const auto [need, room] = state.windows[window];
-  const uint32_t rows = (room - need) / kRowPlaces, begin = state.segments[range.first].first;
-  uint32_t before = 0;  // needed by those in front
-  for (uint32_t base = range.first; base < range.last; base += 32 * kAtOnce) {
+  return {state.segments[windows_.segments_of(window, level).first].first, need,
+          (room - need) / kRowPlaces};
+}
+
+__device__ inline void RoomAmongNeighbours::share_by_warp(const StateView& state, uint32_t window,
+                                                          uint32_t level, Dirty& dirty) const {
+  const auto [first, last] = windows_.segments_of(window, level);
+  const Share share = share_of(state, window, level);
+  uint32_t before = 0;
+  for (uint32_t base = first; base < last; base += 32 * kAtOnce) {
     uint32_t sizes[kAtOnce];
     for (unsigned k = 0; k < kAtOnce; ++k) {
       const uint32_t i = base + 32 * k + lane_in_warp();
-      sizes[k] = i < range.last ? state.segments[i].size : 0;
+      sizes[k] = i < last ? state.segments[i].size : 0;
     }
-    __syncwarp();  // `begin` has been read
+    __syncwarp();  // all have read where the window begins
     for (unsigned k = 0; k < kAtOnce; ++k) {
       const uint32_t i = base + 32 * k + lane_in_warp(), own = least_room(sizes[k], fit_);
-      const uint32_t behind = before + warp_scan(own), ahead = behind - own;
-      if (i < range.last) {
-        const uint32_t spare = spare_before(rows, ahead, need);
-        state.segments[i].first = begin + ahead + spare;
-        state.segments[i].room = own + spare_before(rows, behind, need) - spare;
-        if (sizes[k] != 0) dirty.add(block_of_segment(state, i));
-      }
+      const uint32_t behind = before + warp_scan(own);
+      if (i < last) share.put(state, i, own, behind - own, dirty);
       before = __shfl_sync(kAllLanes, behind, 31);
     }
   }
 }
 
-__device__ inline bool SegmentWindows::make_room(const StateView& state, Dirty& dirty) {
-  const uint32_t deepest = shape_.depth;
-  for (uint32_t depth = deepest;; --depth) {
-    bool failed = false;
-    for_marked(1u << depth, 2u << depth, [&](uint32_t window) {
-      const WindowPlaces found = places_of(state, window);
-      if (lane_in_warp() == 0) state.windows[window] = found;
-      if (found.need <= found.room) return;
-      failed = true;
-      if (lane_in_warp() == 0 && depth != 0) mark_window(window / 2);
+__device__ inline void RoomAmongNeighbours::share_by_block(const StateView& state, uint32_t window,
+                                                           uint32_t level,
+                                                           BlockScan::TempStorage& storage,
+                                                           Dirty& dirty) const {
+  const auto [first, last] = windows_.segments_of(window, level);
+  const Share share = share_of(state, window, level);
+  __syncthreads();  // all have read where it begins
+  scan(
+      last - first, storage,
+      [&](uint32_t i) { return least_room(state.segments[first + i].size, fit_); },
+      [&](uint32_t i, uint32_t own, uint32_t ahead) {
+        share.put(state, first + i, own, ahead, dirty);
+      });
+}
+
+__device__ inline bool RoomAmongNeighbours::make(const StateView& state,
+                                                 BlockScan::TempStorage& storage, Dirty& dirty) {
+  if (!find(state)) return false;
+  const uint32_t widest = level_of_warps();
+  for (uint32_t level = widest; level <= windows_.depth; ++level)
+    for_each(level, true, [&](uint32_t window) {
+      if (!is_within_marked(window, level)) share_by_warp(state, window, level, dirty);
     });
-    if (__syncthreads_or(failed) == 0) break;
-    if (depth == 0 || shape_.shift + deepest - depth >= kMostShift) return false;
-  }
-  for_marked(1, 2u << deepest, [&](uint32_t window) {
-    if (!is_within_marked(window)) share_room(state, window, dirty);
-  });
+  for (uint32_t level = 0; level < widest; ++level)
+    for (uint32_t window = 1u << level; window < 2u << level; ++window)
+      if (is_marked(window, level) && !is_within_marked(window, level))
+        share_by_block(state, window, level, storage, dirty);
   return true;
 }
 

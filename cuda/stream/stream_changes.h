@@ -28,8 +28,8 @@ class StreamChanges {
 
   static constexpr size_t kPieces = 4;
   // Of a piece. After a turn of the head some 700 chunks come and as many go in a frame, which
-  // changes 30,000.
-  static constexpr size_t kSubtrees = size_t{1} << 17;
+  // changes 30,000; at half the rate of frames twice that.
+  static constexpr size_t kSubtrees = size_t{1} << 16;
 
   uint64_t version_ = 0;
   std::vector<SlotIds> slots_;
