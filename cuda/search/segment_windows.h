@@ -43,9 +43,6 @@ struct SegmentWindows {
   static VOYAGER_HD constexpr uint32_t first_word(uint32_t level) {
     return level < 5 ? level : 4 + (1u << (level - 5));
   }
-  static VOYAGER_HD constexpr uint32_t words(uint32_t level) {
-    return level < 5 ? 1 : 1u << (level - 5);
-  }
 };
 
 }  // namespace voyager::cuda

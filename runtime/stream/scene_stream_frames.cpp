@@ -77,11 +77,12 @@ void SceneStream::refuse_room(PoolRoom enough) const {
   const auto megabytes = [&](PoolRoom of) {
     return static_cast<double>(desc_.bytes.of(of, state_count_)) / 1e6;
   };
-  char message[160];
-  std::snprintf(message, sizeof message,
-                ": what the view frustum needs takes %.3f MB, the memory budget has room for "
-                "%.3f MB",
-                std::ceil(1e3 * megabytes(enough)) / 1e3, megabytes(residency_.room()));
+  char message[192];
+  std::snprintf(
+      message, sizeof message,
+      ": found room for %.3f MB in the memory budget, expected %.3f MB, which is enough for "
+      "what the view frustum needs",
+      megabytes(residency_.room()), std::ceil(1e3 * megabytes(enough)) / 1e3);
   throw Error(ErrorCode::over_budget, file_->name() + message);
 }
 
