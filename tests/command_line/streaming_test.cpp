@@ -70,10 +70,10 @@ TEST_F(Streaming, ABudgetThatIsTooSmallIsToldWhatItTakes) {
   const std::string wait = " --wait-resident on -o " + file("fits.pfm");
   const Outcome refused = run(render("c.voy", "--budget 2" + wait));
   EXPECT_EQ(refused.exit_code, 4) << refused.output;
-  const size_t takes = refused.output.find("takes ");
-  ASSERT_NE(takes, std::string::npos) << refused.output;
+  const size_t expected = refused.output.find("expected ");
+  ASSERT_NE(expected, std::string::npos) << refused.output;
   const std::string enough =
-      refused.output.substr(takes + 6, refused.output.find(' ', takes + 6) - takes - 6);
+      refused.output.substr(expected + 9, refused.output.find(' ', expected + 9) - expected - 9);
   ASSERT_EQ(run(render("c.voy", "--budget " + enough + wait)).exit_code, 0) << enough;
   EXPECT_TRUE(file_bytes(file("fits.pfm")) == file_bytes(file("whole.pfm")));
   const Outcome top = run(render("c.voy", "--budget 0.001 -o " + file("none.pfm")));

@@ -175,9 +175,9 @@ TEST(StreamingDisk, ARefusedBudgetSaysWhatIsEnough) {
     ASSERT_EQ(error.code(), ErrorCode::over_budget) << error.what();
     message = error.what();
   }
-  const size_t takes = message.find("takes ");
-  ASSERT_NE(takes, std::string::npos) << message;
-  const double megabytes = std::stod(message.substr(takes + 6));
+  const size_t expected = message.find("expected ");
+  ASSERT_NE(expected, std::string::npos) << message;
+  const double megabytes = std::stod(message.substr(expected + 9));
   flight.scene().stream->set_budget(static_cast<uint64_t>(megabytes * 1e6), flight.rig().workers);
   expect_same_bits(render(flight.view(), input), flight.whole(input));
 }

@@ -76,10 +76,10 @@ TEST(StreamingRecords, AFrameThatWaitsSaysWhatIsEnough) {
       ASSERT_EQ(error.code(), ErrorCode::over_budget) << error.what();
       message = error.what();
     }
-    const size_t takes = message.find("takes ");
-    ASSERT_NE(takes, std::string::npos) << message;
+    const size_t expected = message.find("expected ");
+    ASSERT_NE(expected, std::string::npos) << message;
     few.rig.streamed->stream->set_budget(
-        static_cast<uint64_t>(std::stod(message.substr(takes + 6)) * 1e6), few.rig.workers);
+        static_cast<uint64_t>(std::stod(message.substr(expected + 9)) * 1e6), few.rig.workers);
   }
   FAIL() << "it was refused three times";
 }
