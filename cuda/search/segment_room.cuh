@@ -1,8 +1,7 @@
 #pragma once
-// Where segments of the list have no room for their nodes, as few of their neighbours as there have
-// to be make some: those in the narrowest window that has room for all of its segments. Two windows
-// are apart, or one holds the other, so what is found does not depend on the order in which they
-// are looked at.
+// Makes room for segments of the list that have outgrown theirs. Each takes it from the narrowest
+// window around it that has enough for all of its segments; only these move. Any two windows are
+// disjoint or nested, so the result does not depend on the order of threads.
 #include "cuda/device/warp.cuh"
 #include "cuda/search/block_scan.cuh"
 #include "cuda/search/cut_state.h"
@@ -53,7 +52,8 @@ class RoomAmongNeighbours {
   __device__ bool make(const StateView& state, BlockScan::TempStorage& storage, Dirty& dirty);
 
  private:
-  // A warp is quick with as many segments (log2). Wider windows are the whole block's.
+  // Log2 of the segments of the widest window that one warp handles. The whole block handles wider
+  // ones.
   static constexpr uint32_t kShiftOfWarp = 12;
   static constexpr unsigned kAtOnce = 4;  // loads of a lane
 
@@ -76,6 +76,7 @@ class RoomAmongNeighbours {
     return false;
   }
   // Each window of the level that is marked, or not, by a warp; neighbours by different ones.
+  static_assert(kScanThreads == 32 * 32);
   template <class Visit>
   __device__ void for_each(uint32_t level, bool marked, const Visit& visit) const {
     const uint32_t count = 1u << level, bit = threadIdx.x / 32;
@@ -240,6 +241,7 @@ __device__ inline bool RoomAmongNeighbours::make(const StateView& state,
     for_each(level, true, [&](uint32_t window) {
       if (!is_within_marked(window, level)) share_by_warp(state, window, level, dirty);
     });
+  // Below 2^8 windows for lists of up to a million segments.
   for (uint32_t level = 0; level < widest; ++level)
     for (uint32_t window = 1u << level; window < 2u << level; ++window)
       if (is_marked(window, level) && !is_within_marked(window, level))

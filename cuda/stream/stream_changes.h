@@ -27,8 +27,8 @@ class StreamChanges {
   std::optional<Relinked> copy();
 
   static constexpr size_t kPieces = 4;
-  // Of a piece. After a turn of the head some 700 chunks come and as many go in a frame, which
-  // changes 30,000; at half the rate of frames twice that.
+  // In a piece. After a turn of the head some 700 chunks come and 700 go in a frame, which changes
+  // 30,000 subtrees (60,000 at half the frame rate).
   static constexpr size_t kSubtrees = size_t{1} << 16;
 
   uint64_t version_ = 0;

@@ -66,7 +66,7 @@ TEST_F(Streaming, ABudgetOfAFewBytesIsSaidAsItWasGiven) {
 }
 
 // The megabytes that a refusal names are enough for the same frame.
-TEST_F(Streaming, ABudgetThatIsTooSmallIsToldWhatItTakes) {
+TEST_F(Streaming, ARefusedBudgetSaysWhatIsEnough) {
   const std::string wait = " --wait-resident on -o " + file("fits.pfm");
   const Outcome refused = run(render("c.voy", "--budget 2" + wait));
   EXPECT_EQ(refused.exit_code, 4) << refused.output;

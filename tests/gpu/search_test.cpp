@@ -274,8 +274,8 @@ TEST_F(SearchTest, EqualTheHostsWhereAListHasNoRoomForRows) {
   }
 }
 
-// Segments grow by more than they had to spare, near one another and apart: some find room among a
-// few neighbours, others among hundreds.
+// In a step more than 100 segments have more nodes than a list that had just moved would have room
+// for.
 TEST_F(SearchTest, EqualTheHostsWhereManySegmentsOutgrowTheirRoom) {
   std::mt19937 random(12);
   const auto scene = scene_of(random_tree(TreeShape::binary, share_of(1000000), 13));

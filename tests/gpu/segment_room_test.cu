@@ -7,6 +7,7 @@
 
 #include "cuda/search/segment_room.cuh"
 #include "tests/gpu/device_test.h"
+#include "tests/gpu/test_share.h"
 
 namespace voyager::test {
 namespace segment_room_test {
@@ -46,8 +47,7 @@ std::vector<T> download(const Buffer<T>& buffer) {
   return values;
 }
 
-// As many as there have to be for a segment to have room: the first one and how many; 0: there are
-// not enough.
+// The narrowest window around a segment that has room; a count of 0 means that there is none.
 struct Window {
   uint32_t first, count;
 };
@@ -90,6 +90,7 @@ class Expected {
 class SegmentRoom : public DeviceTest {
  protected:
   std::mt19937 random{5};
+  size_t narrow = 0, wide = 0;  // windows in which room was made
 
   uint32_t below(uint32_t most) { return random() % most; }
 
@@ -105,7 +106,7 @@ class SegmentRoom : public DeviceTest {
     return segments;
   }
 
-  // So many in a row grow by this share, and of the rest a fifth is half as large.
+  // So many in a row grow by this share. Of the rest one of 500 grows by half, and a fifth shrinks.
   void grow(std::vector<Segment>& segments, uint32_t count, double by) {
     const auto all = static_cast<uint32_t>(segments.size());
     const uint32_t from = below(all);
@@ -113,6 +114,8 @@ class SegmentRoom : public DeviceTest {
       uint32_t& size = segments[(from + k) % all].size;
       if (k < count)
         size += static_cast<uint32_t>(by * size) + (below(3) == 0 ? 40 : 0);
+      else if (below(500) == 0)
+        size += size / 2;
       else if (below(5) == 0)
         size /= 2;
     }
@@ -140,7 +143,7 @@ class SegmentRoom : public DeviceTest {
     make_room<<<1, cuda::kScanThreads>>>(state, fit, outcome.data());
     cuda::check(cudaGetLastError(), "make room");
     const Outcome found = download(outcome)[0];
-    expect(before, download(segments), download(dirty), found, tiers_of, Expected(before, fit));
+    expect(before, download(segments), download(dirty), found, tiers_of, fit);
     return found.made != 0;
   }
 
@@ -150,9 +153,10 @@ class SegmentRoom : public DeviceTest {
     return tier.first_block + (segment - kLevels * tier.first_block) % tier.blocks;
   }
 
-  static void expect(const std::vector<Segment>& before, const std::vector<Segment>& after,
-                     const std::vector<uint32_t>& dirty, const Outcome& found,
-                     const std::vector<cuda::Tier>& tiers, const Expected& expected) {
+  void expect(const std::vector<Segment>& before, const std::vector<Segment>& after,
+              const std::vector<uint32_t>& dirty, const Outcome& found,
+              const std::vector<cuda::Tier>& tiers, SegmentFit fit) {
+    const Expected expected(before, fit);
     std::map<uint32_t, uint32_t> windows;  // by the first segment, how many
     bool enough = true;
     for (uint32_t i = 0; i < before.size(); ++i) {
@@ -164,13 +168,22 @@ class SegmentRoom : public DeviceTest {
     ASSERT_EQ(found.made != 0, enough) << before.size();
     std::vector<bool> moves(before.size(), false);
     if (enough)
-      for (const auto& [first, count] : windows) std::fill_n(moves.begin() + first, count, true);
+      for (const auto& [first, count] : windows) {
+        std::fill_n(moves.begin() + first, count, true);
+        narrow += count <= 64;
+        wide += count > 4096;
+      }
     std::set<uint32_t> blocks;
     for (uint32_t i = 0; i < before.size(); ++i) {
       if (moves[i] && before[i].size != 0) blocks.insert(block_of(i, tiers));
       ASSERT_EQ(after[i].size, before[i].size);
       if (enough) {
         ASSERT_GE(after[i].room, after[i].size) << i;
+      }
+      if (moves[i]) {
+        ASSERT_GE(after[i].room, cuda::least_room(after[i].size, fit)) << i;
+        ASSERT_EQ(after[i].room % cuda::kRowPlaces, 0u) << i;
+        ASSERT_EQ(after[i].first % cuda::kRowPlaces, 0u) << i;
       }
       if (i + 1 < before.size()) {
         ASSERT_LE(after[i].first + after[i].room, after[i + 1].first) << i;
@@ -179,23 +192,26 @@ class SegmentRoom : public DeviceTest {
       ASSERT_EQ(after[i].first, before[i].first) << i;
       ASSERT_EQ(after[i].room, before[i].room) << i;
     }
+    ASSERT_LE(after.back().first + after.back().room, before.back().first + before.back().room);
     ASSERT_EQ(found.dirty, blocks.size());
     ASSERT_EQ(std::set<uint32_t>(dirty.begin(), dirty.begin() + found.dirty), blocks);
   }
 };
 
 TEST_F(SegmentRoom, IsMadeByTheFewestNeighboursThatHaveIt) {
-  size_t made = 0, not_enough = 0;
-  for (const uint32_t blocks : {3u, 5u, 6u, 40u, 171u, 1366u, 3000u, 11'000u, 49'000u, 400'000u})
+  size_t not_enough = 0;
+  for (const uint32_t blocks :
+       {3u, 5u, 6u, 40u, 171u, 1366u, 3000u, 11'000u, 49'000u, share_of(400'000u)})
     for (const SegmentFit fit : {SegmentFit::roomy, SegmentFit::rows})
       for (const double by : {0.1, 0.3, 1.5})
         for (const uint32_t part : {1u, 3u, 50u, 100'000u}) {
           std::vector<Segment> segments = list_of(blocks, fit);
           grow(segments, std::max(1u, kLevels * blocks / part), by);
-          (check(segments, fit) ? made : not_enough) += 1;
+          not_enough += !check(segments, fit);
           if (HasFatalFailure()) return;
         }
-  EXPECT_GT(made, 50u);
+  EXPECT_GT(narrow, 1000u);
+  EXPECT_GT(wide, 4u);
   EXPECT_GT(not_enough, 20u);
 }
 

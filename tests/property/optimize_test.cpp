@@ -114,7 +114,7 @@ std::vector<float> drawn(Backend& backend, const std::shared_ptr<const Scene>& s
   return rgb;
 }
 
-// The trainer draws by itself what it learns from. Nodes are blended with their parents in some.
+// The trainer draws by itself what it learns from.
 TEST(Optimize, LearnsFromThePicturesThatAreDrawn) {
   Workers workers;
   BakedScene baked = test::bake(test::specks(3000, 6, 1));
@@ -215,12 +215,7 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
   EXPECT_FALSE(same(expected, baked));
   EXPECT_TRUE(validate(expected).empty()) << validate(expected).front();
   expect_same_leaves(expected, baked);
-  const FrameInput input =
-      test::frame_input(test::look({3, -6, -24}, {0, 0, 0}, 133, 77), 3, false);
   const auto backend = create_cpu_backend();
-  test::expect_same_bits(
-      test::render(*backend, test::loaded(expected), {.lod = Lod::all_leaves}, input),
-      test::render(*backend, test::loaded(baked), {.lod = Lod::all_leaves}, input));
   EXPECT_TRUE(same(learn(baked, 8, 4, folder.file("four")).scene, expected));
 
   struct Stop {};
@@ -236,6 +231,19 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
                  Stop);
   }
   EXPECT_TRUE(same(learn(baked, 8, 2, kept).scene, expected));
+}
+
+TEST(Optimize, EveryLeafIsDrawnAsBefore) {
+  const test::TempFolder folder;
+  const BakedScene baked = test::bake(test::specks(300, 6, 1));
+  const BakedScene learned = learn(baked, 4, 2, folder.file("kept")).scene;
+  EXPECT_FALSE(same(learned, baked));
+  const FrameInput input =
+      test::frame_input(test::look({3, -6, -24}, {0, 0, 0}, 133, 77), 3, false);
+  const auto backend = create_cpu_backend();
+  test::expect_same_bits(
+      test::render(*backend, test::loaded(learned), {.lod = Lod::all_leaves}, input),
+      test::render(*backend, test::loaded(baked), {.lod = Lod::all_leaves}, input));
 }
 
 // Of the host's memory, so that specks(1500, ...) of degree 1 learns in parts.
