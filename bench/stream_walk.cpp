@@ -90,7 +90,7 @@ bool is_whole(const VoyFrameStats& frame, const VoyStreamingStats& streaming) {
 }
 
 struct Turn {
-  // Of frames from the turn's start to a second after its end. search: that stage, of ms.
+  // Of frames from the turn's start to a second after its end. search: what that stage takes of ms.
   std::vector<double> ms, search, wall;
   double whole_after = 0;  // seconds from the turn's end to the end of the last coarse frame
   size_t coarse_turning = 0, coarse_after = 0;

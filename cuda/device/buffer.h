@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "cuda/device/check.h"
 
@@ -54,6 +55,19 @@ Buffer<T> upload(std::span<const T> values) {
         "upload");
   check(cudaStreamSynchronize(nullptr), "upload");
   return buffer;
+}
+
+// Of what streams write, after they are done.
+template <class T>
+std::vector<T> download(const T* from, size_t count) {
+  std::vector<T> values(count);
+  if (count != 0)
+    check(cudaMemcpy(values.data(), from, count * sizeof(T), cudaMemcpyDeviceToHost), "download");
+  return values;
+}
+template <class T>
+std::vector<T> download(const Buffer<T>& buffer) {
+  return download(buffer.data(), buffer.size());
 }
 
 template <class T>

@@ -84,6 +84,7 @@ __global__ void __launch_bounds__(kScanThreads) search_place(StateView state) {
   for (uint32_t i = threadIdx.x; i < dirty.count; i += kScanThreads)
     outgrown |= mark_outgrown(state, state.blocks[state.dirty[i]], room);
   outgrown = __syncthreads_or(outgrown) != 0;
+  // A list without places has none to share.
   const bool moves =
       outgrown && (list_size == 0 || fit > SegmentFit::rows || !room.make(state, storage, dirty));
   __syncthreads();

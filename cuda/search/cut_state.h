@@ -53,7 +53,7 @@ struct Segment {
 // What a window's segments need when they make room for one another, and what they have.
 struct WindowPlaces {
   uint32_t need, room;
-  VOYAGER_HD bool fit() const { return need <= room; }
+  VOYAGER_HD bool fits() const { return need <= room; }
 };
 VOYAGER_HD WindowPlaces operator+(const WindowPlaces& a, const WindowPlaces& b) {
   return {a.need + b.need, a.room + b.room};

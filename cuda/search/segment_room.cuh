@@ -144,7 +144,7 @@ __device__ inline bool RoomAmongNeighbours::find(const StateView& state) {
     for_each(level, true, [&](uint32_t window) {
       const WindowPlaces found = places_of(state, window, level);
       if (lane_in_warp() == 0) state.windows[window] = found;
-      if (found.fit()) return;
+      if (found.fits()) return;
       failed = true;
       if (lane_in_warp() == 0 && level != 0) mark(window / 2, level - 1);
     });
@@ -166,7 +166,7 @@ __device__ inline bool RoomAmongNeighbours::find_wide(const StateView& state) {
          window += kScanThreads) {
       const WindowPlaces found = state.windows[2 * window] + state.windows[2 * window + 1];
       state.windows[window] = found;
-      if (found.fit() || !is_marked(window, level)) continue;
+      if (found.fits() || !is_marked(window, level)) continue;
       failed = true;
       if (level != 0) mark(window / 2, level - 1);
     }

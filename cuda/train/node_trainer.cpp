@@ -38,20 +38,6 @@ std::vector<uint32_t> rows_of(const LodTree& tree) {
 }
 
 template <class T>
-std::vector<T> download(const T* from, size_t count) {
-  std::vector<T> values(count);
-  if (count != 0)
-    check(cudaMemcpy(values.data(), from, count * sizeof(T), cudaMemcpyDeviceToHost),
-          "what was learned");
-  return values;
-}
-
-template <class T>
-std::vector<T> download(const Buffer<T>& from, size_t count) {
-  return download(from.data(), count);
-}
-
-template <class T>
 void grow(Buffer<T>& buffer, size_t count) {
   if (buffer.size() >= count) return;
   buffer = {};
@@ -156,7 +142,7 @@ class CudaTrainer final : public NodeTrainer {
     std::vector<uint32_t> cut;
     std::vector<float> weights;
     search_->read(cut, weights);
-    const std::vector<FixedSum> sums = download(sums_, sums_in_use());
+    const std::vector<FixedSum> sums = download(sums_.data(), sums_in_use());
     const std::vector<RankRow> ranks = cut_.ranks();
     std::vector<NodeError> errors;
     for (uint32_t i = 0; i < std::min(cut.size(), ranks.size() * kRowPlaces); ++i) {
@@ -308,14 +294,14 @@ TrainingState CudaTrainer::state() const {
   device_->use();
   stream_.wait();
   TrainingState state;
-  state.first = download(first_, first_.size());
-  state.second = download(second_, second_.size());
-  state.steps = download(steps_, steps_.size());
+  state.first = download(first_);
+  state.second = download(second_);
+  state.steps = download(steps_);
   state.values.resize(nodes_.size() * numbers_);
-  const std::vector<float4> hulls = download(hulls_, hulls_.size());
-  const std::vector<float4> shapes = download(shapes_, shapes_.size());
-  const std::vector<float> sh = download(coefficients_, coefficients_.size());
-  const std::vector<float> opacities = download(opacities_, opacities_.size());
+  const std::vector<float4> hulls = download(hulls_);
+  const std::vector<float4> shapes = download(shapes_);
+  const std::vector<float> sh = download(coefficients_);
+  const std::vector<float> opacities = download(opacities_);
   for (size_t row = 0; row < nodes_.size(); ++row) {
     const size_t node = nodes_[row];
     const float4 hull = hulls[node], scale = shapes[2 * node], rotation = shapes[2 * node + 1];
@@ -333,10 +319,10 @@ TrainingState CudaTrainer::state() const {
 void CudaTrainer::set_state(const TrainingState& state) {
   device_->use();
   stream_.wait();
-  std::vector<float4> hulls = download(hulls_, hulls_.size());
-  std::vector<float4> shapes = download(shapes_, shapes_.size());
-  std::vector<float> sh = download(coefficients_, coefficients_.size());
-  std::vector<float> opacities = download(opacities_, opacities_.size());
+  std::vector<float4> hulls = download(hulls_);
+  std::vector<float4> shapes = download(shapes_);
+  std::vector<float> sh = download(coefficients_);
+  std::vector<float> opacities = download(opacities_);
   for (size_t row = 0; row < nodes_.size(); ++row) {
     const size_t node = nodes_[row];
     const float* v = &state.values[row * numbers_];

@@ -17,6 +17,7 @@ namespace coded_scene_test {
 namespace {
 
 using cuda::Buffer;
+using cuda::download;
 
 constexpr int kMostFloats = 3 * sh_coefficients(kMaxShDegree);
 
@@ -44,14 +45,6 @@ __global__ void bound(const uint32_t* bounds, float2* found, uint32_t count) {
 __global__ void restore_largest(const int* steps, float* found, uint32_t count) {
   const uint32_t i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i < count) found[i] = largest_component(steps + 3 * i);
-}
-
-template <class T>
-std::vector<T> download(const Buffer<T>& buffer) {
-  std::vector<T> values(buffer.size());
-  cuda::check(cudaMemcpy(values.data(), buffer.data(), buffer.bytes(), cudaMemcpyDeviceToHost),
-              "download");
-  return values;
 }
 
 struct Restored {

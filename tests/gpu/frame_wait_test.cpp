@@ -131,9 +131,7 @@ TEST_F(FrameWait, ACutThatTheHostFoundIsTheDevicesToFetch) {
   EXPECT_EQ(cudaStreamQuery(stream.get()), cudaErrorNotReady) << "the host waited too soon";
   search->find(fine, stream.get());  // which waits for the first of three in flight
   stream.wait();
-  std::vector<uint32_t> sent(fine_cut.size());
-  cuda::check(cudaMemcpy(sent.data(), kept.data(), kept.bytes(), cudaMemcpyDeviceToHost), "a cut");
-  EXPECT_EQ(sent, fine_cut);
+  EXPECT_EQ(cuda::download(kept), fine_cut);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ namespace segment_room_test {
 namespace {
 
 using cuda::Buffer;
+using cuda::download;
 using cuda::kLevels;
 using cuda::Segment;
 using cuda::SegmentFit;
@@ -37,14 +38,6 @@ __global__ void make_room(StateView state, SegmentFit fit, Outcome* outcome) {
   const bool made = room.make(state, storage, dirty);
   __syncthreads();
   if (threadIdx.x == 0) *outcome = {made, dirty.count};
-}
-
-template <class T>
-std::vector<T> download(const Buffer<T>& buffer) {
-  std::vector<T> values(buffer.size());
-  cuda::check(cudaMemcpy(values.data(), buffer.data(), buffer.bytes(), cudaMemcpyDeviceToHost),
-              "download");
-  return values;
 }
 
 // The narrowest window around a segment that has room; a count of 0 means that there is none.
@@ -71,7 +64,7 @@ class Expected {
 
   Window around(uint32_t segment) const {
     uint32_t window = windows_.around(segment), level = windows_.depth;
-    while (!places_[window].fit()) {
+    while (!places_[window].fits()) {
       if (level-- == 0) return {0, 0};
       window /= 2;
     }

@@ -49,9 +49,7 @@ TEST_F(UploadRingTest, APieceIsNotWrittenBeforeTheDeviceHasReadIt) {
     });
   for (std::thread& thread : threads) thread.join();
   stream.wait();
-  std::vector<uint32_t> words(found.size());
-  cuda::check(cudaMemcpy(words.data(), found.data(), found.bytes(), cudaMemcpyDeviceToHost),
-              "download");
+  const std::vector<uint32_t> words = cuda::download(found);
   for (size_t i = 0; i < words.size(); ++i) ASSERT_EQ(words[i], i);
 }
 

@@ -215,7 +215,6 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
   EXPECT_FALSE(same(expected, baked));
   EXPECT_TRUE(validate(expected).empty()) << validate(expected).front();
   expect_same_leaves(expected, baked);
-  const auto backend = create_cpu_backend();
   EXPECT_TRUE(same(learn(baked, 8, 4, folder.file("four")).scene, expected));
 
   struct Stop {};
@@ -223,6 +222,7 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
   for (const uint64_t at : {2, 5}) {
     BakedScene scene = baked;
     Workers workers;
+    const auto backend = create_cpu_backend();
     EXPECT_THROW(optimize_nodes(scene, {.pictures = 8, .held_out = 4, .keep_milliseconds = 0},
                                 *backend, kept, workers,
                                 [&](const char*, uint64_t done, uint64_t) {
