@@ -56,6 +56,10 @@ voy::View create_view(const voy::Device& device, const voy::Scene& scene,
     throw Error(ErrorCode::invalid_argument,
                 "--time-budget: found a scene without a tree, which draws every leaf whatever tau "
                 "is; expected one that was baked");
+  if (choices.supersample > 1 && scene.info().nativePixelSource == VOY_NATIVE_PIXEL_SOURCE_UNKNOWN)
+    throw Error(ErrorCode::refused_input,
+                "--supersample: found a scene of which no native pixel is known, expected one: "
+                "bake it anew");
   const VoyScene handle = scene.get();
   VoyViewDesc desc = VOY_VIEW_DESC_INIT;
   desc.instanceCount = 1;

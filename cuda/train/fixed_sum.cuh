@@ -3,7 +3,9 @@
 
 namespace voyager::cuda {
 
+// What is no number, or larger than a sum may be, is left out.
 __device__ inline void add_fixed(FixedSum* sum, float value) {
+  if (!(fabsf(value) < kFixedMost)) return;
   atomicAdd(sum, static_cast<FixedSum>(__float2ll_rn(value * kFixedOne)));
 }
 __device__ inline float fixed_value(FixedSum sum) {

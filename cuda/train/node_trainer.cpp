@@ -186,7 +186,7 @@ class CudaTrainer final : public NodeTrainer {
 
   void launch_picture(Lists& lists, const DrawView& draws, const Camera& camera,
                       Antialias antialias);
-  bool has_room(Lists& lists) { return !lists.splats.grow(room_for(lists.counted())); }
+  bool has_room(Lists& lists);
   void launch_truth(const TrainingView& view);
   TrainingError compare(const TrainingView& view, bool leaves);
   size_t sums_in_use() const { return size_t{cut_.counted()[0].slots} * kSums; }
@@ -254,6 +254,16 @@ void CudaTrainer::launch_truth(const TrainingView& view) {
   launch_mean(truth_.picture.data(), view.samples, truth_mean_.data(), camera.width, camera.height,
               stream_.get());
   truth_drawn_ = truth_of(view);
+}
+
+// False where lists are longer now: the picture is to be drawn again. What a picture has left out
+// must not be learned from.
+bool CudaTrainer::has_room(Lists& lists) {
+  if (lists.splats.grow(room_for(lists.counted()))) return false;
+  const uint64_t left_out = dropped(lists.counted(), lists.splats.room());
+  if (left_out == 0) return true;
+  throw Error(ErrorCode::over_budget, "device memory: found none for " + std::to_string(left_out) +
+                                          " entries of a picture's lists, expected room for all");
 }
 
 // Lists that found too little room are made again with more.

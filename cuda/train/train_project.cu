@@ -11,7 +11,7 @@ namespace {
 
 constexpr unsigned kThreads = 128;
 
-// False where nothing was blended, or what came out is no number.
+// False where nothing was blended.
 __device__ bool read_sums(const FixedSum* from, SplatSums<float>& sums) {
   float values[kSums - 1];
   FixedSum any = 0;

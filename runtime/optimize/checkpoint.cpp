@@ -1,6 +1,8 @@
 #include "runtime/optimize/checkpoint.h"
 
+#include <bit>
 #include <filesystem>
+#include <vector>
 
 #include "runtime/bake/sealed_file.h"
 #include "runtime/base/checksum.h"
@@ -9,7 +11,7 @@
 namespace voyager {
 namespace {
 
-constexpr uint64_t kKind = 0x34696d6974706f;  // "optimi4"; a change of the pictures needs another
+constexpr uint64_t kKind = 0x35696d6974706f;  // "optimi5"; a change of the pictures needs another
 constexpr char kStartAnew[] = "remove it, and learning starts anew";
 
 template <class Values>
@@ -19,17 +21,25 @@ uint64_t sum_of(const Values& values) {
 
 }  // namespace
 
-uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> cameras) {
-  const uint64_t parts[] = {sum_of(baked.tree.records),     sum_of(baked.merged.position),
-                            sum_of(baked.merged.sh),        sum_of(baked.leaves.position),
-                            sum_of(baked.leaves.log_scale), sum_of(baked.leaves.opacity),
-                            sum_of(baked.leaves.sh),        checksum(std::as_bytes(cameras))};
-  return checksum(std::as_bytes(std::span(parts)));
+uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> cameras,
+                 const std::string& device) {
+  std::vector<uint64_t> parts{sum_of(baked.tree.records),
+                              sum_of(baked.node_code),
+                              std::bit_cast<uint64_t>(baked.leaves.native.pixel),
+                              std::bit_cast<uint64_t>(baked.leaves.native.low_pass),
+                              checksum(std::as_bytes(cameras)),
+                              sum_of(device)};
+  for (const GaussianCloud* cloud : {&baked.leaves, &baked.merged})
+    for (const auto* values :
+         {&cloud->position, &cloud->log_scale, &cloud->rotation, &cloud->opacity, &cloud->sh})
+      parts.push_back(sum_of(*values));
+  return sum_of(parts);
 }
 
 void write_checkpoint(const Checkpoint& checkpoint, uint64_t mark, const std::string& path) {
   Packer packer;
-  const uint64_t head[] = {kKind, mark, checkpoint.pictures, checkpoint.done};
+  const uint64_t head[] = {kKind, mark, checkpoint.pictures, checkpoint.done,
+                           std::bit_cast<uint64_t>(checkpoint.minutes)};
   packer.put(std::span(head));
   packer.put_all(checkpoint.extents).put_all(checkpoint.state.values);
   packer.put_all(checkpoint.state.opacities).put_all(checkpoint.state.first);
@@ -59,17 +69,17 @@ bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpo
   check_kind(path, kKind, "what --optimize has learned");
   const std::vector<std::byte> bytes = read_sealed(path, kStartAnew);
   Unpacker from(path, bytes);
-  uint64_t head[4];
+  uint64_t head[5];
   from.take(std::span<uint64_t>(head));
   if (head[1] != mark)
-    throw Error(
-        ErrorCode::refused_input,
-        path +
-            ": found what was learned of another scene, with other --training-cameras or another "
-            "--memory, expected this one: " +
-            kStartAnew);
+    throw Error(ErrorCode::refused_input,
+                path +
+                    ": found what was learned of another scene, by another device, with other "
+                    "--training-cameras or another --memory, expected this one: " +
+                    kStartAnew);
   checkpoint.pictures = static_cast<uint32_t>(head[2]);
   checkpoint.done = static_cast<uint32_t>(head[3]);
+  checkpoint.minutes = std::bit_cast<double>(head[4]);
   from.take_all(checkpoint.extents);
   from.take_all(checkpoint.state.values);
   from.take_all(checkpoint.state.opacities);

@@ -12,17 +12,20 @@ namespace voyager {
 
 struct Checkpoint {
   uint32_t pictures = 0;  // to learn from, in all
+  double minutes = 0;     // that were asked for; 0 where a number of pictures was
   uint32_t done = 0;
   std::vector<float> extents;  // by node
   TrainingState state;
 };
 
-// Tells scenes apart, before anything was learned, and where views are from.
-uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> cameras);
+// Tells scenes apart, before anything was learned, where views are from, and what draws them.
+uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> cameras,
+                 const std::string& device);
 
 // The file of part k, where a scene learns in parts.
 std::string kept_of_part(const std::string& kept, uint32_t k);
-// The file of a whole scene and those of parts, as far as they are there.
+// The file of a whole scene and those of parts, as far as they are there. They are removed from the
+// last to the first: else a process that is killed meanwhile leaves some that nobody finds.
 std::vector<std::string> kept_files(const std::string& kept);
 
 // A file of its own, whole or absent.

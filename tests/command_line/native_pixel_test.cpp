@@ -8,6 +8,7 @@
 
 #include "runtime/format/reader.h"
 #include "tests/command_line/program.h"
+#include "tests/support/sealed.h"
 #include "tests/support/test_support.h"
 
 namespace voyager::test {
@@ -125,6 +126,32 @@ TEST_F(NativePixelCommand, AntialiasedPicturesAreNearerToTheTruth) {
   const double on = squares(drawn("")), off = squares(drawn(" --antialias off"));
   EXPECT_GT(on, 0);
   EXPECT_LT(4 * on, off);
+}
+
+// As files of 0.3 are: the truth is not known of them.
+TEST_F(NativePixelCommand, ATruthTakesANativePixel) {
+  bake(file("c.ply") + " --native-pixel 0.05");
+  const std::string whole = file_bytes(file("o.voy"));
+  Bytes bytes(whole.size());
+  std::memcpy(bytes.data(), whole.data(), whole.size());
+  FileHeader header;
+  std::memcpy(&header, bytes.data(), sizeof header);
+  header.native_pixel = 0;
+  header.native_source = static_cast<uint32_t>(NativeSource::unknown);
+  std::memcpy(bytes.data(), &header, sizeof header);
+  bytes = sealed(bytes);
+  std::ofstream(file("o.voy"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  const std::string render =
+      "voyager render " + file("o.voy") + " --size 32x24 --backend cpu -o " + file("o.png");
+  EXPECT_EQ(run(render).exit_code, 0);
+  const Outcome refused = run(render + " --supersample 4");
+  EXPECT_EQ(refused.exit_code, 2) << refused.output;
+  EXPECT_NE(refused.output.find("--supersample: found a scene of which no native pixel is known, "
+                                "expected one: bake it anew"),
+            std::string::npos)
+      << refused.output;
 }
 
 }  // namespace

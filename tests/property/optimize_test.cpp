@@ -413,37 +413,62 @@ TEST(Optimize, PartsHaveEveryMergedNodeOnce) {
   }
 }
 
-TEST(Optimize, WhatWasLearnedOfAnotherSceneOrWasAlteredIsRefused) {
+TEST(Optimize, WhatWasLearnedOfSomethingElseOrWasAlteredIsRefused) {
   const test::TempFolder folder;
-  const std::string kept = folder.file("kept");
+  const std::string kept = folder.file("kept"), device = create_cpu_backend()->device_name();
   const BakedScene baked = test::bake(test::specks(300, 7, 0));
-  Checkpoint checkpoint;
-  checkpoint.pictures = 5;
-  checkpoint.extents.resize(baked.tree.size());
-  write_checkpoint(checkpoint, mark_of(baked, {}), kept);
-  const auto refusal = [&](const BakedScene& scene, uint32_t pictures) {
+  const auto mark = [&](const BakedScene& scene) { return mark_of(scene, {}, device); };
+  const auto keep = [&](double minutes) {
+    Checkpoint checkpoint;
+    checkpoint.pictures = 5;
+    checkpoint.minutes = minutes;
+    checkpoint.extents.resize(baked.tree.size());
+    write_checkpoint(checkpoint, mark(baked), kept);
+  };
+  const auto refusal = [&](const BakedScene& scene, const OptimizeGoal& goal) {
+    Workers workers;
+    const auto backend = create_cpu_backend();
+    BakedScene copy = scene;
     try {
-      learn(scene, pictures, 1, kept);
+      optimize_nodes(copy, goal, *backend, kept, workers);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::refused_input);
       return std::string(error.what());
     }
     return std::string("nothing");
   };
-  EXPECT_EQ(refusal(test::bake(test::specks(300, 8, 0)), 5),
+  keep(0);
+  EXPECT_EQ(refusal(test::bake(test::specks(300, 8, 0)), {.pictures = 5}),
             kept +
-                ": found what was learned of another scene, with other --training-cameras or "
-                "another --memory, expected this one: remove it, and learning starts anew");
+                ": found what was learned of another scene, by another device, with other "
+                "--training-cameras or another --memory, expected this one: remove it, and "
+                "learning starts anew");
   const TrainingCamera camera{};
-  EXPECT_NE(mark_of(baked, {&camera, 1}), mark_of(baked, {}));
-  EXPECT_EQ(refusal(baked, 6), kept +
-                                   ": found what is learned from 5 pictures, expected 6: ask for "
-                                   "as many, or remove it");
+  EXPECT_NE(mark_of(baked, {&camera, 1}, device), mark(baked));
+  EXPECT_NE(mark_of(baked, {}, "another"), mark(baked));
+  BakedScene turned = baked;
+  turned.merged.rotation[1] += 0.1f;
+  EXPECT_NE(mark(turned), mark(baked));
+  BakedScene sharper = baked;
+  sharper.leaves.native.pixel *= 0.5;
+  EXPECT_NE(mark(sharper), mark(baked));
+
+  const std::string found = kept + ": found what is learned ",
+                    end = ": ask for the same, or remove it";
+  EXPECT_EQ(refusal(baked, {.pictures = 6}),
+            found + "from 5 pictures, expected from 6 pictures" + end);
+  EXPECT_EQ(refusal(baked, {.minutes = 2}), found + "from 5 pictures, expected in 2 minutes" + end);
+  keep(1.5);
+  EXPECT_EQ(refusal(baked, {.minutes = 2}), found + "in 1.5 minutes, expected in 2 minutes" + end);
+  EXPECT_EQ(refusal(baked, {.pictures = 5}),
+            found + "in 1.5 minutes, expected from 5 pictures" + end);
+
+  keep(0);
   std::fstream file(kept, std::ios::binary | std::ios::in | std::ios::out);
-  file.seekp(40);
+  file.seekp(48);
   file.put('\x5a');
   file.close();
-  const std::string altered = refusal(baked, 5);
+  const std::string altered = refusal(baked, {.pictures = 5});
   EXPECT_TRUE(altered.starts_with(kept + ": found checksum ")) << altered;
   EXPECT_TRUE(altered.ends_with(": remove it, and learning starts anew")) << altered;
 }
