@@ -72,7 +72,7 @@ struct Spread {
 };
 
 // What is up, and whether the scene is flat: narrower along one axis than a third of the others,
-// as a landscape is. Trainers and viewers of 3DGS have y down (METHOD §1), maps z up.
+// as a landscape is. Trainers and viewers of 3DGS have y down (docs/conventions.md), maps z up.
 struct Upward {
   Vec3d up;
   bool flat;

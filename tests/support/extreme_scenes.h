@@ -133,7 +133,9 @@ inline ExtremeShot near_plane_shot(bool one_beyond) {
 // METHOD §12 at its ends: no footprint, one between the sizes below, one that covers all.
 inline const NativeScale kExtremeNatives[] = {{NativeSource::given, 0, kPixelVariance},
                                               {NativeSource::given, 0.05, kPixelVariance},
-                                              {NativeSource::given, 1e6, kPixelVariance}};
+                                              {NativeSource::given, 1e6, kPixelVariance},
+                                              {NativeSource::file, 0, kLowPass},
+                                              {NativeSource::file, 0, 0}};
 
 // From a nanometre up. native: unknown is 3DGS's picture, as below.
 inline ExtremeShot scales_shot(const NativeScale& native = {}) {
