@@ -47,7 +47,13 @@ voy::Scene open_scene(const voy::Device& device, const std::string& path,
   VoySceneStreaming streaming = VOY_SCENE_STREAMING_INIT;
   streaming.startPosition = choices.start;
   if (choices.streamed) desc.next = &streaming;
-  return device.open_scene(desc);
+  voy::Scene scene = device.open_scene(desc);
+  if (choices.supersample > 1 && scene.info().nativePixelSource == VOY_NATIVE_PIXEL_SOURCE_UNKNOWN)
+    throw Error(ErrorCode::refused_input,
+                path +
+                    ": found no native pixel, expected one, without which the truth of the "
+                    "scene is not known: bake it anew");
+  return scene;
 }
 
 voy::View create_view(const voy::Device& device, const voy::Scene& scene,
@@ -56,10 +62,6 @@ voy::View create_view(const voy::Device& device, const voy::Scene& scene,
     throw Error(ErrorCode::invalid_argument,
                 "--time-budget: found a scene without a tree, which draws every leaf whatever tau "
                 "is; expected one that was baked");
-  if (choices.supersample > 1 && scene.info().nativePixelSource == VOY_NATIVE_PIXEL_SOURCE_UNKNOWN)
-    throw Error(ErrorCode::refused_input,
-                "--supersample: found a scene of which no native pixel is known, expected one: "
-                "bake it anew");
   const VoyScene handle = scene.get();
   VoyViewDesc desc = VOY_VIEW_DESC_INIT;
   desc.instanceCount = 1;

@@ -3,9 +3,10 @@
 
 namespace voyager::cuda {
 
-// What is no number, or larger than a sum may be, is left out.
+// What is no number is left out; what is beyond kFixedMost counts as that.
 __device__ inline void add_fixed(FixedSum* sum, float value) {
-  if (!(fabsf(value) < kFixedMost)) return;
+  if (value != value) return;
+  value = fminf(fmaxf(value, -kFixedMost), kFixedMost);
   atomicAdd(sum, static_cast<FixedSum>(__float2ll_rn(value * kFixedOne)));
 }
 __device__ inline float fixed_value(FixedSum sum) {

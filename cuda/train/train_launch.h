@@ -13,7 +13,7 @@ namespace voyager::cuda {
 using FixedSum = unsigned long long;
 inline constexpr int kSums = 10;
 inline constexpr float kFixedOne = 68719476736.0f;  // 2³⁶: 1e-11 to 1e8
-inline constexpr float kFixedMost = 67108864.0f;    // 2²⁶
+inline constexpr float kFixedMost = 67108864.0f;    // 2²⁶: half of what a sum holds
 
 // Of a picture, row by row: colour over black, and 1 - transmittance.
 struct TrainPictures {

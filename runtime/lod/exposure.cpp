@@ -27,8 +27,8 @@ constexpr float kLeastBehind = 1e-4f;
 constexpr double kContrastBeyond = 0.2;  // of what is beyond all pictures
 
 // Viewers look from above and from the side: all directions but the last come from at least this
-// high. It is the sine of the elevation; up is -y (docs/conventions.md). The last direction comes from below,
-// so that a floor under a ceiling counts for something.
+// high. It is the sine of the elevation; up is -y (docs/conventions.md). The last direction comes
+// from below, so that a floor under a ceiling counts for something.
 constexpr double kLowestRise = -0.05;
 
 struct Direction {

@@ -38,9 +38,9 @@ uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> camera
 
 void write_checkpoint(const Checkpoint& checkpoint, uint64_t mark, const std::string& path) {
   Packer packer;
-  const uint64_t head[] = {kKind, mark, checkpoint.pictures, checkpoint.done,
-                           std::bit_cast<uint64_t>(checkpoint.minutes)};
+  const uint64_t head[] = {kKind, mark, checkpoint.pictures, checkpoint.done};
   packer.put(std::span(head));
+  packer.put_all(checkpoint.asked);
   packer.put_all(checkpoint.extents).put_all(checkpoint.state.values);
   packer.put_all(checkpoint.state.opacities).put_all(checkpoint.state.first);
   packer.put_all(checkpoint.state.second).put_all(checkpoint.state.steps);
@@ -69,7 +69,7 @@ bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpo
   check_kind(path, kKind, "what --optimize has learned");
   const std::vector<std::byte> bytes = read_sealed(path, kStartAnew);
   Unpacker from(path, bytes);
-  uint64_t head[5];
+  uint64_t head[4];
   from.take(std::span<uint64_t>(head));
   if (head[1] != mark)
     throw Error(ErrorCode::refused_input,
@@ -79,7 +79,7 @@ bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpo
                     kStartAnew);
   checkpoint.pictures = static_cast<uint32_t>(head[2]);
   checkpoint.done = static_cast<uint32_t>(head[3]);
-  checkpoint.minutes = std::bit_cast<double>(head[4]);
+  from.take_all(checkpoint.asked);
   from.take_all(checkpoint.extents);
   from.take_all(checkpoint.state.values);
   from.take_all(checkpoint.state.opacities);

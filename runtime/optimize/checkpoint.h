@@ -12,8 +12,8 @@ namespace voyager {
 
 struct Checkpoint {
   uint32_t pictures = 0;  // to learn from, in all
-  double minutes = 0;     // that were asked for; 0 where a number of pictures was
   uint32_t done = 0;
+  std::string asked;           // OptimizeGoal's
   std::vector<float> extents;  // by node
   TrainingState state;
 };
@@ -24,8 +24,8 @@ uint64_t mark_of(const BakedScene& baked, std::span<const TrainingCamera> camera
 
 // The file of part k, where a scene learns in parts.
 std::string kept_of_part(const std::string& kept, uint32_t k);
-// The file of a whole scene and those of parts, as far as they are there. They are removed from the
-// last to the first: else a process that is killed meanwhile leaves some that nobody finds.
+// The file of a whole scene and those of parts, as far as they are there: from the first that is
+// missing on none is found.
 std::vector<std::string> kept_files(const std::string& kept);
 
 // A file of its own, whole or absent.

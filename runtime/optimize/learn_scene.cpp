@@ -54,15 +54,6 @@ LearningRates rates_at(double done) {
   return rates;
 }
 
-std::string asked_text(uint32_t pictures, double minutes) {
-  char text[48];
-  if (minutes != 0)
-    std::snprintf(text, sizeof text, "in %g minutes", minutes);
-  else
-    std::snprintf(text, sizeof text, "from %u pictures", pictures);
-  return text;
-}
-
 class Learning {
  public:
   Learning(BakedScene& baked, const LookedAt& looked_at, const OptimizeGoal& goal, Backend& backend,
@@ -91,24 +82,18 @@ class Learning {
   }
 
  private:
-  static double minutes_of(const OptimizeGoal& goal) {
-    return goal.pictures != 0 ? 0 : goal.minutes;
-  }
-
   // Where it was left, or at the beginning.
   void start(const OptimizeGoal& goal) {
     if (read_checkpoint(mark_, kept_, checkpoint_)) {
-      const std::string found = asked_text(checkpoint_.pictures, checkpoint_.minutes),
-                        expected = asked_text(goal.pictures, minutes_of(goal));
-      if (found != expected)
-        throw Error(ErrorCode::refused_input, kept_ + ": found what is learned " + found +
-                                                  ", expected " + expected +
+      if (checkpoint_.asked != goal.asked)
+        throw Error(ErrorCode::refused_input, kept_ + ": found what is learned " +
+                                                  checkpoint_.asked + ", expected " + goal.asked +
                                                   ": ask for the same, or remove it");
       trainer_->set_state(checkpoint_.state);
       take_extents();
       return;
     }
-    checkpoint_.minutes = minutes_of(goal);
+    checkpoint_.asked = goal.asked;
     checkpoint_.pictures = goal.pictures != 0 ? goal.pictures : steps_in(goal.minutes);
     checkpoint_.extents.resize(baked_.tree.size());
     give_extents();

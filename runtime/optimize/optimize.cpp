@@ -1,6 +1,7 @@
 #include "runtime/optimize/optimize.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 
 #include "runtime/base/error.h"
@@ -57,6 +58,15 @@ uint64_t most_at_once(const BakedScene& baked, const OptimizeGoal& goal, const B
                                             " Gaussians that learn at once, expected room for " +
                                             std::to_string(least) + " at least");
   return most;
+}
+
+std::string asked_text(const OptimizeGoal& goal) {
+  char text[48];
+  if (goal.pictures != 0)
+    std::snprintf(text, sizeof text, "from %u pictures", goal.pictures);
+  else
+    std::snprintf(text, sizeof text, "in %g minutes", goal.minutes);
+  return text;
 }
 
 void add_means(std::vector<HeldOut>& sums, const std::vector<HeldOut>& of, double share) {
@@ -187,10 +197,12 @@ OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Back
     throw Error(ErrorCode::unsupported,
                 kept + ": found a tree of another kind, expected a clustered one");
   if (baked.tree.size() < 2) return {};
+  OptimizeGoal whole = goal;
+  whole.asked = asked_text(goal);
   const uint64_t most = most_at_once(baked, goal, backend);
   if (most < baked.leaves.size())
-    return InParts(baked, goal, most, backend, kept, workers, progress).run();
-  return learn_scene(baked, {baked.leaves.size(), 0, 0}, goal, backend, kept, workers, progress);
+    return InParts(baked, whole, most, backend, kept, workers, progress).run();
+  return learn_scene(baked, {baked.leaves.size(), 0, 0}, whole, backend, kept, workers, progress);
 }
 
 // About half a merged node a leaf has its numbers and two moments of each, three times: in the

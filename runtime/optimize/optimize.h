@@ -21,6 +21,7 @@ struct OptimizeGoal {
   double minutes = 0;
   uint64_t memory = 0;     // bytes of the host's that this may take beside the scene; 0: any number
   uint32_t held_out = 24;  // views
+  std::string asked{};     // as messages say what was asked for in all; optimize_nodes() sets it
   double keep_milliseconds = 60000;  // between one time that what was learned is kept and the next
   // In the scene's world: up to half of the views are from near them (training_views.h). May be
   // none.

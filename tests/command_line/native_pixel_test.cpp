@@ -128,7 +128,7 @@ TEST_F(NativePixelCommand, AntialiasedPicturesAreNearerToTheTruth) {
   EXPECT_LT(4 * on, off);
 }
 
-// As files of 0.3 are: the truth is not known of them.
+// Of files of version 4 the truth is not known.
 TEST_F(NativePixelCommand, ATruthTakesANativePixel) {
   bake(file("c.ply") + " --native-pixel 0.05");
   const std::string whole = file_bytes(file("o.voy"));
@@ -148,8 +148,8 @@ TEST_F(NativePixelCommand, ATruthTakesANativePixel) {
   EXPECT_EQ(run(render).exit_code, 0);
   const Outcome refused = run(render + " --supersample 4");
   EXPECT_EQ(refused.exit_code, 2) << refused.output;
-  EXPECT_NE(refused.output.find("--supersample: found a scene of which no native pixel is known, "
-                                "expected one: bake it anew"),
+  EXPECT_NE(refused.output.find("o.voy: found no native pixel, expected one, without which the "
+                                "truth of the scene is not known: bake it anew"),
             std::string::npos)
       << refused.output;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "runtime/cpu/cpu_backend.h"
@@ -413,59 +414,71 @@ TEST(Optimize, PartsHaveEveryMergedNodeOnce) {
   }
 }
 
+TEST(Optimize, TheMarkTellsScenesCamerasAndDevicesApart) {
+  const BakedScene baked = test::bake(test::specks(300, 7, 1));
+  const uint64_t mark = mark_of(baked, {}, "device");
+  EXPECT_EQ(mark_of(BakedScene(baked), {}, "device"), mark);
+  const TrainingCamera camera{};
+  EXPECT_NE(mark_of(baked, {&camera, 1}, "device"), mark);
+  EXPECT_NE(mark_of(baked, {}, "another"), mark);
+  const auto changed = [&](const auto& change) {
+    BakedScene other = baked;
+    change(other);
+    return mark_of(other, {}, "device");
+  };
+  EXPECT_NE(changed([](BakedScene& s) { s.tree.records[0].extent *= 2; }), mark);
+  EXPECT_NE(changed([](BakedScene& s) { s.node_code.back() ^= 1; }), mark);
+  EXPECT_NE(changed([](BakedScene& s) { s.leaves.native.pixel *= 2; }), mark);
+  EXPECT_NE(changed([](BakedScene& s) { s.leaves.native.low_pass *= 2; }), mark);
+  for (GaussianCloud BakedScene::*cloud : {&BakedScene::leaves, &BakedScene::merged})
+    for (auto GaussianCloud::*values :
+         {&GaussianCloud::position, &GaussianCloud::log_scale, &GaussianCloud::rotation,
+          &GaussianCloud::opacity, &GaussianCloud::sh})
+      EXPECT_NE(changed([&](BakedScene& s) { (s.*cloud.*values)[1] += 0.5f; }), mark);
+}
+
 TEST(Optimize, WhatWasLearnedOfSomethingElseOrWasAlteredIsRefused) {
   const test::TempFolder folder;
-  const std::string kept = folder.file("kept"), device = create_cpu_backend()->device_name();
+  const std::string kept = folder.file("kept");
   const BakedScene baked = test::bake(test::specks(300, 7, 0));
-  const auto mark = [&](const BakedScene& scene) { return mark_of(scene, {}, device); };
-  const auto keep = [&](double minutes) {
-    Checkpoint checkpoint;
-    checkpoint.pictures = 5;
-    checkpoint.minutes = minutes;
-    checkpoint.extents.resize(baked.tree.size());
-    write_checkpoint(checkpoint, mark(baked), kept);
-  };
-  const auto refusal = [&](const BakedScene& scene, const OptimizeGoal& goal) {
+  struct Stop {};
+  const auto run = [&](const BakedScene& scene, OptimizeGoal goal, bool stops) {
     Workers workers;
     const auto backend = create_cpu_backend();
     BakedScene copy = scene;
+    goal.held_out = 1;
+    goal.keep_milliseconds = 0;
+    optimize_nodes(copy, goal, *backend, kept, workers, [&](const char*, uint64_t done, uint64_t) {
+      if (stops && done == 1) throw Stop{};
+    });
+  };
+  const auto refusal = [&](const BakedScene& scene, const OptimizeGoal& goal) {
     try {
-      optimize_nodes(copy, goal, *backend, kept, workers);
+      run(scene, goal, false);
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ErrorCode::refused_input);
       return std::string(error.what());
     }
     return std::string("nothing");
   };
-  keep(0);
+  const std::string found = kept + ": found what is learned ",
+                    end = ": ask for the same, or remove it";
+  EXPECT_THROW(run(baked, {.minutes = 0.01}, true), Stop);
+  EXPECT_EQ(refusal(baked, {.minutes = 2}), found + "in 0.01 minutes, expected in 2 minutes" + end);
+  EXPECT_EQ(refusal(baked, {.pictures = 5}),
+            found + "in 0.01 minutes, expected from 5 pictures" + end);
+  std::filesystem::remove(kept);
+
+  EXPECT_THROW(run(baked, {.pictures = 5}, true), Stop);
+  EXPECT_EQ(refusal(baked, {.pictures = 6}),
+            found + "from 5 pictures, expected from 6 pictures" + end);
   EXPECT_EQ(refusal(test::bake(test::specks(300, 8, 0)), {.pictures = 5}),
             kept +
                 ": found what was learned of another scene, by another device, with other "
                 "--training-cameras or another --memory, expected this one: remove it, and "
                 "learning starts anew");
-  const TrainingCamera camera{};
-  EXPECT_NE(mark_of(baked, {&camera, 1}, device), mark(baked));
-  EXPECT_NE(mark_of(baked, {}, "another"), mark(baked));
-  BakedScene turned = baked;
-  turned.merged.rotation[1] += 0.1f;
-  EXPECT_NE(mark(turned), mark(baked));
-  BakedScene sharper = baked;
-  sharper.leaves.native.pixel *= 0.5;
-  EXPECT_NE(mark(sharper), mark(baked));
-
-  const std::string found = kept + ": found what is learned ",
-                    end = ": ask for the same, or remove it";
-  EXPECT_EQ(refusal(baked, {.pictures = 6}),
-            found + "from 5 pictures, expected from 6 pictures" + end);
-  EXPECT_EQ(refusal(baked, {.minutes = 2}), found + "from 5 pictures, expected in 2 minutes" + end);
-  keep(1.5);
-  EXPECT_EQ(refusal(baked, {.minutes = 2}), found + "in 1.5 minutes, expected in 2 minutes" + end);
-  EXPECT_EQ(refusal(baked, {.pictures = 5}),
-            found + "in 1.5 minutes, expected from 5 pictures" + end);
-
-  keep(0);
   std::fstream file(kept, std::ios::binary | std::ios::in | std::ios::out);
-  file.seekp(48);
+  file.seekp(60);
   file.put('\x5a');
   file.close();
   const std::string altered = refusal(baked, {.pictures = 5});

@@ -146,6 +146,7 @@ BakeSummary bake_in_memory(const BakeArguments& arguments, const NativeChoice& n
   BakeSummary summary = write_baked(arguments, baked, workers, progress);
   if (arguments.refine != 0) ::unlink(written_path(kept).c_str());
   if (arguments.optimize.wanted()) {
+    // The last one first: what is left where this is killed is found again.
     const std::vector<std::string> files = kept_files(learned);
     std::for_each(files.rbegin(), files.rend(),
                   [](const std::string& file) { ::unlink(written_path(file).c_str()); });

@@ -537,8 +537,8 @@ typedef struct VoyStreamingStats {
   uint64_t missingChunks;     /* needed but not resident */
   uint64_t missingBytes;      /* size of missingChunks in the file */
   uint64_t seenChunks;        /* needed and inside an eye's frustum plus the margin */
-  uint64_t seenMissingChunks; /* seen but not resident, as of the last plan; 0: nothing is shown coarser
-                                 than asked */
+  uint64_t seenMissingChunks; /* seen but not resident, as of the last plan. 0: nothing is shown
+                                 coarser than asked */
   uint64_t requestedChunks,   /* handed to the reader threads; one that comes again counts again */
       arrivedChunks;          /* that became resident */
   uint64_t lateChunks;        /* arrived after a frame had needed them */
