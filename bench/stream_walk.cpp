@@ -1,5 +1,6 @@
 // A walk through a streamed scene at the pace of a headset: what each frame took, and what it
-// showed coarser than τ. Then whoever walks stands still for three seconds and turns round.
+// showed coarser than τ. Then whoever walks stands still for three seconds, turns round, and stands
+// still until nothing is coarser than τ.
 //   stream_walk SCENE CAMERAS.json MEGABYTES [FPS] [WxH] [TAU] [SECONDS] [READERS]
 // The cameras are a path that is walked at 1.4 m a second of its length, back and forth.
 #include <algorithm>
@@ -97,12 +98,16 @@ struct Turn {
   bool ended_whole = false;
 };
 
-// Three seconds of standing, half a second for 180 degrees, and three seconds of standing.
+// Three seconds of standing, half a second for 180 degrees, and standing: three seconds, or until
+// all was whole for a second, but twenty at most.
 Turn turn_round(voyager::bench::StreamedView& streamed, const Camera& from, double fps) {
   Turn found;
   const auto standing = static_cast<size_t>(3 * fps), turning = static_cast<size_t>(fps / 2);
+  const auto most = standing + turning + static_cast<size_t>(20 * fps);
+  size_t whole = 0;  // frames on end
   auto next = Clock::now(), ended = next;
-  for (size_t i = 0; i <= 2 * standing + turning; ++i) {
+  for (size_t i = 0; i <= 2 * standing + turning || (static_cast<double>(whole) < fps && i < most);
+       ++i) {
     const double share =
         static_cast<double>(i - std::min(i, standing)) / static_cast<double>(turning);
     const auto begun = Clock::now();
@@ -114,6 +119,7 @@ Turn turn_round(voyager::bench::StreamedView& streamed, const Camera& from, doub
       found.search.push_back(stats.milliseconds[VOY_STAGE_SEARCH]);
     }
     found.ended_whole = is_whole(stats, streamed.scene.streaming_stats());
+    whole = found.ended_whole ? whole + 1 : 0;
     if (i == standing + turning) ended = Clock::now();
     if (i > standing && !found.ended_whole) {
       (i > standing + turning ? found.coarse_after : found.coarse_turning)++;
