@@ -71,8 +71,9 @@ class Learning {
 
   OptimizeSummary run(const OptimizeGoal& goal) {
     OptimizeSummary summary;
+    const bool goes_on = read_kept(goal);
     summary.before = held_out_.look(*trainer_);
-    start(goal);
+    goes_on ? go_on() : begin(goal);
     learn(goal.keep_milliseconds, summary.before);
     summary.pictures = checkpoint_.pictures;
     calibrate();
@@ -82,17 +83,21 @@ class Learning {
   }
 
  private:
-  // Where it was left, or at the beginning.
-  void start(const OptimizeGoal& goal) {
-    if (read_checkpoint(mark_, kept_, checkpoint_)) {
-      if (checkpoint_.asked != goal.asked)
-        throw Error(ErrorCode::refused_input, kept_ + ": found what is learned " +
-                                                  checkpoint_.asked + ", expected " + goal.asked +
-                                                  ": ask for the same, or remove it");
-      trainer_->set_state(checkpoint_.state);
-      take_extents();
-      return;
-    }
+  // False where nothing was kept. Refuses before anything is drawn.
+  bool read_kept(const OptimizeGoal& goal) {
+    if (!read_checkpoint(mark_, kept_, checkpoint_)) return false;
+    if (checkpoint_.asked == goal.asked) return true;
+    throw Error(ErrorCode::refused_input, kept_ + ": found what is learned " + checkpoint_.asked +
+                                              ", expected " + goal.asked +
+                                              ": ask for the same, or remove it");
+  }
+
+  void go_on() {
+    trainer_->set_state(checkpoint_.state);
+    take_extents();
+  }
+
+  void begin(const OptimizeGoal& goal) {
     checkpoint_.asked = goal.asked;
     checkpoint_.pictures = goal.pictures != 0 ? goal.pictures : steps_in(goal.minutes);
     checkpoint_.extents.resize(baked_.tree.size());

@@ -1,5 +1,6 @@
 // Scenes streamed from a server: a real one, which goes and comes back, and one that answers as a
 // test says.
+#include <chrono>
 #include <filesystem>
 #include <optional>
 
