@@ -2,6 +2,7 @@
 // Device memory with an owner.
 #include <atomic>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -10,9 +11,29 @@
 
 namespace voyager::cuda {
 
-// Of all buffers that are there: what tests of omissions count, since a device's free memory is
+// Of all allocations that are there: what tests of omissions count, since a device's free memory is
 // other processes', too.
 inline std::atomic<size_t> buffer_bytes{0};
+
+class Allocation {
+ public:
+  explicit Allocation(size_t bytes) : bytes_(bytes) {
+    check(cudaMalloc(&data_, bytes), "allocation");
+    buffer_bytes += bytes_;
+  }
+  Allocation(const Allocation&) = delete;
+  Allocation& operator=(const Allocation&) = delete;
+  ~Allocation() {
+    buffer_bytes -= bytes_;  // first: cudaFree() waits for the device
+    cudaFree(data_);
+  }
+
+  unsigned char* data() const { return static_cast<unsigned char*>(data_); }
+
+ private:
+  void* data_ = nullptr;
+  size_t bytes_;
+};
 
 template <class T>
 class Buffer {
@@ -20,40 +41,72 @@ class Buffer {
   Buffer() = default;
   explicit Buffer(size_t count) : count_(count) {
     if (count == 0) return;
-    check(cudaMalloc(&data_, count * sizeof(T)), "allocation");
-    buffer_bytes += bytes();
+    memory_ = std::make_shared<const Allocation>(count * sizeof(T));
+    data_ = reinterpret_cast<T*>(memory_->data());
+  }
+  // Of an allocation that others have a part of, from byte `at` on.
+  Buffer(std::shared_ptr<const Allocation> memory, size_t at, size_t count) : count_(count) {
+    if (count == 0) return;
+    memory_ = std::move(memory);
+    data_ = reinterpret_cast<T*>(memory_->data() + at);
   }
   Buffer(Buffer&& other) noexcept
-      : data_(std::exchange(other.data_, nullptr)), count_(std::exchange(other.count_, 0)) {}
+      : memory_(std::move(other.memory_)),
+        data_(std::exchange(other.data_, nullptr)),
+        count_(std::exchange(other.count_, 0)) {}
   Buffer& operator=(Buffer&& other) noexcept {
+    std::swap(memory_, other.memory_);
     std::swap(data_, other.data_);
     std::swap(count_, other.count_);
     return *this;
   }
-  ~Buffer() {
-    if (data_ == nullptr) return;
-    buffer_bytes -= bytes();  // first: cudaFree() waits for the device
-    cudaFree(data_);
-  }
 
-  T* data() const { return static_cast<T*>(data_); }
+  T* data() const { return data_; }
   size_t size() const { return count_; }
   size_t bytes() const { return count_ * sizeof(T); }
 
  private:
-  void* data_ = nullptr;
+  std::shared_ptr<const Allocation> memory_;
+  T* data_ = nullptr;
   size_t count_ = 0;
 };
+
+template <class T>
+struct ToAllocate {
+  Buffer<T>& buffer;
+  size_t count;
+};
+template <class T>
+ToAllocate(Buffer<T>&, size_t) -> ToAllocate<T>;
+
+// Arrays that live and go together, in one allocation: a device gives memory in steps of 2 MB.
+template <class... T>
+void allocate_together(const ToAllocate<T>&... arrays) {
+  constexpr size_t kAlignment = 256;  // as cudaMalloc()'s
+  size_t bytes = 0;
+  const auto place = [&](size_t of) {
+    return std::exchange(bytes, bytes + (of + kAlignment - 1) / kAlignment * kAlignment);
+  };
+  const size_t places[] = {place(arrays.count * sizeof(T))...};
+  if (bytes == 0) return;
+  const auto memory = std::make_shared<const Allocation>(bytes);
+  const size_t* next = places;
+  ((arrays.buffer = Buffer<T>(memory, *next++, arrays.count)), ...);
+}
 
 // Copies and fills go through the default stream, which the streams of frames do not
 // wait for: so these wait for it, and are complete when they return.
 template <class T>
-Buffer<T> upload(std::span<const T> values) {
-  Buffer<T> buffer(values.size());
-  if (values.empty()) return buffer;
-  check(cudaMemcpy(buffer.data(), values.data(), values.size_bytes(), cudaMemcpyHostToDevice),
+void upload(std::span<const T> values, const Buffer<T>& into) {
+  if (values.empty()) return;
+  check(cudaMemcpy(into.data(), values.data(), values.size_bytes(), cudaMemcpyHostToDevice),
         "upload");
   check(cudaStreamSynchronize(nullptr), "upload");
+}
+template <class T>
+Buffer<T> upload(std::span<const T> values) {
+  Buffer<T> buffer(values.size());
+  upload(values, buffer);
   return buffer;
 }
 

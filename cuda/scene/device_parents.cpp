@@ -7,35 +7,48 @@
 #include "runtime/frame/scene_gaussians.h"
 
 namespace voyager::cuda {
+namespace {
 
-DeviceParents::DeviceParents(const Scene& scene)
-    : opacities_(upload_made<float>(scene.gaussians.size(),
-                                    [&](size_t i) { return scene.gaussians[i].opacity; })),
-      node_codes_(footprints_differ(scene) ? Buffer<uint8_t>()
-                                           : upload(std::span<const uint8_t>(scene.node_code))) {
-  set_families(scene.tree.parent);
-  if (is_coded(scene)) {
+struct Families {
+  std::vector<RunBlock> blocks;
+  std::vector<uint32_t> parents;
+};
+
+Families families_of(const std::pmr::vector<uint32_t>& parent) {
+  Families found{std::vector<RunBlock>((parent.size() + 31) / 32), {}};
+  for (size_t n = 0; n < parent.size(); ++n) {
+    if (n != 0 && parent[n] == parent[n - 1]) continue;
+    found.blocks[n / 32].starts |= 1u << n % 32;
+    found.parents.push_back(parent[n]);
+  }
+  number_runs(found.blocks);
+  return found;
+}
+
+}  // namespace
+
+DeviceParents::DeviceParents(const Scene& scene) {
+  const Families families = families_of(scene.tree.parent);
+  const bool coded = is_coded(scene);
+  allocate_together(ToAllocate{parents_, families.parents.size()},
+                    ToAllocate{families_, families.blocks.size()},
+                    ToAllocate{opacities_, scene.gaussians.size()},
+                    ToAllocate{node_codes_, footprints_differ(scene) ? 0 : scene.node_code.size()},
+                    ToAllocate{child_counts_, coded ? 0 : scene.tree.parent.size()},
+                    ToAllocate{large_families_, coded ? scene.large_families.size() : 0},
+                    ToAllocate{large_family_count_, coded ? size_t{1} : 0});
+  upload<uint32_t>(families.parents, parents_);
+  upload<RunBlock>(families.blocks, families_);
+  upload_made(opacities_, [&](size_t i) { return scene.gaussians[i].opacity; });
+  if (node_codes_.size() != 0) upload<uint8_t>(scene.node_code, node_codes_);
+  if (coded) {
     const auto count = static_cast<uint32_t>(scene.large_families.size());
-    large_families_ = upload(std::span<const LargeFamily>(scene.large_families));
-    large_family_count_ = upload(std::span<const uint32_t>(&count, 1));
+    upload<LargeFamily>(scene.large_families, large_families_);
+    upload<uint32_t>({&count, 1}, large_family_count_);
     return;
   }
   const NodeLinks links = node_links(scene);
-  child_counts_ = upload_made<uint32_t>(
-      scene.tree.parent.size(), [&](size_t i) { return links.children(static_cast<uint32_t>(i)); });
-}
-
-void DeviceParents::set_families(const std::pmr::vector<uint32_t>& parent) {
-  std::vector<RunBlock> blocks((parent.size() + 31) / 32);
-  std::vector<uint32_t> parents;
-  for (size_t n = 0; n < parent.size(); ++n) {
-    if (n != 0 && parent[n] == parent[n - 1]) continue;
-    blocks[n / 32].starts |= 1u << n % 32;
-    parents.push_back(parent[n]);
-  }
-  number_runs(blocks);
-  parents_ = upload(std::span<const uint32_t>(parents));
-  families_ = upload(std::span<const RunBlock>(blocks));
+  upload_made(child_counts_, [&](size_t i) { return links.children(static_cast<uint32_t>(i)); });
 }
 
 void DeviceParents::add_to(GaussianView& gaussians) const {

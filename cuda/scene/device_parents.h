@@ -17,8 +17,6 @@ class DeviceParents {
   static uint64_t bytes(const Scene& scene);
 
  private:
-  void set_families(const std::pmr::vector<uint32_t>& parent);
-
   // A parent a family, and which family a node is of.
   Buffer<uint32_t> parents_;
   Buffer<RunBlock> families_;

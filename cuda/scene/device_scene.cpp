@@ -46,12 +46,14 @@ void DeviceScene::upload_codes(const Device& device, const Scene& scene) {
   std::vector<ShStepSizes> steps;
   for (const ShScales& scales : scene.sh_scales) steps.push_back(step_sizes(scales));
   const size_t count = scene.shapes.size();
-  hulls_ = upload_made<float4>(
-      count, [&](size_t i) { return coded_hull(scene.means[i], scene.shapes[i]); });
-  shape_codes_ = upload_made<ShapeRest>(count, [&](size_t i) { return scene.shapes[i].rest; });
-  sh_rows_ = upload(std::span<const uint8_t>(scene.sh_rows));
-  sh_steps_ = upload(std::span<const ShStepSizes>(steps));
-  sh_blocks_ = upload(std::span<const RunBlock>(scene.sh_blocks));
+  allocate_together(ToAllocate{hulls_, count}, ToAllocate{shape_codes_, count},
+                    ToAllocate{sh_rows_, scene.sh_rows.size()}, ToAllocate{sh_steps_, steps.size()},
+                    ToAllocate{sh_blocks_, scene.sh_blocks.size()});
+  upload_made(hulls_, [&](size_t i) { return coded_hull(scene.means[i], scene.shapes[i]); });
+  upload_made(shape_codes_, [&](size_t i) { return scene.shapes[i].rest; });
+  upload<uint8_t>(scene.sh_rows, sh_rows_);
+  upload<ShStepSizes>(steps, sh_steps_);
+  upload<RunBlock>(scene.sh_blocks, sh_blocks_);
   tables_ = device.code_tables();
   view_.shapes = shape_codes_.data();
   view_.coefficients = sh_rows_.data();
@@ -62,13 +64,20 @@ void DeviceScene::upload_codes(const Device& device, const Scene& scene) {
 }
 
 void DeviceScene::upload_floats(const Scene& scene, Workers& workers) {
-  hulls_ = upload_made<float4>(scene.gaussians.size(),
-                               [&](size_t i) { return device_hull(scene.gaussians[i]); });
-  shapes_ = upload_made<float4>(2 * scene.gaussians.size(), [&](size_t i) {
-    return device_shape(scene.gaussians[i / 2], i % 2);
-  });
-  const bool half = upload_coefficients(scene, workers);
-  if (footprints_differ(scene)) node_codes_ = upload(std::span<const uint8_t>(scene.node_code));
+  const size_t count = scene.gaussians.size();
+  const bool half = fits_binary16(scene, workers);
+  const size_t stride = 8 * static_cast<size_t>(half_sh_words(scene.sh_degree));
+  allocate_together(ToAllocate{hulls_, count}, ToAllocate{shapes_, 2 * count},
+                    ToAllocate{half_coefficients_, half ? count * stride : 0},
+                    ToAllocate{coefficients_, half ? 0 : scene.sh.size()},
+                    ToAllocate{node_codes_, footprints_differ(scene) ? scene.node_code.size() : 0});
+  upload_made(hulls_, [&](size_t i) { return device_hull(scene.gaussians[i]); });
+  upload_made(shapes_, [&](size_t i) { return device_shape(scene.gaussians[i / 2], i % 2); });
+  if (half)
+    upload_half_coefficients(scene, workers);
+  else
+    upload<float>(scene.sh, coefficients_);
+  if (node_codes_.size() != 0) upload<uint8_t>(scene.node_code, node_codes_);
   view_.shapes = shapes_.data();
   view_.node_codes = node_codes_.data();
   view_.coefficients =
@@ -76,14 +85,9 @@ void DeviceScene::upload_floats(const Scene& scene, Workers& workers) {
   view_.sh_form = half ? ShForm::half : ShForm::single;
 }
 
-bool DeviceScene::upload_coefficients(const Scene& scene, Workers& workers) {
-  if (!fits_binary16(scene, workers)) {
-    coefficients_ = upload(std::span<const float>(scene.sh));
-    return false;
-  }
+void DeviceScene::upload_half_coefficients(const Scene& scene, Workers& workers) {
   const size_t stride = 8 * static_cast<size_t>(half_sh_words(scene.sh_degree));
   const size_t count = scene.gaussians.size();
-  half_coefficients_ = Buffer<__half>(count * stride);
   std::vector<__half> staging(std::min(count, kUploadBlock) * stride);
   for (size_t first = 0; first < count; first += kUploadBlock) {
     const size_t n = std::min(kUploadBlock, count - first);
@@ -97,7 +101,6 @@ bool DeviceScene::upload_coefficients(const Scene& scene, Workers& workers) {
           "upload of a scene");
   }
   check(cudaStreamSynchronize(nullptr), "upload of a scene");
-  return true;
 }
 
 GaussianView DeviceScene::view() const {

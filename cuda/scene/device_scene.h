@@ -31,8 +31,7 @@ class DeviceScene {
  private:
   void upload_codes(const Device& device, const Scene& scene);
   void upload_floats(const Scene& scene, Workers& workers);
-  // Whether in binary16.
-  bool upload_coefficients(const Scene& scene, Workers& workers);
+  void upload_half_coefficients(const Scene& scene, Workers& workers);
 
   Buffer<float4> hulls_, shapes_;
   Buffer<__half> half_coefficients_;

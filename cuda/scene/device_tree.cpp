@@ -4,14 +4,20 @@
 
 namespace voyager::cuda {
 
-DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree)
-    : subtrees_(upload(std::span<const SearchSubtree>(search.subtrees))),
-      records_(upload(std::span<const SearchRecord>(search.records))),
-      chunks_(upload(std::span<const SearchChunk>(search.chunks))) {
-  if (search.leaves_have_extent) leaves_ = upload(std::span<const NodeRecord>(tree.records));
+DeviceTree::DeviceTree(const SearchTree& search, const LodTree& tree) {
   const OwnerRuns owners = make_owner_runs(search);
-  owner_runs_ = upload(std::span<const RunBlock>(owners.runs));
-  run_subtrees_ = upload(std::span<const uint32_t>(owners.subtrees));
+  allocate_together(ToAllocate{subtrees_, search.subtrees.size()},
+                    ToAllocate{records_, search.records.size()},
+                    ToAllocate{chunks_, search.chunks.size()},
+                    ToAllocate{leaves_, search.leaves_have_extent ? tree.records.size() : 0},
+                    ToAllocate{owner_runs_, owners.runs.size()},
+                    ToAllocate{run_subtrees_, owners.subtrees.size()});
+  upload<SearchSubtree>(search.subtrees, subtrees_);
+  upload<SearchRecord>(search.records, records_);
+  upload<SearchChunk>(search.chunks, chunks_);
+  if (search.leaves_have_extent) upload<NodeRecord>(tree.records, leaves_);
+  upload<RunBlock>(owners.runs, owner_runs_);
+  upload<uint32_t>(owners.subtrees, run_subtrees_);
   view_ = {subtrees_.data(),   {nullptr},       records_.data(),        nullptr,
            chunks_.data(),     leaves_.data(),  search.subtree_count(), search.subtree_count(),
            search.chunk_count, tree.blend_share};

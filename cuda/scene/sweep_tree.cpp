@@ -26,9 +26,11 @@ SweepTree::SweepTree(const LodTree& tree)
     words[w].families_before =
         before.families_before + static_cast<uint32_t>(std::popcount(before.first_children));
   }
-  low_ = upload(std::span<const float4>(low));
-  high_ = upload(std::span<const Vec3f>(high));
-  words_ = upload(std::span<const SweepWord>(words));
+  allocate_together(ToAllocate{low_, low.size()}, ToAllocate{high_, high.size()},
+                    ToAllocate{words_, words.size()});
+  upload<float4>(low, low_);
+  upload<Vec3f>(high, high_);
+  upload<SweepWord>(words, words_);
 }
 
 SweepView SweepTree::view() const {

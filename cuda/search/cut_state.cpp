@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "cuda/device/upload_made.h"
 #include "runtime/select/partitioned_blocks.h"
 
 namespace voyager::cuda {
@@ -74,26 +75,21 @@ uint64_t CutState::fixed_bytes(const SearchTree& tree) {
 CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most) {
   const Layout layout = make_layout(tree);
   const size_t blocks = layout.blocks.size();
-  blocks_ = upload(std::span<const Block>(layout.blocks));
-  tiers_ = upload(std::span<const Tier>(layout.tiers));
-  watch_ = upload(std::span<const Watch>(std::vector<Watch>(places, {INFINITY, 0})));
-  rows_ = Buffer<WatchRow>(blocks * kBlockRows);
-  refined_ = Buffer<uint32_t>(places);
-  cut_ = Buffer<uint32_t>(places);
-  stand_ins_ = Buffer<uint8_t>(tree.chunks_come_and_go ? places : 0);
-  segments_ = Buffer<Segment>(kLevels * blocks);
-  windows_ = Buffer<WindowPlaces>(SegmentWindows(static_cast<uint32_t>(segments_.size())).end());
-  open_counts_ = Buffer<uint32_t>(blocks);
-  open_blocks_ = Buffer<uint32_t>(blocks);
-  open_block_count_ = Buffer<uint32_t>(1);
-  dirty_flags_ = Buffer<uint32_t>(blocks);
-  dirty_ = Buffer<uint32_t>(blocks);
-  due_ = Buffer<uint32_t>(due);
-  signals_ = Buffer<uint32_t>(places);
-  counters_ = Buffer<FrameCounters>(2);  // counting, counted
-  const size_t room = most_places(tree, most);
-  nodes_ = Buffer<uint32_t>(room);
-  bounds_ = Buffer<MeanBounds>(room / kRowPlaces + 1);
+  const size_t segments = kLevels * blocks, room = most_places(tree, most);
+  allocate_together(ToAllocate{blocks_, blocks}, ToAllocate{tiers_, layout.tiers.size()},
+                    ToAllocate{watch_, places}, ToAllocate{rows_, blocks * kBlockRows},
+                    ToAllocate{refined_, places}, ToAllocate{cut_, places},
+                    ToAllocate{stand_ins_, tree.chunks_come_and_go ? places : 0},
+                    ToAllocate{segments_, segments},
+                    ToAllocate{windows_, SegmentWindows(static_cast<uint32_t>(segments)).end()},
+                    ToAllocate{open_counts_, blocks}, ToAllocate{open_blocks_, blocks},
+                    ToAllocate{open_block_count_, 1}, ToAllocate{dirty_flags_, blocks},
+                    ToAllocate{dirty_, blocks}, ToAllocate{due_, due}, ToAllocate{signals_, places},
+                    ToAllocate{counters_, 2},  // counting, counted
+                    ToAllocate{nodes_, room}, ToAllocate{bounds_, room / kRowPlaces + 1});
+  upload<Block>(layout.blocks, blocks_);
+  upload<Tier>(layout.tiers, tiers_);
+  upload_made(watch_, [](size_t) { return Watch{INFINITY, 0}; });
   for (const Buffer<uint32_t>* zero :
        {&refined_, &cut_, &open_counts_, &open_blocks_, &open_block_count_, &dirty_flags_, &dirty_})
     fill(*zero, 0);

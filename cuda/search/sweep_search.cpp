@@ -11,14 +11,12 @@ class SweepSearch final : public CutSearch {
  public:
   SweepSearch(std::shared_ptr<const Device> device, std::shared_ptr<const SweepTree> tree,
               const Scene& scene, bool weights)
-      : device_(std::move(device)),
-        tree_(std::move(tree)),
-        sizes_(tree_->view().records),
-        cut_((tree_->view().nodes + 31) / 32),
-        tiles_(sweep_tiles(tree_->view().nodes)),
-        counters_(1),
-        nodes_(scene.leaf_count),
-        weights_(weights ? scene.leaf_count : 0) {
+      : device_(std::move(device)), tree_(std::move(tree)) {
+    const SweepView view = tree_->view();
+    allocate_together(ToAllocate{sizes_, view.records}, ToAllocate{cut_, (view.nodes + 31) / 32},
+                      ToAllocate{tiles_, sweep_tiles(view.nodes)}, ToAllocate{counters_, 1},
+                      ToAllocate{nodes_, scene.leaf_count},
+                      ToAllocate{weights_, weights ? scene.leaf_count : 0});
     fill(cut_, 0);
     fill(tiles_, 0);
     fill(counters_, 0);
