@@ -3,6 +3,7 @@
 // still until nothing is coarser than τ.
 //   stream_walk SCENE CAMERAS.json MEGABYTES [FPS] [WxH] [TAU] [SECONDS] [READERS]
 // The cameras are a path that is walked at 1.4 m a second of its length, back and forth.
+// A frame counts as whole by the stream's last plan: what came into sight since is not counted.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/base/error.h"
 #include "streamed_view.h"
 
 namespace {
@@ -36,10 +38,13 @@ double distance(const Camera& a, const Camera& b) {
 // The path by its length; each camera's orientation holds until the next.
 class Path {
  public:
-  explicit Path(std::vector<Camera> cameras) : cameras_(std::move(cameras)) {
+  Path(std::vector<Camera> cameras, const std::string& file) : cameras_(std::move(cameras)) {
+    if (cameras_.size() < 2)
+      refuse(file, std::to_string(cameras_.size()) + " camera", "a path of at least two");
     at_.push_back(0);
     for (size_t i = 1; i < cameras_.size(); ++i)
       at_.push_back(at_.back() + distance(cameras_[i - 1], cameras_[i]));
+    if (!(at_.back() > 0)) refuse(file, "all cameras in one place", "a path longer than 0 metres");
   }
   Camera at(double metres) const {
     const double length = at_.back();
@@ -56,6 +61,12 @@ class Path {
   }
 
  private:
+  [[noreturn]] static void refuse(const std::string& file, const std::string& found,
+                                  const std::string& expected) {
+    throw voyager::Error(voyager::ErrorCode::refused_input,
+                         file + ": found " + found + ", expected " + expected);
+  }
+
   std::vector<Camera> cameras_;
   std::vector<double> at_;
 };
@@ -86,6 +97,8 @@ long peak_kilobytes() {
   return found;
 }
 
+// No fallback was drawn, or the stream's last plan found all resident that was seen then. What came
+// into sight since that plan is not counted.
 bool is_whole(const VoyFrameStats& frame, const VoyStreamingStats& streaming) {
   return frame.nodesUnrefined == 0 || streaming.seenMissingChunks == 0;
 }
@@ -147,7 +160,7 @@ int main(int argc, char** argv) try {
   const int readers = argc > 8 ? std::atoi(argv[8]) : 0;
   std::vector<Camera> cameras = voyager::tools::read_cameras(argv[2]);
   for (Camera& camera : cameras) camera = camera.resized(width, height);
-  const Path path(cameras);
+  const Path path(cameras, argv[2]);
 
   const auto first_of_all = Clock::now();
   const voy::Device device = voyager::bench::streaming_device(megabytes);

@@ -79,17 +79,20 @@ struct ToAllocate {
 template <class T>
 ToAllocate(Buffer<T>&, size_t) -> ToAllocate<T>;
 
-// Arrays that live and go together, in one allocation: a device gives memory in steps of 2 MB.
+inline constexpr size_t kAllocationAlignment = 256;  // as cudaMalloc()'s
+
+// Arrays that live and go together, in one allocation: a device gives memory in steps of 2 MB. Each
+// begins at a multiple of kAllocationAlignment.
 template <class... T>
 void allocate_together(const ToAllocate<T>&... arrays) {
-  constexpr size_t kAlignment = 256;  // as cudaMalloc()'s
   size_t bytes = 0;
   const auto place = [&](size_t of) {
-    return std::exchange(bytes, bytes + (of + kAlignment - 1) / kAlignment * kAlignment);
+    const size_t steps = (of + kAllocationAlignment - 1) / kAllocationAlignment;
+    return std::exchange(bytes, bytes + steps * kAllocationAlignment);
   };
   const size_t places[] = {place(arrays.count * sizeof(T))...};
-  if (bytes == 0) return;
-  const auto memory = std::make_shared<const Allocation>(bytes);
+  std::shared_ptr<const Allocation> memory;
+  if (bytes != 0) memory = std::make_shared<const Allocation>(bytes);
   const size_t* next = places;
   ((arrays.buffer = Buffer<T>(memory, *next++, arrays.count)), ...);
 }

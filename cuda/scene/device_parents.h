@@ -13,7 +13,7 @@ class DeviceParents {
   explicit DeviceParents(const Scene& scene);
 
   void add_to(GaussianView& gaussians) const;
-  // What a scene's take.
+  // Bytes of the arrays that the constructor makes for such a scene, without gaps between them.
   static uint64_t bytes(const Scene& scene);
 
  private:

@@ -23,7 +23,8 @@ constexpr double kFastest = 150;       // metres a second
 constexpr double kLongestFrame = 0.5;  // seconds
 // Of a new frame's velocity in the running mean.
 constexpr double kNewest = 0.25;
-// Slower than this a viewer stands: what it leans is not a way.
+// Slower than this, a viewer is taken to stand still: small movements of a head do not tell where
+// it will be.
 constexpr double kSlowest = 0.05;  // metres a second
 
 double length(const Vec3d& v) {

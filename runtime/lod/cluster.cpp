@@ -138,7 +138,8 @@ class Clustering {
     std::sort(pairs_.begin(), pairs_.end());
   }
 
-  // Three of ten pairs of a round the last one has found, too. Both are in the order of clusters.
+  // The last round has already measured about three of ten pairs. Both lists are in the order of
+  // clusters.
   void measure_pairs() {
     auto known = measured_.begin();
     for (Pair& pair : pairs_) {
@@ -149,8 +150,8 @@ class Clustering {
     measured_ = pairs_;
   }
 
-  // Of equally near ones those that follow it: where all are in one place, each has others near
-  // than the rest, so that many pairs are found in a round.
+  // Of equally near clusters it takes those that follow i in order; after the last comes the first.
+  // So clusters in one place do not all have the same neighbours, and a round makes many pairs.
   void add_nearest(uint32_t i) {
     float near[kNeighbours];
     uint32_t at[kNeighbours];
@@ -215,8 +216,8 @@ class Clustering {
   std::vector<float> x_, y_, z_, distance_;
 };
 
-// Of a cluster's two, those that are no better than it by much make way for their own: a node
-// between would hold a Gaussian that is drawn from few distances only.
+// A child whose pixel is at least this share of its parent's is replaced by its own two children,
+// until the parent has four. Such a child's Gaussian would be drawn from few distances only.
 constexpr double kWorthwhile = 0.5;
 class Flattening {
  public:

@@ -39,9 +39,11 @@ inline constexpr double kMinMergedScale = 1e-9;
 inline constexpr double kMinMergedRatio = 1e-8;
 
 // At least one child; finite Gaussians with scales in [1e-9, 1e18] m. The
-// opacity is Σ o·A / A(s) with the scale as the words will be activated. It is
-// finite: the parent's covariance is at least w·Σ of its heaviest child, whose
-// share w is ≥ 1/k, so the opacity grows by at most a factor k² from k children.
+// opacity is the sum of the weights / A(s) with the scale as the words will be
+// activated. With merge_weight() it is finite: the parent's covariance is at
+// least w·Σ of its heaviest child, whose share w is ≥ 1/k, so the opacity grows
+// by at most a factor k² from k children. Clustered trees weigh otherwise, and
+// replace this opacity by the stand-in's (summarise.cpp).
 // sh_out: coefficients * 3 floats; coefficients as of an SH degree up to 3.
 // Thread-safe; allocates nothing.
 Merged merge(std::span<const MergeInput> children, int coefficients, float* sh_out);

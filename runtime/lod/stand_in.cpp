@@ -11,17 +11,18 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kTolerance = 0.0045;  // code values × pixels, times 2τ + 1
 constexpr double kExtentOfPixel = 2 * kReferenceTau + 1;
-// Of a stand-in, times the root of what the pixel filter leaves of it. Above 1 it is cut off, and
-// so fills the gaps between its like; far above it swells (bench/NOTES.md).
+// The greatest opacity of a stand-in, times the root of the share that the pixel filter leaves of
+// it. Where α would be above 1 it is clamped, so that the stand-in fills the gaps to its
+// neighbours. Far above 1 the stand-in swells (bench/NOTES.md).
 constexpr double kMostOpacity = 1.1;
-// Code values, beside the contrast that was found: a group covers what none of its children does,
-// before what none was seen against.
+// Code values; its square is added to that of the contrast that was found. The parent also covers
+// places that no child covers, and the contrast to what is behind those was not measured.
 constexpr double kUnknownContrast = 0.1;
 constexpr int kRefinements = 4;
 constexpr double kLargestPixel = 1e29;  // metres; an extent stays finite in binary32
 
-// A Gaussian seen along an axis.
-struct Footprint {
+// A Gaussian projected along an axis.
+struct Outline {
   double u, v;        // centre
   double uu, uv, vv;  // covariance, blurred
   double determinant;
@@ -37,7 +38,7 @@ double determinant(double uu, double uv, double vv) {
   return std::max(uu * vv - uv * uv, 1e-14 * uu * vv);
 }
 
-void blur_by(double blur, Footprint& f) {
+void blur_by(double blur, Outline& f) {
   const double sharp = f.determinant;
   f.uu += blur;
   f.vv += blur;
@@ -45,22 +46,22 @@ void blur_by(double blur, Footprint& f) {
   f.peak *= std::sqrt(std::min(sharp / f.determinant, 1.0));
 }
 
-Footprint sharp_footprint(const Blob& blob, const Vec3d& centre, int axis, double own) {
+Outline sharp_outline(const Blob& blob, const Vec3d& centre, int axis, double own) {
   const int* at = kCovarianceAt[axis];
   const int u = kAcross[axis][0], v = kAcross[axis][1];
-  Footprint f{blob.mean[u] - centre[u],
-              blob.mean[v] - centre[v],
-              blob.covariance[at[0]] + own,
-              blob.covariance[at[1]],
-              blob.covariance[at[2]] + own,
-              0,
-              1};
+  Outline f{blob.mean[u] - centre[u],
+            blob.mean[v] - centre[v],
+            blob.covariance[at[0]] + own,
+            blob.covariance[at[1]],
+            blob.covariance[at[2]] + own,
+            0,
+            1};
   f.determinant = determinant(f.uu, f.uv, f.vv);
   return f;
 }
 
 // ∫ G_a G_b over the plane.
-double overlap(const Footprint& a, const Footprint& b) {
+double overlap(const Outline& a, const Outline& b) {
   const double uu = a.uu + b.uu, uv = a.uv + b.uv, vv = a.vv + b.vv;
   const double sum = determinant(uu, uv, vv);
   const double u = a.u - b.u, v = a.v - b.v;
@@ -71,7 +72,7 @@ double overlap(const Footprint& a, const Footprint& b) {
 }
 
 // The same of a and itself.
-double own_overlap(const Footprint& a) {
+double own_overlap(const Outline& a) {
   const double sum = determinant(2 * a.uu, 2 * a.uv, 2 * a.vv);
   if (!(sum > 0)) return 0;
   return 2 * kPi * a.peak * a.peak * std::sqrt(a.determinant / sum * a.determinant);
@@ -93,7 +94,7 @@ class Loss {
         3 * most * most * (group.contrast * group.contrast + kUnknownContrast * kUnknownContrast);
     for (int axis = 0; axis < kAxes; ++axis) {
       const auto seen = [&](const Blob& blob) {
-        return sharp_footprint(blob, group.parent.mean, axis, group.footprint);
+        return sharp_outline(blob, group.parent.mean, axis, group.footprint);
       };
       Sharp& sharp = sharp_[axis];
       sharp.parent = seen(group.parent);
@@ -133,7 +134,7 @@ class Loss {
 
  private:
   struct Sharp {
-    Footprint parent, child[kChildren];
+    Outline parent, child[kChildren];
   };
 
   const Group& group_;

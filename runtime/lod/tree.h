@@ -11,7 +11,7 @@
 //   - a node's box contains its children's boxes;
 //   - extent is ≥ 0, may be +inf, and never grows from parent to child (box nesting
 //     and this make size(child) ≤ size(parent) in binary32);
-//     the compatible choice, used by build.h: the box's longest side, 0 for a leaf;
+//     a tree built as HierarchicalGS does (tree_rule.h) has the box's longest side, 0 for a leaf;
 //   - everything is binary32 in scene-local metres; coordinates are finite, below 1e18.
 #include <cstdint>
 #include <memory_resource>

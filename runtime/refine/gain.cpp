@@ -59,7 +59,7 @@ struct Pixel {
 double gain_of(const Pixel& pixel, const Layer& own, const Layer& children) {
   const float t = pixel.transmittance, behind = t * own.transmittance;
   const Vec3f with_own = pixel.so_far + t * own.colour;
-  // By one who sees through: what lies behind, and what comes of it.
+  // The colour behind this node, from the finished picture; black if too little of it shows.
   const Vec3f back = behind > kLeastBehind ? (1 / behind) * (pixel.drawn - with_own) : Vec3f{};
   const Vec3f change =
       t * ((children.colour - own.colour) + (children.transmittance - own.transmittance) * back);

@@ -11,7 +11,9 @@ namespace voyager {
 namespace {
 
 constexpr double kNearest = 0.03, kFarthest = 0.45;  // of the scene's radius
-constexpr double kLowestRise = -1;  // sine of the elevation: a scene does not say what is up
+// Sine of the elevation: viewers also look from below. Up is -y (docs/conventions.md), but
+// looking only from above gained nothing (bench/NOTES.md, "Extents by looking").
+constexpr double kLowestRise = -1;
 constexpr size_t kSample = 1 << 16;
 
 // Half the diagonal of the box of the middle 96 % of the means on each axis, of an even sample.

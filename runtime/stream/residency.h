@@ -264,8 +264,8 @@ class Residency {
   std::vector<Climb> climb_;                  // scratch
   std::vector<uint32_t> asked_;               // by the last plan, the most urgent last
   std::vector<uint32_t> requests_, victims_;  // the first to go last
+  std::vector<uint32_t> leftovers_;           // as victims_, but they go where room is not short
   ShownChunks shown_;                         // of all viewers
-  std::vector<uint32_t> leftovers_;           // the same, and not because room is short
   std::deque<uint32_t> filled_;               // and not looked at by begin_arrivals()
   std::vector<uint32_t> waiting_;  // all that are filled before their parents are there, and others
   std::vector<uint32_t> free_slots_;

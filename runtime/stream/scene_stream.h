@@ -109,9 +109,10 @@ class SceneStream {
   // What a frame of `who` has shown, where it was wanted. Any thread.
   void tell_shown(const void* who, const ShownChunks& shown);
   // What has come becomes resident, as far as the stream's own threads have not seen to that
-  // between frames, and as far as two milliseconds suffice, or a tenth of the time from one call to
-  // the next. Frames that read the pool just now, and plans that are being made, put that off, for
-  // a tenth of a second; then the call waits for them to end. Any thread.
+  // between frames, and as far as a millisecond suffices, or a tenth of the time from one call to
+  // the next. Whoever holds the pool (frames that read it, a thread that links) puts that off for a
+  // tenth of a second; then the call waits for them to end. It never waits for a plan: one that is
+  // being made puts that off to the next call. Any thread.
   void commit();
   // All that comes becomes resident, until nothing more is to come. Throws Error(over_budget) where
   // what is seen does not fit, and unless `stand_in` what kept a chunk that is seen from coming:
@@ -153,7 +154,7 @@ class SceneStream {
   enum class PlanAsked : uint8_t { no, in_time, soon, at_once };
   static constexpr size_t kChangesKept = 64;
   static constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds
-  // How many chunks one commit links at most, and unlinks at most. The few take two milliseconds.
+  // How many chunks one commit links at most, and unlinks at most. The few take a millisecond.
   static constexpr size_t kFewChunks = 64, kAllChunks = SIZE_MAX;
 
   // Read, and not resident yet.

@@ -26,7 +26,8 @@ struct SceneStream::Commit {
   bool refused = false;             // one of those that arrive
 };
 
-// A frame waits two milliseconds, or a tenth of the seconds from one to the next.
+// Chunks that a frame links at most. That takes a millisecond, or at most a tenth of the seconds
+// from one frame to the next.
 size_t SceneStream::most_for_frame(double seconds) {
   constexpr double kLinksASecond = 4000;
   return std::max(kFewChunks, static_cast<size_t>(kLinksASecond * std::clamp(seconds, 0.0, 1.0)));

@@ -39,6 +39,8 @@ void add_native_options(CLI::App& command, BakeArguments& arguments) {
       .add_option("--training-cameras", arguments.training_cameras,
                   "Find it from the cameras that the scene was trained with: a cameras.json of "
                   "INRIA, a model of COLMAP (its folder), or a transforms.json of nerfstudio. "
+                  "Pictures wider than 1600 pixels are assumed to have been trained at that width; "
+                  "if they were trained at full size, give --native-pixel instead. "
                   "--optimize then learns up to half of its pictures from near them")
       ->type_name("PATH")
       ->excludes(pixel);

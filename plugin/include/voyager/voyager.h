@@ -234,7 +234,9 @@ typedef struct VoyDeviceDesc {
    * GPU of another vendor. The other backends return VOY_ERROR_NO_DEVICE if the UUID is not
    * theirs. */
   const uint8_t* deviceUuid;
-  /* Bytes of host memory that scene data may take, over all scenes of this device. 0: no limit. */
+  /* Bytes of host memory that scene data may take, over all scenes of this device. 0: no limit.
+   * It leaves out the directory of a streamed scene and, on CUDA, what the host keeps of one beside
+   * the GPU, such as the links between chunks. docs/streaming.md tells how much that is. */
   uint64_t hostMemoryBudget;
   /* Bytes of CUDA device memory that streamed scenes may take, with what views keep of them. 0: no
    * limit. Scenes that are loaded whole are copied to the device without counting here. Other
@@ -358,11 +360,12 @@ typedef struct VoySceneStreaming {
   /* Bytes that the scene may take in the memory that it is drawn from. They are part of
    * VoyDeviceDesc.hostMemoryBudget, or of deviceMemoryBudget on CUDA. 0, or more than is left
    * there: all that is left there.
-   * What counts is the memory for chunks, the tables that link them, and what each view keeps of
-   * each instance of the scene between frames. From the start there is room for one instance; for
-   * more of them voyCreateView and voySetViewInstances leave less to chunks. What a frame makes
-   * anew does not count (images, splats, lists of what is drawn), nor what the host keeps of a file
-   * beside that; docs/streaming.md tells how much that is. */
+   * What counts is the memory for chunks, the tables of their subtrees, on the CPU the links
+   * between chunks, and what each view keeps of each instance of the scene between frames. From the
+   * start there is room for one instance; for more of them voyCreateView and voySetViewInstances
+   * leave less to chunks. What a frame makes anew does not count (images, splats, lists of what is
+   * drawn), nor what the host keeps of a file beside that, which on CUDA includes the links;
+   * docs/streaming.md tells how much that is. */
   uint64_t memoryBudget;
   /* NULL, or where the first frames look from: x, y, z in the scene's own axes, metres, each below
    * 1e18 in magnitude. Like VoySceneInfo.boundsMin, it includes the scene's origin. voyOpenScene
@@ -537,8 +540,9 @@ typedef struct VoyStreamingStats {
   uint64_t missingChunks;     /* needed but not resident */
   uint64_t missingBytes;      /* size of missingChunks in the file */
   uint64_t seenChunks;        /* needed and inside an eye's frustum plus the margin */
-  uint64_t seenMissingChunks; /* seen but not resident, as of the last plan. 0: nothing is shown
-                                 coarser than asked */
+  uint64_t seenMissingChunks; /* seen but not resident, as of the last plan. 0: of what was in
+                                 sight then, nothing is shown coarser than asked. What came into
+                                 sight since is not counted */
   uint64_t requestedChunks,   /* handed to the reader threads; one that comes again counts again */
       arrivedChunks;          /* that became resident */
   uint64_t lateChunks;        /* arrived after a frame had needed them */

@@ -25,7 +25,7 @@ std::vector<TrainingCamera> cameras_of(const synth::CityDesc& desc) {
   return tools::read_training_cameras(folder.file("cameras.json"));
 }
 
-// VoyNativeSource says so.
+// VoyNativePixelSource says so.
 TEST(NativePixelEstimate, IsWithinAFactorOfThreeOfWhatTheCamerasSaw) {
   for (const uint64_t gaussians : {10000u, 20000u, 40000u, 100000u})
     for (const uint64_t seed : {1u, 2u}) {
