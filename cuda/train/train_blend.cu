@@ -43,11 +43,6 @@ __device__ float warp_sums(float (&v)[8], uint32_t lane) {
   sum += __shfl_xor_sync(kAllLanes, sum, 1);
   return sum;
 }
-__device__ float warp_sum(float v) {
-#pragma unroll
-  for (int offset = 16; offset != 0; offset /= 2) v += __shfl_xor_sync(kAllLanes, v, offset);
-  return v;
-}
 
 __device__ PixelAdjoint<float> adjoint_at(const TrainPictures& pictures, uint32_t pixel) {
   const float4 drawn = __ldg(pictures.drawn + pixel), truth = __ldg(pictures.truth + pixel);

@@ -115,7 +115,7 @@ __global__ void __launch_bounds__(kThreads) train_update(UpdateParams p, bool pa
 
 }  // namespace
 
-// Parents first: their children's own numbers are then as they were drawn.
+// In any order: gradients are found, and no node reads what another moves.
 void launch_train_update(const SplatFrame& f, const float* gradients, const TrainedArrays& arrays,
                          const LearningRates& rates) {
   const unsigned resident = resident_blocks<train_update, kThreads>();

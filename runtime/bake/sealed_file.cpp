@@ -43,8 +43,11 @@ void check_kind(const std::string& path, uint64_t kind, const std::string& conte
   const auto source = open_file_source(path);
   uint64_t found = 0;
   if (source->size() >= sizeof found) source->read(0, std::as_writable_bytes(std::span(&found, 1)));
-  if (found != kind)
-    refuse(path, "a file that no bake has written", content, "give another -o, or move it away");
+  if (found == kind) return;
+  constexpr uint64_t kName = 0xffffffffffff;  // six letters; the version follows
+  if ((found & kName) == (kind & kName))
+    refuse(path, content + " by another version", "this version's", "remove it to begin anew");
+  refuse(path, "a file that no bake has written", content, "give another -o, or move it away");
 }
 
 void refuse_folder(const std::string& path, const std::string& found, const std::string& expected) {

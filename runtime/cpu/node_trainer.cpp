@@ -246,8 +246,8 @@ TrainingError HostTrainer::step(const TrainingView& view, const LearningRates& r
   const ProjectParams projection = params(view);
   const TrainPicture picture(projection, arrays(), cut_, workers_);
   const std::vector<TrainPixel>& truth = kept_truth(view);
-  const std::vector<TrainSums> sums =
-      picture.adjoint(truth, loss_weight(view, picture.squares(truth)), workers_);
+  const double squares = picture.squares(truth);
+  const std::vector<TrainSums> sums = picture.adjoint(truth, loss_weight(view, squares), workers_);
   std::vector<Drawn> drawn(cut_.size());
   workers_.for_blocks(cut_.size(), kGradientsBlock, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
@@ -271,7 +271,7 @@ TrainingError HostTrainer::step(const TrainingView& view, const LearningRates& r
       move(parent, items.subspan(i, last - i), of.subspan(i, last - i), true, rates);
     }
   });
-  return {picture.squares(truth), static_cast<uint32_t>(cut_.size())};
+  return {squares, static_cast<uint32_t>(cut_.size())};
 }
 
 std::vector<NodeError> HostTrainer::node_errors(const TrainingView& view) {

@@ -11,7 +11,8 @@
 namespace voyager {
 namespace {
 
-constexpr uint64_t kKind = 0x35696d6974706f;  // "optimi5"; a change of the pictures needs another
+constexpr uint64_t kKind =
+    0x36696d6974706f;  // "optimi6"; a change of the pictures or steps needs another
 constexpr char kStartAnew[] = "remove it, and learning starts anew";
 
 template <class Values>

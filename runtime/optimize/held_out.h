@@ -26,9 +26,9 @@ class HeldOutViews {
 
   // Looks at the default τ, twice and five times it.
   std::vector<HeldOut> look(NodeTrainer& trainer) const;
-  // Tries τ, each a factor above the one before. Returns the last one before the pictures of a cut
-  // have over half a dB less than every leaf's, on average over the nearer half of the views or
-  // over the farther half.
+  // Tries τ, of which each has a 2τ + 1 that is ∛2 times that of the one before. Returns the last
+  // one before the pictures of a cut have over half a dB less than every leaf's, on average over
+  // the nearer half of the views or over the farther half.
   double best_tau(NodeTrainer& trainer) const;
   // How many pictures look() draws, and how many best_tau() draws at most.
   uint32_t pictures_of_look() const;

@@ -45,8 +45,6 @@ constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
 // Views in which progress is told, and which of HeldOutViews' τ it is of.
 constexpr uint32_t kFew = 6;
 constexpr size_t kToldTau = 1;
-// Extents shrink at the end by this factor at most.
-constexpr double kMostShrink = 8;
 
 LearningRates rates_at(double done) {
   LearningRates rates = kRates;
@@ -175,7 +173,7 @@ class Learning {
   // Extents such that the default τ draws no more than it has to. They never grow here.
   void calibrate() {
     const double tau = chosen_by_.best_tau(*trainer_);
-    const double by = std::clamp((2 * kReferenceTau + 1) / (2 * tau + 1), 1 / kMostShrink, 1.0);
+    const double by = std::min((2 * kReferenceTau + 1) / (2 * tau + 1), 1.0);
     for (NodeRecord& r : baked_.tree.records) {
       const auto changed = static_cast<float>(by * double{r.extent});
       if (std::isfinite(changed)) r.extent = changed;

@@ -319,6 +319,9 @@ TEST_F(KeepData, AFileNamedLikeWhatOptimizeKeepsIsRefusedAndStays) {
   write_bytes(file("s.voy.optimize"), "my own");
   expect_refused("voyager bake " + small() + " -o " + file("s.voy") + " --optimize draft", 2,
                  {"s.voy.optimize: found a file that no bake has written"});
+  write_bytes(file("s.voy.optimize"), std::string("optimi5\0 learned", 16));
+  expect_refused("voyager bake " + small() + " -o " + file("s.voy") + " --optimize draft", 2,
+                 {"s.voy.optimize: found what --optimize has learned by another version"});
 }
 
 TEST_F(KeepData, AnOutputIsWrittenThroughASymbolicLink) {
