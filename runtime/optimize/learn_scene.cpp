@@ -67,14 +67,19 @@ class Learning {
         chosen_by_(views_, kFirstChosenBy, goal.held_out, looked_at.leaves, baked.leaves.size()),
         trainer_(backend.create_trainer(scene_of(baked, workers), workers)) {}
 
-  OptimizeSummary run(const OptimizeGoal& goal) {
+  OptimizeSummary run(const OptimizeGoal& goal, ShrinkExtents shrink) {
     OptimizeSummary summary;
     const bool goes_on = read_kept(goal);
     summary.before = held_out_.look(*trainer_);
     goes_on ? go_on() : begin(goal);
     learn(goal.keep_milliseconds, summary.before);
     summary.pictures = checkpoint_.pictures;
-    calibrate();
+    summary.shrink = enough();
+    if (shrink == ShrinkExtents::yes) {
+      shrink_extents(summary.shrink, baked_.tree);
+      give_extents();
+      trainer_->set_extents(checkpoint_.extents);
+    }
     summary.after = held_out_.look(*trainer_);
     take_learned();
     return summary;
@@ -170,16 +175,10 @@ class Learning {
     trainer_->set_extents(checkpoint_.extents);
   }
 
-  // Extents such that the default τ draws no more than it has to. They never grow here.
-  void calibrate() {
+  // Extents times this are such that the default τ draws no more than it has to. They never grow.
+  double enough() const {
     const double tau = chosen_by_.best_tau(*trainer_);
-    const double by = std::min((2 * kReferenceTau + 1) / (2 * tau + 1), 1.0);
-    for (NodeRecord& r : baked_.tree.records) {
-      const auto changed = static_cast<float>(by * double{r.extent});
-      if (std::isfinite(changed)) r.extent = changed;
-    }
-    give_extents();
-    trainer_->set_extents(checkpoint_.extents);
+    return std::min((2 * kReferenceTau + 1) / (2 * tau + 1), 1.0);
   }
 
   void give_extents() {
@@ -239,10 +238,17 @@ uint32_t pictures_in(double minutes, double milliseconds, uint32_t others) {
   return std::max(too_many - 1, 1u);
 }
 
+void shrink_extents(double by, LodTree& tree) {
+  for (NodeRecord& r : tree.records) {
+    const auto changed = static_cast<float>(by * double{r.extent});
+    if (std::isfinite(changed)) r.extent = changed;
+  }
+}
+
 OptimizeSummary learn_scene(BakedScene& baked, const LookedAt& looked_at, const OptimizeGoal& goal,
-                            Backend& backend, const std::string& kept, Workers& workers,
-                            const Progress& progress) {
-  return Learning(baked, looked_at, goal, backend, kept, workers, progress).run(goal);
+                            ShrinkExtents shrink, Backend& backend, const std::string& kept,
+                            Workers& workers, const Progress& progress) {
+  return Learning(baked, looked_at, goal, backend, kept, workers, progress).run(goal, shrink);
 }
 
 }  // namespace voyager

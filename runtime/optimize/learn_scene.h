@@ -5,11 +5,18 @@
 
 namespace voyager {
 
+// Whether extents shrink at the end. Those of a part do not, since all of a scene's shrink by the
+// same factor: its `after` is then of extents as they were measured.
+enum class ShrinkExtents : uint8_t { no, yes };
+
 // As optimize_nodes(), of a clustered tree with a merged node; all of it at once. Views look at
 // some leaves only; shares of cuts are of these, and do not count the others.
 OptimizeSummary learn_scene(BakedScene& baked, const LookedAt& looked_at, const OptimizeGoal& goal,
-                            Backend& backend, const std::string& kept, Workers& workers,
-                            const Progress& progress);
+                            ShrinkExtents shrink, Backend& backend, const std::string& kept,
+                            Workers& workers, const Progress& progress);
+
+// by: above 0, at most 1.
+void shrink_extents(double by, LodTree& tree);
 
 inline constexpr uint32_t kMostPictures = 1'000'000'000;  // to learn from
 // Pictures that extents are measured in, where so many are learned from.

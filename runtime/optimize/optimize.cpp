@@ -1,6 +1,7 @@
 #include "runtime/optimize/optimize.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -115,6 +116,9 @@ class InParts {
     stage_ = "above the parts, ";
     learn(take_top(baked_, most_leaves_), done, 1, kMinutesOfTop, 0);
     mend_tree();
+    // One factor for all: detail would change where parts meet.
+    summary_.shrink = std::exp(log_shrink_);
+    shrink_extents(summary_.shrink, baked_.tree);
     return std::move(summary_);
   }
 
@@ -141,12 +145,13 @@ class InParts {
     const Progress progress = [&](const char* stage, uint64_t at, uint64_t of) {
       report(progress_, (stage_ + stage).c_str(), at, of);
     };
-    const OptimizeSummary found =
-        learn_scene(part.scene, {part.own_leaves, part.leaf_size, part.largest}, goal, backend_,
-                    kept_of_part(kept_, number_++), workers_, progress);
+    const OptimizeSummary found = learn_scene(
+        part.scene, {part.own_leaves, part.leaf_size, part.largest}, goal, ShrinkExtents::no,
+        backend_, kept_of_part(kept_, number_++), workers_, progress);
     give_back(part, done, baked_);
     summary_.pictures += found.pictures;
     if (weight == 0) return;
+    log_shrink_ += weight * std::log(found.shrink);
     add_means(summary_.before, found.before, weight);
     add_means(summary_.after, found.after, weight);
   }
@@ -159,6 +164,7 @@ class InParts {
   Workers& workers_;
   const Progress& progress_;
   uint32_t held_out_ = 0, number_ = 0;
+  double log_shrink_ = 0;
   std::string stage_;
   OptimizeSummary summary_;
 };
@@ -202,7 +208,8 @@ OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Back
   const uint64_t most = most_at_once(baked, goal, backend);
   if (most < baked.leaves.size())
     return InParts(baked, whole, most, backend, kept, workers, progress).run();
-  return learn_scene(baked, {baked.leaves.size(), 0, 0}, whole, backend, kept, workers, progress);
+  return learn_scene(baked, {baked.leaves.size(), 0, 0}, whole, ShrinkExtents::yes, backend, kept,
+                     workers, progress);
 }
 
 // About half a merged node a leaf has its numbers and two moments of each, three times: in the

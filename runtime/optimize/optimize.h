@@ -43,7 +43,9 @@ struct HeldOut {
 };
 struct OptimizeSummary {
   uint32_t pictures = 0;
-  std::vector<HeldOut> before, after;  // at the same τ; of parts, the mean by their leaves
+  double shrink = 1;  // by which extents were multiplied at the end
+  // At the same τ. Of parts, the mean by their leaves, and `after` is from before extents shrank.
+  std::vector<HeldOut> before, after;
   // Of the view that gained least at that τ, dB; below 0 where it lost. Against as many nodes
   // before: between the cuts that were looked at, by the logarithm of their shares.
   double least_gain(size_t of) const;
@@ -51,13 +53,14 @@ struct OptimizeSummary {
 
 // Changes the merged Gaussians of a clustered tree and its extents; leaves stay as they are. With a
 // number of pictures the same scene on the same device gives the same bytes, however often this was
-// stopped. At the end extents shrink as far as a cut's held-out pictures at the default τ stay
-// within half a dB of every leaf's. Where there is not the memory for all at once, parts learn one
-// after another (part.h). kept: a file in which what was learned is kept now and then, and from
-// which this goes on, `kept`.0, .1 and so on of parts; whoever calls removes them
-// (checkpoint.h's kept_files()). Progress counts pictures, of each part anew. Throws
-// Error(refused_input) where the file is of another scene or was altered, Error(unsupported) for
-// another kind of tree or where the backend has no trainer, Error(over_budget), Error(io).
+// stopped. At the end all extents shrink by one factor, as far as a cut's held-out pictures at the
+// default τ stay within half a dB of every leaf's (of parts: by the mean of theirs). Where there is
+// not the memory for all at once, parts learn one after another (part.h). kept: a file in which
+// what was learned is kept now and then, and from which this goes on, `kept`.0, .1 and so on of
+// parts; whoever calls removes them (checkpoint.h's kept_files()). Progress counts pictures, of
+// each part anew. Throws Error(refused_input) where the file is of another scene or was altered,
+// Error(unsupported) for another kind of tree or where the backend has no trainer,
+// Error(over_budget), Error(io).
 OptimizeSummary optimize_nodes(BakedScene& baked, const OptimizeGoal& goal, Backend& backend,
                                const std::string& kept, Workers& workers,
                                const Progress& progress = {});

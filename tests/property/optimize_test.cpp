@@ -281,6 +281,8 @@ TEST(Optimize, InPartsNeitherThreadsNorStopsShow) {
   BakedScene expected = baked;
   const OptimizeSummary summary = learn_in_parts(expected, 1, folder.file("one"));
   EXPECT_GT(summary.pictures, 8u);
+  EXPECT_GT(summary.shrink, 0);
+  EXPECT_LE(summary.shrink, 1);
   for (size_t i = 0; i < summary.after.size(); ++i)
     EXPECT_TRUE(std::isfinite(summary.least_gain(i)));
   ASSERT_GE(kept_files(folder.file("one")).size(), 4u);  // three parts and the top
