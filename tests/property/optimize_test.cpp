@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <tuple>
+#include <utility>
 
 #include "runtime/cpu/cpu_backend.h"
 #include "runtime/frame/built_scene.h"
@@ -190,6 +192,41 @@ TEST(Optimize, CamerasGuideHalfOfTheViews) {
   }
   EXPECT_GT(from_cameras, kViews / 4);
   EXPECT_LE(from_cameras, kViews / 2 + kViews / 100);
+}
+
+// What is up: −y, but where a scene is flat along z.
+TEST(Optimize, AFlatSceneIsLookedAtFromAboveAndARoundOneFromBelowToo) {
+  const auto rises = [](size_t flat_axis, const Vec3d& up) {
+    GaussianCloud cloud = test::specks(500, 6, 0);
+    for (size_t i = 0; i < cloud.size(); ++i)
+      if (flat_axis < 3) cloud.position[3 * i + flat_axis] *= 0.1f;
+    const BakedScene baked = test::bake(cloud);
+    const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
+    std::pair<double, double> found{1, -1};
+    for (uint32_t k = 0; k < 256; ++k) {
+      const double rise = -dot(views(k).camera.world_to_view.row[2], up);
+      found = {std::min(found.first, rise), std::max(found.second, rise)};
+    }
+    return found;
+  };
+  for (const auto& [flat_axis, up, lowest] : {std::tuple{size_t{1}, Vec3d{0, -1, 0}, -0.05},
+                                              {size_t{2}, Vec3d{0, 0, 1}, -0.05},
+                                              {size_t{3}, Vec3d{0, -1, 0}, -0.5}}) {
+    const auto [least, most] = rises(flat_axis, up);
+    EXPECT_GE(least, lowest - 1e-9) << flat_axis;
+    EXPECT_LT(least, lowest + 0.05) << flat_axis;
+    EXPECT_GT(most, 0.95) << flat_axis;
+  }
+}
+
+TEST(Optimize, APictureCountsByTheRootOfItsMeanSquare) {
+  TrainingView view;
+  view.camera.width = 40, view.camera.height = 30;
+  const double values = 3.0 * 40 * 30;
+  const auto weight = [&](double mean) { return loss_weight(view, mean * values); };
+  EXPECT_NEAR(weight(1e-3) * 1e-3, 1, 1e-9);
+  EXPECT_NEAR(weight(4e-3) * 2, weight(1e-3), 1e-9);  // twice the root: half for each square
+  EXPECT_EQ(weight(0), weight(1e-7));                 // nothing is weighed without end
 }
 
 TEST(Optimize, ATruthIsNotTakenForThatOfAnotherView) {
