@@ -2,7 +2,7 @@
 //   leaf_bytes SCENE.voy
 // A line of JSON for each backend: streamed and resident as a whole, by layout, which needs no GPU.
 // Where there is one, a line for the scene resident on it, found from the device's free memory.
-// That goes in steps of 2 MB an owner of arrays.
+// Each owner's allocation is rounded up to 2 MB.
 #include <cstdio>
 #include <exception>
 #include <memory>

@@ -11,8 +11,8 @@
 
 namespace voyager::cuda {
 
-// Of all allocations that are there: what tests of omissions count, since a device's free memory is
-// other processes', too.
+// Bytes of all live allocations. Tests of omissions count these, since other processes also change a
+// device's free memory.
 inline std::atomic<size_t> buffer_bytes{0};
 
 class Allocation {
@@ -44,7 +44,7 @@ class Buffer {
     memory_ = std::make_shared<const Allocation>(count * sizeof(T));
     data_ = reinterpret_cast<T*>(memory_->data());
   }
-  // Of an allocation that others have a part of, from byte `at` on.
+  // `count` elements of a shared allocation, from byte `at` on.
   Buffer(std::shared_ptr<const Allocation> memory, size_t at, size_t count) : count_(count) {
     if (count == 0) return;
     memory_ = std::move(memory);

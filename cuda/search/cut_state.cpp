@@ -63,14 +63,14 @@ uint64_t CutState::most_ends(const SearchTree& tree) {
 }
 
 uint64_t CutState::fixed_bytes(const SearchTree& tree) {
-  constexpr uint64_t kArrays = 19;  // that the constructor allocates together
+  constexpr uint64_t kMostArrays = 32;  // that the constructor allocates together
   constexpr uint64_t kBlock = sizeof(Block) + kBlockRows * sizeof(WatchRow) +
                               kLevels * sizeof(Segment) + 4 * sizeof(uint32_t);
   const uint64_t blocks = block_count(tree, kBlockSubtrees);
   const uint64_t windows = SegmentWindows(static_cast<uint32_t>(kLevels * blocks)).end();
   return blocks * kBlock + windows * sizeof(WindowPlaces) + tree.tier_begin.size() * sizeof(Tier) +
          2 * sizeof(FrameCounters) + 2 * sizeof(uint32_t) + sizeof(MeanBounds) +
-         list_bytes(kLeastPlaces) + kArrays * kAllocationAlignment;
+         list_bytes(kLeastPlaces) + kMostArrays * kAllocationAlignment;
 }
 
 CutState::CutState(const SearchTree& tree, uint32_t places, uint32_t due, size_t most) {

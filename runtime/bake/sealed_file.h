@@ -19,8 +19,8 @@ void write_sealed(const std::string& path, std::span<const std::byte> bytes);
 inline constexpr char kFolderAltered[] = "the work folder was altered; remove it and bake again";
 std::vector<std::byte> read_sealed(const std::string& path, const char* advice = kFolderAltered);
 
-// Of a file outside a work folder, which begins with seven letters that say what it is, the last of
-// them its version, and a zero. Throws Error(refused_input) where there are others; content: what
+// Of a file outside a work folder, which begins with six letters that say what it is, a digit for
+// the version, and a zero byte. Throws Error(refused_input) where there are others; content: what
 // was expected.
 void check_kind(const std::string& path, uint64_t kind, const std::string& content);
 

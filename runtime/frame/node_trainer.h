@@ -1,7 +1,7 @@
 #pragma once
 // The boundary behind which merged Gaussians learn what they stand for: pictures of a cut are
 // compared with the truth of METHOD §12, and what the cut holds moves down the gradient of the
-// squared error. Leaves never change.
+// root mean square error. Leaves never change.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -40,7 +40,7 @@ inline Camera truth_camera(const TrainingView& view) {
 
 // Of a picture against the truth.
 struct TrainingError {
-  double squares = 0;  // summed over pixels and colours, each from 0 to 1
+  double squares = 0;  // summed over pixels and channels; colours are from 0 to 1
   uint32_t cut = 0;    // nodes, in view or not
 };
 

@@ -79,7 +79,7 @@ class Exposures {
         x_(leaves.size()),
         y_(leaves.size()),
         z_(leaves.size()),
-        outlines_(leaves.size()),
+        ellipses_(leaves.size()),
         most_side_(std::min(kMostSide,
                             static_cast<int>(std::ceil(
                                 kSideOfRoot * std::sqrt(static_cast<double>(leaves.size())))))) {
@@ -120,7 +120,7 @@ class Exposures {
       x_[i] = dot(along.right, blobs_[i].mean);
       y_[i] = dot(along.down, blobs_[i].mean);
       z_[i] = dot(along.forward, blobs_[i].mean);
-      outlines_[i] = sharp_outline(blobs_[i], along);
+      ellipses_[i] = sharp_ellipse(blobs_[i], along);
     }
     const auto [x0, x1] = middle(x_);
     const auto [y0, y1] = middle(y_);
@@ -145,7 +145,7 @@ class Exposures {
     double covered = 0;
     for (size_t i = 0; i < blobs_.size(); ++i) {
       if (!(reach_[i] > 0)) continue;
-      const Outline f = outline(i);
+      const Ellipse f = ellipse(i);
       const double most = side_;
       covered += std::min(2 * std::sqrt(reach_[i] * f.xx), most) *
                  std::min(2 * std::sqrt(reach_[i] * f.yy), most);
@@ -231,11 +231,11 @@ class Exposures {
   }
 
   // A Gaussian projected along a direction: its covariance across that.
-  struct Outline {
+  struct Ellipse {
     double xx, xy, yy;  // pixels², or metres²
   };
   // In metres², without a filter.
-  static Outline sharp_outline(const Blob& blob, const Direction& along) {
+  static Ellipse sharp_ellipse(const Blob& blob, const Direction& along) {
     const auto across = [&](const Vec3d& a, const Vec3d& b) {
       const double* c = blob.covariance;
       const Vec3d cb{(c[0] * b.x + c[1] * b.y) + c[2] * b.z, (c[1] * b.x + c[3] * b.y) + c[4] * b.z,
@@ -249,9 +249,9 @@ class Exposures {
   // filter. Here the footprint alone gained nothing. With the filter too, cuts of as many nodes
   // gained up to 0.2 dB in three views of a district, and lost as much in others and in a city
   // (bench/NOTES.md, "Exposure with the scene's own filter").
-  Outline outline(size_t i) const {
+  Ellipse ellipse(size_t i) const {
     const double pixel = pixel_ * pixel_;
-    const Outline& f = outlines_[i];
+    const Ellipse& f = ellipses_[i];
     return {f.xx / pixel + kLowPass, f.xy / pixel, f.yy / pixel + kLowPass};
   }
 
@@ -262,7 +262,7 @@ class Exposures {
   bool cover(uint32_t i, const Row& row) {
     const float reach = reach_[i];
     if (!(reach > 0)) return true;
-    const auto [xx, xy, yy] = outline(i);
+    const auto [xx, xy, yy] = ellipse(i);
     const auto opacity = static_cast<float>(blobs_[i].opacity);
     const double det = std::max(xx * yy - xy * xy, 1e-14 * xx * yy);
     const double u = (x_[i] - left_) / pixel_, v = (y_[i] - top_) / pixel_;
@@ -310,7 +310,7 @@ class Exposures {
   // square.
   std::vector<double> seen_, met_, contrast_;
   std::vector<double> x_, y_, z_, sorted_;
-  std::vector<Outline> outlines_;
+  std::vector<Ellipse> ellipses_;
   std::vector<uint32_t> order_;
   // By pixel, and lanes that are written with the last.
   std::vector<float> transmittance_;

@@ -22,7 +22,7 @@ constexpr int kRefinements = 4;
 constexpr double kLargestPixel = 1e29;  // metres; an extent stays finite in binary32
 
 // A Gaussian projected along an axis.
-struct Outline {
+struct Ellipse {
   double u, v;        // centre
   double uu, uv, vv;  // covariance, blurred
   double determinant;
@@ -38,7 +38,7 @@ double determinant(double uu, double uv, double vv) {
   return std::max(uu * vv - uv * uv, 1e-14 * uu * vv);
 }
 
-void blur_by(double blur, Outline& f) {
+void blur_by(double blur, Ellipse& f) {
   const double sharp = f.determinant;
   f.uu += blur;
   f.vv += blur;
@@ -46,10 +46,10 @@ void blur_by(double blur, Outline& f) {
   f.peak *= std::sqrt(std::min(sharp / f.determinant, 1.0));
 }
 
-Outline sharp_outline(const Blob& blob, const Vec3d& centre, int axis, double own) {
+Ellipse sharp_ellipse(const Blob& blob, const Vec3d& centre, int axis, double own) {
   const int* at = kCovarianceAt[axis];
   const int u = kAcross[axis][0], v = kAcross[axis][1];
-  Outline f{blob.mean[u] - centre[u],
+  Ellipse f{blob.mean[u] - centre[u],
             blob.mean[v] - centre[v],
             blob.covariance[at[0]] + own,
             blob.covariance[at[1]],
@@ -61,7 +61,7 @@ Outline sharp_outline(const Blob& blob, const Vec3d& centre, int axis, double ow
 }
 
 // ∫ G_a G_b over the plane.
-double overlap(const Outline& a, const Outline& b) {
+double overlap(const Ellipse& a, const Ellipse& b) {
   const double uu = a.uu + b.uu, uv = a.uv + b.uv, vv = a.vv + b.vv;
   const double sum = determinant(uu, uv, vv);
   const double u = a.u - b.u, v = a.v - b.v;
@@ -72,7 +72,7 @@ double overlap(const Outline& a, const Outline& b) {
 }
 
 // The same of a and itself.
-double own_overlap(const Outline& a) {
+double own_overlap(const Ellipse& a) {
   const double sum = determinant(2 * a.uu, 2 * a.uv, 2 * a.vv);
   if (!(sum > 0)) return 0;
   return 2 * kPi * a.peak * a.peak * std::sqrt(a.determinant / sum * a.determinant);
@@ -94,7 +94,7 @@ class Loss {
         3 * most * most * (group.contrast * group.contrast + kUnknownContrast * kUnknownContrast);
     for (int axis = 0; axis < kAxes; ++axis) {
       const auto seen = [&](const Blob& blob) {
-        return sharp_outline(blob, group.parent.mean, axis, group.footprint);
+        return sharp_ellipse(blob, group.parent.mean, axis, group.footprint);
       };
       Sharp& sharp = sharp_[axis];
       sharp.parent = seen(group.parent);
@@ -134,7 +134,7 @@ class Loss {
 
  private:
   struct Sharp {
-    Outline parent, child[kChildren];
+    Ellipse parent, child[kChildren];
   };
 
   const Group& group_;

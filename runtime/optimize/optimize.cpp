@@ -119,6 +119,8 @@ class InParts {
     // One factor for all: detail would change where parts meet.
     summary_.shrink = std::exp(log_shrink_);
     shrink_extents(summary_.shrink, baked_.tree);
+    for (HeldOut& after : summary_.after)
+      after.tau = 0.5 * (summary_.shrink * (2 * after.tau + 1) - 1);
     return std::move(summary_);
   }
 

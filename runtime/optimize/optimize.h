@@ -1,6 +1,7 @@
 #pragma once
 // Merged Gaussians that learn what they stand for (docs/optimizing.md): pictures of cuts are
-// compared with the truth of METHOD §12, and nodes follow the gradient of the squared error.
+// compared with the truth of METHOD §12, and nodes follow the gradient of the root mean square
+// error.
 #include <cstdint>
 #include <span>
 #include <string>
@@ -44,7 +45,8 @@ struct HeldOut {
 struct OptimizeSummary {
   uint32_t pictures = 0;
   double shrink = 1;  // by which extents were multiplied at the end
-  // At the same τ. Of parts, the mean by their leaves, and `after` is from before extents shrank.
+  // At the same τ. Of parts, the mean by their leaves, and `after` is at what these τ became when
+  // extents shrank.
   std::vector<HeldOut> before, after;
   // Of the view that gained least at that τ, dB; below 0 where it lost. Against as many nodes
   // before: between the cuts that were looked at, by the logarithm of their shares.

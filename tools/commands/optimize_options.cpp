@@ -52,7 +52,7 @@ void print_learned(const OptimizeSummary& learned) {
   for (size_t i = 0; i < learned.after.size(); ++i) {
     const HeldOut &before = learned.before[i], &after = learned.after[i];
     say(fmt::format(
-        "tau {}: {:.1f} dB with {:.1f} % of the Gaussians, before {:.1f} dB with "
+        "tau {:.3g}: {:.1f} dB with {:.1f} % of the Gaussians, before {:.1f} dB with "
         "{:.1f} %; with as many, {:+.1f} dB in the view that gained least; every Gaussian {:.1f} "
         "dB\n",
         after.tau, after.cut, 100 * after.share, before.cut, 100 * before.share,
