@@ -11,8 +11,8 @@
 
 namespace voyager::cuda {
 
-// Bytes of all live allocations. Tests of omissions count these, since other processes also change a
-// device's free memory.
+// Bytes of all live allocations. Tests of omissions count these, since other processes also change
+// a device's free memory.
 inline std::atomic<size_t> buffer_bytes{0};
 
 class Allocation {
