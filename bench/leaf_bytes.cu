@@ -53,7 +53,8 @@ void print_resident(const char* path, Workers& workers) {
     cuda::check(cudaMemGetInfo(&free, &all), "memory");
     return static_cast<double>(free);
   };
-  // The device's own, and the driver's for what is copied, whatever the scene.
+  // Not the scene's, so made before it is counted: the device's tables, and what the driver
+  // allocates when something is copied for the first time.
   const auto tables = device->code_tables();
   cuda::upload<uint32_t>(std::vector<uint32_t>(1 << 18));
   const double first = free_bytes();

@@ -98,7 +98,7 @@ void allocate_together(const ToAllocate<T>&... arrays) {
 }
 
 // Copies and fills go through the default stream, which the streams of frames do not
-// wait for: so these wait for it, and are complete when they return.
+// wait for: so these wait for it, and are complete when they return. into: as long as the values.
 template <class T>
 void upload(std::span<const T> values, const Buffer<T>& into) {
   if (values.empty()) return;

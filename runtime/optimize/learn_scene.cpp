@@ -74,7 +74,7 @@ class Learning {
     goes_on ? go_on() : begin(goal);
     learn(goal.keep_milliseconds, summary.before);
     summary.pictures = checkpoint_.pictures;
-    summary.shrink = enough();
+    summary.shrink = extent_scale();
     if (shrink == ShrinkExtents::yes) {
       shrink_extents(summary.shrink, baked_.tree);
       give_extents();
@@ -175,8 +175,9 @@ class Learning {
     trainer_->set_extents(checkpoint_.extents);
   }
 
-  // Extents times this are such that the default τ draws no more than it has to. They never grow.
-  double enough() const {
+  // By which extents are to be multiplied, so that the default τ draws no more than it has to. At
+  // most 1.
+  double extent_scale() const {
     const double tau = chosen_by_.best_tau(*trainer_);
     return std::min((2 * kReferenceTau + 1) / (2 * tau + 1), 1.0);
   }
