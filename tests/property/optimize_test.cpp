@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <tuple>
-#include <utility>
 
 #include "runtime/cpu/cpu_backend.h"
 #include "runtime/frame/built_scene.h"
@@ -15,24 +13,15 @@
 #include "runtime/optimize/learn_scene.h"
 #include "runtime/optimize/part.h"
 #include "runtime/optimize/training_views.h"
-#include "runtime/scene/append.h"
 #include "runtime/select/cut.h"
+#include "tests/support/baked_city.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/rounded_tree.h"
 #include "tests/support/scene_files.h"
 #include "tests/support/tree_clouds.h"
-#include "tools/synth/city.h"
 
 namespace voyager::optimize_test {
 namespace {
-
-BakedScene city(uint64_t gaussians) {
-  GaussianCloud all;
-  synth::generate_city(
-      {.gaussians = gaussians, .seed = 7, .sh_degree = 0},
-      [&](const GaussianCloud& part) { append(all, GaussianCloud(part), "city"); });
-  return test::bake(all);
-}
 
 struct Learned {
   BakedScene scene;
@@ -77,7 +66,7 @@ TrainingView small_view(const TrainingViews& views, uint32_t k, double tau) {
 
 TEST(Optimize, ComesNearerToTheTruthInViewsThatItDidNotLearnFrom) {
   Workers workers;
-  const BakedScene baked = city(6000);
+  const BakedScene baked = test::baked_city(6000);
   const auto backend = create_cpu_backend();
   const auto trainer = backend->create_trainer(scene_of(baked, workers), workers);
   const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
@@ -142,83 +131,6 @@ TEST(Optimize, LearnsFromThePicturesThatAreDrawn) {
   }
 }
 
-TEST(Optimize, FourCutsOfAViewShareItsTruth) {
-  const BakedScene baked = city(200);
-  const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
-  for (uint32_t k = 0; k < 12; ++k) {
-    const TrainingView found = views.picture(k);
-    EXPECT_EQ(truth_of(found), truth_of(views(k / 4)));
-    EXPECT_GE(found.tau, 0.75);
-    EXPECT_LE(found.tau, 15);
-    if (k % 4 != 0) {
-      EXPECT_GT(found.tau, views.picture(k - 1).tau);
-    }
-  }
-}
-
-// Up to half of the views are from near a camera that has in its picture what they look at, by
-// turns with the others, which are those that there are without cameras.
-TEST(Optimize, CamerasGuideHalfOfTheViews) {
-  const BakedScene baked = city(2000);
-  const LookedAt looked_at{baked.leaves.size(), 0, 0};
-  const TrainingViews alone(baked, looked_at);
-  std::vector<TrainingCamera> cameras;
-  for (uint32_t k = 5000; k < 5010; ++k) {
-    const Camera c = alone(k).camera;
-    cameras.push_back({c.eye, c.world_to_view, c.fx, c.fy, c.cx, c.cy,
-                       static_cast<uint32_t>(c.width), static_cast<uint32_t>(c.height)});
-  }
-  const TrainingViews guided(baked, looked_at, cameras);
-  constexpr uint32_t kViews = 1000;
-  uint32_t from_cameras = 0, in_a_row = 0;
-  for (uint32_t k = 0; k < kViews; ++k) {
-    const Camera found = guided(k).camera, other = alone(k).camera;
-    if (found.eye == other.eye) {
-      EXPECT_EQ(found.world_to_view, other.world_to_view);
-      EXPECT_EQ(guided.distance(k), alone.distance(k));
-      in_a_row = 0;
-      continue;
-    }
-    ++from_cameras;
-    EXPECT_LE(++in_a_row, 2u);
-    const Vec3d target = found.eye + guided.distance(k) * found.world_to_view.row[2];
-    const Vec3d moved = target - (other.eye + alone.distance(k) * other.world_to_view.row[2]);
-    EXPECT_LT(dot(moved, moved), 1e-12);
-    EXPECT_TRUE(std::any_of(cameras.begin(), cameras.end(), [&](const TrainingCamera& c) {
-      const Vec3d seen = c.world_to_view * (target - found.eye);
-      return seen.z > 0 && std::fabs(seen.x) * c.fx <= seen.z * c.cx * 1.000001 &&
-             std::fabs(seen.y) * c.fy <= seen.z * c.cy * 1.000001;
-    }));
-  }
-  EXPECT_GT(from_cameras, kViews / 4);
-  EXPECT_LE(from_cameras, kViews / 2 + kViews / 100);
-}
-
-// What is up: −y, but where a scene is flat along z.
-TEST(Optimize, AFlatSceneIsLookedAtFromAboveAndARoundOneFromBelowToo) {
-  const auto rises = [](size_t flat_axis, const Vec3d& up) {
-    GaussianCloud cloud = test::specks(500, 6, 0);
-    for (size_t i = 0; i < cloud.size(); ++i)
-      if (flat_axis < 3) cloud.position[3 * i + flat_axis] *= 0.1f;
-    const BakedScene baked = test::bake(cloud);
-    const TrainingViews views(baked, {baked.leaves.size(), 0, 0});
-    std::pair<double, double> found{1, -1};
-    for (uint32_t k = 0; k < 256; ++k) {
-      const double rise = -dot(views(k).camera.world_to_view.row[2], up);
-      found = {std::min(found.first, rise), std::max(found.second, rise)};
-    }
-    return found;
-  };
-  for (const auto& [flat_axis, up, lowest] : {std::tuple{size_t{1}, Vec3d{0, -1, 0}, -0.05},
-                                              {size_t{2}, Vec3d{0, 0, 1}, -0.05},
-                                              {size_t{3}, Vec3d{0, -1, 0}, -0.5}}) {
-    const auto [least, most] = rises(flat_axis, up);
-    EXPECT_GE(least, lowest - 1e-9) << flat_axis;
-    EXPECT_LT(least, lowest + 0.05) << flat_axis;
-    EXPECT_GT(most, 0.95) << flat_axis;
-  }
-}
-
 TEST(Optimize, APictureCountsByTheRootOfItsMeanSquare) {
   TrainingView view;
   view.camera.width = 40, view.camera.height = 30;
@@ -231,7 +143,7 @@ TEST(Optimize, APictureCountsByTheRootOfItsMeanSquare) {
 
 TEST(Optimize, ATruthIsNotTakenForThatOfAnotherView) {
   Workers workers;
-  const BakedScene baked = city(300);
+  const BakedScene baked = test::baked_city(300);
   const auto backend = create_cpu_backend();
   const auto scene = scene_of(baked, workers);
   const auto kept = backend->create_trainer(scene, workers);
@@ -424,7 +336,7 @@ std::vector<bool> own_nodes(const ScenePart& part, const PartRoots& roots) {
 // What is around a part is in every cut; the rest of its cut is the whole's, but for the roots,
 // which have another parent.
 TEST(Optimize, APartShowsWhatTheWholeShows) {
-  const BakedScene baked = city(4000);
+  const BakedScene baked = test::baked_city(4000);
   const std::vector<PartRoots> parts = part_roots(baked.tree, 1000);
   ASSERT_GE(parts.size(), 4u);
   for (const PartRoots& roots : parts) {
@@ -449,7 +361,7 @@ TEST(Optimize, APartShowsWhatTheWholeShows) {
 
 // All that merges is in one part, or above them.
 TEST(Optimize, PartsHaveEveryMergedNodeOnce) {
-  const LodTree tree = city(4000).tree;
+  const LodTree tree = test::baked_city(4000).tree;
   std::vector<int> parts_with(tree.size(), 0);
   for (const PartRoots& roots : part_roots(tree, 1000))
     for (uint32_t n = roots.first; n < roots.first + roots.count; ++n) ++parts_with[n];
