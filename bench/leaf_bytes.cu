@@ -1,8 +1,8 @@
 // Bytes a leaf of a scene, all in, with what a view of it keeps:
 //   leaf_bytes SCENE.voy
 // A line of JSON for each backend: streamed and resident as a whole, by layout, which needs no GPU.
-// Where there is one, a line for the scene resident on it, found from the device's free memory.
-// Each owner's allocation is rounded up to 2 MB.
+// Where there is one, a line for the scene resident on it, found from the device's free memory, in
+// which each owner's allocation is rounded up to 2 MB; "allocated" is the sum before that.
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -58,6 +58,7 @@ void print_resident(const char* path, Workers& workers) {
   const auto tables = device->code_tables();
   cuda::upload<uint32_t>(std::vector<uint32_t>(1 << 18));
   const double first = free_bytes();
+  const size_t allocated = cuda::buffer_bytes;
   double before = first;
   const auto taken = [&] {
     const double was = std::exchange(before, free_bytes());
@@ -74,8 +75,9 @@ void print_resident(const char* path, Workers& workers) {
   const double of_view = taken();
   std::printf(
       "{\"backend\": \"cuda, resident\", \"gaussians\": %.2f, \"parents\": %.2f, \"tree\": %.2f, "
-      "\"view\": %.2f, \"all\": %.2f}\n",
-      own, of_parents, of_tree, of_view, (first - free_bytes()) / leaves);
+      "\"view\": %.2f, \"all\": %.2f, \"allocated\": %.2f}\n",
+      own, of_parents, of_tree, of_view, (first - free_bytes()) / leaves,
+      static_cast<double>(cuda::buffer_bytes - allocated) / leaves);
 }
 
 }  // namespace

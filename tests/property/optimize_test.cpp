@@ -15,6 +15,7 @@
 #include "runtime/optimize/training_views.h"
 #include "runtime/select/cut.h"
 #include "tests/support/baked_city.h"
+#include "tests/support/learned_scenes.h"
 #include "tests/support/render_scene.h"
 #include "tests/support/rounded_tree.h"
 #include "tests/support/scene_files.h"
@@ -22,6 +23,9 @@
 
 namespace voyager::optimize_test {
 namespace {
+
+using test::expect_same_leaves;
+using test::same;
 
 struct Learned {
   BakedScene scene;
@@ -35,22 +39,6 @@ Learned learn(const BakedScene& baked, uint32_t pictures, unsigned threads,
   learned.summary =
       optimize_nodes(learned.scene, {.pictures = pictures, .held_out = 4}, *backend, kept, workers);
   return learned;
-}
-
-bool same(const BakedScene& a, const BakedScene& b) {
-  const auto& [x, y] = std::tie(a.merged, b.merged);
-  return x.position == y.position && x.log_scale == y.log_scale && x.rotation == y.rotation &&
-         x.opacity == y.opacity && x.sh == y.sh && a.node_code == b.node_code &&
-         std::equal(a.tree.records.begin(), a.tree.records.end(), b.tree.records.begin(),
-                    [](const NodeRecord& r, const NodeRecord& s) { return r.extent == s.extent; });
-}
-
-void expect_same_leaves(const BakedScene& a, const BakedScene& b) {
-  EXPECT_EQ(a.leaves.position, b.leaves.position);
-  EXPECT_EQ(a.leaves.log_scale, b.leaves.log_scale);
-  EXPECT_EQ(a.leaves.rotation, b.leaves.rotation);
-  EXPECT_EQ(a.leaves.opacity, b.leaves.opacity);
-  EXPECT_EQ(a.leaves.sh, b.leaves.sh);
 }
 
 // 60 × 33 pixels.
@@ -195,16 +183,13 @@ TEST(Optimize, EveryLeafIsDrawnAsBefore) {
       test::render(*backend, test::loaded(baked), {.lod = Lod::all_leaves}, input));
 }
 
-// Of the host's memory, so that specks(1500, ...) of degree 1 learns in parts.
-constexpr uint64_t kMemoryOfParts = 690'000;
-
 OptimizeSummary learn_in_parts(BakedScene& scene, unsigned threads, const std::string& kept,
                                const Progress& progress = {}, uint32_t held_out = 2) {
   Workers workers(threads);
   const auto backend = create_cpu_backend();
   return optimize_nodes(
       scene,
-      {.pictures = 8, .memory = kMemoryOfParts, .held_out = held_out, .keep_milliseconds = 0},
+      {.pictures = 8, .memory = test::kMemoryOfParts, .held_out = held_out, .keep_milliseconds = 0},
       *backend, kept, workers, progress);
 }
 
