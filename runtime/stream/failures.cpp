@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace voyager {
@@ -32,8 +31,22 @@ void Failures::add(uint32_t chunk, const Error& error, double now) {
   failed.again =
       may_pass(error.code()) || (error.code() == ErrorCode::damaged_chunk && failed.times == 1);
   failed.last = now;
+  if (failed.due >= 0) due_.erase({failed.due, chunk});
   failed.due = failed.again ? now + wait_after(failed.times) : -1;
+  if (failed.again) due_.emplace(failed.due, chunk);
   tell(failed.message);
+}
+
+void Failures::remove(uint32_t chunk) {
+  const auto found = failed_.find(chunk);
+  if (found == failed_.end()) return;
+  due_.erase({found->second.due, chunk});
+  failed_.erase(found);
+}
+
+void Failures::forget_chunks() {
+  failed_.clear();
+  due_.clear();
 }
 
 void Failures::tell(const std::string& message) {
@@ -67,9 +80,10 @@ void Failures::source_answered() {
 
 std::vector<uint32_t> Failures::take_due(double now) {
   std::vector<uint32_t> due;
-  for (auto& [chunk, failed] : failed_) {
-    if (failed.due < 0 || failed.due > now) continue;
-    failed.due = -1;
+  while (!due_.empty() && due_.begin()->first <= now) {
+    const uint32_t chunk = due_.begin()->second;
+    due_.erase(due_.begin());
+    failed_.at(chunk).due = -1;
     due.push_back(chunk);
   }
   return due;
@@ -77,11 +91,7 @@ std::vector<uint32_t> Failures::take_due(double now) {
 
 double Failures::next_due(double now) const {
   double next = -1;
-  for (const auto& [chunk, failed] : failed_)
-    if (failed.due >= 0) {
-      const double wait = std::max(0.0, failed.due - now);
-      next = next < 0 ? wait : std::min(next, wait);
-    }
+  if (!due_.empty()) next = std::max(0.0, due_.begin()->first - now);
   if (source_may_be_read(now)) return next;
   return next < 0 ? source_due_ - now : std::min(next, source_due_ - now);
 }

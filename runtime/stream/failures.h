@@ -3,6 +3,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/error.h"
@@ -25,9 +26,9 @@ class Failures {
   // now: seconds, on a clock that never goes back.
   void add(uint32_t chunk, const Error& error, double now);
   // It came after all.
-  void remove(uint32_t chunk) { failed_.erase(chunk); }
+  void remove(uint32_t chunk);
   // Nothing of what is wanted now has been tried.
-  void forget_chunks() { failed_.clear(); }
+  void forget_chunks();
 
   // A read of the source, of whichever chunks.
   void source_failed(const Error& error, double now);
@@ -65,6 +66,7 @@ class Failures {
   static double wait_after(unsigned times);
 
   std::map<uint32_t, Failed> failed_;
+  std::set<std::pair<double, uint32_t>> due_;  // those of them that are not negative
   unsigned source_failures_ = 0;  // reads in a row
   double source_due_ = 0, source_failed_ = 0;
   ErrorCode source_code_{};

@@ -319,6 +319,7 @@ void SceneStream::stage_range(ChunkRange range, const std::vector<std::byte>& by
     std::optional<Error> failure;
     const std::vector<std::byte> own = read({range.first, range.first + 1}, failure, lock);
     if (failure) return fail_range(range, *failure, generation);
+    if (generation_ != generation) return;
     stage({range.first, range.first + 1}, own, lock);
     ++range.first;
   }

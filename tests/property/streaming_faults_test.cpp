@@ -44,6 +44,31 @@ TEST(StreamingFaults, ReadsThatFailAreTriedAgain) {
   EXPECT_TRUE(flight.stream().take_messages().empty());
 }
 
+// Chunks are read one by one where they cannot be had at once, and another budget comes meanwhile:
+// what was read for the pool before is nobody's.
+TEST(StreamingFaults, AnotherBudgetBetweenReadsOfOneChunkEach) {
+  DiskFlight flight(0.5);
+  const FrameInput input = ahead({0, -3, -60}, kForward);
+  const auto& chunks = flight.stream().file().chunks();
+  const auto is_one = [&](uint64_t offset, size_t size) {
+    for (size_t i = 0; i < chunks.size(); ++i)
+      if (chunks[i].offset == offset) return chunks[i].bytes == size;
+    return false;
+  };
+  bool shorter = true;
+  int changed = 0;
+  flight.disk().fault = [&](uint64_t offset, size_t size) {
+    if (!shorter) return;
+    if (!is_one(offset, size)) throw Error(ErrorCode::io, "disk.voy: found the end");
+    if (++changed == 2) flight.stream().set_budget(0, flight.rig().workers);
+  };
+  for (int i = 0; i < 60; ++i) flight.draw(input);
+  EXPECT_GT(changed, 2);
+  shorter = false;
+  expect_same_bits(flight.stand(input, 2000), flight.whole(input));
+  EXPECT_EQ(flight.counters().need.seen_missing, 0u);
+}
+
 // A file that has become shorter since it was opened.
 TEST(StreamingFaults, WhatWasCutOffIsStoodInFor) {
   DiskFlight flight(1.0);
