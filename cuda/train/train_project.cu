@@ -41,7 +41,7 @@ __global__ void __launch_bounds__(kThreads)
     float* into = gradients + size_t{place} * gradient_stride(degree);
     SplatSums<float> sum;
     into[0] = 0.0f;
-    if (place >= f.splats.places) continue;  // there was no memory for more
+    if (place >= f.splats.places) continue;  // has_room() refuses such a picture
     const RankRow row = f.splats.ranks[place / kRowPlaces];
     if (!row.has(place)) continue;
     const uint32_t slot = row.slot(place);

@@ -76,8 +76,8 @@ bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpo
     throw Error(ErrorCode::refused_input,
                 path +
                     ": found what was learned of another scene, by another device, with other "
-                    "--training-cameras or another --memory, expected this one: " +
-                    kStartAnew);
+                    "--training-cameras or another --memory, expected this one: remove it, and "
+                    "those of other parts, and learning starts anew");
   checkpoint.pictures = static_cast<uint32_t>(head[2]);
   checkpoint.done = static_cast<uint32_t>(head[3]);
   from.take_all(checkpoint.asked);

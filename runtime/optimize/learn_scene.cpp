@@ -115,7 +115,9 @@ class Learning {
     const double each = std::max(watch.milliseconds() / kTimedSteps, 1e-3);
     trainer_->set_state(untouched);
     return pictures_in(minutes, each,
-                       2 * held_out_.pictures_of_look() + chosen_by_.pictures_of_best_tau());
+                       kWarmSteps + kTimedSteps + 2 * held_out_.pictures_of_look() +
+                           static_cast<uint32_t>(std::size(kMeasureAt)) * few_.pictures_of_look() +
+                           chosen_by_.pictures_of_best_tau());
   }
 
   void learn(double keep_milliseconds, const std::vector<HeldOut>& before) {

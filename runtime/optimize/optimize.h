@@ -1,7 +1,7 @@
 #pragma once
 // Merged Gaussians that learn what they stand for (docs/optimizing.md): pictures of cuts are
 // compared with the truth of METHOD §12, and nodes follow the gradient of the root mean square
-// error.
+// error of colours, with a little of the coverage's (kCoverageWeight).
 #include <cstdint>
 #include <span>
 #include <string>

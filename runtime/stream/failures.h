@@ -67,7 +67,7 @@ class Failures {
 
   std::map<uint32_t, Failed> failed_;
   std::set<std::pair<double, uint32_t>> due_;  // those of them that are not negative
-  unsigned source_failures_ = 0;  // reads in a row
+  unsigned source_failures_ = 0;               // reads in a row
   double source_due_ = 0, source_failed_ = 0;
   ErrorCode source_code_{};
   std::string source_message_;

@@ -293,7 +293,7 @@ TEST(Optimize, LessMemoryThanTheSmallestPartTakesIsRefused) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::over_budget);
     EXPECT_EQ(std::string(error.what()),
-              "memory: found room for 0 Gaussians that learn at once, expected room for 256 at "
+              "host memory: found room for 0 Gaussians that learn at once, expected room for 256 at "
               "least");
   }
 }
@@ -421,7 +421,7 @@ TEST(Optimize, WhatWasLearnedOfSomethingElseOrWasAlteredIsRefused) {
             kept +
                 ": found what was learned of another scene, by another device, with other "
                 "--training-cameras or another --memory, expected this one: remove it, and "
-                "learning starts anew");
+                "those of other parts, and learning starts anew");
   std::fstream file(kept, std::ios::binary | std::ios::in | std::ios::out);
   file.seekp(60);
   file.put('\x5a');
