@@ -42,7 +42,10 @@ constexpr uint32_t kFirstMeasure = 134'217'757, kFirstChosenBy = 201'326'611,
                    kFirstHeldOut = 268'435'459;
 
 constexpr uint32_t kTimedSteps = 48, kWarmSteps = 16;
-// Views in which progress is told, and which of HeldOutViews' τ it is of.
+// What is gained so far is told when this share is done, and where extents are measured.
+constexpr double kFirstTold = 0.1;
+constexpr auto kTimesTold = static_cast<uint32_t>(1 + std::size(kMeasureAt));
+// In so many views, at which of HeldOutViews' τ.
 constexpr uint32_t kFew = 6;
 constexpr size_t kToldTau = 1;
 
@@ -116,7 +119,7 @@ class Learning {
     trainer_->set_state(untouched);
     return pictures_in(minutes, each,
                        kWarmSteps + kTimedSteps + 2 * held_out_.pictures_of_look() +
-                           static_cast<uint32_t>(std::size(kMeasureAt)) * few_.pictures_of_look() +
+                           kTimesTold * few_.pictures_of_look() +
                            chosen_by_.pictures_of_best_tau());
   }
 
@@ -128,11 +131,12 @@ class Learning {
       const uint32_t k = checkpoint_.done++;
       report(progress_, stage.c_str(), k, steps);
       trainer_->step(views_.picture(k), rates_at(static_cast<double>(k) / steps));
-      for (const double share : kMeasureAt)
-        if (checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps))) {
-          measure();
-          stage = "optimizing (" + gained_so_far(before) + ")";
-        }
+      const auto is_done = [&](double share) {
+        return checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps));
+      };
+      const bool measures = std::any_of(std::begin(kMeasureAt), std::end(kMeasureAt), is_done);
+      if (measures) measure();
+      if (measures || is_done(kFirstTold)) stage = "optimizing (" + gained_so_far(before) + ")";
       if (since_kept.milliseconds() < keep_milliseconds && checkpoint_.done < steps) continue;
       checkpoint_.state = trainer_->state();
       give_extents();
