@@ -58,7 +58,7 @@ struct PoolPatch {
 };
 
 void launch_fill(const PoolFill& fill, cudaStream_t stream);
-// In its order (runtime/stream/linker.h).
+// In the order of runtime/stream/link_patch.h.
 void launch_patch(const PoolTables& tables, const PoolPatch& patch, cudaStream_t stream);
 // Of subtrees that have not come yet, by place.
 void launch_unlink_all(SearchSubtree* subtrees, uint32_t count, cudaStream_t stream);

@@ -13,7 +13,7 @@ namespace voyager {
 
 // Changes of a SearchTree whose nodes and records are addresses, and of its nodes' parents.
 // All of `cut`, `unlinked` and `left` is to be done before `pages`, and that before all of `tied`,
-// `linked` and `arrived`; in each, nothing is there twice with different values.
+// `linked`, `outside` and `arrived`; in each, nothing is there twice with different values.
 struct LinkPatch {
   struct Record {
     uint32_t record, children;  // SearchRecord::children
