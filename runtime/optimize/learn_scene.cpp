@@ -134,9 +134,10 @@ class Learning {
       const auto is_done = [&](double share) {
         return checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps));
       };
-      const bool measures = std::any_of(std::begin(kMeasureAt), std::end(kMeasureAt), is_done);
-      if (measures) measure();
-      if (measures || is_done(kFirstTold)) stage = "optimizing (" + gained_so_far(before) + ")";
+      const auto measures = std::count_if(std::begin(kMeasureAt), std::end(kMeasureAt), is_done);
+      for (auto i = measures; i != 0; --i) measure();
+      if (measures != 0 || is_done(kFirstTold))
+        stage = "optimizing (" + gained_so_far(before) + ")";
       if (since_kept.milliseconds() < keep_milliseconds && checkpoint_.done < steps) continue;
       checkpoint_.state = trainer_->state();
       give_extents();

@@ -292,9 +292,10 @@ TEST(Optimize, LessMemoryThanTheSmallestPartTakesIsRefused) {
     FAIL() << "nothing was refused";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::over_budget);
-    EXPECT_EQ(std::string(error.what()),
-              "host memory: found room for 0 Gaussians that learn at once, expected room for 256 at "
-              "least");
+    EXPECT_EQ(
+        std::string(error.what()),
+        "host memory: found room for 0 Gaussians that learn at once, expected room for 256 at "
+        "least");
   }
 }
 

@@ -45,7 +45,8 @@ TEST(StreamingFaults, ReadsThatFailAreTriedAgain) {
 }
 
 // Chunks are read one by one where they cannot be had at once, and another budget comes meanwhile:
-// what was read for the pool before is nobody's.
+// what was read for the pool before is nobody's. (Residency asserts that what was read was asked
+// for.)
 TEST(StreamingFaults, AnotherBudgetBetweenReadsOfOneChunkEach) {
   DiskFlight flight(0.5);
   const FrameInput input = ahead({0, -3, -60}, kForward);

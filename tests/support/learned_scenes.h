@@ -1,8 +1,9 @@
 #pragma once
-// What learned scenes have in common with others.
+// Compares what learning may change, and what it must not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <tuple>
 
 #include "runtime/lod/baked_scene.h"

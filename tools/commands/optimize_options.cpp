@@ -52,12 +52,11 @@ void print_learned(const OptimizeSummary& learned) {
   for (size_t i = 0; i < learned.after.size(); ++i) {
     const HeldOut &before = learned.before[i], &after = learned.after[i];
     // In parts extents shrink when all have learned, so that what was looked at has another τ now.
-    const std::string at = before.tau == after.tau ? "" : fmt::format("at tau {:.3g} ", before.tau);
+    const std::string at = before.tau == after.tau ? "" : fmt::format(" at tau {:.3g}", before.tau);
     say(fmt::format(
-        "tau {:.3g}: {:.1f} dB with {:.1f} % of the Gaussians, before {}{:.1f} dB with "
-        "{:.1f} %; with as many, {:+.1f} dB in the view that gained least; every Gaussian {:.1f} "
-        "dB\n",
-        after.tau, after.cut, 100 * after.share, at, before.cut, 100 * before.share,
+        "tau {:.3g}: {:.1f} dB with {:.1f} % of the Gaussians, before {:.1f} dB with {:.1f} %{}; "
+        "with as many, {:+.1f} dB in the view that gained least; every Gaussian {:.1f} dB\n",
+        after.tau, after.cut, 100 * after.share, before.cut, 100 * before.share, at,
         learned.least_gain(i), after.leaves));
   }
 }
