@@ -1,5 +1,7 @@
 #include "tools/report/kept_rows.h"
 
+#include <unistd.h>
+
 #include <fstream>
 #include <iterator>
 
@@ -59,7 +61,10 @@ void KeptRows::keep(const KeptRow& row) {
 }
 
 std::vector<std::string> KeptRows::remove() {
-  return folder_.remove();
+  std::vector<std::string> left = folder_.remove();
+  // It was there, empty and unmarked, where a kill had come just before the end of such a call.
+  ::rmdir(folder_.path().c_str());
+  return left;
 }
 
 }  // namespace voyager::tools
