@@ -13,7 +13,6 @@ namespace {
 
 constexpr uint64_t kKind =
     0x36696d6974706f;  // "optimi6"; a change of the pictures or steps needs another
-constexpr char kStartAnew[] = "remove it, and learning starts anew";
 
 template <class Values>
 uint64_t sum_of(const Values& values) {
@@ -68,7 +67,7 @@ void check_checkpoints(const std::string& kept) {
 bool read_checkpoint(uint64_t mark, const std::string& path, Checkpoint& checkpoint) {
   if (!std::filesystem::exists(path)) return false;
   check_kind(path, kKind, "what --optimize has learned");
-  const std::vector<std::byte> bytes = read_sealed(path, kStartAnew);
+  const std::vector<std::byte> bytes = read_sealed(path, "remove it, and learning starts anew");
   Unpacker from(path, bytes);
   uint64_t head[4];
   from.take(std::span<uint64_t>(head));

@@ -134,10 +134,13 @@ class Learning {
       const auto is_done = [&](double share) {
         return checkpoint_.done == static_cast<uint32_t>(std::ceil(share * steps));
       };
-      const auto measures = std::count_if(std::begin(kMeasureAt), std::end(kMeasureAt), is_done);
-      for (auto i = measures; i != 0; --i) measure();
-      if (measures != 0 || is_done(kFirstTold))
-        stage = "optimizing (" + gained_so_far(before) + ")";
+      bool tells = is_done(kFirstTold);
+      for (const double share : kMeasureAt)
+        if (is_done(share)) {
+          measure();
+          tells = true;
+        }
+      if (tells) stage = "optimizing (" + gained_so_far(before) + ")";
       if (since_kept.milliseconds() < keep_milliseconds && checkpoint_.done < steps) continue;
       checkpoint_.state = trainer_->state();
       give_extents();

@@ -44,13 +44,13 @@ uint64_t fewest_at_once(uint64_t leaves) {
 uint64_t most_at_once(const BakedScene& baked, const OptimizeGoal& goal, const Backend& backend) {
   const int degree = baked.leaves.sh_degree;
   double room = static_cast<double>(baked.leaves.size());
-  std::string of = "host memory";
+  const char* short_of = "memory";
   const auto fit = [&](double bytes, double of_leaf, const char* whose) {
     if (bytes >= of_leaf * static_cast<double>(baked.leaves.size())) return;
     const double fits = bytes / (of_leaf * (1 + kAround));
     if (fits >= room) return;
     room = fits;
-    of = whose;
+    short_of = whose;
   };
   if (backend.memory_bytes() != 0)
     fit(kShareOfDevice * static_cast<double>(backend.memory_bytes()), device_bytes_of_leaf(degree),
@@ -61,7 +61,8 @@ uint64_t most_at_once(const BakedScene& baked, const OptimizeGoal& goal, const B
   const auto most = static_cast<uint64_t>(room);
   const uint64_t least = fewest_at_once(baked.leaves.size());
   if (most < least)
-    throw Error(ErrorCode::over_budget, of + ": found room for " + std::to_string(most) +
+    throw Error(ErrorCode::over_budget, short_of + std::string(": found room for ") +
+                                            std::to_string(most) +
                                             " Gaussians that learn at once, expected room for " +
                                             std::to_string(least) + " at least");
   return most;

@@ -66,7 +66,7 @@ class Failures {
   static double wait_after(unsigned times);
 
   std::map<uint32_t, Failed> failed_;
-  std::set<std::pair<double, uint32_t>> due_;  // those of them that are not negative
+  std::set<std::pair<double, uint32_t>> due_;  // the same, without negatives, in order
   unsigned source_failures_ = 0;               // reads in a row
   double source_due_ = 0, source_failed_ = 0;
   ErrorCode source_code_{};

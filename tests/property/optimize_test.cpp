@@ -25,7 +25,7 @@ namespace voyager::optimize_test {
 namespace {
 
 using test::expect_same_leaves;
-using test::same;
+using test::same_merged;
 
 struct Learned {
   BakedScene scene;
@@ -149,10 +149,10 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
   const test::TempFolder folder;
   const BakedScene baked = test::bake(test::specks(1500, 6, 1));
   const BakedScene expected = learn(baked, 8, 1, folder.file("one")).scene;
-  EXPECT_FALSE(same(expected, baked));
+  EXPECT_FALSE(same_merged(expected, baked));
   EXPECT_TRUE(validate(expected).empty()) << validate(expected).front();
   expect_same_leaves(expected, baked);
-  EXPECT_TRUE(same(learn(baked, 8, 4, folder.file("four")).scene, expected));
+  EXPECT_TRUE(same_merged(learn(baked, 8, 4, folder.file("four")).scene, expected));
 
   struct Stop {};
   const std::string kept = folder.file("stopped");
@@ -167,14 +167,14 @@ TEST(Optimize, NeitherThreadsNorStopsShow) {
                                 }),
                  Stop);
   }
-  EXPECT_TRUE(same(learn(baked, 8, 2, kept).scene, expected));
+  EXPECT_TRUE(same_merged(learn(baked, 8, 2, kept).scene, expected));
 }
 
 TEST(Optimize, EveryLeafIsDrawnAsBefore) {
   const test::TempFolder folder;
   const BakedScene baked = test::bake(test::specks(300, 6, 1));
   const BakedScene learned = learn(baked, 4, 2, folder.file("kept")).scene;
-  EXPECT_FALSE(same(learned, baked));
+  EXPECT_FALSE(same_merged(learned, baked));
   const FrameInput input =
       test::frame_input(test::look({3, -6, -24}, {0, 0, 0}, 133, 77), 3, false);
   const auto backend = create_cpu_backend();
@@ -220,7 +220,7 @@ TEST(Optimize, InPartsNeitherThreadsNorStopsShow) {
     EXPECT_TRUE(std::isfinite(summary.least_gain(i)));
   ASSERT_GE(kept_files(folder.file("one")).size(), 4u);  // three parts and the top
   EXPECT_EQ(kept_files(folder.file("one"))[1], folder.file("one") + ".1");
-  EXPECT_FALSE(same(expected, baked));
+  EXPECT_FALSE(same_merged(expected, baked));
   EXPECT_TRUE(validate(expected).empty()) << validate(expected).front();
   expect_same_leaves(expected, baked);
 
@@ -252,7 +252,7 @@ TEST(Optimize, InPartsNeitherThreadsNorStopsShow) {
   }
   BakedScene again = baked;
   learn_in_parts(again, 3, kept);
-  EXPECT_TRUE(same(again, expected));
+  EXPECT_TRUE(same_merged(again, expected));
 
   const std::string foreign = folder.file("foreign");
   std::ofstream(kept_of_part(foreign, 0)) << "my own file, longer than a head";

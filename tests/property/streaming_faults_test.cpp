@@ -63,7 +63,7 @@ TEST(StreamingFaults, AnotherBudgetBetweenReadsOfOneChunkEach) {
     if (!is_one(offset, size)) throw Error(ErrorCode::io, "disk.voy: found the end");
     if (++changed == 2) flight.stream().set_budget(0, flight.rig().workers);
   };
-  for (int i = 0; i < 60; ++i) flight.draw(input);
+  for (int i = 0; i < 40; ++i) flight.draw(input);
   EXPECT_GT(changed, 2);
   shorter = false;
   expect_same_bits(flight.stand(input, 2000), flight.whole(input));

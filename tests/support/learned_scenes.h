@@ -13,7 +13,8 @@ namespace voyager::test {
 // Of the host's memory, so that specks(1500, ...) of degree 1 learns in parts.
 inline constexpr uint64_t kMemoryOfParts = 690'000;
 
-inline bool same(const BakedScene& a, const BakedScene& b) {
+// And how detail is chosen.
+inline bool same_merged(const BakedScene& a, const BakedScene& b) {
   const auto& [x, y] = std::tie(a.merged, b.merged);
   return x.position == y.position && x.log_scale == y.log_scale && x.rotation == y.rotation &&
          x.opacity == y.opacity && x.sh == y.sh && a.node_code == b.node_code &&
