@@ -91,7 +91,7 @@ void DevicePool::make_room(PoolRoom room) {
   check_addresses(shape_, room);
   layout_.set_room(room);
   memory_ = Buffer<unsigned char>(layout_.bytes());
-  bounds_.make_room(room.blocks);
+  bounds_.make_room(room.slots);
   slot_ids_.assign(room.slots, {});
   slots_ = room.slots;
   pages_ = room.pages;

@@ -36,7 +36,9 @@ class DevicePool final : public ChunkPool {
   // May wait for a piece of the ring, which is to say for chunks that came before it, and for the
   // frames that those wait for: throws Error(timeout), too.
   void fill(std::span<const StagedChunk* const> chunks) override;
-  const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
+  const BoundsCode& bounds(const CheckedRecord& of) const override {
+    return bounds_.at(of.slot, of.checked);
+  }
   void apply(const LinkPatch& patch) override;
   void await_frames() override;
   // Until the last links are the device's. Throws Error(timeout) as await_frames() does.

@@ -40,8 +40,8 @@ class HostPool final : public ChunkPool {
     for (const StagedChunk* chunk : chunks) fill(*chunk);
   }
 
-  const BoundsCode& bounds(uint32_t record) const override {
-    return scene_.search.records[record].code;
+  const BoundsCode& bounds(const CheckedRecord& of) const override {
+    return scene_.search.records[of.record].code;
   }
 
   void apply(const LinkPatch& patch) override {

@@ -26,6 +26,8 @@ class ByChunk {
     known_.push_back({chunk, {}});  // throws nothing, so that the place is never another's
     return known_.back().of;
   }
+  // To be changed, of one that is known.
+  Known& held(uint32_t chunk) { return known_[at_[chunk]].of; }
   void forget(uint32_t chunk) {
     const uint32_t at = at_[chunk];
     if (at == 0) return;

@@ -50,8 +50,12 @@ class ChunkPool {
   // threads at once, each slots of its own. Throws Error where the pool itself is at fault; then
   // all of them count as not filled.
   virtual void fill(std::span<const StagedChunk* const> chunks) = 0;
-  // Of a search record of a chunk that was filled, as searches read it.
-  virtual const BoundsCode& bounds(uint32_t record) const = 0;
+  // Of a search record of a chunk that was filled, as searches read it: its address, its chunk's
+  // slot, and which of StagedChunk::checked it is.
+  struct CheckedRecord {
+    uint32_t record, slot, checked;
+  };
+  virtual const BoundsCode& bounds(const CheckedRecord& of) const = 0;
   // Between two frames: what was filled before and is linked now is there for the next one.
   virtual void apply(const LinkPatch& patch) = 0;
   // Until frames in flight that read the pool have ended, which may wait for the host; none begins

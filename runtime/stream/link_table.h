@@ -2,6 +2,7 @@
 // What the host keeps of a resident chunk so that it can be linked (linker.h): some ten bytes for
 // each of its subtrees. All else follows from that, and is found by a walk from the first subtree.
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <memory>
@@ -53,19 +54,25 @@ class LinkTable {
   uint32_t nodes_below() const { return nodes_below_; }
 
   // Whether a refined node may lead to a subtree.
-  bool leads_to(uint32_t subtree) const { return (words_[subtree] & kLinked) != 0; }
+  bool leads_to(uint32_t subtree) const { return (word(subtree) & kLinked) != 0; }
+  // One thread at a time for a subtree, while others may ask.
   void set_leads_to(uint32_t subtree, bool linked) {
-    words_[subtree] = (words_[subtree] & ~kLinked) | (linked ? kLinked : 0);
+    words_[subtree].store(levels(subtree) | (linked ? kLinked : 0), std::memory_order_relaxed);
   }
   // Whether a node leads to what is below: that is there, and so is all above.
   bool leads_on(uint32_t below) const { return (below_byte(below) & kLeadsOn) != 0; }
-  void set_leads_on(uint32_t below, bool linked) {
-    const uint32_t shift = 8 * (below % 4);
-    uint32_t& word = words_[below_at() + below / 4];
-    word = (word & ~(kLeadsOn << shift)) | (linked ? kLeadsOn << shift : 0);
+  // False: it did so already. Of several threads it is true for one.
+  bool begin_to_lead_on(uint32_t below) {
+    const uint32_t mark = kLeadsOn << 8 * (below % 4);
+    return (below_word(below).fetch_or(mark, std::memory_order_relaxed) & mark) == 0;
+  }
+  // False: it did not.
+  bool end_to_lead_on(uint32_t below) {
+    const uint32_t mark = kLeadsOn << 8 * (below % 4);
+    return (below_word(below).fetch_and(~mark, std::memory_order_relaxed) & mark) != 0;
   }
 
-  uint32_t levels(uint32_t subtree) const { return words_[subtree] & ~kLinked; }
+  uint32_t levels(uint32_t subtree) const { return word(subtree) & ~kLinked; }
   // kManyChildren: or more.
   uint32_t few_children(uint32_t below) const { return below_byte(below) & kManyChildren; }
   // Bits of `count` slots, of which so many are before.
@@ -95,18 +102,22 @@ class LinkTable {
   uint32_t below_at() const { return subtrees_ + 2 * bit_words() + 1; }
   size_t word_count() const { return below_at() + (size_t{nodes_below_} + 3) / 4; }
   uint32_t below_byte(uint32_t below) const {
-    return words_[below_at() + below / 4] >> 8 * (below % 4) & 0xff;
+    return word(below_at() + below / 4) >> 8 * (below % 4) & 0xff;
   }
+  std::atomic<uint32_t>& below_word(uint32_t below) { return words_[below_at() + below / 4]; }
+  uint32_t word(size_t i) const { return words_[i].load(std::memory_order_relaxed); }
   uint32_t bits(uint32_t from, uint32_t before, uint32_t count) const {
-    const uint32_t* word = &words_[from + before / 32];
-    const uint64_t two = word[0] | uint64_t{word[1]} << 32;
+    const size_t at = from + before / 32;
+    const uint64_t two = word(at) | uint64_t{word(at + 1)} << 32;
     return static_cast<uint32_t>(two >> before % 32) & slots_before(count);
   }
+  void add(size_t at, uint32_t bits);
   void put_bits(uint32_t from, uint32_t before, uint32_t slots);
 
   uint32_t subtrees_ = 0, nodes_below_ = 0, slots_ = 0;
   // Levels of each subtree; interior slots and first children of all; bytes of the nodes below.
-  std::unique_ptr<uint32_t[]> words_;
+  // Threads that link other chunks read them while two kinds of marks change.
+  std::unique_ptr<std::atomic<uint32_t>[]> words_;
 };
 
 // From the first subtree of a chunk to its last, by their roots alone.
@@ -118,6 +129,7 @@ class RootWalk {
   bool at_end() const { return index_ == table_->subtrees(); }
   void next();
 
+  const LinkTable& table() const { return *table_; }
   uint32_t index() const { return index_; }
   uint32_t subtree() const { return table_->first_subtree + index_; }
   uint32_t levels() const { return levels_; }

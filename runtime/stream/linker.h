@@ -5,13 +5,20 @@
 //
 // Of a chunk it keeps a LinkTable, and a large family's nodes in a list of all of them. Bounds of
 // nodes are the pool's.
+//
+// Where cuts have room, what is linked follows from what is held alone. So the threads of a team
+// link, and unlink, different chunks at once: a family is the thread's that sets or clears its
+// mark.
 #include <algorithm>
 #include <compare>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "runtime/base/error.h"
+#include "runtime/base/team.h"
 #include "runtime/stream/by_chunk.h"
 #include "runtime/stream/chunk_graph.h"
 #include "runtime/stream/chunk_pool.h"
@@ -47,29 +54,23 @@ class Linker {
 
   bool holds(uint32_t chunk) const { return !tables_[chunk].empty(); }
   uint32_t slot(uint32_t chunk) const { return tables_[chunk].slot; }
-  // Of a chunk whose parents are all held, and that has filled its slot: what it alone could not
-  // show, also that it goes on with the tree's root where the chunk before was refused. Throws
-  // Error(damaged_chunk) as stage_chunk() does.
-  void check(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file);
-  // A chunk whose parents are all held, in links.slot. Costs less where it was checked just before.
-  void arrive(StagedChunk&& chunk, LinkPatch& patch);
-  // None of its children is held. In a patch, chunks go before others come.
-  void evict(uint32_t chunk, LinkPatch& patch);
+  // One that has filled its slot.
+  struct Arrival {
+    StagedChunk* staged;  // empty once it is held
+    uint32_t chunk;
+    std::optional<Error> failure = {};  // damaged_chunk, as stage_chunk() has it
+    bool held = false;  // without a failure: what it hangs from is not held, and maybe has failed
+  };
+  // Those whose parents are held, or come with them and in front of them. First what a chunk alone
+  // could not show is checked, also that it goes on with the tree's root where the chunk before was
+  // refused. divided: where families lie that hang from what is held now, of those that lie in
+  // several chunks; in any order.
+  void arrive(std::span<Arrival> chunks, const ChunkPool& pool, const std::string& file, Team& team,
+              LinkPatch& patch, std::vector<ChunkRange>& divided);
+  // No child of one is held that does not go with it. In a patch, chunks go before others come.
+  void evict(std::span<const uint32_t> chunks, Team& team, LinkPatch& patch);
   // Behind all that goes and comes in a patch: what has room in a cut now, and had none.
   void link_refused(LinkPatch& patch);
-
-  // Where the families are that hang from a chunk that is held, of those that lie in several
-  // chunks: visit(ChunkRange).
-  template <class Visit>
-  void each_divided_family(uint32_t chunk, const Visit& visit) const {
-    if (graph_->children(chunk).empty()) return;
-    ChunkGraph::Families families(*graph_, chunk);
-    for (LinkWalk at = walk(chunk).at; !at.at_end(); at.next())
-      at.each_below([&](const NodeBelow& node) {
-        const ChunkRange range = families.of(chunk, node.first_child, node.child_count);
-        if (range.last - range.first > 1) visit(range);
-      });
-  }
 
  private:
   // A node of a tier's lowest level that has children; with where these lie it is a family.
@@ -126,49 +127,72 @@ class Linker {
   // Finds a root in a chunk. Roots that ascend go through it once.
   class Roots;
 
+  // What one thread of a team does of a commit.
+  struct Lane {
+    LinkPatch patch;
+    std::vector<ChunkRange> divided;
+    std::vector<Family> above;  // scratch
+    // Families that hang from what is linked or unlinked: a heap, the first roots in front.
+    std::vector<Family> work;
+    uint64_t cut = 0, linked = 0;  // more of most_cut_ and linked_, modulo 2^64
+  };
+  struct Coming {
+    Arrival* of;
+    std::vector<Family> above;  // that its subtrees belong to, by their first roots
+    bool before_was_held = false;
+  };
+
   Walk walk(uint32_t chunk) const;
   Walk walk(const StagedChunk& chunk) const;
   RootWalk roots_of(const LinkTable& table) const { return {table, graph_->tiers()}; }
   void set_records(Walk& walk, SearchSubtree& subtree) const;
-  void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file);
+  static Walk last_of(Walk walk);  // its last subtree
+
+  bool may_come(uint32_t chunk) const;
+  void check(Coming& coming, const ChunkPool& pool, const std::string& file) const;
+  void check_behind(const Coming& coming, const ChunkPool& pool, const std::string& file) const;
+  void check_roots(const StagedChunk& chunk, const ChunkPool& pool, const std::string& file,
+                   std::vector<Family>& above) const;
   void check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
                     const std::string& file) const;
+  std::vector<Coming> hold(std::span<Arrival> chunks, const ChunkPool& pool,
+                           const std::string& file, Team& team, LinkPatch& patch);
+  void hold(StagedChunk& chunk, LinkPatch& patch);
+  void let_go(uint32_t chunk, LinkPatch& patch);
+  void collect(LinkPatch& patch);
+
   bool complete(const Family& family) const;
   // Each subtree of the family in turn: visit(walk at it).
   template <class Visit>
   void each_subtree(const Family& family, Roots& roots, const Visit& visit) const;
   Family family_of(const Parent& parent, ChunkGraph::Families& families) const;
-  void add_work(const Family& family);
-  bool has_work() const { return next_above_ != above_.size() || !work_.empty(); }
-  Family take_work();
   bool may_lead_on(uint32_t chunk) const;
-  void find_above(uint32_t chunk);
-  void link(LinkPatch& patch);
-  void unlink(LinkPatch& patch);
+  void find_above(uint32_t chunk, std::vector<Family>& above) const;
+  void find_divided(uint32_t chunk, std::vector<ChunkRange>& divided) const;
+  // Of a lane, these families and all that hangs from them.
+  void link(std::span<const Family> above, bool has_room, Lane& lane);
+  void unlink(std::span<const Family> above, Lane& lane);
   void add_large(const StagedChunk& chunk, LinkPatch& patch);
   void remove_large(uint32_t slot, LinkPatch& patch);
   void link_root(uint32_t chunk, LinkPatch& patch);
   uint64_t ends_of(const Family& family, Roots& roots) const;
-  bool has_room_for_cut(uint64_t ends) const { return most_cut_ - 1 + ends <= room_for_cut_; }
-  bool refuse_if_large(const Family& family, Roots& roots);
+  bool has_room_for_cut(uint64_t cut, uint64_t ends) const {
+    return cut - 1 + ends <= room_for_cut_;
+  }
+  bool has_room_for_all() const {
+    return refused_.empty() && most_cut_ + (held_ - linked_) * kSubtreeNodes <= room_for_cut_;
+  }
+  bool refuse_if_large(const Family& family, Roots& roots, const Lane& lane);
 
   const ChunkGraph* graph_;
   SlotShape shape_;
   const std::vector<uint32_t>* next_block_;
   ByChunk<LinkTable> tables_;
   std::vector<LargeFamily> large_;  // of what is held, by address
-  // Families that the subtrees of one chunk belong to, by their first roots. Those before
-  // next_above_ are done.
-  std::vector<Family> above_;
-  size_t next_above_ = 0;
-  // Those of the chunk that was checked last, until it arrives.
-  std::vector<Family> checked_above_;
-  static constexpr uint32_t kNone = 0xffffffffu;
-  uint32_t checked_ = kNone;
-  // Families that hang from what is linked or unlinked: a heap, the first roots in front.
-  std::vector<Family> work_;
+  std::vector<Lane> lanes_{1};      // scratch
   // Of what is linked: that no cut has more nodes, those which nothing leads on from.
   uint64_t most_cut_ = 0, room_for_cut_ = UINT64_MAX;
+  uint64_t held_ = 0, linked_ = 0;  // subtrees
   std::set<Refused> refused_;
 };
 

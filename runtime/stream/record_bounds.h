@@ -1,21 +1,30 @@
 #pragma once
-// Bounds of the search records of a pool whose records lie on a device, by their addresses.
+// Bounds of search records on the host, of a pool whose records lie on a device: those that chunks
+// which come later are checked against (StagedChunk::checked).
+#include <memory>
+#include <vector>
+
 #include "runtime/stream/staged_chunk.h"
 
 namespace voyager {
 
 class RecordBounds {
  public:
-  void make_room(uint32_t blocks) { codes_.assign(size_t{blocks} * kRecordBlock, {}); }
-  // Of chunks with other blocks, several threads at once.
-  void fill(const StagedChunk& chunk) {
-    for (uint32_t i = 0; i < chunk.records.size(); ++i)
-      codes_[chunk.record(i)] = chunk.records[i].code;
+  void make_room(uint32_t slots) {
+    codes_.clear();
+    codes_.resize(slots);
   }
-  const BoundsCode& operator[](uint32_t record) const { return codes_[record]; }
+  // Of chunks with other slots, several threads at once.
+  void fill(const StagedChunk& chunk) {
+    auto codes = std::make_unique<BoundsCode[]>(chunk.checked.size());
+    for (size_t i = 0; i < chunk.checked.size(); ++i)
+      codes[i] = chunk.records[chunk.checked[i]].code;
+    codes_[chunk.links.slot] = std::move(codes);
+  }
+  const BoundsCode& at(uint32_t slot, uint32_t checked) const { return codes_[slot][checked]; }
 
  private:
-  std::vector<BoundsCode> codes_;
+  std::vector<std::unique_ptr<BoundsCode[]>> codes_;  // by slot
 };
 
 }  // namespace voyager

@@ -59,6 +59,7 @@ SceneStream::SceneStream(std::shared_ptr<const SceneFile> file, const StreamDesc
       room_pinned_(desc.pinned),
       bytes_(desc.bytes.of(desc.room)),
       looks_(file_->chunks()),
+      team_(std::min(desc.readers + 1, kMostThatLink)),
       residency_(graph_, file_->chunks(), records_, desc.room, desc.pinned),
       linker_(graph_, shape_, residency_.next_blocks()),
       pages_(no_pages(desc.room)) {

@@ -154,8 +154,13 @@ class SceneStream {
   enum class PlanAsked : uint8_t { no, in_time, soon, at_once };
   static constexpr size_t kChangesKept = 64;
   static constexpr uint32_t kMostAtOnce = 16;  // chunks: a thread decodes them in two milliseconds
-  // How many chunks one commit links at most, and unlinks at most. The few take a millisecond.
+  // How many chunks one commit links at most, and unlinks at most. The few take one thread a
+  // millisecond.
   static constexpr size_t kFewChunks = 64, kAllChunks = SIZE_MAX;
+  // So many that come or go one thread links before others would be there to help.
+  static constexpr size_t kFewAlone = 16;
+  // Threads that link at once. More would wait for one another longer than they link.
+  static constexpr unsigned kMostThatLink = 8;
 
   // Read, and not resident yet.
   struct Coming {
@@ -189,6 +194,7 @@ class SceneStream {
   TimePoint next_plan() const;
   bool rests(TimePoint until) const;
   static size_t most_for_frame(double seconds);
+  size_t few_between_frames() const;
   size_t enough_between_frames() const;
   bool commit_between_frames(Lock& lock);
   struct Commit;
@@ -287,6 +293,7 @@ class SceneStream {
   // touches linker_, pages_ or what the commit has taken of coming_.
   bool linking_ = false;
   std::condition_variable linked_;
+  Team team_;                // for a commit: whoever makes one, and the stream's threads
   bool plan_waits_ = false;  // for linked_; no further commit begins between frames
   Residency residency_;
   Linker linker_;

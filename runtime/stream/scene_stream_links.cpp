@@ -9,21 +9,14 @@ namespace voyager {
 // What one commit does. It is taken from what is resident and given back to that under mutex_; in
 // between it is linked, without that lock.
 struct SceneStream::Commit {
-  struct Arriving {
-    uint32_t chunk;
-    StagedChunk* staged;
-    Residency::Arrival how = Residency::Arrival::waiting;
-    std::optional<Error> failure = {};
-  };
   std::vector<Residency::Evicted> evicted;
   std::vector<uint32_t> given_up;
-  std::vector<Arriving> arriving;
+  std::vector<Linker::Arrival> arriving;
   bool lacked_room;  // for what is linked, before
 
   LinkPatch patch;
   std::vector<uint32_t> moved_pages;
   std::vector<ChunkRange> divided;  // families
-  bool refused = false;             // one of those that arrive
 };
 
 // Chunks that a frame links at most. That takes a millisecond, or at most a tenth of the seconds
@@ -55,10 +48,15 @@ void SceneStream::commit() {
   commit_or_lose(most, lock);
 }
 
+// As long as it takes: about half of the threads that may help come by soon enough.
+size_t SceneStream::few_between_frames() const {
+  return kFewChunks * std::max(team_.lanes() / 2, 1u);
+}
+
 // After some times without a frame twice as many: a view that draws seldom can follow few changes.
 size_t SceneStream::enough_between_frames() const {
   constexpr unsigned kTimes = 8, kMostDoublings = 16;
-  return kFewChunks / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
+  return few_between_frames() / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
 }
 
 // So that a frame finds few chunks to link, while many come, and waits for few. False: frames keep
@@ -71,7 +69,7 @@ bool SceneStream::commit_between_frames(Lock& lock) {
   const std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) return false;
   ++between_frames_;
-  commit_or_lose(std::max(enough, kFewChunks), lock);
+  commit_or_lose(std::max(enough, few_between_frames()), lock);
   return true;
 }
 
@@ -125,37 +123,30 @@ SceneStream::Commit SceneStream::begin_commit(size_t most) {
   commit.given_up = std::move(arrivals.given_up);
   commit.arriving.reserve(arrivals.arriving.size());
   for (const uint32_t chunk : arrivals.arriving)
-    commit.arriving.push_back({chunk, &coming_.at(chunk).chunk});
+    commit.arriving.push_back({&coming_.at(chunk).chunk, chunk});
   return commit;
 }
 
 void SceneStream::link(Commit& commit) {
-  for (const Residency::Evicted& e : commit.evicted) {
-    linker_.evict(e.chunk, commit.patch);
-    const ChunkEntry& chunk = file_->chunks()[e.chunk];
-    if (pages_) pages_->release(chunk.first_subtree, chunk.subtree_count, version_ + 1);
+  std::optional<Team::Session> session;
+  if (commit.evicted.size() + commit.arriving.size() > kFewAlone) {
+    session.emplace(team_);
+    signal();  // whoever sleeps may take part
   }
-  for (Commit::Arriving& arriving : commit.arriving) {
-    const auto parents = graph_.parents(arriving.chunk);
-    const auto holds = [&](uint32_t parent) { return linker_.holds(parent); };
-    if (commit.refused && !std::all_of(parents.begin(), parents.end(), holds)) continue;
-    try {
-      linker_.check(*arriving.staged, pool_, file_->name());
-    } catch (const Error& error) {
-      arriving.how = Residency::Arrival::failed;
-      arriving.failure = error;
-      commit.refused = true;
-      continue;
-    }
-    arriving.how = Residency::Arrival::resident;
-    if (pages_) place_subtrees(file_->chunks()[arriving.chunk], commit.moved_pages);
-    linker_.arrive(std::move(*arriving.staged), commit.patch);
-    *arriving.staged = {};
-    linker_.each_divided_family(arriving.chunk,
-                                [&](ChunkRange family) { commit.divided.push_back(family); });
-  }
+  std::vector<uint32_t> leaving;
+  for (const Residency::Evicted& e : commit.evicted) leaving.push_back(e.chunk);
+  linker_.evict(leaving, team_, commit.patch);
+  linker_.arrive(commit.arriving, pool_, file_->name(), team_, commit.patch, commit.divided);
+  session.reset();
   linker_.link_refused(commit.patch);
-  if (pages_) commit.patch.pages = pages_->changes(commit.moved_pages);
+  if (!pages_) return;
+  for (const uint32_t leaves : leaving) {
+    const ChunkEntry chunk = file_->chunks().numbers(leaves);
+    pages_->release(chunk.first_subtree, chunk.subtree_count, version_ + 1);
+  }
+  for (const Linker::Arrival& arrival : commit.arriving)
+    if (arrival.held) place_subtrees(file_->chunks().numbers(arrival.chunk), commit.moved_pages);
+  commit.patch.pages = pages_->changes(commit.moved_pages);
 }
 
 void SceneStream::place_subtrees(const ChunkEntry& chunk, std::vector<uint32_t>& moved_pages) {
@@ -166,14 +157,16 @@ void SceneStream::place_subtrees(const ChunkEntry& chunk, std::vector<uint32_t>&
 }
 
 void SceneStream::end_commit(const Commit& commit) {
-  for (const Commit::Arriving& arriving : commit.arriving) {
-    residency_.end_arrival(arriving.chunk, arriving.how);
-    if (arriving.how == Residency::Arrival::waiting) continue;
-    coming_.erase(arriving.chunk);
-    if (arriving.failure)
-      add_failure(arriving.chunk, *arriving.failure);
+  for (const Linker::Arrival& arrival : commit.arriving) {
+    using How = Residency::Arrival;
+    const How how = arrival.held ? How::resident : arrival.failure ? How::failed : How::waiting;
+    residency_.end_arrival(arrival.chunk, how);
+    if (how == How::waiting) continue;
+    coming_.erase(arrival.chunk);
+    if (arrival.failure)
+      add_failure(arrival.chunk, *arrival.failure);
     else
-      failures_.remove(arriving.chunk);
+      failures_.remove(arrival.chunk);
   }
   for (const uint32_t chunk : commit.given_up) coming_.erase(chunk);
   for (const ChunkRange& family : commit.divided)

@@ -31,6 +31,7 @@ void SceneStream::run() {
       if (stopping_) return;
       seen = signals_;
     }
+    if (team_.help()) continue;
     bool links_wait = false;
     double wait = 0;
     {
@@ -342,6 +343,7 @@ void SceneStream::stage(ChunkRange range, std::span<const std::byte> stored, Loc
   const uint64_t generation = generation_;
   lock.unlock();
   for (uint32_t chunk = range.first; chunk < range.last; ++chunk) {
+    team_.help();
     Decoded& of = decoded[chunk - range.first];
     try {
       const uint64_t at = chunks[chunk].offset - chunks[range.first].offset;

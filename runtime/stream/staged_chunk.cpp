@@ -41,6 +41,7 @@ class Stager {
     // Nodes of a chunk come subtree by subtree, those of a slot by their ids, as a table's.
     std::sort(out_.large.begin(), out_.large.end(),
               [](const LargeFamily& a, const LargeFamily& b) { return a.parent < b.parent; });
+    set_checked();
     set_links();
     return std::move(out_);
   }
@@ -55,6 +56,19 @@ class Stager {
       out_.place.push_back(static_cast<uint32_t>(
           std::lower_bound(sorted.begin(), sorted.end(), id) - sorted.begin()));
     if (!make_slot_ids(sorted, out_.ids)) refuse_runs(out_.chunk, file_);
+  }
+  void set_checked() {
+    const auto add_ends = [&](size_t subtree, uint32_t first_record) {
+      const uint32_t interior = parts_[subtree].interior;
+      const uint32_t child = out_.content.subtrees[subtree].root_count;
+      for (const uint32_t slot : {0u, child}) {
+        const auto before = static_cast<uint32_t>(std::popcount(interior & slots_before(slot)));
+        out_.checked.push_back((interior >> slot & 1) != 0 ? first_record + before : 0);
+      }
+    };
+    if (out_.records.empty()) return;
+    add_ends(parts_.size() - 1, last_record_);
+    add_ends(0, 0);
   }
   void set_links() {
     const uint32_t first = out_.content.first_subtree;
@@ -72,7 +86,7 @@ class Stager {
     check_repeats(subtree, records);
     const LinkTable::Part part{slot_levels(subtree), interior_slots(subtree, record),
                                family_slots(subtree, record)};
-    uint32_t search_record = static_cast<uint32_t>(out_.records.size());
+    uint32_t search_record = last_record_ = static_cast<uint32_t>(out_.records.size());
     out_.records.resize(out_.records.size() + static_cast<size_t>(std::popcount(part.interior)));
     fill_search_records(subtree, record, out_.records.data() + search_record);
     check_families(subtree, records);
@@ -82,6 +96,7 @@ class Stager {
       if ((part.interior >> slot & 1) != 0) {
         if (subtree.level(slot) + 1 == levels) {
           out_.records[search_record].children = kBlocked;
+          out_.checked.push_back(search_record);
           child_counts_.push_back(records[slot].child_count);
           if (in_first_tier(index) && !next_below_)
             next_below_ = out_.content.first_child[next_node_];
@@ -128,6 +143,7 @@ class Stager {
   const std::string& file_;
   StagedChunk out_;
   uint32_t next_node_ = 0;
+  uint32_t last_record_ = 0;  // the first of the last subtree
   std::vector<LinkTable::Part> parts_;
   std::vector<uint32_t> child_counts_;
   std::optional<uint32_t> next_below_;
@@ -171,6 +187,7 @@ void refuse_records(const StagedChunk& staged, const std::string& file) {
 void StagedChunk::drop_content() {
   content = {};
   records = {};
+  checked = {};
   place = {};
   owner = {};
   blocks = {};

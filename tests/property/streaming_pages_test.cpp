@@ -31,9 +31,11 @@ class PagedPool final : public ChunkPool {
   void fill(std::span<const StagedChunk* const> chunks) override {
     for (const StagedChunk* chunk : chunks) bounds_.fill(*chunk);
   }
-  const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
+  const BoundsCode& bounds(const CheckedRecord& of) const override {
+    return bounds_.at(of.slot, of.checked);
+  }
   void resize(PoolRoom room) override {
-    bounds_.make_room(room.blocks);
+    bounds_.make_room(room.slots);
     pages_.assign(pages_.size(), 0);
     at_.assign((room.pages + 1) * kPageSubtrees, kNobody);
     linked_.clear();

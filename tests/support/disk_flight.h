@@ -37,21 +37,23 @@ inline FrameInput ahead(const Vec3d& eye, const Vec3d& way, double tau = 3) {
 // Holds nothing but bounds; fails while `fails`, or once.
 class FailingPool final : public ChunkPool {
  public:
-  explicit FailingPool(PoolRoom room) { bounds_.make_room(room.blocks); }
+  explicit FailingPool(PoolRoom room) { bounds_.make_room(room.slots); }
 
   void fill(std::span<const StagedChunk* const> chunks) override {
     if (late_once.exchange(false))
       throw Error(ErrorCode::timeout, "view: found a frame in flight that did not end");
     for (const StagedChunk* chunk : chunks) bounds_.fill(*chunk);
   }
-  const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
+  const BoundsCode& bounds(const CheckedRecord& of) const override {
+    return bounds_.at(of.slot, of.checked);
+  }
   void apply(const LinkPatch&) override {
     if (fails || fails_once.exchange(false))
       throw Error(ErrorCode::device_lost, "pool: found no device");
   }
   void resize(PoolRoom room) override {
     if (refuses_once.exchange(false)) throw Error(ErrorCode::over_budget, "pool: found no memory");
-    bounds_.make_room(room.blocks);
+    bounds_.make_room(room.slots);
   }
   std::atomic<bool> fails{false}, fails_once{false}, late_once{false}, refuses_once{false};
 

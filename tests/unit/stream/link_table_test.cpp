@@ -116,7 +116,10 @@ TEST(LinkTable, FlagsChangeNothingElse) {
       table.set_leads_to(subtree, to[subtree] = random() % 2 != 0);
       if (on.empty()) continue;
       const auto below = static_cast<uint32_t>(random() % on.size());
-      table.set_leads_on(below, on[below] = random() % 2 != 0);
+      const bool leads = random() % 2 != 0;
+      EXPECT_EQ(leads ? table.begin_to_lead_on(below) : table.end_to_lead_on(below),
+                on[below] != leads);
+      on[below] = leads;
     }
     for (uint32_t i = 0; i < to.size(); ++i) ASSERT_EQ(table.leads_to(i), to[i]);
     for (uint32_t i = 0; i < on.size(); ++i) ASSERT_EQ(table.leads_on(i), on[i]);

@@ -4,34 +4,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
+#include <atomic>
 #include <map>
 #include <numeric>
 #include <random>
 #include <set>
+#include <thread>
+#include <utility>
 
-#include "runtime/stream/record_bounds.h"
 #include "runtime/stream/scene_stream.h"
+#include "tests/support/bounds_pool.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
 namespace voyager::linker_test {
 namespace {
-
-// Knows the bounds of what it is filled with.
-class BoundsPool final : public ChunkPool {
- public:
-  explicit BoundsPool(uint32_t blocks) { bounds_.make_room(blocks); }
-  void fill(std::span<const StagedChunk* const> chunks) override {
-    for (const StagedChunk* chunk : chunks) bounds_.fill(*chunk);
-  }
-  const BoundsCode& bounds(uint32_t record) const override { return bounds_[record]; }
-  void apply(const LinkPatch&) override {}
-  void resize(PoolRoom) override {}
-
- private:
-  RecordBounds bounds_;
-};
 
 // Every chunk has the slot of its own number. Its records are in blocks of its own, in any order.
 class Linked {
@@ -42,7 +29,7 @@ class Linked {
         graph_(file.chunks(), file.tiers()),
         next_block_(file.chunks().size() * shape_.records),
         linker_(graph_, shape_, next_block_),
-        pool_(static_cast<uint32_t>(next_block_.size())) {
+        pool_(graph_.size()) {
     linker_.make_room({graph_.size(), 0}, cut_nodes);
   }
 
@@ -54,20 +41,44 @@ class Linked {
     arrive(chunk, patch);
     finish(patch);
   }
-  void arrive(uint32_t chunk, LinkPatch& patch) { linker_.arrive(stage(chunk), patch); }
-  // In front of arrive(), or for nothing.
-  void check(uint32_t chunk) { linker_.check(stage(chunk), pool_, file_.name()); }
+  void arrive(uint32_t chunk, LinkPatch& patch) {
+    arrive(std::vector<uint32_t>{chunk}, alone_, patch);
+  }
+  // At once.
+  void arrive(const std::vector<uint32_t>& chunks, Team& team, LinkPatch& patch) {
+    std::vector<StagedChunk> staged;
+    for (const uint32_t chunk : chunks) staged.push_back(stage(chunk));
+    std::vector<Linker::Arrival> arrivals;
+    for (StagedChunk& chunk : staged) arrivals.push_back({&chunk, chunk.chunk});
+    std::vector<ChunkRange> divided;
+    linker_.arrive(arrivals, pool_, file_.name(), team, patch, divided);
+    for (const Linker::Arrival& arrival : arrivals) EXPECT_TRUE(arrival.held);
+    divided_.insert(divided_.end(), divided.begin(), divided.end());
+  }
   void evict(uint32_t chunk) {
     LinkPatch patch;
     evict(chunk, patch);
     finish(patch);
   }
-  void evict(uint32_t chunk, LinkPatch& patch) { linker_.evict(chunk, patch); }
+  void evict(uint32_t chunk, LinkPatch& patch) {
+    evict(std::vector<uint32_t>{chunk}, alone_, patch);
+  }
+  void evict(const std::vector<uint32_t>& chunks, Team& team, LinkPatch& patch) {
+    linker_.evict(chunks, team, patch);
+  }
   void finish(LinkPatch& patch) {
     const size_t before = patch.linked.size();
     linker_.link_refused(patch);
     linked_again_ += patch.linked.size() - before;
     apply(patch);
+  }
+  // What the last batches have found, in an order of its own.
+  std::vector<std::pair<uint32_t, uint32_t>> take_divided() {
+    std::vector<std::pair<uint32_t, uint32_t>> all;
+    for (const ChunkRange range : std::exchange(divided_, {}))
+      all.emplace_back(range.first, range.last);
+    std::sort(all.begin(), all.end());
+    return all;
   }
   // Subtrees that had no room at first.
   size_t linked_again() const { return linked_again_; }
@@ -119,7 +130,9 @@ class Linked {
   ChunkGraph graph_;
   std::vector<uint32_t> next_block_;
   Linker linker_;
-  BoundsPool pool_;
+  test::BoundsPool pool_;
+  Team alone_{1};
+  std::vector<ChunkRange> divided_;
   std::map<uint32_t, uint32_t> first_record_;  // by subtree
   std::set<uint32_t> linked_, leading_;        // subtrees; records
   size_t linked_again_ = 0;
@@ -219,51 +232,65 @@ TEST(Linker, LeavesOutWhatCouldMakeACutTooLarge) {
   }
 }
 
-template <class T>
-bool same(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() &&
-         (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-bool same(const LinkPatch& a, const LinkPatch& b) {
-  return same(a.cut.records, b.cut.records) && a.cut.changed == b.cut.changed &&
-         same(a.tied.records, b.tied.records) && a.tied.changed == b.tied.changed &&
-         a.unlinked == b.unlinked && same(a.linked, b.linked) && same(a.outside, b.outside) &&
-         a.left == b.left && same(a.arrived, b.arrived);
-}
+// Threads that help whoever links, until it is destroyed.
+class Helpers {
+ public:
+  explicit Helpers(Team& team) {
+    for (unsigned i = 1; i < team.lanes(); ++i)
+      threads_.emplace_back([this, &team] {
+        while (!ended_)
+          if (!team.help()) std::this_thread::yield();
+      });
+  }
+  ~Helpers() {
+    ended_ = true;
+    for (std::thread& thread : threads_) thread.join();
+  }
 
-// What checking finds is what linking would find, and only for the chunk that was checked last.
-TEST(Linker, LinksACheckedChunkAsItLinksOthers) {
+ private:
+  std::atomic<bool> ended_{false};
+  std::vector<std::thread> threads_;
+};
+
+// Batches that go and come, with parents and children in one, linked by four threads: the same is
+// linked as by one, chunk by chunk, and each thing once.
+TEST(Linker, ManyThreadsLinkWhatOneLinks) {
   for (const test::TreeShape shape : test::kTreeShapes) {
     SCOPED_TRACE(test::name_of(shape));
-    const LodTree tree = test::random_tree(shape, 1500, 4);
+    const LodTree tree = test::random_tree(shape, 2000, 4);
     const test::Bytes bytes =
         test::scene_bytes(test::baked_of(tree), Quality::compact, 0, kMinChunkBytes);
     const SceneFile file(test::source_of(bytes));
-    const uint64_t room = file.info().leaf_count * 3 / 4;
-    Linked plain(file, room), checked(file, room);
+    const Expected expected(file, tree);
     const uint32_t top = SceneStream::top_chunks(file);
-    std::mt19937 random(3);
+    Linked one(file, UINT64_MAX), many(file, UINT64_MAX);
+    Team team(4);
+    const Helpers helpers(team);
+    std::mt19937 random(5);
     for (int step = 0; step < 60; ++step) {
-      LinkPatch expected, found;
-      if (step != 0)
-        for (uint32_t chunk = plain.chunks(); chunk-- > top;) {
-          if (random() % 3 != 0 || !plain.may_go(chunk)) continue;
-          plain.evict(chunk, expected);
-          checked.evict(chunk, found);
-        }
-      for (uint32_t chunk = 0; chunk < plain.chunks(); ++chunk) {
-        if (chunk >= top && (random() % 3 == 0 || !plain.may_arrive(chunk))) continue;
-        if (plain.linker().holds(chunk)) continue;
-        plain.arrive(chunk, expected);
-        if (random() % 4 != 0) checked.check(chunk);
-        const uint32_t other = random() % plain.chunks();
-        if (other > chunk && other >= top && checked.may_arrive(other)) checked.check(other);
-        checked.arrive(chunk, found);
+      LinkPatch by_one, by_many;
+      std::vector<uint32_t> going, coming;
+      for (uint32_t chunk = one.chunks(); step != 0 && chunk-- > top;) {
+        if (random() % 3 != 0 || !one.may_go(chunk)) continue;
+        one.evict(chunk, by_one);
+        going.push_back(chunk);
       }
-      ASSERT_TRUE(same(expected, found)) << step;
-      plain.finish(expected);
-      checked.finish(found);
-      ASSERT_TRUE(same(expected, found)) << step;
+      for (uint32_t chunk = 0; chunk < one.chunks(); ++chunk) {
+        if ((chunk >= top && random() % 3 == 0) || !one.may_arrive(chunk)) continue;
+        one.arrive(chunk, by_one);
+        coming.push_back(chunk);
+      }
+      {
+        const Team::Session session(team);
+        many.evict(going, team, by_many);
+        many.arrive(coming, team, by_many);
+      }
+      one.finish(by_one);
+      many.finish(by_many);
+      ASSERT_EQ(many.linked(), one.linked()) << step;
+      ASSERT_EQ(many.take_divided(), one.take_divided()) << step;
+      expected.check(many, UINT64_MAX);
+      if (HasFailure()) return;
     }
   }
 }
@@ -285,15 +312,30 @@ TEST(Linker, LinksWhatWasLeftOutOnceThereIsRoom) {
     Linked some(file, room);
     for (uint32_t chunk = 0; chunk < top; ++chunk) some.arrive(chunk);
     std::mt19937 random(9);
+    Team alone(1);
     for (int step = 0; step < 200; ++step) {
       const bool lacks = some.linker().lacks_room_for_cut();
       LinkPatch patch;
       const auto chance = [&](uint32_t of_eight) { return random() % 8 < of_eight; };
       const uint32_t going = step % 40 < 20 ? 1 : 4;
-      for (uint32_t chunk = some.chunks(); chunk-- > top;)
-        if (chance(going) && some.may_go(chunk)) some.evict(chunk, patch);
-      for (uint32_t chunk = top; chunk < some.chunks(); ++chunk)
-        if (chance(5 - going) && some.may_arrive(chunk)) some.arrive(chunk, patch);
+      std::vector<uint32_t> batch;  // in each second step what goes, goes at once
+      for (uint32_t chunk = some.chunks(); chunk-- > top;) {
+        if (!chance(going) || !some.may_go(chunk)) continue;
+        if (step % 2 == 0)
+          some.evict(chunk, patch);
+        else
+          batch.push_back(chunk);
+      }
+      some.evict(batch, alone, patch);
+      batch.clear();
+      for (uint32_t chunk = top; chunk < some.chunks(); ++chunk) {
+        if (!chance(5 - going) || !some.may_arrive(chunk)) continue;
+        if (step % 2 == 0)
+          some.arrive(chunk, patch);
+        else
+          batch.push_back(chunk);
+      }
+      some.arrive(batch, alone, patch);
       some.finish(patch);
       expected.check(some, room);
       if (HasFailure()) return;

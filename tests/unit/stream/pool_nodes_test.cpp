@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "runtime/stream/linker.h"
+#include "tests/support/bounds_pool.h"
 #include "tests/support/random_trees.h"
 #include "tests/support/scene_files.h"
 
@@ -27,6 +28,8 @@ struct Pool {
         owners(file.chunks().size() * slot_nodes),
         subtrees(file.info().subtree_count, kUnlinkedSubtree),
         outside(file.info().subtree_count, kNoNode - 1) {
+    test::BoundsPool bounds(graph.size());
+    Team alone(1);
     const uint32_t apart = scattered ? 2 : 1;
     for (uint32_t block = 0; block < next_block.size(); ++block) next_block[block] = block + apart;
     for (uint32_t chunk = 0; chunk < file.chunks().size(); ++chunk) {
@@ -41,8 +44,12 @@ struct Pool {
       for (uint32_t i = 0; i < blocks.size(); ++i) blocks[i] = 2 * chunk * nodes + i * apart;
       staged.put(chunk, std::move(blocks));
       add_records(staged);
+      const StagedChunk* const filled[] = {&staged};
+      bounds.fill(filled);
       LinkPatch patch;
-      linker.arrive(std::move(staged), patch);
+      Linker::Arrival arrival{&staged, chunk};
+      std::vector<ChunkRange> divided;
+      linker.arrive({&arrival, 1}, bounds, file.name(), alone, patch, divided);
       for (const auto& [subtree, linked] : patch.linked) subtrees[subtree] = linked;
       for (const LinkPatch::Outside& o : patch.outside) outside[o.subtree] = o.parent;
     }
