@@ -1,8 +1,8 @@
 // What a viewer who stands still sees while a scene comes: seconds until its picture is, for good,
-// as near as that to the one with nothing missing.
+// as near as that to the one with nothing missing; and the same once it has turned round at once.
 //   stream_quality SCENE CAMERAS.json MEGABYTES [CAMERA] [WxH] [TAU] [SECONDS] [READERS]
 // SCENE may be a URL. The clock starts before the scene is opened, with the camera as its start.
-// The last picture stands for the whole one: if it is not (SECONDS, 120), "missing" is not 0.
+// Each last picture stands for the whole one: if it is not (SECONDS, 120), "missing" is not 0.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Nothing may be missing for so long, in seconds: before a plan nobody knows that something is.
-constexpr double kWhole = 0.5;
+constexpr double kWhole = 1;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -48,6 +48,32 @@ double seconds_until(const std::vector<Shown>& shown, double least) {
   return shown[first].at;
 }
 
+// Draws until nothing has been missing for a while, but no longer than `longest` seconds, and
+// prints what was seen since `start`.
+void watch(voyager::bench::StreamedView& streamed, const voyager::tools::Camera& camera,
+           Clock::time_point start, double longest) {
+  std::vector<Shown> shown;
+  double whole = 0;  // since when nothing is missing
+  int in_a_row = 0;  // pictures of which nothing was
+  do {
+    streamed.render(camera);
+    const auto now = streamed.scene.streaming_stats();
+    const bool missing = streamed.view.stats().nodesUnrefined != 0 && now.seenMissingChunks != 0;
+    shown.push_back({seconds_since(start), streamed.pixels()});
+    in_a_row = missing ? 0 : in_a_row + 1;
+    if (in_a_row <= 1) whole = shown.back().at;
+  } while ((in_a_row < 3 || seconds_since(start) < whole + kWhole) &&
+           seconds_since(start) < longest);
+  const VoyStreamingStats stats = streamed.scene.streaming_stats();
+  std::printf("\"first_image_s\": %.2f, \"first_db\": %.1f", shown.front().at,
+              psnr(shown.front().pixels, shown.back().pixels));
+  for (const int least : {20, 25, 30, 35, 40, 50})
+    std::printf(", \"db_%d_s\": %.2f", least, seconds_until(shown, least));
+  std::printf(", \"whole_s\": %.2f, \"frames\": %zu, \"missing\": %llu, \"read_mb\": %.1f", whole,
+              shown.size(), static_cast<unsigned long long>(stats.seenMissingChunks),
+              static_cast<double>(stats.bytesRead) / 1e6);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -72,28 +98,12 @@ int main(int argc, char** argv) try {
   voyager::bench::StreamedView streamed(device, argv[1], megabytes, camera.pose.position, width,
                                         height, tau, readers);
   const double opened = seconds_since(start);
-  std::vector<Shown> shown;
-  double whole = 0;  // since when nothing is missing
-  int in_a_row = 0;  // pictures of which nothing was
-  do {
-    streamed.render(camera);
-    const auto now = streamed.scene.streaming_stats();
-    const bool missing = streamed.view.stats().nodesUnrefined != 0 && now.seenMissingChunks != 0;
-    shown.push_back({seconds_since(start), streamed.pixels()});
-    in_a_row = missing ? 0 : in_a_row + 1;
-    if (in_a_row <= 1) whole = shown.back().at;
-  } while ((in_a_row < 3 || seconds_since(start) < whole + kWhole) &&
-           seconds_since(start) < longest);
-  const VoyStreamingStats stats = streamed.scene.streaming_stats();
-  std::printf(
-      "{\"device\": \"%s\", \"opened_s\": %.2f, \"first_image_s\": %.2f, \"first_db\": %.1f",
-      device.capabilities().deviceName, opened, shown.front().at,
-      psnr(shown.front().pixels, shown.back().pixels));
-  for (const int least : {20, 25, 30, 35, 40, 50})
-    std::printf(", \"db_%d_s\": %.2f", least, seconds_until(shown, least));
-  std::printf(", \"whole_s\": %.2f, \"frames\": %zu, \"missing\": %llu, \"read_mb\": %.1f}\n",
-              whole, shown.size(), static_cast<unsigned long long>(stats.seenMissingChunks),
-              static_cast<double>(stats.bytesRead) / 1e6);
+  std::printf("{\"device\": \"%s\", \"opened_s\": %.2f, ", device.capabilities().deviceName,
+              opened);
+  watch(streamed, camera, start, longest);
+  std::printf(",\n \"turned\": {");
+  watch(streamed, voyager::bench::turned(camera, 3.14159265358979), Clock::now(), longest);
+  std::printf("}}\n");
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "stream_quality: %s\n", error.what());

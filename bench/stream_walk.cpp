@@ -71,16 +71,6 @@ class Path {
   std::vector<double> at_;
 };
 
-// Turned about the viewer's own upward axis.
-Camera turned(Camera camera, double radians) {
-  double* q = camera.pose.orientation;
-  const double s = std::sin(radians / 2), c = std::cos(radians / 2);
-  const double x = q[0] * c - q[2] * s, y = q[1] * c + q[3] * s, z = q[2] * c + q[0] * s,
-               w = q[3] * c - q[1] * s;
-  q[0] = x, q[1] = y, q[2] = z, q[3] = w;
-  return camera;
-}
-
 double quantile(std::vector<double> values, double q) {
   std::sort(values.begin(), values.end());
   return values[static_cast<size_t>(q * static_cast<double>(values.size() - 1))];
@@ -124,7 +114,7 @@ Turn turn_round(voyager::bench::StreamedView& streamed, const Camera& from, doub
     const double share =
         static_cast<double>(i - std::min(i, standing)) / static_cast<double>(turning);
     const auto begun = Clock::now();
-    streamed.render(turned(from, 3.14159265358979 * std::min(1.0, share)));
+    streamed.render(voyager::bench::turned(from, 3.14159265358979 * std::min(1.0, share)));
     const VoyFrameStats stats = streamed.view.stats();
     if (i > standing && static_cast<double>(i - standing) <= static_cast<double>(turning) + fps) {
       found.wall.push_back(1e3 * seconds_since(begun));

@@ -1,5 +1,6 @@
 #pragma once
 // A streamed scene and a view of it that draws into host memory, through the C ABI.
+#include <cmath>
 #include <vector>
 
 #include "tools/cameras.h"
@@ -12,6 +13,16 @@ inline voy::Device streaming_device(double megabytes) {
   VoyDeviceDesc desc = VOY_DEVICE_DESC_INIT;
   desc.deviceMemoryBudget = static_cast<uint64_t>(megabytes * 1e6);
   return voy::Device::create(desc);
+}
+
+// Turned about the viewer's own upward axis.
+inline tools::Camera turned(tools::Camera camera, double radians) {
+  double* q = camera.pose.orientation;
+  const double s = std::sin(radians / 2), c = std::cos(radians / 2);
+  const double x = q[0] * c - q[2] * s, y = q[1] * c + q[3] * s, z = q[2] * c + q[0] * s,
+               w = q[3] * c - q[1] * s;
+  q[0] = x, q[1] = y, q[2] = z, q[3] = w;
+  return camera;
 }
 
 class StreamedView {

@@ -157,8 +157,6 @@ class SceneStream {
   // How many chunks one commit links at most, and unlinks at most. The few take one thread a
   // millisecond.
   static constexpr size_t kFewChunks = 64, kAllChunks = SIZE_MAX;
-  // So many that come or go one thread links before others would be there to help.
-  static constexpr size_t kFewAlone = 16;
   // Threads that link at once. More would wait for one another longer than they link.
   static constexpr unsigned kMostThatLink = 8;
 
@@ -194,7 +192,6 @@ class SceneStream {
   TimePoint next_plan() const;
   bool rests(TimePoint until) const;
   static size_t most_for_frame(double seconds);
-  size_t few_between_frames() const;
   size_t enough_between_frames() const;
   bool commit_between_frames(Lock& lock);
   struct Commit;

@@ -48,15 +48,10 @@ void SceneStream::commit() {
   commit_or_lose(most, lock);
 }
 
-// As long as it takes: about half of the threads that may help come by soon enough.
-size_t SceneStream::few_between_frames() const {
-  return kFewChunks * std::max(team_.lanes() / 2, 1u);
-}
-
 // After some times without a frame twice as many: a view that draws seldom can follow few changes.
 size_t SceneStream::enough_between_frames() const {
   constexpr unsigned kTimes = 8, kMostDoublings = 16;
-  return few_between_frames() / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
+  return kFewChunks / 2 << std::min(between_frames_ / kTimes, kMostDoublings);
 }
 
 // So that a frame finds few chunks to link, while many come, and waits for few. False: frames keep
@@ -69,7 +64,9 @@ bool SceneStream::commit_between_frames(Lock& lock) {
   const std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) return false;
   ++between_frames_;
-  commit_or_lose(std::max(enough, few_between_frames()), lock);
+  // About half of the threads that may help come by soon enough.
+  const size_t few = kFewChunks * std::max(team_.lanes() / 2, 1u);
+  commit_or_lose(std::max(enough, few), lock);
   return true;
 }
 
@@ -129,7 +126,7 @@ SceneStream::Commit SceneStream::begin_commit(size_t most) {
 
 void SceneStream::link(Commit& commit) {
   std::optional<Team::Session> session;
-  if (commit.evicted.size() + commit.arriving.size() > kFewAlone) {
+  if (commit.evicted.size() + commit.arriving.size() > kFewChunks / 2) {
     session.emplace(team_);
     signal();  // whoever sleeps may take part
   }

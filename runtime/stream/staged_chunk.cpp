@@ -68,7 +68,7 @@ class Stager {
     };
     if (out_.records.empty()) return;
     add_ends(parts_.size() - 1, last_record_);
-    add_ends(0, 0);
+    if (out_.content.subtrees.front().repeats_root()) add_ends(0, 0);
   }
   void set_links() {
     const uint32_t first = out_.content.first_subtree;

@@ -20,8 +20,9 @@ struct StagedChunk {
   std::vector<NodeRecord> roots;      // of each subtree in turn
   std::vector<LargeFamily> large;     // parents by place
   // Numbers of the records that chunks which come later are checked against: those of the nodes
-  // that lead to subtrees below, in their order, and of what a neighbour may repeat, which is the
-  // first root and the first child of the last subtree, and of the first one. Of a leaf: any.
+  // that lead to subtrees below, in their order; of the last subtree's first root and first child,
+  // which the next chunk may repeat; and of the first subtree's, where those repeat others. Of a
+  // leaf: any.
   std::vector<uint32_t> checked;
   // Of each owned node, in the order of the content: its place in a slot, and the index of its
   // subtree in the chunk.
