@@ -19,6 +19,8 @@ class Team {
   Team& operator=(const Team&) = delete;
 
   unsigned lanes() const { return lanes_; }
+  // How many have come to the last session.
+  unsigned helpers() const { return helpers_; }
 
   // As long as one is open, others may take part in what its thread loops over. One at a time.
   class Session {
@@ -42,7 +44,7 @@ class Team {
   bool help();
 
  private:
-  // So many at a time, of which each takes some microseconds.
+  // Indices that a thread takes at once; each takes some microseconds.
   static constexpr size_t kGrain = 4;
 
   void work(unsigned lane);
@@ -50,9 +52,10 @@ class Team {
   const unsigned lanes_;
   std::mutex mutex_;
   std::condition_variable begun_, done_;
-  std::atomic<bool> open_{false};    // changed under mutex_
-  uint64_t session_ = 0, loop_ = 0;  // how many there have been
-  unsigned helpers_ = 0, busy_ = 0;  // of the session; of them, those that run bodies
+  std::atomic<bool> open_{false};     // changed under mutex_
+  uint64_t session_ = 0, loop_ = 0;   // how many there have been
+  std::atomic<unsigned> helpers_{0};  // of the session; changed under mutex_
+  unsigned busy_ = 0;                 // of them, those that run bodies
   // Of the loop: set by its thread alone, while nobody is busy.
   const std::function<void(unsigned, size_t)>* body_ = nullptr;
   size_t n_ = 0;

@@ -27,7 +27,7 @@ class ByChunk {
     return known_.back().of;
   }
   // To be changed, of one that is known.
-  Known& held(uint32_t chunk) { return known_[at_[chunk]].of; }
+  Known& known(uint32_t chunk) { return known_[at_[chunk]].of; }
   void forget(uint32_t chunk) {
     const uint32_t at = at_[chunk];
     if (at == 0) return;

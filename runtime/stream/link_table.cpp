@@ -11,24 +11,24 @@ LinkTable::LinkTable(std::span<const Part> parts, std::span<const uint32_t> chil
   words_ = std::make_unique<std::atomic<uint32_t>[]>(word_count());
   uint32_t before = 0;
   for (uint32_t i = 0; i < subtrees_; ++i) {
-    add(i, parts[i].levels);
+    set_bits(i, parts[i].levels);
     put_bits(subtrees_, before, parts[i].interior);
     put_bits(subtrees_ + bit_words(), before, parts[i].families);
     before += parts[i].levels >> 16 & 0xff;
   }
   for (uint32_t below = 0; below < nodes_below_; ++below)
-    add(below_at() + below / 4, std::min(child_counts[below], kManyChildren) << 8 * (below % 4));
+    set_bits(below_at() + below / 4, std::min(child_counts[below], kManyChildren) << 8 * (below % 4));
 }
 
-// Not at once, as no other thread has the table yet.
-void LinkTable::add(size_t at, uint32_t bits) {
+// A load and a store: no other thread has the table yet.
+void LinkTable::set_bits(size_t at, uint32_t bits) {
   words_[at].store(word(at) | bits, std::memory_order_relaxed);
 }
 
 void LinkTable::put_bits(uint32_t from, uint32_t before, uint32_t slots) {
   const uint64_t two = uint64_t{slots} << before % 32;
-  add(from + before / 32, static_cast<uint32_t>(two));
-  add(from + before / 32 + 1, static_cast<uint32_t>(two >> 32));
+  set_bits(from + before / 32, static_cast<uint32_t>(two));
+  set_bits(from + before / 32 + 1, static_cast<uint32_t>(two >> 32));
 }
 
 RootWalk::RootWalk(const LinkTable& table, const Tiers& tiers)

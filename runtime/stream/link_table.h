@@ -51,6 +51,7 @@ class LinkTable {
 
   bool empty() const { return words_ == nullptr; }
   uint32_t subtrees() const { return subtrees_; }
+  uint32_t slots() const { return slots_; }  // of all of them
   uint32_t nodes_below() const { return nodes_below_; }
 
   // Whether a refined node may lead to a subtree.
@@ -111,7 +112,7 @@ class LinkTable {
     const uint64_t two = word(at) | uint64_t{word(at + 1)} << 32;
     return static_cast<uint32_t>(two >> before % 32) & slots_before(count);
   }
-  void add(size_t at, uint32_t bits);
+  void set_bits(size_t at, uint32_t bits);
   void put_bits(uint32_t from, uint32_t before, uint32_t slots);
 
   uint32_t subtrees_ = 0, nodes_below_ = 0, slots_ = 0;
@@ -137,6 +138,7 @@ class RootWalk {
   uint32_t root_count() const { return levels_ & 0xff; }
   bool repeats_root() const { return (levels_ >> 24 & 3) != 0; }
   bool repeats_child() const { return (levels_ >> 24 & 3) == 2; }
+  uint32_t slot_count() const { return levels_ >> 16 & 0xff; }
 
  protected:
   // Of each level, the nodes that a subtree does not repeat.
@@ -233,7 +235,6 @@ class LinkWalk : public RootWalk {
  private:
   void start_tier();
   void read();
-  uint32_t slot_count() const { return levels_ >> 16 & 0xff; }
   uint32_t first_slot(uint32_t level) const {
     return level == 0 ? 0 : level == 1 ? levels_ & 0xff : levels_ >> 8 & 0xff;
   }

@@ -51,13 +51,13 @@ bool Linker::may_come(uint32_t chunk) const {
 void Linker::arrive(std::span<Arrival> chunks, const ChunkPool& pool, const std::string& file,
                     Team& team, LinkPatch& patch, std::vector<ChunkRange>& divided) {
   lanes_.resize(team.lanes());
-  const std::vector<Coming> coming = hold(chunks, pool, file, team, patch);
+  const std::vector<Coming> coming = hold_sound(chunks, pool, file, team, patch);
   const bool has_room = has_room_for_all();
   const auto link_one = [&](unsigned lane, size_t i) {
-    const Coming& of = coming[i];
-    link(of.above, has_room, lanes_[lane]);
-    find_divided(of.of->chunk, lanes_[lane].divided);
-    *of.of->staged = {};
+    const Arrival& arrival = *coming[i].arrival;
+    link(coming[i].above, has_room, lanes_[lane]);
+    find_divided(arrival.chunk, lanes_[lane].divided);
+    *arrival.staged = {};
   };
   if (has_room)
     team.loop(coming.size(), link_one);
@@ -68,14 +68,19 @@ void Linker::arrive(std::span<Arrival> chunks, const ChunkPool& pool, const std:
     divided.insert(divided.end(), lane.divided.begin(), lane.divided.end());
     lane.divided.clear();
   }
+  tell_large(patch);
 }
 
-// Those that are sound. Most have their parents at once, others when these are held.
-std::vector<Linker::Coming> Linker::hold(std::span<Arrival> chunks, const ChunkPool& pool,
-                                         const std::string& file, Team& team, LinkPatch& patch) {
-  std::vector<Coming> held;
+// Most have their parents at once, others when these are held. A chunk is held before the next one,
+// which may repeat its nodes.
+std::vector<Linker::Coming> Linker::hold_sound(std::span<Arrival> chunks, const ChunkPool& pool,
+                                               const std::string& file, Team& team,
+                                               LinkPatch& patch) {
+  std::vector<Coming> sound;
   std::vector<Arrival*> left;
   for (Arrival& arrival : chunks) left.push_back(&arrival);
+  std::sort(left.begin(), left.end(),
+            [](const Arrival* a, const Arrival* b) { return a->chunk < b->chunk; });
   while (!left.empty()) {
     const auto next = std::stable_partition(left.begin(), left.end(),
                                             [&](const Arrival* of) { return may_come(of->chunk); });
@@ -87,34 +92,35 @@ std::vector<Linker::Coming> Linker::hold(std::span<Arrival> chunks, const ChunkP
       try {
         check(wave[i], pool, file);
       } catch (const Error& error) {
-        wave[i].of->failure = error;
+        wave[i].arrival->failure = error;
       }
     };
     team.loop(wave.size(), check_one);
     for (Coming& coming : wave) {
-      const uint32_t chunk = coming.of->chunk;
+      Arrival& arrival = *coming.arrival;
+      const uint32_t chunk = arrival.chunk;
+      if (arrival.failure) continue;
       try {
-        if (coming.of->failure) continue;
         const bool before = chunk > 0 && holds(chunk - 1);
-        if (roots_of(coming.of->staged->links).root() == 0 && chunk > 0 && !before)
+        if (roots_of(arrival.staged->links).root() == 0 && chunk > 0 && !before)
           refuse_gap(chunk, file);
         if (before && !coming.before_was_held) check_behind(coming, pool, file);
       } catch (const Error& error) {
-        coming.of->failure = error;
+        arrival.failure = error;
         continue;
       }
-      hold(*coming.of->staged, patch);
-      coming.of->held = true;
-      held.push_back(std::move(coming));
+      take_in(*arrival.staged, patch);
+      arrival.held = true;
+      sound.push_back(std::move(coming));
     }
   }
-  return held;
+  return sound;
 }
 
-void Linker::hold(StagedChunk& chunk, LinkPatch& patch) {
-  add_large(chunk, patch);
+void Linker::take_in(StagedChunk& chunk, LinkPatch& patch) {
+  add_large(chunk);
   patch.arrived.push_back({chunk.links.slot, chunk.chunk, chunk.ids});
-  held_ += chunk.links.subtrees();
+  slots_held_ += chunk.links.slots();
   tables_.know(chunk.chunk) = std::move(chunk.links);
   if (roots_of(tables_[chunk.chunk]).root() == 0) link_root(chunk.chunk, patch);
 }
@@ -133,13 +139,14 @@ void Linker::evict(std::span<const uint32_t> chunks, Team& team, LinkPatch& patc
     for (size_t i = 0; i < chunks.size(); ++i) unlink_one(0, i);
   collect(patch);
   for (const uint32_t chunk : chunks) let_go(chunk, patch);
+  tell_large(patch);
 }
 
 void Linker::let_go(uint32_t chunk, LinkPatch& patch) {
   const uint32_t slot = tables_[chunk].slot;
-  remove_large(slot, patch);
+  remove_large(slot);
   patch.left.push_back(slot);
-  held_ -= tables_[chunk].subtrees();
+  slots_held_ -= tables_[chunk].slots();
   tables_.forget(chunk);
 }
 
@@ -177,20 +184,20 @@ void Linker::collect(LinkPatch& patch) {
     move(lane.patch.linked, patch.linked);
     move(lane.patch.outside, patch.outside);
     most_cut_ += std::exchange(lane.cut, 0);
-    linked_ += std::exchange(lane.linked, 0);
+    slots_linked_ += std::exchange(lane.slots_linked, 0);
   }
 }
 
-void Linker::add_large(const StagedChunk& chunk, LinkPatch& patch) {
+void Linker::add_large(const StagedChunk& chunk) {
   if (chunk.large.empty()) return;
   for (const LargeFamily& family : chunk.large)
     large_.push_back({chunk.links.slot * shape_.nodes + family.parent, family.children});
   std::sort(large_.begin(), large_.end(),
             [](const LargeFamily& a, const LargeFamily& b) { return a.parent < b.parent; });
-  patch.large = large_;
+  large_changed_ = true;
 }
 
-void Linker::remove_large(uint32_t slot, LinkPatch& patch) {
+void Linker::remove_large(uint32_t slot) {
   const auto from = [&](uint32_t address) {
     return std::lower_bound(
         large_.begin(), large_.end(), address,
@@ -199,7 +206,11 @@ void Linker::remove_large(uint32_t slot, LinkPatch& patch) {
   const auto first = from(slot * shape_.nodes), last = from((slot + 1) * shape_.nodes);
   if (first == last) return;
   large_.erase(first, last);
-  patch.large = large_;
+  large_changed_ = true;
+}
+
+void Linker::tell_large(LinkPatch& patch) {
+  if (std::exchange(large_changed_, false)) patch.large = large_;
 }
 
 }  // namespace voyager

@@ -128,16 +128,16 @@ class Linker {
   class Roots;
 
   // What one thread of a team does of a commit.
-  struct Lane {
+  struct alignas(64) Lane {
     LinkPatch patch;
     std::vector<ChunkRange> divided;
     std::vector<Family> above;  // scratch
     // Families that hang from what is linked or unlinked: a heap, the first roots in front.
     std::vector<Family> work;
-    uint64_t cut = 0, linked = 0;  // more of most_cut_ and linked_, modulo 2^64
+    uint64_t cut = 0, slots_linked = 0;  // more of most_cut_ and slots_linked_, modulo 2^64
   };
   struct Coming {
-    Arrival* of;
+    Arrival* arrival;
     std::vector<Family> above;  // that its subtrees belong to, by their first roots
     bool before_was_held = false;
   };
@@ -155,9 +155,9 @@ class Linker {
                    std::vector<Family>& above) const;
   void check_repeat(uint32_t chunk, Walk before, Walk after, const ChunkPool& pool,
                     const std::string& file) const;
-  std::vector<Coming> hold(std::span<Arrival> chunks, const ChunkPool& pool,
-                           const std::string& file, Team& team, LinkPatch& patch);
-  void hold(StagedChunk& chunk, LinkPatch& patch);
+  std::vector<Coming> hold_sound(std::span<Arrival> chunks, const ChunkPool& pool,
+                                 const std::string& file, Team& team, LinkPatch& patch);
+  void take_in(StagedChunk& chunk, LinkPatch& patch);
   void let_go(uint32_t chunk, LinkPatch& patch);
   void collect(LinkPatch& patch);
 
@@ -172,15 +172,16 @@ class Linker {
   // Of a lane, these families and all that hangs from them.
   void link(std::span<const Family> above, bool has_room, Lane& lane);
   void unlink(std::span<const Family> above, Lane& lane);
-  void add_large(const StagedChunk& chunk, LinkPatch& patch);
-  void remove_large(uint32_t slot, LinkPatch& patch);
+  void add_large(const StagedChunk& chunk);
+  void remove_large(uint32_t slot);
+  void tell_large(LinkPatch& patch);
   void link_root(uint32_t chunk, LinkPatch& patch);
   uint64_t ends_of(const Family& family, Roots& roots) const;
   bool has_room_for_cut(uint64_t cut, uint64_t ends) const {
     return cut - 1 + ends <= room_for_cut_;
   }
   bool has_room_for_all() const {
-    return refused_.empty() && most_cut_ + (held_ - linked_) * kSubtreeNodes <= room_for_cut_;
+    return refused_.empty() && most_cut_ + (slots_held_ - slots_linked_) <= room_for_cut_;
   }
   bool refuse_if_large(const Family& family, Roots& roots, const Lane& lane);
 
@@ -189,10 +190,11 @@ class Linker {
   const std::vector<uint32_t>* next_block_;
   ByChunk<LinkTable> tables_;
   std::vector<LargeFamily> large_;  // of what is held, by address
+  bool large_changed_ = false;      // by this commit
   std::vector<Lane> lanes_{1};      // scratch
   // Of what is linked: that no cut has more nodes, those which nothing leads on from.
   uint64_t most_cut_ = 0, room_for_cut_ = UINT64_MAX;
-  uint64_t held_ = 0, linked_ = 0;  // subtrees
+  uint64_t slots_held_ = 0, slots_linked_ = 0;  // of subtrees: of all, and of what is linked
   std::set<Refused> refused_;
 };
 

@@ -6,7 +6,7 @@ namespace voyager {
 
 // Its parents are held, and none of those that come with it.
 void Linker::check(Coming& coming, const ChunkPool& pool, const std::string& file) const {
-  const StagedChunk& chunk = *coming.of->staged;
+  const StagedChunk& chunk = *coming.arrival->staged;
   check_roots(chunk, pool, file, coming.above);
   const uint32_t before = chunk.chunk - 1, after = chunk.chunk + 1;
   coming.before_was_held = chunk.chunk > 0 && holds(before);
@@ -18,7 +18,7 @@ void Linker::check(Coming& coming, const ChunkPool& pool, const std::string& fil
 // The one before is held.
 void Linker::check_behind(const Coming& coming, const ChunkPool& pool,
                           const std::string& file) const {
-  const StagedChunk& chunk = *coming.of->staged;
+  const StagedChunk& chunk = *coming.arrival->staged;
   if (roots_of(chunk.links).repeats_root())
     check_repeat(chunk.chunk, last_of(walk(chunk.chunk - 1)), walk(chunk), pool, file);
 }

@@ -1,4 +1,4 @@
-// Families, and what they lead to: the parts of a commit that threads do beside one another.
+// Families: how they are found, linked and unlinked.
 #include <algorithm>
 
 #include "runtime/stream/linker_parents.h"
@@ -164,23 +164,25 @@ uint64_t Linker::ends_of(const Family& family, Roots& roots) const {
 bool Linker::refuse_if_large(const Family& family, Roots& roots, const Lane& lane) {
   const uint64_t cut = most_cut_ + lane.cut;
   // A bound nearly always has room: then nothing is counted.
-  uint64_t subtrees = 0;
+  uint64_t slots = 0;
   for (uint32_t chunk = family.chunks.first; chunk < family.chunks.last; ++chunk)
-    subtrees += tables_[chunk].subtrees();
-  if (has_room_for_cut(cut, subtrees * kSubtreeNodes)) return false;
+    slots += tables_[chunk].slots();
+  if (has_room_for_cut(cut, slots)) return false;
   const uint64_t ends = ends_of(family, roots);
   if (has_room_for_cut(cut, ends)) return false;
   refused_.insert({ends, family});
   return true;
 }
 
+// Several threads miss nothing: whoever marks a subtree then tries all families below it, and
+// whoever has tried such a family before left it to them. So the marks need no order.
 void Linker::link(std::span<const Family> above, bool has_room, Lane& lane) {
   Roots roots(*this);
   ChunkGraph::Families families(*graph_);
   Work work(above, lane.work);
   while (!work.done()) {
     const Family family = work.take();
-    LinkTable& table = tables_.held(family.chunk);
+    LinkTable& table = tables_.known(family.chunk);
     if (table.leads_on(family.node.index) || !table.leads_to(family.subtree) || !complete(family) ||
         (!has_room && refuse_if_large(family, roots, lane)) ||
         !table.begin_to_lead_on(family.node.index))
@@ -192,9 +194,9 @@ void Linker::link(std::span<const Family> above, bool has_room, Lane& lane) {
     bool leads_on = false;  // may_lead_on(asked)
     each_subtree(family, roots, [&](Walk& walk) {
       const LinkWalk& at = walk.at;
-      LinkTable& of = tables_.held(walk.chunk);
+      LinkTable& of = tables_.known(walk.chunk);
       lane.cut += at.ends();
-      ++lane.linked;
+      lane.slots_linked += at.slot_count();
       first_below = std::min(first_below, at.subtree());
       SearchSubtree linked = addresses.of(of, at, family.record);
       set_records(walk, linked);
@@ -215,13 +217,14 @@ void Linker::link(std::span<const Family> above, bool has_room, Lane& lane) {
   }
 }
 
+// Marks only go meanwhile, and whoever clears a family's goes on below it.
 void Linker::unlink(std::span<const Family> above, Lane& lane) {
   Roots roots(*this);
   ChunkGraph::Families families(*graph_);
   Work work(above, lane.work);
   while (!work.done()) {
     const Family family = work.take();
-    LinkTable& table = tables_.held(family.chunk);
+    LinkTable& table = tables_.known(family.chunk);
     if (!table.end_to_lead_on(family.node.index)) {
       if (!refused_.empty() && complete(family)) refused_.erase({ends_of(family, roots), family});
       continue;
@@ -230,9 +233,9 @@ void Linker::unlink(std::span<const Family> above, Lane& lane) {
     lane.patch.cut.changed.push_back(table.first_subtree + family.subtree);
     ++lane.cut;
     each_subtree(family, roots, [&](Walk& walk) {
-      tables_.held(walk.chunk).set_leads_to(walk.at.index(), false);
+      tables_.known(walk.chunk).set_leads_to(walk.at.index(), false);
       lane.cut -= walk.at.ends();
-      --lane.linked;
+      lane.slots_linked -= walk.at.slot_count();
       lane.patch.unlinked.push_back(walk.at.subtree());
       walk.at.each_below([&](const NodeBelow& node) {
         if (!refused_.empty() || tables_[walk.chunk].leads_on(node.index))
@@ -250,13 +253,13 @@ void Linker::link_root(uint32_t last, LinkPatch& patch) {
   for (uint32_t chunk = 0; chunk <= last; ++chunk) {
     Walk walk = this->walk(chunk);
     for (LinkWalk& at = walk.at; !at.at_end() && at.root() == 0; at.next()) {
-      LinkTable& table = tables_.know(chunk);
+      LinkTable& table = tables_.known(chunk);
       SearchSubtree linked = addresses.of(table, at, kNoRecord);
       if (chunk != last) continue;
       set_records(walk, linked);
       table.set_leads_to(at.index(), true);
       most_cut_ += at.ends();
-      ++linked_;
+      slots_linked_ += at.slot_count();
       patch.outside.push_back(outside_of(at, linked, kNoNode));
       patch.linked.emplace_back(at.subtree(), linked);
     }

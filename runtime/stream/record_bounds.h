@@ -10,10 +10,7 @@ namespace voyager {
 
 class RecordBounds {
  public:
-  void make_room(uint32_t slots) {
-    codes_.clear();
-    codes_.resize(slots);
-  }
+  void make_room(uint32_t slots) { codes_ = decltype(codes_)(slots); }
   // Of chunks with other slots, several threads at once.
   void fill(const StagedChunk& chunk) {
     auto codes = std::make_unique<BoundsCode[]>(chunk.checked.size());

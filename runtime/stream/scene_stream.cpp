@@ -116,12 +116,16 @@ double SceneStream::next_due() const {
 }
 
 void SceneStream::signal() {
+  wake_threads();
+  progress_.notify_all();
+}
+
+void SceneStream::wake_threads() {
   {
     const std::lock_guard lock(small_mutex_);
     ++signals_;
   }
   wake_.notify_all();
-  progress_.notify_all();
 }
 
 // None has a place yet.

@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/base/team.h"
 #include "runtime/base/workers.h"
 #include "runtime/format/reader.h"
 #include "runtime/stream/chunk_pool.h"
@@ -231,6 +232,7 @@ class SceneStream {
                    Lock& lock);
   void publish();
   void signal();
+  void wake_threads();
   double now() const;
   double next_due() const;
 
@@ -286,8 +288,8 @@ class SceneStream {
   ChunkLooks looks_;  // also without the lock, by the thread that has set planning_
   // A thread looks at chunks without the lock, or waits until none is linked; no other may plan.
   bool planning_ = false;
-  // A commit links without the lock, but with the pool held alone; no one may plan, and no one else
-  // touches linker_, pages_ or what the commit has taken of coming_.
+  // A commit links without the lock, but with the pool held alone; no one may plan, and only it and
+  // threads that help it touch linker_, pages_ or what it has taken of coming_.
   bool linking_ = false;
   std::condition_variable linked_;
   Team team_;                // for a commit: whoever makes one, and the stream's threads

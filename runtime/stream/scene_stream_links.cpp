@@ -64,8 +64,8 @@ bool SceneStream::commit_between_frames(Lock& lock) {
   const std::unique_lock pool(pool_mutex_, std::try_to_lock);
   if (!pool.owns_lock()) return false;
   ++between_frames_;
-  // About half of the threads that may help come by soon enough.
-  const size_t few = kFewChunks * std::max(team_.lanes() / 2, 1u);
+  // Those that helped the last time help for half of it.
+  const size_t few = kFewChunks * std::max((team_.helpers() + 1) / 2, 1u);
   commit_or_lose(std::max(enough, few), lock);
   return true;
 }
@@ -126,9 +126,10 @@ SceneStream::Commit SceneStream::begin_commit(size_t most) {
 
 void SceneStream::link(Commit& commit) {
   std::optional<Team::Session> session;
-  if (commit.evicted.size() + commit.arriving.size() > kFewChunks / 2) {
+  // Where cuts lack room one thread links all.
+  if (!commit.lacked_room && commit.evicted.size() + commit.arriving.size() > kFewChunks / 2) {
     session.emplace(team_);
-    signal();  // whoever sleeps may take part
+    wake_threads();
   }
   std::vector<uint32_t> leaving;
   for (const Residency::Evicted& e : commit.evicted) leaving.push_back(e.chunk);

@@ -274,8 +274,8 @@ void SceneStream::pace_reads(double seconds) {
   if (seconds > kSlow) reads_allowed_ = std::max(reads_allowed_ - 1, std::min(kLeast, most_reads_));
 }
 
-// One thread links what many read. Chunks that wait for that were asked for by an earlier plan, and
-// are linked before what a viewer sees now. So few may wait, but twice what a commit may link.
+// Chunks that wait to be linked were asked for by an earlier plan, and come before what a viewer
+// sees now. So few may wait, but twice what a commit may link.
 bool SceneStream::is_far_ahead() const {
   constexpr size_t kFar = 512;
   if (desc_.readers == 0 || residency_.to_arrive() < kFar) return false;

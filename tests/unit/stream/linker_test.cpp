@@ -72,6 +72,32 @@ class Linked {
     linked_again_ += patch.linked.size() - before;
     apply(patch);
   }
+  // Chunks that come at once, in this order, of which the first says something else of what it
+  // repeats: which are held then.
+  std::vector<bool> arrive_with_damage(const std::vector<uint32_t>& chunks) {
+    std::vector<StagedChunk> staged;
+    for (const uint32_t chunk : chunks) staged.push_back(stage(chunk));
+    StagedChunk& damaged = staged.front();
+    damaged.records[damaged.checked[damaged.links.nodes_below() + 2]].code.axis[0] ^= 1;
+    const StagedChunk* const filled[] = {&damaged};
+    pool_.fill(filled);
+    std::vector<Linker::Arrival> arrivals;
+    for (StagedChunk& chunk : staged) arrivals.push_back({&chunk, chunk.chunk});
+    LinkPatch patch;
+    std::vector<ChunkRange> divided;
+    linker_.arrive(arrivals, pool_, file_.name(), alone_, patch, divided);
+    std::vector<bool> held;
+    for (const Linker::Arrival& arrival : arrivals) {
+      EXPECT_NE(arrival.held, arrival.failure.has_value());
+      held.push_back(arrival.held);
+    }
+    return held;
+  }
+  // Whether it begins with nodes of the chunk before.
+  bool repeats(uint32_t chunk) {
+    const StagedChunk staged = stage(chunk);
+    return (staged.links.levels(0) >> 24 & 3) != 0;
+  }
   // What the last batches have found, in an order of its own.
   std::vector<std::pair<uint32_t, uint32_t>> take_divided() {
     std::vector<std::pair<uint32_t, uint32_t>> all;
@@ -251,6 +277,30 @@ class Helpers {
   std::atomic<bool> ended_{false};
   std::vector<std::thread> threads_;
 };
+
+// Of two neighbours that disagree about a node one stays out, in whatever order they come.
+TEST(Linker, NeighboursThatDisagreeAreNotBothHeld) {
+  size_t pairs = 0;
+  for (const test::TreeShape shape : test::kTreeShapes) {
+    SCOPED_TRACE(test::name_of(shape));
+    const LodTree tree = test::random_tree(shape, 2000, 4);
+    const test::Bytes bytes =
+        test::scene_bytes(test::baked_of(tree), Quality::compact, 0, kMinChunkBytes);
+    const SceneFile file(test::source_of(bytes));
+    Linked linked(file, UINT64_MAX);
+    for (uint32_t chunk = 0; chunk < linked.chunks(); ++chunk) {
+      const bool both = chunk + 1 < linked.chunks() && linked.may_arrive(chunk) &&
+                        linked.may_arrive(chunk + 1) && linked.repeats(chunk + 1);
+      if (both) {
+        EXPECT_EQ(linked.arrive_with_damage({chunk + 1, chunk}), (std::vector{false, true}));
+        ++pairs;
+      } else {
+        linked.arrive(chunk);
+      }
+    }
+  }
+  EXPECT_GT(pairs, 20u);
+}
 
 // Batches that go and come, with parents and children in one, linked by four threads: the same is
 // linked as by one, chunk by chunk, and each thing once.

@@ -50,6 +50,7 @@ struct Pool {
       Linker::Arrival arrival{&staged, chunk};
       std::vector<ChunkRange> divided;
       linker.arrive({&arrival, 1}, bounds, file.name(), alone, patch, divided);
+      EXPECT_TRUE(arrival.held);
       for (const auto& [subtree, linked] : patch.linked) subtrees[subtree] = linked;
       for (const LinkPatch::Outside& o : patch.outside) outside[o.subtree] = o.parent;
     }
