@@ -17,7 +17,8 @@ LinkTable::LinkTable(std::span<const Part> parts, std::span<const uint32_t> chil
     before += parts[i].levels >> 16 & 0xff;
   }
   for (uint32_t below = 0; below < nodes_below_; ++below)
-    set_bits(below_at() + below / 4, std::min(child_counts[below], kManyChildren) << 8 * (below % 4));
+    set_bits(below_at() + below / 4, std::min(child_counts[below], kManyChildren)
+                                         << 8 * (below % 4));
 }
 
 // A load and a store: no other thread has the table yet.
