@@ -3,6 +3,7 @@
 #include <cuda_fp16.h>
 
 #include "cuda/scene/device_scene.h"
+#include "cuda/scene/gaussian_hull.cuh"
 #include "runtime/stages/interpolate.h"
 
 namespace voyager::cuda {
@@ -71,7 +72,7 @@ struct CodedSh {
     }
     if constexpr (kDegree != 0) {
       const auto* sizes =
-          reinterpret_cast<const float4*>(gaussians.sh_steps + gaussians.sh_groups(i));
+          reinterpret_cast<const float4*>(gaussians.sh_steps + gaussians.code_groups(i));
       const float4 first = __ldg(sizes), second = __ldg(sizes + 1);
       sh.high[0] = first.x, sh.high[1] = first.y, sh.high[2] = first.z;
       sh.low[0] = first.w, sh.low[1] = second.x, sh.low[2] = second.y;
@@ -131,7 +132,8 @@ struct DeviceArrays {
   }
   __device__ bool footprints_differ() const { return gaussians.footprints; }
   __device__ Vec3f mean(uint32_t i) const {
-    const float4 hull = __ldg(gaussians.hulls + i);
+    if constexpr (Sh::kCoded) return coded_mean(gaussians, i);
+    const float4 hull = float_hull(gaussians, i);
     return {hull.x, hull.y, hull.z};
   }
   __device__ Gaussian gaussian(uint32_t i) const {
@@ -155,7 +157,7 @@ struct DeviceArrays {
   __device__ ShapeCode code(uint32_t i) const {
     const uint2 w = __ldg(static_cast<const uint2*>(gaussians.shapes) + i);
     ShapeCode code;
-    code.bounds = __float_as_uint(__ldg(gaussians.hulls + i).w);
+    code.bounds = coded_bounds(gaussians, i);
     code.rest.rotation[0] = static_cast<uint16_t>(w.x);
     code.rest.rotation[1] = static_cast<uint16_t>(w.x >> 16);
     code.rest.rotation[2] = static_cast<uint16_t>(w.y);

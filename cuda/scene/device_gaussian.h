@@ -22,10 +22,6 @@ VOYAGER_HD float4 device_hull(const Gaussian& g) {
   return {g.mean.x, g.mean.y, g.mean.z, bits_float(bounds)};
 }
 
-inline float4 coded_hull(const Vec3f& mean, const ShapeCode& code) {
-  return {mean.x, mean.y, mean.z, bits_float(code.bounds)};
-}
-
 // Of two words.
 inline float4 device_shape(const Gaussian& g, size_t word) {
   if (word == 0) return {g.scale.x, g.scale.y, g.scale.z, g.log_opacity};

@@ -39,28 +39,33 @@ DeviceScene::DeviceScene(const Device& device, const Scene& scene, Workers& work
     upload_codes(device, scene);
   else
     upload_floats(scene, workers);
-  view_.hulls = hulls_.data();
 }
 
 void DeviceScene::upload_codes(const Device& device, const Scene& scene) {
   std::vector<ShStepSizes> steps;
   for (const ShScales& scales : scene.sh_scales) steps.push_back(step_sizes(scales));
   const size_t count = scene.shapes.size();
-  allocate_together(ToAllocate{hulls_, count}, ToAllocate{shape_codes_, count},
+  allocate_together(ToAllocate{coded_hulls_, count}, ToAllocate{shape_codes_, count},
                     ToAllocate{sh_rows_, scene.sh_rows.size()}, ToAllocate{sh_steps_, steps.size()},
-                    ToAllocate{sh_blocks_, scene.sh_blocks.size()});
-  upload_made(hulls_, [&](size_t i) { return coded_hull(scene.means[i], scene.shapes[i]); });
+                    ToAllocate{mean_grids_, scene.mean_grids.size()},
+                    ToAllocate{group_blocks_, scene.group_blocks.size()});
+  upload_made(coded_hulls_, [&](size_t i) {
+    return CodedHull{scene.mean_codes[i], scene.shapes[i].bounds};
+  });
   upload_made(shape_codes_, [&](size_t i) { return scene.shapes[i].rest; });
   upload<uint8_t>(scene.sh_rows, sh_rows_);
   upload<ShStepSizes>(steps, sh_steps_);
-  upload<RunBlock>(scene.sh_blocks, sh_blocks_);
+  upload<MeanGrid>(scene.mean_grids, mean_grids_);
+  upload<RunBlock>(scene.group_blocks, group_blocks_);
   tables_ = device.code_tables();
+  view_.hulls = coded_hulls_.data();
   view_.shapes = shape_codes_.data();
   view_.coefficients = sh_rows_.data();
   view_.sh_form = ShForm::coded;
   view_.tables = tables_->view();
   view_.sh_steps = sh_steps_.data();
-  view_.sh_groups = {sh_blocks_.data(), 0};
+  view_.mean_grids = mean_grids_.data();
+  view_.code_groups = {group_blocks_.data(), 0};
 }
 
 void DeviceScene::upload_floats(const Scene& scene, Workers& workers) {
@@ -78,6 +83,7 @@ void DeviceScene::upload_floats(const Scene& scene, Workers& workers) {
   else
     upload<float>(scene.sh, coefficients_);
   if (node_codes_.size() != 0) upload<uint8_t>(scene.node_code, node_codes_);
+  view_.hulls = hulls_.data();
   view_.shapes = shapes_.data();
   view_.node_codes = node_codes_.data();
   view_.coefficients =
@@ -110,7 +116,7 @@ GaussianView DeviceScene::view() const {
 uint32_t DeviceScene::bytes_a_gaussian() const {
   const GaussianView of = view();
   const uint32_t code = of.footprints && of.sh_form != ShForm::coded ? sizeof(uint8_t) : 0;
-  return sizeof(float4) + shape_bytes(of.sh_form) + code +
+  return hull_bytes(of.sh_form) + shape_bytes(of.sh_form) + code +
          coefficient_bytes(of.sh_degree, of.sh_form);
 }
 

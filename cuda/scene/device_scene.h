@@ -38,10 +38,12 @@ class DeviceScene {
   Buffer<float> coefficients_;
   Buffer<uint8_t> node_codes_;
   // Of a coded scene.
+  Buffer<CodedHull> coded_hulls_;
   Buffer<ShapeRest> shape_codes_;
   Buffer<uint8_t> sh_rows_;
   Buffer<ShStepSizes> sh_steps_;
-  Buffer<RunBlock> sh_blocks_;
+  Buffer<MeanGrid> mean_grids_;
+  Buffer<RunBlock> group_blocks_;
   std::shared_ptr<const CodeTables> tables_;
   GaussianView view_{};
   const DevicePool* pool_ = nullptr;

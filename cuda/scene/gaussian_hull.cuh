@@ -32,13 +32,28 @@ __device__ inline float support_radius_squared(const ShapeCode& code) {
   return 2.0f * fmaxf(__logf(opacity) - kLogTruthThreshold + kAbove, 0.0f);
 }
 
+// Of a coded scene.
+__device__ inline Vec3f coded_mean(const GaussianView& gaussians, uint32_t i) {
+  const MeanCode* const code = &(static_cast<const CodedHull*>(gaussians.hulls) + i)->mean;
+  const float4 grid =
+      __ldg(reinterpret_cast<const float4*>(gaussians.mean_grids + gaussians.code_groups(i)));
+  return restored_mean({__ldg(&code->low), __ldg(&code->high)}, {{grid.x, grid.y, grid.z}, grid.w});
+}
+__device__ inline uint32_t coded_bounds(const GaussianView& gaussians, uint32_t i) {
+  return __ldg(&(static_cast<const CodedHull*>(gaussians.hulls) + i)->bounds);
+}
+
+__device__ inline float4 float_hull(const GaussianView& gaussians, uint32_t i) {
+  return __ldg(static_cast<const float4*>(gaussians.hulls) + i);
+}
+
 __device__ inline GaussianHull hull_at(const GaussianView& gaussians, uint32_t i) {
-  const float4 h = __ldg(gaussians.hulls + i);
-  const uint32_t bounds = __float_as_uint(h.w);
   if (gaussians.sh_form == ShForm::coded) {
-    const ShapeCode code{bounds, {}};
-    return {{h.x, h.y, h.z}, largest_scale(code), support_radius_squared(code)};
+    const ShapeCode code{coded_bounds(gaussians, i), {}};
+    return {coded_mean(gaussians, i), largest_scale(code), support_radius_squared(code)};
   }
+  const float4 h = float_hull(gaussians, i);
+  const uint32_t bounds = __float_as_uint(h.w);
   const float radius = __uint_as_float(bounds << 16);
   return {{h.x, h.y, h.z}, __uint_as_float(bounds & 0xffff0000u), radius * radius};
 }

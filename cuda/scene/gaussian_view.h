@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "runtime/math/code_groups.h"
+#include "runtime/math/mean_code.h"
 #include "runtime/math/sh.h"
 #include "runtime/math/sh_code.h"
 #include "runtime/math/shape_code.h"
@@ -28,13 +30,19 @@ struct ParentView {
 
 enum class ShForm { half, single, coded };
 
+struct CodedHull {
+  MeanCode mean;
+  uint32_t bounds;  // ShapeCode's
+};
+
 // The arrays are indexed by node id, or by address in a pool.
 struct GaussianView {
-  // Mean, and a word that bounds the support before all else is read: ShapeCode::bounds of a coded
-  // scene. Of another its upper 16 bits are the largest scale, its lower 16 the radius of the
-  // support in standard deviations, at the least α* there is, the truth's; 0 if α never reaches it.
-  // Both are rounded up to the upper half of a binary32.
-  const float4* hulls;
+  // Mean, and a word that bounds the support before all else is read: a CodedHull each, or of a
+  // scene that is not coded a float4. The last word of that has the largest scale in its upper 16
+  // bits, and in its lower 16 the radius of the support in standard deviations, at the least α*
+  // there is, the truth's; 0 if α never reaches it. Both are rounded up to the upper half of a
+  // binary32.
+  const void* hulls;
   // Two words for each Gaussian: scale and log o, then rotation (w, x, y, z). A coded scene has one
   // ShapeRest for each.
   const void* shapes;
@@ -58,7 +66,8 @@ struct GaussianView {
   // Of a coded scene.
   ShapeTables tables;
   const ShStepSizes* sh_steps;  // by group
-  ShGroups sh_groups;
+  const MeanGrid* mean_grids;   // the same
+  CodeGroups code_groups;
 };
 
 // 16-byte words of a Gaussian's coefficients in binary16.
@@ -74,6 +83,9 @@ inline constexpr uint32_t coefficient_bytes(int degree, ShForm form) {
   return form == ShForm::coded  ? sh_row_bytes(degree)
          : form == ShForm::half ? 16u * static_cast<uint32_t>(half_sh_words(degree))
                                 : 12u * static_cast<uint32_t>(sh_coefficients(degree));
+}
+inline constexpr uint32_t hull_bytes(ShForm form) {
+  return form == ShForm::coded ? sizeof(CodedHull) : sizeof(float4);
 }
 inline constexpr uint32_t shape_bytes(ShForm form) {
   return form == ShForm::coded ? sizeof(ShapeRest) : 2 * sizeof(float4);

@@ -131,7 +131,7 @@ DevicePool::~DevicePool() {
 }
 
 GaussianView DevicePool::gaussians() const {
-  return {array<float4>(kHulls),
+  return {array<unsigned char>(kHulls),
           array<unsigned char>(kShapes),
           array<float>(kOpacities),
           array<uint8_t>(kNodeCodes),
@@ -152,6 +152,7 @@ GaussianView DevicePool::gaussians() const {
           slots_ * shape_.nodes,
           tables_ == nullptr ? ShapeTables{} : tables_->view(),
           array<ShStepSizes>(kStepSizes),
+          array<MeanGrid>(kMeanGrids),
           {nullptr, shape_.nodes}};
 }
 
@@ -209,10 +210,11 @@ void DevicePool::pack_codes(const StagedChunk& staged, unsigned char* into) cons
       row[sh_spare_byte(sh_degree_)] = code.rest.children;
       code.rest.children = static_cast<uint8_t>(staged.owner[i]);
     }
-    put(at(kHulls), place, coded_hull(chunk.words[i].mean, code));
+    put(at(kHulls), place, CodedHull{chunk.mean_code[i], code.bounds});
     put(at(kShapes), place, code.rest);
   }
   put(at(kStepSizes), 0, step_sizes(chunk.sh_scale));
+  put(at(kMeanGrids), 0, chunk.mean_grid);
 }
 
 void DevicePool::pack_floats(const StagedChunk& staged, unsigned char* into) const {

@@ -25,7 +25,7 @@ bool owners_in_shapes(const Scene& scene, SlotShape shape) {
 PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
   const ShForm form = sh_form(scene);
   const bool coded = form == ShForm::coded;
-  unit_ = {sizeof(float4),
+  unit_ = {hull_bytes(form),
            shape_bytes(form),
            coefficient_bytes(scene.sh_degree, form),
            scene.search.leaves_have_extent ? sizeof(NodeRecord) : 0,
@@ -36,6 +36,7 @@ PoolLayout::PoolLayout(const Scene& scene, SlotShape shape, PoolRoom room) {
            sizeof(SearchRecord),
            sizeof(uint32_t),
            coded ? sizeof(ShStepSizes) : 0,
+           coded ? sizeof(MeanGrid) : 0,
            sizeof(uint32_t),
            sizeof(SearchSubtree),
            sizeof(uint32_t),

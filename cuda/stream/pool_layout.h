@@ -22,6 +22,7 @@ enum PoolArray : uint32_t {
   kRecords,        // blocks
   kNextBlocks,     // one a block; of a chunk on its way, its blocks
   kStepSizes,      // one a slot
+  kMeanGrids,      // the same
   kFirstSubtrees,  // the same
   kFilledArrays,
   // By page of subtrees (runtime/math/subtree_places.h).
@@ -42,7 +43,7 @@ enum PoolCount : uint32_t { kNodes, kRecordsOwned, kBlocks, kOnce, kPoolCounts }
 constexpr PoolCount counted_by(uint32_t array) {
   if (array == kRecords) return kRecordsOwned;
   if (array == kNextBlocks) return kBlocks;
-  return array == kStepSizes || array == kFirstSubtrees ? kOnce : kNodes;
+  return array >= kStepSizes && array <= kFirstSubtrees ? kOnce : kNodes;
 }
 
 // Bytes that are copied at once of elements of such a size.

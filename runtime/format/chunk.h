@@ -8,6 +8,7 @@
 
 #include "runtime/lod/subtrees.h"
 #include "runtime/math/gaussian.h"
+#include "runtime/math/mean_code.h"
 #include "runtime/math/sh_code.h"
 
 namespace voyager {
@@ -26,9 +27,11 @@ struct Chunk {
   std::vector<GaussianWords> words;   // scene-local means; leaf opacity is a logit, merged linear
   bool linear_leaves = false;         // of a .hier's tree: leaf opacities are linear, too
   std::vector<float> sh;              // coefficients * 3 a node, [k][rgb]
-  // Of compact storage, what was restored: scales of sh, and what the file has of rotations
+  // Of compact storage, what was restored: scales of sh, means, and what the file has of rotations
   // (runtime/math/shape_code.h), since restored ones may be told in two ways. Lossless: none.
   ShScales sh_scale{};
+  MeanGrid mean_grid{};
+  std::vector<MeanCode> mean_code;
   std::vector<std::array<uint16_t, 3>> rotation_code;
   std::vector<uint8_t> node_code;      // runtime/math/node_code.h
   std::vector<uint32_t> source_index;  // leaf: its index in the input; interior: kNoNode

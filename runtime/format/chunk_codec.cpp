@@ -130,6 +130,7 @@ Chunk decode_chunk(std::span<const std::byte> bytes, const ChunkLocation& locati
     decode_lossless(payload, location, own, chunk);
   change_sh_degree(chunk.sh, own.sh_degree, context.sh_degree);
   check_words(chunk, location, context);
+  if (context.quality == Quality::compact) round_means(chunk);
   return chunk;
 }
 

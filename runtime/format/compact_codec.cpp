@@ -74,15 +74,33 @@ float largest_restored_sh(const Chunk& chunk, size_t coefficients, const ChunkHe
   return largest;
 }
 
+MeanGrid grid_of(const std::vector<GaussianWords>& words) {
+  if (words.empty()) return {};
+  Vec3f least = words.front().mean, greatest = least;
+  for (const GaussianWords& w : words)
+    for (int axis = 0; axis < 3; ++axis) {
+      least[axis] = std::min(least[axis], w.mean[axis]);
+      greatest[axis] = std::max(greatest[axis], w.mean[axis]);
+    }
+  return mean_grid(least, greatest);
+}
+
 double position_error(const Chunk& chunk, const ChunkHeader& header) {
-  double most = 0;
-  for (size_t i = 0; i < chunk.words.size(); ++i) {
-    double squares = 0;
+  std::vector<GaussianWords> restored = chunk.words;
+  for (size_t i = 0; i < restored.size(); ++i)
     for (int axis = 0; axis < 3; ++axis) {
       const double centre = box_centre(chunk.record_of(i), axis), step = header.position_step[axis];
-      const float mean = chunk.words[i].mean[axis];
-      const double restored = restore_position(quantise_position(mean, centre, step), centre, step);
-      squares += (restored - mean) * (restored - mean);
+      float& mean = restored[i].mean[axis];
+      mean = restore_position(quantise_position(mean, centre, step), centre, step);
+    }
+  const MeanGrid grid = grid_of(restored);
+  double most = 0;
+  for (size_t i = 0; i < restored.size(); ++i) {
+    const Vec3f mean = restored_mean(mean_code(restored[i].mean, grid), grid);
+    double squares = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double off = double{mean[axis]} - chunk.words[i].mean[axis];
+      squares += off * off;
     }
     most = std::max(most, squares);
   }
@@ -257,6 +275,15 @@ void decode_compact(std::span<const std::byte> payload, const ChunkHeader& heade
   planes.take(4, [&](size_t i, uint32_t v) { chunk.source_index[i] = v; });
   chunk.node_code.resize(nodes);
   planes.take(1, [&](size_t i, uint32_t v) { chunk.node_code[i] = static_cast<uint8_t>(v); });
+}
+
+void round_means(Chunk& chunk) {
+  chunk.mean_grid = grid_of(chunk.words);
+  chunk.mean_code.reserve(chunk.words.size());
+  for (GaussianWords& w : chunk.words) {
+    chunk.mean_code.push_back(mean_code(w.mean, chunk.mean_grid));
+    w.mean = restored_mean(chunk.mean_code.back(), chunk.mean_grid);
+  }
 }
 
 }  // namespace voyager

@@ -15,5 +15,7 @@ void encode_compact(const Chunk& chunk, const ChunkContext& context, ChunkHeader
 // also where the payload does not decompress to what the counts of `location` take.
 void decode_compact(std::span<const std::byte> payload, const ChunkHeader& header,
                     const ChunkLocation& location, const ChunkContext& context, Chunk& chunk);
+// Rounds the means of a decoded chunk, which were checked, to its grid (runtime/math/mean_code.h).
+void round_means(Chunk& chunk);
 
 }  // namespace voyager

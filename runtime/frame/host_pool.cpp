@@ -72,7 +72,10 @@ class HostPool final : public ChunkPool {
     const uint32_t slot = staged.links.slot;
     const size_t base = size_t{slot} * shape_.nodes;
     scene_.slot_ids[slot] = staged.ids;
-    if (is_coded(scene_)) scene_.sh_scales[slot] = chunk.sh_scale;
+    if (is_coded(scene_)) {
+      scene_.sh_scales[slot] = chunk.sh_scale;
+      scene_.mean_grids[slot] = chunk.mean_grid;
+    }
     for (size_t i = 0; i < chunk.node.size(); ++i) {
       const size_t at = base + staged.place[i];
       set_gaussian(chunk, i, at, scene_);
@@ -125,7 +128,7 @@ PoolBytes pool_bytes(const Scene& scene, SlotShape shape) {
   const uint64_t block = kRecordBlock * sizeof(SearchRecord) + sizeof(uint32_t);
   const uint64_t page = kPageSubtrees * (sizeof(SearchSubtree) + sizeof(uint32_t));
   const SearchTree& search = scene.search;
-  const uint64_t scales = is_coded(scene) ? sizeof(ShScales) : 0;
+  const uint64_t scales = is_coded(scene) ? sizeof(ShScales) + sizeof(MeanGrid) : 0;
   return {shape.nodes * node + scales + sizeof(SlotIds), block,
           page + pages_of(search.subtree_count()) * sizeof(uint32_t) +
               search.tier_begin.size() * sizeof(uint32_t),

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "runtime/base/error.h"
+#include "runtime/frame/code_groups.h"
 #include "runtime/frame/load.h"
 #include "runtime/frame/scene_gaussians.h"
-#include "runtime/frame/sh_runs.h"
 #include "runtime/frame/whole_tree.h"
 #include "runtime/lod/nesting.h"
 #include "runtime/lod/round_bounds.h"
@@ -173,13 +173,12 @@ float largest_magnitude(const std::vector<float>& values) {
 std::vector<ChunkFindings> read_chunks(const SceneFile& file, Workers& workers, Scene& scene) {
   std::vector<ChunkFindings> findings(file.chunks().size());
   std::atomic<bool> leaves_once{true};
-  if (is_coded(scene)) find_sh_runs(file, scene);
+  if (is_coded(scene)) find_code_groups(file, scene);
   workers.for_blocks(findings.size(), 8, [&](size_t begin, size_t end) {
     for (size_t index = begin; index < end; ++index) {
       try {
         const Chunk chunk = file.read_chunk(static_cast<uint32_t>(index));
-        if (is_coded(scene))
-          set_sh_scales(file, static_cast<uint32_t>(index), chunk.sh_scale, scene);
+        if (is_coded(scene)) set_code_scales(file, static_cast<uint32_t>(index), chunk, scene);
         store_nodes(chunk, scene);
         findings[index].sh_degree = used_sh_degree(chunk.sh, scene.sh_degree);
         findings[index].largest_sh = largest_magnitude(chunk.sh);

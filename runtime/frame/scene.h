@@ -12,6 +12,8 @@
 #include "runtime/frame/scene_profile.h"
 #include "runtime/math/gaussian.h"
 #include "runtime/math/large_families.h"
+#include "runtime/math/mean_code.h"
+#include "runtime/math/run_index.h"
 #include "runtime/math/sh_code.h"
 #include "runtime/math/shape_code.h"
 #include "runtime/scene/gaussian_cloud.h"
@@ -60,11 +62,12 @@ struct Scene {
       : gaussians(memory),
         sh(memory),
         node_code(memory),
-        means(memory),
+        mean_codes(memory),
         shapes(memory),
         sh_rows(memory),
         sh_scales(memory),
-        sh_blocks(memory),
+        mean_grids(memory),
+        group_blocks(memory),
         tree(memory),
         child_count(memory),
         large_families(memory),
@@ -97,12 +100,13 @@ struct Scene {
   std::pmr::vector<Gaussian> gaussians;
   std::pmr::vector<float> sh;           // coefficients() * 3 each
   std::pmr::vector<uint8_t> node_code;  // of a lossless tree (runtime/math/node_code.h)
-  std::pmr::vector<Vec3f> means;
+  std::pmr::vector<MeanCode> mean_codes;
   std::pmr::vector<ShapeCode> shapes;
-  std::pmr::vector<uint8_t> sh_rows;     // sh_row_bytes() each
-  std::pmr::vector<ShScales> sh_scales;  // by group
-  std::pmr::vector<RunBlock> sh_blocks;  // empty where a slot is a group
-  uint32_t slot_nodes = 0;               // of a pool on the host
+  std::pmr::vector<uint8_t> sh_rows;        // sh_row_bytes() each
+  std::pmr::vector<ShScales> sh_scales;     // by group
+  std::pmr::vector<MeanGrid> mean_grids;    // the same
+  std::pmr::vector<RunBlock> group_blocks;  // empty where a slot is a group
+  uint32_t slot_nodes = 0;                  // of a pool on the host
   // Empty for a flat scene. Its records and first_child may be left out: whole_tree() makes them
   // (whole_tree.h), and node_links() says how many children a node has (node_links.h).
   LodTree tree;

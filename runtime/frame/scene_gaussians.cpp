@@ -50,42 +50,46 @@ void put_row(const Chunk& chunk, size_t i, int degree, uint8_t* row) {
   put_last_word(scales_of(chunk.words[i]).others, degree, row);
 }
 
+CodeGroups code_groups(const Scene& scene) {
+  return {scene.group_blocks.empty() ? nullptr : scene.group_blocks.data(), scene.slot_nodes};
+}
+
 PackedSh packed_sh(const Scene& scene) {
-  return {scene.sh_rows.data(),
-          scene.sh_scales.data(),
-          {scene.sh_blocks.empty() ? nullptr : scene.sh_blocks.data(), scene.slot_nodes}};
+  return {scene.sh_rows.data(), scene.sh_scales.data()};
 }
 
 size_t gaussian_count(const Scene& scene) {
-  return is_coded(scene) ? scene.means.size() : scene.gaussians.size();
+  return is_coded(scene) ? scene.mean_codes.size() : scene.gaussians.size();
 }
 
 uint64_t gaussian_bytes(Storage storage, int degree) {
-  if (storage == Storage::compact) return sizeof(Vec3f) + sizeof(ShapeCode) + sh_row_bytes(degree);
+  if (storage == Storage::compact)
+    return sizeof(MeanCode) + sizeof(ShapeCode) + sh_row_bytes(degree);
   return sizeof(Gaussian) + 3 * sizeof(float) * static_cast<uint64_t>(sh_coefficients(degree)) +
          (storage == Storage::flat ? 0 : sizeof(uint8_t));
 }
 
 GaussianArrays gaussian_arrays(const Scene& scene) {
-  return {scene.gaussians.data(), scene.sh.data(),     scene.node_code.data(),
-          scene.sh_degree,        scene.doubles,       footprints_differ(scene),
-          scene.means.data(),     scene.shapes.data(), shape_tables(),
-          packed_sh(scene)};
+  return {scene.gaussians.data(),  scene.sh.data(),     scene.node_code.data(),
+          scene.sh_degree,         scene.doubles,       footprints_differ(scene),
+          scene.mean_codes.data(), scene.shapes.data(), shape_tables(),
+          packed_sh(scene),        code_groups(scene),  scene.mean_grids.data()};
 }
 
 void make_gaussian_room(size_t gaussians, size_t groups, Scene& scene) {
   const bool coded = is_coded(scene);
   const size_t in_floats = coded ? 0 : gaussians, in_codes = coded ? gaussians : 0;
   fit(scene.gaussians, 0), fit(scene.sh, 0), fit(scene.node_code, 0);
-  fit(scene.means, 0), fit(scene.shapes, 0), fit(scene.sh_rows, 0);
-  fit(scene.sh_scales, 0), fit(scene.sh_blocks, 0);
+  fit(scene.mean_codes, 0), fit(scene.shapes, 0), fit(scene.sh_rows, 0);
+  fit(scene.sh_scales, 0), fit(scene.mean_grids, 0), fit(scene.group_blocks, 0);
   fit(scene.gaussians, in_floats);
   fit(scene.sh, in_floats * sh_floats(scene));
   fit(scene.node_code, scene.flat() ? 0 : in_floats);
-  fit(scene.means, in_codes);
+  fit(scene.mean_codes, in_codes);
   fit(scene.shapes, in_codes);
   fit(scene.sh_rows, in_codes * sh_row_bytes(scene.sh_degree));
   fit(scene.sh_scales, coded ? groups : 0);
+  fit(scene.mean_grids, coded ? groups : 0);
 }
 
 void set_gaussian(const Chunk& chunk, size_t i, size_t index, Scene& scene) {
@@ -96,7 +100,7 @@ void set_gaussian(const Chunk& chunk, size_t i, size_t index, Scene& scene) {
     std::copy_n(sh, sh_floats(scene), scene.sh.data() + index * sh_floats(scene));
     return;
   }
-  scene.means[index] = chunk.words[i].mean;
+  scene.mean_codes[index] = chunk.mean_code[i];
   scene.shapes[index] = shape_code(chunk, i);
   put_row(chunk, i, scene.sh_degree, scene.sh_rows.data() + index * sh_row_bytes(scene.sh_degree));
 }
@@ -106,7 +110,7 @@ void set_nothing(size_t index, Scene& scene) {
     scene.gaussians[index] = activate({{0, 0, 0}, {0, 0, 0}, {1, 0, 0, 0}, 0.0f}, false);
     return;
   }
-  scene.means[index] = {0, 0, 0};
+  scene.mean_codes[index] = {};
   scene.shapes[index] = {};
 }
 
@@ -114,7 +118,7 @@ void copy_sh(const Scene& scene, size_t index, float* sh) {
   if (is_coded(scene)) {
     const PackedSh packed = packed_sh(scene);
     unpack_sh(packed.rows + index * sh_row_bytes(scene.sh_degree), scene.sh_degree,
-              packed.scales[packed.groups(static_cast<uint32_t>(index))], sh);
+              packed.scales[code_groups(scene)(static_cast<uint32_t>(index))], sh);
   } else {
     std::copy_n(scene.sh.data() + index * sh_floats(scene), sh_floats(scene), sh);
   }

@@ -1,6 +1,7 @@
 #pragma once
 // The Gaussians of a scene in memory: those of a compact file as it stores them
-// (runtime/math/shape_code.h, sh_code.h), the others in binary32. Both give the same bits.
+// (runtime/math/mean_code.h, shape_code.h, sh_code.h), the others in binary32. Both give the same
+// bits.
 #include "runtime/format/chunk.h"
 #include "runtime/frame/scene.h"
 #include "runtime/stages/interpolate.h"
@@ -19,6 +20,7 @@ inline size_t sh_floats(const Scene& scene) {
 uint64_t gaussian_bytes(Storage storage, int sh_degree);
 
 // As stages read them. Valid until the scene changes.
+CodeGroups code_groups(const Scene& scene);
 PackedSh packed_sh(const Scene& scene);
 GaussianArrays gaussian_arrays(const Scene& scene);
 

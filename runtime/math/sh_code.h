@@ -1,7 +1,7 @@
 #pragma once
 // SH coefficients as compact storage has them (docs/voy-format.md): the constant in binary16, the
 // others as signed steps of the largest of their band in the chunk. In memory they are rows, one a
-// Gaussian; Gaussians of one chunk are a group, which has its scales in common.
+// Gaussian; those of one chunk have its scales in common (code_groups.h).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,7 +10,6 @@
 #include <cstring>
 
 #include "runtime/math/half.h"
-#include "runtime/math/run_index.h"
 #include "runtime/math/sh.h"
 
 namespace voyager {
@@ -151,16 +150,5 @@ inline void unpack_sh(const uint8_t* __restrict row, int degree, const ShScales&
     }
   }
 }
-
-// Which group a Gaussian is of. In the order of node ids a chunk's come in several runs, each of
-// which is a group; in a pool a slot is one.
-struct ShGroups {
-  const RunBlock* blocks;  // by Gaussian / 32; null in a pool
-  uint32_t slot_nodes;     // of a pool
-
-  VOYAGER_HD uint32_t operator()(uint32_t gaussian) const {
-    return blocks == nullptr ? gaussian / slot_nodes : run_of(blocks, gaussian);
-  }
-};
 
 }  // namespace voyager

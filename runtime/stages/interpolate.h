@@ -1,7 +1,9 @@
 #pragma once
 // METHOD §4 as a stage: which Gaussian a cut node draws, and how much of its parent.
 #include "runtime/lod/tree.h"
+#include "runtime/math/code_groups.h"
 #include "runtime/math/lerp.h"
+#include "runtime/math/mean_code.h"
 #include "runtime/math/node_code.h"
 #include "runtime/math/sh.h"
 #include "runtime/math/sh_code.h"
@@ -52,8 +54,7 @@ class ShOf {
 
 struct PackedSh {
   const uint8_t* rows = nullptr;
-  const ShScales* scales = nullptr;
-  ShGroups groups{};
+  const ShScales* scales = nullptr;  // by group
 };
 
 // What a stage reads of the scene, on the host. A device has a layout of its own with
@@ -66,18 +67,22 @@ struct GaussianArrays {
   bool doubles;     // nodes of one child are doubles, as files of version 4 have them
   bool footprints;  // that differ between nodes
   // In place of gaussians, coefficients and node codes, of a compact scene; else null.
-  const Vec3f* means = nullptr;
+  const MeanCode* means = nullptr;
   const ShapeCode* shapes = nullptr;
   ShapeTables tables{};
   PackedSh packed{};
+  CodeGroups groups{};
+  const MeanGrid* grids = nullptr;  // by group
 
   int sh_degree() const { return degree; }
   bool coded() const { return shapes != nullptr; }
-  Vec3f mean(uint32_t i) const { return coded() ? means[i] : gaussians[i].mean; }
+  Vec3f mean(uint32_t i) const {
+    return coded() ? restored_mean(means[i], grids[groups(i)]) : gaussians[i].mean;
+  }
   Gaussian gaussian(uint32_t i) const {
     if (!coded()) return gaussians[i];
     Gaussian g = restored_shape(shapes[i], last_word(row(i), degree), tables);
-    g.mean = means[i];
+    g.mean = mean(i);
     return g;
   }
   // Of a coded scene: what bounds its support, for less than gaussian() takes.
@@ -91,7 +96,7 @@ struct GaussianArrays {
   // sh(i)(k, channel)
   ShOf sh(uint32_t i) const {
     if (!coded()) return ShOf(coefficients + i * 3 * static_cast<size_t>(sh_coefficients(degree)));
-    return {row(i), degree, packed.scales[packed.groups(i)]};
+    return {row(i), degree, packed.scales[groups(i)]};
   }
 
  private:

@@ -108,7 +108,7 @@ TEST(ShOmission, ABakeStoresWhatACloudWithoutTheBandsHas) {
 void put_bands_back(Scene& scene) {
   std::vector<float> sh(3 * static_cast<size_t>(sh_coefficients(3)));
   std::pmr::vector<uint8_t> rows(scene.sh_rows.size() / sh_row_bytes(0) * sh_row_bytes(3));
-  for (size_t i = 0; i < scene.means.size(); ++i) {
+  for (size_t i = 0; i < scene.mean_codes.size(); ++i) {
     copy_sh(scene, i, sh.data());
     uint8_t* const row = rows.data() + i * sh_row_bytes(3);
     pack_sh(sh.data(), 3, scene.sh_scales.front(), row);
