@@ -11,8 +11,8 @@ namespace voyager {
 struct SlotIds {
   static constexpr uint32_t kRuns = 5;
 
-  uint32_t begin[kRuns - 1];  // places of a slot where its later runs begin
   uint32_t offset[kRuns];     // of each run: a node's id less its place, modulo 2^32
+  uint16_t begin[kRuns - 1];  // places where the later runs begin: a chunk has 2^15 at most
 
   VOYAGER_HD uint32_t id(uint32_t place) const {
     uint32_t run = 0;
@@ -21,16 +21,16 @@ struct SlotIds {
   }
 };
 
-// ids: by place. False where they have more runs.
+// ids: by place, fewer than 2^16. False where they have more runs.
 inline bool make_slot_ids(std::span<const uint32_t> ids, SlotIds& out) {
-  constexpr uint32_t kNone = 0xffffffffu;
-  for (uint32_t& begin : out.begin) begin = kNone;
+  constexpr uint16_t kNone = 0xffff;
+  for (uint16_t& begin : out.begin) begin = kNone;
   for (uint32_t& offset : out.offset) offset = 0;
   uint32_t run = 0;
   for (uint32_t place = 0; place < ids.size(); ++place) {
     if (place != 0 && ids[place] != ids[place - 1] + 1) {
       if (++run == SlotIds::kRuns) return false;
-      out.begin[run - 1] = place;
+      out.begin[run - 1] = static_cast<uint16_t>(place);
     }
     out.offset[run] = ids[place] - place;
   }
